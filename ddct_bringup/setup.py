@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Install the programs that run, record, score and compare engagements."""
 
 import sys

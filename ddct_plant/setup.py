@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Install the plant: its nodes, the identification and the scenarios."""
 
 import sys

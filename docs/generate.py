@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Write what is generated in the pages: tables, their charts, and the block diagrams."""
 
 import argparse

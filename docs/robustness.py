@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Keep the results of the campaigns of docs/thesis/robustness_map.md, and write its tables."""
 
 import sys

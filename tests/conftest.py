@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Isolate every test: its own ROS domain, and no process of it left behind."""
 
 import os

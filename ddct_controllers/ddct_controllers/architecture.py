@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Control architectures of the thesis: the torque request as open loop plus feedback."""
 
 from collections.abc import Callable

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The closing stage: once both plates turn at the same speed, a request that keeps it so."""
 
 from ddct_controllers.interface import Measurement, Status

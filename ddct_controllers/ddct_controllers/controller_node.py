@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Node `controller`: runs the controller that its `controller` parameter names, every tick."""
 
 import time

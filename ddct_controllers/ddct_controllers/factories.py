@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Controllers of third parties: construction from a class or factory, and its declarations."""
 
 from collections.abc import Callable, Mapping

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Feedforward of engine torque and load torque (thesis Section 1.6.2), as it runs."""
 
 from ddct_controllers.design.feedforward import design_feedforward, state_at_rest

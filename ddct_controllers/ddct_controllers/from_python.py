@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Controllers out of Python objects: names, classes, factories, controllers, linear systems."""
 
 from dataclasses import replace

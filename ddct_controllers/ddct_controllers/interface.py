@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The interface of controllers: one small class that never reads a clock and does not use ROS."""
 
 from abc import ABC, abstractmethod

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Linear feedback on the slip error: G_c(z) in state-space form, and the PI with its gains."""
 
 import dataclasses

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Controllers from linear systems of other libraries: scipy.signal and python-control."""
 
 from typing import Any

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Place of an error's cause for the author of a controller: in code or files of their own."""
 
 import inspect

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Controllers that the thesis prints as transfer functions, in N m per rpm of slip error."""
 
 from ddct_plant.linear.lti import FactoredTransferFunction

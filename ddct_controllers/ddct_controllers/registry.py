@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Controllers by name: our own, those of other packages, and those in a file."""
 
 import importlib.metadata

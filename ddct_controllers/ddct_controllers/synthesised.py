@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Our own H-infinity controllers, synthesised when they are requested."""
 
 from functools import lru_cache

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Each architecture adds its open loop, and starts feedback, as in the thesis."""
 
 import inspect

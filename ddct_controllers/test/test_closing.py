@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The closing stage: when a clutch counts as locked, its request then, and when it opens."""
 
 from dataclasses import replace

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Every controller declares whether it is computed from the scenario's driveline, correctly."""
 
 import pytest

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Printed controllers are sampled as the thesis samples them."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The linear model of a controller gives the torques of its updates."""
 
 import numpy as np

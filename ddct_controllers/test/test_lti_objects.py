@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Linear systems of scipy.signal and python-control are controllers."""
 
 import sys

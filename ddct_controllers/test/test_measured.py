@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A measurement that a controller cannot use is refused by name, and leaves no trace."""
 
 import math

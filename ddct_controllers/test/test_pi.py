@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The PI acts on rpm, with the thesis's sign, and takes only gains it has."""
 
 import pytest

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """An error is placed where the author of the controller can mend it."""
 
 import re

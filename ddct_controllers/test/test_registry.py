@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Controllers are found by name; one that cannot be built raises an error with the reason."""
 
 import importlib.metadata

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Descents of the slip reference from control start on, most of them to zero."""
 
 import math

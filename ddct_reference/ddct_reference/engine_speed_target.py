@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Slip-speed reference that keeps the engine at a target speed until the shaft catches up."""
 
 import math

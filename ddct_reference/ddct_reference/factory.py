@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The slip reference of a run, from its scenario and architecture."""
 
 from dataclasses import replace

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Node `reference`: the slip reference for the controller, with its preview."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Slip-speed references with preview; that of most runs follows w_d, or stored values, first."""
 
 import math

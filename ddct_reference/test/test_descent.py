@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Every descent starts at its start, ends at zero, and has the rate of its values."""
 
 import math

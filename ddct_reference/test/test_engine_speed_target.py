@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The engine keeps a target speed until the shaft has caught up, and then slip is zero."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The slip under C_fOL alone: constant for constant torques with the full equilibrium."""
 
 import pytest

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A slip reference given over time counts from control start, in every architecture that can."""
 
 import pytest

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """References follow the slip or a stored function until control starts, then run to zero."""
 
 import numpy as np

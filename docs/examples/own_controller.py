@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A node `controller` in place of ours, without our packages: a PI on the slip error in rpm."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A node `engine` in place of ours, without our packages: 308 N m after a rise of 0.524 s."""
 
 from contextlib import suppress

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Draw block diagrams as SVG: blocks, sums and points on a grid, and the signals between them."""
 
 from collections.abc import Sequence

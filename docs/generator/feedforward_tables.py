@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Tables of the design of the feedforward and of its residuals."""
 
 import math

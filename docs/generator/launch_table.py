@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Table of the launches and the tip-in with a new clutch."""
 
 from ddct_bringup.run.headless import run_headless

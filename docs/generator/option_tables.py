@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Tables of options in the pages, made from the declarations in the code."""
 
 import dataclasses

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Figures of docs/thesis/robustness_map.md."""
 
 from collections.abc import Mapping

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Maps of docs/thesis/robustness_map.md: final states of the runs of two campaigns, as text."""
 
 import hashlib

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Tables of metrics, criteria and limits with the names of the programs."""
 
 from ddct_bringup.verdict.criteria import CRITERIA

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Effect of the sensors of docs/use/sensors.md in the scenario `thesis`, over a few seeds."""
 
 import re

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Compute the tables of the pages by the kinds of their marks."""
 
 import json

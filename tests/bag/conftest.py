@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Bags of made-up runs: random numbers in every signal, so that no two values are alike."""
 
 from pathlib import Path

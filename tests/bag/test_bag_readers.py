@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Other readers accept the bags: rosbags and the MCAP library with its ROS 2 decoder."""
 
 import numpy as np

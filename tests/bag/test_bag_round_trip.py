@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Trajectory, facts and counts are read from a bag as written, to the last bit and byte."""
 
 import ctypes

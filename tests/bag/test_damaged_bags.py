@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Missing, cut, damaged and foreign bags have distinct errors and are never read as complete."""
 
 import random

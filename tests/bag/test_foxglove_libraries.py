@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The npm libraries that Foxglove is built on read every message of our bags."""
 
 import json

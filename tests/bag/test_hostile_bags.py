@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A hostile bag neither hangs, fills the memory nor controls the terminal of its reader."""
 
 import os

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A recorder that is killed or runs out of space: its error, and the rescue of its bag."""
 
 import os

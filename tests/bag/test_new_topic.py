@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A new entry in the table of topics is recorded, read and tabulated without another change."""
 
 import csv

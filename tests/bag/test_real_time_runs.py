@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Summary and verdict of a real-time run by `bringup`, `compare` and `score`, from its bag."""
 
 import json

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """`score` writes signals for other tools: the same numbers as CSV and MAT, a file for each bag."""
 
 from pathlib import Path

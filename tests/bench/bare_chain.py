@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """
 The graph's topics, hops and processes in bare rclpy, doing no work: the floor of `make bench`.
 

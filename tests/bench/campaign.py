@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """
 Time of campaigns: predictive control with a stick-slip clutch, and Dask with two workers.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """`mpc_preview` formulated in do-mpc, as a peer of the step time."""
 
 import do_mpc

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Time of one step of exported C controllers, and of the Python controllers they come from."""
 
 import re

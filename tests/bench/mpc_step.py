@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Time of one step of `mpc_preview`, that is filter, program and command, against peers."""
 
 import warnings

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """
 Time of a headless run, and of python-control's `input_output_response` on the same loop.
 

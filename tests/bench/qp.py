@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Time of quadratic programs of slip control with both backends, bare OSQP and cvxpy."""
 
 import time

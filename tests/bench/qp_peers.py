@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Peers that solve the same programs: OSQP without our backend, and cvxpy with parameters."""
 
 from collections.abc import Callable

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Quadratic programs of predictive slip control along a run of the thesis's plant."""
 
 from typing import NamedTuple

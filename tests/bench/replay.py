@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Measurements of one closed-loop run, and the time of a controller's updates with them."""
 
 import time

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """
 `make bench`: time of the graph as a multiple of that of a bare rclpy chain of the same shape.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """
 Time of a run through the graph beside its ticks: until the first tick, and in total.
 

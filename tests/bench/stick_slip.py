@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """
 Time of a headless run with the stick-slip clutch over that with the linear one, without set-up.
 

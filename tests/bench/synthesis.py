@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Time of the H-infinity synthesis for the printed weights: ours, and SLICOT's through slycot."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """`check-controller` names beginners' errors, and passes controllers in order."""
 
 import inspect

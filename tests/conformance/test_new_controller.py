@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """`new-controller` writes a package that installs, is found, runs and passes its own tests."""
 
 import shlex

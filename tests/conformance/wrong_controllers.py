@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Controllers with one beginner's error each, otherwise a sound proportional controller."""
 
 import random

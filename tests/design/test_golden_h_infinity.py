@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """
 Source of the H-infinity optima: Nehari's theorem, without states and Riccati equations.
 

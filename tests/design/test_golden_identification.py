@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """
 Source of the identification's numbers: P_2 and P_3 by Cramer's rule, fitted by scipy.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """
 Sources of the fixed numbers of the design tests: printed formulas and other libraries.
 

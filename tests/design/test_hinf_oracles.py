@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Our H-infinity synthesis against SLICOT and against the LMIs of Gahinet and Apkarian."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A folder where the documented commands find what they read, and runs that they share."""
 
 import os

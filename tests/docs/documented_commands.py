@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The commands of the documentation, sorted by how a test runs them."""
 
 import shlex

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Every link leads somewhere, every page is found, every example in Python runs."""
 
 import re

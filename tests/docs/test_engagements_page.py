@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Rows of the pages of engagements are what the runs give; they have all rows and all charts."""
 
 import pytest

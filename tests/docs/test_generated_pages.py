@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """What is generated in the pages is what the code gives; long tables have tests of their own."""
 
 import re

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Pages can be read: what the reader can do stands first, no page is long, every link arrives."""
 
 import re

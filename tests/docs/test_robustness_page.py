@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The maps of docs/thesis/robustness_map.md are what its campaigns give, and so is the page."""
 
 import re

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Documented commands that need a shell: graphs by hand, sourcing, compiling."""
 
 import os

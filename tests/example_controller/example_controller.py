@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Example of a third party's controller: proportional, with a dead zone and a preview."""
 
 from collections.abc import Mapping

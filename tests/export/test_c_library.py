@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Controllers written in C run from a file like any other; their errors have one line."""
 
 import gc

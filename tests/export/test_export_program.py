@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """`ddct design mpc --export`, as a user calls it."""
 
 from pathlib import Path

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The exported C itself: its calls, its response to bad input, and its example."""
 
 import dataclasses

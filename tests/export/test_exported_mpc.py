@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Exported predictive controllers in the loop, in place of their Python originals."""
 
 import dataclasses

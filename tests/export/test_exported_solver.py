@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The exported solver alone, on programs harder than the controllers' own."""
 
 import ctypes

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Exported controllers beside the originals, step by step, on measurements of no loop."""
 
 from collections import Counter

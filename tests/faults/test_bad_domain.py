@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A ROS_DOMAIN_ID that is none ends nodes and programs with one line, before anything is left."""
 
 from pathlib import Path

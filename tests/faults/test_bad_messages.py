@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A bad value on a topic ends the node that reads it, with the topic and the stamp."""
 
 import math

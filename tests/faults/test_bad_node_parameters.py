@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A node that is started by hand with a wrong parameter ends with one line and code 1."""
 
 from pathlib import Path

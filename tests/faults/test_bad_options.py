@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Every invalid option or scenario ends `bringup` with one line before anything runs."""
 
 from pathlib import Path

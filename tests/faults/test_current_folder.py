@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Files in the user's current folder are not imported by the nodes."""
 
 import sys

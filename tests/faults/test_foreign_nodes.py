@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Third parties' nodes in the graph: the recorder names their missing values."""
 
 import pytest

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A disk that fills up ends a run with a reason, and leaves nothing like a result."""
 
 import os

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Hostile names and texts in options do no harm outside the run's folder."""
 
 import importlib

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Campaigns whose processes die or are stopped: nothing is lost, and nothing computed twice."""
 
 import os

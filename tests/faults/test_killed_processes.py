@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Killed and interrupted processes: a reason, no process left, no partial result as complete."""
 
 import os

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Nodes that do not belong together: other settings, a second publisher, an earlier graph."""
 
 from pathlib import Path

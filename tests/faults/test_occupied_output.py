@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Output folders: files of a user are never changed, an old result only by a complete new one."""
 
 import os

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """In real time bad messages count as missing, and missing ones lead to a safe state."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Two live publishers of one topic of the loop end the run, and both are named."""
 
 from typing import Any

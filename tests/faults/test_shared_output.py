@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """One folder, two programs: the second is refused by name, whatever it would write there."""
 
 import signal

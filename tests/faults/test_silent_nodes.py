@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A node that is missing, hangs or starts late: the driveline names what it waits for."""
 
 import signal

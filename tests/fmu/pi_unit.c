@@ -1,3 +1,5 @@
+/* Copyright 2026 DDCT team
+ * SPDX-License-Identifier: Apache-2.0 */
 /* A PI controller as an FMU for co-simulation: FMI 2.0 with -DFMI=2, FMI 3.0 with -DFMI=3.
  *
  * It answers as ddct_controllers.pi does, demands the calls that the standard demands, and fails

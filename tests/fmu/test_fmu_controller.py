@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A PI controller in an FMU is the PI controller: to the bit, in every way to run it."""
 
 import gc

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """An error of an FMU, or of its mapping, is one line with file and key."""
 
 import re

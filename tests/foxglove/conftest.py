@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Bags of short runs, as the layout is checked against them."""
 
 from collections.abc import Callable

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """What is wrong with a Foxglove layout for a bag; Foxglove itself says none of it."""
 
 import json

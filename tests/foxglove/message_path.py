@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Foxglove's message paths, as far as our layout uses them, with the behaviour of its panels."""
 
 import re

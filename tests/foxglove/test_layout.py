@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """No panel of the Foxglove layout stays empty, whatever bag of ours it shows."""
 
 from collections.abc import Callable

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Every mistake that Foxglove would pass over in silence is found in the layout."""
 
 from collections.abc import Callable

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The settings of the layout are those that Foxglove's own description of layouts knows."""
 
 import dataclasses

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Every architecture is one loop: both graph layouts and headless agree to the last bit."""
 
 from pathlib import Path

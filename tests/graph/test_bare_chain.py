@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The bare chain of `make bench` starts with every node matched, and has a timeout."""
 
 import sys

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A controller in C runs in the graph like its Python original."""
 
 from pathlib import Path

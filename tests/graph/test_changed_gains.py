@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Options of a controller as parameters; gains change while it runs, all of a request or none."""
 
 from collections.abc import Iterable, Mapping

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The parameter files that the packages install list what the nodes declare."""
 
 from collections.abc import Iterator

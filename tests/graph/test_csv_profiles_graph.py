@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Profiles from CSV files reach every node, and the bag alone is enough to score the run."""
 
 import math

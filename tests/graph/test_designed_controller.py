@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A controller in a file is found by the nodes of the graph, and leaves the headless run's bag."""
 
 from hashlib import sha256

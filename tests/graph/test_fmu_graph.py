@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A controller in an FMU runs in the nodes as headless, and leaves no file of its own behind."""
 
 from pathlib import Path

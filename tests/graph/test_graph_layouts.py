@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """One run, three layouts: separate processes, a single process and headless leave one bag."""
 
 import gc

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Graphs on one machine are separate, and a namespace changes nothing."""
 
 import os

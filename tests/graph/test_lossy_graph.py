@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Lost, doubled and late messages change nothing in lock-step."""
 
 import json

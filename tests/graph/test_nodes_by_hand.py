@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Nodes started by hand, one program each, without bringup: any order gives the same run."""
 
 import random

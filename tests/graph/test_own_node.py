@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Nodes that import none of this project's code replace its nodes and give the same trajectory."""
 
 import re

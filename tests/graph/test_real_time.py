@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Real time: 100 Hz on the wall clock, the trajectory of lock-step where no step was missed."""
 
 import json

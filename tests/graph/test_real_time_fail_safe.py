@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Real time: the clutch opens by itself, at the stated rate, when requests stop."""
 
 import signal

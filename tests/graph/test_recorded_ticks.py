@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The recorder writes every tick exactly once on every topic; read without the own reader."""
 
 from collections import Counter, defaultdict

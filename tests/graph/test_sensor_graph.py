@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A run with sensors is the same in every layout, and control reads sensor values."""
 
 from pathlib import Path

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The graph follows the scenario's engine speed and pedal as the headless run does."""
 
 from pathlib import Path

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A clutch that sticks in the graph: every layout leaves the bytes of the headless loop."""
 
 from pathlib import Path

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A controller of clutch and engine: one run in every layout, and an error if miswired."""
 
 import signal

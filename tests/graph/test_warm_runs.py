@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Many runs of one warm parent: each is as if it were the only one."""
 
 from pathlib import Path

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Fixtures of a running `live`; they skip a test where it cannot run."""
 
 from collections.abc import Callable

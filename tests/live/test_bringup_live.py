@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """`ddct bringup --live` when there is no viewer, or no way to serve one."""
 
 import signal

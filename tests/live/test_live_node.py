@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The node `live` in one process with its input: runs in succession, and no run at all."""
 
 from collections.abc import Iterator

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """`live` prints one line and ends with its exit code when it cannot serve or is stopped."""
 
 import socket

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A viewer of `live` receives the run as the bag has it, and the run is unchanged."""
 
 from collections.abc import Callable

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Viewer such as Foxglove: subscribes to every topic of a server and stores the messages."""
 
 import contextlib

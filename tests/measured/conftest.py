@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A log of another car with its column map, in a folder."""
 
 from pathlib import Path

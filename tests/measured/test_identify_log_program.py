@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """`identify --from LOG`: a log of another tool, or a bag, becomes a scenario that runs."""
 
 import json

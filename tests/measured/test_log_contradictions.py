@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Values that a log contradicts are refused: ratio, times, units, signs; others are accepted."""
 
 import json

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Delays of the signals of a log are found, with intervals that cover them."""
 
 from pathlib import Path

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A fit to a log finds the car, within its intervals, and names parameters without information."""
 
 from dataclasses import replace

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The scenario that `identify` writes replays the log: its torque, speeds, duration and name."""
 
 from pathlib import Path

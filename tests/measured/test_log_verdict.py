@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A fit that cannot be right is refused: first in the output, with an exit code, no scenario."""
 
 import json

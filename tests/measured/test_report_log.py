@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The report of a log shows the measured signals, and simulated runs in the same charts."""
 
 import json

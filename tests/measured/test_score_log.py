@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """`score` and `report` read logs of other tools; values without the needed columns are null."""
 
 import json

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Read the seeded defects: each names a file, an exact text of it, the defect and its tests."""
 
 from dataclasses import dataclass, fields

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Run tests in a scratch copy of the tracked files, which may have one seeded defect."""
 
 import os

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Plugin of pytest: what was imported of the project's packages comes from the scratch copy."""
 
 import os

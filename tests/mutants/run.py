@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """
 `make mutants`: seed every defect of tests/mutants/*.yaml in a scratch copy and run its tests.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """`make mutants` tells which seeded defects live, and no entry of it goes stale."""
 
 import subprocess

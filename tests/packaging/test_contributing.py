@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """CONTRIBUTING tells how to add each kind of thing, and names no file that is not there."""
 
 import re

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """What the product imports is what package.xml, setup.py and the way with apt tell to install."""
 
 import ast

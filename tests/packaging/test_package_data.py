@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """What pip installs of a package holds every file that its code reads."""
 
 import runpy

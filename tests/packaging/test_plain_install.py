@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """pip installs the four packages into an environment of its own, where `ddct` starts them."""
 
 import importlib.util

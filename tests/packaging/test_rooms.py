@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Imports go down only: between packages, between the rooms of a package; no room is too full."""
 
 import ast

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Topics are named in one table: no other module spells them, and the interfaces page agrees."""
 
 import ast

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The version stands in package.xml, the same in all four packages; everything else tells that."""
 
 import importlib

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Without ROS, with what the packages require of PyPI and no more, all but the graph works."""
 
 import importlib.metadata

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Output, files and exit code of `bringup` without faults."""
 
 import json

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Programs, bags and nodes report scenario values that were adjusted to agree."""
 
 from pathlib import Path

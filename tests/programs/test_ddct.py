@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """`ddct` starts every program by its name, and lists them."""
 
 import os

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A run that is not valid: `bringup` commits nothing, `compare` the others and its reason."""
 
 import json

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The programs as colcon installs them: `install/<package>/lib/<package>/<program>`."""
 
 import shutil

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """`--help` of a node names its parameters as they are, and disturbs no graph."""
 
 import re

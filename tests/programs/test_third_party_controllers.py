@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A controller of another package works in every program by its name; a broken one is named."""
 
 import json

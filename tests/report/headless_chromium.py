@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A page in a headless Chromium, controlled over its debugging protocol."""
 
 import asyncio

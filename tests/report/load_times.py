@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Measure how long a browser takes to draw all of a report: python load_times.py PAGE..."""
 
 import statistics

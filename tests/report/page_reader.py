@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Read a report's page as a browser without JavaScript would."""
 
 from html.parser import HTMLParser

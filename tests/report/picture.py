@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Take the picture of a report for the README: python picture.py PAGE PICTURE.png."""
 
 import io

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Helper processes of the browser may end a little after it, and must end."""
 
 import os

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The maps of a campaign's page in a real browser, on a narrow screen and on paper."""
 
 from pathlib import Path

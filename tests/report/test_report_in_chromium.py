@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The report's page in a real browser: no error, no request, and every switch works."""
 
 import json

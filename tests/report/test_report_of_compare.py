@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """`compare` writes the report next to the bags, with the evidence of the same runs."""
 
 import json

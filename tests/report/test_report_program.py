@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The program `report`: the numbers on its page, and its errors for bad input."""
 
 import json

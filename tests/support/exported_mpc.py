@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Exported controllers, compiled, loaded and run in place of their Python originals."""
 
 import ctypes

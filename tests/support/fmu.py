@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """
 FMUs that the tests build: a PI controller in C, for FMI 2.0 and 3.0, with its description.
 

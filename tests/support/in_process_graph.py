@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Nodes of the graph inside the test's process; a test can leave out, replace or add some."""
 
 import importlib

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Logs of drives with noise and with delayed signals."""
 
 from collections.abc import Sequence

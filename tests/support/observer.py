@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Subscriber that is no part of the graph, for runs without a recorder."""
 
 from typing import Any

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Clock for the driveline in real time with which a busy machine misses no step."""
 
 import time

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Programs as processes of their own, and the processes that a test leaves (Linux /proc)."""
 
 import contextlib

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Relays that lose, double and delay messages between the graph's nodes, as a bad network."""
 
 import random

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Short planned runs, and their recordings."""
 
 from pathlib import Path

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Sensor options for test runs, each option in use."""
 
 ALL_ON = (

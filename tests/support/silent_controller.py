@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Real-time run whose controller stops publishing on the way."""
 
 import signal

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Node that forwards one topic to one reader and, from one step on, changes its messages."""
 
 from collections.abc import Callable

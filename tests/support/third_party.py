@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Make entry points visible as if a third party's package were installed."""
 
 import os

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Every number that the thesis prints, compared with the values computed by all packages."""
 
 import csv

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """
 The stable interface for scripts and notebooks: run, judge, tabulate and draw; docs/use/python.md.
 

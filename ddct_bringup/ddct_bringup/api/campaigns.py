@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Run sweeps and campaigns, many runs each, from Python."""
 
 from collections.abc import Iterable, Mapping

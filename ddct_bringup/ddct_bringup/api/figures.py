@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Draw runs as matplotlib figures."""
 
 from collections.abc import Iterable, Sequence

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Run controllers from Python or load bags; signals, metrics and verdict of a run."""
 
 import tempfile

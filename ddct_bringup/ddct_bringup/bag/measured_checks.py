@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """
 Check the total ratio, units and signs of another tool's log against its own signals.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Keys under `run` of a column map: the facts of a run that its log does not contain."""
 
 from dataclasses import dataclass

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Convert a log of another tool to a recording, so that it is scored and shown as a bag is."""
 
 import argparse

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Read a recorded bag into a trajectory, its facts and counts, without ROS."""
 
 from collections import defaultdict

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Rescue the complete ticks of an interrupted or damaged recording."""
 
 import tempfile

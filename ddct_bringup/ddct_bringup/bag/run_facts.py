@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Facts of a recorded run as text, the nodes' `run_info`, and the counts of a real-time run."""
 
 import json

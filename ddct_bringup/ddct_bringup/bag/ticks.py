@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Find the complete ticks of a recording, by the stamps of its messages alone."""
 
 from collections import Counter

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Trajectory of one closed-loop run as plain arrays, simulated without ROS or read from a bag."""
 
 import hashlib

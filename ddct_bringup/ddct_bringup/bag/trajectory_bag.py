@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """
 Write a trajectory as a bag with the same bytes as the recorder's of the same run.
 

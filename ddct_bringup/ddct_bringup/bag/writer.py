@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Write rosbag2 bags, one MCAP file and its `metadata.yaml` each, reproducible to the byte."""
 
 from collections.abc import Mapping, Sequence

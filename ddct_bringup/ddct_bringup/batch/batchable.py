@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Decide which runs can be computed in a batch, and find their linear feedback."""
 
 import dataclasses

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Arrays with one column per run for quantities that differ from run to run, and their filters."""
 
 from collections.abc import Hashable, Iterable, Sequence

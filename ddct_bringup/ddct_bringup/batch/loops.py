@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Closed loops of many runs as columns, the counterpart of `ClosedLoop`, and their references."""
 
 from collections.abc import Callable, Sequence

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Linear plants of many runs: engine, load, actuator, clutch and driveline."""
 
 from collections.abc import Sequence

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Metrics, criteria and verdicts of many runs that are not recorded."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Columns of `results.parquet`, and the conversion of rows to the bytes of a Parquet file."""
 
 import json

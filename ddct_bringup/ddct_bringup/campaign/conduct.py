@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Carry out a campaign: compute the missing shards, write each completely, and merge them."""
 
 from collections.abc import Callable, Iterator, Mapping

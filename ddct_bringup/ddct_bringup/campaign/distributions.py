@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Distributions for the random keys of a campaign, by name, each with its quantile function."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """
 Random numbers of a campaign; each is a function of root seed, key and case alone.
 

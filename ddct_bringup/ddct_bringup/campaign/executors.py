@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Executors that compute shards: processes of this machine, or a Dask cluster."""
 
 import multiprocessing

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Keys that a campaign can vary: scenario keys, and the settings of a run."""
 
 from dataclasses import fields

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """`manifest.json`: the inputs of a campaign, used to resume it and to repeat its rows."""
 
 import hashlib

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """One of many runs: its settings from the varied values, its scores without a bag, and its row."""
 
 import argparse

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The runs of a campaign by index: settings of each, and a check that all can be built."""
 
 import hashlib

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Shards, the unit of work: the runs of a fixed range of indices, whose rows become one file."""
 
 import time

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """SPEC.yaml: keys that a campaign varies; every mistake is reported with its line."""
 
 import json

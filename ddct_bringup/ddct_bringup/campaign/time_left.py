@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Estimate of the remaining time of a campaign from the shards of each controller."""
 
 from collections.abc import Iterable, Mapping, Sequence

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Boundary of failure on a grid: the first failure along a line from its start outward."""
 
 from dataclasses import dataclass

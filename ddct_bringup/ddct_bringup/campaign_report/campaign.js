@@ -1,3 +1,5 @@
+/* Copyright 2026 DDCT team
+ * SPDX-License-Identifier: Apache-2.0 */
 // Draws the maps of the data in #data: cells on a grid, points of samples, one scale of colours.
 (() => {
   const {maps: data, ramp, replay} = JSON.parse(document.getElementById('data').textContent);

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Figure of a campaign: distributions of the main metrics, a curve for each controller."""
 
 from collections.abc import Mapping

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Write the summary and the page of a campaign into its folder."""
 
 from base64 import b64encode

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Maps of quantities over two varied numbers for every group, as JSON for the page."""
 
 from collections.abc import Sequence

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Differences of two controllers on the same cases."""
 
 from dataclasses import dataclass

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Read the results of a campaign of this version or another, with the columns that exist."""
 
 from pathlib import Path

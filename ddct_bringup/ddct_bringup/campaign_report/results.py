@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Rows of a campaign: varied keys, groups of runs, and the quantities that are evaluated."""
 
 from collections.abc import Mapping, Sequence

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Build the summary of a campaign: the content of `summary.json`."""
 
 from collections import Counter

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Tables of a campaign for the terminal."""
 
 from collections.abc import Iterator, Sequence

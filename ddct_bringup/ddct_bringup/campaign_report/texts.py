@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Definitions and texts of a summary for the page and the terminal."""
 
 import shlex

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Node `live`: forwards the topics of the graph to Foxglove and takes no part in the loop."""
 
 from collections.abc import Callable

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Serve serialised ROS messages to Foxglove over WebSocket, on the simulated time axis."""
 
 from collections.abc import Callable

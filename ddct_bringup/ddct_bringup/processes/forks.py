@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """
 Program of the warm parent: imports what nodes need, then forks processes on request.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Nodes of the graph: their modules, start order and timeout."""
 
 from collections.abc import Sequence

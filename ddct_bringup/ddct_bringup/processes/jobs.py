@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Requests to the warm parent: processes to fork, and their descriptors."""
 
 import json

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Live view of one run: program `live` in a process of its own."""
 
 import signal

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Child process of a program, and that of a node: its output and its pulse."""
 
 import contextlib

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Start the graph's nodes as processes, supervise them, and stop them all."""
 
 import signal

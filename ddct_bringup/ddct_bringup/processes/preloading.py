@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Imports of the warm parent before it forks nodes: slow modules that keep no state."""
 
 import contextlib

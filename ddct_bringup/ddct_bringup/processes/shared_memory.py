@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Shared memory that killed nodes leave (Fast DDS on Linux); needs no ROS."""
 
 import contextlib

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Run all nodes of the graph in this process, on one executor."""
 
 import importlib

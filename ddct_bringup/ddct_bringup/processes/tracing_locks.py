@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """
 Fork with LTTng's tracing library loaded, as ROS 2 loads it.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """
 Warm parent: a process that has imported what nodes need, and forks them on request.
 

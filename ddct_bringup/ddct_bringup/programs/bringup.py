@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Program `bringup`: start the graph, wait for its end, stop it, leave one bag."""
 
 import argparse

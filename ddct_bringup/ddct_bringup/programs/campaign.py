@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Program `campaign`: compute how controllers fare over many plants, and make any run again."""
 
 import argparse

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Subcommands of `campaign` for a campaign's folder: `replay` one row, `show` all results."""
 
 import argparse

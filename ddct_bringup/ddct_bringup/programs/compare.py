@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Program `compare`: run several controllers, score them, and set them beside the thesis."""
 
 import argparse

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Program `ddct`: starts any program of the installed packages, nodes too, by its name."""
 
 import ast

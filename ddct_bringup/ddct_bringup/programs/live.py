@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Program `live`: serve the running graph to Foxglove."""
 
 import argparse

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Program `report`: one page that shows recorded runs side by side."""
 
 import argparse

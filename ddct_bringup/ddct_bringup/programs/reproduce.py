@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Program `reproduce`: the thesis's numbers, figures, studies and calibration, made again."""
 
 from ddct_bringup.reproduction.calibration import command as calibration_command

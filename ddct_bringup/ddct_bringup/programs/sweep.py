@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Program `sweep`: run controllers over the values of a key; print a table, draw a figure."""
 
 import argparse

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Node `recorder`: writes every tick into a bag and acknowledges it."""
 
 import time

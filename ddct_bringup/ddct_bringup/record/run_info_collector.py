@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Collector of `run_info`: the nodes received so far, and whether their settings agree."""
 
 from collections.abc import Collection, Mapping

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Buffer the messages of each tick until the tick is complete; independent of ROS."""
 
 from collections.abc import Callable, Sequence

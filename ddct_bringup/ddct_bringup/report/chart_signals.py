@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Signals that the page draws, one chart each."""
 
 from collections.abc import Callable

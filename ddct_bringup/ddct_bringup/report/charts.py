@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Time charts of the page: one per signal with all runs, on one time axis."""
 
 from collections.abc import Sequence

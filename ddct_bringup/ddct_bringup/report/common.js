@@ -1,3 +1,5 @@
+/* Copyright 2026 DDCT team
+ * SPDX-License-Identifier: Apache-2.0 */
 'use strict';
 
 // What every page of ours does. Its colours are the system's until the button chooses light or dark;

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Definitions of the terms, symbols, signs and dashes of the page."""
 
 from collections.abc import Iterable

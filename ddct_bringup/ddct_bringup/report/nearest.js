@@ -1,3 +1,5 @@
+/* Copyright 2026 DDCT team
+ * SPDX-License-Identifier: Apache-2.0 */
 'use strict';
 
 // Beside the pointer stands the value of the nearest curve, with its run, time and unit.

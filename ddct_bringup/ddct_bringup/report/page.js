@@ -1,3 +1,5 @@
+/* Copyright 2026 DDCT team
+ * SPDX-License-Identifier: Apache-2.0 */
 // Charts come from the Bokeh document in #data; this file switches lines and time range.
 (async () => {
   const data = JSON.parse(document.getElementById('data').textContent);

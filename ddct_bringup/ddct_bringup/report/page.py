@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Build the page: one HTML file without external resources."""
 
 from collections.abc import Mapping, Sequence

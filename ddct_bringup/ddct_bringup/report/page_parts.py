@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Parts of a page: templates, styles and scripts, and typeset text."""
 
 import json

@@ -1,3 +1,5 @@
+/* Copyright 2026 DDCT team
+ * SPDX-License-Identifier: Apache-2.0 */
 'use strict';
 
 // Paper gets light copies of the charts, two beside each other, and the tables that a screen folds away.

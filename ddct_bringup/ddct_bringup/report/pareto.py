@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """
 Pareto view: two criteria as axes, and the runs that are not dominated in both.
 

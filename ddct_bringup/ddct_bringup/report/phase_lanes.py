@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Phases of a stick-slip clutch in charts: shaded time spans, and instants of lock and release."""
 
 from collections.abc import Iterator

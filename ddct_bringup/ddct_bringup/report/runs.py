@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """
 Runs of a report, read from their bags; a bag that cannot be read is included.
 

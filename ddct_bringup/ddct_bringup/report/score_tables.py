@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Tables of scores on the page: comparison with Table 5.1, every metric, and the verdicts."""
 
 from collections.abc import Sequence

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Headless runs and their scores; runs of the thesis's scenario are cached."""
 
 from dataclasses import dataclass

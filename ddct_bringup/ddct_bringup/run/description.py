@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Description of a run in its bag, equal for every process layout, with the source commit."""
 
 import os

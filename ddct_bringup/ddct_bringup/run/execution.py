@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Execute one planned run in its layout and write its bag into a folder."""
 
 import re

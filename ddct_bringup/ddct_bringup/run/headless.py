@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """
 Run the closed loop without ROS: one step at a time, the same classes as the nodes.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Command-line options shared by the programs that run controllers."""
 
 import argparse

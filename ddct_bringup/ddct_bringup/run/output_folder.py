@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Output folders: locked by one program, complete or absent, never over files of others."""
 
 import errno

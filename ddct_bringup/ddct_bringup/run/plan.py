@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Plan of one run: settings, controller, process layout and node parameters."""
 
 from dataclasses import dataclass

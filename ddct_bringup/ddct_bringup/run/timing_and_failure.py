@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Files beside a bag: `timing.json`, and `failed_run.json` of a run that failed."""
 
 import json

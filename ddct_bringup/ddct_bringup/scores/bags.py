@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Find the bags at the paths that a user gives, and name them."""
 
 from collections.abc import Iterable

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The table that `compare` prints: computed scores next to Table 5.1 of the thesis."""
 
 from collections.abc import Sequence

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Scores and signals as CSV."""
 
 from collections.abc import Mapping, Sequence

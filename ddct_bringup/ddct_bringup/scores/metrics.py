@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Metrics of one run; a metric that is undefined is None, never a placeholder number."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Score bags: from a recording to its entry in `scores.json`."""
 
 import re

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Write every signal of a run to a file for other tools: CSV, or MAT for MATLAB and Octave."""
 
 import io

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Tables of scored runs for the terminal; plain text where the output is not a terminal."""
 
 from collections.abc import Sequence

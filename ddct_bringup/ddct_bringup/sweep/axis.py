@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Axis of a sweep, given by `--over`: a key and its values."""
 
 import math

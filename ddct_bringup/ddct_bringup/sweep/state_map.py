@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Map of the states of runs: coloured cells over values, one colour per state."""
 
 from collections.abc import Mapping, Sequence

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A sweep: every controller at every point of its axes, headless, scored, judged, tabulated."""
 
 from collections.abc import Iterator, Sequence

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Figure of `sweep`: metrics as lines over one key, states as maps over two."""
 
 from collections.abc import Sequence

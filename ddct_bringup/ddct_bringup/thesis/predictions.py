@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Predictions with their range: stored values of the frozen scenario and of every member."""
 
 import importlib.resources

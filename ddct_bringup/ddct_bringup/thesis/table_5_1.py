@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Table 5.1 as printed, and which of its rows the scenario was fitted to."""
 
 from dataclasses import dataclass

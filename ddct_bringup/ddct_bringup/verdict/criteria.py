@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Table of the criteria of an engagement: how each is computed for a run, and its unit."""
 
 import math

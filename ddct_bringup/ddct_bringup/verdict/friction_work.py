@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Friction work of an engagement relative to the minimum for a rigid car."""
 
 from typing import Any

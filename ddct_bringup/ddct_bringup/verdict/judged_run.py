@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Data that the criteria of an engagement are computed from: signals after control start, lock."""
 
 import math

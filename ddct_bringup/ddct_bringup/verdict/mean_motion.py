@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Means of acceleration over 2 s and of jerk over 1 s; ISO 15622 limits such means."""
 
 import numpy as np

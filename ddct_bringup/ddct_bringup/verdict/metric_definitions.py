@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Table of the metrics of a run: name, unit, format, meaning, and why one may be undefined."""
 
 from ddct_plant.program.table import PURE, Quantity

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Parameters of the plant that the verdict uses besides the signals of a run."""
 
 import math

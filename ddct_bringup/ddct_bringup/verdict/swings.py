@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Oscillations of the slip: turns, swings forced by a change of the drive, and the last cycle."""
 
 from collections.abc import Sequence

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """
 Traction limit of the driven axle, above which the wheels of the car would spin.
 

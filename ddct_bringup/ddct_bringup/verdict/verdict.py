@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Verdict of one run: its state, and each criterion with its limit. There is no overall score."""
 
 from collections.abc import Mapping

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Instants at which the plates of a stick-slip clutch lock, release or pass through zero slip."""
 
 from collections.abc import Iterator

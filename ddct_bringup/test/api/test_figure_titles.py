@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The title of a figure of the Python interface names its runs and their conditions."""
 
 import pytest

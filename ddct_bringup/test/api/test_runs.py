@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The Python interface: runs, their results, and arguments that are refused."""
 
 import hashlib

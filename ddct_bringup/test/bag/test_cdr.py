@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Normalising serialised messages changes exactly the bytes that carry no value."""
 
 import pytest

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The message definitions equal those of the ROS installation, without its comments."""
 
 import json

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The facts of a run are written to and read from a bag's custom data unchanged."""
 
 import dataclasses

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The controller's `run_info` is the last, whatever the other nodes are called."""
 
 from ddct_bringup.bag.run_facts import run_info_order

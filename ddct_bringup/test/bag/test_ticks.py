@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Complete ticks are found by stamps, and a missing or misplaced message is named."""
 
 import pytest

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Runs that can be computed in a batch, and the one-line reason for the others."""
 
 import dataclasses

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The criteria of many runs at once are those of each single run, for any slip."""
 
 from typing import Any

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A batch gives the results of each run step by step, independent of the other runs in it."""
 
 import dataclasses

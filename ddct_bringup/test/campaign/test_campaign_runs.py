@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Each index is one run: its case, its controller, dependent values, its seed."""
 
 from pathlib import Path

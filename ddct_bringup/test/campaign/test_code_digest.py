@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The digest of the code covers everything that rows depend on: modules, and YAML files."""
 
 from collections.abc import Iterator

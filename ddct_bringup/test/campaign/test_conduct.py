@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A campaign gives the same bytes on any workers, and an interruption loses nothing."""
 
 import errno

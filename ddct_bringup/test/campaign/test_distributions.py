@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Named distributions have the right quantiles, and stay within the range of their key."""
 
 import re

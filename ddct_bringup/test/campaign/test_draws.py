@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A random number depends on root seed, key and case, and on nothing else."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The bag of a row has the scores of the row, and another bag is detected."""
 
 from pathlib import Path

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """One of many runs is scored and judged as the same run alone; a failed one has its reason."""
 
 import pytest

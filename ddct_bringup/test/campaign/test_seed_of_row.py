@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Each row has the seed of its run, and a single run with that seed has the scores of the row."""
 
 from pathlib import Path

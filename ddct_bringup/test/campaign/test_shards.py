@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The runs of a shard that are computed at once equal those computed step by step."""
 
 from pathlib import Path

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A specification is read with its files; every mistake is reported with its line."""
 
 import re

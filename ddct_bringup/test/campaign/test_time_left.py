@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Remaining time of a campaign: controllers differ, and each is measured soon."""
 
 from pathlib import Path

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Attribution of failure to the keys that drive it, and to no others; none for few failures."""
 
 import numpy as np

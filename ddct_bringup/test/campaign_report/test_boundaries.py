@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Boundary of failure on a grid: along one line, from its start to both sides."""
 
 import numpy as np

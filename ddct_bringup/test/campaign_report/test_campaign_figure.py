@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The figure of a campaign: curves that end at the share of engaged runs, with title and scale."""
 
 from itertools import pairwise

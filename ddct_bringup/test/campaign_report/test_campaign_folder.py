@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Reading a campaign: rows and nominal values, and one line for each incomplete folder."""
 
 import json

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The page of a campaign: the numbers of `summary.json`, every failed run, and text as text."""
 
 import json

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Share of failed engagements: counts by the verdict's states, and their interval."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Maps: the content of each cell and point, and the common scale of colours."""
 
 from typing import Any

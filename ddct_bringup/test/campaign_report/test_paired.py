@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Differences of two controllers, case by case, where both engaged."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A campaign ends with its tables in the terminal, and with the paths of its files."""
 
 from pathlib import Path

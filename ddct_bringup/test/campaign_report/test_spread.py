@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Distribution of a quantity over engaged runs, and its worst case; failures are not ranked."""
 
 import numpy as np

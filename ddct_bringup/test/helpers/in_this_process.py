@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Workers of a campaign in the process of the test, which fail at chosen shards."""
 
 from collections.abc import Callable, Iterator

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The runs of `states_by_eye.yaml`, each made anew from its settings."""
 
 from collections import deque

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The folder of a campaign whose rows are made by hand."""
 
 from collections.abc import Callable, Mapping

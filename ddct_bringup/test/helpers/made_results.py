@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Rows of a campaign, made by hand."""
 
 from collections.abc import Mapping, Sequence

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Trajectories and facts made by hand: zeros and those of `thesis`, but for what a test gives."""
 
 from typing import Any

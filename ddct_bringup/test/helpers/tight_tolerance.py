@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The closed loop again, its plant integrated by scipy: an independent source of figures."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Small programs in place of nodes, and the warm parent that forks them."""
 
 import os

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The supervisor of a graph's processes, on small programs in place of the nodes."""
 
 import os

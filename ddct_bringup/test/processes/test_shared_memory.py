@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Only requested segments without a live owner are removed."""
 
 import fcntl

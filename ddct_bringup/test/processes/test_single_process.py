@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The nodes of a single process end in order: the owner of time first, the recorder last."""
 
 from typing import Any

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Forks of the warm parent are like new processes, and none is left behind."""
 
 import importlib.util

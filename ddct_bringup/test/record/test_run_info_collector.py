@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The collector of `run_info` names missing nodes and refuses nodes that do not agree."""
 
 import pytest

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The buffer returns complete ticks; in real time incomplete ones too, but not too soon."""
 
 import pytest

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The frequency-domain evidence is of the simulated loop, and `compare` writes it to a file."""
 
 import dataclasses

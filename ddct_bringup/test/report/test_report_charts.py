@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Each chart of the report draws the signal in its title, with its sign and unit."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A file next to the bags is used only where the page can show all of it."""
 
 import copy

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Labels of the report distinguish runs, and are no longer than needed."""
 
 from ddct_bringup.report.runs import common_conditions, run_labels

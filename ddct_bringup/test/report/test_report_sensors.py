@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The page shows whether controllers read sensors, which ones, and the sensor errors."""
 
 from pathlib import Path

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Cells of the report's tables, from entries and timing alone."""
 
 import dataclasses

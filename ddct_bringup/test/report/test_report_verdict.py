@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The verdict table and the Pareto view of the report, from entries alone."""
 
 import pytest

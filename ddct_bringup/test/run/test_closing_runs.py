@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """With the closing stage the plates stay together once they are; without it they part again."""
 
 from functools import lru_cache

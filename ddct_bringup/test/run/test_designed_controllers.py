@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A controller in a file runs like any other, under the name in the file."""
 
 import json

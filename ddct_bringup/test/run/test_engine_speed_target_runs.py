@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Controllers bring the slip to zero while the reference holds the engine at a speed."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The note in a failed run's folder marks the run as failed, whatever its content."""
 
 from pathlib import Path

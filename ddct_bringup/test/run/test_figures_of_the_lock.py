@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Metrics of the lock are measured at its instant, in runs of the packaged scenarios."""
 
 from functools import lru_cache

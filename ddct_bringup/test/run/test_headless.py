@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The headless loop is accurate and repeatable, and ends at a value that is not finite."""
 
 import math

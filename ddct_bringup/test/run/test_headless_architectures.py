@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The four architectures differ in the closed loop as in Section 1.6 and Chapters 2 and 3."""
 
 from functools import cache

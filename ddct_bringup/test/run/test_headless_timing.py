@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """`timing.json` of a run without a graph counts its periods and its updates."""
 
 from ddct_bringup.run.headless import run_headless

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A run that is interrupted at its very end is interrupted."""
 
 import os

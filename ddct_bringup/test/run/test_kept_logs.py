@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Logs in which a node warns outlive a run that ended well; nothing else does."""
 
 from collections.abc import Callable, Mapping

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The architectures with a stored reference run in the scenarios for the clutch that sticks."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The packaged launches and the tip-in are possible runs of a car, with controllers that work."""
 
 from functools import lru_cache

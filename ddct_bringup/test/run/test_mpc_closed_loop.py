@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """MPC1-3 in the closed loop agree with their pages."""
 
 import numpy as np

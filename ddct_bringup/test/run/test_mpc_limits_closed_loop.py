@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Limits of the predictive controllers in the loop: their priorities, and soft limits."""
 
 from pathlib import Path

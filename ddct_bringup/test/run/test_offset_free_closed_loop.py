@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Offset-free and wear-compensating predictive control in the frozen scenario."""
 
 from dataclasses import replace

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Commit checks the folders again: new files of others stay, an old result is never lost."""
 
 from pathlib import Path

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """`--list` and `compare` print a controller's origin, or the line that declares it."""
 
 import io

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """In runs with sensors control reads sensor values; plant and scores use true signals."""
 
 from typing import Any

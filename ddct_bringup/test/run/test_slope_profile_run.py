@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """On a road whose slope changes, plant and controller use the same load."""
 
 import pytest

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A bag names the commit of the sources, marks changed sources, or names the commit unknown."""
 
 import subprocess

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The controllers of the state of the art in the frozen scenario, with new and worn clutches."""
 
 from dataclasses import replace

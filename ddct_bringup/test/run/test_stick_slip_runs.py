@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Headless runs with a clutch that sticks: energy, phases, heat, the start and the early end."""
 
 import argparse

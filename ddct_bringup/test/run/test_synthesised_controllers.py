@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The project's H-infinity controllers in the frozen scenario, beside Hinf1 (Table 5.1)."""
 
 from pathlib import Path

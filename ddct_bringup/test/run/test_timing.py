@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """`timing.json` is read back, and unusable content is an error."""
 
 import json

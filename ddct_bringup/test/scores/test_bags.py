@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Bags are found in the named folder, wherever that folder is."""
 
 from pathlib import Path

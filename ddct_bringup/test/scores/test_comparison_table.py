@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The table of `compare`: computed scores, and those of the thesis under its conditions only."""
 
 import dataclasses

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Validity of runs, and the summary of a real-time run."""
 
 from dataclasses import replace

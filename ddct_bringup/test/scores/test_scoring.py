@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Validity and state of a run that its engine ended."""
 
 import dataclasses

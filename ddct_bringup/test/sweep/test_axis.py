@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Values of `--over`, and how each invalid value is refused."""
 
 import pytest

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Failed runs differ from good ones in the figure: lines join engaged runs, others are crosses."""
 
 from typing import Any

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """`sweep` prints, writes and draws the results of the same runs alone."""
 
 import csv

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Jerk and vibration dose of signals with known values."""
 
 import numpy as np

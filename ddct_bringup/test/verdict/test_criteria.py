@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Every criterion for a run with known values."""
 
 from dataclasses import replace

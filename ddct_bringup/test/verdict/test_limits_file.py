@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A limits file is read completely, or refused in one line with file, line and key."""
 
 import re

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Runs whose verdict was once too mild, or could not be as good as the run."""
 
 from functools import cache

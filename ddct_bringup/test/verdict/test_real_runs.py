@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """States of closed-loop runs, with intact and with degraded controllers."""
 
 import dataclasses

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A small slip is engaged after it has stayed within the band for the settled time, not before."""
 
 import numpy as np

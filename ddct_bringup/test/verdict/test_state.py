@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The state of a run is the one that a control engineer would give it."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The rules agree with judgement by eye on runs that they were not written for."""
 
 import re

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The time of a step is converted to that step, independent of the rounding of the division."""
 
 from ddct_bringup.verdict.judged_run import step_at

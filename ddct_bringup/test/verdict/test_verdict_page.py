@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The page docs/use/verdict.md agrees with the code and the packaged limits."""
 
 import re

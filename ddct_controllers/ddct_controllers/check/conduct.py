@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Checks that torques depend on the measurements alone: answers, prints, state, reset."""
 
 import sys

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Checks before a controller runs: entry point, installation, constructor, options."""
 
 import importlib.metadata

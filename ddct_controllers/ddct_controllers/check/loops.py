@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Checks in the closed loop: time, rate, unit, linear model, stability."""
 
 import numpy as np

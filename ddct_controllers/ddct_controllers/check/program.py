@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Program `check-controller`: find a controller's errors before its scores do."""
 
 import sys

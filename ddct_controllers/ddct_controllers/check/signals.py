@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Checks with extraordinary measurements, and of the signals that a controller reacts to."""
 
 import math

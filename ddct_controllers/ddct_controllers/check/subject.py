@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The controller under check, with the trials and signals that several checks share."""
 
 import importlib.metadata

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Trials of a controller: in the closed loop on the plant, or on replayed measurements."""
 
 import statistics

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Detect side effects of a controller: output, clock reads, random numbers, gains read."""
 
 import io

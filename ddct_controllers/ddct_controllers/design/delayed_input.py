@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Exact sampling of a continuous system behind a zero-order hold and a delay of its input."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Feedforward filters C_1 and C_2 of Section 1.6.2, made proper and stable by model matching."""
 
 from dataclasses import dataclass, replace

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """
 Single-input, single-output state-space systems: series, feedback, response, factored form.
 

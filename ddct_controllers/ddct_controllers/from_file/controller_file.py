@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Content of a controller file: its values, their lines, and errors that name both."""
 
 import hashlib

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Files of designed controllers: a continuous linear controller with its provenance."""
 
 from collections.abc import Mapping

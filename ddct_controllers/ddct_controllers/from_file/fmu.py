@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The keys of a controller file for an FMU, as Simulink and Modelica tools export them."""
 
 import re

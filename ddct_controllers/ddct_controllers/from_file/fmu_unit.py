@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """
 A functional mock-up unit (FMU) for co-simulation, FMI 2.0 or 3.0: its file, and as a controller.
 

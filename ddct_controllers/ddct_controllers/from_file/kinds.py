@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The kinds of controller files, and the function from a file to its controller."""
 
 from collections.abc import Callable, Mapping

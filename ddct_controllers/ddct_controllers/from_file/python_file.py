@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A controller in a file of Python: the one class of `Controller` that the file defines."""
 
 import hashlib

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Linear controllers in a file: a transfer function in one of four forms, in s or in z."""
 
 import cmath

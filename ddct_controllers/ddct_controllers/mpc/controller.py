@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The model predictive controller: one step, from the measurement to the command."""
 
 from dataclasses import replace

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Costs of the predictive controllers: Table 4.1, Section 4.3, and our own variants."""
 
 import math

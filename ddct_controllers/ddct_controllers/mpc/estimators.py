@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Models with their observers, of which the predictive controllers are composed."""
 
 import math

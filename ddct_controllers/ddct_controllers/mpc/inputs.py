@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Inputs of a predictive controller: the clutch torque request, and C_m if it is commanded."""
 
 import math

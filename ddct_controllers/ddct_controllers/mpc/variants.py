@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The predictive controllers by their names in the registry, with cost and estimator of each."""
 
 from collections.abc import Collection

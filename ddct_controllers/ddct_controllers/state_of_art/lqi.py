@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """LQ control with the integral of the slip error, a Kalman filter and a Smith predictor."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Finite-horizon control of the clutch torque over a time set by the pedal, after [4]."""
 
 from dataclasses import dataclass

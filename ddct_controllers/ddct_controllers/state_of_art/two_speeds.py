@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Control of two speeds with two torques, after [2] and [3] of the thesis (Section 1.3)."""
 
 from ddct_controllers.interface import (

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Program `new-controller`: write an installable package with a controller to start from."""
 
 import keyword

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Common parts of both design methods: options, a free name, tables, JSON, and the files."""
 
 import argparse

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """
 Robustness of the sampled loops of controllers: values for JSON, and lines before a run.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Subcommand `design h-infinity`: Chapter 3 step by step, or a controller of one's own."""
 
 import argparse

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Subcommand `design loop-shaping`: Chapter 2 step by step, or a controller of one's own."""
 
 import argparse

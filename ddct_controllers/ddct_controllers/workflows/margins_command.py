@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Subcommand `design margins`: the robustness of linear controllers in the loop as it runs."""
 
 import argparse

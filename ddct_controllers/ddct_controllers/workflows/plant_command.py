@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Subcommand `design plant`: the linear plant of a scenario on paper, and as a file for others."""
 
 import argparse

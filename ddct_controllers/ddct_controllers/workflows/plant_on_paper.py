@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The linear plant of a scenario as equations with numbers, for a page, JSON, MATLAB and scipy."""
 
 from collections.abc import Mapping, Sequence

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Conditioning of python-control's polynomials, which is worse than that of our own code."""
 
 import control

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The feedforward filter is the least-squares answer to a ramp, stable, and rings little."""
 
 from dataclasses import replace

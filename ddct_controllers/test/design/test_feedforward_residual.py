@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The effect of disturbances on the slip with feedforward, and the page's table of it."""
 
 from dataclasses import replace

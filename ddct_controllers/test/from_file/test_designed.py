@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Controllers in a file: read as written, refused by name, built by the registry."""
 
 import os

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Each input of an FMU receives the signal that its file names; no FMU is needed."""
 
 from pathlib import Path

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A Python file is a controller: the one class of `Controller` that it defines."""
 
 import hashlib

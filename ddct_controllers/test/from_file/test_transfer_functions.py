@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Four forms of one controller are one controller; errors name the line."""
 
 import re

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A predictive controller keeps its limits, and reports and counts every failed solution."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Two inputs: prediction with the engine, its limits, and its torque as input of the filter."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The controllers of the state of the art keep the rules of every controller."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """LQI: an exact predictor, margins that hold for a worn clutch, and no error at rest."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """`design h-infinity`: tables, JSON, files, and errors in one line."""
 
 import json

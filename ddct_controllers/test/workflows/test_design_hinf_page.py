@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The page docs/controllers/h_infinity.md has the numbers that the program computes."""
 
 from pathlib import Path

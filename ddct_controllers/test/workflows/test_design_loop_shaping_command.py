@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """`design loop-shaping`: the thesis's workflow, a controller of one's own, and its errors."""
 
 import argparse

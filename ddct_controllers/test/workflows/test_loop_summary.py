@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Before a run the content of a controller's file and the stability of its loop are printed."""
 
 import pytest

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Program `design margins`: its table, its JSON, its page, and its errors."""
 
 import argparse

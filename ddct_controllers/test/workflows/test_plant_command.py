@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The plant on paper is the plant that runs, in every format."""
 
 import ast

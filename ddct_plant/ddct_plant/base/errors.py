@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Errors for users, printed in one line, and the checks of values that raise them."""
 
 import math

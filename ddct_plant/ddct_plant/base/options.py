@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """
 Options that a user can set, described once for files, programs, nodes, controllers and pages.
 

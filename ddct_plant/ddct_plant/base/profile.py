@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A profile over scenario time, linear between points: engine, brake, road, slip reference."""
 
 from dataclasses import dataclass

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """
 The one time base of every run: integer nanoseconds, 10 ms periods, 1 ms sub-intervals.
 

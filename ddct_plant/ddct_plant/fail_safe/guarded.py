@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Actuator and engine with their safe states, on the grid of the ticks; independent of ROS."""
 
 from abc import ABC, abstractmethod

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Timeout of requests, and the ramp to an open clutch, of a run in real time."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """CSV: read columns of numbers of any tool, with the line of an error; write text."""
 
 import csv

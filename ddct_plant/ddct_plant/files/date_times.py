@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Convert dates with times of ISO 8601, as loggers write them, to seconds."""
 
 import math

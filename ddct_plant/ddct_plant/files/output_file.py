@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Write the files of options such as `--json FILE`, completely or not at all."""
 
 import contextlib

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """
 Read and write all YAML: scenarios, controllers, and the texts in a bag.
 

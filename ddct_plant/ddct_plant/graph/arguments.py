@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Command line of a node: its help, which is printed here, and the arguments of ROS."""
 
 import inspect

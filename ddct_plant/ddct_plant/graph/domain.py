@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Requirements of a graph on ROS: its packages, and a domain of its own."""
 
 import importlib.util

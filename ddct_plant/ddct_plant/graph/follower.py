@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Base of the nodes that answer ticks: engine, load, clutch, actuator, reference, controller."""
 
 from abc import abstractmethod

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """
 Adapters for the message types of the graph: make, fill and read messages, all in SI units.
 

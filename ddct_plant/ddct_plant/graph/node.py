@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Base of every node: settings, run information, subscriptions, and the end of the node."""
 
 from collections.abc import Callable, Mapping

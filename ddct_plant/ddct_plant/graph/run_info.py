@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The latched `run_info` message: version and settings of a node."""
 
 from collections.abc import Mapping

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The ROS parameters that every node declares, as validated `RunSettings`."""
 
 from dataclasses import replace

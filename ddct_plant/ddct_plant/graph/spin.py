@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Run one node, or several in one process, until they are done or a signal stops them."""
 
 import gc

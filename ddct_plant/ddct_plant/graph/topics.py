@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """
 The one table of topics, in the order in which a tick is written; independent of ROS.
 

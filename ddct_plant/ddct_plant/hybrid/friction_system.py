@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A linear system with dry-friction elements, and its inputs over an interval."""
 
 from collections.abc import Sequence

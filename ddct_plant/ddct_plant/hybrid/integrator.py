@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The exact integration of a linear system with dry friction, from event to event."""
 
 import struct

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A mode over an interval of equal pieces, as matrix products."""
 
 from collections.abc import Callable

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Choice of the mode after an instant at which slips are zero."""
 
 from collections.abc import Callable, Mapping

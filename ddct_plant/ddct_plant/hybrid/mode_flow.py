@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The exact flow of one mode, that is of a set of sticking and slipping elements."""
 
 from typing import NamedTuple

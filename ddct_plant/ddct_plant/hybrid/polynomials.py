@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """
 Polynomials on an interval in Bernstein form: where one turns negative, and exact integrals.
 

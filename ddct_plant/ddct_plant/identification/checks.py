@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Checks of the identified driveline against the print, and ranges that the rounding allows."""
 
 from dataclasses import dataclass

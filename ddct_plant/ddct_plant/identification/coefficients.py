@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The nine printed coefficients of P2 and P3 as functions of the driveline parameters."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Driveline parameters from the printed transfer functions, by weighted least squares."""
 
 from dataclasses import dataclass

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Program `identify`: driveline parameters from the thesis's transfer functions, or from a log."""
 
 from typing import Any

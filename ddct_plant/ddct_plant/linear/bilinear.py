@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Bilinear transform between z-plane and w-plane, in which sampled systems become continuous."""
 
 import math

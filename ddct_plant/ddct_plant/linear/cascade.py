@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Real state-space realisation of a factored transfer function as a cascade of small sections."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Matrix exponentials of many matrices at once."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Linear time-invariant systems: two forms, and exact discretisation over a sampling period."""
 
 from collections.abc import Sequence

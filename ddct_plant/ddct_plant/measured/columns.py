@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Column map of a log, used by all programs: the column and the unit of each quantity."""
 
 from collections.abc import Mapping

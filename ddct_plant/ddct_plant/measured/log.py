@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A log of a drive: quantities over time in SI units, from CSV or from a recorded bag."""
 
 import hashlib

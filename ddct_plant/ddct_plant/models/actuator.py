@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Actuator: saturation, delay and the second-order pair G_a(s) (Section 1.4.2)."""
 
 from collections import deque

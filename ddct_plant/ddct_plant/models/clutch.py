@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Clutch models: from the actuator's torque to the torque between the plates."""
 
 from collections.abc import Sequence

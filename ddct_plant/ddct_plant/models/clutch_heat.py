@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Thermal model of the clutch: three lumped masses that the friction work of a period warms."""
 
 from dataclasses import dataclass

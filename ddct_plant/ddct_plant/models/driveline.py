@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Driveline: engine, primary shaft, wheel and driveshaft, stepped exactly (Section 1.5)."""
 
 from collections.abc import Sequence

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The driveline as linear equations: its four states and its transfer functions to slip speed."""
 
 from collections.abc import Sequence

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Engine: a torque that follows the driver's demand or, within limits, a controller's request."""
 
 import math

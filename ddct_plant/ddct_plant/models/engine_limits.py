@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """An engine with limits: torque over speed, idle control, rev limiter, stall and over-speed."""
 
 from dataclasses import dataclass

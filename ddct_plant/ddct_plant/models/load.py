@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Road load as a wheel torque (Section 1.4.4), and friction of rolling and brake at the wheel."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Parameters of the driveline, with identified values, and of the vehicle."""
 
 import math

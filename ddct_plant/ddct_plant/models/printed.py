@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The transfer functions that the thesis prints, digit by digit, with the errata corrected."""
 
 from dataclasses import dataclass, replace

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The clutch torque that keeps the slip speed constant, from the plant's own equations."""
 
 from dataclasses import dataclass

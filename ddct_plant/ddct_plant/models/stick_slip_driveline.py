@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The driveline with dry friction in the clutch and at the wheels."""
 
 from collections.abc import Sequence

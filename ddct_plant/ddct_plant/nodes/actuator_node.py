@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Node `actuator`: computes from each torque request the torque over the coming period."""
 
 from typing import Any, ClassVar

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Node `clutch`: computes the torque between the plates from the actuator's, at every tick."""
 
 from typing import Any

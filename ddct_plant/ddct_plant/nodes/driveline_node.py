@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Node `driveline`: owns time, integrates the stiff states and publishes them at every tick."""
 
 from functools import partial

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Node `engine`: the driver's demand and the delivered engine torque at every tick."""
 
 from typing import Any, ClassVar

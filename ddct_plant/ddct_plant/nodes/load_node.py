@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Node `load`: the road's resistance at the wheel at every tick."""
 
 from typing import Any

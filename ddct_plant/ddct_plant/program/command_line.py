@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Common command-line parts of all programs: parser, one-line errors, exit codes."""
 
 import argparse

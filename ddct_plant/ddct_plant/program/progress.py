@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Progress of long work on standard error: steps done, their rate and the remaining time."""
 
 import sys

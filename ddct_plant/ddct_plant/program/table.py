@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Quantities, tables of them, and their print: rich on a terminal, plain in a pipe or a file."""
 
 import sys

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Work shared among forked processes of this machine; it may refer to any object."""
 
 import ctypes

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """
 Consistency of scenario values that depend on each other: a given one moves the other.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Sections of a scenario about control: the followed speeds, and the closing stage."""
 
 from dataclasses import dataclass

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Profiles from CSV files and profiles times a factor; a loaded scenario contains the points."""
 
 from collections.abc import Iterable, Mapping, Sequence

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Differences between a scenario and the packaged scenario of the same name."""
 
 from collections.abc import Sequence

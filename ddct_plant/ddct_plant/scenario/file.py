@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Read, change and write scenarios as YAML; every unknown key and bad value is named."""
 
 import dataclasses

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """All keys of a scenario and of its run by dotted name, and hints for an unknown key."""
 
 import difflib

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Command-line options that choose a scenario, its overrides and its run settings."""
 
 import argparse

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Remarks on values that no car has; they are allowed, as a test bench may try anything."""
 
 import math

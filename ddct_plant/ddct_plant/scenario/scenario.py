@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A scenario: everything about a run except the controller and the run settings."""
 
 import dataclasses

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Engine, load, actuator, clutch and driveline of a run, wired as the graph wires their nodes."""
 
 from typing import Any, NamedTuple, Protocol

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Errors of the sensors of a run, as options of a scenario; by default there are none."""
 
 import dataclasses

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The sensors of a run, and their measurements at one step."""
 
 from abc import ABC, abstractmethod

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The simplified plant of Section 1.5.1 that is drawn with elementary blocks (Figure 1.20)."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """
 The three simplified plants of Section 1.5.1, to compare with the detailed one (Figure 1.23).
 

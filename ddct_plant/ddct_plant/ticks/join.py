@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Join the inputs of a node on their stamp; does not depend on ROS."""
 
 from collections.abc import Sequence

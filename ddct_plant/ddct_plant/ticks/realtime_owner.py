@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The owner of time at 100 Hz on a steady clock; does not depend on ROS."""
 
 from collections.abc import Callable

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Detect two publishers of a topic by the sequence numbers of messages; independent of ROS."""
 
 PROOF = 3

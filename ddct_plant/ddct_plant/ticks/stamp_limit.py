@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Plausible stamps in real time, judged by a steady clock; independent of ROS."""
 
 import time

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The owner of time: when the driveline steps, and on which replies. Independent of ROS."""
 
 import time

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """An option is described once; its check, its text and its row follow from that."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Text from outside reaches a terminal as one line that it does not obey."""
 
 import pickle

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Missing requests are detected at the stated step; the ramp to an open clutch has its rate."""
 
 from fractions import Fraction

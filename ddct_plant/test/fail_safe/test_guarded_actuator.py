@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The actuator holds what is missing, opens the clutch when requests stop, and stays open."""
 
 import pytest

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A commanded engine goes on over missing requests, and back to the demand when they stop."""
 
 import pytest

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """CSV of any tool: encodings, ends of lines, decimal commas, dates with times of day."""
 
 import numpy as np

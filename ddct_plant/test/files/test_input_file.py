@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Files that a user names are read only when they are files, and not beyond a limit."""
 
 import os

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """JSON from files and bags is read in one way, or refused in one line."""
 
 import pytest

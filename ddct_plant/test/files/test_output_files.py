@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Tables on standard output and JSON files, shared by the programs."""
 
 import json

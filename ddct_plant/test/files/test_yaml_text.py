@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """YAML becomes plain values as YAML 1.2 has them, or is refused with its line, at once."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A commanded engine with limits is limited by them at w_m, the first of the four speeds."""
 
 from types import SimpleNamespace

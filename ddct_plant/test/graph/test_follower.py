@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A follower repeats its reply for a repeated tick; another message for it is a fault."""
 
 import pytest

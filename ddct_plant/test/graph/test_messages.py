@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Every message that is made reads back as what went into it, and so do reused ones."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Phases, capacities and temperature on the wire: what goes in comes out, the rest is refused."""
 
 import pytest

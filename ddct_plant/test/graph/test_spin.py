@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A spinning node restores the settings of the garbage collector when it ends."""
 
 import gc

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The order of signals in a run's hash and tables, and their names there."""
 
 import pytest

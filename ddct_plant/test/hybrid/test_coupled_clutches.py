@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The hybrid integrator on Modelica.Mechanics.Rotational.Examples.CoupledClutches."""
 
 from collections.abc import Callable

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The hybrid integrator is exact, loses no energy and no event, and decides ties."""
 
 from itertools import pairwise

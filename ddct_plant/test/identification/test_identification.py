@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The identification: what it finds, how sure it is, and that the defaults are its result."""
 
 import math

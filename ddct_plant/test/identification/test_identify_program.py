@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The program `identify`: its tables, its JSON, its exit codes."""
 
 import json

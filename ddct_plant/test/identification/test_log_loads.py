@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The fitted C_load of a log is a mean over its time, whatever its gaps."""
 
 from dataclasses import fields, replace

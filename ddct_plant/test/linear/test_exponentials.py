@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Exponentials of a stack: each is that of its matrix alone."""
 
 import numpy as np

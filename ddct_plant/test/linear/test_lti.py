@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Realisation and discretisation against independent routes, and the thesis's printed G_c(z)."""
 
 import control

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A log is read by its column map, whatever tool wrote it."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The clutch's heat: energy is kept, steps are exact, and holding T over a period is harmless."""
 
 from dataclasses import replace

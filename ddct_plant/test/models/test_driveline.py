@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The driveline's step is exact, and what it shows is consistent."""
 
 import numpy as np

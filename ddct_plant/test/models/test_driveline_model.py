@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The 4-state driveline: physics of its matrices, its transfer functions, its modes."""
 
 import math

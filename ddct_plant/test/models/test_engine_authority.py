@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """An engine delivers the demand, and what its authority leaves of a request."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """An engine with limits delivers what its speed allows, idles, and ends a run by its own fault."""
 
 import math

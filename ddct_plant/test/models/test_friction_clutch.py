@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The capacity of a friction clutch: wear, heat, slip speed, kiss point and static friction."""
 
 import pytest

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Holding torque and the torque of air and slope add up to the road load."""
 
 import math

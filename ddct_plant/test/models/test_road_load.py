@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The road load of Section 1.4.4: the air resists as fast as it comes towards the car."""
 
 import pytest

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Engine, load, clutch and actuator behave as in Section 1.4 of the thesis."""
 
 import numpy as np

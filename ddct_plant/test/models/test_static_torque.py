@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The start of a run and C_fOL: as in the thesis, or in equilibrium on the full model."""
 
 from dataclasses import replace

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The work of each period warms the clutch of a stick-slip run before its capacity is computed."""
 
 import pytest

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The driveline with a clutch that sticks and wheels that friction holds."""
 
 import math

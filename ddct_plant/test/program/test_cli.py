@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Exit codes of programs, and the one-line error message for a user's mistake."""
 
 import os

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Signals are caught for as long as work lasts, and not a moment longer."""
 
 import os

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Work shared among processes has the results of one process; a killed worker is reported."""
 
 import os

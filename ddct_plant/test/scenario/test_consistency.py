@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """One value of a pair moves the other, with a remark; halves that contradict are refused."""
 
 import pytest

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Profiles from CSV files become points of the scenario, or are refused by file, line, column."""
 
 import math

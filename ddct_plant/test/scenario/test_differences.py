@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The values of a scenario that differ from the packaged one of its name are listed."""
 
 import dataclasses

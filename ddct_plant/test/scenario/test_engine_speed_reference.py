@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Pedal and engine speed reference of a scenario: read whole, or refused by name."""
 
 import pytest

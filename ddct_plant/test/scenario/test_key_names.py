@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A wrong key of a scenario is refused with the few keys that may be meant."""
 
 import pytest

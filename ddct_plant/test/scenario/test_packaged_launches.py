@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Launches and tip-in: every value has its source, and they are for the clutch that sticks."""
 
 import importlib.resources

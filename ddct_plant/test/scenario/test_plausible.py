@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A value that no car has runs, but a line names it with what cars have."""
 
 import pytest

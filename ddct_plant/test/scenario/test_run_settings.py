@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Settings that contradict each other are refused; the start state fits the architecture."""
 
 import pytest

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Scenarios are read whole or refused with the key that is wrong."""
 
 import copy

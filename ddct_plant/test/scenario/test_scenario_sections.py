@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Sections of stick-slip runs are read whole, or refused with file, line and key."""
 
 import pytest

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The plant without ROS: delivered and resisting torques at each step."""
 
 import pytest

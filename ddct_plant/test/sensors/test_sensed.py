@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The sensors of a run together: what depends on what, and on nothing else."""
 
 import dataclasses

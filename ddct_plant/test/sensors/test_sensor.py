@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """One sensor: each of its errors alone, and all of them in their order."""
 
 import dataclasses

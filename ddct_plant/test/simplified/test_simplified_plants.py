@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The simplified plants against the detailed one over a slip phase (Figure 1.23)."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Inputs are joined on their stamp and answered once."""
 
 import pytest

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Sequence numbers distinguish two publishers from one, and from a restarted one."""
 
 from itertools import chain

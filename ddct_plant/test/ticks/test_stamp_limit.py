@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """In real time stamps ahead of the ticks are refused; late ones are accepted."""
 
 import pytest

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The driveline steps only on whole ticks, sends again, and gives up with a reason."""
 
 import pytest

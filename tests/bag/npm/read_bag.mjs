@@ -1,3 +1,5 @@
+/* Copyright 2026 DDCT team
+ * SPDX-License-Identifier: Apache-2.0 */
 // Reads an MCAP file with Foxglove's libraries and prints one JSON line per message.
 
 import { readFileSync } from 'node:fs';

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """
 Read the stamp of serialised messages, and make them reproducible to the byte.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Message definitions without ROS: schema text, type hash and fields of each type on the graph."""
 
 import re

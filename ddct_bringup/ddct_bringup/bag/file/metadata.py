@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """rosbag2's metadata of a bag: `metadata.yaml` and the `rosbag2` record inside the MCAP file."""
 
 from collections.abc import Callable, Mapping, Sequence

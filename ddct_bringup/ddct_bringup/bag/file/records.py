@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Read the records of a bag's MCAP file, strictly or as far as it is readable."""
 
 import contextlib

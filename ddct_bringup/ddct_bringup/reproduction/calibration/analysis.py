@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Identifiability of the fitted parameters from the nine numbers, and predictions of the fit."""
 
 import dataclasses

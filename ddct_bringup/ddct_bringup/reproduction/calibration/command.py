@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Subcommand `reproduce calibration`: the thesis scenario, fitted to rows of Table 5.1."""
 
 import argparse

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """
 Scenarios that the nine fitted values admit, and the ensemble of those that are kept.
 

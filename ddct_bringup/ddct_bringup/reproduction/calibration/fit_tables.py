@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Tables of the result of a calibration, and cells that all of its tables use."""
 
 from collections.abc import Sequence

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Fitted parameters of the calibration, their bounds, the PI, and the printed numbers."""
 
 from collections.abc import Mapping, Sequence

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """
 Predictions of a scenario for the thesis's other results, by the ids of the thesis gate.
 

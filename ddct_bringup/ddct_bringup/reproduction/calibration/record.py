@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The whole calibration: its result as plain JSON content, and the scenario file made from it."""
 
 from collections.abc import Sequence

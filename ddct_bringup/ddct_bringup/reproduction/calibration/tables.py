@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Tables of a calibration record, for the terminal and the page of documentation."""
 
 from ddct_bringup.reproduction.calibration.fit_tables import (

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Subcommand `reproduce figures`: the thesis's figures as pictures with a gallery."""
 
 import argparse

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Gallery of the figures in the order of the thesis, with reasons for missing ones."""
 
 import html

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Figures 3.3 and 3.5 to 3.9: the uncertainty, S_n and T_n with their bounds, and G_c's loop."""
 
 from functools import cache, partial

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """
 Figures 2.2 to 2.10: from the specifications to the loops of the loop-shaping design.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Figures 2.11 to 2.28, 3.10 to 3.19, 4.3 to 4.8 and 5.1: w_d, w_sr and A_x of each group."""
 
 from collections.abc import Sequence

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Groups of controllers that the thesis shows together: the loop, and the thesis's claims."""
 
 from dataclasses import dataclass

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Figures of Chapter 1 that can be computed: references, engine torque, comparison of plants."""
 
 import dataclasses

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Figure of the thesis that can be computed, and kinds of figure that several chapters have."""
 
 from collections.abc import Callable, Mapping

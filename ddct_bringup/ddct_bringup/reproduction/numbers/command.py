@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Subcommand `reproduce numbers`: comparison of every printed number with a computed one."""
 
 import argparse

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Thesis gate: read the claims about printed numbers in `chapters/`, and check them."""
 
 import importlib.resources

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Rows of the gate as tables of text, for the terminal and the page of documentation."""
 
 from collections import Counter, defaultdict

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """One number or qualitative statement that the thesis prints, and the claim about it."""
 
 import math

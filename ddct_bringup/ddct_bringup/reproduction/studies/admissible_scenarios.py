@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Studies of the admissible scenarios: fitted values, predictions, readings of the MPC rows."""
 
 import dataclasses

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """
 Modified loops: a clutch without actuator, a measured state, a load step, noisy speeds.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Lower limits of the sigmas in the thesis scenario for any control by clutch torque alone."""
 
 from dataclasses import dataclass

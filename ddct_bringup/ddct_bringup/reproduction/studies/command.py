@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Subcommand `reproduce studies`: the causes of the predictive controllers' results."""
 
 import argparse

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Every controller in every packaged scenario, new and worn: verdict and slip."""
 
 import math

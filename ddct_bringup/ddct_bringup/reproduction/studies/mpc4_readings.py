@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """MPC4 under the readings that Section 4.3 allows, and with a pull towards the demand."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """MPC1-3 under the readings that Table 4.1 and Section 4.2 of the thesis allow."""
 
 import math

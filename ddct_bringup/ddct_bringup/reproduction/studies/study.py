@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Study: a table of closed-loop runs, row by row, and the columns that studies share."""
 
 from collections.abc import Callable, Iterable, Sequence

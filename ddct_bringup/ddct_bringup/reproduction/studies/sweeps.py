@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Studies that vary a weight, the wear, the pedal, or the authority over the engine."""
 
 from dataclasses import replace

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Table 5.2 in numbers, with the thesis's linear clutch and with the stick-slip clutch."""
 
 import math

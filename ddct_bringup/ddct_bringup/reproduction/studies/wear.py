@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Slip with a worn clutch and an unknown load, and the estimates of `mpc_wear`."""
 
 import numpy as np

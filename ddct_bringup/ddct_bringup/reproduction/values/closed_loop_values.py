@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """
 Computed values for the numbers that need the closed loop: Tables 5.1 and 5.2, and claims.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Computed values of a controller: coefficients by name, z-form, rise time, overshoot."""
 
 from collections.abc import Mapping, Sequence

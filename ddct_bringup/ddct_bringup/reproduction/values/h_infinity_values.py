@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Computed values for the numbers of Chapter 3, H-infinity: weights, synthesis, norms of Hinf1."""
 
 import math

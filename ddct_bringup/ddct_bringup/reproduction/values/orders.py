@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """
 Metrics of several runs by controller and their order, the basis of qualitative claims.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The rule that admits a scenario uses the nine fitted values, the PI loop and the bounds."""
 
 import dataclasses

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The calibration fits its stated parameters, and its analysis of the fit is correct."""
 
 import dataclasses

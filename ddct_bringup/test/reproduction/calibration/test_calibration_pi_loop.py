@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The growth rate that selects the kind of PI is that of the simulated loop."""
 
 import dataclasses

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Program `reproduce calibration`: its output and files, and its errors."""
 
 import dataclasses

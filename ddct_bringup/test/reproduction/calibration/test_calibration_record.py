@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The stored record, the scenario file, the page and the simulation agree."""
 
 import importlib.resources

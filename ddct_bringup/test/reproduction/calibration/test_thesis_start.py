@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Statements of docs/thesis/calibration.md on the start of the thesis's scenario."""
 
 from pathlib import Path

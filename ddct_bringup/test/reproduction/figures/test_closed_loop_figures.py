@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Closed-loop figures of the thesis, and whether every figure is drawn or explained."""
 
 import re

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """docs/controllers/feedforward.md agrees with the code, to the last printed digit."""
 
 import re

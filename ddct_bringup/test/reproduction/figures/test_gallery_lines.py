@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """In each figure of the gallery no two lines have equal colours, or dashes that are alike."""
 
 from itertools import combinations

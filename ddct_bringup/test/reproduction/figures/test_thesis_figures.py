@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Figures of the thesis that need no run: the data of their lines, and the command's files."""
 
 import csv

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Values that `compare` prints with Table 5.1, and the conditions for it."""
 
 import dataclasses

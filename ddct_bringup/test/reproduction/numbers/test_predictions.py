@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The stored predictions are those of the packaged scenario and of the stored members."""
 
 import pytest

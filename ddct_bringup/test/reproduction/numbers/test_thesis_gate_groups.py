@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Groups of the thesis gate: one computation is shown completely, by one rule, counted once."""
 
 import pytest

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Rules of the thesis gate: required parts of a claim, and when it fails."""
 
 import dataclasses

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The tables of docs/thesis/predictions.md are those of the studies and support its text."""
 
 import pytest

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Every stored scenario is admissible, matches its name, and was found by the rule alone."""
 
 import dataclasses

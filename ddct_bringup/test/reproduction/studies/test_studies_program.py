@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Program `reproduce studies`: the studies, and their printed and written output."""
 
 import json

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Table 5.2 in numbers, for a run that failed."""
 
 from ddct_bringup.reproduction.studies.table_5_2 import rows_of

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The ratings of Table 5.2 and the orders behind qualitative claims."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """
 Closed-loop behaviour: step response, mode of the driveline, and Nyquist criterion.
 

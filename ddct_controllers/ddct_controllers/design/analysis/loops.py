@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The loop opened at the slip error, L = G_c G_a P_2 30/pi K_usura, and its Nyquist curve."""
 
 import math

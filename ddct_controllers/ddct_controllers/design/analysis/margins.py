@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """
 Stability and margins of a unit-feedback loop, continuous or sampled, both exact.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The worst corner: margins over wear and the corners of the driveline's parameters."""
 
 import itertools

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """
 Style of all charts, and their files: a picture (PNG), a scalable drawing (SVG) and the data (CSV).
 

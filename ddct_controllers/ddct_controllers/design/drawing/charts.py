@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Charts of a design: Nichols, Nyquist, step, magnitude; the files of a designed controller."""
 
 import math

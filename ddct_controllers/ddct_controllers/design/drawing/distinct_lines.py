@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """
 Distinct lines within one chart: no two lines have the same colour or the same dash.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Nichols chart: coordinates, curves of constant |T|, |S| and arg T, and the grid."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Clean a synthesised controller: drop the traces of epsilon and optimality (Section 3.2.2)."""
 
 import math

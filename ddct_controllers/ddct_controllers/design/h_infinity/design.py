@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The H-infinity workflow of Chapter 3: from weights to a verified controller."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """From plant and weights to the generalised plant: mixed sensitivity, continuous and sampled."""
 
 import numpy as np

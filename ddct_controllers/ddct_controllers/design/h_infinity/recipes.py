@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Recipes of weights: the thesis's, those behind its Hinf1, and our own; S_p and T_p unrounded."""
 
 from dataclasses import dataclass, replace

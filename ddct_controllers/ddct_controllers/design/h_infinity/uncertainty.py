@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """
 W_u, the size of the uncertainty that clutch wear makes (Section 3.2.1.3), and weighted peaks.
 

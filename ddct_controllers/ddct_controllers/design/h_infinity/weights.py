@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Weights on S, T and the torque of an H-infinity design (Section 3.2.1)."""
 
 import math

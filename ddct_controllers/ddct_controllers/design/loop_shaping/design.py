@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """
 The thesis's loop shaping (Section 2.2): sign, integrators, networks and gain.
 

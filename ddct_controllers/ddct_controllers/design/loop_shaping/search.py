@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """From specifications to a loop-shaping controller that is verified in the sampled loop."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Time specifications, and their bounds on S, T and L by the second-order prototype."""
 
 import math

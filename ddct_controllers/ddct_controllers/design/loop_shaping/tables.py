@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The tables of `design loop-shaping`, the same for the terminal and the documentation page."""
 
 from collections.abc import Sequence

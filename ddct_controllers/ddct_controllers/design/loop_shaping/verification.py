@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Verification of a linear controller in the loop as it runs: sampled, held, delayed, worn."""
 
 from dataclasses import dataclass

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A controller in a shared library, and the loader of `c_library`."""
 
 import contextlib

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Observer of the states that are not measured, with a constant gain; design of that gain."""
 
 from dataclasses import dataclass

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Kalman filter that estimates the wear gain of the clutch while torque flows."""
 
 from dataclasses import dataclass

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Numbers of one predictive controller for the exported C: macros and constant arrays."""
 
 import math

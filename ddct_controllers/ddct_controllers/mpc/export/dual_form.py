@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A condensed program as the exported C has it: its solver's coordinates, its one known vector."""
 
 from dataclasses import dataclass

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Write a predictive controller and its observer as self-contained C99."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Predict over the horizon, and condense it into a quadratic program in the input moves alone."""
 
 from dataclasses import dataclass

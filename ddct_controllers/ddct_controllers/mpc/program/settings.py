@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Cost, horizon, limits and solver of a predictive controller, and its options for them."""
 
 import math

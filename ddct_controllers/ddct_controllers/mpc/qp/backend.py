@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The interface behind which solvers of quadratic programs are swapped, and solvers by name."""
 
 import math

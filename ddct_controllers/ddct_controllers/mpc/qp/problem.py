@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A quadratic program: the structure, which is constant over the steps, and the solution."""
 
 from dataclasses import dataclass

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The two inertias that a slipping clutch couples, on a rigid driveline, and a plan for them."""
 
 import math

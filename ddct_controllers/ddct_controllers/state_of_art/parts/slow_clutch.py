@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The clutch's share of two-input control: it makes a slow speed follow a plan."""
 
 import numpy as np

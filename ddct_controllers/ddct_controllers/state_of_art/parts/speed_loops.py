@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Parts of the loops of two speeds: a PID, the engine's share, an estimator of the clutch."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The driveline's mode in a closed loop is found, with its amplitude in w_sr."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The loops that margins are computed from are those of the thesis, and of the run."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Margins are exact: against closed forms, python-control, and the closed loop's poles."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Step responses, rise times and overshoots are those of Tables 2.1 and 3.1."""
 
 import math

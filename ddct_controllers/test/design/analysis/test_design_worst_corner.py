@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """No corner, wear gain of the range, or point inside the corners is worse than the worst one."""
 
 import itertools

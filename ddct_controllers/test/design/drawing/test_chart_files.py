@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Files of a figure: data with headings and units, and the same bytes for the same figure."""
 
 import csv

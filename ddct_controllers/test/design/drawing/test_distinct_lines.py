@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Lines that share a colour or a dash get different ones; the others stay as they are."""
 
 from itertools import combinations

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Lines of controllers follow from the name alone, and are distinct on both pages for all eyes."""
 
 import itertools

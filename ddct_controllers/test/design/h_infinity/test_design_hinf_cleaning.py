@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Cleaning by the rules of Section 3.2.2: on the thesis's own controller, and on bad ones."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Our synthesised controllers in the registry, beside the printed ones they come from."""
 
 import math

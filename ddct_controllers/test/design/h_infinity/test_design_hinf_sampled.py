@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The design with hold and delay in its plant: robust where designs without them are not."""
 
 from dataclasses import replace

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Weights of Section 3.2.1: their numbers, and parameters that make no weight."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Our H-infinity controllers are computed from the scenario's driveline, or refused."""
 
 import numpy as np

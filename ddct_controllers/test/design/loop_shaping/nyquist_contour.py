@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The Nyquist criterion by a contour of our own, which takes a dead time as it is."""
 
 import math

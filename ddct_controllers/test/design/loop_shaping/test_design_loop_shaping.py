@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Chapter 2 of the thesis comes out: G_c1, G_c2, G_c(z), Table 2.1 and the margins."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A user's specifications give a controller that meets them in the sampled loop, or an error."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Lead and lag networks of Section 2.2.2."""
 
 import math

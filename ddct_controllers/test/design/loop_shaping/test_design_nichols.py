@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The constant-M and constant-S curves, and whether loops enter them."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The Nyquist count agrees with the closed loop's poles, on the imaginary axis or not."""
 
 import pytest

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Time specifications become the thesis's numbers, and those that make no sense are named."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The number of integrators follows from the final-value theorem, and the loop obeys it."""
 
 import math

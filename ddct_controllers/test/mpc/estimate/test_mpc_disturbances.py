@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Disturbance model and observer of the offset-free predictive controllers."""
 
 from dataclasses import replace

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Estimate of the wear gain of the clutch."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The predictive controllers' model is the plant they run in, and their observer follows it."""
 
 import control

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The condensed program is the cost and the limits that the settings state, nothing else."""
 
 import math

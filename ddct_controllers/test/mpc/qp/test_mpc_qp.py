@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Both solvers of quadratic programs, against answers by hand, Clarabel and each other."""
 
 import dataclasses

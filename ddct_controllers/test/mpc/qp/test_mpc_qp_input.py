@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Input that the quadratic programs refuse: bad structures, vectors, names, absent solvers."""
 
 import math

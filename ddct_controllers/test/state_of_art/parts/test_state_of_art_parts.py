@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Parts of the controllers of the state of the art, each by itself."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """`identify --from LOG`: the driveline of a measured car, as tables, JSON and a scenario."""
 
 import argparse

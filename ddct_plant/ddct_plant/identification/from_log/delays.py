@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Delays of the signals of a log: which of them are identifiable, and the samples they cost."""
 
 from collections.abc import Mapping, Sequence

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Test whether residuals of a fit depend on the torques, which sensor noise does not."""
 
 from collections.abc import Mapping, Sequence

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Selection of the fitted numbers that a log does not determine."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Fit driveline parameters and the delays of the signals to the log of a drive."""
 
 import math

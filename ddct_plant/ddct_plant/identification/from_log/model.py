@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """
 Response of the driveline of Section 1.5 to measured torques, exact between their samples.
 

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Names of the torques of a log."""
 
 TORQUES = ('engine_torque', 'clutch_torque')

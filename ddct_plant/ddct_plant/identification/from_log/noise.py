@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Noise model of the speeds of a log: an autoregressive model of the residuals of a fit."""
 
 from collections.abc import Sequence

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Prediction of held-out data by a fitted driveline."""
 
 import math

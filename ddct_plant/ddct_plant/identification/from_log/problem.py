@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Least-squares problem of a fit to the stretches of a log, with the noise model."""
 
 from collections.abc import Mapping, Sequence

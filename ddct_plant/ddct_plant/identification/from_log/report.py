@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """A fit to a log as JSON and as tables."""
 
 from collections.abc import Sequence

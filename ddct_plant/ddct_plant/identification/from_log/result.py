@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Result of a fit to a log."""
 
 from dataclasses import dataclass

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Scenario that replays the log of a measured car, made from a base scenario."""
 
 import dataclasses

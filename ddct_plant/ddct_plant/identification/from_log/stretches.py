@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Cut a log into stretches without gaps, with the torques on one grid."""
 
 from collections.abc import Callable

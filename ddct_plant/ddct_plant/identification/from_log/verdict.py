@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Reasons for which a fit to a log is refused, and notes on an accepted one."""
 
 from collections.abc import Iterator, Sequence

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """H-infinity synthesis by gamma-iteration; every controller is verified in the closed loop."""
 
 import math

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The generalised plant M of Section 3.1, and coordinates in which it is well conditioned."""
 
 from dataclasses import dataclass

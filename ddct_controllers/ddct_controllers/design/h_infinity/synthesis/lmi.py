@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """H-infinity synthesis by linear matrix inequalities, the thesis's own route (Section 3.2.2)."""
 
 from collections.abc import Callable, Iterator, Sequence

@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The two Riccati equations of H-infinity synthesis and the central controller they give."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+/* Copyright 2026 DDCT team
+ * SPDX-License-Identifier: Apache-2.0 */
 /*
  * A clutch controller as a shared library, version 1 of the interface.
  *

@@ -1,3 +1,5 @@
+/* Copyright 2026 DDCT team
+ * SPDX-License-Identifier: Apache-2.0 */
 #ifndef DDCT_MPC_H
 #define DDCT_MPC_H
 

@@ -1,3 +1,5 @@
+/* Copyright 2026 DDCT team
+ * SPDX-License-Identifier: Apache-2.0 */
 /* The engine, as far as a controller may move it away from the driver's demand: the deviation
  * requested is limited, then its rate, then it passes a lag; last, the torque is limited. */
 

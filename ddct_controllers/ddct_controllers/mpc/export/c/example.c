@@ -1,3 +1,5 @@
+/* Copyright 2026 DDCT team
+ * SPDX-License-Identifier: Apache-2.0 */
 /*
  * Read measurements from standard input, one a line, and print the commands.
  *

@@ -1,3 +1,5 @@
+/* Copyright 2026 DDCT team
+ * SPDX-License-Identifier: Apache-2.0 */
 /*
  * The controller behind the interface of ddct_controller.h, as ddct runs it from a file with
  * `c_library: {file: ddct_mpc.so}`:

@@ -1,3 +1,5 @@
+/* Copyright 2026 DDCT team
+ * SPDX-License-Identifier: Apache-2.0 */
 /*
  * Quadratic program: minimise 1/2 y'y + v'y + 1/2 sum of s_i^2 / RELAXATION[i]
  * subject to lower <= NORMAL y + s <= upper, s_i = 0 where RELAXATION[i] is 0.

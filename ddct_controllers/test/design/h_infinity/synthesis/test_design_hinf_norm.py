@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """The norm that accepts or refuses every controller, against closed forms and sweeps."""
 
 import math

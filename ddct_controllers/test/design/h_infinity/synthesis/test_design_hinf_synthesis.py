@@ -1,3 +1,5 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
 """Riccati synthesis: optimal, verified, and named errors for what has no solution."""
 
 import builtins
