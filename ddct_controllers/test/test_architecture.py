@@ -88,7 +88,7 @@ def test_detailed_takes_the_equilibrium_of_the_scenario():
     scenario = replace(SETTINGS.scenario, equilibrium='full')
     request = make_architecture(replace(SETTINGS, scenario=scenario), Recording()).update(BEFORE)
     driveline = scenario.driveline
-    damping = driveline.total_ratio * driveline.shaft_damping * BEFORE.shaft_speed
+    damping = driveline.gear.total_ratio * driveline.shaft_damping * BEFORE.shaft_speed
     assert request.torque == constant_slip_torque(driveline, 250.0, load_torque() + damping)
     assert request.torque > static_torque()
 

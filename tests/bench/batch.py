@@ -88,7 +88,9 @@ def _varied(thesis: Scenario, random: np.random.Generator) -> RunSettings:
     torques = tuple(torque * random.uniform(0.9, 1.1) for torque in thesis.engine.torque_n_m)
     scenario = dataclasses.replace(
         thesis,
-        driveline=changed(thesis.driveline, engine_inertia=0.1, halfshaft_stiffness=0.1),
+        given_driveline=changed(
+            thesis.given_driveline, engine_inertia=0.1, halfshaft_stiffness=0.1
+        ),
         engine=dataclasses.replace(thesis.engine, torque_n_m=torques),
         reference=changed(thesis.reference, slope_rad_s2=0.3),
     )

@@ -85,7 +85,7 @@ def test_the_best_driveline_misses_the_print_by_a_chi_square_of_3_556():
     found = fit()
     assert 3.0 * 2.0 * found.cost == pytest.approx(3.556, abs=0.001)
     identified = [P.engine_inertia, P.shaft_inertia, P.shaft_damping, P.halfshaft_damping]
-    identified += [P.halfshaft_stiffness, P.total_ratio, P.vehicle_inertia]
+    identified += [P.halfshaft_stiffness, P.gear.total_ratio, P.vehicle_inertia]
     assert np.exp(found.x) == pytest.approx(identified, rel=1e-4)
 
 

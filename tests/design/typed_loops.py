@@ -20,7 +20,7 @@ DT = 0.01
 RPM = 30.0 / math.pi
 P = DrivelineParameters()
 IDENTIFIED = [P.engine_inertia, P.shaft_inertia, P.shaft_damping, P.halfshaft_damping]
-IDENTIFIED += [P.halfshaft_stiffness, P.total_ratio, P.vehicle_inertia]
+IDENTIFIED += [P.halfshaft_stiffness, P.gear.total_ratio, P.vehicle_inertia]
 
 
 def driveline(factors: tuple[float, ...] = (1.0,) * 7) -> control.StateSpace:

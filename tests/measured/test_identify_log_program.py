@@ -79,7 +79,7 @@ def test_a_bag_needs_no_columns_and_gives_back_its_driveline(
     record(run, tmp_path / 'pi')
     assert main(['--from', str(tmp_path / 'pi'), '--json', '-']) == 0
     content = json.loads(capsys.readouterr().out)
-    true = vars(run.settings.scenario.driveline)
+    true = run.settings.scenario.driveline.values()
     for row in content['parameters']:
         scale = max(true[row['name']], 0.01)
         tight = 1e-3 if clutch == 'linear' else 0.1

@@ -15,10 +15,12 @@ from ddct_bringup.bag.measured_checks import require_no_contradiction
 from ddct_bringup.programs import score
 from ddct_bringup.run.headless import run_headless
 from ddct_plant.base.errors import DdctError
+from ddct_plant.models.gearbox import EngagedGear
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
 RATIO = TRUE['total_ratio']
+GEAR = EngagedGear(RATIO)
 PER_RPM = np.pi / 30.0
 Values = dict[str, np.ndarray]
 
@@ -73,7 +75,7 @@ def test_a_unit_or_sign_that_the_log_contradicts_is_refused(
     measured: Callable[[Values], Values],
 ) -> None:
     with pytest.raises(DdctError) as error:
-        require_no_contradiction(RATIO, change(measured(other_car())))
+        require_no_contradiction(GEAR, change(measured(other_car())))
     assert complaint in str(error.value)
     assert '\n' not in str(error.value)
 
@@ -81,7 +83,7 @@ def test_a_unit_or_sign_that_the_log_contradicts_is_refused(
 @pytest.mark.parametrize('given', [RATIO * 1.03, RATIO / 1.03, 9.34])
 def test_a_ratio_that_the_log_contradicts_is_refused_with_both_values(given: float) -> None:
     with pytest.raises(DdctError) as error:
-        require_no_contradiction(given, noisy(other_car()))
+        require_no_contradiction(EngagedGear(given), noisy(other_car()))
     assert str(error.value).startswith(f'run.total_ratio is {given:g}, but in the log')
     assert 'is 12.5' in str(error.value)
 
@@ -91,11 +93,11 @@ def test_a_true_log_passes_with_any_of_its_columns_left_out(
     measured: Callable[[Values], Values],
 ) -> None:
     values = measured(other_car())
-    require_no_contradiction(RATIO, values)
+    require_no_contradiction(GEAR, values)
     require_no_contradiction(None, values)
     for left_out in values.keys() - {'engine_speed', 'shaft_speed', 'engine_torque'}:
         part = {name: each for name, each in values.items() if name != left_out}
-        require_no_contradiction(RATIO, part)
+        require_no_contradiction(GEAR, part)
 
 
 @pytest.mark.parametrize(
@@ -110,13 +112,13 @@ def test_what_the_bench_simulates_contradicts_nothing(
     values = dict(zip(('engine_speed', 'shaft_speed', 'wheel_speed'), run.joint_speed.T))  # noqa: B905 the twist is left out
     values |= {'engine_torque': run.engine_torque, 'clutch_torque': run.joint_effort[:, 1]}
     values |= {'vehicle_speed': run.vehicle_speed, 'vehicle_accel': run.vehicle_accel}
-    ratio = settings.scenario.driveline.total_ratio
-    require_no_contradiction(ratio, values)
+    gear = settings.scenario.driveline.gear
+    require_no_contradiction(gear, values)
     with pytest.raises(DdctError, match=r'run\.total_ratio is'):
-        require_no_contradiction(1.1 * ratio, values)
+        require_no_contradiction(EngagedGear(gear.shaft_speed(1.1)), values)
     del values['engine_torque']
     with pytest.raises(DdctError, match='clutch_torque has the sign of a clutch that gives power'):
-        require_no_contradiction(ratio, times('clutch_torque', -1.0)(values))
+        require_no_contradiction(gear, times('clutch_torque', -1.0)(values))
     if controller == 'ls8':
         with pytest.raises(DdctError, match='the factor of rpm to rad/s: mend the unit of one'):
             require_no_contradiction(None, times('engine_speed', PER_RPM)(values))
@@ -124,7 +126,7 @@ def test_what_the_bench_simulates_contradicts_nothing(
 
 def test_a_car_that_hardly_moves_shows_no_ratio() -> None:
     values = {name: 0.001 * each for name, each in other_car().items() if 'speed' in name}
-    require_no_contradiction(9.34, values)
+    require_no_contradiction(EngagedGear(9.34), values)
 
 
 TIMES = {

@@ -54,7 +54,7 @@ def test_signals_that_are_rows_late_move_delays_and_not_parameters(
         fit_log(rows_late(noisy_log(pi_log, seed), late, rows), THESIS.driveline, load_of(THESIS))
         for seed in (1, 2)
     ]
-    parameters = dict(vars(THESIS.driveline))
+    parameters = THESIS.driveline.values()
     held = [each for fit in fits for each in within(fit, parameters | true)]
     assert sum(held) >= 21
     for fit in fits:
@@ -105,7 +105,7 @@ def test_intervals_cover_delays_and_parameters_at_their_rate_on_white_noise() ->
         delays = np.random.default_rng(seed).uniform(-0.05, 0.05, len(NONE_LATE)).tolist()
         true = dict(zip(NONE_LATE, delays, strict=True))
         times, signals = late_log(seed, true, corners_on_rows=True)
-        fit = fit_log(_noisy(times, signals, seed), DrivelineParameters(**TRUE), drag)
+        fit = fit_log(_noisy(times, signals, seed), DrivelineParameters.from_values(TRUE), drag)
         held += within(fit, TRUE | true)
     assert len(held) == 12 * SEEDS
     assert sum(held) >= 127

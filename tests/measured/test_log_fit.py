@@ -55,7 +55,7 @@ def test_every_parameter_of_a_car_of_other_code_is_found_from_another_start(fit:
 @pytest.mark.slow
 def test_intervals_of_95_percent_cover_the_true_values_at_that_rate(fit: LogFit) -> None:
     """The expected number of covering intervals is 91 of 96, with a deviation of 2."""
-    true = DrivelineParameters(**TRUE)
+    true = DrivelineParameters.from_values(TRUE)
     held = [hits(fit_log(log_of(drive().noisy(seed)), true, drag)) for seed in range(SEEDS)]
     assert sum(map(sum, held)) >= 85
     assert all(len(each) == 8 for each in held)
@@ -65,7 +65,7 @@ def test_intervals_of_95_percent_cover_the_true_values_at_that_rate(fit: LogFit)
 def test_noise_of_the_torques_widens_the_intervals_and_they_still_cover_the_true_values(
     fit: LogFit,
 ) -> None:
-    true = DrivelineParameters(**TRUE)
+    true = DrivelineParameters.from_values(TRUE)
     fits = [fit_log(log_of(drive().noisy(seed, 1.0)), true, drag) for seed in range(2)]
     held = [each for one in fits for each in hits(one)]
     assert sum(held) >= 0.8 * len(held)
@@ -83,7 +83,7 @@ def test_noise_with_a_memory_widens_the_intervals(fit: LogFit) -> None:
     signals = dict(drive().signals)
     for name, size, each in zip(SPEEDS, NOISE_RAD_S, noise, strict=True):
         signals[name] = signals[name] + size * each
-    slow = fit_log(log_of(signals), DrivelineParameters(**TRUE), drag)
+    slow = fit_log(log_of(signals), DrivelineParameters.from_values(TRUE), drag)
     assert slow.noise.order >= 1
     for name in ('engine_inertia', 'total_ratio', 'vehicle_inertia'):
         assert slow.std[name] > 2.0 * fit.std[name]
@@ -147,7 +147,7 @@ def test_a_log_at_constant_speed_shows_the_ratio_at_most_and_without_it_nothing(
 
 
 def test_a_fixed_parameter_keeps_its_value(fit: LogFit) -> None:
-    start = replace(START, total_ratio=12.5)
+    start = START.with_values(total_ratio=12.5)
     fixed = fit_log(log_of(drive().noisy(0)), start, drag, ('total_ratio',))
     assert fixed.values['total_ratio'] == 12.5
     assert 'total_ratio' not in fixed.std

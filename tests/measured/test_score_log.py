@@ -59,7 +59,7 @@ def scored(folder: Path, *options: str) -> dict:
 def test_our_own_signals_as_a_foreign_log_have_the_scores_of_the_bag(tmp_path: Path) -> None:
     recording = record(plan('pi', 'headless', duration_s=3.0), tmp_path / 'pi')
     assert recording.settings is not None
-    ratio = recording.settings.scenario.driveline.total_ratio
+    ratio = recording.settings.scenario.driveline.gear.total_ratio
     (tmp_path / 'drive.csv').write_text(signals_csv(recording))
     (tmp_path / 'map.yaml').write_text(OURS.replace('run: {', f'run: {{total_ratio: {ratio!r}, '))
     found, wanted = scored(tmp_path), score_recording(recording, 'pi', packaged_limits())

@@ -12,6 +12,7 @@ import numpy as np
 
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.models.gearbox import EngagedGear
 
 Values = Mapping[str, np.ndarray]
 """Samples by quantity name: (N+1,) each, SI units, every 10 ms."""
@@ -32,18 +33,18 @@ _SURE, _SURE_OF_SLOPE = 0.9, 10.0
 """Least coefficient of determination, and least slope over its standard deviation, to decide."""
 
 
-def require_no_contradiction(total_ratio: float | None, values: Values) -> None:
+def require_no_contradiction(gear: EngagedGear | None, values: Values) -> None:
     """Raise DdctError, in one line that names the values to mend, where signals disagree."""
     if 'wheel_speed' in values:
-        if total_ratio is not None:
-            _require_ratio(total_ratio, values)
+        if gear is not None:
+            _require_ratio(gear, values)
         _require_radius(values)
     _require_same_unit(values)
     if 'clutch_torque' in values and not ('engine_torque' in values and _engine_fits(values)):
         _require_friction(values)
 
 
-def _require_ratio(given: float, values: Values) -> None:
+def _require_ratio(given: EngagedGear, values: Values) -> None:
     """
     Compare the total ratio with the angles that shaft and wheels turned; raise DdctError.
 
@@ -53,13 +54,13 @@ def _require_ratio(given: float, values: Values) -> None:
     shaft, wheels = (PERIOD_S * np.sum(values[name]) for name in ('shaft_speed', 'wheel_speed'))
     if abs(wheels) < _LEAST_TURNED_RAD:
         return
-    found = float(shaft / wheels)
+    found, factor = float(shaft / wheels), float(shaft / given.shaft_speed(wheels))
     tolerance = RATIO_TOLERANCE + TWIST_RAD / abs(wheels)
-    if abs(found / given - 1.0) > tolerance:
+    if abs(factor - 1.0) > tolerance:
         raise DdctError(
-            f'run.total_ratio is {given:g}, but in the log shaft_speed over wheel_speed is '
+            f'run.total_ratio is {given}, but in the log shaft_speed over wheel_speed is '
             f'{found:.4g}, give or take {100.0 * tolerance:.1f} %: give the ratio of the engaged '
-            f'gear, or mend {_suspects("shaft_speed", "wheel_speed", found / given)}'
+            f'gear, or mend {_suspects("shaft_speed", "wheel_speed", factor)}'
         )
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from ddct_bringup.bag.run_facts import MEASURED
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import OptionGroup, option
+from ddct_plant.models.gearbox import EngagedGear
 
 
 @dataclass(frozen=True)
@@ -47,6 +48,11 @@ class MeasuredRun(OptionGroup, prefix='run.'):
         super().__post_init__()
         if self.score_window_s and len(self.score_window_s) != 2:
             raise ParameterError('run.score_window_s: give two times, [first, last]')
+
+    @property
+    def gear(self) -> EngagedGear | None:
+        """Engaged gear of the log, None where no total ratio is given."""
+        return None if self.total_ratio is None else EngagedGear(self.total_ratio)
 
     def require_within(self, duration_s: float) -> None:
         """Raise ParameterError for an engagement or a score window beyond the end of the log."""

@@ -80,10 +80,10 @@ def read_measured_run(path: Path, columns: ColumnMap) -> Recording:
     values = {name: _on_grid(log, name, grid_s) for name in log.signals}
     with located(str(path)):
         run.require_within(time_of_step(steps))
-        require_no_contradiction(run.total_ratio, values)
+        require_no_contradiction(run.gear, values)
     absent = {}
-    if run.total_ratio and 'wheel_speed' in values:
-        values[TORSION] = values['shaft_speed'] / run.total_ratio - values['wheel_speed']
+    if run.gear and 'wheel_speed' in values:
+        values[TORSION] = run.gear.wheel_speed(values['shaft_speed']) - values['wheel_speed']
     else:
         absent[TORSION] = 'w_sr needs the column wheel_speed and run.total_ratio'
     for name in (*_JOINT_EFFORTS, *_SINGLE, 'slip_reference'):

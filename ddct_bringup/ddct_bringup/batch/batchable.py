@@ -9,6 +9,7 @@ import numpy as np
 from ddct_controllers.interface import Controller, Measurement
 from ddct_controllers.linear import DiscreteFilter, LinearController, PiController
 from ddct_plant.base.errors import FOREIGN_FAILURES
+from ddct_plant.base.options import key_of
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.lti import StateSpace
 from ddct_plant.scenario.control import ENGINE_SPEED_TARGET
@@ -49,7 +50,7 @@ def _why_not_plant(settings: RunSettings) -> str:
         return f'reference.shape is {ENGINE_SPEED_TARGET}'
     scenario = settings.scenario
     for field in dataclasses.fields(scenario):
-        if field.name not in SUPPORTED_KEYS and getattr(scenario, field.name) != field.default:
+        if key_of(field) not in SUPPORTED_KEYS and getattr(scenario, field.name) != field.default:
             return f'the scenario gives {field.name}'
     return ''
 

@@ -3,8 +3,7 @@
 """Arrays with one column per run for quantities that differ from run to run, and their filters."""
 
 from collections.abc import Hashable, Iterable, Sequence
-from dataclasses import fields
-from types import SimpleNamespace
+from dataclasses import fields, is_dataclass
 from typing import Any
 
 import numpy as np
@@ -14,13 +13,16 @@ from ddct_plant.linear.lti import StateSpace
 
 def stacked(things: Sequence[Any]) -> Any:
     """
-    Return an object with the fields of dataclasses, each an array, (R,).
+    Return one dataclass whose fields are arrays, (R,), of those of R; nested dataclasses likewise.
 
-    It can replace one of the dataclasses in equations that only read fields.
+    Its class is theirs, so that equations may call its methods; it is not checked.
     """
-    names = [field.name for field in fields(things[0])]
-    columns = {name: np.array([getattr(each, name) for each in things]) for name in names}
-    return SimpleNamespace(**columns)
+    stack = object.__new__(type(things[0]))
+    for field in fields(things[0]):
+        values = [getattr(each, field.name) for each in things]
+        column = stacked(values) if is_dataclass(values[0]) else np.array(values)
+        object.__setattr__(stack, field.name, column)
+    return stack
 
 
 def distinct(keys: Iterable[Hashable]) -> tuple[list[int], np.ndarray]:

@@ -7,7 +7,7 @@ from functools import cache
 
 from ddct_controllers.registry import controller_names, controller_spec
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.base.options import Option, Options, group_of, options_of
+from ddct_plant.base.options import Option, Options, group_of, key_of, options_of
 from ddct_plant.scenario.csv_profiles import FACTOR, FACTOR_OPTION
 from ddct_plant.scenario.key_names import key_hint, scenario_options
 from ddct_plant.scenario.scenario import Scenario
@@ -51,4 +51,4 @@ def option_of(where: str, key: str) -> Option | None:
 @cache
 def sections() -> frozenset[str]:
     """Return the names of the groups of keys that a scenario has."""
-    return frozenset(field.name for field in fields(Scenario) if group_of(field))
+    return frozenset(key_of(field) for field in fields(Scenario) if group_of(field))

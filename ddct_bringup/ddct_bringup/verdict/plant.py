@@ -5,20 +5,21 @@
 import math
 from dataclasses import dataclass
 
+from ddct_plant.models.gearbox import EngagedGear
 from ddct_plant.models.parameters import DrivelineParameters, VehicleParameters
 from ddct_plant.scenario.scenario import Scenario
 
 
 @dataclass(frozen=True)
 class JudgedPlant:
-    """Inertias, ratio and limits of the simulated car, in SI units."""
+    """Inertias, gear and limits of the simulated car, in SI units."""
 
     engine_inertia: float
     """Engine inertia J_m in kg m^2."""
     rest_inertia: float
     """Inertia J_eq = J_p + J_v/tau^2 in kg m^2 of the rigid car at the primary shaft."""
-    total_ratio: float
-    """Total transmission ratio tau."""
+    gear: EngagedGear
+    """Engaged gear between primary shaft and wheels."""
     mass: float
     """Vehicle mass m_v in kg."""
     wheel_radius: float
@@ -43,11 +44,10 @@ class JudgedPlant:
         cut_speed: float = math.inf,
     ) -> 'JudgedPlant':
         """Return the plant with a driveline, a vehicle and a rev limiter."""
-        ratio = driveline.total_ratio
         return cls(
             engine_inertia=driveline.engine_inertia,
-            rest_inertia=driveline.shaft_inertia + driveline.vehicle_inertia / ratio**2,
-            total_ratio=ratio,
+            rest_inertia=driveline.vehicle_side_inertia,
+            gear=driveline.gear,
             mass=vehicle.mass_kg,
             wheel_radius=vehicle.wheel_radius_m,
             gravity=vehicle.gravity_m_s2,

@@ -74,7 +74,7 @@ def _imposed_acceleration(trajectory: Trajectory, plant: JudgedPlant) -> np.ndar
     """
     imposed = trajectory.torque_demand / plant.engine_inertia
     if trajectory.load_torque is not None:
-        imposed = imposed + trajectory.load_torque / (plant.total_ratio * plant.rest_inertia)
+        imposed = imposed + trajectory.load_torque / plant.gear.across(plant.rest_inertia)
     return rpm_from_rad_s(imposed)
 
 

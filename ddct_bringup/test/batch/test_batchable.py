@@ -15,6 +15,7 @@ from ddct_controllers.from_python import chosen_from
 from ddct_controllers.interface import Command, Controller
 from ddct_controllers.linear import LinearController, PiController
 from ddct_controllers.registry import make_controller
+from ddct_plant.base.options import key_of
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.lti import StateSpace
 from ddct_plant.scenario.file import load_scenario
@@ -112,7 +113,7 @@ def test_a_plant_is_in_a_batch_if_it_is_linear(changes, settings, reason):
 
 
 def test_a_run_with_an_unsupported_key_is_not_in_a_batch():
-    names = {field.name for field in dataclasses.fields(Scenario)}
+    names = {key_of(field) for field in dataclasses.fields(Scenario)}
     assert names > SUPPORTED_KEYS
     stick_slip = {f.name for f in dataclasses.fields(Scenario) if f.metadata.get('stick_slip')}
     assert names - SUPPORTED_KEYS >= {*stick_slip, 'engine_limits'}

@@ -33,9 +33,9 @@ def scenario(random, **changes):
         return float(random.uniform(1.0 - size, 1.0 + size))
 
     driveline = {
-        f'driveline.{field.name}': getattr(DrivelineParameters(), field.name) * times(0.2)
-        for field in dataclasses.fields(DrivelineParameters)
-        if field.name != 'vehicle_inertia'  # it follows from the mass
+        f'driveline.{name}': value * times(0.2)
+        for name, value in DrivelineParameters().values().items()
+        if name != 'vehicle_inertia'  # it follows from the mass
     }
     slope = {'time_s': [0.0, 0.9], 'slope_rad': random.uniform(-0.1, 0.1, 2).tolist()}
     own = {
@@ -206,9 +206,9 @@ def test_a_run_in_which_rounding_grows_has_no_result():
 
 def test_a_run_that_cannot_be_built_leaves_the_others_alone():
     settings = RunSettings(load_scenario('thesis', SHORT))
-    weightless = dataclasses.replace(settings.scenario.driveline, shaft_inertia=1e-310)
+    weightless = dataclasses.replace(settings.scenario.given_driveline, shaft_inertia=1e-310)
     odd = dataclasses.replace(
-        settings, scenario=dataclasses.replace(settings.scenario, driveline=weightless)
+        settings, scenario=dataclasses.replace(settings.scenario, given_driveline=weightless)
     )
     controller = PiController(0.1, 0.1)
     runs = [(settings, controller), (odd, controller), (settings, controller)]

@@ -56,10 +56,10 @@ def test_the_final_speeds_are_those_that_the_torques_give(name):
     scenario, trajectory = run(name)
     p = scenario.driveline
     speeds = trajectory.joint_speed[:, :3]
-    resisting = trajectory.joint_effort[:, 2] + p.total_ratio * p.shaft_damping * speeds[:, 1]
-    torque = p.total_ratio * trajectory.engine_torque[:-1].sum() * PERIOD_S
+    resisting = trajectory.joint_effort[:, 2] + p.gear.total_ratio * p.shaft_damping * speeds[:, 1]
+    torque = p.gear.total_ratio * trajectory.engine_torque[:-1].sum() * PERIOD_S
     torque -= np.trapezoid(resisting, dx=PERIOD_S)
-    inertias = (p.total_ratio * p.engine_inertia, p.total_ratio * p.shaft_inertia)
+    inertias = (p.gear.total_ratio * p.engine_inertia, p.gear.total_ratio * p.shaft_inertia)
     momentum = (speeds[-1] - speeds[0]) @ (*inertias, p.vehicle_inertia)
     assert momentum == pytest.approx(torque, rel=0.01)
 

@@ -13,6 +13,7 @@ from ddct_controllers.mpc.model.transmission_model import (
 from ddct_controllers.mpc.program.settings import InputTerms, MpcSettings, OutputTerms, weight
 from ddct_plant.base.options import OptionGroup
 from ddct_plant.base.units import rpm_from_rad_s
+from ddct_plant.models.gearbox import EngagedGear
 from ddct_plant.models.parameters import DrivelineParameters
 
 PREDICTION_STEPS = 7
@@ -58,14 +59,14 @@ PREVIEW = replace(BASIS, preview=True)
 """Cost of our own controllers: `BASIS` with preview of the reference."""
 
 
-def default_torsion_weight(total_ratio: float) -> float:
+def default_torsion_weight(gear: EngagedGear) -> float:
     """
     Return the weight per rpm of w_sr at which it costs as much as slip.
 
-    w_sr is a speed at the wheels; at the primary shaft, where slip is measured, it is
-    `total_ratio` times as large, and there 1 rpm of either costs the same.
+    w_sr is a speed at the wheels; at the primary shaft, where slip is measured, it is tau times
+    as large, and there 1 rpm of either costs the same.
     """
-    return BASIS.output_weight * total_ratio
+    return float(gear.shaft_speed(BASIS.output_weight))
 
 
 @dataclass(frozen=True)
@@ -80,7 +81,7 @@ class TorsionCost(OptionGroup):
         """Return the settings with the weight of w_sr, or the driveline's default for it."""
         per_rpm = self.torsion_weight
         if per_rpm is None:
-            per_rpm = default_torsion_weight(driveline.total_ratio)
+            per_rpm = default_torsion_weight(driveline.gear)
         settings = PREVIEW.settings()
         torsion = OutputTerms(TORSION_SPEED, rpm_from_rad_s(per_rpm))
         return replace(settings, outputs=(*settings.outputs, torsion))

@@ -76,9 +76,9 @@ def slip_model(parameters: DrivelineParameters) -> StateSpace:
     only move a pole from 0 to -0.007 1/s. Their drag is a constant torque to this model.
     """
     p = parameters
-    tau, damping, stiffness = p.total_ratio, p.halfshaft_damping, p.halfshaft_stiffness
-    to_shaft = 1.0 / (p.shaft_inertia * tau)
-    to_torsion = to_shaft / tau + 1.0 / p.vehicle_inertia
+    damping, stiffness = p.halfshaft_damping, p.halfshaft_stiffness
+    to_shaft = 1.0 / p.gear.across(p.shaft_inertia)
+    to_torsion = p.gear.wheel_speed(to_shaft) + 1.0 / p.vehicle_inertia
     a = [
         [0.0, damping * to_shaft, stiffness * to_shaft],
         [0.0, -damping * to_torsion, -stiffness * to_torsion],

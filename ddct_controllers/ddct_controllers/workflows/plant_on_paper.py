@@ -36,6 +36,7 @@ def plant_on_paper(scenario: Scenario) -> dict[str, Any]:
     power first. `c_fol` has the factors of the static torque: C_fOL is their sum of products.
     """
     driveline = scenario.driveline
+    values = driveline.values()
     model = driveline_matrices(driveline)
     static = StaticTorque(driveline, scenario.equilibrium)
     transfer_functions = {
@@ -47,7 +48,7 @@ def plant_on_paper(scenario: Scenario) -> dict[str, Any]:
     return {
         'scenario': scenario.name,
         'parameters': {
-            symbol: {'name': name, 'value': float(getattr(driveline, name)), 'unit': unit}
+            symbol: {'name': name, 'value': float(values[name]), 'unit': unit}
             for name, (symbol, unit) in SYMBOLS_AND_UNITS.items()
         },
         'state_space': {

@@ -68,7 +68,7 @@ def test_the_factors_add_up_to_the_static_torque(equilibrium: str) -> None:
         expected = constant_slip_torque(p, 150.0, 300.0)
         assert factors['w_m'] == factors['w_p'] == 0.0
     else:
-        load = 300.0 + p.total_ratio * p.shaft_damping * w_p
+        load = 300.0 + p.gear.total_ratio * p.shaft_damping * w_p
         expected = constant_slip_torque(p, 150.0 - p.engine_damping * w_m, load)
     signals = {'C_m': 150.0, 'C_load': 300.0, 'w_m': w_m, 'w_p': w_p}
     total = sum(factors[name] * value for name, value in signals.items())

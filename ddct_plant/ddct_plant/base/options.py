@@ -148,13 +148,18 @@ def option_field(described: Option, *, left_out: bool = False) -> Any:
     return dataclasses.field(default=described.default, metadata=metadata)
 
 
-def section(default: 'OptionGroup | None', **marks: bool) -> Any:
+def section(default: 'OptionGroup | None', *, key: str = '', **marks: bool) -> Any:
     """
-    Return the field of a dataclass for a group of options.
+    Return the field of a dataclass for a group of options, in files under `key` or its name.
 
     `marks` are metadata of the field; with `left_out` files and hashes omit the default.
     """
-    return dataclasses.field(default=default, metadata=marks)
+    return dataclasses.field(default=default, metadata={'key': key, **marks})
+
+
+def key_of(field: 'dataclasses.Field[Any]') -> str:
+    """Return the key of a field in files: that of its `section`, else its name."""
+    return field.metadata.get('key') or field.name
 
 
 def group_of(field: 'dataclasses.Field[Any]') -> type['OptionGroup'] | None:

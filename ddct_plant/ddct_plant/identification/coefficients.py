@@ -101,7 +101,9 @@ PRINTED = PrintedCoefficients(CLUTCH_TO_SLIP)
 def with_fitted(logarithms: np.ndarray) -> DrivelineParameters:
     """Return the driveline with the fitted parameters exp(`logarithms`), (7,), and c_m = 0."""
     values = np.exp(logarithms).tolist()
-    return DrivelineParameters(engine_damping=0.0, **dict(zip(FITTED, values, strict=True)))
+    return DrivelineParameters.from_values(
+        {'engine_damping': 0.0, **dict(zip(FITTED, values, strict=True))}
+    )
 
 
 def computed_coefficients(parameters: DrivelineParameters) -> np.ndarray:

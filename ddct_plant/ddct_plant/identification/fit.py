@@ -76,7 +76,8 @@ class Identification:
     @property
     def logarithms(self) -> np.ndarray:
         """Natural logarithms of the fitted parameters, (7,)."""
-        return np.log([getattr(self.parameters, name) for name in FITTED])
+        values = self.parameters.values()
+        return np.log([values[name] for name in FITTED])
 
 
 def identify_driveline(coefficients: PrintedCoefficients = PRINTED) -> Identification:

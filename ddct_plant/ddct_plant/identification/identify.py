@@ -99,9 +99,9 @@ def _content(
     checks: tuple[IdentificationCheck, ...],
 ) -> dict[str, Any]:
     """Return the result for tables and JSON; null for a value that does not exist."""
-    parameters = []
+    values, parameters = identification.parameters.values(), []
     for name, (symbol, unit) in SYMBOLS_AND_UNITS.items():
-        value = getattr(identification.parameters, name)
+        value = values[name]
         row = {'name': name, 'symbol': symbol, 'value': value, 'std': None, 'unit': unit}
         row |= {'lowest': None, 'highest': None}
         if name in FITTED:

@@ -116,7 +116,7 @@ def driveline_outputs(
     """
     engine, shaft, wheel, twist, *angles = state
     p = parameters
-    twist_speed = shaft / p.total_ratio - wheel
+    twist_speed = p.gear.wheel_speed(shaft) - wheel
     shaft_torque = p.halfshaft_damping * twist_speed + p.halfshaft_stiffness * twist
     engine_torque, clutch_torque, load_torque = torques
     wheel_accel = 0.0 if wheels_stick else (shaft_torque - load_torque) / p.vehicle_inertia

@@ -20,25 +20,25 @@ def driveline_matrices(parameters: DrivelineParameters) -> StateSpace:
     c_prim, which the matrix has.
     """
     a, b = states_and_torques(parameters)
-    c = [[1.0, -1.0, 0.0, 0.0], [0.0, 1.0 / parameters.total_ratio, -1.0, 0.0]]
+    c = [[1.0, -1.0, 0.0, 0.0], [0.0, parameters.gear.wheel_speed(1.0), -1.0, 0.0]]
     return StateSpace(a, b, np.array(c), np.zeros((2, 3)))
 
 
 def states_and_torques(parameters: DrivelineParameters) -> tuple[np.ndarray, np.ndarray]:
     """Return a (..., 4, 4) and b (..., 4, 3); parameters that are arrays, (...), give stacks."""
     p = parameters
-    tau, damping, stiffness = p.total_ratio, p.halfshaft_damping, p.halfshaft_stiffness
+    gear, damping, stiffness = p.gear, p.halfshaft_damping, p.halfshaft_stiffness
     j_p, j_v = p.shaft_inertia, p.vehicle_inertia
     a = [
         [-p.engine_damping / p.engine_inertia, 0.0, 0.0, 0.0],
         [
             0.0,
-            -(damping / tau**2 + p.shaft_damping) / j_p,
-            damping / (j_p * tau),
-            -stiffness / (j_p * tau),
+            -(gear.at_shaft(damping) + p.shaft_damping) / j_p,
+            damping / gear.across(j_p),
+            -stiffness / gear.across(j_p),
         ],
-        [0.0, damping / (j_v * tau), -damping / j_v, stiffness / j_v],
-        [0.0, 1.0 / tau, -1.0, 0.0],
+        [0.0, damping / gear.across(j_v), -damping / j_v, stiffness / j_v],
+        [0.0, gear.wheel_speed(1.0), -1.0, 0.0],
     ]
     b = [
         [1.0 / p.engine_inertia, -1.0 / p.engine_inertia, 0.0],
@@ -101,7 +101,7 @@ def load_to_slip(parameters: DrivelineParameters) -> FactoredTransferFunction:
     p = parameters
     free = _driveline_cubic(p, p.shaft_inertia, p.shaft_damping)
     return FactoredTransferFunction(
-        gain=p.halfshaft_damping / (p.total_ratio * p.shaft_inertia * p.vehicle_inertia),
+        gain=p.halfshaft_damping / (p.gear.across(p.shaft_inertia) * p.vehicle_inertia),
         numerator=(p.halfshaft_stiffness / p.halfshaft_damping,),
         denominator=_factored(free),
     )
@@ -117,7 +117,7 @@ def _driveline_cubic(
     + (J k_sa + c c_sa + k_sa J_v/tau^2) s + c k_sa, for a shaft of inertia J and damping c.
     """
     p = parameters
-    reflected = p.vehicle_inertia / p.total_ratio**2
+    reflected = p.gear.at_shaft(p.vehicle_inertia)
     leading = inertia * p.vehicle_inertia
     return (
         (damping * p.vehicle_inertia + (inertia + reflected) * p.halfshaft_damping) / leading,

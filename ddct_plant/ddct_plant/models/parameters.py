@@ -2,20 +2,33 @@
 # SPDX-License-Identifier: Apache-2.0
 """Parameters of the driveline, with identified values, and of the vehicle."""
 
+import dataclasses
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
+from typing import Self
 
-from ddct_plant.base.options import ASSUMED, OptionGroup, option
+from ddct_plant.base.options import ASSUMED, Option, OptionGroup, option, option_field
+from ddct_plant.models.gearbox import IDENTIFIED_RATIO, EngagedGear
 
 _positive = partial(option, source='`identify`', above=0.0)
 _damping = partial(option, unit='N m s/rad', source='`identify`', at_least=0.0)
+IDENTIFIED_VEHICLE_INERTIA = 154.69105
+"""Inertia of the vehicle at the wheels J_v in kg m^2, from `identify`."""
+_VEHICLE_INERTIA = Option(
+    IDENTIFIED_VEHICLE_INERTIA,
+    'J_v, inertia of the vehicle at the wheels',
+    'kg m²',
+    source='`identify`',
+    above=0.0,
+)
 
 
 @dataclass(frozen=True)
-class DrivelineParameters(OptionGroup, prefix='driveline.'):
+class DrivelineShafts(OptionGroup, prefix='driveline.'):
     """
-    Parameters of the 4-state driveline of Section 1.5; `identify` derives the defaults.
+    Inertias, damping and stiffness that depend neither on the gear nor on the vehicle.
 
     They have 8 significant digits, more than their uncertainty of 3e-5 to 1e-3: together
     they reproduce the printed coefficients, and 8 digits move those by less than a hundredth of
@@ -30,16 +43,82 @@ class DrivelineParameters(OptionGroup, prefix='driveline.'):
     halfshaft_stiffness: float = _positive(
         6716.3112, 'k_sa, at the wheel side of the gears', 'N m/rad'
     )
-    total_ratio: float = _positive(
-        9.3416024, 'tau: second gear times final drive, not the gear number 2 of Section 1.4.5'
+
+
+@dataclass(frozen=True)
+class DrivelineParameters(DrivelineShafts, prefix='driveline.'):
+    """Parameters of the 4-state driveline of Section 1.5 in one gear; `identify` derives them."""
+
+    gear: EngagedGear = EngagedGear()
+    vehicle_inertia: float = option_field(_VEHICLE_INERTIA)
+
+    @property
+    def vehicle_side_inertia(self) -> float:
+        """Inertia J_eq = J_p + J_v/tau^2 in kg m^2 of the rigid car at the primary shaft."""
+        return self.shaft_inertia + self.gear.at_shaft(self.vehicle_inertia)
+
+    def in_gear(self, gear: EngagedGear) -> 'DrivelineParameters':
+        """Return the driveline with another gear engaged."""
+        return dataclasses.replace(self, gear=gear)
+
+    def values(self) -> dict[str, float]:
+        """Return the eight numbers by the names of their keys in a scenario, in SI units."""
+        shafts = {field.name: getattr(self, field.name) for field in _SHAFT_FIELDS}
+        return {
+            **shafts,
+            'total_ratio': self.gear.total_ratio,
+            'vehicle_inertia': self.vehicle_inertia,
+        }
+
+    def with_values(self, **values: float) -> Self:
+        """Return the driveline with other numbers, by the names of their keys in a scenario."""
+        return self.from_values({**self.values(), **values})
+
+    @classmethod
+    def from_values(cls, values: Mapping[str, float]) -> Self:
+        """Return the driveline of numbers by key; raise ParameterError that names a bad one."""
+        others = dict(values)
+        gear = EngagedGear(others.pop('total_ratio', IDENTIFIED_RATIO))
+        return cls(gear=gear, **others)
+
+
+_SHAFT_FIELDS = dataclasses.fields(DrivelineShafts)
+
+
+@dataclass(frozen=True)
+class DrivelineSection(DrivelineShafts, prefix='driveline.'):
+    """Section `driveline` of a scenario: values that follow from others may be left out."""
+
+    total_ratio: float | None = option(
+        None,
+        'tau: second gear times final drive, not the gear number 2 of Section 1.4.5',
+        source='`identify`',
+        otherwise=f'that of `gear`; without a gear {IDENTIFIED_RATIO:.6g}',
+        above=0.0,
     )
-    vehicle_inertia: float = _positive(
-        154.69105, 'J_v, inertia of the vehicle at the wheels', 'kg m²'
+    vehicle_inertia: float | None = option_field(
+        dataclasses.replace(_VEHICLE_INERTIA, default=None, otherwise='m_v r_w²')
     )
+
+    @classmethod
+    def of(cls, parameters: DrivelineParameters) -> Self:
+        """Return the section that gives every value of a driveline."""
+        return cls(**parameters.values())
+
+    @property
+    def gear(self) -> EngagedGear | None:
+        """Gear of the given total ratio, None where none is given."""
+        return None if self.total_ratio is None else EngagedGear(self.total_ratio)
+
+    def engaged(self, gear: EngagedGear, vehicle_inertia: float) -> DrivelineParameters:
+        """Return the driveline; gear and J_v in kg m^2 hold where the section gives none."""
+        given = {name: value for name, value in vars(self).items() if value is not None}
+        derived = {'total_ratio': gear.total_ratio, 'vehicle_inertia': vehicle_inertia}
+        return DrivelineParameters.from_values(derived | given)
 
 
 _MASS_KG = 1500.0
-_WHEEL_RADIUS_M = math.sqrt(DrivelineParameters().vehicle_inertia / _MASS_KG)
+_WHEEL_RADIUS_M = math.sqrt(IDENTIFIED_VEHICLE_INERTIA / _MASS_KG)
 
 
 @dataclass(frozen=True)
@@ -60,3 +139,8 @@ class VehicleParameters(OptionGroup, prefix='vehicle.'):
         above=0.0,
     )
     gravity_m_s2: float = option(9.81, 'g', 'm/s²', source='standard gravity', above=0.0)
+
+    @property
+    def inertia(self) -> float:
+        """Inertia of the vehicle at the wheels J_v = m_v r_w^2 in kg m^2."""
+        return self.mass_kg * (self.wheel_radius_m * self.wheel_radius_m)

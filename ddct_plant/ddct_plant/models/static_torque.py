@@ -22,12 +22,9 @@ def constant_slip_torque(
     The thesis derives its static controller from the plant's differential equations (Section
     1.4.5.1) and prints no formula.
     """
-    ratio = parameters.total_ratio
-    shaft_side = parameters.shaft_inertia + parameters.vehicle_inertia / ratio**2
-    engine_side = parameters.engine_inertia
-    return (engine_torque * shaft_side + engine_side * load_torque / ratio) / (
-        engine_side + shaft_side
-    )
+    engine_side, vehicle_side = parameters.engine_inertia, parameters.vehicle_side_inertia
+    resisting = parameters.gear.shaft_torque(engine_side * load_torque)
+    return (engine_torque * vehicle_side + resisting) / (engine_side + vehicle_side)
 
 
 @dataclass(frozen=True)
@@ -54,7 +51,7 @@ class StaticTorque:
         if self.equilibrium == 'full':
             # Not in place: the arrays of a batch of runs must not change.
             engine_torque = engine_torque - p.engine_damping * engine_speed
-            load_torque = load_torque + p.total_ratio * p.shaft_damping * shaft_speed
+            load_torque = load_torque + p.gear.wheel_torque(p.shaft_damping) * shaft_speed
         return constant_slip_torque(p, engine_torque, load_torque)
 
     def twist(self, clutch_torque: float, load_torque: float, shaft_speed: float) -> float:
@@ -67,7 +64,7 @@ class StaticTorque:
         p = self.driveline
         if self.equilibrium == 'thesis':
             return load_torque / p.halfshaft_stiffness
-        shaft_side = p.shaft_inertia + p.vehicle_inertia / p.total_ratio**2
-        torque = clutch_torque - p.shaft_damping * shaft_speed - load_torque / p.total_ratio
-        wheel_acceleration = torque / (shaft_side * p.total_ratio)
+        resisting = p.gear.shaft_torque(load_torque)
+        torque = clutch_torque - p.shaft_damping * shaft_speed - resisting
+        wheel_acceleration = torque / p.gear.across(p.vehicle_side_inertia)
         return (load_torque + p.vehicle_inertia * wheel_acceleration) / p.halfshaft_stiffness

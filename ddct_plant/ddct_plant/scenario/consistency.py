@@ -1,46 +1,48 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
 """
-Consistency of scenario values that depend on each other: a given one moves the other.
+Consistency of scenario values that depend on each other: which of them hold.
 
     J_v = m_v r_w^2        driveline.vehicle_inertia, vehicle.mass_kg, vehicle.wheel_radius_m
     total ratio of a gear  gear, driveline.total_ratio
     the score window       control_start_s, score_window_s
 
-Where both values are given and contradict each other the scenario is refused. The defaults agree
-to rounding, so a scenario that gives none of these is not changed.
+J_v and the total ratio are left out of the scenario where they follow from mass and gear, and are
+computed where they are used. Where both values are given and contradict each other the scenario is
+refused.
 """
 
 import math
 from collections.abc import Mapping
 from dataclasses import replace
-from operator import attrgetter
+from typing import Any
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import steps_in, time_of_step
-from ddct_plant.models.parameters import DrivelineParameters
-from ddct_plant.scenario.scenario import FINAL_DRIVE, GEAR_RATIOS, Scenario
+from ddct_plant.models.gearbox import AGREE, C635, RATIO_KEY, EngagedGear
+from ddct_plant.models.parameters import IDENTIFIED_VEHICLE_INERTIA
+from ddct_plant.scenario.scenario import Scenario
 
 DEFAULT, FILE, SET = 0, 1, 2
-"""Origins of a value; a value of a higher origin moves one of a lower origin."""
-SAME, AGREE = 1e-9, 1e-3
-"""Relative differences: the largest without a move, and the largest between two given values."""
+"""Origins of a value; a value of a higher origin holds, one of a lower origin follows."""
+SAME = 1e-9
+"""Largest relative difference of J_v from the identified one that needs no remark."""
 Origins = Mapping[str, int]
 """FILE or SET by dotted key; a missing key has its default."""
 
 
 INERTIA, MASS = 'driveline.vehicle_inertia', 'vehicle.mass_kg'
-RADIUS, RATIO = 'vehicle.wheel_radius_m', 'driveline.total_ratio'
+RADIUS = 'vehicle.wheel_radius_m'
 
 
 def consistent(scenario: Scenario, origins: Origins, start_before: float | None) -> Scenario:
     """
-    Return the scenario with dependent values moved, each with a line in `adjusted`.
+    Return the scenario with consistent values; each that follows has a line in `adjusted`.
 
     `start_before` is `control_start_s` in s of the file, before `--set`. Raise ParameterError
     where given values contradict each other, or where the score window would be empty.
     """
-    scenario = _with_gear(_with_mass(scenario, origins), origins)
+    scenario = without_derived(_with_gear(_with_mass(scenario, origins), origins))
     if start_before is not None and _origin(origins, 'control_start_s') > _origin(
         origins, 'score_window_s'
     ):
@@ -70,59 +72,89 @@ def _with_control_in(scenario: Scenario) -> Scenario:
 
 
 def _with_mass(scenario: Scenario, origins: Origins) -> Scenario:
-    """Keep J_v = m_v r_w^2: move J_v or the mass, whichever has the lower origin."""
-    inertia, mass, radius = attrgetter(INERTIA, MASS, RADIUS)(scenario)
+    """
+    Decide which of J_v and the mass holds, the other follows from J_v = m_v r_w^2.
+
+    A scenario that gives no J_v, or whose mass is of a higher origin, has that of mass and radius.
+    """
+    given, vehicle = scenario.given_driveline.vehicle_inertia, scenario.vehicle
+    mass, radius, derived = vehicle.mass_kg, vehicle.wheel_radius_m, vehicle.inertia
     square = radius * radius
     if not 0.0 < square < math.inf:
         raise ParameterError(f'{RADIUS} is {radius:g} m: no vehicle has that')
-    if math.isclose(inertia, mass * square, rel_tol=SAME):
+    if given == derived:
+        return scenario
+    before = IDENTIFIED_VEHICLE_INERTIA if given is None else given
+    if math.isclose(before, derived, rel_tol=SAME):
         return scenario
     of_inertia, of_mass = _origin(origins, INERTIA), _origin(origins, MASS)
     formula = f'J_v = m_v r_w^2, with {RADIUS} {radius:g}'
-    if of_inertia > of_mass:
-        return _moved(scenario, MASS, inertia / square, f'{formula} and {INERTIA} {inertia:g}')
-    if of_inertia < of_mass or _origin(origins, RADIUS) > of_inertia:
-        return _moved(scenario, INERTIA, mass * square, f'{formula} and {MASS} {mass:g}')
-    if of_inertia and not math.isclose(inertia, mass * square, rel_tol=AGREE):
+    if given is not None and of_inertia > of_mass:
+        heavy = replace(scenario, vehicle=replace(vehicle, mass_kg=given / square))
+        about = f'{MASS} moved from {mass:g} to {given / square:g}: {formula}'
+        return _with_line(heavy, f'{about} and {INERTIA} {given:g}')
+    if given is None or of_inertia < of_mass or _origin(origins, RADIUS) > of_inertia:
+        about = f'{INERTIA} moved from {before:g} to {derived:g}: {formula} and {MASS} {mass:g}'
+        return _with_line(_without(scenario, 'vehicle_inertia'), about)
+    if not math.isclose(given, derived, rel_tol=AGREE):
         raise ParameterError(
-            f'{MASS} is {mass:g} and {INERTIA} is {inertia:g}, but {formula}: give {INERTIA} '
-            f'{mass * square:g} or {MASS} {inertia / square:g}, or one of them only'
+            f'{MASS} is {mass:g} and {INERTIA} is {given:g}, but {formula}: give {INERTIA} '
+            f'{derived:g} or {MASS} {given / square:g}, or one of them only'
         )
     return scenario
 
 
 def _with_gear(scenario: Scenario, origins: Origins) -> Scenario:
     """
-    Keep gear and total ratio consistent: a gear moves the ratio, a ratio sets the gear.
+    Decide which of gear and total ratio holds: the one of the higher origin.
 
-    A file with another car's ratio and no gear gets no line in `adjusted`.
+    A scenario that gives no ratio has that of its gear. A file with another car's ratio and no
+    gear gets no line in `adjusted`.
     """
-    gear, total = scenario.gear, scenario.driveline.total_ratio
-    ratios = [ratio * FINAL_DRIVE for ratio in GEAR_RATIOS]
-    fits = [g for g, r in enumerate(ratios, 1) if math.isclose(r, total, rel_tol=AGREE)]
-    if gear in fits or (gear is None and total == DrivelineParameters().total_ratio):
+    number, given = scenario.gear, scenario.given_driveline.gear
+    of_number = C635.gear(number)
+    if of_number == (given or EngagedGear()):
         return scenario
-    of_gear, of_total = _origin(origins, 'gear'), _origin(origins, RATIO)
-    if gear is not None and of_gear > of_total:
-        return _moved(scenario, RATIO, ratios[gear - 1], f'gear {gear} of the C635')
-    if gear is not None and of_gear == of_total:
+    about = f'{RATIO_KEY} moved from {given or EngagedGear()} to {of_number}: gear {number} of the'
+    if given is None:
+        return _with_line(scenario, f'{about} C635')
+    fits = C635.numbers(given)
+    if number in fits:
+        return scenario
+    of_gear, of_total = _origin(origins, 'gear'), _origin(origins, RATIO_KEY)
+    if number is not None and of_gear > of_total:
+        return _with_line(_without(scenario, 'total_ratio'), f'{about} C635')
+    if number is not None and of_gear == of_total:
         raise ParameterError(
-            f'gear is {gear} and {RATIO} is {total:g}, but that gear has {ratios[gear - 1]:g}: '
-            f'give {RATIO} {ratios[gear - 1]:g}, or one of them only'
+            f'gear is {number} and {RATIO_KEY} is {given}, but that gear has {of_number}: '
+            f'give {RATIO_KEY} {of_number}, or one of them only'
         )
-    if gear is None and not fits:
-        about = f'gear stays none, as no gear of the C635 has {RATIO} {total:g}'
+    if number is None and not fits:
+        about = f'gear stays none, as no gear of the C635 has {RATIO_KEY} {given}'
         return _with_line(scenario, about) if of_total == SET else scenario
     name = fits[0] if fits else None
-    about = f'gear is now {name or "none"}, as {RATIO} is {total:g}'
-    return _with_line(replace(scenario, gear=name), about)
+    return _with_line(replace(scenario, gear=name), gear_line(name, given))
 
 
-def _moved(scenario: Scenario, key: str, value: float, why: str) -> Scenario:
-    group, _, leaf = key.partition('.')
-    changed = replace(getattr(scenario, group), **{leaf: value})
-    about = f'{key} moved from {attrgetter(key)(scenario):g} to {value:g}: {why}'
-    return _with_line(replace(scenario, **{group: changed}), about)
+def without_derived(scenario: Scenario) -> Scenario:
+    """Return the scenario without given values that are those which mass and gear give."""
+    section = scenario.given_driveline
+    if section.vehicle_inertia == scenario.vehicle.inertia:
+        scenario = _without(scenario, 'vehicle_inertia')
+    return (
+        _without(scenario, 'total_ratio') if section.gear == C635.gear(scenario.gear) else scenario
+    )
+
+
+def gear_line(number: int | None, gear: EngagedGear) -> str:
+    """Return the line in `adjusted` for a gear number that follows from a given total ratio."""
+    return f'gear is now {number or "none"}, as {RATIO_KEY} is {gear}'
+
+
+def _without(scenario: Scenario, name: str) -> Scenario:
+    """Return the scenario without a value of its section `driveline`, which is then derived."""
+    left: dict[str, Any] = {name: None}
+    return replace(scenario, given_driveline=replace(scenario.given_driveline, **left))
 
 
 def _move_window(scenario: Scenario, start_before: float) -> Scenario:

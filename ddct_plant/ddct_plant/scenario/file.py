@@ -13,12 +13,12 @@ from pathlib import Path
 from typing import Any
 
 from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.base.options import Group, OptionGroup, group_of
+from ddct_plant.base.options import Group, OptionGroup, group_of, key_of
 from ddct_plant.base.timebase import steps_in, time_of_step
 from ddct_plant.files.input_file import SCHEMA_KEY, located, require_schema_version, user_text
 from ddct_plant.files.yaml_text import dump_yaml, parse_yaml, parse_yaml_with_lines
 from ddct_plant.models.clutch import LINEAR
-from ddct_plant.scenario.consistency import FILE, SET, consistent
+from ddct_plant.scenario.consistency import FILE, SET, consistent, without_derived
 from ddct_plant.scenario.csv_profiles import with_points
 from ddct_plant.scenario.key_names import scenario_key_hint
 from ddct_plant.scenario.plant import require_driveline
@@ -73,7 +73,7 @@ class ScenarioFile:
         set_keys = [leaf for key, value in given for leaf in _put(content, key, value)]
         with located(f'scenario {self.name}', _in_file(self.lines, set_keys)):
             content = with_points(content, Path(self.name).parent, set_keys)
-            scenario = scenario_from_mapping(content)
+            scenario = _scenario_of(content)
             origins = dict.fromkeys(flat(content), FILE) | dict.fromkeys(set_keys, SET)
             scenario = with_remarks(consistent(scenario, origins, _number(start_before)))
             require_driveline(scenario.driveline, clutch)
@@ -105,7 +105,11 @@ def is_packaged(name_or_file: str) -> bool:
 
 
 def scenario_from_mapping(content: Mapping[str, Any]) -> Scenario:
-    """Return the scenario of nested mappings, the content of a YAML file."""
+    """Return the scenario of nested mappings, the content that `scenario_to_yaml` has written."""
+    return without_derived(_scenario_of(content))
+
+
+def _scenario_of(content: Mapping[str, Any]) -> Scenario:
     content = {'description': '', **content}
     require_schema_version(content, SCHEMA_VERSION)
     content.pop(SCHEMA_KEY, None)
@@ -206,7 +210,7 @@ def _build(group: type[Group], content: Any) -> Group:
     prefix = group.prefix
     if not isinstance(content, Mapping):
         raise ParameterError(f'{prefix.rstrip(".")}: give keys and values, not {content!r}')
-    fields = {field.name: field for field in dataclasses.fields(group)}
+    fields = {key_of(field): field for field in dataclasses.fields(group)}
     for name in content:
         if name not in fields:
             hint = scenario_key_hint(str(name), fields, prefix)
@@ -217,7 +221,8 @@ def _build(group: type[Group], content: Any) -> Group:
         )
         if required and name not in content:
             raise ParameterError(f'key {prefix}{name} is missing')
-    return group(**{key: _value(fields[key], value) for key, value in content.items()})
+    values = {fields[key].name: _value(fields[key], value) for key, value in content.items()}
+    return group(**values)
 
 
 def _value(field: dataclasses.Field[Any], value: Any) -> Any:
@@ -240,15 +245,23 @@ def _gains(content: Any) -> dict[str, dict[str, Any]]:
     return {str(name): dict(gains) for name, gains in content.items()}
 
 
-def scenario_content(group: OptionGroup) -> dict[str, Any]:
-    """Return the content of a file for the group, without optional keys at their defaults."""
+def scenario_content(scenario: Scenario) -> dict[str, Any]:
+    """
+    Return the content of a file for the scenario, without optional keys at their defaults.
+
+    The section `driveline` has every value that models take, given or derived.
+    """
+    return _content(scenario) | {'driveline': scenario.driveline.values()}
+
+
+def _content(group: OptionGroup) -> dict[str, Any]:
     content: dict[str, Any] = {}
     for field in dataclasses.fields(group):
         value = getattr(group, field.name)
         if value is None or (field.metadata.get('left_out') and value == field.default):
             continue
         nested = isinstance(value, OptionGroup)
-        content[field.name] = scenario_content(value) if nested else _plain(value)
+        content[key_of(field)] = _content(value) if nested else _plain(value)
     return content
 
 

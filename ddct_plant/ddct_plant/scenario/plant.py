@@ -10,7 +10,6 @@ import math
 from dataclasses import replace
 
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.base.options import options_of
 from ddct_plant.models.actuator import Actuator
 from ddct_plant.models.clutch import STICK_SLIP, FrictionClutch, LinearClutch
 from ddct_plant.models.driveline import OPEN, Driveline, InitialState
@@ -64,14 +63,15 @@ def make_driveline(settings: RunSettings, initial: InitialState) -> Driveline | 
 
 
 def _least_usual(parameters: DrivelineParameters) -> str:
-    """Return key and value of the parameter with the largest ratio to its default."""
-    ratios = {
-        name: abs(math.log(getattr(parameters, name)) - math.log(option.default))
-        for name, option in options_of(DrivelineParameters).items()
-        if option.default > 0.0 and getattr(parameters, name) > 0.0
+    """Return key and value of the parameter farthest from its default."""
+    values, usual = parameters.values(), DrivelineParameters().values()
+    distances = {
+        name: abs(math.log(value) - math.log(usual[name]))
+        for name, value in values.items()
+        if usual[name] > 0.0 and value > 0.0
     }
-    name = max(ratios, key=lambda name: ratios[name])
-    return f'{parameters.prefix}{name} is {getattr(parameters, name):g}'
+    name = max(distances, key=lambda name: distances[name])
+    return f'{parameters.prefix}{name} is {values[name]:g}'
 
 
 def make_engine(settings: RunSettings) -> Engine:
@@ -132,7 +132,7 @@ def initial_state(settings: RunSettings) -> InitialState:
     """
     scenario = settings.scenario
     driveline = scenario.driveline
-    wheel_speed = scenario.initial.shaft_speed_rad_s / driveline.total_ratio
+    wheel_speed = driveline.gear.wheel_speed(scenario.initial.shaft_speed_rad_s)
     load_torque = RoadLoad(scenario.load, scenario.vehicle, scenario.slope).torque(
         wheel_speed * scenario.vehicle.wheel_radius_m
     )
@@ -184,7 +184,7 @@ def _with_friction(settings: RunSettings, linear: InitialState) -> InitialState:
     wheel_torque = holding
     twist = static.twist(clutch_torque, resisting, linear.shaft_speed)
     if linear.wheel_speed == 0.0:
-        shaft_torque = scenario.driveline.total_ratio * clutch_torque
+        shaft_torque = scenario.driveline.gear.wheel_torque(clutch_torque)
         wheel_torque = _within(shaft_torque - load_torque, holding)
         twist = shaft_torque / scenario.driveline.halfshaft_stiffness
     return replace(

@@ -5,8 +5,8 @@
 import math
 from collections.abc import Mapping
 from dataclasses import replace
-from operator import attrgetter
 
+from ddct_plant.models.gearbox import RATIO_KEY, RATIOS_OF_CARS
 from ddct_plant.scenario.scenario import Scenario
 
 RANGES: Mapping[str, tuple[float, float, str]] = {
@@ -16,7 +16,7 @@ RANGES: Mapping[str, tuple[float, float, str]] = {
     'driveline.shaft_inertia': (1e-4, 1.0, 'kg m^2'),
     'driveline.vehicle_inertia': (10.0, 20_000.0, 'kg m^2'),
     'driveline.halfshaft_stiffness': (500.0, 500_000.0, 'N m/rad'),
-    'driveline.total_ratio': (1.5, 60.0, ''),
+    RATIO_KEY: (*RATIOS_OF_CARS, ''),
 }
 """Least and largest value of cars and trucks and its unit, by key; a value beyond this wide range
 is probably in another unit."""
@@ -31,9 +31,15 @@ def with_remarks(scenario: Scenario) -> Scenario:
 
 def _remark(scenario: Scenario, key: str) -> str:
     least, most, unit = RANGES[key]
-    value = float(attrgetter(key)(scenario))
+    section, _, name = key.partition('.')
+    value = float(_values(scenario, section)[name])
     if math.isnan(value) or least <= value <= most:
         return ''
     has = f'{least:g} to {most:g} {unit}'.strip()
     given = f'{value:g} {unit}'.strip()
     return f'{key} is {given}, but cars and trucks have {has}: is it in another unit?'
+
+
+def _values(scenario: Scenario, section: str) -> Mapping[str, float]:
+    """Return the values of a section, those of the driveline in the engaged gear."""
+    return scenario.driveline.values() if section == 'driveline' else vars(scenario.vehicle)

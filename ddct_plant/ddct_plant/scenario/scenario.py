@@ -6,6 +6,7 @@ import dataclasses
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 from ddct_plant.base.errors import ParameterError, require_name
@@ -17,8 +18,9 @@ from ddct_plant.models.clutch_heat import HeatParameters
 from ddct_plant.models.driveline import LOCKED, PHASES, SLIPPING
 from ddct_plant.models.engine import EngineAuthority, TorqueProfile
 from ddct_plant.models.engine_limits import EngineLimits
+from ddct_plant.models.gearbox import C635
 from ddct_plant.models.load import BrakeProfile, LoadParameters, SlopeProfile
-from ddct_plant.models.parameters import DrivelineParameters, VehicleParameters
+from ddct_plant.models.parameters import DrivelineParameters, DrivelineSection, VehicleParameters
 from ddct_plant.models.static_torque import EQUILIBRIA
 from ddct_plant.scenario.control import (
     ClosingParameters,
@@ -27,11 +29,6 @@ from ddct_plant.scenario.control import (
     SlipProfile,
 )
 from ddct_plant.sensors.parameters import SensorParameters
-
-GEAR_RATIOS = (3.9, 2.269, 1.435, 0.978, 0.755, 0.622)
-"""Gear ratios of the C635, from the first gear on."""
-FINAL_DRIVE = 4.118
-"""Ratio of the final drive: times 2.269 it is the identified total ratio, to 0.03 %."""
 
 
 @dataclass(frozen=True)
@@ -134,7 +131,8 @@ class Scenario(OptionGroup):
     slope: SlopeProfile = section(SlopeProfile(), left_out=True)
     load: LoadParameters = LoadParameters()
     vehicle: VehicleParameters = VehicleParameters()
-    driveline: DrivelineParameters = DrivelineParameters()
+    given_driveline: DrivelineSection = section(DrivelineSection(), key='driveline')
+    """Section `driveline` of the file; models take `driveline`, which is complete."""
     actuator: ActuatorParameters = section(ActuatorParameters(), left_out=True)
     friction: FrictionParameters = section(FrictionParameters(), left_out=True, stick_slip=True)
     heat: HeatParameters = section(HeatParameters(), left_out=True, stick_slip=True)
@@ -150,7 +148,7 @@ class Scenario(OptionGroup):
         'second gear is assumed for all',
         kind=int,
         at_least=1,
-        at_most=len(GEAR_RATIOS),
+        at_most=len(C635.ratios),
     )
     adjusted: tuple[str, ...] = option(
         (),
@@ -174,6 +172,11 @@ class Scenario(OptionGroup):
             raise ParameterError(
                 f'slope has points, and load.slope_rad is {self.load.slope_rad:g} rad: give one'
             )
+
+    @cached_property
+    def driveline(self) -> DrivelineParameters:
+        """Driveline in the engaged gear, for models; raise ParameterError for a bad value."""
+        return self.given_driveline.engaged(C635.gear(self.gear), self.vehicle.inertia)
 
     @property
     def steps(self) -> int:

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The fitted C_load of a log is a mean over its time, whatever its gaps."""
 
-from dataclasses import fields, replace
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +14,7 @@ from ddct_plant.identification.from_log.names import TORQUES
 from ddct_plant.measured.log import SPEEDS, MeasuredLog
 from ddct_plant.models.parameters import DrivelineParameters
 
-RATIO = DrivelineParameters().total_ratio
+RATIO = DrivelineParameters().gear.total_ratio
 SAMPLES = (400, 80)
 LOADS_N_M = (100.0, 400.0)
 
@@ -35,7 +35,7 @@ def part(start_s: float, samples: int, load_n_m: float, random: np.random.Genera
         load_known=False,
         known_s=(float(time_s[0]), float(time_s[-1])),
     )
-    forced, basis = responses(vars(DrivelineParameters()), Sampling(), stretch)
+    forced, basis = responses(DrivelineParameters().values(), Sampling(), stretch)
     speeds = forced + basis @ np.array([200.0, 180.0, 180.0 / RATIO, 0.02, load_n_m])
     noise = 1e-3 * random.standard_normal(speeds.shape)
     return replace(stretch, speeds=speeds + noise)
@@ -56,7 +56,7 @@ def test_a_stretch_counts_by_its_length() -> None:
     log = MeasuredLog(
         Path('drive.csv'), '', np.concatenate([each.time_s for each in parts]), signals
     )
-    names = [each.name for each in fields(DrivelineParameters)]
+    names = list(DrivelineParameters().values())
     fixed = [name for name in names if name != 'vehicle_inertia']
     on_time = dict.fromkeys((*SPEEDS, *TORQUES), 0.0)
     fit = fit_log(log, DrivelineParameters(), lambda wheels: np.zeros(len(wheels)), fixed, on_time)

@@ -45,7 +45,11 @@ def test_transfer_functions_are_those_of_the_matrices(name):
 def test_halfshaft_pushes_the_vehicle_as_hard_as_it_holds_the_shaft():
     """Only c_sa/(J_v tau) does this, not the c_sa/(J_p tau) of the third printed equation."""
     model = driveline_matrices(DEFAULT)
-    ratio, shaft, vehicle = DEFAULT.total_ratio, DEFAULT.shaft_inertia, DEFAULT.vehicle_inertia
+    ratio, shaft, vehicle = (
+        DEFAULT.gear.total_ratio,
+        DEFAULT.shaft_inertia,
+        DEFAULT.vehicle_inertia,
+    )
     momentum_rate = ratio * shaft * model.a[1] + vehicle * model.a[2]
     drag = np.array([0.0, -ratio * DEFAULT.shaft_damping, 0.0, 0.0])
     np.testing.assert_allclose(momentum_rate, drag, atol=1e-9)
@@ -91,7 +95,7 @@ def test_zeros_of_p2_are_the_poles_of_the_locked_driveline():
 )
 def test_impossible_driveline_is_refused_by_name(change, message):
     with pytest.raises(ParameterError, match=message):
-        DrivelineParameters(**change)
+        DrivelineParameters.from_values(change)
 
 
 def test_vehicle_and_driveline_agree_on_the_vehicle_inertia():

@@ -40,7 +40,7 @@ def test_full_equilibrium_starts_with_constant_slip_and_twist():
     engine, shaft, wheel, twist = slopes_at_start(replace(LOADED, equilibrium='full'), 'detailed')
     assert engine > 10.0
     assert shaft == pytest.approx(engine, rel=1e-9)
-    assert wheel * LOADED.driveline.total_ratio == pytest.approx(engine, rel=1e-9)
+    assert wheel * LOADED.driveline.gear.total_ratio == pytest.approx(engine, rel=1e-9)
     assert twist == pytest.approx(0.0, abs=1e-12)
 
 
@@ -51,7 +51,7 @@ def test_full_equilibrium_has_no_jolt_in_the_driveshaft_whatever_the_clutch(
 ):
     scenario = replace(LOADED, equilibrium='full')
     _, shaft, wheel, _ = slopes_at_start(scenario, architecture, wear_gain)
-    assert shaft == pytest.approx(wheel * LOADED.driveline.total_ratio, rel=1e-9)
+    assert shaft == pytest.approx(wheel * LOADED.driveline.gear.total_ratio, rel=1e-9)
 
 
 def test_thesis_keeps_its_formula_whatever_the_speeds():

@@ -17,7 +17,7 @@ from ddct_plant.models.parameters import DrivelineParameters, VehicleParameters
 from ddct_plant.models.stick_slip_driveline import CLUTCH, WHEEL, StickSlipDriveline
 
 PARAMETERS, VEHICLE = DrivelineParameters(), VehicleParameters()
-TAU = PARAMETERS.total_ratio
+TAU = PARAMETERS.gear.total_ratio
 ROLLING = VEHICLE.mass_kg * VEHICLE.gravity_m_s2 * 0.0125 * VEHICLE.wheel_radius_m
 
 

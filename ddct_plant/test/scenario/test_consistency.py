@@ -5,8 +5,8 @@
 import pytest
 
 from ddct_plant.base.errors import ParameterError
+from ddct_plant.models.gearbox import C635
 from ddct_plant.scenario.file import load_scenario, scenario_digest, scenario_to_yaml
-from ddct_plant.scenario.scenario import FINAL_DRIVE, GEAR_RATIOS
 
 THESIS = load_scenario('thesis')
 RADIUS = THESIS.vehicle.wheel_radius_m
@@ -36,7 +36,9 @@ def the_line(scenario):
 def test_the_defaults_agree_without_a_remark():
     assert THESIS.adjusted == ()
     assert THESIS.gear is None
-    assert GEAR_RATIOS[1] * FINAL_DRIVE == pytest.approx(THESIS.driveline.total_ratio, rel=3e-4)
+    assert C635.ratios[1] * C635.final_drives[1] == pytest.approx(
+        THESIS.driveline.gear.total_ratio, rel=3e-4
+    )
 
 
 def test_a_key_that_was_added_leaves_the_digest_of_the_thesis_and_a_moved_one_has_another():
@@ -83,7 +85,7 @@ def test_the_mass_follows_the_inertia_and_the_radius_stays(more):
 
 def test_gear_and_total_ratio_follow_each_other():
     by_gear, by_total = changed('gear=1'), changed('driveline.total_ratio=16.06')
-    assert by_gear.driveline.total_ratio == 3.9 * 4.118
+    assert by_gear.driveline.gear.total_ratio == 3.9 * 4.118
     assert 'driveline.total_ratio moved from 9.3416 to 16.0602: gear 1' in the_line(by_gear)
     assert by_total.gear == 1
     assert the_line(by_total) == 'gear is now 1, as driveline.total_ratio is 16.06'
@@ -122,7 +124,7 @@ def test_both_halves_are_taken_as_given_when_they_agree_to_a_thousandth(override
     both = changed(*overrides)
     assert both.adjusted == ()
     assert both.driveline.vehicle_inertia in (185.6, THESIS.driveline.vehicle_inertia)
-    assert both.driveline.total_ratio in (16.06, THESIS.driveline.total_ratio)
+    assert both.driveline.gear.total_ratio in (16.06, THESIS.driveline.gear.total_ratio)
     assert both.score_window_s in ((1.1, 1.9), THESIS.score_window_s)
 
 

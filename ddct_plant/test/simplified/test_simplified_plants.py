@@ -38,7 +38,7 @@ ENGINE = engine_ramp(STARTS)
 CLUTCH = CLUTCH_SHARE * engine_ramp(STARTS[:, None] + np.arange(11) * 0.001 - LAG_S)
 LOAD = np.full(PERIODS, LOAD_N_M)
 START = np.array(
-    [160.0, 160.0, 160.0 / PARAMETERS.total_ratio, LOAD_N_M / PARAMETERS.halfshaft_stiffness]
+    [160.0, 160.0, PARAMETERS.gear.wheel_speed(160.0), LOAD_N_M / PARAMETERS.halfshaft_stiffness]
 )
 
 

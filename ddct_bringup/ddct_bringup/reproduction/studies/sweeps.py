@@ -34,9 +34,7 @@ from ddct_plant.scenario.settings import RunSettings
 
 TORSION_FACTORS = (0.0, 1.0, 3.0, 6.0, 12.0, 20.0, 40.0)
 """Weights of w_sr per rpm as multiples of that of w_d, besides the default."""
-DEFAULT_FACTOR = (
-    default_torsion_weight(THESIS_SCENARIO.driveline.total_ratio) / BASIS.output_weight
-)
+DEFAULT_FACTOR = default_torsion_weight(THESIS_SCENARIO.driveline.gear) / BASIS.output_weight
 BESIDE = ('pi', 'hinf1', 'mpc3')
 """Controllers of the thesis for comparison with the cited ones."""
 _FINE_GAINS = (0.7, 0.85, 0.95, 1.0, 1.05, 1.15, 1.3)

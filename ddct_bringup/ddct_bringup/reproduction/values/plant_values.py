@@ -61,7 +61,7 @@ def plant_values() -> dict[str, Value | None]:
         # the gain for G_a(0) = 1 with these zeros and poles
         'actuator.gain': ACTUATOR.gain / float(ACTUATOR.at(np.array(0.0)).real),
         'engine.rise end': THESIS_SCENARIO.engine.time_s[-1],
-        'driveline.ratio': driveline.total_ratio,
+        'driveline.ratio': driveline.values()['total_ratio'],
         **_equations(driveline),
         **_compensators(),
     }
@@ -91,7 +91,7 @@ def _wheel_coupling(a: np.ndarray, driveline: DrivelineParameters) -> str:
     growth = {}
     for symbol, inertia in (('J_p', driveline.shaft_inertia), ('J_v', driveline.vehicle_inertia)):
         changed = a.copy()
-        changed[2, 1] = driveline.halfshaft_damping / driveline.total_ratio / inertia
+        changed[2, 1] = driveline.halfshaft_damping / driveline.gear.across(inertia)
         growth[symbol] = float(np.max(np.linalg.eigvals(changed).real))
     return f'c_sa/({min(growth, key=lambda symbol: growth[symbol])} tau)'
 

@@ -3,7 +3,7 @@
 """The worst corner: margins over wear and the corners of the driveline's parameters."""
 
 import itertools
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -56,18 +56,18 @@ class PlantCorners:
     ) -> None:
         """Sample the plant at every corner, with a new clutch and one actuator."""
         self.actuator = actuator
-        self.varied = [field.name for field in fields(nominal) if getattr(nominal, field.name)]
+        values = nominal.values()
+        self.varied = [name for name, value in values.items() if value]
         """Names of the parameters that differ between corners."""
         ends = (1.0 - PARAMETER_SPREAD, 1.0 + PARAMETER_SPREAD)
         self.factors = list(itertools.product(ends, repeat=len(self.varied)))
         """Multiples of the nominal values per corner, in the order of `varied`."""
         self.parameters = [
-            replace(
-                nominal,
+            nominal.with_values(
                 **{
-                    name: factor * getattr(nominal, name)
+                    name: factor * values[name]
                     for name, factor in zip(self.varied, factors, strict=True)
-                },
+                }
             )
             for factors in self.factors
         ]

@@ -29,8 +29,7 @@ class RigidTransmission:
     @property
     def vehicle_inertia(self) -> float:
         """Inertia J_eq of primary shaft and vehicle, referred to the primary shaft, in kg m^2."""
-        p = self.driveline
-        return p.shaft_inertia + p.vehicle_inertia / p.total_ratio**2
+        return self.driveline.vehicle_side_inertia
 
     @property
     def slip_gain(self) -> float:
@@ -53,7 +52,7 @@ class RigidTransmission:
 
     def load_at_shaft(self, measurement: Measurement) -> float:
         """Return C_load/tau in N m."""
-        return measurement.load_torque / self.driveline.total_ratio
+        return float(self.driveline.gear.shaft_torque(measurement.load_torque))
 
     def engine_torque(
         self, measurement: Measurement, clutch_torque: float, slip_rate: float
@@ -72,7 +71,7 @@ class RigidTransmission:
         return (
             p.engine_inertia * measurement.engine_speed
             + p.shaft_inertia * measurement.shaft_speed
-            + p.vehicle_inertia * measurement.wheel_speed / p.total_ratio
+            + p.gear.shaft_torque(p.vehicle_inertia * measurement.wheel_speed)
         )
 
 

@@ -48,7 +48,7 @@ def slip_rpm_as_run(
         start = InitialState(
             engine_speed=160.0,
             shaft_speed=160.0,
-            wheel_speed=160.0 / IDENTIFIED_DRIVELINE.total_ratio,
+            wheel_speed=IDENTIFIED_DRIVELINE.gear.wheel_speed(160.0),
             twist=0.0,
             engine_torque=0.0,
             load_torque=0.0,

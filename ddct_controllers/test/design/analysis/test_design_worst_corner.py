@@ -23,7 +23,6 @@ from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.lti import StateSpace, discretise_zoh
 from ddct_plant.models.actuator import ActuatorParameters
-from ddct_plant.models.parameters import DrivelineParameters
 
 pytestmark = pytest.mark.slow
 
@@ -42,7 +41,7 @@ def test_there_is_a_corner_for_every_combination_of_the_seven_parameters(corners
     assert 'engine_damping' not in corners.varied
     assert len(set(corners.parameters)) == 2**7
     ratios = {
-        round(getattr(p, name) / getattr(IDENTIFIED_DRIVELINE, name), 12)
+        round(p.values()[name] / IDENTIFIED_DRIVELINE.values()[name], 12)
         for p in corners.parameters
         for name in corners.varied
     }
@@ -86,12 +85,12 @@ def test_nothing_inside_the_corners_is_worse(name, corners):
     """
     controller = sampled(name)
     worst = worst_corner(controller, corners).sensitivity_peak
-    random = np.random.default_rng(1)
+    values, random = IDENTIFIED_DRIVELINE.values(), np.random.default_rng(1)
     for _ in range(100):
         factors = random.uniform(1.0 - PARAMETER_SPREAD, 1.0 + PARAMETER_SPREAD, 7)
-        parameters = DrivelineParameters(
+        parameters = IDENTIFIED_DRIVELINE.with_values(
             **{
-                name: factor * getattr(IDENTIFIED_DRIVELINE, name)
+                name: factor * values[name]
                 for name, factor in zip(corners.varied, factors, strict=True)
             }
         )

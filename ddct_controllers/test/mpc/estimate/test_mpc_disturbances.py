@@ -74,7 +74,7 @@ def estimate(errors_n_m, drift=(), model=PLANT, periods=400, driveline=DRIVELINE
     plant = transmission_model(driveline)
     columns = {'engine': plant.b[:, ENGINE_TORQUE], 'clutch': plant.clutch}
     columns['load'] = plant.b[:, LOAD_TORQUE]
-    state = plant.at_rest((170.0, 160.0, 160.0 / driveline.total_ratio), 0.01, 0.0)
+    state = plant.at_rest((170.0, 160.0, driveline.gear.wheel_speed(160.0)), 0.01, 0.0)
     predicted = None
     for _ in range(periods):
         corrected = observer.correct(tuple(state[:3]), load_torque=60.0)
@@ -101,7 +101,9 @@ def test_observer_finds_the_errors_of_clutch_and_load():
 def test_an_error_of_the_engine_is_explained_by_the_pair_as_well():
     innovation, corrected = estimate({'engine': 20.0}, **OFFSET_FREE)
     assert innovation < 1e-4
-    assert corrected[STATES:] == pytest.approx([-20.0, -20.0 * DRIVELINE.total_ratio], rel=1e-2)
+    assert corrected[STATES:] == pytest.approx(
+        [-20.0, DRIVELINE.gear.wheel_torque(-20.0)], rel=1e-2
+    )
 
 
 def test_without_disturbances_the_observer_stays_wrong():
@@ -138,7 +140,7 @@ def test_the_gain_is_what_the_covariance_recursion_settles_on():
 def test_torsion_speed_is_weighted_as_at_the_primary_shaft():
     slip, torsion = PREDICTIVE['mpc_torsion'](ControllerContext(SETTINGS, {})).settings.outputs
     assert (slip.output, torsion.output) == (SLIP_SPEED, TORSION_SPEED)
-    assert torsion.weight == pytest.approx(slip.weight * DRIVELINE.total_ratio)
+    assert torsion.weight == pytest.approx(slip.weight * DRIVELINE.gear.total_ratio)
 
 
 def test_each_option_changes_its_own_setting():

@@ -49,7 +49,7 @@ def estimates(observer, wear_gain, requests, load_error_n_m=0.0, noise=None):
     plant = transmission_model(DRIVELINE)
     transition, effect = plant.a.copy(), plant.a[:4, 4:]
     twist = LOAD_N_M / DRIVELINE.halfshaft_stiffness
-    state = plant.at_rest((170.0, 160.0, 160.0 / DRIVELINE.total_ratio), twist, 0.0)
+    state = plant.at_rest((170.0, 160.0, DRIVELINE.gear.wheel_speed(160.0)), twist, 0.0)
     found = []
     for request, true_gain in np.broadcast(requests, wear_gain):
         error = np.zeros(3) if noise is None else noise.normal(0.0, NOISE.speed_rad_s, 3)
@@ -116,7 +116,7 @@ def test_a_bound_is_reported():
     assert not observer.wear_gain_at_bound
     at_bound = []
     for request in RAMP:
-        observer.correct((170.0, 160.0, 160.0 / DRIVELINE.total_ratio), LOAD_N_M)
+        observer.correct((170.0, 160.0, DRIVELINE.gear.wheel_speed(160.0)), LOAD_N_M)
         observer.predict((request, 0.0, LOAD_N_M))
         at_bound.append(observer.wear_gain_at_bound)
         assert at_bound[-1] == (observer.wear_gain in (LOWEST_GAIN, HIGHEST_GAIN))
@@ -206,7 +206,7 @@ def test_it_is_the_conditional_expectation_of_all_that_was_measured(periods):
     plant = transmission_model(DRIVELINE)
     transition, effect = plant.a.copy(), plant.a[:4, 4:]
     twist = 1.3 * loads[0] / DRIVELINE.halfshaft_stiffness
-    state = plant.at_rest((170.0, 160.0, 160.0 / DRIVELINE.total_ratio), twist, 0.0)
+    state = plant.at_rest((170.0, 160.0, DRIVELINE.gear.wheel_speed(160.0)), twist, 0.0)
     measured = [state[:3]]
     transition[:4, 4:] = 0.8 * effect
     observer.correct(tuple(measured[0]), loads[0])
@@ -247,7 +247,7 @@ def test_the_gain_does_not_drift_below_the_least_torque_of_the_actuator():
     for _ in range(20):
         transmitted = np.mean(actuator.update(100.0))
         for observer in (drifting, constant):
-            observer.correct((170.0, 160.0, 160.0 / DRIVELINE.total_ratio), LOAD_N_M)
+            observer.correct((170.0, 160.0, DRIVELINE.gear.wheel_speed(160.0)), LOAD_N_M)
         before = drifting.wear_gain_deviation, constant.wear_gain_deviation
         for observer in (drifting, constant):
             observer.predict((100.0, 120.0, LOAD_N_M))

@@ -35,7 +35,7 @@ from ddct_plant.models.printed import ACTUATOR
 
 DRIVELINE = DrivelineParameters()
 MODEL = transmission_model(DRIVELINE)
-START = InitialState(180.0, 150.0, 150.0 / DRIVELINE.total_ratio, 0.01, 40.0, 60.0, 35.0, 35.0)
+START = InitialState(180.0, 150.0, DRIVELINE.gear.wheel_speed(150.0), 0.01, 40.0, 60.0, 35.0, 35.0)
 
 
 def inputs(steps):

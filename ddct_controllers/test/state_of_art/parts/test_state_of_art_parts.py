@@ -28,7 +28,7 @@ NO_POINTS = EngineSpeedReference()
 
 
 def measurement(step=60, engine=240.0, shaft=190.0, demand=300.0, slip=50.0, rate=-100.0):
-    wheel = shaft / DRIVELINE.total_ratio
+    wheel = shaft / DRIVELINE.gear.total_ratio
     return Measurement(step, engine, shaft, wheel, 6.5, demand, [slip], [rate], 60.0, 270.0)
 
 
@@ -158,7 +158,7 @@ def test_an_engagement_ends_at_rest_for_the_least_squared_moves():
     model = transmission_model(DRIVELINE)
     horizon = 60
     program = engagement_programs(model, horizon, horizon)[horizon]
-    ratio, shaft_rate = DRIVELINE.total_ratio, (270.0 - 60.0 / DRIVELINE.total_ratio)
+    ratio, shaft_rate = DRIVELINE.gear.total_ratio, (270.0 - DRIVELINE.gear.wheel_speed(60.0))
     shaft_rate /= RIGID.vehicle_inertia
     shaft_torque = ratio * (270.0 - DRIVELINE.shaft_inertia * shaft_rate)
     twist = shaft_torque / DRIVELINE.halfshaft_stiffness

@@ -4,7 +4,6 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 
 import numpy as np
 
@@ -29,10 +28,9 @@ from ddct_plant.identification.from_log.stretches import (
     with_more_torque_noise,
 )
 from ddct_plant.measured.log import SPEEDS, MeasuredLog
+from ddct_plant.models.gearbox import RATIOS_OF_CARS, EngagedGear
 from ddct_plant.models.parameters import DrivelineParameters
 
-RATIOS = (1.5, 60.0)
-"""Least and largest total ratio of gearbox and final drive of a car or truck."""
 _ROLLING = 1.0
 """Least wheel speed in rad/s for an estimate of the ratio of the speeds."""
 _BENT = 0.02
@@ -68,7 +66,7 @@ def fit_log(
     """
     stretches = stretches_of(log, known_load)
     if 'total_ratio' not in fixed:
-        start = replace(start, total_ratio=_ratio(log, stretches))
+        start = start.in_gear(_gear(log, stretches))
     noisier = [
         stretches_of(with_more_torque_noise(log, seed), known_load)
         for seed in range(_MORE_NOISE)
@@ -111,17 +109,18 @@ def _between(
     }
 
 
-def _ratio(log: MeasuredLog, stretches: Sequence[Stretch]) -> float:
-    """Return the median of w_p over w_r; raise DdctError where no gearbox has that ratio."""
+def _gear(log: MeasuredLog, stretches: Sequence[Stretch]) -> EngagedGear:
+    """Return the gear of the median of w_p over w_r; raise DdctError where no car has it."""
     speeds = np.vstack([each.speeds for each in stretches])
     rolling = speeds[np.abs(speeds[:, 2]) > _ROLLING]
     ratio = float(np.median(rolling[:, 1] / rolling[:, 2])) if len(rolling) else math.nan
-    if not RATIOS[0] <= ratio <= RATIOS[1]:
+    least, most = RATIOS_OF_CARS
+    if not least <= ratio <= most:
         raise DdctError(
             f'{log.path}: shaft_speed over wheel_speed is {ratio:.4g} as a rule, a car has '
-            f'{RATIOS[0]:g} to {RATIOS[1]:g}: check both units, or give --fix total_ratio'
+            f'{least:g} to {most:g}: check both units, or give --fix total_ratio'
         )
-    return ratio
+    return EngagedGear(ratio)
 
 
 def _result(

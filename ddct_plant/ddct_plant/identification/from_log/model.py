@@ -17,6 +17,7 @@ import numpy as np
 import scipy
 
 from ddct_plant.models.driveline_model import driveline_matrices
+from ddct_plant.models.gearbox import EngagedGear
 from ddct_plant.models.parameters import DrivelineParameters
 
 OUTPUTS = 3
@@ -85,7 +86,8 @@ def responses(
     h) z_0 + h (phi_1 - phi_2) v_0 + h phi_2 v_1. The system is linear, so for a torque with the
     delay d in the log the response to the logged torque is d later.
     """
-    model = driveline_matrices(cast(DrivelineParameters, SimpleNamespace(**values)))
+    unchecked = SimpleNamespace(**values, gear=EngagedGear(values['total_ratio']))
+    model = driveline_matrices(cast(DrivelineParameters, unchecked))
     forced = np.zeros((len(stretch.time_s), OUTPUTS))
     basis = np.zeros((len(stretch.time_s), OUTPUTS, NUISANCE))
     lags = np.array(sampling.speeds)

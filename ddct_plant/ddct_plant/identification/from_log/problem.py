@@ -60,7 +60,7 @@ class LogProblem:
         free: Sequence[str],
     ) -> None:
         self._whole, self.free = stretches, free
-        self._start: dict[str, float] = dict(vars(start)) | dict(delays)
+        self._start: dict[str, float] = start.values() | dict(delays)
         self._at: Mapping[str, float] = self._start
         torques = np.concatenate([each.torques[:, :2].ravel() for each in stretches])
         speeds = np.concatenate([each.speeds[:, :2].ravel() for each in stretches])

@@ -23,7 +23,7 @@ def content_of(
     held_out: MeasuredLog,
 ) -> dict[str, Any]:
     """Return the result for tables and JSON; null for a value that does not exist."""
-    rows = []
+    rows, used = [], fit.parameters.values()
     for name in PARAMETERS:
         symbol, unit = SYMBOLS_AND_UNITS[name]
         interval = fit.interval(name)
@@ -32,7 +32,7 @@ def content_of(
         value = None if state == 'not determined' else fit.values[name]
         rows.append(
             {'name': name, 'symbol': symbol, 'value': value, 'lowest': lowest, 'highest': highest}
-            | {'unit': unit, 'state': state, 'used': getattr(fit.parameters, name)}
+            | {'unit': unit, 'state': state, 'used': used[name]}
         )
     return {
         'verdict': 'refused' if reasons else 'accepted',

@@ -11,7 +11,7 @@ from ddct_plant.identification.from_log.noise import NoiseModel
 from ddct_plant.identification.from_log.problem import DAMPINGS
 from ddct_plant.models.parameters import DrivelineParameters
 
-PARAMETERS = tuple(vars(DrivelineParameters()))
+PARAMETERS = tuple(DrivelineParameters().values())
 """Names of all driveline parameters."""
 SLIP = 'slip_speed'
 """Name of the slip among the speeds."""
@@ -50,7 +50,8 @@ class LogFit:
     @property
     def parameters(self) -> DrivelineParameters:
         """Parameters of the driveline, with 0 for a negative damping."""
-        return DrivelineParameters(**{name: max(each, 0.0) for name, each in self.values.items()})
+        values = {name: max(each, 0.0) for name, each in self.values.items()}
+        return DrivelineParameters.from_values(values)
 
     def interval(self, name: str) -> tuple[float, float] | None:
         """Return the ends of the 95 % interval of a parameter or delay, None if not fitted."""

@@ -17,8 +17,10 @@ from ddct_plant.identification.from_log.result import NO_DAMPING, LogFit
 from ddct_plant.identification.from_log.stretches import KnownLoad, stretches_of
 from ddct_plant.measured.log import MeasuredLog
 from ddct_plant.models.engine import TorqueProfile
+from ddct_plant.models.gearbox import AGREE
 from ddct_plant.models.load import RoadLoad
-from ddct_plant.scenario.consistency import AGREE
+from ddct_plant.models.parameters import DrivelineSection
+from ddct_plant.scenario.consistency import gear_line
 from ddct_plant.scenario.csv_profiles import MOST_ROWS
 from ddct_plant.scenario.scenario import InitialSpeeds, Scenario
 
@@ -145,16 +147,16 @@ def _with_car(base: Scenario, fit: LogFit) -> Scenario:
             f'with vehicle.wheel_radius_m {radius:g} and driveline.vehicle_inertia '
             f'{driveline.vehicle_inertia:g} of the log'
         )
-    same_gear = driveline.total_ratio == base.driveline.total_ratio
+    same_gear = driveline.gear == base.driveline.gear
     if base.gear is not None and not same_gear:
-        lines.append(f'gear is now none, as driveline.total_ratio is {driveline.total_ratio:g}')
+        lines.append(gear_line(None, driveline.gear))
     for name, value in fit.values.items():
         if value < -NO_DAMPING:
             lines.append(f'driveline.{name} is 0: the log gave {value:.4g}')
     moved = dataclasses.replace(
         base,
         vehicle=dataclasses.replace(base.vehicle, mass_kg=mass),
-        driveline=driveline,
+        given_driveline=DrivelineSection.of(driveline),
         gear=base.gear if same_gear else None,
     )
     if fit.load_torque is not None and not base.slope.given:

@@ -1,0 +1,110 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""
+The gearbox: ratios of its gears, final drives, and what an engaged gear makes of a value.
+
+No other module knows a total ratio. They have an `EngagedGear` and ask it for the speed, the
+torque or the inertia at its other side.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+from ddct_plant.base.errors import require_number
+
+RATIO_KEY = 'driveline.total_ratio'
+"""Key of the total ratio in a scenario, for errors."""
+IDENTIFIED_RATIO = 9.3416024
+"""Total ratio tau of the thesis's car, from `identify`: that of second gear."""
+RATIOS_OF_CARS = (1.5, 60.0)
+"""Least and largest total ratio of gearbox and final drive of a car or truck."""
+AGREE = 1e-3
+"""Largest relative difference of two values that count as the same gear or the same car."""
+
+
+@dataclass(frozen=True)
+class EngagedGear:
+    """
+    The gear that connects a primary shaft with the wheels: w_p = tau w_r, rigid and without loss.
+
+    Values may be numbers or arrays. With an array of ratios it is the gear of many runs.
+    """
+
+    total_ratio: float = IDENTIFIED_RATIO
+    """Total ratio tau without unit: that of the gear times that of its final drive."""
+
+    def __post_init__(self) -> None:
+        """Check the ratio; raise ParameterError unless it is finite and above 0."""
+        require_number(RATIO_KEY, self.total_ratio, above=0.0)
+
+    def __str__(self) -> str:
+        """Return the total ratio as text."""
+        return f'{self.total_ratio:g}'
+
+    def shaft_speed(self, wheel_speed: Any) -> Any:
+        """Return the speed of the primary shaft tau w_r in rad/s for w_r in rad/s."""
+        return self.total_ratio * wheel_speed
+
+    def wheel_speed(self, shaft_speed: Any) -> Any:
+        """Return the speed at the wheels w_p/tau in rad/s for w_p in rad/s."""
+        return shaft_speed / self.total_ratio
+
+    def wheel_torque(self, shaft_torque: Any) -> Any:
+        """Return the torque at the wheels tau C in N m for C in N m at the primary shaft."""
+        return self.total_ratio * shaft_torque
+
+    def shaft_torque(self, wheel_torque: Any) -> Any:
+        """Return the torque at the primary shaft C/tau in N m for C in N m at the wheels."""
+        return wheel_torque / self.total_ratio
+
+    def at_shaft(self, of_wheels: Any) -> Any:
+        """Return J/tau^2, an inertia, damping or stiffness of the wheels at the primary shaft."""
+        return of_wheels / self.total_ratio**2
+
+    def across(self, inertia: Any) -> Any:
+        """Return J tau in kg m^2: a torque of one side over it accelerates J on the other side."""
+        return inertia * self.total_ratio
+
+
+@dataclass(frozen=True)
+class Gearbox:
+    """
+    Forward gears, each with the final drive of the output shaft that it sits on.
+
+    `identified` is the gear whose total ratio was identified from measurements, which is used
+    instead of the product of the published ratios.
+    """
+
+    ratios: tuple[float, ...]
+    """Ratio of each gear without unit, from the first gear on."""
+    final_drives: tuple[float, ...]
+    """Ratio of the final drive of each gear without unit."""
+    identified: int
+    """Number of the gear whose total ratio is IDENTIFIED_RATIO."""
+
+    def gear(self, number: int | None) -> EngagedGear:
+        """Return a gear by its number from 1 on; None is the identified gear."""
+        if number is None or number == self.identified:
+            return EngagedGear()
+        return EngagedGear(self._published(number))
+
+    def numbers(self, gear: EngagedGear) -> list[int]:
+        """Return the numbers of the gears whose published total ratio agrees with that of one."""
+        return [
+            number
+            for number in range(1, len(self.ratios) + 1)
+            if math.isclose(self._published(number), gear.total_ratio, rel_tol=AGREE)
+        ]
+
+    def _published(self, number: int) -> float:
+        return self.ratios[number - 1] * self.final_drives[number - 1]
+
+
+C635 = Gearbox((3.9, 2.269, 1.435, 0.978, 0.755, 0.622), (4.118,) * 6, identified=2)
+"""
+The C635 with its published ratios.
+
+Gears 1, 3, 6 and 2, 4, 5 sit on two output shafts. Only the final drive 4.118 is published: with
+2.269 it gives the identified total ratio to 0.03 %. That the other shaft has the same is assumed.
+"""
