@@ -11,15 +11,16 @@ from ddct_bringup.batch.columns import distinct, product, stacked
 from ddct_plant.base.timebase import STEPS_PER_S, SUBSTEPS
 from ddct_plant.models.actuator import ActuatorParameters, at_rest, lifted
 from ddct_plant.models.driveline import driveline_outputs, step_matrix
+from ddct_plant.models.driveline_model import STATES
 from ddct_plant.models.load import resisting_torque
 from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.models.static_torque import StaticTorque
 from ddct_plant.scenario.plant import initial_state, make_load
 from ddct_plant.scenario.settings import RunSettings
 
-_STATES = slice(0, 4)
-_ENGINE, _LOAD = 4, 5
-_ACTUATOR = slice(6, 12)
+_STATES = slice(0, len(STATES))
+_ENGINE, _LOAD = len(STATES), len(STATES) + 1
+_ACTUATOR = slice(_LOAD + 1, _LOAD + 7)
 """Row indices of the input of a step: states, C_m, C_load, and `values` of `Actuators`."""
 _LAG_STATES = slice(0, 4)
 _EARLIER, _LATER = 4, 5
@@ -62,8 +63,7 @@ class Plants:
         nodes = self._actuators.nodes * self._wear[:, np.newaxis, np.newaxis]
         self._step = _step_matrices([each.driveline for each in scenarios], nodes)
         self._values = np.zeros((_ACTUATOR.stop, len(runs)))
-        speeds = start.engine_speed, start.shaft_speed, start.wheel_speed
-        self._values[_STATES] = *speeds, start.twist
+        self._values[_STATES] = start.states
         self._torques: Any = (start.engine_torque, start.clutch_torque, start.load_torque)
 
     def outputs(self) -> Any:
@@ -73,14 +73,14 @@ class Plants:
 
     def load_torque(self, step: int) -> np.ndarray:
         """Return C_load in N m, (R,), at step `step` in the current state."""
-        vehicle_speed = self._wheel_radius * self._values[2]
+        vehicle_speed = self._wheel_radius * self._values[STATES['wheel_speed']]
         return resisting_torque(
             self._drag, self._wind, self._forces[step], self._wheel_radius, vehicle_speed
         )
 
     def static_torque(self, step: int, load_torque: np.ndarray) -> np.ndarray:
         """Return C_fOL in N m, (R,), for C_load in N m in the current state."""
-        engine_speed, shaft_speed = self._values[:2]
+        engine_speed, shaft_speed = self._values[STATES.places('engine_speed', 'shaft_speed')]
         return self._static.torque(
             self.engine_torque[step], load_torque, engine_speed, shaft_speed
         )
@@ -97,14 +97,16 @@ class Plants:
 
 def _step_matrices(drivelines: Sequence[DrivelineParameters], nodes: np.ndarray) -> np.ndarray:
     """
-    Return the (4, 12, R) map to the next states, including actuator and clutch.
+    Return the (n, n + 8, R) map to the next states, including actuator and clutch.
 
     `nodes` (R, 11, 6) map the values of the actuators to C_f within a period.
     """
     first, places = distinct(drivelines)
     steps = step_matrix(stacked([drivelines[index] for index in first]), angles=False)[places]
-    # The first six columns belong to the states, C_m and C_load, the others to the nodes of C_f.
-    matrices = np.concatenate([steps[:, :, :6], steps[:, :, 6:] @ nodes], axis=-1)
+    # The first columns belong to the states, C_m and C_load, the others to the nodes of C_f.
+    first_node = _LOAD + 1
+    held, of_nodes = steps[:, :, :first_node], steps[:, :, first_node:]
+    matrices = np.concatenate([held, of_nodes @ nodes], axis=-1)
     return np.ascontiguousarray(matrices.transpose(1, 2, 0))
 
 

@@ -10,7 +10,7 @@ from ddct_controllers.design.state_space import series
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.lti import StateSpace, discretise_zoh
-from ddct_plant.models.driveline_model import driveline_matrices
+from ddct_plant.models.driveline_model import TORQUES, driveline_matrices
 from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.models.printed import ACTUATOR
 from ddct_plant.models.static_torque import constant_slip_torque
@@ -22,7 +22,7 @@ Weight rho in rad/s per N m/s: price of torque beyond the static law.
 docs/controllers/feedforward.md has the argument.
 """
 
-_ENGINE, _CLUTCH, _LOAD = range(3)
+_ENGINE, _CLUTCH, _LOAD = TORQUES.places('engine_torque', 'clutch_torque', 'load_torque')
 
 
 def design_feedforward(
@@ -118,8 +118,13 @@ def _relative_driveline(driveline: DrivelineParameters) -> StateSpace:
     them the filter would keep it for minutes (the pole of C_1 at -0.0059 rad/s).
     """
     free = driveline_matrices(replace(driveline, engine_damping=0.0, shaft_damping=0.0))
-    relative = np.vstack([free.c, [0.0, 0.0, 0.0, 1.0]])
-    with_shaft_at_rest = np.array([[1.0, 0, 0], [0, 0, 0], [0, -1.0, 0], [0, 0, 1.0]])
+    twist = np.eye(len(free.a))[free.states['twist']]
+    relative = np.vstack([free.c, twist])
+    slip, torsion, last = np.eye(len(relative))
+    with_shaft_at_rest = np.zeros((len(free.a), len(relative)))
+    with_shaft_at_rest[free.states['engine_speed']] = slip
+    with_shaft_at_rest[free.states['wheel_speed']] = -torsion
+    with_shaft_at_rest[free.states['twist']] = last
     a, b = relative @ free.a @ with_shaft_at_rest, relative @ free.b
     return StateSpace(a, b, np.eye(3), np.zeros((3, 3)))
 

@@ -12,6 +12,7 @@ from ddct_controllers.design.state_space import factors_text
 from ddct_plant.identification.coefficients import SYMBOLS_AND_UNITS
 from ddct_plant.linear.cascade import Factor
 from ddct_plant.linear.lti import FactoredTransferFunction
+from ddct_plant.models import driveline_model
 from ddct_plant.models.driveline_model import (
     clutch_to_slip,
     driveline_matrices,
@@ -21,9 +22,22 @@ from ddct_plant.models.driveline_model import (
 from ddct_plant.models.static_torque import StaticTorque
 from ddct_plant.scenario.scenario import Scenario
 
-STATES = {'w_m': 'rad/s', 'w_p': 'rad/s', 'w_r': 'rad/s', 'theta_sr': 'rad'}
-INPUTS = {'C_m': 'N m', 'C_f': 'N m', 'C_load': 'N m'}
-OUTPUTS = {'w_d': 'rad/s', 'w_sr': 'rad/s'}
+_SYMBOLS_AND_UNITS = {
+    'engine_speed': ('w_m', 'rad/s'),
+    'shaft_speed': ('w_p', 'rad/s'),
+    'wheel_speed': ('w_r', 'rad/s'),
+    'twist': ('theta_sr', 'rad'),
+    'engine_torque': ('C_m', 'N m'),
+    'clutch_torque': ('C_f', 'N m'),
+    'load_torque': ('C_load', 'N m'),
+    'slip_speed': ('w_d', 'rad/s'),
+    'torsion_speed': ('w_sr', 'rad/s'),
+}
+STATES, INPUTS, OUTPUTS = (
+    dict(_SYMBOLS_AND_UNITS[name] for name in names)
+    for names in (driveline_model.STATES, driveline_model.TORQUES, driveline_model.OUTPUTS)
+)
+"""Unit of each state, input and output of the driveline by its symbol."""
 _STATIC_INPUTS = {'C_m': '1', 'C_load': '1', 'w_m': 'N m s/rad', 'w_p': 'N m s/rad'}
 MATRICES = 'ABCD'
 

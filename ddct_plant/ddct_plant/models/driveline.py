@@ -11,8 +11,20 @@ import numpy as np
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import PERIOD_S, SUBSTEPS
 from ddct_plant.linear.lti import hold_inputs, lift_piecewise_linear
-from ddct_plant.models.driveline_model import matrices_with_angles, states_and_torques
+from ddct_plant.models.driveline_model import (
+    STATES,
+    STATES_AND_ANGLES,
+    TORQUES,
+    matrices_with_angles,
+    states_and_torques,
+)
 from ddct_plant.models.parameters import DrivelineParameters, VehicleParameters
+
+_ENGINE_SPEED = STATES_AND_ANGLES['engine_speed']
+_STEPPED = slice(0, len(STATES_AND_ANGLES))
+_ENGINE_TORQUE, _LOAD_TORQUE = len(STATES_AND_ANGLES), len(STATES_AND_ANGLES) + 1
+_NODES = slice(_LOAD_TORQUE + 1, None)
+"""Columns of `step_matrix` with angles: states and angles, C_m, C_load, the nodes of C_f."""
 
 
 @dataclass(frozen=True)
@@ -49,6 +61,11 @@ class InitialState:
     clutch_open: bool = False
     """Whether the capacity of the clutch is zero before t_0, also at equal speeds of the
     plates."""
+
+    @property
+    def states(self) -> list[float]:
+        """Values of the driveline's states, in the order of its model."""
+        return [getattr(self, name) for name in STATES]
 
 
 PHASES = OPEN, SLIPPING, LOCKED = ('open', 'slipping', 'locked')
@@ -150,22 +167,17 @@ class Driveline:
         self._wheel_radius = vehicle.wheel_radius_m
         self._step_matrix = step_matrix(parameters)
         self._state_and_inputs = np.zeros(self._step_matrix.shape[1])
-        self._state_and_inputs[:4] = (
-            initial.engine_speed,
-            initial.shaft_speed,
-            initial.wheel_speed,
-            initial.twist,
-        )
+        self._state_and_inputs[: len(STATES)] = initial.states
         self._torques = (initial.engine_torque, initial.clutch_torque, initial.load_torque)
 
     @property
     def engine_speed(self) -> float:
         """Engine speed w_m in rad/s at the present step."""
-        return float(self._state_and_inputs[0])
+        return float(self._state_and_inputs[_ENGINE_SPEED])
 
     def outputs(self) -> DrivelineOutputs:
         """Return the outputs at the present step."""
-        state = self._state_and_inputs[:7].tolist()
+        state = self._state_and_inputs[_STEPPED].tolist()
         return driveline_outputs(self._parameters, self._wheel_radius, state, self._torques)
 
     def step(
@@ -173,10 +185,10 @@ class Driveline:
     ) -> None:
         """Advance by 10 ms with held C_m and C_load and the (11,) nodes of C_f, all in N m."""
         values = self._state_and_inputs
-        values[7] = engine_torque
-        values[8] = load_torque
-        values[9:] = clutch_torque
-        values[:7] = self._step_matrix @ values
+        values[_ENGINE_TORQUE] = engine_torque
+        values[_LOAD_TORQUE] = load_torque
+        values[_NODES] = clutch_torque
+        values[_STEPPED] = self._step_matrix @ values
         self._torques = (engine_torque, clutch_torque[-1], load_torque)
 
 
@@ -189,7 +201,7 @@ def step_matrix(parameters: DrivelineParameters, *, angles: bool = True) -> np.n
     """
     a, b = matrices_with_angles(parameters) if angles else states_and_torques(parameters)
     _require_finite(a, b)
-    engine, clutch, load = b[..., 0:1], b[..., 1:2], b[..., 2:3]
+    engine, clutch, load = (b[..., TORQUES.column(name)] for name in TORQUES)
     _, held = hold_inputs(a, np.concatenate([engine, load], axis=-1), PERIOD_S)
     transition, nodes = lift_piecewise_linear(a, clutch, PERIOD_S, SUBSTEPS)
     _require_finite(transition, held, nodes)

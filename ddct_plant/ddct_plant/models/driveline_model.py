@@ -3,16 +3,49 @@
 """The driveline as linear equations: its four states and its transfer functions to slip speed."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
+from ddct_plant.linear.names import Names
 from ddct_plant.models.parameters import DrivelineParameters
 
+STATES = Names(('engine_speed', 'shaft_speed', 'wheel_speed', 'twist'))
+"""States w_m, w_p, w_r in rad/s and theta_sr in rad."""
+ANGLES = Names(('engine_angle', 'shaft_angle', 'wheel_angle'))
+"""Angles in rad of the shafts with the first speeds of STATES, in their order."""
+STATES_AND_ANGLES = STATES + ANGLES
+TORQUES = Names(('engine_torque', 'clutch_torque', 'load_torque'))
+"""Inputs C_m, C_f, C_load in N m."""
+OUTPUTS = Names(('slip_speed', 'torsion_speed'))
+"""Outputs w_d, w_sr in rad/s."""
 
-def driveline_matrices(parameters: DrivelineParameters) -> StateSpace:
+
+@dataclass(frozen=True, eq=False)
+class DrivelineModel(StateSpace):
+    """Linear driveline in one gear, with the names of its states, inputs and outputs."""
+
+    states: Names = STATES
+    """Names of the states, (n,)."""
+    torques: Names = TORQUES
+    """Names of the inputs in N m, (m,)."""
+    outputs: Names = OUTPUTS
+    """Names of the outputs, (p,)."""
+
+    def output(self, name: str) -> np.ndarray:
+        """Return the row (n,) of C of an output."""
+        return self.c[self.outputs[name]]
+
+    def path(self, torque: str, output: str) -> StateSpace:
+        """Return the system from one torque to one output."""
+        column, row = self.torques.column(torque), self.outputs.column(output)
+        return StateSpace(self.a, self.b[:, column], self.c[row], self.d[row, column])
+
+
+def driveline_matrices(parameters: DrivelineParameters) -> DrivelineModel:
     """
-    Return the state space of Section 1.5.
+    Return the state space of Section 1.5, for the gear of the parameters.
 
     x = [w_m, w_p, w_r, theta_sr], u = [C_m, C_f, C_load], y = [w_d, w_sr]. Row 3 is that of the
     thesis's matrix A, with c_sa/(J_v tau); its third differential equation prints c_sa/(J_p tau),
@@ -20,8 +53,11 @@ def driveline_matrices(parameters: DrivelineParameters) -> StateSpace:
     c_prim, which the matrix has.
     """
     a, b = states_and_torques(parameters)
-    c = [[1.0, -1.0, 0.0, 0.0], [0.0, parameters.gear.wheel_speed(1.0), -1.0, 0.0]]
-    return StateSpace(a, b, np.array(c), np.zeros((2, 3)))
+    c = np.zeros((len(OUTPUTS), len(STATES)))
+    c[OUTPUTS['slip_speed'], STATES.places('engine_speed', 'shaft_speed')] = 1.0, -1.0
+    torsion = parameters.gear.wheel_speed(1.0), -1.0
+    c[OUTPUTS['torsion_speed'], STATES.places('shaft_speed', 'wheel_speed')] = torsion
+    return DrivelineModel(a, b, c, np.zeros((len(OUTPUTS), len(TORQUES))))
 
 
 def states_and_torques(parameters: DrivelineParameters) -> tuple[np.ndarray, np.ndarray]:
@@ -62,10 +98,11 @@ def matrices_with_angles(parameters: DrivelineParameters) -> tuple[np.ndarray, n
     Parameters that are arrays, (...), give stacks.
     """
     driven, torques = states_and_torques(parameters)
-    stack = driven.shape[:-2]
-    a, b = np.zeros((*stack, 7, 7)), np.zeros((*stack, 7, 3))
-    a[..., :4, :4], b[..., :4, :] = driven, torques
-    a[..., 4:7, :3] = np.eye(3)
+    stack, size = driven.shape[:-2], len(STATES_AND_ANGLES)
+    states, angles = slice(0, len(STATES)), slice(len(STATES), size)
+    a, b = np.zeros((*stack, size, size)), np.zeros((*stack, size, len(TORQUES)))
+    a[..., states, states], b[..., states, :] = driven, torques
+    a[..., angles, : len(ANGLES)] = np.eye(len(ANGLES))
     return a, b
 
 

@@ -21,13 +21,19 @@ from ddct_plant.models.driveline import (
     PhaseEvent,
     driveline_outputs,
 )
-from ddct_plant.models.driveline_model import matrices_with_angles
+from ddct_plant.models.driveline_model import (
+    ANGLES,
+    STATES_AND_ANGLES,
+    TORQUES,
+    matrices_with_angles,
+)
 from ddct_plant.models.parameters import DrivelineParameters, VehicleParameters
 
 CLUTCH, WHEEL = 0, 1
 """Indices of the friction elements."""
 _HELD = (0, 1, 3)
 """Indices of the inputs held over a period: C_m, C_load and holding torque."""
+_ENGINE_SPEED = STATES_AND_ANGLES['engine_speed']
 _PHASE_NUMBERS = {phase: float(number) for number, phase in enumerate(PHASES)}
 
 
@@ -49,8 +55,7 @@ class StickSlipDriveline:
         self._parameters = parameters
         self._wheel_radius = vehicle.wheel_radius_m
         self._integrator = friction_integrator(parameters)
-        speeds = [initial.engine_speed, initial.shaft_speed, initial.wheel_speed]
-        state = [*speeds, initial.twist, 0.0, 0.0, 0.0]
+        state = [*initial.states, *[0.0] * len(ANGLES)]
         friction = [initial.clutch_torque, initial.wheel_torque]
         signs = self._integrator.mode_of(state)
         self.now = Interval(state, signs, [], [0.0, 0.0], friction)
@@ -64,7 +69,7 @@ class StickSlipDriveline:
     @property
     def engine_speed(self) -> float:
         """Engine speed w_m in rad/s at the present step."""
-        return self.now.state[0]
+        return self.now.state[_ENGINE_SPEED]
 
     def outputs(self) -> DrivelineOutputs:
         """Return the outputs at the present step; the wheel's effort includes its friction."""
@@ -126,10 +131,10 @@ def _phase(sign: int, capacity: float) -> str:
 def friction_system(parameters: DrivelineParameters) -> FrictionSystem:
     """Return the driveline as a linear system with two friction elements, clutch and wheel."""
     a, b = matrices_with_angles(parameters)
-    engine, clutch, load = b[:, 0:1], b[:, 1:2], b[:, 2:3]
+    engine, clutch, load = (b[:, TORQUES.column(name)] for name in TORQUES)
     h = np.zeros((2, len(a)))
-    h[CLUTCH, :2] = 1.0, -1.0
-    h[WHEEL, 2] = 1.0
+    h[CLUTCH, STATES_AND_ANGLES.places('engine_speed', 'shaft_speed')] = 1.0, -1.0
+    h[WHEEL, STATES_AND_ANGLES['wheel_speed']] = 1.0
     return FrictionSystem(a, np.hstack([engine, load]), np.hstack([clutch, load]), h)
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import SUBSTEP_S
-from ddct_plant.models.driveline_model import driveline_matrices
+from ddct_plant.models.driveline_model import STATES, driveline_matrices
 from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.simplified.plants import SlipPhase
 
@@ -74,7 +74,8 @@ def elementary_slip(parameters: DrivelineParameters, phase: SlipPhase) -> np.nda
     steps = max(math.ceil(SUBSTEP_S * fastest / 0.02), 1)
     halves = np.arange(2 * steps + 1) / 2
     state = phase.initial_state
-    slip_speed = [state[0] - state[1]]
+    engine_speed, shaft_speed = STATES.places('engine_speed', 'shaft_speed')
+    slip_speed = [state[engine_speed] - state[shaft_speed]]
     torques = phase.engine_torque, phase.clutch_points, phase.load_torque
     for engine, points, load in zip(*(torque.tolist() for torque in torques), strict=True):
         for first, last in zip(points, points[1:], strict=False):

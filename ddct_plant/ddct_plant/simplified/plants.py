@@ -22,6 +22,7 @@ from ddct_plant.linear.lti import (
     lift_piecewise_linear,
 )
 from ddct_plant.models.driveline_model import (
+    STATES,
     clutch_to_slip,
     driveline_matrices,
     engine_to_slip,
@@ -42,7 +43,7 @@ class SlipPhase:
     load_torque: np.ndarray
     """C_load in N m, (N,), held over each period."""
     initial_state: np.ndarray
-    """Initial state [w_m, w_p, w_r, theta_sr], (4,)."""
+    """Initial values of STATES of the driveline, (n,)."""
 
     def __post_init__(self) -> None:
         """Check the shapes; raise ParameterError that names a bad one."""
@@ -51,7 +52,7 @@ class SlipPhase:
             'engine_torque': (periods,),
             'clutch_points': (periods, SUBSTEPS + 1),
             'load_torque': (periods,),
-            'initial_state': (4,),
+            'initial_state': (len(STATES),),
         }
         for name, shape in shapes.items():
             given = np.shape(getattr(self, name))
@@ -66,14 +67,11 @@ def state_space_slip(parameters: DrivelineParameters, phase: SlipPhase) -> np.nd
     """
     Add up three state-space blocks (A, B(:, i), C, D(:, i)), one per torque (Figure 1.21).
 
-    Each has four states of its own. The initial condition goes into the block of C_f alone: in
+    Each has all states of its own. The initial condition goes into the block of C_f alone: in
     more than one of them it would count twice.
     """
     model = driveline_matrices(parameters)
-    blocks = [
-        StateSpace(model.a, model.b[:, i : i + 1], model.c[:1], model.d[:1, i : i + 1])
-        for i in range(3)
-    ]
+    blocks = [model.path(torque, 'slip_speed') for torque in model.torques]
     return _added_up(blocks, phase, phase.initial_state)
 
 
@@ -105,7 +103,8 @@ def _of_transfer_functions(
     """
     blocks = [function.to_state_space() for function in functions]
     model = driveline_matrices(parameters)
-    free = StateSpace(model.a, np.zeros((4, 1)), model.c[:1], np.zeros((1, 1)))
+    path = model.path('load_torque', 'slip_speed')
+    free = StateSpace(path.a, np.zeros_like(path.b), path.c, path.d)
     forced = _added_up(blocks, phase, np.zeros(len(blocks[1].a)))
     return forced + _held_response(free, np.zeros(len(phase.engine_torque)), phase.initial_state)
 

@@ -18,11 +18,13 @@ from ddct_controllers.mpc.controller import MpcController
 from ddct_controllers.mpc.estimate.observer import Observer
 from ddct_controllers.mpc.estimators import run_start
 from ddct_controllers.mpc.model.transmission_model import (
+    DRIVELINE,
     ENGINE_TORQUE,
     MEASURED,
     REQUEST,
     SLIP_ACCELERATION,
     STATES,
+    TRANSMISSION_STATES,
     TransmissionModel,
     transmission_model,
 )
@@ -34,8 +36,8 @@ from ddct_plant.scenario.settings import RunSettings
 
 ALL_BUT_ONE = 1.0 - 1e-6
 """Magnitude above which a mode counts as an integrator."""
-TWIST = MEASURED
-"""Index of theta_sr in the state, after the speeds."""
+TWIST = TRANSMISSION_STATES['twist']
+"""Index of theta_sr in the state."""
 
 
 def model_without_actuator(
@@ -48,9 +50,10 @@ def model_without_actuator(
     """
     model, plant = transmission_model(driveline), driveline_matrices(driveline)
     a, b, c, d = model.a.copy(), model.b.copy(), model.c.copy(), model.d.copy()
-    a[:4, 4:], c[:, 4:] = 0.0, 0.0
+    a[DRIVELINE, DRIVELINE.stop :], c[:, DRIVELINE.stop :] = 0.0, 0.0
     b[:, REQUEST] += wear_gain * model.clutch
-    d[SLIP_ACCELERATION, REQUEST] = wear_gain * plant.c[0] @ plant.b[:, 1]
+    slip, clutch = plant.output('slip_speed'), plant.torques['clutch_torque']
+    d[SLIP_ACCELERATION, REQUEST] = wear_gain * slip @ plant.b[:, clutch]
     return TransmissionModel(a, b, c, d, clutch=model.clutch)
 
 

@@ -154,7 +154,9 @@ def _predict(run: Trajectory, start: int, last: int) -> dict[str, tuple[np.ndarr
         response.append(model.a @ response[-1])
     shaft = np.zeros(len(state))
     damping = driveline.halfshaft_damping
-    shaft[1:4] = (driveline.gear.wheel_speed(damping), -damping, driveline.halfshaft_stiffness)
+    twisted = model.states.places('shaft_speed', 'wheel_speed', 'twist')
+    stiffness = driveline.halfshaft_stiffness
+    shaft[twisted] = driveline.gear.wheel_speed(damping), -damping, stiffness
     acceleration = vehicle.wheel_radius_m / driveline.vehicle_inertia * shaft
     load = vehicle.wheel_radius_m / driveline.vehicle_inertia * inputs[start : last + 1, 2]
     outputs = {

@@ -15,6 +15,7 @@ from ddct_plant.identification.coefficients import PrintedCoefficients
 from ddct_plant.identification.fit import identify_driveline, predict_left_out
 from ddct_plant.linear.lti import FactoredTransferFunction
 from ddct_plant.models.driveline_model import (
+    STATES,
     clutch_to_slip,
     driveline_matrices,
     engine_to_slip,
@@ -76,7 +77,8 @@ def _shared_poles(driveline: DrivelineParameters) -> dict[str, Value]:
 def _equations(driveline: DrivelineParameters) -> dict[str, Value]:
     """Return the corrections of the equations of Section 1.5 that the printed P_2 requires."""
     model = driveline_matrices(driveline)
-    minus = model.c[0].tolist() == [1.0, -1.0, 0.0, 0.0]
+    slip = dict(zip(STATES, model.output('slip_speed').tolist(), strict=True))
+    minus = slip == dict.fromkeys(STATES, 0.0) | {'engine_speed': 1.0, 'shaft_speed': -1.0}
     undamped = clutch_to_slip(dataclasses.replace(driveline, shaft_damping=0.0))
     (pole,) = numbers_of(undamped.denominator[1])
     return {
@@ -91,7 +93,9 @@ def _wheel_coupling(a: np.ndarray, driveline: DrivelineParameters) -> str:
     growth = {}
     for symbol, inertia in (('J_p', driveline.shaft_inertia), ('J_v', driveline.vehicle_inertia)):
         changed = a.copy()
-        changed[2, 1] = driveline.halfshaft_damping / driveline.gear.across(inertia)
+        changed[STATES['wheel_speed'], STATES['shaft_speed']] = (
+            driveline.halfshaft_damping / driveline.gear.across(inertia)
+        )
         growth[symbol] = float(np.max(np.linalg.eigvals(changed).real))
     return f'c_sa/({min(growth, key=lambda symbol: growth[symbol])} tau)'
 

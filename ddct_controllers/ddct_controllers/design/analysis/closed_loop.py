@@ -173,7 +173,8 @@ def driveline_mode(
     if index is None:
         return None
     row, column = left[:, index].conj(), right[:, index]
-    torsion_rpm = RPM_PER_RAD_S * driveline_matrices(parameters).c[1] @ column[-4:]
+    model = driveline_matrices(parameters)
+    torsion_rpm = RPM_PER_RAD_S * model.output('torsion_speed') @ column[-len(model.a) :]
     after_step = torsion_rpm * (row @ closed.b[:, 0]) / (row @ column) / (poles[index] - 1.0)
     return DrivelineMode(
         frequency_hz=float(abs(rates[index])) / math.tau,

@@ -97,17 +97,12 @@ def sampled_plant(
     """
     Return the actuator's delay times G_a P_2 30/pi K_usura under a zero-order hold at 10 ms.
 
-    States: the delayed requests in N m, of the printed actuator one; those of G_a; then [w_m, w_p,
-    w_r, theta_sr]. Output: slip speed in rpm. In a run the actuator's torque is made of 1 ms
+    States: the delayed requests in N m, of the printed actuator one; those of G_a; then those of
+    the driveline. Output: slip speed in rpm. In a run the actuator's torque is made of 1 ms
     straight lines, which is within 5e-5 of this.
     """
-    driveline = driveline_matrices(parameters)
-    clutch_to_slip_rpm = StateSpace(
-        driveline.a,
-        driveline.b[:, 1:2] * wear_gain,
-        driveline.c[:1] * RPM_PER_RAD_S,
-        driveline.d[:1, 1:2],
-    )
+    path = driveline_matrices(parameters).path('clutch_torque', 'slip_speed')
+    clutch_to_slip_rpm = StateSpace(path.a, path.b * wear_gain, path.c * RPM_PER_RAD_S, path.d)
     plant = series(actuator.dynamics(), clutch_to_slip_rpm)
     return sampled_behind_delay(plant, actuator.delay_substeps)
 

@@ -15,6 +15,8 @@ from ddct_controllers.mpc.estimate.observer import (
     torque_noise,
 )
 from ddct_controllers.mpc.model.transmission_model import (
+    DRIVELINE,
+    DRIVELINE_STATES,
     ENGINE_TORQUE,
     LOAD_TORQUE,
     MEASURED,
@@ -24,12 +26,13 @@ from ddct_controllers.mpc.model.transmission_model import (
 )
 from ddct_controllers.mpc.program.settings import MOST
 from ddct_plant.base.options import OptionGroup, option
+from ddct_plant.linear.names import Names
 
-DRIVELINE = 4
-"""Number of driveline states, which come first: w_m, w_p, w_r in rad/s and theta_sr in rad."""
-GAIN, CLUTCH_ERROR, LOAD_ERROR = range(DRIVELINE, DRIVELINE + 3)
-"""Indices of the next states: K_usura, and the errors of C_f and C_load in N m."""
-SIZE = LOAD_ERROR + 1
+FILTER_STATES = DRIVELINE_STATES + Names(('wear_gain', 'clutch_error', 'load_error'))
+"""States of the filter: the driveline's, K_usura, and the errors of C_f and C_load in N m."""
+GAIN, CLUTCH_ERROR, LOAD_ERROR = FILTER_STATES.places('wear_gain', 'clutch_error', 'load_error')
+SIZE = len(FILTER_STATES)
+_ENGINE_SPEED = FILTER_STATES['engine_speed']
 LOWEST_GAIN, HIGHEST_GAIN = 0.5, 1.5
 """Bounds of the estimate of K_usura; a clutch is assumed to reach 0.7 to 1.3."""
 LEAST_TORQUE_N_M = 5.0
@@ -92,7 +95,7 @@ class WearObserver:
         start: AtRest,
     ) -> None:
         """Take the `offset_free_model` of a new clutch, and the start of the estimate."""
-        driveline, actuator = slice(DRIVELINE), slice(DRIVELINE, STATES)
+        driveline, actuator = DRIVELINE, slice(DRIVELINE.stop, STATES)
         self._model = model
         self._wear = wear
         self._initial_request = start.initial_request
@@ -115,7 +118,7 @@ class WearObserver:
         self._started = False
         self._state = np.zeros(SIZE)
         self._state[GAIN] = 1.0
-        self._actuator = np.zeros(STATES - DRIVELINE)
+        self._actuator = np.zeros(STATES - DRIVELINE.stop)
         self._covariance = np.zeros((SIZE, SIZE))
         self._covariance[GAIN, GAIN] = self._wear.initial_gain**2
 
@@ -157,7 +160,7 @@ class WearObserver:
             self._start(speeds, load_torque)
         gain = self._state[GAIN]
         return np.concatenate(
-            (self._state[:DRIVELINE] / gain, self._actuator, self._state[CLUTCH_ERROR:] / gain)
+            (self._state[DRIVELINE] / gain, self._actuator, self._state[CLUTCH_ERROR:] / gain)
         )
 
     def predict(self, inputs: tuple[float, float, float]) -> None:
@@ -166,12 +169,12 @@ class WearObserver:
         request = min(request, MOST_TORQUE_N_M)
         transition = self._transition
         effect = self._transmission @ self._actuator
-        transition[:DRIVELINE, GAIN] = effect
+        transition[DRIVELINE, GAIN] = effect
         self._state = transition @ self._state
-        self._state[:DRIVELINE] += self._known @ (engine_torque, load_torque)
+        self._state[DRIVELINE] += self._known @ (engine_torque, load_torque)
         self._covariance = transition @ self._covariance @ transition.T + self._process
         # The constant torque of a new clutch that would change w_m as much.
-        if effect[0] / self._model.clutch[0] > LEAST_TORQUE_N_M:
+        if effect[_ENGINE_SPEED] / self._model.clutch[_ENGINE_SPEED] > LEAST_TORQUE_N_M:
             self._covariance[GAIN, GAIN] += self._wear.gain_drift**2
         if self.wear_gain_at_bound:
             self._covariance[CLUTCH_ERROR, CLUTCH_ERROR] += self._wear.clutch_drift_n_m**2
@@ -180,11 +183,11 @@ class WearObserver:
     def _start(self, speeds: tuple[float, float, float], load_torque: float) -> None:
         twist = load_torque * self._twist_per_torque
         start = self._model.at_rest(speeds, twist, self._initial_request)
-        self._actuator = start[DRIVELINE:STATES]
-        self._state[:DRIVELINE] = start[:DRIVELINE]
+        self._actuator = start[DRIVELINE.stop : STATES]
+        self._state[DRIVELINE] = start[DRIVELINE]
         # A second's drift of the load, which has twisted the half-shaft by as much.
         load = np.zeros(SIZE)
-        load[[DRIVELINE - 1, LOAD_ERROR]] = self._twist_per_torque, 1.0
+        load[FILTER_STATES.places('twist', 'load_error')] = self._twist_per_torque, 1.0
         load *= 10.0 * self._wear.load_drift_n_m
         self._covariance += np.outer(load, load)
         self._covariance[:MEASURED, :MEASURED] = self._measurement_noise

@@ -13,13 +13,22 @@ import numpy as np
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.lti import StateSpace, discretise_zoh
+from ddct_plant.linear.names import Names
+from ddct_plant.models.driveline_model import STATES as DRIVELINE_STATES
 from ddct_plant.models.driveline_model import driveline_matrices
 from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.models.printed import ACTUATOR
 
-STATES = 9
-"""Number of states: w_m, w_p, w_r in rad/s, theta_sr in rad, four of G_a, the delayed request."""
-MEASURED = 3
+_ACTUATOR_SIZE = len(ACTUATOR.to_state_space().a)
+TRANSMISSION_STATES = (
+    DRIVELINE_STATES
+    + Names(tuple(f'actuator_{index}' for index in range(1, _ACTUATOR_SIZE + 1)))
+    + Names(('delayed_request',))
+)
+"""States of the driveline in rad/s and rad, those of G_a, the request of the period before."""
+STATES = len(TRANSMISSION_STATES)
+"""Number of states without disturbances."""
+MEASURED = DRIVELINE_STATES['twist']
 """Number of measured states, which come first: w_m, w_p and w_r in rad/s."""
 REQUEST, ENGINE_TORQUE, LOAD_TORQUE = range(3)
 """
@@ -29,7 +38,10 @@ SLIP_SPEED, SLIP_ACCELERATION, TORSION_SPEED = range(3)
 """
 Indices of the outputs at the start of a period: w_d in rad/s, dw_d/dt in rad/s^2, w_sr in rad/s.
 """
-DELAYED_REQUEST = STATES - 1
+DRIVELINE = slice(0, len(DRIVELINE_STATES))
+ACTUATOR_STATES = slice(DRIVELINE.stop, DRIVELINE.stop + _ACTUATOR_SIZE)
+DELAYED_REQUEST = TRANSMISSION_STATES['delayed_request']
+"""Places of the states of the driveline, of G_a and of the request in TRANSMISSION_STATES."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +49,8 @@ class TransmissionModel(StateSpace):
     """
     x_(k+1) = a x_k + b u_k, y_k = c x_k + d u_k at 10 ms, exact for the clutch while it slips.
 
-    Disturbances that are estimated follow the nine states as constants, so n = 9 plus these.
+    Disturbances that are estimated follow the states of driveline, actuator and delay as
+    constants.
     Columns of b (n, 3) and d (3, 3) are REQUEST, ENGINE_TORQUE, LOAD_TORQUE; rows of c (3, n) and
     d are SLIP_SPEED, SLIP_ACCELERATION, TORSION_SPEED.
     """
@@ -45,10 +58,12 @@ class TransmissionModel(StateSpace):
     period_s: float | None = PERIOD_S
     clutch: np.ndarray = field(kw_only=True)
     """Effect of 1 N m of C_f, held over a period, beside the actuator's torque, (n,)."""
+    states: Names = TRANSMISSION_STATES
+    """Names of the states, (n,)."""
 
     @property
     def disturbances(self) -> int:
-        """Number of constant disturbances, which follow the nine states."""
+        """Number of constant disturbances, which follow the other states."""
         return len(self.a) - STATES
 
     def at_rest(
@@ -57,8 +72,8 @@ class TransmissionModel(StateSpace):
         """Return x (n,) with `speeds` w_m, w_p, w_r, actuator at rest on `request` in N m."""
         actuator = ACTUATOR.to_state_space()
         state = np.zeros(len(self.a))
-        state[:MEASURED], state[MEASURED] = speeds, twist
-        state[4:DELAYED_REQUEST] = np.linalg.solve(actuator.a, -actuator.b[:, 0] * request)
+        state[:MEASURED], state[self.states['twist']] = speeds, twist
+        state[ACTUATOR_STATES] = np.linalg.solve(actuator.a, -actuator.b[:, 0] * request)
         state[DELAYED_REQUEST] = request
         return state
 
@@ -75,22 +90,27 @@ def transmission_model(
     """
     Return the exact sampled model of driveline (Section 1.5), G_a(s) and delay (Section 1.4.2).
 
-    Four driveline states, four of G_a and one for the delay, which is one period. The clutch
+    Its states are TRANSMISSION_STATES; the delay is one period. The clutch
     transmits `wear_gain` times the actuator's torque. Without `delay` it is the plant of Section
     3.2.1.3, P_2 G_a: the request acts at once, and the last state drives nothing.
     """
     plant, actuator = driveline_matrices(driveline), ACTUATOR.to_state_space()
-    clutch = wear_gain * plant.b[:, 1:2]
-    a = np.block([[plant.a, clutch @ actuator.c], [np.zeros((4, 4)), actuator.a]])
-    b = np.zeros((8, 3))
-    b[4:, REQUEST] = actuator.b[:, 0]
-    b[:4, ENGINE_TORQUE], b[:4, LOAD_TORQUE] = plant.b[:, 0], plant.b[:, 2]
-    slip = np.hstack([plant.c[:1], np.zeros((1, 4))])
-    torsion = np.hstack([plant.c[1:], np.zeros((1, 4))])
+    torques, none = plant.torques, np.zeros((1, len(actuator.a)))
+    clutch = wear_gain * plant.b[:, torques.column('clutch_torque')]
+    uncoupled = np.zeros((len(actuator.a), len(plant.a)))
+    a = np.block([[plant.a, clutch @ actuator.c], [uncoupled, actuator.a]])
+    b = np.zeros((len(a), 3))
+    b[ACTUATOR_STATES, REQUEST] = actuator.b[:, 0]
+    b[DRIVELINE, ENGINE_TORQUE] = plant.b[:, torques['engine_torque']]
+    b[DRIVELINE, LOAD_TORQUE] = plant.b[:, torques['load_torque']]
+    slip, torsion = (
+        np.hstack([plant.c[plant.outputs.column(name)], none])
+        for name in ('slip_speed', 'torsion_speed')
+    )
     outputs = np.vstack([slip, slip @ a, torsion])
     feedthrough = np.vstack([np.zeros((1, 3)), slip @ b, np.zeros((1, 3))])
     sampled = discretise_zoh(StateSpace(a, b, outputs, feedthrough), PERIOD_S)
-    held_clutch = discretise_zoh(plant, PERIOD_S).b[:, 1]
+    held_clutch = discretise_zoh(plant, PERIOD_S).b[:, torques['clutch_torque']]
     return _with_last_request(sampled, held_clutch, delay=delay)
 
 
@@ -99,13 +119,16 @@ def _with_last_request(
 ) -> TransmissionModel:
     """Append the request of the period before as a state, which acts in place of REQUEST."""
     a, b, d = np.zeros((STATES, STATES)), sampled.b.copy(), sampled.d.copy()
-    a[:8, :8], through = sampled.a, np.zeros((len(sampled.c), 1))
+    before = slice(0, DELAYED_REQUEST)
+    a[before, before], through = sampled.a, np.zeros((len(sampled.c), 1))
     if delay:
-        a[:8, DELAYED_REQUEST], through[:, 0] = b[:, REQUEST], d[:, REQUEST]
+        a[before, DELAYED_REQUEST], through[:, 0] = b[:, REQUEST], d[:, REQUEST]
         b[:, REQUEST], d[:, REQUEST] = 0.0, 0.0
     b = np.vstack([b, [1.0, 0.0, 0.0]])
     c = np.hstack([sampled.c, through])
-    return TransmissionModel(a, b, c, d, clutch=np.concatenate([clutch, np.zeros(STATES - 4)]))
+    return TransmissionModel(
+        a, b, c, d, clutch=np.concatenate([clutch, np.zeros(STATES - len(clutch))])
+    )
 
 
 def with_engine(model: TransmissionModel, lag_share: float) -> TransmissionModel:
@@ -127,11 +150,13 @@ def with_engine(model: TransmissionModel, lag_share: float) -> TransmissionModel
     d = model.d.copy()
     d[:, ENGINE_TORQUE] = lag_share * through
     c = np.column_stack([model.c, through, kept * through])
-    return TransmissionModel(a, b, c, d, clutch=np.concatenate([model.clutch, np.zeros(2)]))
+    clutch = np.concatenate([model.clutch, np.zeros(2)])
+    names = model.states + Names(('torque_demand', 'torque_deviation'))
+    return TransmissionModel(a, b, c, d, clutch=clutch, states=names)
 
 
 def with_disturbances(model: TransmissionModel, columns: np.ndarray) -> TransmissionModel:
-    """Append constant disturbances that drive the nine states through `columns` (9, count)."""
+    """Append constant disturbances that drive the other states through `columns` (n, count)."""
     count = columns.shape[1]
     lower = np.zeros((count, len(model.a)))
     return TransmissionModel(
@@ -140,12 +165,13 @@ def with_disturbances(model: TransmissionModel, columns: np.ndarray) -> Transmis
         np.hstack([model.c, np.zeros((len(model.c), count))]),
         model.d,
         clutch=np.concatenate([model.clutch, np.zeros(count)]),
+        states=model.states + Names(tuple(f'disturbance_{i}' for i in range(1, count + 1))),
     )
 
 
 def offset_free_model(driveline: DrivelineParameters) -> TransmissionModel:
     """
-    Return the sampled model with errors of C_f and C_load, in N m, as its states 10 and 11.
+    Return the sampled model with errors of C_f and C_load, in N m, as its last states.
 
     They are estimated so that no constant error of a torque leaves a slip error. Two, because no
     more than two constant torques along the shaft are observable from the measured speeds: a

@@ -21,8 +21,10 @@ from ddct_controllers.mpc.model.transmission_model import (
     SLIP_SPEED,
     STATES,
     TORSION_SPEED,
+    offset_free_model,
     transmission_model,
     with_disturbances,
+    with_engine,
 )
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.units import rpm_from_rad_s
@@ -230,3 +232,13 @@ def test_inputs_have_the_indices_of_their_names():
     pushed = MODEL.b[:, ENGINE_TORQUE]
     assert pushed[0] == pytest.approx(0.01 / DRIVELINE.engine_inertia, rel=1e-3)
     assert MODEL.b[2, LOAD_TORQUE] < 0.0 < MODEL.b[8, REQUEST]
+
+
+def test_every_state_of_a_model_and_of_its_variants_has_a_name():
+    variants = [MODEL, with_engine(MODEL, 0.5), offset_free_model(DRIVELINE)]
+    assert [len(each.states) for each in variants] == [len(each.a) for each in variants]
+    assert variants[1].states['torque_demand'] == STATES
+    assert list(variants[2].states)[STATES:] == ['disturbance_1', 'disturbance_2']
+    rest = variants[2].at_rest((170.0, 160.0, 17.0), 0.01, 40.0)
+    places = rest[MODEL.states.places('engine_speed', 'wheel_speed', 'twist', 'delayed_request')]
+    assert places.tolist() == [170.0, 17.0, 0.01, 40.0]

@@ -16,14 +16,15 @@ from typing import Any, cast
 import numpy as np
 import scipy
 
-from ddct_plant.models.driveline_model import driveline_matrices
+from ddct_plant.models.driveline_model import STATES, driveline_matrices
 from ddct_plant.models.gearbox import EngagedGear
 from ddct_plant.models.parameters import DrivelineParameters
 
-OUTPUTS = 3
-"""Number of outputs: w_m, w_p, w_r, the first states of the model in this order."""
-NUISANCE = 5
-"""Number of nuisances of each stretch: w_m, w_p, w_r, theta_sr at its start, and C_load."""
+_MEASURED = STATES.places('engine_speed', 'shaft_speed', 'wheel_speed')
+OUTPUTS = len(_MEASURED)
+"""Number of outputs: w_m, w_p, w_r."""
+NUISANCE = len(STATES) + 1
+"""Number of nuisances of each stretch: the states at its start, and C_load."""
 _SMALL = 1e-2
 """Size of z up to which the series of phi_1 and phi_2 are used."""
 _NEARLY_CONSTANT = 1e-6
@@ -97,10 +98,11 @@ def responses(
     for pole, shape, inverse in _modes(model.a):
         driven = inverse @ model.b
         free = np.exp(pole * since)[:, None] * np.exp(-pole * lags)
-        basis[:, :, :4] += np.real((free * shape)[:, :, None] * inverse)
+        basis[:, :, :-1] += np.real((free * shape)[:, :, None] * inverse)
         if not stretch.load_known:
-            basis[:, :, 4] += np.real(
-                _under_one(pole, since[:, None] - lags, free) * shape * driven[2]
+            load = driven[model.torques['load_torque']]
+            basis[:, :, -1] += np.real(
+                _under_one(pole, since[:, None] - lags, free) * shape * load
             )
         for torque in _present(driven):
             run = _Run(pole, stretch, torque, sampling.bends[torque])
@@ -126,7 +128,7 @@ def residuals_of(
 
 def _modes(a: np.ndarray) -> Iterator[tuple[complex, np.ndarray, np.ndarray]]:
     """
-    Yield each pole, its right eigenvector in the outputs (3,), and its left eigenvector (4,).
+    Yield each pole, its right eigenvector in the outputs (3,), and its left eigenvector (n,).
 
     Of a conjugate pair only one pole is yielded, with twice its outputs: the real part is used.
     """
@@ -136,7 +138,7 @@ def _modes(a: np.ndarray) -> Iterator[tuple[complex, np.ndarray, np.ndarray]]:
     for mode, pole in enumerate(poles):
         if pole.imag >= 0.0:
             twice = 2.0 if pole.imag else 1.0
-            yield complex(pole), twice * vectors[:OUTPUTS, mode], inverse[mode]
+            yield complex(pole), twice * vectors[_MEASURED, mode], inverse[mode]
 
 
 def _present(entries: np.ndarray) -> np.ndarray:
