@@ -5,6 +5,7 @@
 import json
 import re
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -47,7 +48,7 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def scored(folder: Path, *options: str) -> dict:
+def scored(folder: Path, *options: str) -> dict[str, Any]:
     out = folder / 'scores.json'
     columns = ['--columns', str(folder / 'map.yaml')]
     code = score.main([str(folder / 'drive.csv'), *columns, '--json', str(out), *options])
@@ -241,5 +242,5 @@ def test_a_hole_in_the_log_is_reported_and_a_log_needs_its_map(
     assert 'has no sample from 701.576 to 701.984 s, more than 0.1 s' in run['reason']
 
 
-def _values(run: dict) -> dict:
+def _values(run: dict[str, Any]) -> dict[str, Any]:
     return {each['name']: each['value'] for each in run['verdict']['criteria']}

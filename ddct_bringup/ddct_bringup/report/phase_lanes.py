@@ -3,6 +3,7 @@
 """Phases of a stick-slip clutch in charts: shaded time spans, and instants of lock and release."""
 
 from collections.abc import Iterator
+from typing import Any
 
 from bokeh.models import ColumnDataSource
 from bokeh.models.renderers import GlyphRenderer
@@ -47,7 +48,7 @@ def phase_spans(run: Trajectory) -> list[Span]:
     ]
 
 
-def draw_phases(chart: figure, run: Trajectory, lane: int, colour: str) -> GlyphRenderer:
+def draw_phases(chart: figure, run: Trajectory, lane: int, colour: str) -> 'GlyphRenderer[Any]':
     """Draw the spans as boxes around the height `lane`, more opaque for closer plates."""
     begins, ends, phases = zip(*phase_spans(run), strict=True)
     source = ColumnDataSource(
@@ -73,7 +74,7 @@ def draw_phases(chart: figure, run: Trajectory, lane: int, colour: str) -> Glyph
 
 def draw_events(
     chart: figure, run: Trajectory, height: float, colour: str
-) -> Iterator[GlyphRenderer]:
+) -> 'Iterator[GlyphRenderer[Any]]':
     """Mark the locks and releases of a run at a height of the chart, and yield the marks."""
     for kind, marker in EVENT_MARKERS.items():
         times = [

@@ -3,6 +3,7 @@
 """The predictive controllers by their names in the registry, with cost and estimator of each."""
 
 from collections.abc import Collection
+from typing import Any
 
 from ddct_controllers.interface import ControllerContext, ControllerSpec
 from ddct_controllers.mpc.controller import MpcController
@@ -18,7 +19,7 @@ from ddct_controllers.mpc.program.settings import program_options, with_options
 from ddct_plant.base.options import Option, OptionGroup, with_values
 from ddct_plant.models.parameters import DrivelineParameters
 
-Predictive = ControllerSpec[MpcController]
+Predictive = ControllerSpec[MpcController[Any]]
 
 
 def predictive(
@@ -36,7 +37,7 @@ def predictive(
     estimator that are not `fixed`.
     """
 
-    def make(context: ControllerContext) -> MpcController:
+    def make(context: ControllerContext) -> MpcController[Any]:
         values, run = context.gains, context.settings
         chosen = with_values(cost, values).settings(run.scenario.driveline)
         model, observer = with_values(estimate, values).parts(run)

@@ -5,6 +5,7 @@
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.reproduction.runs import (
@@ -62,7 +63,7 @@ class Reading:
     plant: Model = transmission_model
     observer: Callable[[RunSettings, TransmissionModel], Observer] = make_observer
 
-    def controller(self, run: RunSettings) -> MpcController:
+    def controller(self, run: RunSettings) -> MpcController[Any]:
         """Return the controller of a run."""
         model = self.model(run.scenario.driveline, 1.0)
         observer = self.observer(run, model)

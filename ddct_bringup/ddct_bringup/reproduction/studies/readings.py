@@ -5,6 +5,7 @@
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
 from ddct_bringup.reproduction.runs import THESIS_SCENARIO, HeadlessRun, headless_run
 from ddct_bringup.reproduction.studies.changed_loops import model_without_actuator
@@ -41,7 +42,7 @@ class Reading:
     """Model in place of that of `knowledge`."""
     noise_rpm: float = 1.0
     """Standard deviation of the noise of the measured w_d in rpm."""
-    beside: Callable[[MpcController], Controller] = lambda controller: controller
+    beside: Callable[[MpcController[Any]], Controller] = lambda controller: controller
     """Function that wraps the controller to change C_fOL."""
     architecture: str = 'detailed'
 
@@ -74,7 +75,7 @@ def readings() -> Study:
 class OpenLoopNotModelled(Controller):
     """The MPC models its own torque alone, while C_fOL is added to it."""
 
-    def __init__(self, controller: MpcController) -> None:
+    def __init__(self, controller: MpcController[Any]) -> None:
         self._controller = controller
         self.preview_steps = controller.preview_steps
 
@@ -99,7 +100,7 @@ class OpenLoopOff(Controller):
     otherwise from the last torque.
     """
 
-    def __init__(self, controller: MpcController, *, from_zero: bool = False) -> None:
+    def __init__(self, controller: MpcController[Any], *, from_zero: bool = False) -> None:
         self._controller = controller
         self._from_zero = from_zero
         self.preview_steps = controller.preview_steps

@@ -34,7 +34,7 @@ class ControllerTables:
     """Constant vectors and matrices, by their names."""
 
 
-def exportable(controller: Controller, name: str) -> tuple[MpcController, Observer]:
+def exportable(controller: Controller, name: str) -> tuple[MpcController[Observer], Observer]:
     """Return controller and observer; raise ParameterError for features that the C lacks."""
     if not isinstance(controller, MpcController):
         raise ParameterError(
@@ -50,7 +50,7 @@ def exportable(controller: Controller, name: str) -> tuple[MpcController, Observ
     return controller, observer
 
 
-def controller_tables(controller: MpcController, observer: Observer) -> ControllerTables:
+def controller_tables(controller: MpcController[Observer], observer: Observer) -> ControllerTables:
     """Return the tables of a controller and observer from `exportable`."""
     settings, program, model = controller.settings, controller.program, observer.model
     form = dual_form(program.structure)
@@ -107,7 +107,7 @@ def _start(observer: Observer) -> dict[str, np.ndarray]:
 
 
 def _rows(
-    controller: MpcController, form: DualForm, shift: np.ndarray, *, limits_rate: bool
+    controller: MpcController[Observer], form: DualForm, shift: np.ndarray, *, limits_rate: bool
 ) -> dict[str, np.ndarray]:
     """Return the tables that have one entry or row for each constraint."""
     program, scale = controller.program, form.scale
