@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from ddct_bringup.scores.csv_text import signals_csv
-from ddct_plant.identification.from_log.names import TORQUES
+from ddct_plant.identification.from_log.stretch import TORQUES
 from ddct_plant.identification.identify import main
 from ddct_plant.measured.columns import TIME, own_columns
 from ddct_plant.measured.log import SPEEDS, MeasuredLog, read_log

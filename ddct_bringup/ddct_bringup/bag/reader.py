@@ -34,7 +34,7 @@ from ddct_plant.graph.topics import (
     all_topics,
     recorded_topics,
 )
-from ddct_plant.scenario.file import scenario_from_mapping
+from ddct_plant.scenario.content import scenario_from_mapping
 from ddct_plant.scenario.settings import RunSettings
 
 

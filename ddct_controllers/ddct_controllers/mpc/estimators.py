@@ -15,11 +15,8 @@ from ddct_controllers.mpc.estimate.observer import (
     unit_noise_gain,
 )
 from ddct_controllers.mpc.estimate.wear_observer import WearNoise, WearObserver
-from ddct_controllers.mpc.model.transmission_model import (
-    TransmissionModel,
-    offset_free_model,
-    transmission_model,
-)
+from ddct_controllers.mpc.model.disturbances import offset_free_model
+from ddct_controllers.mpc.model.transmission_model import TransmissionModel, transmission_model
 from ddct_controllers.mpc.program.settings import MOST
 from ddct_plant.base.options import REQUIRED, OptionGroup, option
 from ddct_plant.scenario.plant import initial_state

@@ -10,12 +10,8 @@ import pytest
 from ddct_controllers.interface import ControllerContext, Measurement
 from ddct_controllers.mpc.controller import divided
 from ddct_controllers.mpc.estimate.wear_observer import WearNoise
-from ddct_controllers.mpc.model.transmission_model import (
-    STATES,
-    offset_free_model,
-    transmission_model,
-    with_disturbances,
-)
+from ddct_controllers.mpc.model.disturbances import offset_free_model, with_disturbances
+from ddct_controllers.mpc.model.transmission_model import STATES, transmission_model
 from ddct_controllers.mpc.program.horizon import condense
 from ddct_controllers.mpc.qp.problem import QpSolution
 from ddct_controllers.mpc.variants import PREDICTIVE

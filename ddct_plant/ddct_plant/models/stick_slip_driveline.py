@@ -17,7 +17,6 @@ from ddct_plant.models.driveline import (
     PHASES,
     SLIPPING,
     DrivelineOutputs,
-    InitialState,
     PhaseEvent,
     driveline_outputs,
 )
@@ -27,6 +26,7 @@ from ddct_plant.models.driveline_model import (
     TORQUES,
     matrices_with_angles,
 )
+from ddct_plant.models.initial_state import InitialState
 from ddct_plant.models.parameters import DrivelineParameters, VehicleParameters
 
 CLUTCH, WHEEL = 0, 1

@@ -15,7 +15,6 @@ refused.
 import math
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import steps_in, time_of_step
@@ -95,7 +94,7 @@ def _with_mass(scenario: Scenario, origins: Origins) -> Scenario:
         return _with_line(heavy, f'{about} and {INERTIA} {given:g}')
     if given is None or of_inertia < of_mass or _origin(origins, RADIUS) > of_inertia:
         about = f'{INERTIA} moved from {before:g} to {derived:g}: {formula} and {MASS} {mass:g}'
-        return _with_line(_without(scenario, 'vehicle_inertia'), about)
+        return _with_line(_without_inertia(scenario), about)
     if not math.isclose(given, derived, rel_tol=AGREE):
         raise ParameterError(
             f'{MASS} is {mass:g} and {INERTIA} is {given:g}, but {formula}: give {INERTIA} '
@@ -123,7 +122,7 @@ def _with_gear(scenario: Scenario, origins: Origins) -> Scenario:
         return scenario
     of_gear, of_total = _origin(origins, 'gear'), _origin(origins, RATIO_KEY)
     if number is not None and of_gear > of_total:
-        return _with_line(_without(scenario, 'total_ratio'), f'{about} C635')
+        return _with_line(_without_ratio(scenario), f'{about} C635')
     if number is not None and of_gear == of_total:
         raise ParameterError(
             f'gear is {number} and {RATIO_KEY} is {given}, but that gear has {of_number}: '
@@ -140,10 +139,8 @@ def without_derived(scenario: Scenario) -> Scenario:
     """Return the scenario without given values that are those which mass and gear give."""
     section = scenario.given_driveline
     if section.vehicle_inertia == scenario.vehicle.inertia:
-        scenario = _without(scenario, 'vehicle_inertia')
-    return (
-        _without(scenario, 'total_ratio') if section.gear == C635.gear(scenario.gear) else scenario
-    )
+        scenario = _without_inertia(scenario)
+    return _without_ratio(scenario) if section.gear == C635.gear(scenario.gear) else scenario
 
 
 def gear_line(number: int | None, gear: EngagedGear) -> str:
@@ -151,10 +148,13 @@ def gear_line(number: int | None, gear: EngagedGear) -> str:
     return f'gear is now {number or "none"}, as {RATIO_KEY} is {gear}'
 
 
-def _without(scenario: Scenario, name: str) -> Scenario:
-    """Return the scenario without a value of its section `driveline`, which is then derived."""
-    left: dict[str, Any] = {name: None}
-    return replace(scenario, given_driveline=replace(scenario.given_driveline, **left))
+def _without_inertia(scenario: Scenario) -> Scenario:
+    section = replace(scenario.given_driveline, vehicle_inertia=None)
+    return replace(scenario, given_driveline=section)
+
+
+def _without_ratio(scenario: Scenario) -> Scenario:
+    return replace(scenario, given_driveline=replace(scenario.given_driveline, total_ratio=None))
 
 
 def _move_window(scenario: Scenario, start_before: float) -> Scenario:

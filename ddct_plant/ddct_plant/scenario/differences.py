@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from functools import cache
 from typing import Any
 
-from ddct_plant.scenario.file import flat, load_scenario, scenario_content, scenario_names
+from ddct_plant.scenario.content import flat, scenario_content
+from ddct_plant.scenario.file import load_scenario, scenario_names
 from ddct_plant.scenario.key_names import scenario_options
 from ddct_plant.scenario.scenario import Scenario
 

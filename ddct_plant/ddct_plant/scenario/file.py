@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Read, change and write scenarios as YAML; every unknown key and bad value is named."""
 
-import dataclasses
 import hashlib
 import importlib.resources
 import json
@@ -13,20 +12,16 @@ from pathlib import Path
 from typing import Any
 
 from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.base.options import Group, OptionGroup, group_of, key_of
 from ddct_plant.base.timebase import steps_in, time_of_step
-from ddct_plant.files.input_file import SCHEMA_KEY, located, require_schema_version, user_text
+from ddct_plant.files.input_file import SCHEMA_KEY, located, user_text
 from ddct_plant.files.yaml_text import dump_yaml, parse_yaml, parse_yaml_with_lines
 from ddct_plant.models.clutch import LINEAR
-from ddct_plant.scenario.consistency import FILE, SET, consistent, without_derived
+from ddct_plant.scenario.consistency import FILE, SET, consistent
+from ddct_plant.scenario.content import SCHEMA_VERSION, flat, scenario_content, scenario_of
 from ddct_plant.scenario.csv_profiles import with_points
-from ddct_plant.scenario.key_names import scenario_key_hint
 from ddct_plant.scenario.plant import require_driveline
 from ddct_plant.scenario.plausible import with_remarks
 from ddct_plant.scenario.scenario import Scenario
-
-SCHEMA_VERSION = 1
-"""Version of the keys of a scenario file; a file without a version has this one."""
 
 
 def scenario_names() -> list[str]:
@@ -73,7 +68,7 @@ class ScenarioFile:
         set_keys = [leaf for key, value in given for leaf in _put(content, key, value)]
         with located(f'scenario {self.name}', _in_file(self.lines, set_keys)):
             content = with_points(content, Path(self.name).parent, set_keys)
-            scenario = _scenario_of(content)
+            scenario = scenario_of(content)
             origins = dict.fromkeys(flat(content), FILE) | dict.fromkeys(set_keys, SET)
             scenario = with_remarks(consistent(scenario, origins, _number(start_before)))
             require_driveline(scenario.driveline, clutch)
@@ -102,19 +97,6 @@ def load_scenario(
 def is_packaged(name_or_file: str) -> bool:
     """Return whether it is the name of a packaged scenario rather than a file."""
     return '/' not in name_or_file and not name_or_file.endswith(('.yaml', '.yml'))
-
-
-def scenario_from_mapping(content: Mapping[str, Any]) -> Scenario:
-    """Return the scenario of nested mappings, the content that `scenario_to_yaml` has written."""
-    return without_derived(_scenario_of(content))
-
-
-def _scenario_of(content: Mapping[str, Any]) -> Scenario:
-    content = {'description': '', **content}
-    require_schema_version(content, SCHEMA_VERSION)
-    content.pop(SCHEMA_KEY, None)
-    content['controllers'] = _gains(content.get('controllers') or {})
-    return _build(Scenario, content)
 
 
 def scenario_to_yaml(scenario: Scenario) -> str:
@@ -180,16 +162,6 @@ def _put(content: dict[str, Any], key: str, value: Any) -> list[str]:
     return list(flat(value, key))
 
 
-def flat(content: Any, key: str = '') -> dict[str, Any]:
-    """Return every value within `content`, which is at `key`, by its dotted key."""
-    if not isinstance(content, Mapping):
-        return {key: content}
-    values: dict[str, Any] = {}
-    for name, value in content.items():
-        values |= flat(value, f'{key}.{name}' if key else str(name))
-    return values
-
-
 def _number(value: Any) -> float | None:
     """Return a replaced time of the file in s, None if it is no multiple of 10 ms or missing."""
     try:
@@ -204,68 +176,3 @@ def _in_file(lines: Mapping[str, int], set_keys: Iterable[str]) -> dict[str, int
     within = tuple(f'{key}{mark}' for key in given for mark in '.[')
     kept = {key: line for key, line in lines.items() if not key.startswith(within)}
     return kept | dict.fromkeys(given, 0)
-
-
-def _build(group: type[Group], content: Any) -> Group:
-    prefix = group.prefix
-    if not isinstance(content, Mapping):
-        raise ParameterError(f'{prefix.rstrip(".")}: give keys and values, not {content!r}')
-    fields = {key_of(field): field for field in dataclasses.fields(group)}
-    for name in content:
-        if name not in fields:
-            hint = scenario_key_hint(str(name), fields, prefix)
-            raise ParameterError(f'unknown key {prefix}{name}: {hint}')
-    for name, field in fields.items():
-        required = (
-            field.default is dataclasses.MISSING and field.default_factory is dataclasses.MISSING
-        )
-        if required and name not in content:
-            raise ParameterError(f'key {prefix}{name} is missing')
-    values = {fields[key].name: _value(fields[key], value) for key, value in content.items()}
-    return group(**values)
-
-
-def _value(field: dataclasses.Field[Any], value: Any) -> Any:
-    """Convert a YAML value to the type of the field: a group, a tuple, a whole number."""
-    group = group_of(field)
-    if group and (value is not None or field.default is not None):
-        return _build(group, value)
-    described = field.metadata.get('option')
-    if described and described.many and isinstance(value, list):
-        return tuple(value)
-    whole = described and described.kind is int and isinstance(value, float)
-    return int(value) if whole and value.is_integer() else value
-
-
-def _gains(content: Any) -> dict[str, dict[str, Any]]:
-    if not isinstance(content, Mapping) or not all(
-        isinstance(gains, Mapping) for gains in content.values()
-    ):
-        raise ParameterError('controllers: give gains by controller name, {pi: {...}}')
-    return {str(name): dict(gains) for name, gains in content.items()}
-
-
-def scenario_content(scenario: Scenario) -> dict[str, Any]:
-    """
-    Return the content of a file for the scenario, without optional keys at their defaults.
-
-    The section `driveline` has every value that models take, given or derived.
-    """
-    return _content(scenario) | {'driveline': scenario.driveline.values()}
-
-
-def _content(group: OptionGroup) -> dict[str, Any]:
-    content: dict[str, Any] = {}
-    for field in dataclasses.fields(group):
-        value = getattr(group, field.name)
-        if value is None or (field.metadata.get('left_out') and value == field.default):
-            continue
-        nested = isinstance(value, OptionGroup)
-        content[key_of(field)] = _content(value) if nested else _plain(value)
-    return content
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, dict):
-        return {key: _plain(item) for key, item in value.items() if item is not None}
-    return [_plain(item) for item in value] if isinstance(value, tuple) else value

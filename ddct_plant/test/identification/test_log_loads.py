@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from ddct_plant.identification.from_log.fit import fit_log
-from ddct_plant.identification.from_log.model import Sampling, Stretch, responses
-from ddct_plant.identification.from_log.names import TORQUES
+from ddct_plant.identification.from_log.model import Sampling, responses
+from ddct_plant.identification.from_log.stretch import TORQUES, Stretch
 from ddct_plant.measured.log import SPEEDS, MeasuredLog
 from ddct_plant.models.parameters import DrivelineParameters
 

@@ -12,7 +12,8 @@ from ddct_plant.models.driveline_model import clutch_to_slip, driveline_matrices
 from ddct_plant.models.gearbox import C635, EngagedGear, Gearbox
 from ddct_plant.models.parameters import DrivelineParameters, DrivelineSection
 from ddct_plant.models.static_torque import constant_slip_torque
-from ddct_plant.scenario.file import load_scenario, scenario_content, scenario_from_mapping
+from ddct_plant.scenario.content import scenario_content, scenario_from_mapping
+from ddct_plant.scenario.file import load_scenario
 
 GEAR = EngagedGear(8.0)
 THESIS = load_scenario('thesis')

@@ -27,7 +27,8 @@ from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace, discretise_zoh
 from ddct_plant.models.actuator import Actuator, ActuatorParameters
 from ddct_plant.models.clutch import LinearClutch
-from ddct_plant.models.driveline import Driveline, InitialState
+from ddct_plant.models.driveline import Driveline
+from ddct_plant.models.initial_state import InitialState
 from ddct_plant.models.parameters import VehicleParameters
 
 OMEGA = np.geomspace(1e-3, 300.0, 200)

@@ -16,16 +16,18 @@ from ddct_controllers.mpc.estimate.observer import (
     Observer,
     kalman_gain,
 )
+from ddct_controllers.mpc.model.disturbances import (
+    offset_free_model,
+    require_detectable,
+    with_disturbances,
+)
 from ddct_controllers.mpc.model.transmission_model import (
     ENGINE_TORQUE,
     LOAD_TORQUE,
     SLIP_SPEED,
     STATES,
     TORSION_SPEED,
-    offset_free_model,
-    require_detectable,
     transmission_model,
-    with_disturbances,
 )
 from ddct_controllers.mpc.variants import PREDICTIVE
 from ddct_plant.base.errors import ParameterError

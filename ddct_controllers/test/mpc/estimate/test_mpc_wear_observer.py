@@ -17,12 +17,12 @@ from ddct_controllers.mpc.estimate.wear_observer import (
     WearObserver,
     within_bounds,
 )
+from ddct_controllers.mpc.model.disturbances import offset_free_model
 from ddct_controllers.mpc.model.transmission_model import (
     ENGINE_TORQUE,
     LOAD_TORQUE,
     MEASURED,
     STATES,
-    offset_free_model,
     transmission_model,
 )
 from ddct_plant.models.actuator import Actuator

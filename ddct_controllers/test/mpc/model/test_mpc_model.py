@@ -13,6 +13,7 @@ from ddct_controllers.mpc.estimate.observer import (
     kalman_gain,
     unit_noise_gain,
 )
+from ddct_controllers.mpc.model.disturbances import offset_free_model, with_disturbances
 from ddct_controllers.mpc.model.transmission_model import (
     ENGINE_TORQUE,
     LOAD_TORQUE,
@@ -21,17 +22,16 @@ from ddct_controllers.mpc.model.transmission_model import (
     SLIP_SPEED,
     STATES,
     TORSION_SPEED,
-    offset_free_model,
     transmission_model,
-    with_disturbances,
     with_engine,
 )
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.models.actuator import Actuator
 from ddct_plant.models.clutch import LinearClutch
-from ddct_plant.models.driveline import Driveline, InitialState
+from ddct_plant.models.driveline import Driveline
 from ddct_plant.models.driveline_model import driveline_matrices
+from ddct_plant.models.initial_state import InitialState
 from ddct_plant.models.parameters import DrivelineParameters, VehicleParameters
 from ddct_plant.models.printed import ACTUATOR
 

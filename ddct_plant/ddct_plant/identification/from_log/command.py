@@ -11,11 +11,11 @@ from rich.console import Console
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.output_file import require_place, write_text
 from ddct_plant.identification.from_log.fit import fit_log
-from ddct_plant.identification.from_log.names import TORQUES
 from ddct_plant.identification.from_log.prediction import predict
 from ddct_plant.identification.from_log.report import content_of, print_fit
 from ddct_plant.identification.from_log.result import PARAMETERS
 from ddct_plant.identification.from_log.scenario import load_of, name_of, replay_of
+from ddct_plant.identification.from_log.stretch import TORQUES
 from ddct_plant.identification.from_log.stretches import stretches_of
 from ddct_plant.identification.from_log.verdict import reasons_against
 from ddct_plant.measured.columns import TIME, ColumnMap, load_columns, own_columns

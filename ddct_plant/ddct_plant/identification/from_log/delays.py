@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from ddct_plant.base.errors import DdctError
-from ddct_plant.identification.from_log.model import Sampling, Stretch, residuals_of
-from ddct_plant.identification.from_log.names import LOAD, TORQUES
+from ddct_plant.identification.from_log.model import Sampling, residuals_of
+from ddct_plant.identification.from_log.stretch import LOAD, TORQUES, Stretch
 from ddct_plant.measured.log import SPEEDS
 
 REFERENCE = SPEEDS[0]

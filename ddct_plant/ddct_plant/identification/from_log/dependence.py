@@ -9,8 +9,9 @@ import numpy as np
 import scipy
 
 from ddct_plant.identification.from_log.delays import left_of, sampling_of
-from ddct_plant.identification.from_log.model import NUISANCE, OUTPUTS, Stretch, responses
+from ddct_plant.identification.from_log.model import NUISANCE, OUTPUTS, responses
 from ddct_plant.identification.from_log.noise import NoiseModel
+from ddct_plant.identification.from_log.stretch import Stretch
 
 _LAGS = range(-3, 7)
 """Lags of the torques relative to a speed, in steps of the speeds."""

@@ -17,10 +17,9 @@ from ddct_plant.identification.from_log.delays import (
 )
 from ddct_plant.identification.from_log.dependence import Dependence, dependences
 from ddct_plant.identification.from_log.determined import not_determined
-from ddct_plant.identification.from_log.model import Stretch
-from ddct_plant.identification.from_log.names import LOAD, TORQUES
 from ddct_plant.identification.from_log.problem import LogProblem
 from ddct_plant.identification.from_log.result import PARAMETERS, SLIP, LogFit
+from ddct_plant.identification.from_log.stretch import LOAD, TORQUES, Stretch
 from ddct_plant.identification.from_log.stretches import (
     KnownLoad,
     stretches_of,

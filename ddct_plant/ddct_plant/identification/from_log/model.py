@@ -16,6 +16,7 @@ from typing import Any, cast
 import numpy as np
 import scipy
 
+from ddct_plant.identification.from_log.stretch import Stretch
 from ddct_plant.models.driveline_model import STATES, driveline_matrices
 from ddct_plant.models.gearbox import EngagedGear
 from ddct_plant.models.parameters import DrivelineParameters
@@ -31,30 +32,6 @@ _NEARLY_CONSTANT = 1e-6
 """Largest pole times time of a mode that is treated as an integrator."""
 _NOTHING = 1e-12
 """Size of an entry of a mode that counts as zero, over the largest entry."""
-
-
-@dataclass(frozen=True, eq=False)
-class Stretch:
-    """A part of a log without a gap: n samples of the speeds, and the torques on a finer grid."""
-
-    time_s: np.ndarray
-    """Times of the samples in s, (n,)."""
-    speeds: np.ndarray
-    """Speeds w_m, w_p, w_r in rad/s, (n, 3)."""
-    grid_s: np.ndarray
-    """Times of the grid in s, (m,), in equal steps from before the first sample to after the
-    last."""
-    torques: np.ndarray
-    """Torques C_m, C_f and the known part of C_load in N m on the grid, (m, 3)."""
-    bends: np.ndarray
-    """Second differences of the torques in N m over a step of their own rows, (m, 3); 0 if
-    held."""
-    held: tuple[bool, ...]
-    """Whether each torque is held until its next sample; the others are linear between samples."""
-    load_known: bool
-    """Whether C_load was measured; otherwise a constant is fitted to each stretch."""
-    known_s: tuple[float, float]
-    """First and last time in s at which all torques were measured."""
 
 
 @dataclass(frozen=True)

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ddct_plant.identification.from_log.delays import left_of, without_ends
-from ddct_plant.identification.from_log.model import Stretch
 from ddct_plant.identification.from_log.noise import whiteness
 from ddct_plant.identification.from_log.result import SLIP, LogFit
+from ddct_plant.identification.from_log.stretch import Stretch
 from ddct_plant.identification.from_log.stretches import white_noise
 from ddct_plant.measured.log import SPEEDS
 

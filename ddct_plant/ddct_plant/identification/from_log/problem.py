@@ -18,8 +18,9 @@ from ddct_plant.identification.from_log.delays import (
     sampling_of,
     without_ends,
 )
-from ddct_plant.identification.from_log.model import NUISANCE, Stretch, responses
+from ddct_plant.identification.from_log.model import NUISANCE, responses
 from ddct_plant.identification.from_log.noise import NoiseModel, fit_noise
+from ddct_plant.identification.from_log.stretch import Stretch
 from ddct_plant.measured.columns import MOST_DELAY_S
 from ddct_plant.models.parameters import DrivelineParameters
 

@@ -7,9 +7,9 @@ from typing import Any
 
 from ddct_plant.identification.coefficients import SYMBOLS_AND_UNITS
 from ddct_plant.identification.from_log.delays import REFERENCE
-from ddct_plant.identification.from_log.names import LOAD
 from ddct_plant.identification.from_log.prediction import Prediction
 from ddct_plant.identification.from_log.result import PARAMETERS, LogFit
+from ddct_plant.identification.from_log.stretch import LOAD
 from ddct_plant.identification.from_log.verdict import doubts
 from ddct_plant.measured.log import MeasuredLog
 from ddct_plant.program.table import Table, print_table, text_or_dash

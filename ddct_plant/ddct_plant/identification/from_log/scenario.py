@@ -6,7 +6,6 @@ import dataclasses
 import math
 import re
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -22,7 +21,8 @@ from ddct_plant.models.load import RoadLoad
 from ddct_plant.models.parameters import DrivelineSection
 from ddct_plant.scenario.consistency import gear_line
 from ddct_plant.scenario.csv_profiles import MOST_ROWS
-from ddct_plant.scenario.scenario import InitialSpeeds, Scenario
+from ddct_plant.scenario.initial_speeds import InitialSpeeds
+from ddct_plant.scenario.scenario import Scenario
 
 STEEPEST_RAD = 0.6
 """Largest slope angle in rad of a scenario."""
@@ -64,6 +64,7 @@ def replay_of(base: Scenario, name: str, fit: LogFit, log: MeasuredLog) -> Scena
     start_s, steps = _span(log, fit)
     moved = _with_car(base, fit)
     moved = _with_window(moved, time_of_step(steps))
+    profile, adjusted = _torque(moved, fit, log, start_s, steps)
     return dataclasses.replace(
         moved,
         name=name,
@@ -74,7 +75,8 @@ def replay_of(base: Scenario, name: str, fit: LogFit, log: MeasuredLog) -> Scena
         ),
         duration_s=time_of_step(steps),
         initial=_initial(base, fit, log, start_s),
-        **_torque(moved, fit, log, start_s, steps),
+        engine=profile,
+        adjusted=adjusted,
     )
 
 
@@ -88,7 +90,7 @@ def _span(log: MeasuredLog, fit: LogFit) -> tuple[float, int]:
 
 def _torque(
     base: Scenario, fit: LogFit, log: MeasuredLog, start_s: float, steps: int
-) -> dict[str, Any]:
+) -> tuple[TorqueProfile, tuple[str, ...]]:
     """
     Return the profile of C_m, its means over whole periods, and the lines in `adjusted`.
 
@@ -114,7 +116,7 @@ def _torque(
         tuple(time_of_step(int(each)) for each in periods),
         tuple(np.maximum(means, 0.0).tolist()),
     )
-    return {'engine': profile, 'adjusted': tuple(adjusted)}
+    return profile, tuple(adjusted)
 
 
 def _initial(base: Scenario, fit: LogFit, log: MeasuredLog, start_s: float) -> InitialSpeeds:

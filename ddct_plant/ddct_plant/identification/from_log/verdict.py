@@ -6,11 +6,10 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from ddct_plant.identification.from_log.model import Stretch
-from ddct_plant.identification.from_log.names import TORQUES
 from ddct_plant.identification.from_log.prediction import Prediction
 from ddct_plant.identification.from_log.problem import DAMPINGS
 from ddct_plant.identification.from_log.result import NO_DAMPING, LogFit
+from ddct_plant.identification.from_log.stretch import TORQUES, Stretch
 from ddct_plant.measured.columns import MOST_DELAY_S
 from ddct_plant.measured.log import SPEEDS
 

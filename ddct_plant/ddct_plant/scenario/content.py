@@ -1,0 +1,106 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""A scenario from the content of a file, nested mappings, and back."""
+
+import dataclasses
+from collections.abc import Mapping
+from typing import Any
+
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.options import Group, OptionGroup, group_of, key_of
+from ddct_plant.files.input_file import SCHEMA_KEY, require_schema_version
+from ddct_plant.scenario.consistency import without_derived
+from ddct_plant.scenario.key_names import scenario_key_hint
+from ddct_plant.scenario.scenario import Scenario
+
+SCHEMA_VERSION = 1
+"""Version of the keys of a scenario file; a file without a version has this one."""
+
+
+def scenario_from_mapping(content: Mapping[str, Any]) -> Scenario:
+    """Return the scenario of nested mappings, the content that `scenario_to_yaml` has written."""
+    return without_derived(scenario_of(content))
+
+
+def scenario_of(content: Mapping[str, Any]) -> Scenario:
+    """Return the scenario of nested mappings, with given values as they are."""
+    content = {'description': '', **content}
+    require_schema_version(content, SCHEMA_VERSION)
+    content.pop(SCHEMA_KEY, None)
+    content['controllers'] = _gains(content.get('controllers') or {})
+    return _build(Scenario, content)
+
+
+def flat(content: Any, key: str = '') -> dict[str, Any]:
+    """Return every value within `content`, which is at `key`, by its dotted key."""
+    if not isinstance(content, Mapping):
+        return {key: content}
+    values: dict[str, Any] = {}
+    for name, value in content.items():
+        values |= flat(value, f'{key}.{name}' if key else str(name))
+    return values
+
+
+def _build(group: type[Group], content: Any) -> Group:
+    prefix = group.prefix
+    if not isinstance(content, Mapping):
+        raise ParameterError(f'{prefix.rstrip(".")}: give keys and values, not {content!r}')
+    fields = {key_of(field): field for field in dataclasses.fields(group)}
+    for name in content:
+        if name not in fields:
+            hint = scenario_key_hint(str(name), fields, prefix)
+            raise ParameterError(f'unknown key {prefix}{name}: {hint}')
+    for name, field in fields.items():
+        required = (
+            field.default is dataclasses.MISSING and field.default_factory is dataclasses.MISSING
+        )
+        if required and name not in content:
+            raise ParameterError(f'key {prefix}{name} is missing')
+    values = {fields[key].name: _value(fields[key], value) for key, value in content.items()}
+    return group(**values)
+
+
+def _value(field: dataclasses.Field[Any], value: Any) -> Any:
+    """Convert a YAML value to the type of the field: a group, a tuple, a whole number."""
+    group = group_of(field)
+    if group and (value is not None or field.default is not None):
+        return _build(group, value)
+    described = field.metadata.get('option')
+    if described and described.many and isinstance(value, list):
+        return tuple(value)
+    whole = described and described.kind is int and isinstance(value, float)
+    return int(value) if whole and value.is_integer() else value
+
+
+def _gains(content: Any) -> dict[str, dict[str, Any]]:
+    if not isinstance(content, Mapping) or not all(
+        isinstance(gains, Mapping) for gains in content.values()
+    ):
+        raise ParameterError('controllers: give gains by controller name, {pi: {...}}')
+    return {str(name): dict(gains) for name, gains in content.items()}
+
+
+def scenario_content(scenario: Scenario) -> dict[str, Any]:
+    """
+    Return the content of a file for the scenario, without optional keys at their defaults.
+
+    The section `driveline` has every value that models take, given or derived.
+    """
+    return _content(scenario) | {'driveline': scenario.driveline.values()}
+
+
+def _content(group: OptionGroup) -> dict[str, Any]:
+    content: dict[str, Any] = {}
+    for field in dataclasses.fields(group):
+        value = getattr(group, field.name)
+        if value is None or (field.metadata.get('left_out') and value == field.default):
+            continue
+        nested = isinstance(value, OptionGroup)
+        content[key_of(field)] = _content(value) if nested else _plain(value)
+    return content
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _plain(item) for key, item in value.items() if item is not None}
+    return [_plain(item) for item in value] if isinstance(value, tuple) else value
