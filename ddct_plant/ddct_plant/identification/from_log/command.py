@@ -12,7 +12,7 @@ from ddct_plant.base.errors import DdctError
 from ddct_plant.files.output_file import require_place, write_text
 from ddct_plant.identification.from_log.fit import fit_log
 from ddct_plant.identification.from_log.prediction import predict
-from ddct_plant.identification.from_log.report import content_of, print_fit
+from ddct_plant.identification.from_log.report import LogFitReport, content_of, print_fit
 from ddct_plant.identification.from_log.result import PARAMETERS
 from ddct_plant.identification.from_log.scenario import load_of, name_of, replay_of
 from ddct_plant.identification.from_log.stretch import TORQUES
@@ -82,8 +82,8 @@ def identify_log(options: argparse.Namespace) -> int:
         fit = fit_log(fitted, base.driveline, known_load, options.fix, known_delays)
     predictions = predict(fit, stretches_of(held_out, known_load))
     reasons = reasons_against(fit, predictions, stretches_of(fitted, known_load))
-    content = content_of(fit, predictions, reasons, fitted, held_out)
-    show_and_write(options.json, content, lambda: print_fit(content))
+    report = LogFitReport(fit, predictions, reasons, fitted, held_out)
+    show_and_write(options.json, content_of(report), lambda: print_fit(report))
     if reasons and not options.force:
         kept = '; no scenario is written' if options.out else ''
         raise DdctError(

@@ -3,6 +3,7 @@
 """A fit to a log as JSON and as tables."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from ddct_plant.identification.coefficients import SYMBOLS_AND_UNITS
@@ -15,88 +16,143 @@ from ddct_plant.measured.log import MeasuredLog
 from ddct_plant.program.table import Table, print_table, text_or_dash
 
 
-def content_of(
-    fit: LogFit,
-    predictions: Sequence[Prediction],
-    reasons: Sequence[str],
-    fitted: MeasuredLog,
-    held_out: MeasuredLog,
-) -> dict[str, Any]:
-    """Return the result for tables and JSON; null for a value that does not exist."""
-    rows, used = [], fit.parameters.values()
-    for name in PARAMETERS:
-        symbol, unit = SYMBOLS_AND_UNITS[name]
-        interval = fit.interval(name)
-        state = 'fitted' if interval else 'not determined' if name in fit.undetermined else 'fixed'
-        lowest, highest = interval or (None, None)
-        value = None if state == 'not determined' else fit.values[name]
-        rows.append(
-            {'name': name, 'symbol': symbol, 'value': value, 'lowest': lowest, 'highest': highest}
-            | {'unit': unit, 'state': state, 'used': used[name]}
-        )
+@dataclass(frozen=True)
+class ParameterRow:
+    """One parameter of the driveline, in SI units."""
+
+    name: str
+    """Name of its key in a scenario."""
+    symbol: str
+    """Symbol in the thesis."""
+    value: float | None
+    """Value of the fit; None where the log does not determine it."""
+    lowest: float | None
+    """Lower end of the 95 % interval; None for a parameter that was not fitted."""
+    highest: float | None
+    """Upper end of that interval."""
+    unit: str
+    state: str
+    """`fitted`, `fixed` or `not determined`."""
+    used: float
+    """Value in the new scenario."""
+
+
+@dataclass(frozen=True)
+class DelayRow:
+    """Delay of one signal of the log relative to the engine speed."""
+
+    signal: str
+    """Name of the signal."""
+    delay_s: float | None
+    """Delay in s; None where the log does not determine it."""
+    lowest_s: float | None
+    """Lower end of the 95 % interval in s; None for a delay that was not fitted."""
+    highest_s: float | None
+    """Upper end of that interval in s."""
+    state: str
+    """`fitted`, `given`, `reference` or `not determined`."""
+
+
+@dataclass(frozen=True)
+class LogFitReport:
+    """A fit to a log, its prediction of held-out data, and the reasons to refuse it."""
+
+    fit: LogFit
+    predictions: Sequence[Prediction]
+    """Prediction of each speed and of the slip."""
+    reasons: Sequence[str]
+    """Reasons to refuse the fit, as sentences; none to accept it."""
+    fitted: MeasuredLog
+    """Log that was fitted."""
+    held_out: MeasuredLog
+    """Log that was predicted."""
+
+    @property
+    def notes(self) -> list[str]:
+        """Notes on the limits of the fit, as sentences."""
+        return doubts(self.fit, self.predictions)
+
+    @property
+    def parameters(self) -> list[ParameterRow]:
+        """Every parameter of the driveline."""
+        fit, rows, used = self.fit, [], self.fit.parameters.values()
+        for name in PARAMETERS:
+            symbol, unit = SYMBOLS_AND_UNITS[name]
+            interval = fit.interval(name)
+            weak = name in fit.undetermined
+            state = 'fitted' if interval else 'not determined' if weak else 'fixed'
+            value = None if state == 'not determined' else fit.values[name]
+            lowest, highest = interval or (None, None)
+            row = ParameterRow(name, symbol, value, lowest, highest, unit, state, used[name])
+            rows.append(row)
+        return rows
+
+    @property
+    def delays(self) -> list[DelayRow]:
+        """Delay of every signal of the log."""
+        fit, rows = self.fit, []
+        for name, value in fit.delays.items():
+            interval = fit.interval(name)
+            state = 'fitted' if interval else 'given'
+            if name in fit.undetermined:
+                state = 'not determined'
+            elif name == REFERENCE and not value:
+                state = 'reference'
+            delay = None if name in fit.undetermined else value
+            lowest, highest = interval or (None, None)
+            rows.append(DelayRow(name, delay, lowest, highest, state))
+        return rows
+
+
+def content_of(report: LogFitReport) -> dict[str, Any]:
+    """Return the content of the JSON file; null for a value that does not exist."""
+    fit, fitted, held_out = report.fit, report.fitted, report.held_out
     return {
-        'verdict': 'refused' if reasons else 'accepted',
-        'reasons': list(reasons),
+        'verdict': 'refused' if report.reasons else 'accepted',
+        'reasons': list(report.reasons),
         'log': str(fitted.path),
         'sha256': fitted.digest,
-        'fitted_s': [float(fitted.time_s[0]), float(fitted.time_s[-1])],
-        'parameters': rows,
-        'delays': _delays(fit),
+        'fitted_s': list(_span(fitted)),
+        'parameters': [vars(row) for row in report.parameters],
+        'delays': [vars(row) for row in report.delays],
         'load_torque_n_m': fit.load_torque,
         'load_torque_measured': LOAD in fitted.signals,
         'noise_lags': fit.noise.order,
         'held_out': {
             'log': str(held_out.path),
-            'time_s': [float(held_out.time_s[0]), float(held_out.time_s[-1])],
-            'signals': [vars(each) | {'white': each.white} for each in predictions],
+            'time_s': list(_span(held_out)),
+            'signals': [vars(each) | {'white': each.white} for each in report.predictions],
         },
-        'notes': doubts(fit, predictions),
+        'notes': report.notes,
     }
 
 
-def _delays(fit: LogFit) -> list[dict[str, Any]]:
-    rows = []
-    for name, value in fit.delays.items():
-        interval = fit.interval(name)
-        state = 'fitted' if interval else 'given'
-        if name in fit.undetermined:
-            state = 'not determined'
-        elif name == REFERENCE and not value:
-            state = 'reference'
-        lowest, highest = interval or (None, None)
-        rows.append(
-            {
-                'signal': name,
-                'delay_s': None if name in fit.undetermined else value,
-                'lowest_s': lowest,
-                'highest_s': highest,
-                'state': state,
-            }
-        )
-    return rows
+def _span(log: MeasuredLog) -> tuple[float, float]:
+    """Return the first and the last time of a log in s."""
+    return float(log.time_s[0]), float(log.time_s[-1])
 
 
-def print_fit(content: dict[str, Any]) -> None:
+def print_fit(report: LogFitReport) -> None:
     """Print the result as tables, with reasons against the fit first."""
-    if content['reasons']:
+    if report.reasons:
         print('REFUSED. Do not use this fit:')
-        for reason in content['reasons']:
+        for reason in report.reasons:
             print(f'- {reason}')
-    begin, end = content['fitted_s']
+    begin, end = _span(report.fitted)
     print_table(
         Table(
-            f'Driveline from {content["log"]}, {begin:g} to {end:g} s; intervals of 95 %',
+            f'Driveline from {report.fitted.path}, {begin:g} to {end:g} s; intervals of 95 %',
             ('parameter', 'symbol', 'value', 'lowest', 'highest', 'unit', 'state', 'new scenario'),
             [
                 (
-                    row['name'],
-                    row['symbol'],
-                    *(text_or_dash(row[key], '.5g') for key in ('value', 'lowest', 'highest')),
-                    row['unit'],
-                    row['state'],
-                    text_or_dash(row['used'], '.5g'),
+                    row.name,
+                    row.symbol,
+                    *(text_or_dash(each, '.5g') for each in (row.value, row.lowest, row.highest)),
+                    row.unit,
+                    row.state,
+                    text_or_dash(row.used, '.5g'),
                 )
-                for row in content['parameters']
+                for row in report.parameters
             ],
         )
     )
@@ -106,36 +162,36 @@ def print_fit(content: dict[str, Any]) -> None:
             ('signal', 'delay ms', 'lowest', 'highest', 'state'),
             [
                 (
-                    row['signal'],
+                    row.signal,
                     *(
-                        text_or_dash(None if row[key] is None else 1e3 * row[key], '.3f')
-                        for key in ('delay_s', 'lowest_s', 'highest_s')
+                        text_or_dash(None if each is None else 1e3 * each, '.3f')
+                        for each in (row.delay_s, row.lowest_s, row.highest_s)
                     ),
-                    row['state'],
+                    row.state,
                 )
-                for row in content['delays']
+                for row in report.delays
             ],
         )
     )
-    begin, end = content['held_out']['time_s']
+    begin, end = _span(report.held_out)
     print_table(
         Table(
-            f'Prediction of {content["held_out"]["log"]}, {begin:g} to {end:g} s',
+            f'Prediction of {report.held_out.path}, {begin:g} to {end:g} s',
             ('signal', 'RMS rad/s', 'NRMSE', 'whiteness p', 'torque p', 'residual'),
             [
                 (
-                    each['signal'],
-                    text_or_dash(each['rms_rad_s'], '.3g'),
-                    text_or_dash(each['nrmse'], '.3g'),
-                    text_or_dash(each['whiteness_p'], '.2g'),
-                    text_or_dash(each['torque_p'], '.2g'),
-                    {None: '-', True: 'noise', False: 'not noise'}[each['white']],
+                    each.signal,
+                    text_or_dash(each.rms_rad_s, '.3g'),
+                    text_or_dash(each.nrmse, '.3g'),
+                    text_or_dash(each.whiteness_p, '.2g'),
+                    text_or_dash(each.torque_p, '.2g'),
+                    {None: '-', True: 'noise', False: 'not noise'}[each.white],
                 )
-                for each in content['held_out']['signals']
+                for each in report.predictions
             ],
         )
     )
-    if content['load_torque_n_m'] is not None:
-        print(f'Rolling resistance and slope: {content["load_torque_n_m"]:.4g} N m at the wheels.')
-    for note in content['notes']:
+    if report.fit.load_torque is not None:
+        print(f'Rolling resistance and slope: {report.fit.load_torque:.4g} N m at the wheels.')
+    for note in report.notes:
         print(f'Note: {note}.')
