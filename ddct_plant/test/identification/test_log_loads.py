@@ -10,7 +10,7 @@ import pytest
 
 from ddct_plant.identification.from_log.fit import fit_log
 from ddct_plant.identification.from_log.model import Sampling, responses
-from ddct_plant.identification.from_log.stretch import TORQUES, Stretch
+from ddct_plant.identification.from_log.stretch import TORQUES, Stretch, slip_of
 from ddct_plant.measured.log import SPEEDS, MeasuredLog
 from ddct_plant.models.parameters import DrivelineParameters
 
@@ -62,3 +62,13 @@ def test_a_stretch_counts_by_its_length() -> None:
     fit = fit_log(log, DrivelineParameters(), lambda wheels: np.zeros(len(wheels)), fixed, on_time)
     assert fit.load_torque == pytest.approx(np.average(LOADS_N_M, weights=SAMPLES), abs=2.0)
     assert abs(fit.load_torque - np.mean(LOADS_N_M)) > 90.0
+
+
+def test_columns_of_a_stretch_are_found_by_name() -> None:
+    one, two = (np.arange(3.0 * n).reshape(n, 3) for n in (2, 4))
+    stretch = Stretch(
+        np.arange(2.0), one, np.arange(4.0), two, two, (False,) * 3, True, (0.0, 1.0)
+    )
+    assert stretch.speed('wheel_speed').tolist() == [2.0, 5.0]
+    assert stretch.torque('clutch_torque').tolist() == [1.0, 4.0, 7.0, 10.0]
+    assert slip_of(stretch.speeds).tolist() == [-1.0, -1.0]

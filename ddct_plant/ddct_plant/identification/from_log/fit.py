@@ -19,7 +19,13 @@ from ddct_plant.identification.from_log.dependence import Dependence, dependence
 from ddct_plant.identification.from_log.determined import not_determined
 from ddct_plant.identification.from_log.problem import LogProblem
 from ddct_plant.identification.from_log.result import PARAMETERS, SLIP, LogFit
-from ddct_plant.identification.from_log.stretch import LOAD, TORQUES, Stretch
+from ddct_plant.identification.from_log.stretch import (
+    LOAD,
+    SPEED_COLUMNS,
+    TORQUES,
+    Stretch,
+    slip_of,
+)
 from ddct_plant.identification.from_log.stretches import (
     KnownLoad,
     stretches_of,
@@ -111,8 +117,10 @@ def _between(
 def _gear(log: MeasuredLog, stretches: Sequence[Stretch]) -> EngagedGear:
     """Return the gear of the median of w_p over w_r; raise DdctError where no car has it."""
     speeds = np.vstack([each.speeds for each in stretches])
-    rolling = speeds[np.abs(speeds[:, 2]) > _ROLLING]
-    ratio = float(np.median(rolling[:, 1] / rolling[:, 2])) if len(rolling) else math.nan
+    shaft, wheel = speeds[:, SPEED_COLUMNS.places('shaft_speed', 'wheel_speed')].T
+    rolling = np.abs(wheel) > _ROLLING
+    ratios = shaft[rolling] / wheel[rolling]
+    ratio = float(np.median(ratios)) if len(ratios) else math.nan
     least, most = RATIOS_OF_CARS
     if not least <= ratio <= most:
         raise DdctError(
@@ -151,5 +159,5 @@ def _result(
 
 def _spreads(stretches: Sequence[Stretch]) -> dict[str, float]:
     speeds = np.vstack([each.speeds for each in stretches])
-    spreads = np.column_stack([speeds, speeds[:, 0] - speeds[:, 1]]).std(axis=0).tolist()
+    spreads = np.column_stack([speeds, slip_of(speeds)]).std(axis=0).tolist()
     return dict(zip((*SPEEDS, SLIP), spreads, strict=True))

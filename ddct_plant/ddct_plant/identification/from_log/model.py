@@ -16,12 +16,12 @@ from typing import Any, cast
 import numpy as np
 import scipy
 
-from ddct_plant.identification.from_log.stretch import Stretch
+from ddct_plant.identification.from_log.stretch import SPEED_COLUMNS, Stretch
 from ddct_plant.models.driveline_model import STATES, driveline_matrices
 from ddct_plant.models.gearbox import EngagedGear
 from ddct_plant.models.parameters import DrivelineParameters
 
-_MEASURED = STATES.places('engine_speed', 'shaft_speed', 'wheel_speed')
+_MEASURED = STATES.places(*SPEED_COLUMNS)
 OUTPUTS = len(_MEASURED)
 """Number of outputs: w_m, w_p, w_r."""
 NUISANCE = len(STATES) + 1

@@ -11,7 +11,7 @@ import numpy as np
 from ddct_plant.identification.from_log.delays import left_of, without_ends
 from ddct_plant.identification.from_log.noise import whiteness
 from ddct_plant.identification.from_log.result import SLIP, LogFit
-from ddct_plant.identification.from_log.stretch import Stretch
+from ddct_plant.identification.from_log.stretch import Stretch, slip_of
 from ddct_plant.identification.from_log.stretches import white_noise
 from ddct_plant.measured.log import SPEEDS
 
@@ -59,7 +59,7 @@ def predict(fit: LogFit, stretches: Sequence[Stretch]) -> list[Prediction]:
     left = [left_of(values, each)[0] for each in stretches]
     p_values = whiteness([fit.noise.white(each) for each in left])
     measured, residual = (
-        np.column_stack([speeds, speeds[:, 0] - speeds[:, 1]])
+        np.column_stack([speeds, slip_of(speeds)])
         for speeds in (np.vstack([each.speeds for each in stretches]), np.vstack(left))
     )
     found = []

@@ -20,7 +20,12 @@ from ddct_plant.identification.from_log.delays import (
 )
 from ddct_plant.identification.from_log.model import NUISANCE, responses
 from ddct_plant.identification.from_log.noise import NoiseModel, fit_noise
-from ddct_plant.identification.from_log.stretch import Stretch
+from ddct_plant.identification.from_log.stretch import (
+    SPEED_COLUMNS,
+    TORQUE_COLUMNS,
+    TORQUES,
+    Stretch,
+)
 from ddct_plant.measured.columns import MOST_DELAY_S
 from ddct_plant.models.parameters import DrivelineParameters
 
@@ -63,8 +68,10 @@ class LogProblem:
         self._whole, self.free = stretches, free
         self._start: dict[str, float] = start.values() | dict(delays)
         self._at: Mapping[str, float] = self._start
-        torques = np.concatenate([each.torques[:, :2].ravel() for each in stretches])
-        speeds = np.concatenate([each.speeds[:, :2].ravel() for each in stretches])
+        driving = TORQUE_COLUMNS.places(*TORQUES)
+        damped = SPEED_COLUMNS.places('engine_speed', 'shaft_speed')
+        torques = np.concatenate([each.torques[:, driving].ravel() for each in stretches])
+        speeds = np.concatenate([each.speeds[:, damped].ravel() for each in stretches])
         self.damping = float(np.sqrt(np.mean(torques**2) / np.mean(speeds**2)))
         spread = np.vstack([np.diff(each.speeds, axis=0) for each in stretches]).std(axis=0)
         self.noise = NoiseModel(np.zeros((3, 0)), np.diag(np.maximum(spread, _LEAST_SPREAD)))

@@ -13,6 +13,7 @@ from ddct_plant.base.errors import LONGEST_NAME, DdctError
 from ddct_plant.base.timebase import PERIOD_S, time_of_step
 from ddct_plant.identification.from_log.delays import left_of, without_ends
 from ddct_plant.identification.from_log.result import NO_DAMPING, LogFit
+from ddct_plant.identification.from_log.stretch import SPEED_COLUMNS, slip_of
 from ddct_plant.identification.from_log.stretches import KnownLoad, stretches_of
 from ddct_plant.measured.log import MeasuredLog
 from ddct_plant.models.engine import TorqueProfile
@@ -124,16 +125,13 @@ def _initial(base: Scenario, fit: LogFit, log: MeasuredLog, start_s: float) -> I
     values = fit.values | fit.delays | fit.bends
     (first, *_) = without_ends(stretches_of(log, load_of(base)), values)
     left = left_of(values, first)[0]
+    speeds = first.speeds - left
     at = [
-        float(
-            np.interp(
-                start_s + fit.delays[name], first.time_s, first.speeds[:, column] - left[:, column]
-            )
-        )
-        for column, name in enumerate(('engine_speed', 'shaft_speed'))
+        float(np.interp(start_s + fit.delays[name], first.time_s, speeds[:, SPEED_COLUMNS[name]]))
+        for name in ('engine_speed', 'shaft_speed')
     ]
     engine, shaft = (max(each, 0.0) for each in at)
-    if abs(engine - shaft) <= float(np.std(left[:, 0] - left[:, 1])):
+    if abs(engine - shaft) <= float(np.std(slip_of(left))):
         engine = shaft = (engine + shaft) / 2.0
     return InitialSpeeds(engine_speed_rad_s=engine, shaft_speed_rad_s=shaft)
 

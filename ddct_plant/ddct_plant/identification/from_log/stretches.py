@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from ddct_plant.base.errors import DdctError
-from ddct_plant.identification.from_log.stretch import LOAD, TORQUES, Stretch
+from ddct_plant.identification.from_log.stretch import LOAD, SPEED_COLUMNS, TORQUES, Stretch
 from ddct_plant.measured.columns import MOST_DELAY_S
 from ddct_plant.measured.log import SPEEDS, MeasuredLog
 
@@ -116,8 +116,8 @@ def _stretch(
     before = int(np.ceil(2.0 * MOST_DELAY_S / step))
     after = before + int(np.ceil((time_s[-1] - time_s[0]) / step - 1e-6))
     grid_s = time_s[0] + step * np.arange(-before, after + 1)
-    known = LOAD in log.signals
-    load = log.at(LOAD, grid_s) if known else known_load(np.interp(grid_s, time_s, speeds[:, 2]))
+    known, wheel_speed = LOAD in log.signals, speeds[:, SPEED_COLUMNS['wheel_speed']]
+    load = log.at(LOAD, grid_s) if known else known_load(np.interp(grid_s, time_s, wheel_speed))
     bends = [_bend(log, name, grid_s) for name in TORQUES]
     return Stretch(
         time_s=time_s,

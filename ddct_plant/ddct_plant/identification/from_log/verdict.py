@@ -57,7 +57,7 @@ def reasons_against(
 
 
 def _speed_reasons(stretches: Sequence[Stretch]) -> Iterator[str]:
-    median = float(np.median(np.concatenate([each.speeds[:, 0] for each in stretches])))
+    median = float(np.median(np.concatenate([each.speed('engine_speed') for each in stretches])))
     lowest, highest = ENGINE_RAD_S
     if not lowest <= median <= highest:
         yield (
@@ -68,7 +68,7 @@ def _speed_reasons(stretches: Sequence[Stretch]) -> Iterator[str]:
 
 def _sign_reasons(stretches: Sequence[Stretch]) -> Iterator[str]:
     """Compare the sign of the engine's acceleration with that of C_m - C_f."""
-    work = [(np.diff(each.speeds[:, 0]), np.diff(_impulse(each))) for each in stretches]
+    work = [(np.diff(each.speed('engine_speed')), np.diff(_impulse(each))) for each in stretches]
     change, impulse = (np.concatenate(parts) for parts in zip(*work, strict=True))
     smooth = np.ones(_SMOOTHED) / _SMOOTHED
     smoothed = [np.convolve(each, smooth, 'valid') for each in (change, impulse)]
@@ -85,7 +85,7 @@ def _sign_reasons(stretches: Sequence[Stretch]) -> Iterator[str]:
 def _impulse(stretch: Stretch) -> np.ndarray:
     """Return the integral of C_m - C_f over time in N m s at the samples, (n,)."""
     step = stretch.grid_s[1] - stretch.grid_s[0]
-    excess = stretch.torques[:, 0] - stretch.torques[:, 1]
+    excess = stretch.torque('engine_torque') - stretch.torque('clutch_torque')
     return np.interp(stretch.time_s, stretch.grid_s, np.cumsum(excess) * step)
 
 
