@@ -113,8 +113,14 @@ $(EXTRAS_INSTALLED): .venv/.%: requirements-%.txt $(VENV_MADE)
 	@$(BIN)/uv pip install --quiet --python $(BIN)/python --require-hashes -r $<
 	@touch $@
 
-bench: setup .venv/.bench
-	@$(SOURCED) $(BIN)/python tests/bench/run.py
+# Ratios to references measured in turn: BASE=REV adds that commit, WHAT='graph suite' chooses by name.
+# A peer that cannot be installed is not measured.
+bench: setup
+	@$(MAKE) --no-print-directory --silent .venv/.bench \
+	    || echo 'make: without requirements-bench.txt its peers are not measured' >&2
+	@$(SOURCED) PYTHONPATH="$(CURDIR)/tests:$$PYTHONPATH" $(BIN)/python -P -m bench $(WHAT) \
+	    $(if $(BASE),--base '$(BASE)') $(if $(ROUNDS),--rounds '$(ROUNDS)') \
+	    $(if $(JSON),--json '$(JSON)')
 
 # One numpy and one scipy for all three Pythons, so that figures do not depend on the Python.
 COMPILE := $(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes \

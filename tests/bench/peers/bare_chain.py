@@ -5,10 +5,12 @@ The graph's topics, hops and processes in bare rclpy, doing no work: the floor o
 
 Each node publishes its constant messages as soon as it has received its inputs, with the same QoS,
 executor and message sizes as the real graph. Run one node per process with `python bare_chain.py
-NODE STEPS [PATIENCE_S]`, or all in one process with NODE `all`; `driveline` prints microseconds
-per step. Nothing is sent twice, so no node may miss the first message: see `_announce_when_ready`.
+NODE STEPS [PATIENCE_S]`, or all in one process with NODE `all`; `driveline` prints the time per
+step. Nothing is sent twice, so no node may miss the first message: see `_announce_when_ready`.
 """
 
+import argparse
+import json
 import sys
 import time
 from collections.abc import Callable, Sequence
@@ -65,6 +67,31 @@ WIRING: dict[str, tuple[Sequence[str], Sequence[str]]] = {
     'driveline': (['engine/torque', 'load/torque', 'clutch/torque', 'recorder/ack'], TICK),
 }
 """Topics that a node subscribes to and topics that it publishes, by node, as in the real graph."""
+Wiring = dict[str, tuple[list[str], list[str]]]
+
+
+def wiring_with(more_nodes: int = 0, more_topics: int = 0) -> Wiring:
+    """
+    Return the wiring with further nodes `more_0`, ... and with further topics of the driveline.
+
+    A further node answers `engine/torque` on a topic of its own, which the driveline waits for.
+    The recorder subscribes to all of them.
+    """
+    wired = {name: (list(inputs), list(outputs)) for name, (inputs, outputs) in WIRING.items()}
+    driveline = wired.pop('driveline')
+    for i in range(more_nodes):
+        wired[f'more_{i}'] = (['engine/torque'], [f'more/node_{i}'])
+        driveline[0].append(f'more/node_{i}')
+    driveline[1].extend(f'more/topic_{i}' for i in range(more_topics))
+    wired['recorder'][0].extend(
+        [*driveline[0][len(WIRING['driveline'][0]) :], *driveline[1][len(TICK) :]]
+    )
+    return wired | {'driveline': driveline}
+
+
+def example_of(topic: str) -> Any:
+    """Return a message of a topic; a further topic has messages like `load/torque`."""
+    return EXAMPLES.get(topic, EXAMPLES['load/torque'])()
 
 
 READY = 'ready'
@@ -77,19 +104,20 @@ PATIENCE_S = 60.0
 class BareNode(Node):
     """Node that publishes all its outputs once it has received every input once more."""
 
-    def __init__(self, name: str) -> None:
+    def __init__(self, name: str, wiring: Wiring) -> None:
         super().__init__(f'bare_{name}')
         self._name = name
-        inputs, outputs = WIRING[name]
+        self._wiring = wiring
+        inputs, outputs = wiring[name]
         self._expected = len(inputs)
         self._received = 0
         self._outputs = [
-            (self.create_publisher(type(EXAMPLES[topic]()), topic, LOOP_QOS), EXAMPLES[topic]())
+            (self.create_publisher(type(example_of(topic)), topic, LOOP_QOS), example_of(topic))
             for topic in outputs
         ]
         raw = name == 'recorder'
         for topic in inputs:
-            kind = type(EXAMPLES[topic]())
+            kind = type(example_of(topic))
             qos = RECORDER_QOS if raw else LOOP_QOS
             self.create_subscription(kind, topic, self._receive, qos, raw=raw)
         self._match_timer = self.create_timer(POLL_S, self._announce_when_ready)
@@ -101,10 +129,12 @@ class BareNode(Node):
         Discovery is not symmetric: a writer may be matched with its reader before the reader is
         matched with the writer and receives its messages. Once both are, no message is lost.
         """
-        inputs = [topic for wiring in WIRING.values() for topic in wiring[0]]
+        inputs = [topic for wired in self._wiring.values() for topic in wired[0]]
         matched = all(
             publisher.get_subscription_count() == inputs.count(topic)
-            for (publisher, _), topic in zip(self._outputs, WIRING[self._name][1], strict=True)
+            for (publisher, _), topic in zip(
+                self._outputs, self._wiring[self._name][1], strict=True
+            )
         )
         if matched and all(each.get_publisher_count() == 1 for each in self.subscriptions):
             self._match_timer.cancel()
@@ -129,8 +159,8 @@ class BareNode(Node):
 class BareDriveline(BareNode):
     """Node that begins a tick when the last one is answered, and the first once all are ready."""
 
-    def __init__(self, steps: int) -> None:
-        super().__init__('driveline')
+    def __init__(self, steps: int, wiring: Wiring) -> None:
+        super().__init__('driveline', wiring)
         self.done: Future = Future()
         self.left = steps
         self._steps = steps
@@ -144,7 +174,7 @@ class BareDriveline(BareNode):
             self.send()
 
     def _not_ready(self) -> list[str]:
-        return [name for name in WIRING if not self.count_publishers(f'{READY}/{name}')]
+        return [name for name in self._wiring if not self.count_publishers(f'{READY}/{name}')]
 
     def timeout_message(self, patience_s: float) -> str:
         """Return the error message for a timeout of `patience_s` seconds."""
@@ -153,34 +183,47 @@ class BareDriveline(BareNode):
         return f'no answer to step {self._steps - self.left} within {patience_s:g} s'
 
     def complete(self) -> None:
-        """Count the tick and begin the next one; after the last print the time per step in us."""
+        """Count the tick and begin the next one; after the last print the time per step in s."""
         self.left -= 1
         if self.left:
             self.send()
             return
         elapsed = time.perf_counter() - self._started
-        print(f'{1e6 * elapsed / self._steps:.1f}', flush=True)
+        print(json.dumps({'step_s': elapsed / self._steps}), flush=True)
         self.done.set_result(None)
 
 
 def main() -> None:
     """Run the node of the command line, or all of them, until the driveline has done its steps."""
-    name, steps = sys.argv[1], int(sys.argv[2])
-    patience_s = float(sys.argv[3]) if len(sys.argv) > 3 else PATIENCE_S
+    options = _options()
+    wiring = wiring_with(options.more_nodes, options.more_topics)
     rclpy.init()
-    names = list(WIRING) if name == 'all' else [name]
-    nodes = [BareDriveline(steps) if one == 'driveline' else BareNode(one) for one in names]
+    names = list(wiring) if options.node == 'all' else [options.node]
+    nodes = [
+        BareDriveline(options.steps, wiring) if name == 'driveline' else BareNode(name, wiring)
+        for name in names
+    ]
     executor = make_executor()
     for node in nodes:
         executor.add_node(node)
     try:
         if isinstance(nodes[-1], BareDriveline):
-            spin_driveline(executor, nodes[-1], patience_s)
+            spin_driveline(executor, nodes[-1], options.patience_s)
         while 'driveline' not in names:
             executor.spin_once(SLICE_S)
     except (KeyboardInterrupt, rclpy.executors.ExternalShutdownException):
         pass
     rclpy.try_shutdown()
+
+
+def _options() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description='Run a node of the bare chain, or all of them.')
+    parser.add_argument('node')
+    parser.add_argument('steps', type=int)
+    parser.add_argument('patience_s', type=float, nargs='?', default=PATIENCE_S)
+    parser.add_argument('--more-nodes', type=int, default=0)
+    parser.add_argument('--more-topics', type=int, default=0)
+    return parser.parse_args()
 
 
 def spin_driveline(executor: Executor, driveline: BareDriveline, patience_s: float) -> None:

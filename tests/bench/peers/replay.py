@@ -41,16 +41,15 @@ def measurements_of(settings: RunSettings, controller: Controller) -> Measuremen
     return recording.held, recording.updated
 
 
-def times_of(controller: Controller, measurements: Measurements, rounds: int) -> list[float]:
-    """Return the times of all updates in us, each round after a reset."""
+def times_of(controller: Controller, measurements: Measurements) -> list[float]:
+    """Return the wall times of all updates in s, after a reset."""
     held, updated = measurements
     times = []
-    for _ in range(rounds):
-        controller.reset()
-        for measurement in held:
-            controller.hold(measurement)
-        for measurement in updated:
-            started = time.perf_counter()
-            controller.update(measurement)
-            times.append(1e6 * (time.perf_counter() - started))
+    controller.reset()
+    for measurement in held:
+        controller.hold(measurement)
+    for measurement in updated:
+        started = time.perf_counter()
+        controller.update(measurement)
+        times.append(time.perf_counter() - started)
     return times

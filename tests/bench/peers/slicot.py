@@ -1,50 +1,22 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Time of the H-infinity synthesis for the printed weights: ours, and SLICOT's through slycot."""
+"""H-infinity synthesis by SLICOT's sb10ad through slycot."""
 
 import math
-import time
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
-from ddct_controllers.design.h_infinity.design import generalised_plant
-from ddct_controllers.design.h_infinity.recipes import make_weights
-from ddct_controllers.design.h_infinity.synthesis.gamma_iteration import synthesise, verified_norm
+from ddct_controllers.design.h_infinity.synthesis.gamma_iteration import verified_norm
 from ddct_controllers.design.h_infinity.synthesis.generalised_plant import GeneralisedPlant
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.linear.lti import StateSpace
 
-_ROUNDS = 5
 _TOLERANCE = 1e-4
 """Relative width of the last interval of the bisection, as in our synthesis."""
 _SUBOPTIMAL = 4
 """Value of the argument `job` of sb10ad: one controller for a given level."""
 _FACTOR = 4.0
-
-
-def measure() -> dict[str, Any]:
-    """
-    Return best times in s and norms of both, and the ratio of the times.
-
-    Both bisect on the level and verify every controller by the norm of its closed loop. Without
-    slycot only ours is measured, and `skipped` is the reason.
-    """
-    plant = generalised_plant(make_weights('thesis'))
-    ours_s, found = _best_of(lambda: synthesise(plant, 1.0).gamma)
-    result: dict[str, Any] = {'ours_s': ours_s, 'ours_gamma': found}
-    try:
-        import slycot
-    except ImportError as error:
-        return result | {'skipped': f'slycot is not installed ({error})'}
-    theirs_s, theirs = _best_of(lambda: slycot_optimum(slycot, plant))
-    return result | {
-        'slycot_s': theirs_s,
-        'slycot_gamma': theirs,
-        'time_ratio': ours_s / theirs_s,
-        'gamma_ratio': found / theirs,
-    }
 
 
 def slycot_optimum(slycot: Any, plant: GeneralisedPlant) -> float:
@@ -74,12 +46,3 @@ def _reached(slycot: Any, plant: GeneralisedPlant, level: float) -> float:
     except (slycot.exceptions.SlycotError, np.linalg.LinAlgError, ParameterError):
         return math.inf
     return norm if norm <= level * (1.0 + _TOLERANCE) else math.inf
-
-
-def _best_of(task: Callable[[], float]) -> tuple[float, float]:
-    times = []
-    for _ in range(_ROUNDS):
-        started = time.perf_counter()
-        value = task()
-        times.append(time.perf_counter() - started)
-    return min(times), value

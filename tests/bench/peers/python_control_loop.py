@@ -1,76 +1,36 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
 """
-Time of a headless run, and of python-control's `input_output_response` on the same loop.
+The loop of PI in `detailed` in python-control, simulated by its `input_output_response`.
 
-The loop is that of PI in `detailed`: driveline, actuator with delay and cut-off, road load with
-drag, open loop, feedback from control start on. python-control simulates it twice, both
-times sampled at 10 ms with our own exact matrices: as blocks that `interconnect` wires, which is
-its usual way to build a loop, and as one block written by hand, the fastest form. Both compute the
-slip at 10 ms, which must equal ours; ours computes every signal, and the clutch torque at 1 ms.
-C_m and the reference are inputs of both.
+The loop has driveline, actuator with delay and cut-off, road load with drag, open loop, and
+feedback from control start on. python-control simulates it sampled at 10 ms with our own exact
+matrices: as blocks that `interconnect` wires, which is its usual way to build a loop, and as one
+block written by hand, the fastest form. Both compute the slip at 10 ms, which must equal ours;
+ours computes every signal, and the clutch torque at 1 ms. C_m and the reference are inputs.
 """
 
-import statistics
 import time
-from collections.abc import Mapping
 from typing import Any
 
 import control
 import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.run.headless import ClosedLoop, run_loop
 from ddct_controllers.registry import make_controller
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.models.actuator import ActuatorParameters, at_rest, lifted
 from ddct_plant.models.driveline import step_matrix
 from ddct_plant.models.static_torque import StaticTorque
-from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.plant import initial_state, make_load
 from ddct_plant.scenario.settings import RunSettings
 
-GOAL = 3.0
-"""Goal of the ratio of the time of python-control's blocks to ours, at least."""
-_ROUNDS = 5
 _NODES = [f'node{index}' for index in range(11)]
 _SPEEDS = ['engine_speed', 'shaft_speed', 'wheel_speed']
 
 
-def measure() -> dict[str, float]:
-    """Return the median times in ms of ours, the blocks and the one block, measured in turn."""
-    settings = RunSettings(load_scenario('thesis'))
-    ours, run = _ours(settings)
-    loop = _Loop(settings, run)
-    taken: dict[str, list[float]] = {'ours_ms': [], 'blocks_ms': [], 'one_block_ms': []}
-    for _ in range(_ROUNDS):
-        taken['ours_ms'].append(_ours(settings)[0])
-        taken['blocks_ms'].append(loop.response(loop.blocks(), run))
-        taken['one_block_ms'].append(loop.response(loop.one_block(), run))
-    return {name: statistics.median(times) for name, times in taken.items()}
-
-
-def print_table(results: Mapping[str, float]) -> None:
-    """Print the results of `measure`."""
-    ours = results['ours_ms']
-    ratio = results['blocks_ms'] / ours
-    print(
-        f'headless run of 3 s: {ours:.1f} ms; python-control of blocks '
-        f'{results["blocks_ms"]:.1f} ms, {ratio:.1f} times as long (goal {GOAL:g}: '
-        f'{"met" if ratio >= GOAL else "MISSED"}); as one block by hand '
-        f'{results["one_block_ms"]:.1f} ms, {results["one_block_ms"] / ours:.1f} times'
-    )
-
-
-def _ours(settings: RunSettings) -> tuple[float, Trajectory]:
-    loop = ClosedLoop(settings, make_controller('pi', settings))
-    started = time.thread_time()
-    run = run_loop(loop, settings.scenario.steps)
-    return 1e3 * (time.thread_time() - started), run
-
-
-class _Loop:
+class PythonControlLoop:
     """Closed loop of PI as systems of python-control."""
 
     def __init__(self, settings: RunSettings, run: Trajectory) -> None:
@@ -92,12 +52,12 @@ class _Loop:
         self._times = np.arange(run.steps + 1) * PERIOD_S
 
     def response(self, loop: Any, run: Trajectory) -> float:
-        """Return the time of the simulation in ms; require the slip of our run."""
+        """Return the processor time per step in s; require the slip of our run."""
         started = time.thread_time()
         result = control.input_output_response(loop, self._times, self._inputs, self._start)
         taken = time.thread_time() - started
         np.testing.assert_allclose(np.ravel(result.outputs), run.slip_speed, atol=1e-9)
-        return 1e3 * taken
+        return taken / run.steps
 
     def one_block(self) -> Any:
         """Return the loop as one system with 13 states."""
@@ -192,7 +152,3 @@ class _Loop:
 
     def _load_torque(self, wheel_speed: float) -> float:
         return self._load.torque(self._radius * wheel_speed)
-
-
-if __name__ == '__main__':
-    print_table(measure())

@@ -7,11 +7,13 @@ Each run has a driveline, wear, engine torque and reference of its own.
 """
 
 import dataclasses
-import statistics
 import time
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
+from bench.peers.numpy_loop import NAME, STEPS, numpy_loop_s
+from bench.skeleton.comparison import Bench, Sides, comparison, curve
 
 from ddct_bringup.batch.results import stacked_results
 from ddct_bringup.batch.run_batch import MOST_RUNS, Run, trajectories
@@ -23,43 +25,50 @@ from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
 
-GOAL_US = 100.0
-"""Goal of the time per run of simulation and metrics, us."""
-RUNS = 5000
 CONTROLLERS = ('pi', 'ls8', 'hinf1')
+LOOP = f'{NAME} of as many runs'
 
 
-def measure() -> dict[str, dict[str, float]]:
-    """Return the times per run in us of simulation, metrics and verdict, by controller."""
-    return {name: _times(name) for name in CONTROLLERS}
+@comparison('batch of 1000 runs, run', LOOP)
+def batch(bench: Bench) -> Iterator[Sides]:
+    """Processor time per run of simulation, metrics and verdict, by controller."""
+    chunks = {name: runs_of(name, MOST_RUNS) for name in CONTROLLERS}
+
+    def ours() -> Mapping[str, float]:
+        return {
+            f'{name}, {part}': seconds / MOST_RUNS
+            for name, runs in chunks.items()
+            for part, seconds in times_of(runs).items()
+        }
+
+    yield Sides(ours, lambda: STEPS * numpy_loop_s(MOST_RUNS) / MOST_RUNS)
 
 
-def print_table(results: dict[str, dict[str, float]]) -> None:
-    """Print the results of `measure`."""
-    for name, times in results.items():
-        to_metrics = times['simulation'] + times['metrics']
-        print(
-            f'batch of {RUNS} runs, {name}: {to_metrics:.0f} us per run and core to every metric '
-            f'(goal {GOAL_US:g}: {"met" if to_metrics <= GOAL_US else "MISSED"}), of which '
-            f'simulation {times["simulation"]:.0f}; verdict with its criteria '
-            f'{times["verdict"]:.0f} more'
-        )
+@curve('batch of PI, step', NAME, 'runs', (1, 3, 10, 30, 100, 300, 1000, 3000))
+def batch_of_runs(bench: Bench, count: int) -> Iterator[Sides]:
+    """Processor time per step and run of simulation and metrics, beside one run in numpy."""
+    runs = runs_of('pi', count)
+    repeats = max(1, 300 // count)
+
+    def ours() -> float:
+        # At most MOST_RUNS at once, as campaigns and `run_batch` do.
+        chunks = [runs[first : first + MOST_RUNS] for first in range(0, count, MOST_RUNS)]
+        taken = [times_of(chunk) for _ in range(repeats) for chunk in chunks]
+        seconds = sum(each['simulation'] + each['metrics'] for each in taken)
+        return seconds / repeats / count / STEPS
+
+    yield Sides(ours, numpy_loop_s)
 
 
-def _times(name: str) -> dict[str, float]:
+def runs_of(controller: str, count: int) -> list[Run]:
+    """Return runs that all differ, with one controller."""
     random, thesis = np.random.default_rng(5), load_scenario('thesis')
-    controller = make_controller(name, RunSettings(thesis))
-    chunks = [
-        _chunk_s([(_varied(thesis, random), controller) for _ in range(MOST_RUNS)])
-        for _ in range(RUNS // MOST_RUNS)
-    ]
-    return {
-        part: 1e6 * statistics.median(chunk[part] for chunk in chunks) / MOST_RUNS
-        for part in chunks[0]
-    }
+    made = make_controller(controller, RunSettings(thesis))
+    return [(_varied(thesis, random), made) for _ in range(count)]
 
 
-def _chunk_s(runs: list[Run]) -> dict[str, float]:
+def times_of(runs: list[Run]) -> dict[str, float]:
+    """Return the processor times in s of the parts of a batch."""
     settings, limits = [each for each, _ in runs], packaged_limits()
     scenario = settings[0].scenario
     window = tuple(steps_in('score_window_s', each) for each in scenario.score_window_s)
@@ -95,7 +104,3 @@ def _varied(thesis: Scenario, random: np.random.Generator) -> RunSettings:
         reference=changed(thesis.reference, slope_rad_s2=0.3),
     )
     return RunSettings(scenario, wear_gain=float(random.uniform(0.7, 1.3)))
-
-
-if __name__ == '__main__':
-    print_table(measure())

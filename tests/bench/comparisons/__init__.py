@@ -1,0 +1,38 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""All comparisons of `make bench`, in the order of its table; one module for each subject."""
+
+from bench.comparisons import (
+    base,
+    batch,
+    campaign,
+    exported_c,
+    graph,
+    headless,
+    mpc_step,
+    qp,
+    report_page,
+    start_up,
+    synthesis,
+    verdict,
+)
+from bench.skeleton.comparison import comparisons_in
+
+ALL = [
+    each
+    for module in (
+        graph,
+        start_up,
+        headless,
+        batch,
+        qp,
+        mpc_step,
+        exported_c,
+        synthesis,
+        verdict,
+        campaign,
+        report_page,
+        base,
+    )
+    for each in comparisons_in(module)
+]
