@@ -46,6 +46,8 @@ from generator.robustness_map import kept_maps
 from generator.robustness_tables import robustness_tables
 from generator.score_tables import score_tables
 from generator.sensor_table import sensor_table
+from generator.speed_charts import draw_speed
+from generator.speed_history import digest_of, histories, speed_tables
 
 
 def calibration_tables() -> Mapping[str, Table]:
@@ -121,6 +123,13 @@ def robustness_tables_and_charts() -> Mapping[str, Table]:
     return robustness_tables(maps)
 
 
+def speed_tables_and_charts() -> Mapping[str, Table]:
+    """Return the tables of the history of `make bench`, and draw its charts."""
+    machines = histories()
+    draw_speed(machines, digest_of())
+    return speed_tables(machines)
+
+
 def _drawn() -> dict[ThesisFigure, str]:
     with chart_style():
         return {figure: figure.draw()[1] for figure in collect_figures()}
@@ -141,6 +150,7 @@ TABLES: Mapping[str, Callable[[], Mapping[str, Table]]] = {
     'numbers': lambda: page_tables(judge(thesis_numbers(), compute(SOURCES))),
     'figures': lambda: figure_tables(_drawn()),
     'studies': studies_and_charts,
+    'speed': speed_tables_and_charts,
 }
 """
 Functions by kind, quick ones first; `studies` takes minutes, `numbers` and `figures` some ten

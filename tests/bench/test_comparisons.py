@@ -12,6 +12,7 @@ import pytest
 from bench.__main__ import choose
 from bench.comparisons import ALL
 from bench.comparisons.graph import CHAIN
+from bench.comparisons.start_up import WARM_PARENT
 from bench.peers.numpy_loop import numpy_loop_s
 from bench.skeleton.comparison import Bench, Comparison
 from bench.skeleton.rounds import NOT_MEASURED, measure
@@ -76,6 +77,34 @@ def test_a_missing_piece_is_not_measured(
     (result,) = measure(_found(name, reference), BENCH, 1)
     assert result.outcome == NOT_MEASURED
     assert result.reason.startswith(reason)
+
+
+def _with_make(folder: Path, test: str) -> Workspace:
+    """Return a workspace whose tests are the command `test`."""
+    folder.mkdir()
+    (folder / 'Makefile').write_text(f'.PHONY: fmu test\nfmu:\ntest:\n\t@{test}\n')
+    return Workspace(folder)
+
+
+def test_the_bound_of_the_tests_applies_only_beside_a_base_without_the_warm_parent(
+    tmp_path: Path,
+) -> None:
+    assert (ROOT / WARM_PARENT).exists()
+    bench = Bench(_with_make(tmp_path / 'ours', ':'), _with_make(tmp_path / 'base', 'sleep 0.2'))
+    (result,) = measure(_found('suite: make test'), bench, 2)
+    assert (result.bound, result.outcome) == (0.8, 'met')
+    warm_parent = tmp_path / 'base' / WARM_PARENT
+    warm_parent.parent.mkdir(parents=True)
+    warm_parent.touch()
+    (result,) = measure(_found('suite: make test'), bench, 1)
+    assert (result.bound, len(result.ratios)) == (None, 1)
+
+
+def test_the_time_of_tests_that_fail_is_no_figure(tmp_path: Path) -> None:
+    bench = Bench(_with_make(tmp_path / 'ours', ':'), _with_make(tmp_path / 'base', 'false'))
+    (result,) = measure(_found('suite: make test'), bench, 1)
+    assert result.outcome == 'FAILED'
+    assert result.reason.startswith('ProgramError: make test ended with code 2')
 
 
 def test_a_batch_of_numpy_runs_costs_less_than_as_many_loops() -> None:

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Rounds alternate, bounds count over the whole spread, and what is missing is no error."""
 
+import gc
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -115,6 +116,19 @@ def test_an_interruption_ends_the_bench_and_cleans_up() -> None:
     with pytest.raises(KeyboardInterrupt):
         measure(declared, BENCH, 3)
     assert not left
+
+
+def test_a_side_does_not_pay_for_collecting_the_objects_of_the_bench() -> None:
+    """They are frozen while it is measured, and not afterwards."""
+    frozen: list[int] = []
+
+    def side() -> float:
+        frozen.append(gc.get_freeze_count())
+        return 1.0
+
+    _measured(Sides(side, side), rounds=1)
+    assert min(frozen) > 1000
+    assert gc.get_freeze_count() == 0
 
 
 def test_a_curve_has_a_comparison_for_each_value() -> None:

@@ -7,7 +7,6 @@ The cost of a run is the difference of a long and a short campaign, so that star
 does not count.
 """
 
-import statistics
 import tempfile
 import time
 from collections.abc import Iterator
@@ -85,7 +84,7 @@ def predictive_campaign(bench: Bench) -> Iterator[Sides]:
     """Processor time per run, 100 runs, all-in beside the steps of headless runs."""
 
     def steps() -> float:
-        return STEPS * statistics.mean(step_s('mpc3', clutch=STICK_SLIP) for _ in range(10))
+        return STEPS * step_s('mpc3', clutch=STICK_SLIP)
 
     steps()
     yield Sides(lambda: run_s(bench.ours, 'mpc3', STICK_SLIP, 100), steps, warm_up=False)

@@ -12,7 +12,7 @@ import time
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from bench.peers.numpy_loop import NAME, numpy_loop_s
+from bench.peers.numpy_loop import LEAST_S, NAME, numpy_loop_s
 from bench.skeleton.comparison import Bench, Sides, comparison, extra
 
 from ddct_bringup.run.headless import ClosedLoop, run_headless, run_loop
@@ -28,15 +28,19 @@ SCENARIOS = [name for name in scenario_names() if name != 'thesis']
 
 def step_s(controller: str, scenario: str = 'thesis', clutch: str = LINEAR) -> float:
     """
-    Return the processor time per step in s of a headless run, without its set-up.
+    Return the processor time per step in s of headless runs, without their set-up.
 
-    It is that of this thread alone, so that other programs count less.
+    It is that of this thread alone, so that other programs count less. Short runs are repeated.
     """
     settings = RunSettings(load_scenario(scenario, clutch=clutch), clutch=clutch)
-    loop = ClosedLoop(settings, make_controller(controller, settings))
-    started = time.thread_time()
-    trajectory = run_loop(loop, settings.scenario.steps)
-    return (time.thread_time() - started) / trajectory.steps
+    elapsed, steps = 0.0, 0
+    while elapsed < LEAST_S:
+        loop = ClosedLoop(settings, make_controller(controller, settings))
+        started = time.thread_time()
+        trajectory = run_loop(loop, settings.scenario.steps)
+        elapsed += time.thread_time() - started
+        steps += trajectory.steps
+    return elapsed / steps
 
 
 def steps_s(clutch: str = LINEAR) -> Mapping[str, float]:
