@@ -26,9 +26,24 @@ class TorqueRequest(NamedTuple):
     torque: float
     """Sum of open loop and feedback in N m; the actuator cuts it off below zero."""
     status: Status
-    """Pairs for `controller/status`: both parts, saturation, then the controller's own."""
+    """Pairs for `controller/status`: feedback, saturation, then the controller's own."""
+    open_loop: float
+    """Part of the torque without feedback in N m, that of the closing stage included."""
+    closed_loop: float
+    """Part of the torque that feedback gives, N m."""
+    closing: float = 0.0
+    """Share of the closing stage in `open_loop`, N m; 0 without one."""
     engine_torque: float | None = None
     """Request for C_m in N m; None when the controller does not command the engine."""
+
+    @property
+    def parts(self) -> dict[str, float]:
+        """Parts of the torque in N m, by the names of the run's signals."""
+        return {
+            'open_loop_torque': self.open_loop,
+            'closed_loop_torque': self.closed_loop,
+            'closing_torque': self.closing,
+        }
 
 
 OpenLoop = Callable[[Measurement, float], float]
@@ -68,10 +83,12 @@ class Architecture:
         open_loop = self._open_loop(measurement, load_torque)
         on = measurement.step >= self._start_step
         closing: Status = ()
+        added = 0.0
         if self._closing:
-            open_loop += self._closing.update(
+            added = self._closing.update(
                 measurement, load_torque, open_loop, self._last_request, feedback_on=on
             )
+            open_loop += added
             on = on and not self._closing.closed
             closing = self._closing.status
         measurement = measurement.within(load_torque, open_loop)
@@ -83,12 +100,13 @@ class Architecture:
             torque,
             (
                 ('feedback', 'on' if on else 'held off'),
-                ('open_loop_torque_n_m', repr(open_loop)),
-                ('closed_loop_torque_n_m', repr(command.clutch_torque)),
                 ('saturated', 'true' if torque < 0.0 else 'false'),
                 *closing,
                 *command.status,
             ),
+            open_loop,
+            command.clutch_torque,
+            added,
             command.engine_torque,
         )
 

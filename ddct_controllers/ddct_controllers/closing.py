@@ -80,12 +80,12 @@ class ClosingStage:
 
     @property
     def status(self) -> Status:
-        """Pairs for `controller/status`: state of the stage, and torque that it adds."""
+        """Pair for `controller/status`: the state of the stage."""
         if self.closed:
             state = 'closing' if self._missing else 'closed'
         else:
             state = 'opening' if self._added else 'open'
-        return (('closing', state), ('closing_torque_n_m', repr(self._added)))
+        return (('closing', state),)
 
     def _within_band(self, measurement: Measurement) -> bool:
         band = self._parameters.slip_band_rad_s

@@ -25,6 +25,7 @@ from ddct_plant.graph.topics import (
     ENGINE_REQUEST,
     SLIP_REFERENCE,
     TORQUE_DEMAND,
+    TORQUE_PARTS,
     TORQUE_REQUEST,
     measurement_topics,
 )
@@ -35,7 +36,7 @@ TIMING_BATCH = 20
 
 class ControllerNode(FollowerNode):
     """
-    Answer the measurements of a tick with `clutch/torque_request` and `controller/status`.
+    Answer the measurements of a tick with `clutch/torque_request`, its parts and the status.
 
     In a run with sensors the measurements are those of the sensors. A controller with two inputs
     also answers with `engine/torque_request`, and takes the driver's demand in place of
@@ -63,6 +64,7 @@ class ControllerNode(FollowerNode):
             self._engine_topic = TORQUE_DEMAND
         else:
             self._engine_topic = self._measured_topics.engine_torque
+        self._parts = Output(self, TORQUE_PARTS)
         self._status = Output(self, CONTROLLER_STATUS)
         self._timing = Output(self, CONTROLLER_TIMING)
         self._update_times_us: list[float] = []
@@ -85,6 +87,7 @@ class ControllerNode(FollowerNode):
             self._publish_timing(step)
         reply = (
             self._request.fill(stamp_ns, request.torque),
+            self._parts.fill(stamp_ns, *request.parts.values()),
             self._status.fill(stamp_ns, request.status, name=self.get_name()),
         )
         if request.engine_torque is None:

@@ -14,6 +14,7 @@ from ddct_controllers.architecture import make_architecture
 from ddct_controllers.feedforward import Feedforward
 from ddct_controllers.interface import Command, Controller, Measurement
 from ddct_plant.base.errors import DdctError, ForeignError
+from ddct_plant.graph.topics import TORQUE_PARTS
 from ddct_plant.models.load import RoadLoad
 from ddct_plant.models.static_torque import constant_slip_torque
 from ddct_plant.scenario.file import load_scenario
@@ -72,15 +73,16 @@ def test_the_others_have_feedback_from_the_first_step(name):
     request = architecture.update(replace(BEFORE, step=0))
     assert controller.calls == ['update']
     assert dict(request.status)['feedback'] == 'on'
-    assert dict(request.status)['closed_loop_torque_n_m'] == '7.0'
+    assert request.closed_loop == 7.0
 
 
-def test_both_parts_add_up_and_are_in_the_status():
+def test_both_parts_add_up_and_are_numbers():
     request = make_architecture(SETTINGS, Recording()).update(ON)
     status = dict(request.status)
     assert request.torque == static_torque() + 7.0
-    assert float(status['open_loop_torque_n_m']) == static_torque()
-    assert float(status['closed_loop_torque_n_m']) == 7.0
+    assert (request.open_loop, request.closed_loop, request.closing) == (static_torque(), 7.0, 0.0)
+    assert list(request.parts.values()) == [static_torque(), 7.0, 0.0]
+    assert list(request.parts) == [signal.name for signal in TORQUE_PARTS.signals]
     assert (status['saturated'], status['mine']) == ('false', 'yes')
 
 
@@ -96,7 +98,7 @@ def test_detailed_takes_the_equilibrium_of_the_scenario():
 def test_base_is_feedback_alone():
     request = make_architecture(replace(SETTINGS, architecture='base'), Recording()).update(ON)
     assert request.torque == 7.0
-    assert dict(request.status)['open_loop_torque_n_m'] == '0.0'
+    assert request.open_loop == 0.0
 
 
 @pytest.mark.parametrize('name', FEEDFORWARD)
@@ -107,7 +109,7 @@ def test_feedforward_adds_the_filters_torque_for_both_inputs(name):
         request = architecture.update(replace(BEFORE, step=step))
         expected = filter_.update(250.0, load_torque())
         assert request.torque == expected + 7.0
-        assert dict(request.status)['open_loop_torque_n_m'] == repr(expected)
+        assert request.open_loop == expected
 
 
 def test_feedforward_leads_a_rising_torque_and_tends_to_the_static_one():

@@ -32,6 +32,7 @@ class OwnEngine(Node):
         stamp = state.header.stamp
         step = (stamp.sec - 1) * 100 + stamp.nanosec // 10_000_000
         reply = WrenchStamped(header=state.header)
+        reply.header.frame_id = 'engine_link'
         reply.wrench.torque.x = TORQUE_N_M * min(step / 100 / RISE_S, 1.0)
         self.demands.publish(reply)
         self.torques.publish(reply)

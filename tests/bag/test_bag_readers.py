@@ -51,7 +51,7 @@ def test_rosbags_reads_every_message(bag, trajectory):
     store = rosbags_typesys.get_typestore(rosbags_typesys.Stores.ROS2_JAZZY)
     slips, points, statuses = [], [], []
     with rosbags_rosbag2.Reader(bag) as reader:
-        assert reader.message_count == 2 + 14 * (trajectory.steps + 1)
+        assert reader.message_count == 2 + 15 * (trajectory.steps + 1)
         for connection, _, data in reader.messages():
             message = store.deserialize_cdr(data, connection.msgtype)
             if connection.topic == '/clutch/slip':
@@ -91,7 +91,7 @@ def test_the_index_leads_to_every_message_with_simulated_time(bag, trajectory):
         summary = reader.get_summary()
         assert reader.get_header().profile == 'ros2'
         assert len(summary.chunk_indexes) >= 2
-        assert summary.statistics.message_count == 2 + 14 * (trajectory.steps + 1)
+        assert summary.statistics.message_count == 2 + 15 * (trajectory.steps + 1)
         assert {schema.encoding for schema in summary.schemas.values()} == {'ros2msg'}
         decoded = list(reader.iter_decoded_messages())
     assert len(decoded) == summary.statistics.message_count

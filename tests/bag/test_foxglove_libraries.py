@@ -81,5 +81,5 @@ def test_foxglove_libraries_read_the_same_values(bags, trajectory, reader_script
             (entry.channel.topic, entry.message.log_time, plain(entry.decoded_message))
             for entry in reader.iter_decoded_messages()
         ]
-    assert len(read) == 2 + 14 * (trajectory.steps + 1)
+    assert len(read) == 2 + 15 * (trajectory.steps + 1)
     assert by_topic(read) == by_topic(expected)

@@ -127,7 +127,7 @@ def test_a_repaired_bag_is_read_by_rosbags(killed):
     rosbag2 = pytest.importorskip('rosbags.rosbag2', reason='rosbags reads the bag')
     repair = repair_bag(killed)
     with rosbag2.Reader(killed) as reader:
-        assert reader.message_count == 2 + 14 * (repair.last_step + 1)
+        assert reader.message_count == 2 + 15 * (repair.last_step + 1)
         assert sum(1 for _ in reader.messages()) == reader.message_count
 
 

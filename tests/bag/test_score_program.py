@@ -68,6 +68,9 @@ def csv_signals(run):
         'engine_torque_n_m': run.engine_torque,
         'load_torque_n_m': run.load_torque,
         'torque_request_n_m': run.torque_request,
+        'open_loop_torque_n_m': run.open_loop_torque,
+        'closed_loop_torque_n_m': run.closed_loop_torque,
+        'closing_torque_n_m': run.closing_torque,
         'actuator_torque_n_m': run.actuator_torque[:, 0],
         'clutch_torque_n_m': run.clutch_torque[:, 0],
     }

@@ -126,7 +126,7 @@ def test_output_and_status_of_c_are_kept_apart_from_its_torques(library, capfd):
     source = command('command->clutch_torque = -1.0; puts("hello"); return 7;')
     run = run_headless(SETTINGS, library(f'#include <stdio.h>\n{source}'))
     assert dict(run.status[-1])['c_status'] == '7'
-    assert dict(run.status[-1])['closed_loop_torque_n_m'] == '-1.0'
+    assert run.closed_loop_torque[-1] == -1.0
     printed = capfd.readouterr()
     assert 'hello' in printed.err
     assert printed.out == ''

@@ -95,10 +95,10 @@ def test_its_parameters_are_options(version: int) -> None:
 def test_start_values_of_every_type_reach_the_fmu(version: int) -> None:
     typed = 'inverted: true, order: 2, fault: 0, remark: none, pid.Kp'
     found = run_headless(settings(), controller_file(version, ('pid.Kp', typed)))
-    first, after = (dict(found.status[step])['closed_loop_torque_n_m'] for step in (60, 61))
-    assert float(first) == 0.0
+    first, after = found.closed_loop_torque[60:62]
+    assert first == 0.0
     error_rpm = (found.slip_reference[61, 0] - found.slip_speed[61]) * 30 / np.pi
-    assert float(after) == pytest.approx(0.2 * error_rpm + 0.3 * 0.01 * error_rpm, rel=1e-9)
+    assert after == pytest.approx(0.2 * error_rpm + 0.3 * 0.01 * error_rpm, rel=1e-9)
     assert error_rpm != 0.0
 
 

@@ -35,8 +35,8 @@ SERIES: dict[tuple[str, str], Callable[[Trajectory], np.ndarray]] = {
     ('Plot!clutch_torque', 'temperature (stick-slip)'): lambda run: run.clutch_temperature,
     ('Plot!clutch_torque', 'actuator'): lambda run: run.actuator_torque[:, 0],
     ('Plot!clutch_torque', 'request'): lambda run: run.torque_request,
-    ('Plot!clutch_torque', 'open-loop part'): lambda run: _told(run, 'open_loop_torque_n_m'),
-    ('Plot!clutch_torque', 'closed-loop part'): lambda run: _told(run, 'closed_loop_torque_n_m'),
+    ('Plot!clutch_torque', 'open-loop part'): lambda run: run.open_loop_torque,
+    ('Plot!clutch_torque', 'closed-loop part'): lambda run: run.closed_loop_torque,
     ('Plot!engine_torque', 'engine C_m'): lambda run: run.engine_torque,
     ('Plot!engine_torque', 'demand'): lambda run: run.torque_demand,
     ('Plot!engine_torque', 'request (two-input)'): lambda run: run.engine_torque_request,
@@ -58,6 +58,12 @@ SERIES: dict[tuple[str, str], Callable[[Trajectory], np.ndarray]] = {
     ('StateTransitions!controller', 'feedback'): lambda run: _told(run, 'feedback'),
     ('StateTransitions!controller', 'request saturated'): lambda run: _told(run, 'saturated'),
     ('StateTransitions!controller', 'clutch phase (stick-slip)'): lambda run: _phases(run),
+    ('StateTransitions!controller', 'measured slip (3: sample lost)'): lambda run: _levels(
+        run.sensed_slip_held
+    ),
+    ('StateTransitions!controller', 'estimated C_m (3: sample lost)'): lambda run: _levels(
+        run.sensed_torque_held
+    ),
 }
 """What each series shows, by the panel and label that its reader sees."""
 
@@ -72,6 +78,11 @@ def _phases(run: Trajectory) -> np.ndarray:
     return np.array(PHASES)[run.clutch_phase.astype(int)]
 
 
+def _levels(flags: np.ndarray) -> np.ndarray:
+    """Return the level of a status for each flag: 3 for a lost sample, else 0."""
+    return np.where(flags, 3, 0)
+
+
 def _made_up_run() -> Trajectory:
     """Return a stick-slip run with sensors, of two inputs, with another number in each place."""
     run = expected(plan('pi', duration_s=0.7, clutch='stick_slip', changes=('sensors={}',)))
@@ -81,6 +92,8 @@ def _made_up_run() -> Trajectory:
         for name, values in run.signals.items()
         if name not in ('status', 'phase_events')
     }
+    for name in ('sensed_slip_held', 'sensed_torque_held'):
+        arrays[name] = random.integers(0, 2, run.steps + 1).astype(float)
     arrays['clutch_phase'] = random.integers(0, len(PHASES), run.steps + 1).astype(float)
     status = tuple(
         tuple((key, str(1000.0 * place + step)) for place, (key, _) in enumerate(pairs))

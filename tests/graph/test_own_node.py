@@ -19,8 +19,8 @@ from ddct_plant.scenario.settings import RunSettings
 
 PAGE = 'docs/develop/own_node.md'
 EXAMPLES = sorted((ROOT / 'docs' / 'examples').glob('own_*.py'))
-MOST_LINES = 40
-"""Largest number of lines of code of an example, as on the page."""
+MOST_LINES = 45
+"""Largest number of lines of code of an example, as on the page; comments are none."""
 WITHIN_S = 120.0
 
 
@@ -28,7 +28,8 @@ WITHIN_S = 120.0
 def test_an_example_is_short_and_imports_nothing_of_ours(file: Path) -> None:
     text = re.sub(r'""".*?"""', '', file.read_text(encoding='utf-8'), flags=re.DOTALL)
     assert not re.search(r'\bddct_', text)
-    assert len([line for line in text.splitlines() if line.strip()]) <= MOST_LINES
+    code = [line for line in text.splitlines() if line.strip() and not line.startswith('#')]
+    assert len(code) <= MOST_LINES
 
 
 def test_the_page_shows_the_controller_as_it_runs() -> None:

@@ -4,13 +4,14 @@
 
 from collections import defaultdict
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 from mcap_ros2.decoder import DecoderFactory
 
+from ddct_bringup.bag.earlier_bags import Messages, Values, earlier_values
 from ddct_bringup.bag.file.records import BagRecords, read_records
 from ddct_bringup.bag.run_facts import (
     MEASURED,
@@ -30,6 +31,7 @@ from ddct_plant.graph.topics import (
     DIAGNOSTICS,
     JOINT_STATES,
     RUN_INFO,
+    RunKind,
     Topic,
     all_topics,
     recorded_topics,
@@ -117,14 +119,14 @@ def recording_of(records: BagRecords) -> Recording:
     facts = RunFacts.from_custom_data(records.custom_data)
     messages = _decode(records)
     stamps = {topic: [stamp for stamp, _ in each] for topic, each in messages.items()}
-    run = facts.kind_of_bag(messages)
+    run = facts.kind_of_bag(records.topics)
     last = check_ticks(stamps, run)
     columns: dict[str, tuple[Any, ...]] = {}
     missed: dict[str, int] = {}
-    for topic in recorded_topics(run):
+    for topic in recorded_topics(replace(run, earlier=False)):
         if not topic.signals:
             continue
-        rows, missing = _rows(topic, messages.get(topic.resolved_name, []), last)
+        rows, missing = _rows(_values(topic, messages, run), last)
         signals = topic.signals_in(run)
         if len(rows[0]) != len(signals):
             raise DdctError(
@@ -133,7 +135,7 @@ def recording_of(records: BagRecords) -> Recording:
             )
         for signal, column in zip(signals, zip(*rows, strict=True), strict=True):
             columns[signal.name] = column
-        if missing:
+        if missing and topic.in_run(run):
             missed[topic.name] = missing
     return Recording(
         path=records.path,
@@ -192,20 +194,27 @@ def _decoders(records: BagRecords) -> dict[str, Callable[[bytes], Any]]:
     return decoders
 
 
-def _rows(
-    topic: Topic, messages: list[tuple[int, Any]], last: int
-) -> tuple[list[tuple[Any, ...]], int]:
+def _values(topic: Topic, messages: Messages, run: RunKind) -> Values:
+    """Return the values of a topic by stamp; raise DdctError for no message, or a bad one."""
+    try:
+        if topic.in_run(run):
+            received = messages.get(topic.resolved_name, ())
+            values = {stamp: topic.values(message) for stamp, message in received}
+        else:
+            values = earlier_values(topic, messages)
+    except (LookupError, AttributeError, ValueError) as error:
+        raise DdctError(f'{topic.resolved_name}: a message lacks a value ({error})') from error
+    if not values:
+        raise DdctError(f'no message on {topic.resolved_name}')
+    return values
+
+
+def _rows(values: Values, last: int) -> tuple[list[tuple[Any, ...]], int]:
     """
     Return the values at t_0..t_N, and the number of these stamps without a message.
 
     A stamp without a message repeats the last one before; before the first message, the first.
     """
-    if not messages:
-        raise DdctError(f'no message on {topic.resolved_name}')
-    try:
-        values = {stamp: topic.values(message) for stamp, message in messages}
-    except (LookupError, AttributeError) as error:
-        raise DdctError(f'{topic.resolved_name}: a message lacks a value ({error})') from error
     row = values[min(values)]
     rows, missing = [], 0
     for step in range(last + 1):

@@ -16,6 +16,7 @@ from ddct_plant.graph.topics import (
     SENSED_TOPICS,
     SINCE,
     TICKS_STATUS,
+    TORQUE_PARTS,
     RunKind,
 )
 
@@ -69,15 +70,16 @@ class RunFacts:
         """Whether every tick must be complete, as in lock-step."""
         return self.mode == 'lockstep'
 
-    def kind(self, *, two_input: bool, sensed: bool) -> RunKind:
+    def kind(self, *, two_input: bool, sensed: bool, earlier: bool = False) -> RunKind:
         """Return the kind of the run, which decides which topics it has."""
-        return RunKind(self.lockstep, two_input, self.clutch, sensed)
+        return RunKind(self.lockstep, two_input, self.clutch, sensed, earlier)
 
     def kind_of_bag(self, topics: Container[str]) -> RunKind:
         """Return the kind of run of a bag that has these topics, given by resolved name."""
         return self.kind(
             two_input=ENGINE_REQUEST.resolved_name in topics,
             sensed=any(topic.resolved_name in topics for topic in SENSED_TOPICS),
+            earlier=TORQUE_PARTS.resolved_name not in topics,
         )
 
     def to_custom_data(self) -> dict[str, str]:

@@ -49,6 +49,7 @@ class ClosedLoop:
         reply['slip_reference'] = speeds
         reply['slip_reference_rate'] = rates
         reply['status'] = request.status
+        reply |= request.parts
         return reply
 
     def advance(self, reply: dict[str, Any]) -> None:

@@ -100,11 +100,11 @@ def test_engine_torque_request_is_needed_once_it_was_recorded():
 @pytest.mark.parametrize('lacking', SENSED_TOPICS, ids=lambda topic: topic.name)
 def test_one_topic_of_sensors_requires_the_others(lacking):
     names = [topic.resolved_name for topic in SENSED_TOPICS if topic is not lacking]
-    run = made_facts().kind_of_bag({'/driveline/joint_states', names[0]})
+    run = made_facts().kind_of_bag({'/controller/torque_parts', names[0]})
     stamps = {**stamps_of(5), **{name: stamps_of(5)['/clutch/slip'] for name in names}}
     with pytest.raises(DdctError, match=f'no message on {lacking.resolved_name}'):
         check_ticks(stamps, run)
-    assert made_facts().kind_of_bag({'/driveline/joint_states'}) == LOCKSTEP
+    assert made_facts().kind_of_bag({'/controller/torque_parts'}) == LOCKSTEP
 
 
 def test_a_lock_step_recording_holds_no_wall_clock_topic():
@@ -130,11 +130,12 @@ def test_every_tick_begins_with_the_clock_and_ends_with_the_acknowledgement():
         'clutch/slip_reference',
         'controller/status',
         'clutch/torque_request',
+        'controller/torque_parts',
         'actuator/torque',
         'clutch/torque',
         'recorder/ack',
     ]
-    of_sensors = {'sensors/joint_states', 'sensors/slip', 'sensors/twist'}
+    of_sensors = {'sensors/joint_states', 'sensors/slip', 'sensors/twist', 'sensors/status'}
     assert tick_names() == {*names[:5], 'clutch/phase', *of_sensors}
     assert SLIP.resolved_name == '/clutch/slip'
     assert CLOCK.resolved_name == '/clock'

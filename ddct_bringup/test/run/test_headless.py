@@ -47,7 +47,7 @@ def test_it_has_every_tick_and_times_every_update():
 def test_feedback_starts_at_the_control_start_of_the_scenario():
     trajectory = run_headless(SETTINGS, 'ls8')
     start = SETTINGS.scenario.control_start_step
-    closed_loop = [float(dict(pairs)['closed_loop_torque_n_m']) for pairs in trajectory.status]
+    closed_loop = trajectory.closed_loop_torque
     assert not any(closed_loop[:start])
     assert any(closed_loop[start : start + 3])
     np.testing.assert_array_equal(

@@ -17,7 +17,7 @@ def test_the_open_loop_answers_the_load_of_now():
     for step in (0, 30, 90):
         engine, load = run.engine_torque[step], run.load_torque[step]
         expected = constant_slip_torque(scenario.driveline, engine, load)
-        assert float(dict(run.status[step])['open_loop_torque_n_m']) == pytest.approx(expected)
+        assert run.open_loop_torque[step] == pytest.approx(expected)
     assert run.load_torque[90] - run.load_torque[0] == pytest.approx(
         9.81 * 1500 * 0.09 * 0.32, rel=0.02
     )

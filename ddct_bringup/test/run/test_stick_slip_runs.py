@@ -202,7 +202,7 @@ def test_the_static_controller_goes_by_what_a_limited_engine_delivers(clutch):
             found.engine_torque, found.vehicle_speed, found.joint_speed, strict=True
         )
     ]
-    told = [float(dict(pairs)['open_loop_torque_n_m']) for pairs in found.status]
+    told = found.open_loop_torque
     assert told == pytest.approx(expected)
 
 

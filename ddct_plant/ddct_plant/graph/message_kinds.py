@@ -58,9 +58,15 @@ class MessageKind:
     type: str
     """Name of the message type, such as 'sensor_msgs/msg/JointState'."""
 
-    def writer(self, class_of: ClassOf = ros_class) -> Write:
-        """Return a function that fills one message of its own, from values as of `values`."""
+    def writer(self, class_of: ClassOf = ros_class, frame: str = '') -> Write:
+        """
+        Return a function that fills one message of its own, from values as of `values`.
+
+        `frame` is the coordinate frame of the values, '' for values without one.
+        """
         message = class_of(self.type)()
+        if frame:
+            message.header.frame_id = frame
         time, fill = _time_of(message), self._filler(message, class_of)
 
         def write(stamp: int, *values: Any, **options: Any) -> Any:
@@ -82,29 +88,21 @@ class MessageKind:
         """Return the values for a node; raise DdctError for values unfit for the loop."""
 
 
-HELD = 'held'
-"""`header.frame_id` of a sensor message that repeats a value; it is empty otherwise."""
-
-
 @dataclass(frozen=True)
 class Scalar(MessageKind):
-    """Adapter for one number; a sensor's message also has the flag HELD for a repeated value."""
+    """Adapter for one number."""
 
     path: str
     """Path of the number in the message, such as 'twist.angular.x'."""
     at_least: float | None = None
     """Lowest value that a node accepts, None for no bound."""
-    sensed: bool = False
-    """Whether the message is a sensor's and has the flag."""
 
     def _filler(self, message: Any, class_of: ClassOf) -> Callable[..., None]:
         parent, _, field = self.path.rpartition('.')
         holder = attrgetter(parent)(message) if parent else message
 
-        def fill(value: float, held: float | None = None) -> None:
+        def fill(value: float) -> None:
             setattr(holder, field, value)
-            if held is not None:
-                message.header.frame_id = HELD if held else ''
 
         return fill
 
@@ -112,12 +110,9 @@ class Scalar(MessageKind):
     def _get(self) -> Callable[[Any], float]:
         return attrgetter(self.path)
 
-    def values(self, message: Any) -> tuple[float, ...]:
-        """Return the number; for a sensor also the flag: 1 for a repeated value, else 0."""
-        number = self._get(message)
-        if self.sensed:
-            return number, float(message.header.frame_id == HELD)
-        return (number,)
+    def values(self, message: Any) -> tuple[float]:
+        """Return the number."""
+        return (self._get(message),)
 
     def read(self, topic: str, message: Any) -> float:
         """Return the number; raise DdctError unless finite and high enough."""
@@ -128,28 +123,22 @@ class Scalar(MessageKind):
 
 @dataclass(frozen=True)
 class Joints(MessageKind):
-    """
-    Adapter for a JointState: position in rad, speed in rad/s and effort in N m of each joint.
-
-    A sensor's message has no positions. Its efforts are flags, 1 where the speed is repeated, else
-    0, and its `frame_id` is HELD if one of them is 1.
-    """
+    """Adapter for a JointState: position in rad, speed in rad/s, effort in N m of each joint."""
 
     names: tuple[str, ...]
     """Names of the joints, in the order of the message."""
     fields: tuple[str, ...] = ('position', 'velocity', 'effort')
     """Fields of the message that are filled."""
-    sensed: bool = False
-    """Whether the message is a sensor's and has flags as efforts."""
 
     def _filler(self, message: Any, class_of: ClassOf) -> Callable[..., None]:
         message.name = list(self.names)
+        if 'effort' not in self.fields:
+            # NaN is "not measured". rclpy may add bytes to a message that ends in an empty array.
+            message.effort = array('d', [math.nan] * len(self.names))
 
         def fill(*columns: Sequence[float]) -> None:
             for field, numbers in zip(self.fields, columns, strict=True):
                 setattr(message, field, array('d', numbers))
-            if self.sensed:
-                message.header.frame_id = HELD if any(message.effort) else ''
 
         return fill
 
@@ -174,6 +163,27 @@ class Joints(MessageKind):
                 f'it needs one velocity for each of {names}, in this order'
             )
         return message.velocity
+
+
+@dataclass(frozen=True)
+class NamedTorques(MessageKind):
+    """Adapter for a JointState that has torques alone: one effort in N m for each name."""
+
+    names: tuple[str, ...]
+    """Names of the torques, in the order of the values; a message may have another order."""
+
+    def _filler(self, message: Any, class_of: ClassOf) -> Callable[..., None]:
+        message.name = list(self.names)
+
+        def fill(*torques: float) -> None:
+            message.effort = array('d', torques)
+
+        return fill
+
+    def values(self, message: Any) -> tuple[float, ...]:
+        """Return the torques in N m; raise LookupError where a name or an effort is missing."""
+        torques = dict(zip(message.name, message.effort, strict=False))
+        return tuple(torques[name] for name in self.names)
 
 
 @dataclass(frozen=True)
@@ -333,6 +343,53 @@ class Status(MessageKind):
     def read(self, topic: str, message: Any) -> tuple[str, dict[str, str]]:
         """Return the name of the status, and the pairs."""
         return message.status[0].name, dict(*self.values(message))
+
+
+OK, STALE = 0, 3
+"""Levels of a DiagnosticStatus, as its definition numbers them."""
+
+
+@dataclass(frozen=True)
+class SampleFlags(MessageKind):
+    """
+    Adapter for a DiagnosticArray with one status for each sample of a sensor.
+
+    The level is STALE where the sample was lost and the last value is repeated, else OK. One value
+    of a message is the flag, 1 or 0, of one sample, or a row of flags of several.
+    """
+
+    names: tuple[tuple[str, ...], ...]
+    """Names of the statuses by value; a value with several names is a row of flags."""
+
+    def _filler(self, message: Any, class_of: ClassOf) -> Callable[..., None]:
+        new_status = class_of('diagnostic_msgs/msg/DiagnosticStatus')
+        statuses = [new_status(name=name) for names in self.names for name in names]
+        message.status = statuses
+        # In rclpy a level is one byte, in the messages of the MCAP library a number.
+        as_bytes = isinstance(statuses[0].level, bytes)
+        ok, stale = (bytes([OK]), bytes([STALE])) if as_bytes else (OK, STALE)
+
+        def fill(*values: Any) -> None:
+            flags: list[float] = []
+            for names, value in zip(self.names, values, strict=True):
+                flags.extend(value if len(names) > 1 else (value,))
+            for status, flag in zip(statuses, flags, strict=True):
+                status.level = stale if flag else ok
+
+        return fill
+
+    def values(self, message: Any) -> tuple[Any, ...]:
+        """Return the flags; raise LookupError where a status is missing."""
+        flags = {status.name: float(_level(status) == STALE) for status in message.status}
+        return tuple(
+            [flags[name] for name in names] if len(names) > 1 else flags[names[0]]
+            for names in self.names
+        )
+
+
+def _level(status: Any) -> int:
+    level = status.level
+    return level[0] if isinstance(level, bytes) else level
 
 
 @dataclass(frozen=True)

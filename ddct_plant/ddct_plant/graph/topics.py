@@ -16,8 +16,10 @@ from ddct_plant.graph.message_kinds import (
     ClassOf,
     Joints,
     MessageKind,
+    NamedTorques,
     PhaseReport,
     PreviewPoints,
+    SampleFlags,
     Scalar,
     Status,
     TorqueRows,
@@ -30,6 +32,10 @@ JOINTS = ('engine', 'primary_shaft', 'wheel', 'driveshaft')
 """Names of the joints in `driveline/joint_states`, in their order."""
 SENSED_JOINTS = JOINTS[:3]
 """Joints whose speed a sensor measures."""
+BASE_LINK = 'base_link'
+"""Frame of the car's body (REP-105), x forward: of its motion, and of what joints carry."""
+ENGINE_LINK, CLUTCH_LINK, WHEEL_LINK = 'engine_link', 'clutch_link', 'wheel_link'
+"""Frames whose x axis is the axis on which crankshaft, clutch and wheels turn."""
 TICKS_STATUS = 'driveline: ticks'
 """Name of the diagnostic status with the driveline's counts of steps and missing replies."""
 SAFE_STATE = ': safe state'
@@ -50,6 +56,8 @@ class RunKind:
     """Name of the clutch model."""
     sensed: bool = False
     """Whether controller and reference read sensors in place of the truth."""
+    earlier: bool = False
+    """Whether its bag was recorded before the topics with `Topic.later` existed."""
 
 
 @dataclass(frozen=True)
@@ -85,6 +93,8 @@ class Topic:
     """Name of the node that publishes it."""
     signals: tuple[Signal, ...] = ()
     """Signals, one for each value of a message."""
+    frame: str = ''
+    """Coordinate frame of its values; '' for values that have none, as diagnostics."""
     every_tick: bool = True
     """Whether a lock-step run has exactly one message per tick, from one publisher."""
     latched: bool = False
@@ -93,6 +103,8 @@ class Topic:
     """Whether it carries wall-clock values, which a lock-step recording must not contain."""
     when: Callable[[RunKind], bool] | None = None
     """Condition on the runs that have the topic; None for all of them."""
+    later: bool = False
+    """Whether earlier bags lack it: their signals of this topic are in other messages."""
 
     @property
     def type(self) -> str:
@@ -116,7 +128,7 @@ class Topic:
 
     def in_run(self, run: RunKind) -> bool:
         """Return whether a run has this topic."""
-        return self.when is None or self.when(run)
+        return (self.when is None or self.when(run)) and not (run.earlier and self.later)
 
     def signals_in(self, run: RunKind) -> tuple[Signal, ...]:
         """Return the signals of this topic in a run that has the topic."""
@@ -124,7 +136,7 @@ class Topic:
 
     def writer(self, class_of: ClassOf = ros_class) -> Write:
         """Return a function `write(stamp_ns, *values)` that fills one message of its own."""
-        return self.kind.writer(class_of)
+        return self.kind.writer(class_of, self.frame)
 
     def message(self, stamp: int, *values: Any, **options: Any) -> Any:
         """Return a new message with a stamp in ns and the values of `signals`."""
@@ -139,9 +151,11 @@ class Topic:
         return self.kind.read(self.name, message, **options)
 
 
-def _torque(name: str, publisher: str, signal: str, about: str, **options: Any) -> Topic:
+def _torque(
+    name: str, publisher: str, frame: str, signal: str, about: str, **options: Any
+) -> Topic:
     kind = Scalar('geometry_msgs/msg/WrenchStamped', 'wrench.torque.x')
-    return Topic(name, kind, publisher, (Signal(signal, 'N m', about),), **options)
+    return Topic(name, kind, publisher, (Signal(signal, 'N m', about),), frame, **options)
 
 
 def _status(name: str, publisher: str, **options: Any) -> Topic:
@@ -161,14 +175,24 @@ def _sensed(run: RunKind) -> bool:
     return run.sensed
 
 
-def _held(name: str, which: str = '') -> Signal:
-    return Signal(name, '1', f'{which}1 where the last value is repeated, else 0')
-
-
 def _of_sensor(
-    name: str, kind: MessageKind, publisher: str, measured: Signal, held: Signal
+    name: str, kind: MessageKind, publisher: str, frame: str, measured: Signal
 ) -> Topic:
-    return Topic(name, kind, publisher, (measured, held), when=_sensed)
+    return Topic(name, kind, publisher, (measured,), frame, when=_sensed)
+
+
+def _flags_of_sensors(
+    name: str, publisher: str, flags: tuple[tuple[Signal, tuple[str, ...]], ...]
+) -> Topic:
+    kind = SampleFlags(
+        'diagnostic_msgs/msg/DiagnosticArray', tuple(statuses for _, statuses in flags)
+    )
+    signals = tuple(signal for signal, _ in flags)
+    return Topic(name, kind, publisher, signals, when=_sensed, later=True)
+
+
+def _flag(name: str, which: str = '') -> Signal:
+    return Signal(name, '1', f'{which}1 where the last value is repeated, else 0')
 
 
 _TRAJECTORY = 'trajectory_msgs/msg/JointTrajectory'
@@ -185,12 +209,14 @@ JOINT_STATES = Topic(
         Signal('joint_speed', 'rad/s', '(4,) w_m, w_p, w_r, w_sr'),
         Signal('joint_effort', 'N m', '(4,) C_m, transmitted C_f, C_load, shaft torque'),
     ),
+    BASE_LINK,
 )
 SLIP = Topic(
     'clutch/slip',
     Scalar('geometry_msgs/msg/TwistStamped', 'twist.angular.x'),
     'driveline',
     (Signal('slip_speed', 'rad/s', 'w_d = w_m - w_p'),),
+    CLUTCH_LINK,
 )
 CLUTCH_PHASE = Topic(
     'clutch/phase',
@@ -208,51 +234,70 @@ VEHICLE_SPEED = Topic(
     Scalar('geometry_msgs/msg/TwistStamped', 'twist.linear.x'),
     'driveline',
     (Signal('vehicle_speed', 'm/s', 'V_x'),),
+    BASE_LINK,
 )
 VEHICLE_ACCEL = Topic(
     'vehicle/accel',
     Scalar('geometry_msgs/msg/AccelStamped', 'accel.linear.x'),
     'driveline',
     (Signal('vehicle_accel', 'm/s^2', 'A_x'),),
+    BASE_LINK,
 )
 SENSED_JOINT_STATES = _of_sensor(
     'sensors/joint_states',
-    Joints('sensor_msgs/msg/JointState', SENSED_JOINTS, ('velocity', 'effort'), sensed=True),
+    Joints('sensor_msgs/msg/JointState', SENSED_JOINTS, ('velocity',)),
     'driveline',
+    BASE_LINK,
     Signal('sensed_joint_speed', 'rad/s', '(3,) w_m, w_p, w_r as measured'),
-    _held('sensed_joint_held', '(3,) '),
 )
 SENSED_SLIP = _of_sensor(
     'sensors/slip',
-    Scalar('geometry_msgs/msg/TwistStamped', 'twist.angular.x', sensed=True),
+    Scalar('geometry_msgs/msg/TwistStamped', 'twist.angular.x'),
     'driveline',
+    CLUTCH_LINK,
     Signal('sensed_slip_speed', 'rad/s', 'w_m - w_p as measured'),
-    _held('sensed_slip_held'),
 )
 SENSED_VEHICLE_SPEED = _of_sensor(
     'sensors/twist',
-    Scalar('geometry_msgs/msg/TwistStamped', 'twist.linear.x', sensed=True),
+    Scalar('geometry_msgs/msg/TwistStamped', 'twist.linear.x'),
     'driveline',
+    BASE_LINK,
     Signal('sensed_vehicle_speed', 'm/s', 'V_x as measured'),
-    _held('sensed_vehicle_held'),
+)
+SENSOR_STATUS = _flags_of_sensors(
+    'sensors/status',
+    'driveline',
+    (
+        (_flag('sensed_joint_held', '(3,) '), SENSED_JOINTS),
+        (_flag('sensed_slip_held'), ('slip',)),
+        (_flag('sensed_vehicle_held'), ('vehicle',)),
+    ),
 )
 TORQUE_DEMAND = _torque(
-    'engine/torque_demand', 'engine', 'torque_demand', "the driver's demand at t_k"
+    'engine/torque_demand', 'engine', ENGINE_LINK, 'torque_demand', "the driver's demand at t_k"
 )
-ENGINE_TORQUE = _torque('engine/torque', 'engine', 'engine_torque', 'C_m, held over the period')
+ENGINE_TORQUE = _torque(
+    'engine/torque', 'engine', ENGINE_LINK, 'engine_torque', 'C_m, held over the period'
+)
 SENSED_ENGINE_TORQUE = _of_sensor(
     'sensors/engine_torque',
-    Scalar('geometry_msgs/msg/WrenchStamped', 'wrench.torque.x', sensed=True),
+    Scalar('geometry_msgs/msg/WrenchStamped', 'wrench.torque.x'),
     'engine',
+    ENGINE_LINK,
     Signal('sensed_engine_torque', 'N m', 'C_m as estimated'),
-    _held('sensed_torque_held'),
 )
-LOAD_TORQUE = _torque('load/torque', 'load', 'load_torque', 'C_load, held over the period')
+ENGINE_SENSOR_STATUS = _flags_of_sensors(
+    'sensors/engine_torque_status', 'engine', ((_flag('sensed_torque_held'), ('engine_torque',)),)
+)
+LOAD_TORQUE = _torque(
+    'load/torque', 'load', WHEEL_LINK, 'load_torque', 'C_load, held over the period'
+)
 HOLDING_TORQUE = Topic(
     'load/holding_torque',
     Scalar('geometry_msgs/msg/WrenchStamped', 'wrench.torque.x', at_least=0.0),
     'load',
     (Signal('holding_torque', 'N m', 'capacity of rolling resistance and brake at the wheel'),),
+    WHEEL_LINK,
     when=_stick_slip,
 )
 SLIP_REFERENCE = Topic(
@@ -263,6 +308,7 @@ SLIP_REFERENCE = Topic(
         Signal('slip_reference', 'rad/s', '(P+1,) column i is i x 10 ms ahead'),
         Signal('slip_reference_rate', 'rad/s^2', '(P+1,) over the period that follows'),
     ),
+    CLUTCH_LINK,
 )
 CONTROLLER_STATUS = _status(
     'controller/status',
@@ -271,13 +317,26 @@ CONTROLLER_STATUS = _status(
     signals=(Signal('status', '', 'the (key, value) pairs'),),
 )
 TORQUE_REQUEST = _torque(
-    'clutch/torque_request', 'controller', 'torque_request', 'before saturation'
+    'clutch/torque_request', 'controller', CLUTCH_LINK, 'torque_request', 'before saturation'
+)
+TORQUE_PARTS = Topic(
+    'controller/torque_parts',
+    NamedTorques('sensor_msgs/msg/JointState', ('open_loop', 'closed_loop', 'closing')),
+    'controller',
+    (
+        Signal('open_loop_torque', 'N m', 'part of the request without feedback'),
+        Signal('closed_loop_torque', 'N m', 'part of the request that feedback gives'),
+        Signal('closing_torque', 'N m', 'share of the closing stage in open_loop_torque'),
+    ),
+    CLUTCH_LINK,
+    later=True,
 )
 ENGINE_REQUEST = _torque(
     'engine/torque_request',
     'controller',
+    ENGINE_LINK,
     'engine_torque_request',
-    'asked of the engine',
+    'requested of the engine',
     when=_two_input,
 )
 ACTUATOR_TORQUE = Topic(
@@ -285,6 +344,7 @@ ACTUATOR_TORQUE = Topic(
     TorqueRows(_TRAJECTORY, ('clutch',)),
     'actuator',
     (Signal('actuator_torque', 'N m', '(11,) at 0, 1, ..., 10 ms after t_k'),),
+    CLUTCH_LINK,
 )
 CLUTCH_TORQUE = Topic(
     'clutch/torque',
@@ -299,12 +359,14 @@ CLUTCH_TORQUE = Topic(
         ),
         Signal('clutch_static_torque', 'N m', '(11,) while it sticks', when=_stick_slip),
     ),
+    CLUTCH_LINK,
 )
 CLUTCH_TEMPERATURE = Topic(
     'clutch/temperature',
     Scalar('sensor_msgs/msg/Temperature', 'temperature'),
     'clutch',
     (Signal('clutch_temperature', 'degC', 'of the facing, which friction follows'),),
+    CLUTCH_LINK,
     when=_stick_slip,
 )
 RECORDER_ACK = Topic('recorder/ack', MessageKind('std_msgs/msg/Header'), 'recorder')

@@ -25,6 +25,7 @@ from ddct_plant.graph.topics import (
     SENSED_JOINT_STATES,
     SENSED_SLIP,
     SENSED_VEHICLE_SPEED,
+    SENSOR_STATUS,
     SLIP,
     TICKS_STATUS,
     VEHICLE_ACCEL,
@@ -38,8 +39,8 @@ from ddct_plant.ticks.tick_owner import TickOwner, TickPlan, driveline_info
 
 TORQUES = (ENGINE_TORQUE, LOAD_TORQUE, CLUTCH_TORQUE, HOLDING_TORQUE)
 """Topics of the torques that the driveline integrates, in the order of its `step`."""
-SENSED = (SENSED_SLIP, SENSED_JOINT_STATES, SENSED_VEHICLE_SPEED)
-"""Topics of a tick that carry measurements of the sensors."""
+SENSED = (SENSED_SLIP, SENSED_JOINT_STATES, SENSED_VEHICLE_SPEED, SENSOR_STATUS)
+"""Topics of a tick that carry measurements of the sensors and their flags."""
 TICK = (CLOCK, *SENSED, SLIP, CLUTCH_PHASE, JOINT_STATES, VEHICLE_SPEED, VEHICLE_ACCEL)
 """Topics of a tick, in the order of publication: the slip has the longest way round the loop."""
 WATCH_PERIOD_S = 0.02

@@ -15,6 +15,7 @@ from ddct_plant.graph.settings import declare, declare_timeout
 from ddct_plant.graph.spin import run_node
 from ddct_plant.graph.topics import (
     ENGINE_REQUEST,
+    ENGINE_SENSOR_STATUS,
     ENGINE_TORQUE,
     JOINT_STATES,
     SENSED_ENGINE_TORQUE,
@@ -60,6 +61,7 @@ class EngineNode(FollowerNode):
         self._estimate = torque_estimate(self.settings)
         if self._estimate is not None:
             self._estimated = Output(self, SENSED_ENGINE_TORQUE)
+            self._estimate_status = Output(self, ENGINE_SENSOR_STATUS)
         self.publish_run_info(engine_info(self._two_input, timeout_s))
         readers = {JOINT_STATES: self._speed}
         if self._two_input:
@@ -89,10 +91,11 @@ class EngineNode(FollowerNode):
         if self._estimate is None:
             return (delivered,)
         estimate = self._estimate.measure(step, torque)
-        known = self._estimated.fill(
-            stamp, estimate.sensed_engine_torque, estimate.sensed_torque_held
+        return (
+            self._estimated.fill(stamp, estimate.sensed_engine_torque),
+            self._estimate_status.fill(stamp, estimate.sensed_torque_held),
+            delivered,
         )
-        return (known, delivered)
 
     def _speed(self, message: Any) -> float:
         """Return w_m in rad/s for an engine with limits, else 0 to save time."""

@@ -8,6 +8,8 @@ import pytest
 
 rclpy_messages = pytest.importorskip('trajectory_msgs.msg', reason='needs the ROS message types')
 
+import diagnostic_msgs.msg as rclpy_diagnostics  # noqa: E402
+
 from ddct_plant.base.errors import DdctError  # noqa: E402
 from ddct_plant.base.timebase import stamp_of_step  # noqa: E402
 from ddct_plant.graph import topics  # noqa: E402
@@ -19,7 +21,8 @@ POINTS = [float(i) / 3.0 for i in range(11)]
 VALUES = {
     'run_info': ([],),
     'driveline/joint_states': ([0.0] * 4, [1.0] * 4, [2.0] * 4),
-    'sensors/joint_states': ([1.0] * 3, [0.0] * 3),
+    'sensors/joint_states': ([1.0] * 3,),
+    'sensors/status': ([0.0] * 3, 0.0, 1.0),
     'clutch/slip_reference': ([1.0], [2.0]),
     'controller/status': ([],),
     'controller/timing': ([],),
@@ -29,8 +32,9 @@ VALUES = {
     'clutch/phase': (1.0, 0.5, ()),
 }
 """Values of a topic; one number per signal for the topics that are not listed."""
-SCALARS = [t for t in topics.TOPICS if isinstance(t.kind, Scalar) and not t.kind.sensed]
-SENSED = [t for t in topics.TOPICS if isinstance(t.kind, Scalar) and t.kind.sensed]
+SCALARS = [topic for topic in topics.TOPICS if isinstance(topic.kind, Scalar)]
+WITHOUT_FRAME = {'Clock', 'Header', 'DiagnosticArray'}
+"""Types whose values have no coordinate frame."""
 
 
 @pytest.mark.parametrize('topic', topics.TOPICS, ids=lambda topic: topic.name)
@@ -52,34 +56,74 @@ def test_single_values_come_back_to_the_last_bit(topic):
     assert (topic.read(again), stamp_ns(again)) == (value, LATER)
 
 
-@pytest.mark.parametrize('topic', SENSED, ids=lambda topic: topic.name)
-def test_a_sensor_s_value_and_its_flag_come_back(topic):
-    write = topic.writer()
-    lost = write(STAMP, 0.1, 1.0)
-    assert (topic.read(lost), topic.values(lost)) == (0.1, (0.1, 1.0))
-    assert lost.header.frame_id == 'held'
-    came = write(LATER, -1.0 / 3.0, 0.0)
-    assert (topic.read(came), topic.values(came)) == (-1.0 / 3.0, (-1.0 / 3.0, 0.0))
-    assert came.header.frame_id == ''
-    with pytest.raises(DdctError, match=f'{topic.name} is nan'):
-        topic.read(write(LATER, math.nan, 0.0))
+@pytest.mark.parametrize('topic', topics.TOPICS, ids=lambda topic: topic.name)
+def test_every_value_with_coordinates_has_a_frame(topic):
+    """REP-105 has `base_link`; the others turn with the part that they are named after."""
+    message = topic.message(STAMP, *VALUES.get(topic.name, [1.0] * len(topic.signals)))
+    frames = {'base_link', 'engine_link', 'clutch_link', 'wheel_link'}
+    if topic.type.rpartition('/')[2] in WITHOUT_FRAME:
+        assert getattr(getattr(message, 'header', message), 'frame_id', '') == topic.frame == ''
+    else:
+        assert message.header.frame_id == topic.frame
+        assert topic.frame in frames
 
 
-def test_sensed_joints_have_a_flag_each_and_leave_no_array_empty_at_the_end():
+def test_the_frame_of_a_sensor_is_that_of_the_true_signal():
+    for sensed, true in (
+        (topics.SENSED_JOINT_STATES, topics.JOINT_STATES),
+        (topics.SENSED_SLIP, topics.SLIP),
+        (topics.SENSED_VEHICLE_SPEED, topics.VEHICLE_SPEED),
+        (topics.SENSED_ENGINE_TORQUE, topics.ENGINE_TORQUE),
+    ):
+        assert sensed.frame == true.frame
+
+
+def test_a_lost_sample_is_a_stale_status_of_its_name():
+    write = topics.SENSOR_STATUS.writer()
+    some = write(STAMP, [0.0, 1.0, 0.0], 1.0, 0.0)
+    names = ['engine', 'primary_shaft', 'wheel', 'slip', 'vehicle']
+    assert [each.name for each in some.status] == names
+    stale = rclpy_diagnostics.DiagnosticStatus.STALE
+    assert [each.level == stale for each in some.status] == [False, True, False, True, False]
+    assert topics.SENSOR_STATUS.values(some) == ([0.0, 1.0, 0.0], 1.0, 0.0)
+    none = write(LATER, [0.0] * 3, 0.0, 0.0)
+    assert topics.SENSOR_STATUS.values(none) == ([0.0] * 3, 0.0, 0.0)
+    estimate = topics.ENGINE_SENSOR_STATUS
+    assert estimate.values(estimate.message(STAMP, 1.0)) == (1.0,)
+    none.status = none.status[:-1]
+    with pytest.raises(LookupError, match='vehicle'):
+        topics.SENSOR_STATUS.values(none)
+
+
+def test_sensed_joints_have_speeds_alone_and_leave_no_array_empty_at_the_end():
     topic = topics.SENSED_JOINT_STATES
     write = topic.writer()
-    some = write(STAMP, [1.0, 2.0, 3.0], [0.0, 1.0, 0.0])
+    some = write(STAMP, [1.0, 2.0, 3.0])
     assert list(some.name) == ['engine', 'primary_shaft', 'wheel']
-    assert (topic.read(some), list(some.effort)) == ([1.0, 2.0, 3.0], [0.0, 1.0, 0.0])
-    assert [list(each) for each in topic.values(some)] == [[1.0, 2.0, 3.0], [0.0, 1.0, 0.0]]
-    assert some.header.frame_id == 'held'
-    none = write(LATER, [1.0, 2.0, 3.0], [0.0] * 3)
-    assert (none.header.frame_id, list(none.effort)) == ('', [0.0] * 3)
+    assert topic.read(some) == [1.0, 2.0, 3.0]
+    assert [list(each) for each in topic.values(some)] == [[1.0, 2.0, 3.0]]
+    assert len(some.effort) == 3
+    assert all(math.isnan(each) for each in some.effort)
     with pytest.raises(DdctError, match='sensors/joint_states is inf'):
-        topic.read(write(LATER, [1.0, math.inf, 3.0], [0.0] * 3))
-    none.name = ['engine', 'wheel', 'primary_shaft']
+        topic.read(write(LATER, [1.0, math.inf, 3.0]))
+    some.name = ['engine', 'wheel', 'primary_shaft']
     with pytest.raises(DdctError, match='in this order'):
-        topic.read(none)
+        topic.read(some)
+
+
+def test_the_parts_of_the_request_are_numbers_by_name():
+    topic = topics.TORQUE_PARTS
+    message = topic.message(STAMP, 0.1, -1.0 / 3.0, 0.0)
+    assert dict(zip(message.name, message.effort, strict=True)) == {
+        'open_loop': 0.1,
+        'closed_loop': -1.0 / 3.0,
+        'closing': 0.0,
+    }
+    message.name = ['closing', 'open_loop', 'closed_loop']
+    assert topic.values(message) == (-1.0 / 3.0, 0.0, 0.1)
+    message.name = ['closing', 'open_loop']
+    with pytest.raises(LookupError, match='closed_loop'):
+        topic.values(message)
 
 
 @pytest.mark.parametrize(

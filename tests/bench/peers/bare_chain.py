@@ -59,7 +59,7 @@ WIRING: dict[str, tuple[Sequence[str], Sequence[str]]] = {
     'reference': (['clutch/slip'], ['clutch/slip_reference']),
     'controller': (
         ['driveline/joint_states', 'vehicle/twist', 'engine/torque', 'clutch/slip_reference'],
-        ['clutch/torque_request', 'controller/status'],
+        ['clutch/torque_request', 'controller/torque_parts', 'controller/status'],
     ),
     'actuator': (['clutch/torque_request'], ['actuator/torque']),
     'clutch': (['actuator/torque'], ['clutch/torque']),
