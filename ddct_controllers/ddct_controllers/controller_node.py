@@ -88,7 +88,7 @@ class ControllerNode(FollowerNode):
         reply = (
             self._request.fill(stamp_ns, request.torque),
             self._parts.fill(stamp_ns, *request.parts.values()),
-            self._status.fill(stamp_ns, request.status, name=self.get_name()),
+            self._status.fill(stamp_ns, request.status),
         )
         if request.engine_torque is None:
             return reply
@@ -120,7 +120,7 @@ class ControllerNode(FollowerNode):
         times = ' '.join(f'{value:.3f}' for value in self._update_times_us)
         self._update_times_us = []
         pairs = [('update_times_us', times)]
-        self._timing.fill(stamp_of_step(step), pairs, name=self.get_name()).publish()
+        self._timing.fill(stamp_of_step(step), pairs).publish()
 
     def _make_controller(self, name: str) -> tuple[Controller, dict[str, str]]:
         """

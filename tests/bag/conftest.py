@@ -16,7 +16,7 @@ from ddct_bringup.bag.writer import new_bag
 from ddct_plant.graph.topics import RunKind, all_topics, recorded_topics
 from ddct_plant.models.driveline import PhaseEvent
 
-RUN_INFO = {'load': {'version': '1.0'}, 'engine': {'version': '1.0', 'seed': '0'}}
+RUN_INFO = {'/load': {'version': '1.0'}, '/engine': {'version': '1.0', 'seed': '0'}}
 
 
 def facts(steps, **changes):

@@ -36,8 +36,8 @@ def test_a_stick_slip_run_comes_back_with_its_phases(bags, make_trajectory):
 def test_run_info_facts_and_counts_come_back(bags, trajectory):
     recording = read_bag(bags.write(trajectory, wear_gain=0.7))
     assert recording.run_info == {
-        'engine': {'version': '1.0', 'seed': '0'},
-        'load': {'version': '1.0'},
+        '/engine': {'version': '1.0', 'seed': '0'},
+        '/load': {'version': '1.0'},
     }
     assert recording.facts.wear_gain == 0.7
     assert recording.counts.pop('/run_info') == 2

@@ -184,11 +184,11 @@ def _with_second_run_info(old, new):
 def test_two_different_run_info_of_one_node_are_refused_by_name(bags, trajectory):
     bag = bags.rewrite(bags.write(trajectory), 'two', _with_second_run_info(b'1.0', b'2.0'))
     with pytest.raises(
-        DdctError, match='run_info of node load came twice, with version 1.0 and 2.0'
+        DdctError, match='run_info of node /load came twice, with version 1.0 and 2.0'
     ):
         read_bag(bag)
 
 
 def test_the_same_run_info_twice_is_no_error(bags, trajectory):
     bag = bags.rewrite(bags.write(trajectory), 'twice', _with_second_run_info(b'1.0', b'1.0'))
-    assert read_bag(bag).run_info['load'] == {'version': '1.0'}
+    assert read_bag(bag).run_info['/load'] == {'version': '1.0'}

@@ -35,6 +35,11 @@ def test_an_earlier_bag_lacks_exactly_the_later_topics(sensed):
     assert later.isdisjoint(sensed.counts)
 
 
+def test_the_nodes_of_an_earlier_bag_have_full_names(sensed):
+    assert sensed.run_info['/controller']['controller'] == 'pi'
+    assert all(node.startswith('/') for node in sensed.run_info)
+
+
 def test_every_signal_of_an_earlier_bag_equals_that_of_the_same_run_today(sensed):
     today = run_headless(sensed.settings, 'pi')
     earlier = sensed.trajectory

@@ -39,9 +39,9 @@ def leave(bags, trajectory, monkeypatch):
         with new_bag(folder, 'pi', topics, facts) as bag:
             for message in records.messages:
                 bag.write(*message)
-            bag.write(*diagnostics('driveline: ticks', {**COUNTS, 'missed_steps': missed}))
+            bag.write(*diagnostics('/driveline: ticks', {**COUNTS, 'missed_steps': missed}))
             if safe:
-                bag.write(*diagnostics('actuator: safe state', SAFE))
+                bag.write(*diagnostics('/actuator: safe state', SAFE))
         RunTiming(missed_steps=missed, worst_lateness_us=1234.0).write(folder)
 
     def leave_behind(missed=0, *, safe=False, log=''):
@@ -73,7 +73,7 @@ def test_bringup_ends_with_misses_lateness_and_safe_state(leave, tmp_path, capsy
     ('missed', 'safe', 'reason'),
     [
         (1, False, '1 of 60 steps held a torque for want of a reply, more than 0 (1 %)'),
-        (0, True, 'safe state entered by actuator at 0.4 s'),
+        (0, True, 'safe state entered by /actuator at 0.4 s'),
     ],
 )
 def test_bringup_fails_for_misses_and_for_a_safe_state_and_keeps_the_bag(
@@ -85,7 +85,7 @@ def test_bringup_fails_for_misses_and_for_a_safe_state_and_keeps_the_bag(
     log, summary, error = capsys.readouterr().err.splitlines()[-3:]
     partial = out / 'pi.partial'
     assert log == f'ddct bringup: warnings are in {partial / "work" / "actuator.log"}'
-    state = 'actuator at 0.4 s' if safe else 'none'
+    state = '/actuator at 0.4 s' if safe else 'none'
     assert summary == (
         f'ddct bringup: {missed} of 60 steps missed, worst lateness 1.23 ms, safe state: {state}'
     )
@@ -109,15 +109,15 @@ def test_compare_fails_and_its_table_and_scores_have_the_reason(leave, tmp_path,
     assert compare.main(arguments) == 1
     printed = capsys.readouterr()
     (entry,) = json.loads(printed.out)['runs']
-    assert (entry['valid'], entry['safe_state']) == (False, 'actuator at 0.4 s')
+    assert (entry['valid'], entry['safe_state']) == (False, '/actuator at 0.4 s')
     assert entry['reason'] == (
         '7 of 60 steps held a torque for want of a reply, more than 0 (1 %); '
-        'safe state entered by actuator at 0.4 s'
+        'safe state entered by /actuator at 0.4 s'
     )
     metrics = entry['metrics']
     assert (metrics['missed_steps'], metrics['worst_lateness_us']) == (7, 1234.0)
     row = next(line for line in printed.err.splitlines() if line.lstrip().startswith('pi '))
-    cells = ['7', '1.23', 'actuator', 'at', '0.4', 's', 'invalid', 'failed', 'NO']
+    cells = ['7', '1.23', '/actuator', 'at', '0.4', 's', 'invalid', 'failed', 'NO']
     assert row.split()[-9:] == cells
     assert f'warnings are in {tmp_path / "runs.partial" / "pi" / "work"}' in printed.err
 
@@ -129,4 +129,4 @@ def test_score_judges_the_bag_without_its_timing_file(leave, tmp_path, capsys):
     (partial / 'timing.json').unlink()
     capsys.readouterr()
     assert score.main([str(partial)]) == 1
-    assert 'safe state entered by actuator at 0.4 s' in capsys.readouterr().out
+    assert 'safe state entered by /actuator at 0.4 s' in capsys.readouterr().out

@@ -41,4 +41,4 @@ def test_a_run_info_without_what_the_bag_needs_is_named(
     graph.add_all()
     failed, complaint = graph.first_failure()
     assert failed == 'recorder'
-    assert f'run_info of node {node} has no {key}' in complaint
+    assert f'run_info of node /{node} has no {key}' in complaint

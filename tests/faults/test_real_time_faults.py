@@ -72,13 +72,13 @@ def test_bad_requests_count_as_missing_and_open_the_clutch(
     graph.run()
     recording = read_bag(graph.folder)
     opened = FROM_STEP + round(FAIL_SAFE.request_timeout_s / PERIOD_S)
-    assert recording.realtime.safe_states['actuator'] == stamp_of_step(opened)
+    assert recording.realtime.safe_states['/actuator'] == stamp_of_step(opened)
     torque = recording.trajectory.clutch_torque[:, 0]
     assert torque[FROM_STEP - 1] > 50.0
     assert torque[-1] < 1.0
     entry = score_recording(recording, 'bag', packaged_limits())
     assert not entry['valid']
-    assert f'actuator at {opened / 100:g} s' in entry['safe_state']
+    assert f'/actuator at {opened / 100:g} s' in entry['safe_state']
     assert entry['safe_state'] in entry['reason']
 
 
@@ -140,7 +140,7 @@ def test_the_driveline_opens_the_clutch_itself_when_the_actuator_is_gone(
     graph.run()
     recording = read_bag(graph.folder)
     opened = last + round(CLUTCH_TIMEOUT_S / PERIOD_S) + 1
-    assert recording.realtime.safe_states == {'driveline': stamp_of_step(opened + 1)}
+    assert recording.realtime.safe_states == {'/driveline': stamp_of_step(opened + 1)}
     torque = recording.trajectory.joint_effort[:, 1]
     held = torque[last + 1]
     assert held > 50.0

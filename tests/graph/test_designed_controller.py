@@ -24,7 +24,7 @@ def test_a_relative_file_gives_the_same_bytes_in_every_layout(
         recording = record(run, tmp_path / layout)
         assert recording.trajectory.sha256() == expected(run).sha256(), layout
         assert recording.facts.controller == 'mine'
-        assert recording.run_info['controller']['controller'] == 'mine'
+        assert recording.run_info['/controller']['controller'] == 'mine'
         bags.append(bag_bytes(tmp_path / layout))
     assert all(bag == bags[0] for bag in bags)
     assert not any(b'any_name' in content for content in bags[0].values())
@@ -48,7 +48,7 @@ def test_the_class_in_a_relative_python_file_gives_the_same_bytes_in_every_layou
         run = plan(str(file), layout)
         recording = record(run, tmp_path / layout)
         assert recording.trajectory.sha256() == expected(run).sha256(), layout
-        told = recording.run_info['controller']
+        told = recording.run_info['/controller']
         assert told['controller'] == 'Mine'
         assert told['controller_file_sha256'] == sha256(file.read_bytes()).hexdigest()
         bags.append(bag_bytes(tmp_path / layout))

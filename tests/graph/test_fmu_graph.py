@@ -23,7 +23,7 @@ def test_an_fmu_gives_the_same_bytes_in_every_layout(
     bags = []
     for layout in ('processes', 'single-process', 'headless'):
         recording = record(plan(file, layout, changes=changes), tmp_path / layout)
-        assert recording.run_info['controller']['controller'] == 'mine'
+        assert recording.run_info['/controller']['controller'] == 'mine'
         pi = expected(plan('pi', changes=changes))
         assert np.array_equal(recording.trajectory.torque_request, pi.torque_request)
         bags.append(bag_bytes(tmp_path / layout))

@@ -18,7 +18,7 @@ TABLE = Path(topics.__file__).name
 NAMES = {
     *(topic.name for topic in TOPICS),
     *(topic.resolved_name for topic in TOPICS),
-    topics.TICKS_STATUS,
+    topics.TICKS,
     topics.SAFE_STATE,
 }
 PAGE = (ROOT / 'docs' / 'develop' / 'interfaces.md').read_text(encoding='utf-8')

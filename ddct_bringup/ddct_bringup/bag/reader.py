@@ -27,6 +27,7 @@ from ddct_plant.base.timebase import stamp_of_step
 from ddct_plant.files.input_file import SCHEMA_KEY, located, mcap_of
 from ddct_plant.files.yaml_text import parse_yaml
 from ddct_plant.graph.message_kinds import stamp_ns
+from ddct_plant.graph.node_names import StatusName, name_in_graph
 from ddct_plant.graph.topics import (
     DIAGNOSTICS,
     JOINT_STATES,
@@ -50,7 +51,7 @@ class Recording:
     facts: RunFacts
     custom_data: dict[str, str] = field(default_factory=dict)
     run_info: RunInfoOfNodes = field(default_factory=dict)
-    """Parameters and version of each node, by node name."""
+    """Parameters and version of each node, by full node name."""
     counts: dict[str, int] = field(default_factory=dict)
     """Number of messages by resolved topic name."""
     missed: dict[str, int] = field(default_factory=dict)
@@ -153,7 +154,8 @@ def _realtime(messages: list[tuple[int, Any]]) -> RealtimeFacts:
     facts = RealtimeFacts()
     for _, message in messages:
         if message.status:
-            facts.receive(*DIAGNOSTICS.read(message))
+            name, pairs = DIAGNOSTICS.read(message)
+            facts.receive(StatusName.of(name), pairs)
     return facts
 
 
@@ -228,5 +230,6 @@ def _rows(values: Values, last: int) -> tuple[list[tuple[Any, ...]], int]:
 def _run_info(messages: list[tuple[int, Any]]) -> RunInfoOfNodes:
     received: RunInfoOfNodes = {}
     for _, message in messages:
-        add_run_info(received, *RUN_INFO.read(message))
+        node, pairs = RUN_INFO.read(message)
+        add_run_info(received, name_in_graph(node), pairs)
     return received

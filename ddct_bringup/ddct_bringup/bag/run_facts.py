@@ -10,12 +10,13 @@ from typing import Any
 from ddct_plant.base.errors import DdctError, ParameterError, require_name, require_number
 from ddct_plant.base.timebase import steps_in
 from ddct_plant.files.input_file import parse_json
+from ddct_plant.graph.node_names import StatusName
 from ddct_plant.graph.topics import (
     ENGINE_REQUEST,
     SAFE_STATE,
     SENSED_TOPICS,
     SINCE,
-    TICKS_STATUS,
+    TICKS,
     TORQUE_PARTS,
     RunKind,
 )
@@ -30,9 +31,10 @@ MEASURED = 'measured'
 """Mode of the log of another tool, and the text for facts that such a log lacks."""
 
 RunInfoOfNodes = dict[str, Mapping[str, str]]
-"""Key-value pairs that each node publishes on `run_info`, by node name."""
+"""Key-value pairs that each node publishes on `run_info`, by full node name."""
 
-_CONTROLLER_NODE = 'controller'
+CONTROLLER_NODE = '/controller'
+DRIVELINE_NODE = '/driveline'
 
 
 @dataclass(frozen=True)
@@ -131,7 +133,7 @@ class RealtimeCounts:
     worst_lateness_us: float | None = None
     """Largest lateness of a step of the driveline, us; None in lock-step."""
     safe_states: dict[str, int] = field(default_factory=dict)
-    """Stamp in ns at which a node entered its safe state, by node name."""
+    """Stamp in ns at which a node entered its safe state, by full node name."""
 
 
 @dataclass
@@ -141,13 +143,13 @@ class RealtimeFacts(RealtimeCounts):
     steps: int = 0
     """Step of the driveline's last count."""
 
-    def receive(self, name: str, pairs: Mapping[str, str]) -> bool:
+    def receive(self, name: StatusName, pairs: Mapping[str, str]) -> bool:
         """Store one status of `/diagnostics`; return whether it is one of this project's."""
         try:
-            if name.endswith(SAFE_STATE):
-                self.safe_states[name.removesuffix(SAFE_STATE)] = int(pairs[SINCE])
+            if name.node and name.what == SAFE_STATE:
+                self.safe_states[name.node] = int(pairs[SINCE])
                 return True
-            if name != TICKS_STATUS:
+            if name != (DRIVELINE_NODE, TICKS):
                 return False
             for count in ('steps', 'missed_steps', 'resends', 'late_messages'):
                 setattr(self, count, int(pairs[count]))
@@ -160,7 +162,7 @@ class RealtimeFacts(RealtimeCounts):
 
 def add_run_info(received: RunInfoOfNodes, node: str, pairs: Mapping[str, str]) -> None:
     """
-    Add the key-value pairs that `node` published on `run_info`.
+    Add the key-value pairs that `node` published on `run_info`; `node` is its full name.
 
     Raise DdctError where a node of this name has published different pairs before.
     """
@@ -177,9 +179,9 @@ def add_run_info(received: RunInfoOfNodes, node: str, pairs: Mapping[str, str]) 
 
 def run_info_order(nodes: Iterable[str]) -> list[str]:
     """
-    Return the names of the nodes sorted, `controller` last.
+    Return the full names of the nodes sorted, `/controller` last.
 
     Viewers such as Foxglove keep only the last message of a topic when they are opened or moved
     in time; the controller's names the controller that runs and its gains.
     """
-    return sorted(nodes, key=lambda node: (node == _CONTROLLER_NODE, node))
+    return sorted(nodes, key=lambda node: (node == CONTROLLER_NODE, node))

@@ -14,6 +14,7 @@ from ddct_bringup.live.server import LiveServer
 from ddct_bringup.processes.live_process import ALL_TOPICS_RECEIVED, VIEWER_SUBSCRIBED
 from ddct_plant.base.timebase import START_NS
 from ddct_plant.graph.node import GraphNode
+from ddct_plant.graph.node_names import name_in_graph
 from ddct_plant.graph.qos import LIVE_QOS
 from ddct_plant.graph.topics import (
     CLOCK,
@@ -87,7 +88,7 @@ class LiveNode(GraphNode):
 
     def _on_run_info(self, cdr: bytes) -> None:
         node, _ = RUN_INFO.read(deserialize_message(cdr, RUN_INFO.message_class))
-        self._run_info[node] = cdr
+        self._run_info[name_in_graph(node, self.get_namespace())] = cdr
         self._views_latched = -1
 
     def _on_view(self, topic: str) -> None:

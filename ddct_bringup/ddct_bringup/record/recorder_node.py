@@ -23,6 +23,7 @@ from ddct_plant.base.errors import DdctError, require_name
 from ddct_plant.base.options import Option
 from ddct_plant.base.timebase import START_NS, stamp_of_step
 from ddct_plant.graph.node import GraphNode
+from ddct_plant.graph.node_names import StatusName, name_in_graph
 from ddct_plant.graph.qos import LOOP_QOS, RECORDER_QOS
 from ddct_plant.graph.settings import declare
 from ddct_plant.graph.sole_publishers import publishers_of
@@ -75,7 +76,13 @@ class RecorderNode(GraphNode):
         nodes = declare(
             self,
             'nodes',
-            Option(NODE_NAMES, 'nodes whose run_info the bag must hold', kind=str, many=True),
+            Option(
+                NODE_NAMES,
+                'nodes whose run_info the bag must hold; names without a slash are those of '
+                "the recorder's namespace",
+                kind=str,
+                many=True,
+            ),
         )
         self._nodes = RunInfoCollector(self.settings, self._two_input, nodes)
         self._run = RunKind(
@@ -166,7 +173,7 @@ class RecorderNode(GraphNode):
     def _on_run_info(self, cdr: bytes) -> None:
         node, pairs = RUN_INFO.read(_message(RUN_INFO, cdr))
         try:
-            self._nodes.receive(node, pairs)
+            self._nodes.receive(name_in_graph(node, self.get_namespace()), pairs)
         except DdctError as error:
             self._on_second_node(error)
         self._write_ticks([])
@@ -187,8 +194,14 @@ class RecorderNode(GraphNode):
 
     def _on_diagnostics(self, cdr: bytes) -> None:
         message = _message(DIAGNOSTICS, cdr)
-        if message.status and self._realtime.receive(*DIAGNOSTICS.read(message)):
-            self._record_unordered(DIAGNOSTICS, cdr)
+        if not message.status:
+            return
+        # Every graph of the domain publishes on this topic, whatever its namespace.
+        given, pairs = DIAGNOSTICS.read(message)
+        name = StatusName.of(given, self.get_namespace())
+        if self._nodes.has(name.node) and self._realtime.receive(name, pairs):
+            message.status[0].name = str(name)
+            self._record_unordered(DIAGNOSTICS, serialize_message(message))
 
     def _record_unordered(self, topic: Topic, cdr: bytes) -> None:
         if topic not in self._topics:

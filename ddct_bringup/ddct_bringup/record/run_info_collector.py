@@ -4,8 +4,15 @@
 
 from collections.abc import Collection, Mapping
 
-from ddct_bringup.bag.run_facts import RunInfoOfNodes, add_run_info, run_info_order
+from ddct_bringup.bag.run_facts import (
+    CONTROLLER_NODE,
+    DRIVELINE_NODE,
+    RunInfoOfNodes,
+    add_run_info,
+    run_info_order,
+)
 from ddct_plant.base.errors import DdctError
+from ddct_plant.graph.node_names import name_in_graph
 from ddct_plant.graph.run_info import run_info_pairs
 from ddct_plant.graph.topics import RUN_INFO
 from ddct_plant.scenario.settings import RunSettings
@@ -15,15 +22,19 @@ class RunInfoCollector:
     """Collector of the `run_info` of every node that a recording needs."""
 
     def __init__(self, settings: RunSettings, two_input: bool, expected: Collection[str]) -> None:
-        """Store the recorder's own settings, and the names of the nodes to wait for."""
+        """
+        Store the recorder's own settings, and the names of the nodes to wait for.
+
+        A name without a slash is that of a node in the recorder's own namespace.
+        """
         self._settings = settings
         self._two_input = str(two_input).lower()
-        self._expected = set(expected)
+        self._expected = {name_in_graph(node) for node in expected}
         self._received: RunInfoOfNodes = {}
 
     def receive(self, node: str, pairs: Mapping[str, str]) -> None:
         """
-        Store the `run_info` of a node.
+        Store the `run_info` of a node, given by its full name.
 
         Raise DdctError when its settings differ from the recorder's, or its pairs from
         earlier ones.
@@ -46,6 +57,10 @@ class RunInfoCollector:
         """Return the names of the expected nodes whose `run_info` has not been received."""
         return sorted(self._expected - set(self._received))
 
+    def has(self, node: str) -> bool:
+        """Return whether a node, given by its full name, belongs to the recorded graph."""
+        return node in self._expected or node in self._received
+
     def received(self) -> RunInfoOfNodes:
         """Return the received `run_info` by node name, in the order in which it is recorded."""
         return {node: self._received[node] for node in run_info_order(self._received)}
@@ -53,15 +68,16 @@ class RunInfoCollector:
     @property
     def controller(self) -> str:
         """Name of the controller; DdctError when no node has published it."""
-        return self._value('controller', 'controller')
+        return self._value(CONTROLLER_NODE, 'controller')
 
     @property
     def steps(self) -> int:
         """N, the number of periods; DdctError when the driveline has not published it."""
-        steps = self._value('driveline', 'steps')
+        steps = self._value(DRIVELINE_NODE, 'steps')
         if not steps.isdecimal():
             raise DdctError(
-                f'{RUN_INFO.name} of node driveline has steps {steps!r}: give a whole number'
+                f'{RUN_INFO.name} of node {DRIVELINE_NODE} has steps {steps!r}: '
+                'give a whole number'
             )
         return int(steps)
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ddct_bringup.bag.run_facts import CONTROLLER_NODE
 from ddct_bringup.report.runs import ReportRun
 from ddct_bringup.run.description import UNKNOWN
 from ddct_bringup.run.timing_and_failure import RunTiming
@@ -36,7 +37,7 @@ def run_origin(run: ReportRun) -> RunOrigin:
     conditions = tuple(
         (name, '–' if name in unknown else str(run.entry[name])) for name in _CONDITIONS
     )
-    told = {} if run.recording is None else run.recording.run_info.get('controller', {})
+    told = {} if run.recording is None else run.recording.run_info.get(CONTROLLER_NODE, {})
     conditions += (('computed_from', told.get('computed_from', '–')),)
     if run.recording is None or run.measured:
         return RunOrigin(conditions, (), '–', '–')

@@ -11,6 +11,7 @@ from ddct_controllers.interface import Controller
 from ddct_plant.base.timebase import time_of_step
 from ddct_plant.fail_safe.guarded import engine_info
 from ddct_plant.fail_safe.request_watch import FailSafeSettings
+from ddct_plant.graph.node_names import name_in_graph
 from ddct_plant.graph.run_info import run_info_pairs
 from ddct_plant.program.command_line import package_version
 from ddct_plant.scenario.file import scenario_to_yaml
@@ -68,7 +69,9 @@ def run_info_of(
         'controller': controller.info(name),
         'recorder': {},
     }
-    return {node: dict(run_info_pairs(settings, pairs)) for node, pairs in extra.items()}
+    return {
+        name_in_graph(node): dict(run_info_pairs(settings, pairs)) for node, pairs in extra.items()
+    }
 
 
 def source_commit(file: Path = Path(__file__)) -> str:

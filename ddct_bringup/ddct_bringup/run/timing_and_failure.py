@@ -11,6 +11,7 @@ from ddct_bringup.bag.run_facts import RealtimeCounts, RunFacts
 from ddct_plant.base.errors import DdctError, printable, require_number
 from ddct_plant.files.input_file import parse_json, read_text_file
 from ddct_plant.files.output_file import write_json, write_text
+from ddct_plant.graph.node_names import name_in_graph
 
 TIMING_FILE = 'timing.json'
 NOTE_FILE = 'failed_run.json'
@@ -58,7 +59,7 @@ def read_timing(folder: Path) -> RunTiming | None:
             refused_messages=_count('refused_messages', values.get('refused_messages', 0)),
             worst_lateness_us=lateness,
             safe_states={
-                str(node): _count('safe_states', stamp)
+                name_in_graph(node): _count('safe_states', stamp)
                 for node, stamp in values.get('safe_states', {}).items()
             },
             wall_time_s=_positive('wall_time_s', values['wall_time_s']),

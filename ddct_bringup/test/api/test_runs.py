@@ -117,7 +117,7 @@ def test_the_bag_of_a_kept_run_names_the_controller_file(tmp_path):
         'name: mine\nunits: {input: rpm, output: N m}\npolynomial: {num: [-0.1], den: [1.0]}\n'
     )
     kept = api.run(file, duration=SHORT_S, out=tmp_path / 'runs')
-    told = read_bag(kept.path).run_info['controller']
+    told = read_bag(kept.path).run_info['/controller']
     assert told['controller_file_sha256'] == hashlib.sha256(file.read_bytes()).hexdigest()
 
 

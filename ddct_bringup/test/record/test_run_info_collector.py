@@ -16,49 +16,59 @@ SETTINGS = RunSettings(load_scenario('thesis'))
 def collected(**extras: dict[str, str]) -> RunInfoCollector:
     nodes = RunInfoCollector(SETTINGS, two_input=False, expected=['driveline', 'controller'])
     for node, extra in extras.items():
-        nodes.receive(node, dict(run_info_pairs(SETTINGS, extra)))
+        nodes.receive(f'/{node}', dict(run_info_pairs(SETTINGS, extra)))
     return nodes
 
 
 def test_silent_nodes_are_those_expected_and_not_collected():
-    assert collected(load={}).missing() == ['controller', 'driveline']
+    assert collected(load={}).missing() == ['/controller', '/driveline']
     assert collected(driveline={}, controller={}).missing() == []
 
 
 def test_what_the_bag_needs_is_read_and_the_controller_comes_last():
     nodes = collected(controller={'controller': 'ls8'}, load={}, driveline={'steps': '80'})
     assert (nodes.controller, nodes.steps) == ('ls8', 80)
-    assert list(nodes.received()) == ['driveline', 'load', 'controller']
-    assert nodes.received()['controller']['controller'] == 'ls8'
+    assert list(nodes.received()) == ['/driveline', '/load', '/controller']
+    assert nodes.received()['/controller']['controller'] == 'ls8'
 
 
 @pytest.mark.parametrize('extras', [{}, {'driveline': {}}, {'driveline': {'steps': '8.5'}}])
 def test_missing_or_unusable_steps_are_named(extras):
-    with pytest.raises(DdctError, match='run_info of node driveline has .*steps'):
+    with pytest.raises(DdctError, match='run_info of node /driveline has .*steps'):
         _ = collected(**extras).steps
 
 
 def test_a_missing_name_of_the_controller_is_named():
-    with pytest.raises(DdctError, match='run_info of node controller has no controller'):
+    with pytest.raises(DdctError, match='run_info of node /controller has no controller'):
         _ = collected(controller={}).controller
 
 
 def test_other_settings_are_refused():
     nodes = collected()
-    with pytest.raises(DdctError, match='node load runs with seed 7 and the recorder with 0'):
-        nodes.receive('load', {'seed': '7'})
+    with pytest.raises(DdctError, match='node /load runs with seed 7 and the recorder with 0'):
+        nodes.receive('/load', {'seed': '7'})
     with pytest.raises(DdctError, match=r'two_input true and .* -p two_input:=true'):
-        nodes.receive('engine', {'two_input': 'true'})
+        nodes.receive('/engine', {'two_input': 'true'})
 
 
 def test_a_node_that_repeats_its_run_info_is_recorded_once():
     nodes = collected(controller={'controller': 'ls8'}, driveline={'steps': '80'})
-    nodes.receive('controller', dict(run_info_pairs(SETTINGS, {'controller': 'ls8'})))
-    assert list(nodes.received()) == ['driveline', 'controller']
+    nodes.receive('/controller', dict(run_info_pairs(SETTINGS, {'controller': 'ls8'})))
+    assert list(nodes.received()) == ['/driveline', '/controller']
 
 
 def test_a_node_name_with_two_different_run_info_is_refused():
     nodes = collected(controller={'controller': 'ls8'}, driveline={'steps': '80'})
-    with pytest.raises(DdctError, match='node controller came twice, with controller ls8 and pi'):
-        nodes.receive('controller', dict(run_info_pairs(SETTINGS, {'controller': 'pi'})))
+    with pytest.raises(DdctError, match='node /controller came twice, with controller ls8 and pi'):
+        nodes.receive('/controller', dict(run_info_pairs(SETTINGS, {'controller': 'pi'})))
     assert nodes.controller == 'ls8'
+
+
+def test_nodes_of_one_name_in_two_namespaces_are_two_nodes():
+    nodes = RunInfoCollector(SETTINGS, two_input=False, expected=['actuator', '/off/actuator'])
+    nodes.receive('/actuator', dict(run_info_pairs(SETTINGS, {'timeout': '1'})))
+    assert nodes.missing() == ['/off/actuator']
+    nodes.receive('/off/actuator', dict(run_info_pairs(SETTINGS, {'timeout': '2'})))
+    assert [pairs['timeout'] for pairs in nodes.received().values()] == ['1', '2']
+    assert nodes.has('/off/actuator')
+    assert not nodes.has('/other/actuator')

@@ -20,7 +20,7 @@ def test_what_the_recorder_wrote_is_read_back(tmp_path):
         late_messages=3,
         refused_messages=4,
         worst_lateness_us=5.5,
-        safe_states={'actuator': 1870000000},
+        safe_states={'/actuator': 1870000000},
         steps=300,
     )
     timing.write(tmp_path)
@@ -29,9 +29,12 @@ def test_what_the_recorder_wrote_is_read_back(tmp_path):
 
 def test_a_file_of_before_these_were_known_is_read(tmp_path):
     old = {'update_times_us': [], 'missed_steps': 1, 'resends': 0, 'late_messages': 0}
-    text = json.dumps({**old, 'wall_time_s': 1.0, 'steps': 100})
+    states = {'safe_states': {'actuator': 1870000000}}  # names had no slash
+    text = json.dumps({**old, **states, 'wall_time_s': 1.0, 'steps': 100})
     (tmp_path / 'timing.json').write_text(text, encoding='utf-8')
-    timing = RunTiming(missed_steps=1, wall_time_s=1.0, steps=100)
+    timing = RunTiming(
+        missed_steps=1, safe_states={'/actuator': 1870000000}, wall_time_s=1.0, steps=100
+    )
     assert read_timing(tmp_path) == timing
 
 

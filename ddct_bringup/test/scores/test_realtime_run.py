@@ -16,11 +16,13 @@ from ddct_bringup.scores.scoring import score_recording
 from ddct_bringup.scores.validity import realtime_summary, why_invalid
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.base.timebase import stamp_of_step
+from ddct_plant.graph.node_names import StatusName
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
 STEPS = 300
 TOLERATED = 3
+COUNTS = {'steps': '300', 'missed_steps': '4', 'resends': '5', 'late_messages': '6'}
 SETTINGS = RunSettings(load_scenario('thesis'))
 TRAJECTORY = run_headless(SETTINGS, 'ls8')
 
@@ -82,7 +84,7 @@ def test_torques_that_the_bag_lacks_count_as_misses(topic):
     assert why_invalid(recording(missed={topic: TOLERATED + 1})).startswith('4 of 300 steps held')
 
 
-@pytest.mark.parametrize('node', ['actuator', 'engine', 'driveline'])
+@pytest.mark.parametrize('node', ['/actuator', '/engine', '/driveline'])
 def test_a_safe_state_makes_a_run_invalid_and_is_named(node):
     since = {node: stamp_of_step(87)}
     entry = scored(recording(facts(safe_states=since)))
@@ -102,11 +104,11 @@ def test_scores_contain_the_worst_lateness_of_the_timing_file(tmp_path):
 
 
 def test_the_summary_states_misses_lateness_and_safe_states_in_their_order():
-    states = {'driveline': stamp_of_step(95), 'actuator': stamp_of_step(90)}
+    states = {'/driveline': stamp_of_step(95), '/actuator': stamp_of_step(90)}
     given = facts(missed_steps=2, safe_states=states)
     assert realtime_summary(recording(given)) == (
         '2 of 300 steps missed, worst lateness 0.41 ms, '
-        'safe state: actuator at 0.9 s, driveline at 0.95 s'
+        'safe state: /actuator at 0.9 s, /driveline at 0.95 s'
     )
     assert realtime_summary(recording(facts(worst_lateness_us=None))) == (
         '0 of 300 steps missed, worst lateness unknown, safe state: none'
@@ -115,16 +117,20 @@ def test_the_summary_states_misses_lateness_and_safe_states_in_their_order():
 
 def test_diagnostics_of_nodes_are_parsed():
     received = RealtimeFacts()
-    counts = {'steps': '300', 'missed_steps': '4', 'resends': '5', 'late_messages': '6'}
-    assert received.receive('driveline: ticks', {**counts, 'worst_tick_lateness_us': '700'})
-    assert received.receive('actuator: safe state', {'since_ns': '1870000000'})
-    assert received == RealtimeFacts(4, 5, 6, 700.0, {'actuator': 1870000000}, steps=300)
+    assert received.receive(
+        StatusName('/driveline', ': ticks'), {**COUNTS, 'worst_tick_lateness_us': '700'}
+    )
+    assert received.receive(StatusName.of('actuator: safe state'), {'since_ns': '1870000000'})
+    assert received == RealtimeFacts(4, 5, 6, 700.0, {'/actuator': 1870000000}, steps=300)
 
 
 @pytest.mark.parametrize(
     ('name', 'pairs'),
     [
         ('motor: temperature', {'steps': '1'}),
+        ('temperature', {'since_ns': '1'}),
+        ('safe state', {'since_ns': '1'}),
+        ('/car8/driveline: ticks', COUNTS),
         ('driveline: ticks', {}),
         ('driveline: ticks', {'steps': 'many'}),
         ('actuator: safe state', {}),
@@ -133,5 +139,5 @@ def test_diagnostics_of_nodes_are_parsed():
 )
 def test_diagnostics_of_other_nodes_are_ignored(name, pairs):
     received = RealtimeFacts()
-    assert not received.receive(name, pairs)
+    assert not received.receive(StatusName.of(name), pairs)
     assert received == RealtimeFacts()

@@ -14,6 +14,7 @@ from rclpy.timer import Timer
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import STEPS_PER_S, stamp_of_step
 from ddct_plant.graph.message_kinds import stamp_ns
+from ddct_plant.graph.node_names import StatusName
 from ddct_plant.graph.qos import LATCHED_QOS, LOOP_QOS, RECORDER_LATCHED_QOS
 from ddct_plant.graph.run_info import run_info_pairs
 from ddct_plant.graph.settings import declare_settings
@@ -63,8 +64,8 @@ class SafeStateReport:
         elif step % STEPS_PER_S:
             return
         pairs = ((SINCE, str(self._since)), ('why', why))
-        name = f'{self._node.get_name()}{SAFE_STATE}'
-        self._output.fill(stamp, pairs, name=name, error=why).publish()
+        name = StatusName(self._node.get_fully_qualified_name(), SAFE_STATE)
+        self._output.fill(stamp, pairs, name=str(name), error=why).publish()
 
 
 class GraphNode(Node):
@@ -93,7 +94,8 @@ class GraphNode(Node):
     def publish_run_info(self, extra: Mapping[str, str] | None = None) -> None:
         """Publish this node's settings, latched and stamped t_0, with `extra` entries."""
         pairs = run_info_pairs(self.settings, extra)
-        Output(self, RUN_INFO).fill(stamp_of_step(0), pairs, name=self.get_name()).publish()
+        name = self.get_fully_qualified_name()
+        Output(self, RUN_INFO).fill(stamp_of_step(0), pairs, name=name).publish()
 
     def subscribe_values(
         self,

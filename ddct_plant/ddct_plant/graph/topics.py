@@ -36,10 +36,10 @@ BASE_LINK = 'base_link'
 """Frame of the car's body (REP-105), x forward: of its motion, and of what joints carry."""
 ENGINE_LINK, CLUTCH_LINK, WHEEL_LINK = 'engine_link', 'clutch_link', 'wheel_link'
 """Frames whose x axis is the axis on which crankshaft, clutch and wheels turn."""
-TICKS_STATUS = 'driveline: ticks'
-"""Name of the diagnostic status with the driveline's counts of steps and missing replies."""
+TICKS = ': ticks'
+"""Ending, after the driveline's name, of the name of the status with its counts."""
 SAFE_STATE = ': safe state'
-"""Ending of the name of the diagnostic status of a node in its safe state."""
+"""Ending, after the node's name, of the name of the status of a node in its safe state."""
 SINCE = 'since_ns'
 """Key of the stamp in ns at which the safe state began."""
 
@@ -370,7 +370,13 @@ CLUTCH_TEMPERATURE = Topic(
     when=_stick_slip,
 )
 RECORDER_ACK = Topic('recorder/ack', MessageKind('std_msgs/msg/Header'), 'recorder')
-CONTROLLER_TIMING = _status('controller/timing', 'controller', every_tick=False, wall_clock=True)
+CONTROLLER_TIMING = _status(
+    'controller/timing',
+    'controller',
+    status_name='controller',
+    every_tick=False,
+    wall_clock=True,
+)
 DIAGNOSTICS = _status(
     '/diagnostics', 'driveline, engine, actuator', every_tick=False, wall_clock=True
 )

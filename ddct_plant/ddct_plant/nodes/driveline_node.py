@@ -9,6 +9,7 @@ from ddct_plant.base.options import Option
 from ddct_plant.base.timebase import LONGEST_S, PERIOD_S, STEPS_PER_S, stamp_of_step, steps_in
 from ddct_plant.fail_safe.request_watch import CLUTCH_TIMEOUT_S
 from ddct_plant.graph.node import GraphNode, Output, SafeStateReport
+from ddct_plant.graph.node_names import StatusName
 from ddct_plant.graph.settings import declare, declare_fail_safe
 from ddct_plant.graph.sole_publishers import SolePublishers
 from ddct_plant.graph.spin import run_node
@@ -27,7 +28,7 @@ from ddct_plant.graph.topics import (
     SENSED_VEHICLE_SPEED,
     SENSOR_STATUS,
     SLIP,
-    TICKS_STATUS,
+    TICKS,
     VEHICLE_ACCEL,
     VEHICLE_SPEED,
     RunKind,
@@ -163,7 +164,8 @@ class DrivelineNode(GraphNode):
             why = f'no {CLUTCH_TORQUE.name} for longer than clutch_timeout_s: opening the clutch'
             self._safe_state.publish(step, stamp, why)
         if step % STEPS_PER_S == 0 or step == self.owner.last_step:
-            self._diagnostics.fill(stamp, self._counts(), name=TICKS_STATUS).publish()
+            name = StatusName(self.get_fully_qualified_name(), TICKS)
+            self._diagnostics.fill(stamp, self._counts(), name=str(name)).publish()
 
     def _counts(self) -> list[tuple[str, str]]:
         owner = self.owner
