@@ -22,9 +22,9 @@ from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_plant.base.errors import DdctError, require_name
 from ddct_plant.base.options import Option
 from ddct_plant.base.timebase import START_NS, stamp_of_step
-from ddct_plant.graph.node import GraphNode
+from ddct_plant.graph.node import GraphNode, create_publisher
 from ddct_plant.graph.node_names import StatusName, name_in_graph
-from ddct_plant.graph.qos import LOOP_QOS, RECORDER_QOS
+from ddct_plant.graph.qos import RECORDER_QOS
 from ddct_plant.graph.settings import declare
 from ddct_plant.graph.sole_publishers import publishers_of
 from ddct_plant.graph.spin import run_node
@@ -103,7 +103,7 @@ class RecorderNode(GraphNode):
         self._timing = RunTiming()
         self._realtime = RealtimeFacts()
         self._first_tick_at = 0.0
-        self._ack = self.create_publisher(RECORDER_ACK.message_class, RECORDER_ACK.name, LOOP_QOS)
+        self._ack = create_publisher(self, RECORDER_ACK)
         self._write_ack = RECORDER_ACK.writer()
         self._acknowledged = 0
         self._second_node: DdctError | None = None

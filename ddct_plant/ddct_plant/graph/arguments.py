@@ -14,6 +14,7 @@ from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.base.options import require_known
 from ddct_plant.graph.domain import require_domain
 from ddct_plant.graph.node import GraphNode
+from ddct_plant.graph.qos import QOS_OVERRIDES
 
 HELP = {'-h', '--help'}
 ROS_ARGUMENTS, _END_OF_ROS_ARGUMENTS = '--ros-args', '--'
@@ -59,7 +60,15 @@ def init_ros(arguments: Sequence[str] | None, context: Context | None = None) ->
 
 def require_declared(node: GraphNode) -> None:
     """Raise ParameterError for a parameter that was given and that the node does not declare."""
-    require_known(node.undeclared_parameters(), node.own_parameters(), 'parameter')
+    undeclared = node.undeclared_parameters()
+    for name in undeclared:
+        if name.startswith(QOS_OVERRIDES):
+            raise ParameterError(
+                f'parameter {name}: node {node.get_name()} has no such override: give '
+                f'{QOS_OVERRIDES}.TOPIC.publisher.depth or .subscription.depth, with the full '
+                'name of a topic of this node'
+            )
+    require_known(undeclared, node.own_parameters(), 'parameter')
 
 
 def node_help(name: str, factory: Callable[[], GraphNode], arguments: Sequence[str]) -> str:

@@ -7,6 +7,7 @@ from typing import Any, ClassVar
 
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
+from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile
 from rclpy.task import Future
 from rclpy.timer import Timer
@@ -15,7 +16,15 @@ from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import STEPS_PER_S, stamp_of_step
 from ddct_plant.graph.message_kinds import stamp_ns
 from ddct_plant.graph.node_names import StatusName
-from ddct_plant.graph.qos import LATCHED_QOS, LOOP_QOS, RECORDER_LATCHED_QOS
+from ddct_plant.graph.qos import (
+    LATCHED_QOS,
+    LOOP_QOS,
+    QOS_OVERRIDES,
+    RECORDER_LATCHED_QOS,
+    named_override_errors,
+    overriding_options,
+    own_copy,
+)
 from ddct_plant.graph.run_info import run_info_pairs
 from ddct_plant.graph.settings import declare_settings
 from ddct_plant.graph.topics import DIAGNOSTICS, RUN_INFO, SAFE_STATE, SINCE, Topic
@@ -24,16 +33,27 @@ from ddct_plant.ticks.stamp_limit import StampLimit
 STEADY = Clock(clock_type=ClockType.STEADY_TIME)
 """Clock of every timer: a ROS clock would wait for simulated time."""
 
-_FOREIGN = ('use_sim_time', 'start_type_description_service', 'qos_overrides')
+_FOREIGN = ('use_sim_time', 'start_type_description_service', QOS_OVERRIDES)
 """Prefixes of the parameters that rclpy declares itself."""
+
+
+def create_publisher(node: Node, topic: Topic) -> Publisher:
+    """Return a publisher of a topic; raise ParameterError for an unusable override of its QoS."""
+    qos = LATCHED_QOS if topic.latched else LOOP_QOS
+    with named_override_errors(topic.name):
+        return node.create_publisher(
+            topic.message_class,
+            topic.name,
+            own_copy(qos),
+            qos_overriding_options=overriding_options(qos),
+        )
 
 
 class Output:
     """Publisher of a topic, with one message that is filled anew for every tick."""
 
     def __init__(self, node: Node, topic: Topic) -> None:
-        qos = LATCHED_QOS if topic.latched else LOOP_QOS
-        self._publisher = node.create_publisher(topic.message_class, topic.name, qos)
+        self._publisher = create_publisher(node, topic)
         self._write = topic.writer()
         self._message: Any = None
 
@@ -153,11 +173,20 @@ class GraphNode(Node):
         """
         Subscribe to a topic; call `receive` with each message, or with its bytes if `raw`.
 
-        A DdctError in `receive` ends the node. `qos` is for topics that are not latched.
+        A DdctError in `receive` ends the node. `qos` is for topics that are not latched. Raise
+        ParameterError for an unusable override of it.
         """
         guarded = self.guarded(receive)
         qos = RECORDER_LATCHED_QOS if topic.latched else qos
-        self.create_subscription(topic.message_class, topic.name, guarded, qos, raw=raw)
+        with named_override_errors(topic.name):
+            self.create_subscription(
+                topic.message_class,
+                topic.name,
+                guarded,
+                own_copy(qos),
+                raw=raw,
+                qos_overriding_options=overriding_options(qos),
+            )
 
     def own_parameters(self) -> list[str]:
         """Return the names of the parameters that the node itself declares."""
@@ -165,13 +194,9 @@ class GraphNode(Node):
         return [name for name in names if not name.startswith(_FOREIGN)]
 
     def undeclared_parameters(self) -> list[str]:
-        """Return the names of the given parameters that the node does not declare."""
+        """Return the names of the given parameters that neither node nor rclpy declares."""
         given = self._parameter_overrides
-        return [
-            name
-            for name in given
-            if not self.has_parameter(name) and not name.startswith(_FOREIGN)
-        ]
+        return [name for name in given if not self.has_parameter(name)]
 
     def every(self, period_s: float, callback: Callable[[], None]) -> Timer:
         """Call `callback` every `period_s` of a steady clock; a DdctError in it ends the node."""
