@@ -13,8 +13,9 @@ from support.runs import expected, plan
 
 from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.processes.graph_nodes import NODE_NAMES
+from ddct_plant.graph import sole_publishers
 from ddct_plant.graph.qos import RECORDER_QOS
-from ddct_plant.graph.topics import TOPICS, RunKind, Topic
+from ddct_plant.graph.topics import ENGINE_REQUEST, TOPICS, RunKind, Topic
 from ddct_plant.nodes.driveline_node import DrivelineNode
 from ddct_plant.ticks.realtime_owner import RealtimeOwner
 
@@ -85,6 +86,30 @@ def test_a_second_publisher_of_any_loop_topic_ends_the_run_with_its_name(
     assert complaint.startswith(f'{topic.name} has two live publishers, of the nodes /')
     assert '/echo' in complaint
     assert 'another ROS_DOMAIN_ID' in complaint
+
+
+class StallingClock:
+    """Clock of a process that does not run for a minute before each reading."""
+
+    def __init__(self) -> None:
+        """Start at zero."""
+        self._now_s = 0.0
+
+    def monotonic(self) -> float:
+        """Return a time in s, a minute after the last one."""
+        self._now_s += 60.0
+        return self._now_s
+
+
+def test_a_process_that_could_not_run_does_not_miss_the_second_publisher(
+    graph_of: GraphOf, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sole_publishers, 'time', StallingClock())
+    topic = ENGINE_REQUEST
+    graph = graph_of(plan('mpc4', duration_s=0.02))
+    graph.add_other(Echo(topic, context=graph.context))
+    node, complaint = _graph(graph, recorded=False).first_failure(10.0)
+    assert (node, complaint.partition(' has ')[0]) == ('driveline', topic.name)
 
 
 @pytest.mark.parametrize('recorded', [True, False], ids=['recorded', 'not recorded'])

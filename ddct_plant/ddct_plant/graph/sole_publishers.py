@@ -18,7 +18,12 @@ from ddct_plant.ticks.sequence import SequenceWatch
 CHECK_S = 0.2
 """Period in s of the check, and of repeated requests for the last replies at a doubtful end."""
 PROOF_S = 1.0
-"""Longest wait in s at the end of a run for messages of a second publisher in the graph."""
+"""
+Time in s for which a second publisher in the graph keeps a run from ending without an error.
+
+Between two checks at most `CHECK_S` counts, so that a process that could not run, and could
+receive nothing, does not take silence for proof.
+"""
 OPEN_S = 1.0
 """Time in s that a real-time run goes on with a second publisher, with an open clutch."""
 
@@ -34,13 +39,19 @@ class _Probe:
     """Reader of the sequence numbers of one topic, which an executor does not pass on."""
 
     def __init__(self, node: Node, topic: str, type_name: str) -> None:
-        self.since = time.monotonic()
+        self.listened_s = 0.0
+        """Time in s for which messages could arrive."""
+        self._checked_at = time.monotonic()
         self.subscription: Subscription = node.create_subscription(
             ros_class(type_name), topic, lambda _: None, RECORDER_QOS, raw=True
         )
         self._watch = SequenceWatch()
 
     def two_alive(self) -> bool:
+        """Take the messages that have arrived; return whether two publishers sent them."""
+        now = time.monotonic()
+        self.listened_s += min(now - self._checked_at, CHECK_S)
+        self._checked_at = now
         handle, message_type = self.subscription.handle, self.subscription.msg_type
         while (taken := handle.take_message(message_type, True)) is not None:
             self._watch.note(taken[1]['publication_sequence_number'])
@@ -103,8 +114,7 @@ class SolePublishers:
                 self._listening().destroy_subscription(self._probes.pop(topic).subscription)
         if self.found is not None:
             return False
-        now = time.monotonic()
-        return any(now - probe.since < PROOF_S for probe in self._probes.values())
+        return any(probe.listened_s < PROOF_S for probe in self._probes.values())
 
     def _listen(self, topic: str, name: str) -> None:
         if topic not in self._probes:
