@@ -73,6 +73,8 @@ class NodeProcess(Child):
         self.log = log
         self.hung = False
         """Whether the node was killed because it did not end after the other signals."""
+        self.begun = False
+        """Whether a pulse of the node has arrived."""
         self._limit_s = START_S
         self._without_pulse_s = 0.0
         self._announced_code: int | None = None
@@ -100,6 +102,7 @@ class NodeProcess(Child):
         with contextlib.suppress(BlockingIOError):
             if pulse := os.read(self._pulse, _PIPE_BYTES):
                 self._without_pulse_s, self._limit_s = 0.0, ANSWER_TIMEOUT_S
+                self.begun = True
                 _, last, code = pulse.partition(EXIT_MARK)
                 self._announced_code = int(code) if last else None
         if self._announced_code is not None and self._without_pulse_s > LEAVE_S:

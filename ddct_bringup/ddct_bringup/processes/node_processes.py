@@ -20,8 +20,8 @@ CHECK_PERIOD_S = 0.5
 """Period of the checks of the nodes' pulse and shared memory, s."""
 START_CHECK_PERIOD_S, STARTING_S = 0.05, 3.0
 """
-Shorter period, s, for so long after the start: nodes make their shared memory then, and what was
-not found before a node is killed is not removed.
+Shorter period, s, until so long after the first pulse of the last node: nodes make their shared
+memory then, and what was not found before a node is killed is not removed.
 """
 
 
@@ -83,7 +83,7 @@ class NodeProcesses:
 
         Raise DdctError when any node fails or hangs.
         """
-        started_at = checked_at = time.monotonic()
+        begun_at = checked_at = time.monotonic()
         while True:
             ended = [node for node in self._nodes if not node.running]
             if any(node.name != name or node.code != 0 for node in ended):
@@ -95,7 +95,9 @@ class NodeProcesses:
             if self._stopped():
                 raise KeyboardInterrupt
             now = time.monotonic()
-            starting = now - started_at < STARTING_S
+            if not all(node.begun for node in self._nodes):
+                begun_at = now
+            starting = now - begun_at < STARTING_S
             if now - checked_at >= (START_CHECK_PERIOD_S if starting else CHECK_PERIOD_S):
                 self._check(now - checked_at)
                 checked_at = now

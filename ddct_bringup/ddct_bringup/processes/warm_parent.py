@@ -86,7 +86,7 @@ class WarmParent:
 
         `watch(pid)` is called for each process before any of them starts to work. Raise DdctError
         when the warm parent fails, and KeyboardInterrupt when `stopped()` becomes true before its
-        answer.
+        answer. A warm parent that has not answered is ended, and the next call starts another one.
         """
         if self.process.poll() is not None:  # killed since the last start
             self.close()
@@ -98,6 +98,10 @@ class WarmParent:
                     with contextlib.suppress(BrokenPipeError, ConnectionResetError):
                         send_request(self._channel, jobs, reader)
                     pids = [int(pid) for pid in self._reply(stopped).split()]
+            except BaseException:
+                # Its late answer would be taken for that to the next request.
+                self.close()
+                raise
             finally:
                 os.close(reader)
             forked = [ForkedProcess(pid, job.module) for pid, job in zip(pids, jobs, strict=False)]
@@ -113,7 +117,6 @@ class WarmParent:
         line = b''
         while not line.endswith(b'\n'):
             if stopped():
-                self.close()
                 raise KeyboardInterrupt
             if time.monotonic() > deadline:
                 raise DdctError(f'nodes could not be started within {START_S:g} s')

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from stub_programs import WITHIN_S, gone, wait_until
 
-from ddct_bringup.processes import node_process, node_processes
+from ddct_bringup.processes import node_process, node_processes, shared_memory
 from ddct_bringup.processes.graph_nodes import NodeSpec
 from ddct_bringup.processes.node_processes import STOP_LADDER, NodeProcesses
 from ddct_bringup.processes.warm_parent import WarmParent
@@ -122,6 +122,26 @@ def test_a_node_that_ignores_signals_is_killed_at_the_end_of_the_ladder_and_name
     with pytest.raises(DdctError, match='node load did not stop when asked and was killed; its'):
         nodes.require_clean_end()
     nodes.__exit__()
+
+
+def test_the_shared_memory_of_a_node_that_begins_late_and_is_killed_is_removed(
+    processes, monkeypatch, tmp_path
+):
+    monkeypatch.setattr(shared_memory, 'SHARED_MEMORY', tmp_path)
+    for name, period_s in (('CHECK_PERIOD_S', 60.0), ('STARTING_S', 0.1)):
+        monkeypatch.setattr(node_processes, name, period_s)
+    lock = tmp_path / 'fastrtps_1_el'
+    text = (
+        "print('ready', flush=True)\n"
+        'time.sleep(0.5)\n'
+        f"lock = open({str(lock)!r}, 'w')\n"
+        'beat()\n'
+        'time.sleep(0.5)\n'
+        'os.kill(os.getpid(), signal.SIGKILL)\n'
+    )
+    reason = wait_as_supervisor(processes(driveline=text))
+    assert reason.startswith('node driveline was killed by SIGKILL')
+    assert not lock.exists()
 
 
 def test_a_node_that_was_killed_by_another_process_is_named_with_the_signal(processes):

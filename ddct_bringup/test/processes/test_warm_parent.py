@@ -242,6 +242,23 @@ def test_a_parent_that_hangs_is_not_waited_for_without_end(monkeypatch: pytest.M
     assert parent.process.returncode == -signal.SIGKILL
 
 
+def test_the_late_answer_of_a_parent_is_not_taken_for_that_to_the_next_request(
+    monkeypatch: pytest.MonkeyPatch, module: Callable[[str], str]
+) -> None:
+    child = Child(module('def main(): return 7'))
+    with WarmParent() as parent:
+        stopped = parent.process.pid
+        os.kill(stopped, signal.SIGSTOP)
+        monkeypatch.setattr(warm_parent, 'START_S', 0.2)
+        with pytest.raises(DdctError, match='could not be started'):
+            parent.start([child.job])
+        monkeypatch.setattr(warm_parent, 'START_S', WITHIN_S)
+        if not gone(stopped):
+            os.kill(stopped, signal.SIGCONT)
+        (process,) = parent.start([child.job])
+        assert process.wait(WITHIN_S) == 7
+
+
 def test_ctrl_c_while_it_imports_ends_it_at_once() -> None:
     with WarmParent() as parent:
         parent.process.send_signal(signal.SIGSTOP)
