@@ -18,7 +18,8 @@ from ddct_bringup.bag.reader import Recording, read_bag
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.bag.writer import bag_file
 from ddct_bringup.campaign.rows import RunBase
-from ddct_bringup.run.execution import execute, simulate
+from ddct_bringup.processes.warm_parent import WarmParent
+from ddct_bringup.run.execution import execute, parent_for, simulate
 from ddct_bringup.run.output_folder import run_folder
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.run.timing_and_failure import RunTiming, read_timing
@@ -40,8 +41,6 @@ from ddct_plant.scenario.settings import RunSettings
 
 _ONE_GRAPH = threading.Lock()
 """Lock of the one graph of this process: its ROS domain is in the environment of all threads."""
-_OF_THE_RECORD = ('headless', 'out', 'overwrite', 'limits')
-"""Options of `run` that do not affect the context a controller is built in."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -149,19 +148,43 @@ def run(
     """
     chosen = chosen_from(controller, name)
     ready = _ready([controller_label(chosen), *beside], scenario, set, duration, **settings)
-    plan = RunPlan(ready, chosen, 'headless' if headless else 'processes')
-    judged_by = load_limits(limits)
+    plan = RunPlan(ready, chosen, _layout(headless))
+    return _run(plan, out, load_limits(limits), overwrite=overwrite)
+
+
+def _layout(headless: bool) -> str:
+    return 'headless' if headless else 'processes'
+
+
+def _run(
+    plan: RunPlan,
+    out: str | Path | None,
+    limits: Limits,
+    parent: WarmParent | None = None,
+    *,
+    overwrite: bool,
+) -> Run:
+    """Return the judged run of a plan; `parent` forks its nodes, None starts one for this run."""
     if out is not None:
-        return _kept(plan, Path(out), overwrite, judged_by)
-    if headless:
+        return _kept(plan, Path(out), limits, parent, overwrite=overwrite)
+    if plan.layout == 'headless':
         recording, timing = simulate(plan)
-        return Run(recording, score_run(recording, plan.name, judged_by, timing), timing, chosen)
+        entry = score_run(recording, plan.name, limits, timing)
+        return Run(recording, entry, timing, plan.controller)
     with tempfile.TemporaryDirectory(prefix='ddct-') as folder:
-        _execute(plan, Path(folder))
-        return _read(Path(folder), plan.name, judged_by, chosen)
+        _execute(plan, Path(folder), parent)
+        return _read(Path(folder), plan.name, limits, plan.controller)
 
 
-def compare(controllers: Iterable[Any] | Mapping[str, Any], **options: Any) -> list[Run]:
+def compare(
+    controllers: Iterable[Any] | Mapping[str, Any],
+    *,
+    headless: bool = True,
+    out: str | Path | None = None,
+    overwrite: bool = False,
+    limits: str | Path | None = None,
+    **options: Any,
+) -> list[Run]:
     """
     Return a run of each controller, all with the same options of `run`.
 
@@ -170,12 +193,16 @@ def compare(controllers: Iterable[Any] | Mapping[str, Any], **options: Any) -> l
     warning.
     """
     if controllers == 'all':
-        described = {key: options[key] for key in options if key not in _OF_THE_RECORD}
         warn = partial(warnings.warn, stacklevel=3)
-        controllers = working_controllers(_ready(controller_names(), **described), warn)
+        controllers = working_controllers(_ready(controller_names(), **options), warn)
     chosen = controllers_from(controllers)
-    labels = [controller_label(each) for each in chosen]
-    return [run(each, beside=labels, **options) for each in chosen]
+    ready = _ready([controller_label(each) for each in chosen], **options)
+    layout, judged_by = _layout(headless), load_limits(limits)
+    with parent_for(layout) as parent:
+        return [
+            _run(RunPlan(ready, each, layout), out, judged_by, parent, overwrite=overwrite)
+            for each in chosen
+        ]
 
 
 def controllers_from(controllers: str | Iterable[Any] | Mapping[str, Any]) -> list[Chosen]:
@@ -246,9 +273,11 @@ def plain(value: Any) -> Any:
     return value.tolist() if isinstance(value, (np.ndarray, np.generic)) else value
 
 
-def _kept(plan: RunPlan, out: Path, overwrite: bool, limits: Limits) -> Run:
+def _kept(
+    plan: RunPlan, out: Path, limits: Limits, parent: WarmParent | None, *, overwrite: bool
+) -> Run:
     with run_folder(out, plan.name, overwrite=overwrite) as folder:
-        _execute(plan, folder.path)
+        _execute(plan, folder.path, parent)
         kept = _read(folder.path, plan.name, limits, plan.controller)
         if not kept.valid:
             return kept
@@ -257,9 +286,9 @@ def _kept(plan: RunPlan, out: Path, overwrite: bool, limits: Limits) -> Run:
     return replace(kept, recording=replace(kept.recording, path=path))
 
 
-def _execute(plan: RunPlan, folder: Path) -> None:
+def _execute(plan: RunPlan, folder: Path, parent: WarmParent | None) -> None:
     with nullcontext() if plan.layout == 'headless' else _ONE_GRAPH:
-        execute(plan, folder)
+        execute(plan, folder, parent=parent)
 
 
 def _read(bag: Path, name: str, limits: Limits, chosen: Chosen = '') -> Run:

@@ -5,6 +5,7 @@
 import hashlib
 import json
 import pickle
+import signal
 import threading
 import warnings
 from dataclasses import replace
@@ -167,6 +168,22 @@ def test_controllers_are_compared_with_the_options_of_each():
     assert alone.trajectory.sha256() != api.run(Soft, duration=SHORT_S).trajectory.sha256()
 
 
+def test_the_nodes_of_all_compared_controllers_are_forked_by_one_warm_parent(monkeypatch):
+    parents = []
+
+    def without_nodes(plan, folder, *, parent):
+        parents.append(parent)
+        execute(replace(plan, layout='headless'), folder)
+
+    execute = runs.execute
+    monkeypatch.setattr(runs, 'execute', without_nodes)
+    compared = api.compare('pi,ls8', duration=SHORT_S, headless=False)
+    assert [each.controller for each in compared] == ['pi', 'ls8']
+    first, second = parents
+    assert first is second
+    assert first.process.returncode == -signal.SIGKILL, 'it is ended with the last run'
+
+
 def test_controllers_may_be_given_as_on_the_command_line():
     runs = api.compare('pi, ls8,', duration=SHORT_S)
     assert [each.controller for each in runs] == ['pi', 'ls8']
@@ -269,7 +286,7 @@ def test_a_run_that_is_not_valid_leaves_a_good_result_as_it_is(tmp_path, monkeyp
     good = api.run('ls8', duration=SHORT_S, out=tmp_path)
     before = {file.name: file.read_bytes() for file in good.path.parent.iterdir()}
 
-    def half(plan, folder):
+    def half(plan, folder, parent):
         settings = RunSettings(load_scenario('thesis', [f'duration_s={SHORT_S / 2}']))
         data = custom_data(plan.settings, plan.name, plan.steps)
         info = {'load': {'version': '0.1.0'}}
