@@ -1,0 +1,76 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""The page of each package names the topics and parameters of its nodes, as they declare them."""
+
+import re
+from pathlib import Path
+
+import pytest
+from support.documented import ROOT
+from support.in_process_graph import GraphOf
+from support.runs import plan
+
+from ddct_bringup.processes.graph_nodes import GRAPH_NODES
+from ddct_plant.base.options import options_of
+from ddct_plant.scenario.settings import RunSettings
+
+PACKAGES = ('ddct_plant', 'ddct_reference', 'ddct_controllers', 'ddct_bringup')
+SHARED = {'scenario', *options_of(RunSettings)}
+OF_ROS = {'/rosout', '/parameter_events', '/run_info'}
+WITH_TARGET = (
+    'reference.shape=engine_speed_target',
+    'engine_speed_reference={time_s: [0.0, 2.0], speed_rad_s: [160.0, 180.0]}',
+)
+RUNS = (
+    plan('pi'),
+    plan('pi', clutch='stick_slip', changes=('sensors={}',)),
+    plan('mpc4'),
+    plan('pi', mode='realtime'),
+    plan('pi', changes=WITH_TARGET),
+    plan('pi', changes=(*WITH_TARGET, 'sensors={}')),
+)
+"""Runs that have every topic between them."""
+
+
+def page(package: str) -> str:
+    return (ROOT / package / 'README.md').read_text(encoding='utf-8')
+
+
+def cells(package: str, node: str) -> list[set[str]]:
+    """Return the names in the cells of a node's row: topics read, published, parameters."""
+    (row,) = re.findall(rf'^\| `{node}` \|(.*)\|$', page(package), re.MULTILINE)
+    return [set(re.findall(r'`([^`]+)`', cell)) for cell in row.split('|')]
+
+
+@pytest.mark.parametrize('spec', GRAPH_NODES, ids=lambda spec: spec.name)
+def test_the_row_of_a_node_is_what_it_declares(graph_of: GraphOf, spec) -> None:
+    read: set[str] = set()
+    published: set[str] = set()
+    own: set[str] = set()
+    for run in RUNS:
+        node = graph_of(run).add(spec.name)
+        read |= {each.topic_name for each in node.subscriptions}
+        published |= {each.topic_name for each in node.publishers}
+        own |= {re.sub(r'^gains\..*', 'gains.*', name) for name in node.own_parameters()}
+    rows = cells(spec.module.split('.')[0], spec.name)
+    topics = [{f'/{name.removeprefix("/")}' for name in row} for row in rows[:2]]
+    if spec.name != 'recorder':
+        assert topics[0] == read - OF_ROS
+    assert topics[1] == published - OF_ROS
+    assert rows[2] == own - SHARED
+
+
+@pytest.mark.parametrize('package', PACKAGES)
+def test_the_example_without_ros_runs(package: str, capsys: pytest.CaptureFixture[str]) -> None:
+    (example,) = re.findall(r'```python\n(.*?)```', page(package), re.DOTALL)
+    exec(compile(example, f'{package}/README.md', 'exec'), {})
+    assert re.search(r'-?\d+\.\d', capsys.readouterr().out)
+
+
+@pytest.mark.parametrize('package', PACKAGES)
+@pytest.mark.parametrize('name', ['README.md', 'CHANGELOG.md'])
+def test_each_link_of_a_package_page_leads_to_a_file(package: str, name: str) -> None:
+    file = ROOT / package / name
+    links = re.findall(r'\]\(([^)#]+)[^)]*\)', file.read_text(encoding='utf-8'))
+    assert links
+    assert [link for link in links if not Path(file.parent, link).is_file()] == []
