@@ -22,8 +22,9 @@ import threading
 import traceback
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import NoReturn
 
+from ddct_bringup.processes.jobs import JobText, Request
 from ddct_bringup.processes.preloading import preload
 from ddct_bringup.processes.tracing_locks import TracingLocks
 from ddct_plant.program.supervision import PULSE_FD, end_with_parent
@@ -58,7 +59,7 @@ def main() -> int:
 
 def _answer(channel: socket.socket, descriptors: list[int], locks: TracingLocks) -> None:
     """Fork the processes of the request in the first descriptor; send their ids as one line."""
-    request = json.loads(os.pread(descriptors[0], os.fstat(descriptors[0]).st_size, 0))
+    request: Request = json.loads(os.pread(descriptors[0], os.fstat(descriptors[0]).st_size, 0))
     reader, writer = os.pipe()
     between = locks.fork()
     if between == 0:
@@ -72,7 +73,7 @@ def _answer(channel: socket.socket, descriptors: list[int], locks: TracingLocks)
 
 
 def _fork_all(
-    request: dict[str, Any], descriptors: list[int], writer: int, locks: TracingLocks
+    request: Request, descriptors: list[int], writer: int, locks: TracingLocks
 ) -> NoReturn:
     """
     Fork all processes of a request, write their ids into a pipe, and exit.
@@ -95,9 +96,7 @@ def _fork_all(
         os._exit(0)
 
 
-def _become(
-    job: dict[str, Any], index: int, request: dict[str, Any], descriptors: list[int]
-) -> NoReturn:
+def _become(job: JobText, index: int, request: Request, descriptors: list[int]) -> NoReturn:
     """Run a job in this fork, as if Python had been started for it."""
     code = 1
     try:
@@ -114,7 +113,7 @@ def _become(
 
 
 def _take_over(
-    job: dict[str, Any], environment: dict[str, str], index: int, descriptors: list[int]
+    job: JobText, environment: dict[str, str], index: int, descriptors: list[int]
 ) -> None:
     """Set standard streams, environment and command line of this process to those of the job."""
     stdin, output, pulse = descriptors[2 + 3 * index :][:3]

@@ -8,10 +8,29 @@ import socket
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import Any
+from typing import TypedDict
 
 REQUEST_BYTE = b'r'
 """Byte sent through the channel for a request, whose text is in the first file beside it."""
+
+
+class JobText(TypedDict):
+    """Fields of a job that are no descriptors, in the text of a request."""
+
+    module: str
+    arguments: list[str]
+    pulse: bool
+    """Whether the job has a descriptor for the pulse."""
+    outlives: bool
+
+
+class Request(TypedDict):
+    """Text of a request to the warm parent, as JSON."""
+
+    supervisor: int
+    """Process id of the program that sends it."""
+    environment: dict[str, str]
+    jobs: list[JobText]
 
 
 @dataclass(frozen=True)
@@ -30,7 +49,7 @@ class Job:
     outlives: bool = False
     """Whether the process continues when the supervisor is killed."""
 
-    def description(self) -> dict[str, Any]:
+    def text(self) -> JobText:
         """Return the fields that are not descriptors, for the text of a request."""
         return {
             'module': self.module,
@@ -47,10 +66,10 @@ def send_request(channel: socket.socket, jobs: Sequence[Job], go: int) -> None:
     The descriptors are those of the text, of the pipe `go` at which the processes wait, and three
     for each job.
     """
-    request = {
+    request: Request = {
         'supervisor': os.getpid(),
         'environment': dict(os.environ),
-        'jobs': [job.description() for job in jobs],
+        'jobs': [job.text() for job in jobs],
     }
     with _memory(json.dumps(request).encode()) as text, _nothing() as nothing:
         streams = [

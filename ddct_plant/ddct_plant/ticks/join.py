@@ -5,7 +5,6 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from enum import Enum, auto
-from typing import Any
 
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import step_of_stamp
@@ -45,9 +44,9 @@ class StampJoin:
     """Whether steps may be missing between two complete stamps, as in real time."""
     last_step: int = -1
     """Step of the last complete stamp, -1 before the first one."""
-    _waiting: dict[int, dict[str, Any]] = field(default_factory=dict)
+    _waiting: dict[int, dict[str, object]] = field(default_factory=dict)
 
-    def offer(self, topic: str, stamp_ns: int, message: Any) -> JoinResult:
+    def offer(self, topic: str, stamp_ns: int, message: object) -> JoinResult:
         """Add one message; raise DdctError for a stamp off the grid or, in lock-step, a gap."""
         try:
             step = step_of_stamp(stamp_ns)
@@ -66,7 +65,7 @@ class StampJoin:
         self._accept(step)
         return JoinResult.COMPLETE
 
-    def take(self) -> tuple[int, dict[str, Any]]:
+    def take(self) -> tuple[int, dict[str, object]]:
         """Return the last complete step and its messages by topic, and remove them."""
         return self.last_step, self._waiting.pop(self.last_step)
 
