@@ -30,7 +30,7 @@ def test_a_node_with_other_settings_is_named(
     graph.add_all()
     node, complaint = graph.first_failure()
     assert node == 'recorder'
-    for word in (f'node {name} ', 'same settings', *words):
+    for word in (f'node /{name} ', 'same settings', *words):
         assert word in complaint
 
 
@@ -40,7 +40,7 @@ def test_two_controllers_on_one_topic_are_detected(graph_of: GraphOf) -> None:
     graph.add('controller', {'controller': 'pi'}, key='second')
     node, complaint = graph.first_failure()
     assert node == 'recorder'
-    assert 'node controller came twice, with controller ls8 and pi' in complaint
+    assert 'node /controller came twice, with controller ls8 and pi' in complaint
     assert 'ROS_DOMAIN_ID' in complaint
 
 
