@@ -106,6 +106,7 @@ lint: $(VENV_MADE)
 	$(BIN)/ruff check || status=1; \
 	$(BIN)/ruff format --check || status=1; \
 	$(BIN)/mypy || status=1; \
+	$(BIN)/python tests/mutants/run.py --check || status=1; \
 	exit $$status
 
 # Added to the environment that is there; a second sync would break it.

@@ -4,7 +4,8 @@
 `make mutants`: seed every defect of tests/mutants/*.yaml in a scratch copy and run its tests.
 
 A defect that its tests do not notice lives, and the exit code is 1; so it is for an entry whose
-text is gone from its file, and for tests that fail without a defect.
+text is gone from its file, and for tests that fail without a defect. README.md beside this file
+says which defects are in the list.
 """
 
 import argparse
@@ -26,6 +27,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description='Seed defects and see whether tests catch them.')
     parser.add_argument('files', nargs='*', type=Path, help='default: all of tests/mutants')
     parser.add_argument('--claim', default='', help='only defects whose claim has this text')
+    parser.add_argument('--check', action='store_true', help='only find their texts and tests')
     parser.add_argument('--root', type=Path, default=here.parents[1], help='the repository')
     options = parser.parse_args(arguments)
     try:
@@ -40,7 +42,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except (OSError, ValueError) as error:
         print(f'mutants: {error}', file=sys.stderr)
         return 1
-    return try_all(options.root, mutants)
+    return 0 if options.check else try_all(options.root, mutants)
 
 
 def try_all(root: Path, mutants: Sequence[Mutant]) -> int:
