@@ -146,7 +146,7 @@ class Architecture:
             return self._plain(command, step)
         except DdctError as error:
             place = place_of_method(self._controller, 'update')
-            raise DdctError(f'{error}, in {place}') from error
+            raise DdctError(f'{error}, in {place}', key=error.key) from error
 
     def _plain(self, command: object, step: int) -> Command:
         if not isinstance(command, Command):
@@ -157,7 +157,8 @@ class Architecture:
         if not _is_status(command.status):
             raise DdctError(
                 f'{self._name}: its status at step {step} is {command.status!r}: give a tuple of '
-                "pairs of printable text, (('key', 'value'),)"
+                "pairs of printable text, (('key', 'value'),)",
+                key='status',
             )
         clutch = _torque(f'{self._name}: its torque at step {step}', command.clutch_torque)
         engine = command.engine_torque
@@ -165,7 +166,8 @@ class Architecture:
             engine = _torque(f'{self._name}: its engine torque at step {step}', engine)
         elif engine is not None:
             raise DdctError(
-                f'{self._name}: it gave an engine torque at step {step}: set its commands_engine'
+                f'{self._name}: it gave an engine torque at step {step}: set its commands_engine',
+                key='commands_engine',
             )
         given = command.clutch_torque, command.engine_torque
         plain = type(command) is Command and clutch is given[0] and engine is given[1]
@@ -185,7 +187,7 @@ def _is_status(status: object) -> bool:
 def _torque(source: str, torque: object) -> float:
     if type(torque) is not float:
         if not isinstance(torque, Real):
-            raise DdctError(f'{source} is {torque!r}: give a number in N m')
+            raise DdctError(f'{source} is {torque!r}: give a number in N m', key=source)
         torque = float(torque)
     return require_finite(source, torque)
 

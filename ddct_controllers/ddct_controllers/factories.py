@@ -34,8 +34,9 @@ def factory_spec(
             raise
         except FOREIGN_FAILURES as error:
             raise DdctError(
-                f'controller {name!r}: {source} failed '
-                f'({type(error).__name__}: {error}): mend its code'
+                f'{source} failed ({type(error).__name__}: {error}): mend its code',
+                key=source,
+                place=f'controller {name!r}',
             ) from error
 
     computed_from = getattr(factory, 'computed_from', UNSTATED)
@@ -59,8 +60,10 @@ def _plain(name: str, source: str, controller: object) -> Controller:
     """Return the controller; raise DdctError unless its declarations have the right types."""
     if not isinstance(controller, Controller):
         raise DdctError(
-            f'controller {name!r}: {source} returned '
-            f'{type(controller).__name__}, not a ddct_controllers.interface.Controller'
+            f'{source} returned {type(controller).__name__}, not a '
+            'ddct_controllers.interface.Controller',
+            key=source,
+            place=f'controller {name!r}',
         )
     preview = controller.preview_steps
     _require(
@@ -81,7 +84,9 @@ def _plain(name: str, source: str, controller: object) -> Controller:
 def _require(usable: bool, name: str, found: str, wanted: str) -> None:
     """Raise DdctError with the value found in the controller `name`, unless it is usable."""
     if not usable:
-        raise DdctError(f'controller {name!r}: its {found}: give {wanted}')
+        raise DdctError(
+            f'its {found}: give {wanted}', key=found.split()[0], place=f'controller {name!r}'
+        )
 
 
 def _is_mapping(content: object, kind: type) -> bool:

@@ -30,7 +30,9 @@ def chosen_from(controller: Any, name: str = '') -> Chosen:
     """
     if isinstance(controller, (str, Path, ControllerSpec)):
         if name:
-            raise ParameterError(f'name is {name!r}, but {controller!r} keeps the name it has')
+            raise ParameterError(
+                f'name is {name!r}, but {controller!r} keeps the name it has', key='name'
+            )
         return controller if isinstance(controller, ControllerSpec) else str(controller)
     if isinstance(controller, Controller):
         name = _free(name or type(controller).__name__)
@@ -66,4 +68,4 @@ def _linear_system(system: Any, name: str) -> LinearSystem | None:
     try:
         return linear_system(system)
     except ParameterError as error:
-        raise ParameterError(f'controller {name!r}: {error}') from error
+        raise error.at(f'controller {name!r}') from error

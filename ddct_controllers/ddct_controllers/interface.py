@@ -244,12 +244,13 @@ class ControllerSpec(Generic[Made]):
             names = ', '.join(map(str, given))
             how = f': declare it, {_declaration(given)}' if self.options is None else ''
             raise ParameterError(
-                f'{section}: {names} given, but {self.name} takes no options{how}'
+                f'{section}: {names} given, but {self.name} takes no options{how}', key=section
             )
         if unknown := given.keys() - options.keys():
             raise ParameterError(
                 f'{section}.{min(unknown, key=str)} is not a key of {self.name}: it has '
-                f'{", ".join(options)}'
+                f'{", ".join(options)}',
+                key=f'{section}.{min(unknown, key=str)}',
             )
         values = {}
         for key, option in options.items():
@@ -257,7 +258,8 @@ class ControllerSpec(Generic[Made]):
             if value is REQUIRED:
                 unit = f', in {option.unit}' if option.unit else ''
                 raise ParameterError(
-                    f'{section}.{key} is missing from the scenario: give it{unit}'
+                    f'{section}.{key} is missing from the scenario: give it{unit}',
+                    key=f'{section}.{key}',
                 )
             unset = value is None and option.default is None
             values[key] = None if unset else option.checked(f'{section}.{key}', value)

@@ -53,5 +53,6 @@ def _require_each(measurement: Measurement) -> None:
                 what = f'{name}[{ahead}]' if listed else name
                 raise DdctError(
                     f'{what} is {value:g} {unit} at step {measurement.step}, not a number within '
-                    f'+-{MOST:g}: mend what gives it, or the loop if it diverges'
+                    f'+-{MOST:g}: mend what gives it, or the loop if it diverges',
+                    key=what,
                 )

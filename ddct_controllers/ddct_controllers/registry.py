@@ -79,7 +79,8 @@ def require_known_controllers(scenario: Scenario, labels: Iterable[str]) -> None
     if unknown:
         raise ParameterError(
             f'controllers.{unknown[0]}: there is no such controller: choose from '
-            f'{", ".join(controller_names())}'
+            f'{", ".join(controller_names())}',
+            key=f'controllers.{unknown[0]}',
         )
     for name, given in scenario.controllers.items():
         if name in _OWN:
@@ -133,8 +134,9 @@ def controller_spec(chosen: Chosen) -> ControllerSpec[Controller]:
         spec = load_spec(chosen)
         if spec.name in controller_names():
             raise ParameterError(
-                f'controller file {chosen}: the name {spec.name!r} is taken by another '
-                'controller; change it in the file'
+                f'the name {spec.name!r} is taken by another controller; change it in the file',
+                key='name',
+                place=f'controller file {chosen}',
             )
         return spec
     return _OWN.get(chosen) or _third_party(chosen)
@@ -154,20 +156,24 @@ def _third_party(name: str) -> ControllerSpec[Controller]:
             factory = point.load()
         except FOREIGN_FAILURES as error:
             raise DdctError(
-                f'controller {name!r}: the entry point {point.value} cannot be loaded '
-                f'({type(error).__name__}: {error}): mend or uninstall the package that adds it'
+                f'the entry point {point.value} cannot be loaded ({type(error).__name__}: '
+                f'{error}): mend or uninstall the package that adds it',
+                key=point.value,
+                place=f'controller {name!r}',
             ) from error
         return factory_spec(name, factory, point.value)
     if '.' in name or '/' in name:
         raise ParameterError(
             f'{name} is no controller file: give a Python file or a YAML file; for an FMU or a '
             'library in C, a YAML file that names it (docs/controllers/fmu_controller.md, '
-            'docs/controllers/c_controller.md)'
+            'docs/controllers/c_controller.md)',
+            key=name,
         )
     choices = ', '.join(controller_names())
     raise ParameterError(
         f'unknown controller {name!r}: choose from {choices}, or give the path of a controller '
-        'file, .py or .yaml'
+        'file, .py or .yaml',
+        key=name,
     )
 
 

@@ -6,6 +6,7 @@ import math
 from dataclasses import replace
 
 import pytest
+from refusals import refused
 
 from ddct_controllers.interface import Measurement
 from ddct_controllers.measured import MOST, measured_speeds
@@ -58,7 +59,7 @@ def test_beyond_the_largest_size_is_refused(field, value):
 
 
 def test_the_period_ahead_is_named():
-    with pytest.raises(DdctError, match=r'slip_reference\[4\] is nan rad/s at step 3'):
+    with refused(DdctError, key='slip_reference[4]'):
         measured_speeds(spoilt(measurement(3, 4), 'slip_reference', math.nan))
 
 

@@ -4,6 +4,7 @@
 
 import numpy as np
 import pytest
+from refusals import refused
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.scenario.control import EngineSpeedReference
@@ -92,10 +93,10 @@ def test_only_the_detailed_architecture_may_use_it(architecture):
     if architecture == 'detailed':
         assert make_reference(RunSettings(scenario)).follows_shaft
         return
-    with pytest.raises(ParameterError, match='measured slip speed.* architecture detailed'):
+    with refused(ParameterError, key='reference.shape'):
         RunSettings(scenario, architecture)
 
 
 def test_it_needs_a_target_engine_speed():
-    with pytest.raises(ParameterError, match=r'engine_speed_reference\.speed_rad_s'):
+    with refused(ParameterError, key='reference.shape'):
         RunSettings(load_scenario('thesis', TARGET[:1]))

@@ -14,6 +14,7 @@ from importlib.resources import files
 
 import numpy as np
 import pytest
+from refusals import refused
 
 from ddct_bringup import api
 from ddct_bringup.api import runs
@@ -156,7 +157,7 @@ def test_a_figure_has_a_line_per_run_in_each_chart(worn):
     assert colours == [controller_look(name).light for name in ('ls8', 'pi')] * 2
     drawn = np.asarray(charts[1].lines[0].get_ydata())
     assert drawn.tolist() == worn.trajectory.engine_torque.tolist()
-    with pytest.raises(api.ParameterError, match='unknown quantity w_x: did you mean w_'):
+    with refused(api.ParameterError, key='w_x'):
         api.figure(worn, quantities=['w_x'])
 
 

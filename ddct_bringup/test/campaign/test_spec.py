@@ -87,7 +87,7 @@ def test_a_specification_has_defaults_for_all_but_what_varies(tmp_path: Path) ->
             PI + 'clutch: linear\ngrid: {clutch: [linear, stick_slip]}\n',
             'clutch is given for all runs and varied: give it once',
         ),
-        (PI + 'grid: {wear_gain: [1\n', 'not valid YAML: line'),
+        (PI + 'grid: {wear_gain: [1\n', 'line 3: not valid YAML'),
     ],
 )
 def test_a_specification_that_cannot_be_used_is_named(

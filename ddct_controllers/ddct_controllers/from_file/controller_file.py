@@ -74,13 +74,16 @@ class ControllerFile:
         Relative paths start at the controller file. Raise ParameterError when it cannot be read.
         """
         if not isinstance(value, str) or not value:
-            raise ParameterError(f'{kind}.file is {value!r}: give the path of {what}')
+            raise ParameterError(
+                f'{kind}.file is {value!r}: give the path of {what}', key=f'{kind}.file'
+            )
         path = self.path.parent / value
         try:
             data = read_file(path, MOST_BINARY_BYTES)
         except OSError as error:
             raise ParameterError(
-                f'{kind}.file: {path} cannot be read ({error.strerror}): give {what}'
+                f'{kind}.file: {path} cannot be read ({error.strerror}): give {what}',
+                key=f'{kind}.file',
             ) from error
         self.digests[f'{kind}_sha256'] = hashlib.sha256(data).hexdigest()
         return path
@@ -114,14 +117,16 @@ def mapping(
     """
     name = path or 'the file'
     if not isinstance(content, Mapping):
-        raise ParameterError(f'{name}: give keys and values, not {content!r}')
+        raise ParameterError(f'{name}: give keys and values, not {content!r}', key=name)
     known = (*required, *optional)
     strange = [key for key in content if key not in known] if known else []
     for key in required:
         if key not in content:
             meant = f': is it meant by {strange[0]!r}?' if strange else ''
-            raise ParameterError(f'{name}: key {key} is missing{meant}')
+            raise ParameterError(
+                f'{name}: key {key} is missing{meant}', key=f'{path}.{key}' if path else key
+            )
     for key in strange:
         full = f'{path}.{key}' if path else str(key)
-        raise ParameterError(f'unknown key {full!r}: {close_name(key, known)}')
+        raise ParameterError(f'unknown key {full!r}: {close_name(key, known)}', key=full)
     return content

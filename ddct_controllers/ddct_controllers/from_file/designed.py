@@ -67,7 +67,9 @@ def load_designed(file: str) -> DesignedController:
     with source.located():
         function, discretisation = linear_in(source, FACTORED)
         if not isinstance(function, FactoredTransferFunction):
-            raise ParameterError('sample_time_s is given: a design is continuous')
+            raise ParameterError(
+                'sample_time_s is given: a design is continuous', key='sample_time_s'
+            )
         provenance = source.content.get('provenance') or {}
         return DesignedController(source.name, function, provenance, discretisation)
 

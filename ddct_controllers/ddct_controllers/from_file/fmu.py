@@ -72,7 +72,7 @@ def fmu_spec(file: ControllerFile) -> ControllerSpec[Controller]:
     try:
         fmu = Fmu(path)
     except ParameterError as error:
-        raise ParameterError(f'fmu.file: {error}') from error
+        raise ParameterError(f'fmu.file: {error}', key='fmu.file') from error
     inputs = [
         _fmu_input(_variable(fmu, 'inputs', name, 'input'), ours)
         for name, ours in mapping('fmu.inputs', keys['inputs']).items()
@@ -86,7 +86,8 @@ def fmu_spec(file: ControllerFile) -> ControllerSpec[Controller]:
     }
     if len(options) < len(started):
         raise ParameterError(
-            'fmu.parameters: two names differ only in their dots and brackets: keep one'
+            'fmu.parameters: two names differ only in their dots and brackets: keep one',
+            key='fmu.parameters',
         )
     _require_all_inputs(fmu, {each.variable.name for each in inputs} | set(given))
 
@@ -111,15 +112,18 @@ def _variable(fmu: Fmu, section: str, name: str, causality: str = '') -> Any:
             if each.causality == (causality or 'parameter')
         ]
         hint = close_name(name, known or fmu.variables)
-        raise ParameterError(f'{key}: {fmu.path.name} has no variable of this name: {hint}')
+        raise ParameterError(
+            f'{key}: {fmu.path.name} has no variable of this name: {hint}', key=key
+        )
     kind = _KINDS.get(variable.type)
     if causality and (variable.causality, kind) != (causality, float):
         raise ParameterError(
             f'{key}: it is {variable.causality} of type {variable.type}: choose an {causality} '
-            'that is a real number'
+            'that is a real number',
+            key=key,
         )
     if variable.shape:
-        raise ParameterError(f'{key}: it is an array: export its elements one by one')
+        raise ParameterError(f'{key}: it is an array: export its elements one by one', key=key)
     return variable
 
 
@@ -130,7 +134,7 @@ def _fmu_input(variable: Any, ours: object) -> FmuInput:
         name, ahead = found[1], int(found[2])
     known = AHEAD if found else SCALARS | AHEAD
     if name not in known:
-        raise ParameterError(f'{key} is {ours!r}: {close_name(name, known)}')
+        raise ParameterError(f'{key} is {ours!r}: {close_name(name, known)}', key=key)
     _require_unit(key, variable, name)
     if name in SCALARS:
         return FmuInput(variable, attrgetter(SCALARS[name]))
@@ -147,11 +151,15 @@ def _outputs(fmu: Fmu, section: Mapping[str, Any]) -> Mapping[str, Any]:
         key = f'fmu.outputs.{name}'
         variable = _variable(fmu, 'outputs', name, 'output')
         if ours not in (CLUTCH, ENGINE) or ours in outputs:
-            raise ParameterError(f'{key} is {ours!r}: give {CLUTCH} or {ENGINE}, each once')
+            raise ParameterError(
+                f'{key} is {ours!r}: give {CLUTCH} or {ENGINE}, each once', key=key
+            )
         _require_unit(key, variable, ours)
         outputs[ours] = variable
     if CLUTCH not in outputs:
-        raise ParameterError(f'fmu.outputs: none is {CLUTCH}: map the clutch torque')
+        raise ParameterError(
+            f'fmu.outputs: none is {CLUTCH}: map the clutch torque', key='fmu.outputs'
+        )
     return outputs
 
 
@@ -161,7 +169,8 @@ def _require_unit(key: str, variable: Any, ours: str) -> None:
     end = max((end for end in _UNITS if ours.endswith(end)), key=len)
     if stated != '1' and re.sub(r'[\s.*^·]', '', stated) not in _UNITS[end]:
         raise ParameterError(
-            f'{key} is {ours}, but the FMU has it in {stated}: convert it there, or map another'
+            f'{key} is {ours}, but the FMU has it in {stated}: convert it there, or map another',
+            key=key,
         )
 
 
@@ -172,7 +181,8 @@ def _option(variable: Any, value: object) -> Option:
     if not settable or variable.type not in _KINDS or variable.causality == 'structuralParameter':
         raise ParameterError(
             f'{key}: {variable.causality} of type {variable.type} takes no start value: choose a '
-            'parameter'
+            'parameter',
+            key=key,
         )
     kind = _KINDS[variable.type]
     option = Option(
@@ -193,5 +203,6 @@ def _require_all_inputs(fmu: Fmu, given: set[str]) -> None:
         if variable.type in _KINDS and variable.name not in given:
             raise ParameterError(
                 f'fmu.inputs: input {variable.name} of {fmu.path.name} is not among them: map it, '
-                'or give it a value under parameters'
+                'or give it a value under parameters',
+                key='fmu.inputs',
             )

@@ -194,7 +194,9 @@ class FmuController(Controller):
                 self._instance.component = None
             message = f': {self._messages[-1]}' if self._messages else ''
             raise DdctError(
-                f'fmu.file: {self._fmu.path} failed {when} ({_line(error)}{message}): mend the FMU'
+                f'fmu.file: {self._fmu.path} failed {when} ({_line(error)}{message}): mend the '
+                'FMU',
+                key='fmu.file',
             ) from error
 
 

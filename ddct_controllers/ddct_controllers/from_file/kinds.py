@@ -52,10 +52,12 @@ def _kind(file: ControllerFile) -> str:
     if len(kinds) == 1:
         return str(kinds[0])
     if kinds:
-        raise ParameterError(f'{kinds[1]} beside {kinds[0]}: keep one of {choices}')
+        raise ParameterError(f'{kinds[1]} beside {kinds[0]}: keep one of {choices}', key=kinds[1])
     strange = [key for key in file.content if key not in (*COMMON, *BESIDE_LINEAR)]
     if not strange:
         raise ParameterError(f'there is no kind of controller: give one of {choices}')
     near = [key for key in strange if get_close_matches(str(key), KINDS, n=1)]
     key = (near or strange)[0]
-    raise ParameterError(f'{key!r} is no kind of controller: {close_name(key, KINDS)}')
+    raise ParameterError(
+        f'{key!r} is no kind of controller: {close_name(key, KINDS)}', key=str(key)
+    )

@@ -36,7 +36,9 @@ def linear_in(file: ControllerFile, kind: str) -> tuple[LinearSystem, str]:
     """
     content = file.keys(kind, _REQUIRED, _OPTIONAL)
     if content['units'] not in (UNITS, {**UNITS, **FREQUENCY}):
-        raise ParameterError(f'units are {content["units"]!r}: convert the controller to {UNITS}')
+        raise ParameterError(
+            f'units are {content["units"]!r}: convert the controller to {UNITS}', key='units'
+        )
     discretisation = content.get('discretisation', HOLD)
     require_choice('discretisation', discretisation, (HOLD, BILINEAR))
     _require_period(content)
@@ -46,8 +48,9 @@ def linear_in(file: ControllerFile, kind: str) -> tuple[LinearSystem, str]:
             given = in_z(given)
         sampled(given, discretisation)
     except ParameterError as error:
-        at = '' if line_of(str(error), file.lines) else f'{kind}: '
-        raise ParameterError(f'{at}{error}') from error
+        if line_of(f'{error.key} {error}', file.lines):
+            raise
+        raise ParameterError(f'{kind}: {error}', key=kind) from error
     return given, discretisation
 
 
@@ -58,12 +61,14 @@ def _require_period(content: Mapping[str, Any]) -> None:
     if period_s != PERIOD_S:
         raise ParameterError(
             f'sample_time_s is {period_s:g} s, the loop runs at {PERIOD_S:g} s: sample the '
-            'controller at that, or give it continuous, without this key'
+            'controller at that, or give it continuous, without this key',
+            key='sample_time_s',
         )
     if 'discretisation' in content:
         raise ParameterError(
             'discretisation is for a continuous controller, and sample_time_s says that this '
-            'one is sampled: drop one of them'
+            'one is sampled: drop one of them',
+            key='discretisation',
         )
 
 
@@ -95,7 +100,8 @@ def _factor(path: str, content: Any) -> Factor:
         return require_number(f'{path}: a coefficient', content)
     if len(content) != 2:
         raise ParameterError(
-            f'{path}: {content} is no factor: write a for (s + a), [b, c] for (s^2 + b s + c)'
+            f'{path}: {content} is no factor: write a for (s + a), [b, c] for (s^2 + b s + c)',
+            key=path,
         )
     b, c = (require_number(f'{path}: a coefficient', value) for value in content)
     return b, c
@@ -118,10 +124,10 @@ def _root(path: str, content: Any) -> complex:
         root = complex(content.replace(' ', '').replace('i', 'j'))
     except ValueError as error:
         raise ParameterError(
-            f'{path} is {content!r}: give a number such as -0.8 or -2.7+18.2j'
+            f'{path} is {content!r}: give a number such as -0.8 or -2.7+18.2j', key=path
         ) from error
     if not cmath.isfinite(root):
-        raise ParameterError(f'{path} is {root}: give a finite number')
+        raise ParameterError(f'{path} is {root}: give a finite number', key=path)
     return root
 
 
@@ -131,7 +137,9 @@ def _state_space(path: str, content: Any) -> StateSpace:
     rows = [row for _, row in _items(f'{path}.a', parts['a'], '[[-1.0, 0.0], [2.0, 3.0]]')]
     states = len(rows)
     if any(not isinstance(row, list) or len(row) != states for row in rows):
-        raise ParameterError(f'{path}.a: give as many rows as columns, each row a list')
+        raise ParameterError(
+            f'{path}.a: give as many rows as columns, each row a list', key=f'{path}.a'
+        )
     sizes = {'a': (states, states), 'b': (states, 1), 'c': (1, states), 'd': (1, 1)}
     a, b, c, d = (_matrix(f'{path}.{key}', parts[key], *size) for key, size in sizes.items())
     return StateSpace(a, b, c, d)
@@ -142,7 +150,8 @@ def _matrix(path: str, content: Any, rows: int, columns: int) -> np.ndarray:
     if len(entries) != rows * columns:
         raise ParameterError(
             f'{path} has {len(entries)} numbers: with the states of a, one input and one output '
-            f'it must be {rows} x {columns}'
+            f'it must be {rows} x {columns}',
+            key=path,
         )
     return np.reshape(entries, (rows, columns))
 
@@ -156,7 +165,7 @@ def _entries(path: str, content: Any) -> list[float]:
 def _items(path: str, content: Any, example: str) -> list[tuple[str, Any]]:
     """Return the items of a list, each behind its path."""
     if not isinstance(content, list):
-        raise ParameterError(f'{path} is {content!r}: give a list, such as {example}')
+        raise ParameterError(f'{path} is {content!r}: give a list, such as {example}', key=path)
     return [(f'{path}[{i}]', item) for i, item in enumerate(content)]
 
 

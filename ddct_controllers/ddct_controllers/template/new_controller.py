@@ -65,9 +65,11 @@ def require_free_name(name: str) -> None:
     """Raise ParameterError unless a new controller, and its module, can be called `name`."""
     require_name(name)
     if name in controller_names():
-        raise ParameterError(f'{name} is the name of another controller: choose another')
+        raise ParameterError(f'{name} is the name of another controller: choose another', key=name)
     if keyword.iskeyword(name) or name in sys.builtin_module_names or _is_module(name):
-        raise ParameterError(f'{name} is a module or word of Python already: choose another')
+        raise ParameterError(
+            f'{name} is a module or word of Python already: choose another', key=name
+        )
 
 
 def _is_module(name: str) -> bool:

@@ -84,7 +84,9 @@ def _thesis(options: argparse.Namespace) -> None:
 def _design(options: argparse.Namespace) -> None:
     if options.rise_time is None or options.overshoot is None:
         missing = '--rise-time' if options.rise_time is None else '--overshoot'
-        raise ParameterError(f'{missing} is missing: a design needs --rise-time and --overshoot')
+        raise ParameterError(
+            f'{missing} is missing: a design needs --rise-time and --overshoot', key=missing
+        )
     specifications = TimeSpecifications(options.rise_time, options.overshoot / 100.0)
     name = free_name(options)
     order = _DISTURBANCES[options.disturbance or 'step']

@@ -6,6 +6,7 @@ import os
 import re
 
 import pytest
+from refusals import refused
 
 from ddct_controllers.from_file.designed import DesignedController, load_designed
 from ddct_controllers.linear import LinearController
@@ -45,41 +46,41 @@ def test_the_registry_builds_it_under_the_name_inside(write):
 
 def test_it_takes_no_gains(write):
     settings = RunSettings(load_scenario('thesis', ['controllers.mine={gain: 2.0}']))
-    with pytest.raises(ParameterError, match='controllers.mine: gain given'):
+    with refused(ParameterError, key='controllers.mine'):
         make_controller(write(TEXT), settings)
 
 
 def test_it_may_not_take_the_name_of_another_controller(write):
-    with pytest.raises(ParameterError, match="the name 'ls8' is taken"):
+    with refused(ParameterError, key='name'):
         make_controller(write(TEXT.replace('name: mine', 'name: ls8')), SETTINGS)
 
 
 @pytest.mark.parametrize(
-    ('old', 'new', 'complaint'),
+    ('old', 'new', 'key', 'place'),
     [
-        ('format: ddct-linear-controller-1', 'format: other', "format is 'other'"),
-        ('input: rpm', 'input: rad/s', 'units are .* convert the controller'),
-        ('name: mine', 'name: ../mine', "controller name '../mine'"),
-        ('name: mine', 'name: 8', 'controller name 8'),
-        ('name: mine\n', '', 'key name is missing'),
-        ('  gain:', '  gian:', "transfer_function: key gain is missing: is it meant by 'gian'?"),
-        ('provenance:', 'origin:', "unknown key 'origin'"),
-        ('- 0.8361', '- fast', "a coefficient is 'fast': give a number"),
-        ('- 0.8361', '- .nan', 'a coefficient is nan'),
-        ('- 0.8361', '- [1.0, 2.0, 3.0]', 'is no factor'),
-        ('- 0.0\n', '', 'has 3 zeros and 2 poles'),
-        ('format:', '- format:', 'not valid YAML'),
-        ('name: mine', 'name: mine\nname: yours', "line 3: the key 'name' is given twice"),
-        ('method: by hand', 'a: &a [*a]', r'the alias \*a'),
-        ('method: by hand', 'a: !!python/object/apply:os.getcwd []', 'the tag'),
-        ('method: by hand', 'a: ' + '[' * 2000, 'nested more than'),
-        ('method: by hand', 'a: ' + '9' * 5000, 'a number of 5000 digits'),
+        ('format: ddct-linear-controller-1', 'format: other', '', 'line 1'),
+        ('input: rpm', 'input: rad/s', 'units', 'line 3'),
+        ('name: mine', 'name: ../mine', '', 'line 2'),
+        ('name: mine', 'name: 8', '', 'line 2'),
+        ('name: mine\n', '', 'name', ''),
+        ('  gain:', '  gian:', 'transfer_function.gain', 'line 4'),
+        ('provenance:', 'origin:', 'origin', 'line 12'),
+        ('- 0.8361', '- fast', 'transfer_function.numerator[0]: a coefficient', 'line 7'),
+        ('- 0.8361', '- .nan', 'transfer_function.numerator[0]: a coefficient', 'line 7'),
+        ('- 0.8361', '- [1.0, 2.0, 3.0]', 'transfer_function.numerator[0]', 'line 7'),
+        ('- 0.0\n', '', 'transfer_function', 'line 4'),
+        ('format:', '- format:', '', 'line 2'),
+        ('name: mine', 'name: mine\nname: yours', '', 'line 3'),
+        ('method: by hand', 'a: &a [*a]', '', 'line 12'),
+        ('method: by hand', 'a: !!python/object/apply:os.getcwd []', '', 'line 12'),
+        ('method: by hand', 'a: ' + '[' * 2000, '', 'line 12'),
+        ('method: by hand', 'a: ' + '9' * 5000, '', 'line 12'),
     ],
 )
-def test_an_unusable_content_is_named_with_its_file(write, old, new, complaint):
+def test_an_unusable_content_is_named_with_its_file(write, old, new, key, place):
     assert old in TEXT
     file = write(TEXT.replace(old, new))
-    with pytest.raises(DdctError, match=f'controller file {file}: .*{complaint}'):
+    with refused(DdctError, key=key, place=place):
         make_controller(file, SETTINGS)
 
 
@@ -105,7 +106,7 @@ def test_a_pipe_in_place_of_a_file_is_not_waited_for(tmp_path):
 
 @pytest.mark.parametrize('text', ['', 'just words', '[1, 2]'])
 def test_a_file_that_is_no_mapping_is_named(write, text):
-    with pytest.raises(ParameterError, match='give keys and values'):
+    with refused(ParameterError, key='the file'):
         make_controller(write(text), SETTINGS)
 
 

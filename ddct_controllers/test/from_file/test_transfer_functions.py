@@ -2,10 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Four forms of one controller are one controller; errors name the line."""
 
-import re
-
 import numpy as np
 import pytest
+from refusals import refused
 from scipy import signal
 
 from ddct_controllers.design.state_space import factored_form, frequency_response
@@ -110,59 +109,57 @@ STATES = 'state_space:\n  a: [[0, 1], [-2, -3]]\n  b: [0, 1]\n  c: [4, 5]\n  d: 
 
 
 @pytest.mark.parametrize(
-    ('text', 'old', 'new', 'line', 'complaint'),
+    ('text', 'old', 'new', 'line', 'key'),
     [
         (
             POLYNOMIAL,
             'num: [-1, 2]',
             'num: [1, 2, 3]',
             3,
-            'transfer function has 2 zeros and 1 poles',
+            'polynomial',
         ),
-        (POLYNOMIAL, '[1, 3]', '[0, 0]', 3, 'its denominator is zero'),
-        (POLYNOMIAL, '[1, 3]', '[1, -1.0e+6]', 3, 'it grows beyond all numbers'),
-        (POLYNOMIAL, '[1, 3]', '[1e-308, 1e308, 1]', 3, 'too far apart to have roots'),
-        (POLYNOMIAL, '[-1, 2]', '[-1, .nan]', 4, 'polynomial.num[1] is nan'),
-        (POLYNOMIAL, '[-1, 2]', '[-1, fast]', 4, "polynomial.num[1] is 'fast': give a number"),
-        (POLYNOMIAL, '[-1, 2]', '-1', 4, 'polynomial.num is -1: give a list'),
-        (POLYNOMIAL, 'num:', 'mun:', 3, 'polynomial: key num is missing'),
-        (POLYNOMIAL, 'den:', 'gain: 2\n  den:', 5, "unknown key 'polynomial.gain'"),
-        (POLYNOMIAL, 'polynomial:', 'discretization: hold\npolynomial:', 3, 'did you mean discr'),
-        (POLYNOMIAL, 'polynomial:', 'discretisation: zoh\npolynomial:', 3, 'hold, bilinear'),
-        (POLYNOMIAL, '[1, 3]', '[1, -200]\ndiscretisation: bilinear', 3, 'a pole at 200 rad/s'),
-        (POLYNOMIAL, 'polynomial:', 'sample_time_s: 0.02\npolynomial:', 3, 'runs at 0.01 s'),
-        (POLYNOMIAL, 'polynomial:', 'sample_time_s: fast\npolynomial:', 3, 'give a number'),
+        (POLYNOMIAL, '[1, 3]', '[0, 0]', 3, 'polynomial'),
+        (POLYNOMIAL, '[1, 3]', '[1, -1.0e+6]', 3, 'polynomial'),
+        (POLYNOMIAL, '[1, 3]', '[1e-308, 1e308, 1]', 3, 'polynomial'),
+        (POLYNOMIAL, '[-1, 2]', '[-1, .nan]', 4, 'polynomial.num[1]'),
+        (POLYNOMIAL, '[-1, 2]', '[-1, fast]', 4, 'polynomial.num[1]'),
+        (POLYNOMIAL, '[-1, 2]', '-1', 4, 'polynomial.num'),
+        (POLYNOMIAL, 'num:', 'mun:', 3, 'polynomial.num'),
+        (POLYNOMIAL, 'den:', 'gain: 2\n  den:', 5, 'polynomial.gain'),
+        (POLYNOMIAL, 'polynomial:', 'discretization: hold\npolynomial:', 3, 'discretization'),
+        (POLYNOMIAL, 'polynomial:', 'discretisation: zoh\npolynomial:', 3, 'discretisation'),
+        (POLYNOMIAL, '[1, 3]', '[1, -200]\ndiscretisation: bilinear', 3, 'polynomial'),
+        (POLYNOMIAL, 'polynomial:', 'sample_time_s: 0.02\npolynomial:', 3, 'sample_time_s'),
+        (POLYNOMIAL, 'polynomial:', 'sample_time_s: fast\npolynomial:', 3, 'sample_time_s'),
         (
             POLYNOMIAL,
             'polynomial:',
             'sample_time_s: 0.01\ndiscretisation: hold\npolynomial:',
             4,
-            'drop one of them',
+            'discretisation',
         ),
-        (ROOTS, '-1+2j, -1-2j', '-1+2j, -1-3j', 3, 'not in conjugate pairs'),
-        (ROOTS, '-1+2j, -1-2j', '-1+2j', 3, 'not in conjugate pairs'),
-        (ROOTS, '-1+2j', '-1+2k', 5, "zeros_poles_gain.poles[0] is '-1+2k'"),
-        (ROOTS, '-1+2j', 'nan+2j', 5, 'zeros_poles_gain.poles[0] is (nan+2j)'),
-        (ROOTS, '-1+2j', '1e999+2j', 5, 'give a finite number'),
-        (STATES, '[-2, -3]]', '[-2]]', 4, 'state_space.a: give as many rows as columns'),
-        (STATES, 'b: [0, 1]', 'b: [0, 1, 2]', 5, 'state_space.b has 3 numbers'),
-        (STATES, 'c: [4, 5]', 'c: [[4, 5], [6, 7]]', 6, 'it must be 1 x 2'),
-        (STATES, 'd: 0', 'd: .inf', 7, 'state_space.d is inf'),
+        (ROOTS, '-1+2j, -1-2j', '-1+2j, -1-3j', 3, 'zeros_poles_gain'),
+        (ROOTS, '-1+2j, -1-2j', '-1+2j', 3, 'zeros_poles_gain'),
+        (ROOTS, '-1+2j', '-1+2k', 5, 'zeros_poles_gain.poles[0]'),
+        (ROOTS, '-1+2j', 'nan+2j', 5, 'zeros_poles_gain.poles[0]'),
+        (ROOTS, '-1+2j', '1e999+2j', 5, 'zeros_poles_gain.poles[0]'),
+        (STATES, '[-2, -3]]', '[-2]]', 4, 'state_space.a'),
+        (STATES, 'b: [0, 1]', 'b: [0, 1, 2]', 5, 'state_space.b'),
+        (STATES, 'c: [4, 5]', 'c: [[4, 5], [6, 7]]', 6, 'state_space.c'),
+        (STATES, 'd: 0', 'd: .inf', 7, 'state_space.d'),
     ],
 )
 def test_a_controller_that_cannot_run_is_named_with_file_and_line(
-    write, text, old, new, line, complaint
+    write, text, old, new, line, key
 ):
     assert old in text
     file = write(HEAD + text.replace(old, new))
-    with pytest.raises(ParameterError, match=re.escape(complaint)) as caught:
+    with refused(ParameterError, key=key, place=f'controller file {file}: line {line}'):
         make_controller(file, SETTINGS)
-    assert str(caught.value).startswith(f'controller file {file}: line {line}: ')
-    assert '\n' not in str(caught.value)
 
 
 @pytest.mark.parametrize('units', ['{input: rad/s, output: N m}', '{input: rpm}', 'rpm', ''])
 def test_a_file_states_the_units_of_the_loop_or_is_refused(write, units):
     text = f'name: mine\nunits: {units}\n{POLYNOMIAL}'
-    with pytest.raises(DdctError, match='line 2: units are .* convert the controller to'):
+    with refused(DdctError, key='units', place='any.yaml: line 2'):
         make_controller(write(text), SETTINGS)

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from refusals import refused
 
 from ddct_controllers.interface import ControllerContext, Measurement
 from ddct_controllers.mpc.controller import MpcController
@@ -340,44 +341,44 @@ def test_a_reset_controller_is_a_new_one(backend):
 
 
 @pytest.mark.parametrize(
-    ('options', 'complaint'),
+    ('options', 'key'),
     [
-        ({'horizon': 3}, r'controllers\.mpc3\.horizon is not a key of mpc3'),
-        ({'prediction_steps': 3}, 'control_steps is 4, longer than prediction_steps, 3'),
-        ({'prediction_steps': 1.5}, 'give a whole number'),
-        ({'control_steps': 0}, r'controllers\.mpc3\.control_steps'),
-        ({'preview': 1}, 'give true or false'),
-        ({'backend': 'magic'}, r'unknown controllers\.mpc3\.backend'),
-        ({'highest_torque_n_m': 0.0}, r'controllers\.mpc3\.highest_torque_n_m'),
-        ({'torque_rate_n_m_s': -1.0}, r'controllers\.mpc3\.torque_rate_n_m_s'),
-        ({'torque_rate_n_m_s': -5.0}, 'is -5 N m/s: it must be above 0'),
-        ({'torque_rate_n_m_s': 1e300}, r'is 1e\+300 N m/s: it must be at most 1e\+06'),
-        ({'iteration_limit': math.nan}, r'controllers\.mpc3\.iteration_limit'),
-        ({'iteration_limit': 1e300}, 'iteration_limit .* must be at most 1e'),
-        ({'iteration_limit': 2**40}, 'iteration_limit .* must be at most 1e'),
-        ({'prediction_steps': 1e6}, 'prediction_steps is .* must be at most 1000'),
+        ({'horizon': 3}, 'controllers.mpc3.horizon'),
+        ({'prediction_steps': 3}, 'MPC: control_steps'),
+        ({'prediction_steps': 1.5}, 'controllers.mpc3.prediction_steps'),
+        ({'control_steps': 0}, 'controllers.mpc3.control_steps'),
+        ({'preview': 1}, 'controllers.mpc3.preview'),
+        ({'backend': 'magic'}, 'controllers.mpc3.backend'),
+        ({'highest_torque_n_m': 0.0}, 'controllers.mpc3.highest_torque_n_m'),
+        ({'torque_rate_n_m_s': -1.0}, 'controllers.mpc3.torque_rate_n_m_s'),
+        ({'torque_rate_n_m_s': -5.0}, 'controllers.mpc3.torque_rate_n_m_s'),
+        ({'torque_rate_n_m_s': 1e300}, 'controllers.mpc3.torque_rate_n_m_s'),
+        ({'iteration_limit': math.nan}, 'controllers.mpc3.iteration_limit'),
+        ({'iteration_limit': 1e300}, 'controllers.mpc3.iteration_limit'),
+        ({'iteration_limit': 2**40}, 'controllers.mpc3.iteration_limit'),
+        ({'prediction_steps': 1e6}, 'controllers.mpc3.prediction_steps'),
         (
             {'prediction_steps': 1, 'control_steps': 1, 'delay_in_model': True},
-            'feels a move of the clutch torque request',
+            'MPC: prediction_steps',
         ),
-        ({'measured': 'speed'}, r'unknown controllers\.mpc3\.measured'),
-        ({'load_known': 'no'}, r'controllers\.mpc3\.load_known is .* give true or false'),
-        ({'delay_in_model': 0}, r'controllers\.mpc3\.delay_in_model is 0: give true or false'),
-        ({'output_weight': -0.1}, r'controllers\.mpc3\.output_weight is -0\.1'),
-        ({'final_weight': math.inf}, r'controllers\.mpc3\.final_weight'),
-        ({'move_weight': 'R'}, r'controllers\.mpc3\.move_weight'),
+        ({'measured': 'speed'}, 'controllers.mpc3.measured'),
+        ({'load_known': 'no'}, 'controllers.mpc3.load_known'),
+        ({'delay_in_model': 0}, 'controllers.mpc3.delay_in_model'),
+        ({'output_weight': -0.1}, 'controllers.mpc3.output_weight'),
+        ({'final_weight': math.inf}, 'controllers.mpc3.final_weight'),
+        ({'move_weight': 'R'}, 'controllers.mpc3.move_weight'),
         (
             {'torque_weight': 1e7},
-            r'controllers\.mpc3\.torque_weight is 1e\+07: it must be at most',
+            'controllers.mpc3.torque_weight',
         ),
-        ({'output_weight': 0.0, 'move_weight': 0.0}, 'costs nothing'),
-        ({'lowest_slip_rpm': 'none'}, r'controllers\.mpc3\.lowest_slip_rpm'),
-        ({'lowest_slip_rpm': 1e7}, r'lowest_slip_rpm is 1e\+07 rpm: it must be at most'),
-        ({5: 7, 'horizon': 3}, r'controllers\.mpc3\.5 is not a key'),
+        ({'output_weight': 0.0, 'move_weight': 0.0}, 'variable 0'),
+        ({'lowest_slip_rpm': 'none'}, 'controllers.mpc3.lowest_slip_rpm'),
+        ({'lowest_slip_rpm': 1e7}, 'controllers.mpc3.lowest_slip_rpm'),
+        ({5: 7, 'horizon': 3}, 'controllers.mpc3.5'),
     ],
 )
-def test_bad_options_are_named(options, complaint):
-    with pytest.raises(ParameterError, match=complaint):
+def test_bad_options_are_named(options, key):
+    with refused(ParameterError, key=key):
         PREDICTIVE['mpc3'](ControllerContext(RUN, options))
 
 

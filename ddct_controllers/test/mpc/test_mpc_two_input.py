@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from refusals import refused
 
 from ddct_controllers.interface import ControllerContext, Measurement
 from ddct_controllers.mpc.controller import MpcController
@@ -299,20 +300,20 @@ def test_without_a_solution_the_plan_is_followed_within_the_limits_and_counted()
 
 @pytest.mark.parametrize('name', FACTORIES)
 @pytest.mark.parametrize(
-    ('options', 'complaint'),
+    ('options', 'key'),
     [
-        ({'demand': 1.0}, r'controllers\.{}\.demand is not a key of {}: it has slip_acceleration'),
-        ({'demand_weight': -1.0}, r'controllers\.{}\.demand_weight is -1: it must be at least 0'),
-        ({'demand_weight': 1e200}, r'demand_weight is 1e\+200: it must be at most 1e\+06'),
-        ({'prediction_steps': 1}, 'no weighted output feels a move of the clutch torque request'),
-        ({'demand_weight': 'some'}, r'controllers\.{}\.demand_weight'),
-        ({'slip_acceleration_weight': math.nan}, r'controllers\.{}\.slip_acceleration_weight'),
-        ({'preview': 1}, r'controllers\.{}\.preview'),
-        ({'control_steps': 8}, 'control_steps is 8, longer than prediction_steps, 7'),
+        ({'demand': 1.0}, 'controllers.{}.demand'),
+        ({'demand_weight': -1.0}, 'controllers.{}.demand_weight'),
+        ({'demand_weight': 1e200}, 'controllers.{}.demand_weight'),
+        ({'prediction_steps': 1}, 'MPC: prediction_steps'),
+        ({'demand_weight': 'some'}, 'controllers.{}.demand_weight'),
+        ({'slip_acceleration_weight': math.nan}, 'controllers.{}.slip_acceleration_weight'),
+        ({'preview': 1}, 'controllers.{}.preview'),
+        ({'control_steps': 8}, 'MPC: control_steps'),
     ],
 )
-def test_bad_options_are_named(name, options, complaint):
-    with pytest.raises(ParameterError, match=complaint.replace('{}', name)):
+def test_bad_options_are_named(name, options, key):
+    with refused(ParameterError, key=key.replace('{}', name)):
         FACTORIES[name](ControllerContext(RUN, options))
 
 

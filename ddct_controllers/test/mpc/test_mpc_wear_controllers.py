@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from refusals import refused
 
 from ddct_controllers.interface import ControllerContext, Measurement
 from ddct_controllers.mpc.controller import divided
@@ -124,24 +125,24 @@ def test_status_shows_the_estimate(name):
 
 
 def test_nan_is_refused():
-    with pytest.raises(DdctError, match='at step 3'):
+    with refused(DdctError, key='engine_speed'):
         make_controller().update(measurement(3, float('nan')))
 
 
 @pytest.mark.parametrize('name', MAKERS)
 @pytest.mark.parametrize(
-    ('options', 'complaint'),
+    ('options', 'key'),
     [
-        ({'gain_drift': -0.1}, 'gain_drift is -0.1'),
-        ({'gain_drift': 1e160}, r'gain_drift is 1e\+160: it must be at most 1'),
-        ({'load_drift_n_m': None}, 'load_drift_n_m is empty: give a value'),
-        ({'load_drift_n_m': 1e160}, 'load_drift_n_m is .* at most'),
-        ({'clutch_drift_n_m': 1e160}, 'clutch_drift_n_m is .* at most'),
-        ({'torsion_weight': 1.0}, 'torsion_weight is not a key'),
+        ({'gain_drift': -0.1}, 'gain_drift'),
+        ({'gain_drift': 1e160}, 'gain_drift'),
+        ({'load_drift_n_m': None}, 'load_drift_n_m'),
+        ({'load_drift_n_m': 1e160}, 'load_drift_n_m'),
+        ({'clutch_drift_n_m': 1e160}, 'clutch_drift_n_m'),
+        ({'torsion_weight': 1.0}, 'torsion_weight'),
     ],
 )
-def test_bad_options_are_named(options, complaint, name):
-    with pytest.raises(ParameterError, match=f'controllers.{name}.{complaint}'):
+def test_bad_options_are_named(options, key, name):
+    with refused(ParameterError, key=f'controllers.{name}.{key}'):
         make_controller(options, name)
 
 

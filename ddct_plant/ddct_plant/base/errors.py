@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Sequence
 from numbers import Real
+from typing import Self
 
 LONGEST_LINE = 4000
 """Largest length of an error text; a longer one loses its middle, as the beginning has the error
@@ -25,9 +26,22 @@ class DdctError(Exception):
     are escaped here, so that they cannot reach a terminal, a log or a page.
     """
 
-    def __init__(self, text: object) -> None:
-        """Make `text` printable and store it."""
-        super().__init__(printable(text))
+    def __init__(self, text: object, *, key: str = '', place: object = '') -> None:
+        """
+        Make the text printable and store it, with `place` before it.
+
+        `key` is the option, parameter, topic or key of a file to change, '' where there is none;
+        the text names it. `place` is where the cause is: a file, and the line or column there.
+        """
+        super().__init__(printable(f'{place}: {text}' if place else text))
+        self.key = key
+        self.place = str(place)
+
+    def at(self, place: object) -> Self:
+        """Return the same error with a place around that which it has."""
+        found = type(self)(f'{place}: {self}', key=self.key)
+        found.place = f'{place}: {self.place}' if self.place else str(place)
+        return found
 
 
 class ForeignError(DdctError):
@@ -75,19 +89,27 @@ def require_number(
     `above` is an exclusive lower bound; `at_least` and `at_most` are inclusive.
     """
     if isinstance(value, bool) or not isinstance(value, Real):
-        raise ParameterError(f'{name} is {value!r}: give a number{_wanted_in(unit)}')
+        raise ParameterError(f'{name} is {value!r}: give a number{_wanted_in(unit)}', key=name)
     try:
         number = float(value)
     except OverflowError:
         number = math.inf
     if not math.isfinite(number):
-        raise ParameterError(f'{name} is {number}: give a finite number{_wanted_in(unit)}')
+        raise ParameterError(
+            f'{name} is {number}: give a finite number{_wanted_in(unit)}', key=name
+        )
     if above is not None and number <= above:
-        raise ParameterError(f'{name} is {number:g}{_in(unit)}: it must be above {above:g}')
+        raise ParameterError(
+            f'{name} is {number:g}{_in(unit)}: it must be above {above:g}', key=name
+        )
     if at_least is not None and number < at_least:
-        raise ParameterError(f'{name} is {number:g}{_in(unit)}: it must be at least {at_least:g}')
+        raise ParameterError(
+            f'{name} is {number:g}{_in(unit)}: it must be at least {at_least:g}', key=name
+        )
     if at_most is not None and number > at_most:
-        raise ParameterError(f'{name} is {number:g}{_in(unit)}: it must be at most {at_most:g}')
+        raise ParameterError(
+            f'{name} is {number:g}{_in(unit)}: it must be at most {at_most:g}', key=name
+        )
     return number
 
 
@@ -96,7 +118,8 @@ def require_name(what: str, name: object) -> None:
     if not isinstance(name, str) or not _NAME.fullmatch(name):
         raise ParameterError(
             f'{what} is {name!r}: use up to {LONGEST_NAME} letters (A to Z, a to z), digits, '
-            'dots, dashes and underscores, no dot or dash first'
+            'dots, dashes and underscores, no dot or dash first',
+            key=what,
         )
 
 
@@ -104,19 +127,23 @@ def require_rising(name: str, times: Sequence[float]) -> None:
     """Raise ParameterError unless `times`, called `name`, rise strictly."""
     for earlier, later in zip(times, times[1:], strict=False):
         if later <= earlier:
-            raise ParameterError(f'{name} goes from {earlier:g} to {later:g}: it must rise')
+            raise ParameterError(
+                f'{name} goes from {earlier:g} to {later:g}: it must rise', key=name
+            )
 
 
 def require_choice(name: str, value: str, choices: Sequence[str]) -> None:
     """Raise ParameterError that names the choices when `value` is none of them."""
     if value not in choices:
-        raise ParameterError(f'unknown {name} {value!r}: choose from {", ".join(choices)}')
+        raise ParameterError(
+            f'unknown {name} {value!r}: choose from {", ".join(choices)}', key=name
+        )
 
 
 def require_finite(source: str, value: float) -> float:
     """Return the number of `source`; raise DdctError when it is NaN or infinite."""
     if not math.isfinite(value):
-        raise DdctError(f'{source} is {value}: mend what computes it')
+        raise DdctError(f'{source} is {value}: mend what computes it', key=source)
     return value
 
 

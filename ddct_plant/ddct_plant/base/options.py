@@ -70,11 +70,11 @@ class Option:
     def checked(self, name: str, value: Any) -> Any:
         """Return the checked `value` of the option `name`; raise ParameterError for a bad one."""
         if value is None:
-            raise ParameterError(f'{name} is empty: give a value')
+            raise ParameterError(f'{name} is empty: give a value', key=name)
         if not self.many:
             return self._checked_one(name, value)
         if not isinstance(value, (list, tuple)):
-            raise ParameterError(f'{name} is {value!r}: give a list, [...]')
+            raise ParameterError(f'{name} is {value!r}: give a list, [...]', key=name)
         values = [self._checked_one(f'{name}[{i}]', item) for i, item in enumerate(value)]
         if self.rising:
             require_rising(name, values)
@@ -82,7 +82,7 @@ class Option:
 
     def _checked_one(self, name: str, value: Any) -> Any:
         if self.kind in _GIVE and not isinstance(value, self.kind):
-            raise ParameterError(f'{name} is {value!r}: give {_GIVE[self.kind]}')
+            raise ParameterError(f'{name} is {value!r}: give {_GIVE[self.kind]}', key=name)
         if self.choices:
             require_choice(name, value, self.choices)
         if self.kind in _GIVE:
@@ -100,7 +100,7 @@ class Option:
         if self.kind is float:
             return number
         if number % 1:
-            raise ParameterError(f'{name} is {value!r}: give a whole number')
+            raise ParameterError(f'{name} is {value!r}: give a whole number', key=name)
         return int(value)
 
     @property
@@ -200,7 +200,8 @@ class OptionGroup:
         if len(xs) != len(ys):
             raise ParameterError(
                 f'{self.prefix}{ys_name} has {len(ys)} values for the {len(xs)} of '
-                f'{self.prefix}{xs_name}: give one for each'
+                f'{self.prefix}{xs_name}: give one for each',
+                key=f'{self.prefix}{ys_name}',
             )
 
     @property
@@ -229,7 +230,7 @@ def require_known(
     for name in names:
         if name not in known:
             hint = close_name(name, known, prefix)
-            raise ParameterError(f'unknown {what} {prefix}{name}: {hint}')
+            raise ParameterError(f'unknown {what} {prefix}{name}: {hint}', key=f'{prefix}{name}')
 
 
 def close_name(name: object, known: Iterable[str], prefix: str = '') -> str:

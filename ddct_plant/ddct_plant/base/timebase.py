@@ -55,5 +55,7 @@ def steps_in(name: str, duration_s: float) -> int:
     """Return `duration_s` in periods; raise ParameterError unless it is a whole number of them."""
     steps = round(duration_s * STEPS_PER_S)
     if abs(duration_s * STEPS_PER_S - steps) > 1e-6:
-        raise ParameterError(f'{name} is {duration_s:g} s: give a multiple of {PERIOD_S} s')
+        raise ParameterError(
+            f'{name} is {duration_s:g} s: give a multiple of {PERIOD_S} s', key=name
+        )
     return steps

@@ -67,23 +67,26 @@ def read_csv(
     rows = _rows(_text(path, most_bytes))
     _, header = next(rows, (0, []))
     if not header:
-        raise ParameterError(f'{path}: it is empty: give a header and rows of numbers')
+        raise ParameterError('it is empty: give a header and rows of numbers', place=path)
     places = {name: _column(path, header, name) for name in names}
     cells: dict[str, list[Any]] = {name: [] for name in places}
     lines: list[int] = []
     for line, row in rows:
         if len(lines) == most_rows:
-            raise ParameterError(f'{path}: line {line}: more than {most_rows} rows: give fewer')
+            raise ParameterError(
+                f'more than {most_rows} rows: give fewer', place=f'{path}: line {line}'
+            )
         if len(row) != len(header):
             raise ParameterError(
-                f'{path}: line {line} has {len(row)} cells, the header {len(header)}: mend the row'
+                f'{len(row)} cells, while the header has {len(header)}: mend the row',
+                place=f'{path}: line {line}',
             )
         lines.append(line)
         for name, place in places.items():
             read = _instant if name in date_times else _number
             cells[name].append(read(path, line, name, row[place]))
     if not lines:
-        raise ParameterError(f'{path}: no row of numbers below the header: give at least one')
+        raise ParameterError('no row of numbers below the header: give at least one', place=path)
     for name in cells.keys() & set(date_times):
         cells[name] = _seconds(path, lines, name, cells[name])
     return CsvTable(path, np.array(lines), {name: np.array(each) for name, each in cells.items()})
@@ -93,9 +96,9 @@ def _text(path: Path, most_bytes: int) -> str:
     try:
         return any_text(read_file(path, most_bytes))
     except OSError as error:
-        raise ParameterError(f'{path}: cannot be read ({error.strerror})') from error
+        raise ParameterError(f'cannot be read ({error.strerror})', place=path) from error
     except ParameterError as error:
-        raise ParameterError(f'{path}: {error}') from error
+        raise error.at(path) from error
 
 
 def _rows(text: str) -> Iterator[tuple[int, list[str]]]:
@@ -116,7 +119,9 @@ def _column(path: Path, header: list[str], name: str) -> int:
     if (count := header.count(name)) != 1:
         known = close_name(name, [each for each in header if each])
         what = f'the column {name!r} is there {count} times' if count else f'no column {name!r}'
-        raise ParameterError(f'{path}: {what}: {known if not count else "rename one"}')
+        raise ParameterError(
+            f'{what}: {known if not count else "rename one"}', key=name, place=path
+        )
     return header.index(name)
 
 
@@ -126,7 +131,7 @@ def _instant(path: Path, line: int, column: str, cell: str) -> Instant | None:
     try:
         return instant(cell)
     except ParameterError as error:
-        raise ParameterError(f'{_place(path, line, column)}: {error}') from None
+        raise error.at(_place(path, line, column)) from None
 
 
 def _seconds(
@@ -137,8 +142,9 @@ def _seconds(
     for line, zoned in zones:
         if zoned != zones[0][1]:
             raise ParameterError(
-                f'{_place(path, line, column)}: it has {"a" if zoned else "no"} time zone, unlike '
-                f'line {zones[0][0]}: give every row one, or none'
+                f'it has {"a" if zoned else "no"} time zone, unlike line {zones[0][0]}: give '
+                'every row one, or none',
+                place=_place(path, line, column),
             )
     return seconds_since_first(instants)
 
@@ -151,15 +157,16 @@ def _number(path: Path, line: int, column: str, cell: str) -> float:
     except ValueError:
         if is_date_time(cell):
             raise ParameterError(
-                f'{_place(path, line, column)}: {cell!r} is a date and time: in the column map of '
-                'a log give it the unit iso8601, elsewhere write seconds'
+                f'{cell!r} is a date and time: in the column map of a log give it the unit '
+                'iso8601, elsewhere write seconds',
+                place=_place(path, line, column),
             ) from None
         raise ParameterError(
-            f'{_place(path, line, column)}: {cell!r} is no number: mend it, or put # before the '
-            'line'
+            f'{cell!r} is no number: mend it, or put # before the line',
+            place=_place(path, line, column),
         ) from None
     if not math.isfinite(number):
-        raise ParameterError(f'{_place(path, line, column)}: {cell} is not finite: mend it')
+        raise ParameterError(f'{cell} is not finite: mend it', place=_place(path, line, column))
     return number
 
 

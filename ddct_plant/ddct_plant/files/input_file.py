@@ -137,18 +137,17 @@ def located(name: str, lines: Mapping[str, int] | None = None) -> Iterator[None]
     try:
         yield
     except DdctError as error:
-        line = line_of(str(error), lines or {})
-        where = f'{name}: line {line}' if line else name
-        raise type(error)(f'{where}: {error}') from error
+        line = line_of(f'{error.key} {error}', lines or {})
+        raise error.at(f'{name}: line {line}' if line else name) from error
 
 
-def line_of(complaint: str, lines: Mapping[str, int]) -> int:
+def line_of(text: str, lines: Mapping[str, int]) -> int:
     """
     Return the line of the first key in an error text, or else of the section of that key.
 
     An error text names the key to change first. The line is 0 where no key has one.
     """
-    for word in _PATH.findall(complaint):
+    for word in _PATH.findall(text):
         while word and word not in lines:
             word = _PARENT.sub('', word) if _PARENT.search(word) else ''
         if word:
@@ -165,11 +164,12 @@ def require_schema_version(content: Mapping[str, Any], newest: int) -> None:
     version = content.get(SCHEMA_KEY, newest)
     if isinstance(version, bool) or not isinstance(version, int) or version < 1:
         raise ParameterError(
-            f'{SCHEMA_KEY} is {version!r}: give a whole number from 1 to {newest}'
+            f'{SCHEMA_KEY} is {version!r}: give a whole number from 1 to {newest}', key=SCHEMA_KEY
         )
     if version > newest:
         raise ParameterError(
-            f'{SCHEMA_KEY} is {version}, this version reads up to {newest}: update the project'
+            f'{SCHEMA_KEY} is {version}, this version reads up to {newest}: update the project',
+            key=SCHEMA_KEY,
         )
 
 
@@ -178,10 +178,12 @@ def mcap_of(path: Path) -> Path:
     if path.is_dir():
         files = sorted(path.glob('*.mcap'))
         if not files:
-            raise DdctError(f'{path}: no .mcap file in this folder: give a bag')
+            raise DdctError('no .mcap file in this folder: give a bag', place=path)
         if len(files) > 1:
-            raise DdctError(f'{path}: {len(files)} .mcap files in this folder: give one of them')
+            raise DdctError(
+                f'{len(files)} .mcap files in this folder: give one of them', place=path
+            )
         return files[0]
     if not path.exists():
-        raise DdctError(f'{path}: no such file or folder')
+        raise DdctError('no such file or folder', place=path)
     return path

@@ -63,7 +63,7 @@ def parse_yaml_with_lines(text: str) -> tuple[Any, dict[str, int]]:
         raise ParameterError('not valid YAML: it is not UTF-8 text') from error
     except yaml.MarkedYAMLError as error:
         line = error.problem_mark.line + 1
-        raise ParameterError(f'not valid YAML: line {line}: {error.problem}') from error
+        raise ParameterError(f'not valid YAML: {error.problem}', place=f'line {line}') from error
     except yaml.YAMLError as error:
         raise ParameterError(f'not valid YAML: {" ".join(str(error).split())}') from error
 
@@ -172,7 +172,7 @@ def _scalar(event: yaml.ScalarEvent) -> Any:
 
 
 def _refused(event: yaml.Event, what: str) -> ParameterError:
-    return ParameterError(f'not valid YAML: line {_line(event)}: {what}')
+    return ParameterError(f'not valid YAML: {what}', place=f'line {_line(event)}')
 
 
 def _line(event: yaml.Event) -> int:

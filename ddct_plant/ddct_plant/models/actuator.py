@@ -39,7 +39,8 @@ class ActuatorParameters(OptionGroup, prefix='actuator.'):
         super().__post_init__()
         if abs(self.delay_s / SUBSTEP_S - self.delay_substeps) > 1e-6:
             raise ParameterError(
-                f'actuator.delay_s is {self.delay_s:g} s: give a multiple of {SUBSTEP_S} s'
+                f'actuator.delay_s is {self.delay_s:g} s: give a multiple of {SUBSTEP_S} s',
+                key='actuator.delay_s',
             )
 
     @property

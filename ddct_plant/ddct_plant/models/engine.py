@@ -36,7 +36,9 @@ class TorqueProfile(Profile, prefix='engine.'):
         """Check the points; raise ParameterError that names the first bad one."""
         super().__post_init__()
         if not self.time_s:
-            raise ParameterError('engine.time_s is empty: give at least one point')
+            raise ParameterError(
+                'engine.time_s is empty: give at least one point', key='engine.time_s'
+            )
 
 
 @dataclass(frozen=True)
@@ -85,7 +87,8 @@ class EngineAuthority(OptionGroup, prefix='engine_authority.'):
         if self.minimum_torque_n_m >= self.maximum_torque_n_m:
             raise ParameterError(
                 f'engine_authority.minimum_torque_n_m is {self.minimum_torque_n_m:g} N m: it must '
-                f'be below maximum_torque_n_m, {self.maximum_torque_n_m:g} N m'
+                f'be below maximum_torque_n_m, {self.maximum_torque_n_m:g} N m',
+                key='engine_authority.minimum_torque_n_m',
             )
 
     @property

@@ -71,14 +71,16 @@ class EngineLimits(OptionGroup, prefix='engine_limits.'):
             if getattr(self, lower) >= getattr(self, higher):
                 raise ParameterError(
                     f'engine_limits.{lower} is {getattr(self, lower):g} rad/s: it must be below '
-                    f'{higher}, {getattr(self, higher):g} rad/s'
+                    f'{higher}, {getattr(self, higher):g} rad/s',
+                    key=f'engine_limits.{lower}',
                 )
         speeds = self.speed_rad_s
         if not speeds or speeds[0] > self.stall_rad_s or speeds[-1] < self.over_rev_rad_s:
             given = f'goes from {speeds[0]:g} to {speeds[-1]:g} rad/s' if speeds else 'is empty'
             raise ParameterError(
                 f'engine_limits.speed_rad_s {given}: the torque curves must cover the speeds from '
-                f'stall_rad_s, {self.stall_rad_s:g}, to over_rev_rad_s, {self.over_rev_rad_s:g}'
+                f'stall_rad_s, {self.stall_rad_s:g}, to over_rev_rad_s, {self.over_rev_rad_s:g}',
+                key='engine_limits.speed_rad_s',
             )
 
     def end_cause(self, speed: float) -> str | None:

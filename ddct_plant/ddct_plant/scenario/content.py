@@ -44,18 +44,20 @@ def flat(content: Any, key: str = '') -> dict[str, Any]:
 def _build(group: type[Group], content: Any) -> Group:
     prefix = group.prefix
     if not isinstance(content, Mapping):
-        raise ParameterError(f'{prefix.rstrip(".")}: give keys and values, not {content!r}')
+        raise ParameterError(
+            f'{prefix.rstrip(".")}: give keys and values, not {content!r}', key=prefix.rstrip('.')
+        )
     fields = {key_of(field): field for field in dataclasses.fields(group)}
     for name in content:
         if name not in fields:
             hint = scenario_key_hint(str(name), fields, prefix)
-            raise ParameterError(f'unknown key {prefix}{name}: {hint}')
+            raise ParameterError(f'unknown key {prefix}{name}: {hint}', key=f'{prefix}{name}')
     for name, field in fields.items():
         required = (
             field.default is dataclasses.MISSING and field.default_factory is dataclasses.MISSING
         )
         if required and name not in content:
-            raise ParameterError(f'key {prefix}{name} is missing')
+            raise ParameterError(f'key {prefix}{name} is missing', key=f'{prefix}{name}')
     values = {fields[key].name: _value(fields[key], value) for key, value in content.items()}
     return group(**values)
 
@@ -76,7 +78,9 @@ def _gains(content: Any) -> dict[str, dict[str, Any]]:
     if not isinstance(content, Mapping) or not all(
         isinstance(gains, Mapping) for gains in content.values()
     ):
-        raise ParameterError('controllers: give gains by controller name, {pi: {...}}')
+        raise ParameterError(
+            'controllers: give gains by controller name, {pi: {...}}', key='controllers'
+        )
     return {str(name): dict(gains) for name, gains in content.items()}
 
 

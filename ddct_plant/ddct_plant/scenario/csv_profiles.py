@@ -95,7 +95,7 @@ def _as_set(section: dict[str, Any], name: str, value: str, given: set[str]) -> 
         return {key: item for key, item in section.items() if key not in points}
     if any(f'{name}.{key}' in given for key in points):
         return {key: item for key, item in section.items() if key not in _SOURCE}
-    raise ParameterError(f'{name} has points and {name}.{_FILE}: give one of them')
+    raise ParameterError(f'{name} has points and {name}.{_FILE}: give one of them', key=name)
 
 
 def _points(section: Mapping[str, Any], group: type[OptionGroup], base: Path) -> dict[str, Any]:
@@ -105,7 +105,8 @@ def _points(section: Mapping[str, Any], group: type[OptionGroup], base: Path) ->
     if missing := [f'{prefix}{key}' for key, value in spec.items() if value is REQUIRED]:
         raise ParameterError(
             f'{prefix}{_FILE} needs {", ".join(missing)} beside it: give all that tells of the '
-            'file, such as {csv: pedal.csv, time: t, value: torque, unit: N m}'
+            'file, such as {csv: pedal.csv, time: t, value: torque, unit: N m}',
+            key=missing[0],
         )
     for key, described in _SOURCE.items():
         described.checked(f'{prefix}{key}', spec[key])
@@ -126,23 +127,27 @@ def _read(spec: Mapping[str, Any], group: type[OptionGroup], base: Path) -> dict
 
 
 def _check(
-    table: CsvTable, columns: Mapping[str, str], points: Mapping[str, Any], group: type
+    table: CsvTable,
+    columns: Mapping[str, str],
+    points: Mapping[str, Any],
+    group: type[OptionGroup],
 ) -> None:
     """Refuse values out of range, times that do not rise, and a late start; name their place."""
     for name, described in options_of(group).items():
         one = replace(described, many=False, default=REQUIRED)
         for row, number in enumerate(points[name]):
-            one.checked(table.place(row, columns[name]), number)
+            with located(table.place(row, columns[name])):
+                one.checked(f'{group.prefix}{name}', number)
     times = points[TIME]
     for row, (earlier, later) in enumerate(zip(times, times[1:], strict=False), 1):
         if later <= earlier:
-            place = table.place(row, columns[TIME])
             raise ParameterError(
-                f'{place}: the time goes from {earlier:g} to {later:g} s: it must rise'
+                f'the time goes from {earlier:g} to {later:g} s: it must rise',
+                place=table.place(row, columns[TIME]),
             )
     if times[0] > 0.0:
-        place = table.place(0, columns[TIME])
         raise ParameterError(
-            f'{place}: the profile begins at scenario time {times[0]:g} s: it must cover the '
-            'start, so give an earlier row or start_s'
+            f'the profile begins at scenario time {times[0]:g} s: it must cover the start, so '
+            'give an earlier row or start_s',
+            place=table.place(0, columns[TIME]),
         )

@@ -119,7 +119,9 @@ def parsed_override(override: str) -> tuple[str, Any]:
     """Return the dotted key and the value of `KEY=VALUE`; raise ParameterError for other text."""
     key, equals, text = override.partition('=')
     if not equals or not key:
-        raise ParameterError(f'--set {override}: write KEY=VALUE, for example duration_s=2.0')
+        raise ParameterError(
+            f'--set {override}: write KEY=VALUE, for example duration_s=2.0',
+        )
     with located(f'--set {override}'):
         return key, parse_yaml(text)
 
@@ -135,7 +137,8 @@ def _read(name_or_file: str) -> tuple[str, str]:
         if name_or_file not in scenario_names():
             raise ParameterError(
                 f'unknown scenario {name_or_file!r}: choose from {", ".join(scenario_names())}, '
-                'or give the path of a YAML file'
+                'or give the path of a YAML file',
+                key=name_or_file,
             )
         resource = _packaged() / f'{name_or_file}.yaml'
         return resource.read_text(encoding='utf-8'), name_or_file
@@ -155,7 +158,7 @@ def _put(content: dict[str, Any], key: str, value: Any) -> list[str]:
     for folder in folders:
         group = target.get(folder, {})
         if not isinstance(group, dict):
-            raise ParameterError(f'--set {key}: {folder} holds a value, not keys')
+            raise ParameterError(f'--set {key}: {folder} holds a value, not keys', key=key)
         target[folder] = dict(group)
         target = target[folder]
     target[leaf] = value

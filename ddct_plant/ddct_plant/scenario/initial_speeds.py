@@ -40,10 +40,12 @@ class InitialSpeeds(OptionGroup, prefix='initial.'):
         if self.clutch_phase == LOCKED and slip:
             raise ParameterError(
                 f"initial.clutch_phase is 'locked', but the slip speed is {slip:g} rad/s: make "
-                'initial.engine_speed_rad_s and initial.shaft_speed_rad_s equal'
+                'initial.engine_speed_rad_s and initial.shaft_speed_rad_s equal',
+                key='initial.clutch_phase',
             )
         if self.clutch_phase == SLIPPING and not slip:
             raise ParameterError(
                 "initial.clutch_phase is 'slipping', but both plates have one speed: make "
-                'initial.engine_speed_rad_s and initial.shaft_speed_rad_s differ'
+                'initial.engine_speed_rad_s and initial.shaft_speed_rad_s differ',
+                key='initial.clutch_phase',
             )

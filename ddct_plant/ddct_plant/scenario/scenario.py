@@ -124,13 +124,18 @@ class Scenario(OptionGroup):
         super().__post_init__()
         require_name('name', self.name)
         if len(self.score_window_s) != 2:
-            raise ParameterError('score_window_s: give two times, [first, last]')
+            raise ParameterError(
+                'score_window_s: give two times, [first, last]', key='score_window_s'
+            )
         first, last = self.score_window_s
         if last <= first:
-            raise ParameterError(f'score_window_s ends at {last:g} s, before {first:g} s')
+            raise ParameterError(
+                f'score_window_s ends at {last:g} s, before {first:g} s', key='score_window_s'
+            )
         if self.slope.given and self.load.slope_rad:
             raise ParameterError(
-                f'slope has points, and load.slope_rad is {self.load.slope_rad:g} rad: give one'
+                f'slope has points, and load.slope_rad is {self.load.slope_rad:g} rad: give one',
+                key='slope',
             )
 
     @cached_property

@@ -78,7 +78,8 @@ class RunSettings(OptionGroup):
         if given and not self.stick_slip:
             raise ParameterError(
                 f'scenario {self.scenario.name} gives {", ".join(given)}, which the clutch '
-                f'{self.clutch} would ignore: choose the clutch {STICK_SLIP}, or leave that out'
+                f'{self.clutch} would ignore: choose the clutch {STICK_SLIP}, or leave that out',
+                key=given[0],
             )
 
     def _require_reference(self) -> None:
@@ -87,7 +88,8 @@ class RunSettings(OptionGroup):
         if self.scenario.slip_reference.given != (shape == PROFILE):
             raise ParameterError(
                 f'reference.shape is {shape!r}: give slip_reference.time_s and '
-                f'slip_reference.slip_rad_s with the shape {PROFILE}, and only with it'
+                f'slip_reference.slip_rad_s with the shape {PROFILE}, and only with it',
+                key='reference.shape',
             )
         if shape == ENGINE_SPEED_TARGET:
             self._require_engine_speed_target()
@@ -95,12 +97,14 @@ class RunSettings(OptionGroup):
         if shape not in ('ramp', self.reference_shape):
             raise ParameterError(
                 f'reference.shape is {shape!r}, but the architecture {self.architecture} has a '
-                f'{self.reference_shape}: choose another architecture, such as feedforward'
+                f'{self.reference_shape}: choose another architecture, such as feedforward',
+                key='reference.shape',
             )
         if self.reference_shape not in ('ramp', PROFILE) and end_s <= start_s:
             raise ParameterError(
                 f'reference.reference_end_s is {end_s:g} s: it must be after control_start_s, '
-                f'{start_s:g} s'
+                f'{start_s:g} s',
+                key='reference.reference_end_s',
             )
 
     def _require_engine_speed_target(self) -> None:
@@ -108,10 +112,12 @@ class RunSettings(OptionGroup):
             raise ParameterError(
                 f'reference.shape is {ENGINE_SPEED_TARGET!r}, which starts from the measured slip '
                 f'speed, but the architecture {self.architecture} has a stored reference: choose '
-                'the architecture detailed'
+                'the architecture detailed',
+                key='reference.shape',
             )
         if not self.scenario.engine_speed_reference.given:
             raise ParameterError(
                 f'reference.shape is {ENGINE_SPEED_TARGET!r}: give the wanted engine speed, '
-                'engine_speed_reference.time_s and engine_speed_reference.speed_rad_s'
+                'engine_speed_reference.time_s and engine_speed_reference.speed_rad_s',
+                key='reference.shape',
             )

@@ -64,12 +64,15 @@ class SensorOptions(OptionGroup):
         """Check every option; raise ParameterError that names a bad one."""
         super().__post_init__()
         if self.dropout == 1.0:
-            raise ParameterError(f'{self.prefix}dropout is 1: give a share below 1')
+            raise ParameterError(
+                f'{self.prefix}dropout is 1: give a share below 1', key=f'{self.prefix}dropout'
+            )
         least = self.dropout / (1.0 - self.dropout)
         if self.dropout_burst is not None and self.dropout_burst < least:
             raise ParameterError(
                 f'{self.prefix}dropout_burst is {self.dropout_burst:g}: with a dropout of '
-                f'{self.dropout:g} give at least {least:g}'
+                f'{self.dropout:g} give at least {least:g}',
+                key=f'{self.prefix}dropout_burst',
             )
 
     def error(self, kind: str) -> float:

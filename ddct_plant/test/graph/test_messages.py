@@ -5,6 +5,7 @@
 import math
 
 import pytest
+from refusals import refused
 
 rclpy_messages = pytest.importorskip('trajectory_msgs.msg', reason='needs the ROS message types')
 
@@ -104,7 +105,7 @@ def test_sensed_joints_have_speeds_alone_and_leave_no_array_empty_at_the_end():
     assert [list(each) for each in topic.values(some)] == [[1.0, 2.0, 3.0]]
     assert len(some.effort) == 3
     assert all(math.isnan(each) for each in some.effort)
-    with pytest.raises(DdctError, match='sensors/joint_states is inf'):
+    with refused(DdctError, key='sensors/joint_states'):
         topic.read(write(LATER, [1.0, math.inf, 3.0]))
     some.name = ['engine', 'wheel', 'primary_shaft']
     with pytest.raises(DdctError, match='in this order'):

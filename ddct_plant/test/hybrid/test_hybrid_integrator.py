@@ -6,6 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from refusals import refused
 from scipy.integrate import solve_ivp
 
 from ddct_plant.base.errors import DdctError, ParameterError
@@ -396,7 +397,7 @@ def test_impossible_capacities_are_refused(kinetic, static, message):
 
 
 def test_a_piece_must_be_longer_than_zero_and_short_enough_for_the_rates():
-    with pytest.raises(ParameterError, match='piece_s is 0: it must be above 0'):
+    with refused(ParameterError, key='piece_s'):
         HybridIntegrator(block(), 0.0, PIECES)
     with pytest.raises(ParameterError, match='take pieces of at most 0.0002 s'):
         HybridIntegrator(block(a=-1e4), PIECE_S, PIECES)

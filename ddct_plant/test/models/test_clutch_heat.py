@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from refusals import refused
 from scipy.integrate import solve_ivp
 
 from ddct_plant.base.errors import ParameterError
@@ -124,14 +125,14 @@ def test_holding_temperature_and_slip_over_10_ms_costs_a_hard_launch_a_quarter_p
 
 
 @pytest.mark.parametrize(
-    ('bad', 'complaint'),
+    ('bad', 'key'),
     [
-        ({'facing_j_k': 0.0}, 'heat.facing_j_k is 0'),
-        ({'plate_to_housing_w_k': -1.0}, 'heat.plate_to_housing_w_k is -1'),
-        ({'facing_share': 1.5}, 'heat.facing_share is 1.5'),
-        ({'facing_c': float('inf')}, 'heat.facing_c is inf'),
+        ({'facing_j_k': 0.0}, 'heat.facing_j_k'),
+        ({'plate_to_housing_w_k': -1.0}, 'heat.plate_to_housing_w_k'),
+        ({'facing_share': 1.5}, 'heat.facing_share'),
+        ({'facing_c': float('inf')}, 'heat.facing_c'),
     ],
 )
-def test_a_bad_mass_path_or_temperature_is_named(bad, complaint):
-    with pytest.raises(ParameterError, match=complaint):
+def test_a_bad_mass_path_or_temperature_is_named(bad, key):
+    with refused(ParameterError, key=key):
         HeatParameters(**bad)

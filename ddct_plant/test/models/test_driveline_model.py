@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from refusals import refused
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.linear.lti import Factor
@@ -85,16 +86,16 @@ def test_zeros_of_p2_are_the_poles_of_the_locked_driveline():
 
 
 @pytest.mark.parametrize(
-    ('change', 'message'),
+    ('change', 'key'),
     [
-        ({'engine_inertia': 0.0}, 'driveline.engine_inertia is 0'),
-        ({'shaft_damping': -0.1}, 'driveline.shaft_damping is -0.1'),
-        ({'total_ratio': float('nan')}, 'driveline.total_ratio is nan'),
-        ({'vehicle_inertia': '150'}, "driveline.vehicle_inertia is '150'"),
+        ({'engine_inertia': 0.0}, 'driveline.engine_inertia'),
+        ({'shaft_damping': -0.1}, 'driveline.shaft_damping'),
+        ({'total_ratio': float('nan')}, 'driveline.total_ratio'),
+        ({'vehicle_inertia': '150'}, 'driveline.vehicle_inertia'),
     ],
 )
-def test_impossible_driveline_is_refused_by_name(change, message):
-    with pytest.raises(ParameterError, match=message):
+def test_impossible_driveline_is_refused_by_name(change, key):
+    with refused(ParameterError, key=key):
         DrivelineParameters.from_values(change)
 
 
@@ -102,7 +103,7 @@ def test_vehicle_and_driveline_agree_on_the_vehicle_inertia():
     vehicle = VehicleParameters()
     inertia = vehicle.mass_kg * vehicle.wheel_radius_m**2
     assert inertia == pytest.approx(DEFAULT.vehicle_inertia, rel=1e-14)
-    with pytest.raises(ParameterError, match='vehicle.mass_kg'):
+    with refused(ParameterError, key='vehicle.mass_kg'):
         VehicleParameters(mass_kg=-1.0)
 
 

@@ -5,6 +5,7 @@
 import math
 
 import pytest
+from refusals import refused
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.models.engine import Engine, EngineAuthority, EngineResponse, TorqueProfile
@@ -87,23 +88,23 @@ def test_a_demand_that_leaves_the_limits_makes_no_empty_range():
 
 
 @pytest.mark.parametrize(
-    ('name', 'value', 'complaint'),
+    ('name', 'value', 'key'),
     [
-        ('deviation_n_m', -1.0, 'engine_authority.deviation_n_m is -1 N m: it must be at least 0'),
-        ('slew_n_m_s', math.nan, 'engine_authority.slew_n_m_s is nan: give a finite number'),
+        ('deviation_n_m', -1.0, 'engine_authority.deviation_n_m'),
+        ('slew_n_m_s', math.nan, 'engine_authority.slew_n_m_s'),
         (
             'slew_n_m_s',
             2e6,
-            'engine_authority.slew_n_m_s is 2e.06 N m/s: it must be at most 1e.06',
+            'engine_authority.slew_n_m_s',
         ),
-        ('lag_s', 'fast', "engine_authority.lag_s is 'fast': give a number"),
-        ('lag_s', -0.1, 'engine_authority.lag_s is -0.1'),
-        ('minimum_torque_n_m', 1000.0, 'minimum_torque_n_m is 1000 N m: it must be below'),
-        ('maximum_torque_n_m', math.inf, 'engine_authority.maximum_torque_n_m is inf'),
+        ('lag_s', 'fast', 'engine_authority.lag_s'),
+        ('lag_s', -0.1, 'engine_authority.lag_s'),
+        ('minimum_torque_n_m', 1000.0, 'engine_authority.minimum_torque_n_m'),
+        ('maximum_torque_n_m', math.inf, 'engine_authority.maximum_torque_n_m'),
     ],
 )
-def test_bad_values_are_named(name, value, complaint):
-    with pytest.raises(ParameterError, match=complaint):
+def test_bad_values_are_named(name, value, key):
+    with refused(ParameterError, key=key):
         EngineAuthority(**{name: value})
 
 
@@ -111,5 +112,5 @@ def test_a_scenario_sets_the_authority_and_an_unknown_key_is_named():
     scenario = load_scenario('thesis', ['engine_authority.lag_s=0.05'])
     assert scenario.engine_authority == EngineAuthority(lag_s=0.05)
     assert load_scenario('thesis').engine_authority == EngineAuthority()
-    with pytest.raises(ParameterError, match=r'engine_authority\.lag: did you mean .*lag_s'):
+    with refused(ParameterError, key='engine_authority.lag'):
         load_scenario('thesis', ['engine_authority.lag=0.05'])

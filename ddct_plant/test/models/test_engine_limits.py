@@ -5,6 +5,7 @@
 import math
 
 import pytest
+from refusals import refused
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.units import rad_s_from_rpm
@@ -101,29 +102,28 @@ def test_an_engine_driven_beyond_its_limit_has_over_revved():
 
 
 @pytest.mark.parametrize(
-    ('bad', 'complaint'),
+    ('bad', 'key'),
     [
         (
             {'speed_rad_s': (0.0, 600.0), 'full_load_n_m': (0.0, 9.0), 'friction_n_m': (1.0, 1.0)},
-            'engine_limits.speed_rad_s goes from 0 to 600 rad/s: the torque curves must cover '
-            'the speeds from stall_rad_s, 52.36, to over_rev_rad_s, 785.4',
+            'engine_limits.speed_rad_s',
         ),
         (
             {'speed_rad_s': (90.0, 800.0), 'full_load_n_m': (0.0, 9.0), 'friction_n_m': (1.0, 1)},
-            'engine_limits.speed_rad_s goes from 90 to 800',
+            'engine_limits.speed_rad_s',
         ),
         (
             {'speed_rad_s': (), 'full_load_n_m': (), 'friction_n_m': ()},
-            'engine_limits.speed_rad_s is empty',
+            'engine_limits.speed_rad_s',
         ),
-        ({'full_load_n_m': (1.0,)}, 'engine_limits.full_load_n_m has 1 values for the 8'),
-        ({'friction_n_m': (-1.0,) * 8}, r'engine_limits.friction_n_m\[0\] is -1'),
-        ({'stall_rad_s': 95.0}, 'engine_limits.stall_rad_s is 95 rad/s: it must be below idle'),
-        ({'resume_rad_s': 690.0}, 'engine_limits.resume_rad_s is 690 rad/s: .* below cut_rad_s'),
-        ({'over_rev_rad_s': 600.0}, 'engine_limits.cut_rad_s is 680.68 rad/s: .* over_rev'),
-        ({'idle_most_n_m': -1.0}, 'engine_limits.idle_most_n_m is -1'),
+        ({'full_load_n_m': (1.0,)}, 'engine_limits.full_load_n_m'),
+        ({'friction_n_m': (-1.0,) * 8}, 'engine_limits.friction_n_m[0]'),
+        ({'stall_rad_s': 95.0}, 'engine_limits.stall_rad_s'),
+        ({'resume_rad_s': 690.0}, 'engine_limits.resume_rad_s'),
+        ({'over_rev_rad_s': 600.0}, 'engine_limits.cut_rad_s'),
+        ({'idle_most_n_m': -1.0}, 'engine_limits.idle_most_n_m'),
     ],
 )
-def test_bad_limits_are_named(bad, complaint):
-    with pytest.raises(ParameterError, match=complaint):
+def test_bad_limits_are_named(bad, key):
+    with refused(ParameterError, key=key):
         EngineLimits(**bad)

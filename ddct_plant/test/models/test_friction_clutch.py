@@ -3,6 +3,7 @@
 """The capacity of a friction clutch: wear, heat, slip speed, kiss point and static friction."""
 
 import pytest
+from refusals import refused
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.models.clutch import FrictionClutch, FrictionParameters, LinearClutch
@@ -66,19 +67,19 @@ def test_no_request_makes_it_carry_more_than_its_greatest_capacity(wear_gain):
 
 
 @pytest.mark.parametrize(
-    ('bad', 'complaint'),
+    ('bad', 'key'),
     [
-        ({'static_over_kinetic': 0.9}, 'friction.static_over_kinetic is 0.9: .* at least 1'),
-        ({'temperature_share': (1.0, -0.1, 0.4)}, r'friction.temperature_share\[1\] is -0.1'),
-        ({'temperature_c': (300.0, 250.0, 400.0)}, 'friction.temperature_c goes from 300 to 250'),
-        ({'temperature_share': (1.0,)}, 'temperature_share has 1 values for the 3'),
-        ({'slip_rad_s': (0.0, 0.0), 'slip_share': (1.0, 1.0)}, 'friction.slip_rad_s goes from 0'),
-        ({'slip_share': (1.0,)}, 'friction.slip_share has 1 values for the 0'),
-        ({'most_n_m': 0.0}, 'friction.most_n_m is 0 N m: it must be above 0'),
-        ({'kiss_torque_n_m': -1.0}, 'friction.kiss_torque_n_m is -1'),
-        ({'kiss_drift_n_m_k': float('nan')}, 'friction.kiss_drift_n_m_k is nan'),
+        ({'static_over_kinetic': 0.9}, 'friction.static_over_kinetic'),
+        ({'temperature_share': (1.0, -0.1, 0.4)}, 'friction.temperature_share[1]'),
+        ({'temperature_c': (300.0, 250.0, 400.0)}, 'friction.temperature_c'),
+        ({'temperature_share': (1.0,)}, 'friction.temperature_share'),
+        ({'slip_rad_s': (0.0, 0.0), 'slip_share': (1.0, 1.0)}, 'friction.slip_rad_s'),
+        ({'slip_share': (1.0,)}, 'friction.slip_share'),
+        ({'most_n_m': 0.0}, 'friction.most_n_m'),
+        ({'kiss_torque_n_m': -1.0}, 'friction.kiss_torque_n_m'),
+        ({'kiss_drift_n_m_k': float('nan')}, 'friction.kiss_drift_n_m_k'),
     ],
 )
-def test_bad_friction_is_named(bad, complaint):
-    with pytest.raises(ParameterError, match=complaint):
+def test_bad_friction_is_named(bad, key):
+    with refused(ParameterError, key=key):
         FrictionParameters(**bad)

@@ -5,6 +5,7 @@
 import math
 
 import pytest
+from refusals import refused
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.models.load import (
@@ -46,17 +47,17 @@ def test_the_brake_is_linear_between_its_points_and_holds_its_ends():
 
 
 @pytest.mark.parametrize(
-    ('times', 'torques', 'complaint'),
+    ('times', 'torques', 'key'),
     [
-        ((0.0, 0.0), (1.0, 1.0), 'brake.time_s goes from 0 to 0: it must rise'),
-        ((1.0, 0.5), (1.0, 1.0), 'brake.time_s goes from 1 to 0.5'),
-        ((0.0,), (-1.0,), r'brake.torque_n_m\[0\] is -1 N m: it must be at least 0'),
-        ((0.0,), (), 'brake.torque_n_m has 0 values for the 1 of brake.time_s'),
-        (('now',), (1.0,), r"brake.time_s\[0\] is 'now'"),
+        ((0.0, 0.0), (1.0, 1.0), 'brake.time_s'),
+        ((1.0, 0.5), (1.0, 1.0), 'brake.time_s'),
+        ((0.0,), (-1.0,), 'brake.torque_n_m[0]'),
+        ((0.0,), (), 'brake.torque_n_m'),
+        (('now',), (1.0,), 'brake.time_s[0]'),
     ],
 )
-def test_a_bad_brake_is_named(times, torques, complaint):
-    with pytest.raises(ParameterError, match=complaint):
+def test_a_bad_brake_is_named(times, torques, key):
+    with refused(ParameterError, key=key):
         BrakeProfile(times, torques)
 
 

@@ -4,6 +4,7 @@
 
 import numpy as np
 import pytest
+from refusals import refused
 from scipy.integrate import solve_ivp
 
 from ddct_plant.base.errors import ParameterError
@@ -28,17 +29,17 @@ def test_engine_follows_its_profile_and_holds_its_ends():
 
 
 @pytest.mark.parametrize(
-    ('times', 'torques', 'named'),
+    ('times', 'torques', 'key'),
     [
         ((0.0, 0.0), (1.0, 2.0), 'engine.time_s'),
-        ((0.0, 1.0), (1.0,), 'engine.torque_n_m has 1 values for the 2 of'),
-        ((0.0,), (float('nan'),), r'engine.torque_n_m\[0\] is nan'),
-        ((0.0,), (-1.0,), r'engine.torque_n_m\[0\]'),
-        ((), (), 'engine.time_s is empty'),
+        ((0.0, 1.0), (1.0,), 'engine.torque_n_m'),
+        ((0.0,), (float('nan'),), 'engine.torque_n_m[0]'),
+        ((0.0,), (-1.0,), 'engine.torque_n_m[0]'),
+        ((), (), 'engine.time_s'),
     ],
 )
-def test_a_bad_torque_profile_is_named(times, torques, named):
-    with pytest.raises(ParameterError, match=named):
+def test_a_bad_torque_profile_is_named(times, torques, key):
+    with refused(ParameterError, key=key):
         TorqueProfile(times, torques)
 
 
@@ -63,7 +64,7 @@ def test_the_linear_clutch_transmits_the_torque_times_the_wear_gain():
 
 @pytest.mark.parametrize('wear_gain', [0.0, -1.0, 4.0, float('nan')])
 def test_a_wear_gain_out_of_range_is_named(wear_gain):
-    with pytest.raises(ParameterError, match='wear_gain'):
+    with refused(ParameterError, key='wear_gain'):
         LinearClutch(wear_gain)
 
 
@@ -121,7 +122,7 @@ def test_another_delay_and_bandwidth_are_exact_too(delay_s, factor):
 
 
 def test_a_delay_between_milliseconds_is_refused():
-    with pytest.raises(ParameterError, match=r'actuator.delay_s is 0.0125 s: give a multiple'):
+    with refused(ParameterError, key='actuator.delay_s'):
         ActuatorParameters(delay_s=0.0125)
 
 

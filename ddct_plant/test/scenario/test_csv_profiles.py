@@ -5,6 +5,7 @@
 import math
 
 import pytest
+from refusals import refused
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.scenario.csv_profiles import MOST_ROWS
@@ -68,7 +69,7 @@ def test_set_names_a_file_of_the_working_directory_for_a_scenario_of_another_fol
     changed = load(folder, overrides=['engine.csv=data/pedal.csv'])
     assert changed.engine.torque_n_m == (100.0, 170.0)
     (elsewhere / 'data' / 'pedal.csv').unlink()
-    with pytest.raises(ParameterError, match='cannot be read'):
+    with refused(ParameterError, place='data/pedal.csv'):
         load(folder, overrides=['engine.csv=data/pedal.csv'])
 
 
@@ -98,62 +99,58 @@ def test_every_profile_takes_a_file_in_its_units(folder, section, unit, cells, k
 
 
 @pytest.mark.parametrize(
-    ('old', 'new', 'complaint'),
+    ('old', 'new', 'key', 'place'),
     [
-        ('0.5,y', '0.0,y', 'line 4, column t: the time goes from 0 to 0 s: it must rise'),
-        ('0.0,x', '0.1,x', 'line 3, column t: the profile begins at scenario time 0.1 s'),
-        ('150.0', 'nan', 'line 4, column torque is nan: give a finite number in N m'),
-        ('150.0', '', 'line 4, column torque is nan'),
-        ('150.0', 'inf', 'line 4, column torque: inf is not finite'),
-        ('150.0', 'much', "line 4, column torque: 'much' is no number"),
-        ('150.0', '-1', 'line 4, column torque is -1 N m: it must be at least 0'),
-        (',150.0', '', 'line 4 has 2 cells, the header 3'),
-        ('t,other,torque', 't,other,torgue', "no column 'torque': did you mean torgue?"),
-        ('t,other,torque', 't,torque,torque', "the column 'torque' is there 2 times"),
-        ('0.0,x,100.0\n0.5,y,150.0\n', '', 'no row of numbers'),
-        (PEDAL, '# nothing\n', 'it is empty: give a header and rows'),
+        ('0.5,y', '0.0,y', '', 'line 4, column t'),
+        ('0.0,x', '0.1,x', '', 'line 3, column t'),
+        ('150.0', 'nan', 'engine.torque_n_m', 'line 4, column torque'),
+        ('150.0', '', 'engine.torque_n_m', 'line 4, column torque'),
+        ('150.0', 'inf', '', 'line 4, column torque'),
+        ('150.0', 'much', '', 'line 4, column torque'),
+        ('150.0', '-1', 'engine.torque_n_m', 'line 4, column torque'),
+        (',150.0', '', '', 'line 4'),
+        ('t,other,torque', 't,other,torgue', 'torque', 'pedal.csv'),
+        ('t,other,torque', 't,torque,torque', 'torque', 'pedal.csv'),
+        ('0.0,x,100.0\n0.5,y,150.0\n', '', '', 'pedal.csv'),
+        (PEDAL, '# nothing\n', '', 'pedal.csv'),
     ],
 )
-def test_a_bad_file_is_refused_by_its_name_line_and_column(folder, old, new, complaint):
+def test_a_bad_file_is_refused_by_its_name_line_and_column(folder, old, new, key, place):
     file = folder / 'data' / 'pedal.csv'
     file.write_text(PEDAL.replace(old, new))
-    with pytest.raises(ParameterError) as raised:
+    with refused(ParameterError, key=key, place=place):
         load(folder)
-    assert complaint in str(raised.value)
-    assert f'mine.yaml: line 4: engine.csv: {file}: ' in str(raised.value)
 
 
 @pytest.mark.parametrize(
-    ('spec', 'complaint'),
+    ('spec', 'key', 'place'),
     [
-        ('{csv: none.csv, time: t, value: torque, unit: N m}', 'No such file'),
+        ('{csv: none.csv, time: t, value: torque, unit: N m}', '', 'none.csv'),
         (
             '{csv: data/pedal.csv, time: t, value: torque}',
-            'engine.csv needs engine.unit beside it',
+            'engine.unit',
+            'line 4',
         ),
         (
             SPEC[8:-2] + ', colour: red}',
-            'unknown key engine.colour: known: csv, time, value, unit',
+            'engine.colour',
+            'line 4',
         ),
-        (SPEC[8:-2].replace('N m', 'rpm') + '}', "unit 'rpm': choose from N m, Nm, kN m"),
-        (SPEC[8:-2] + ', time_unit: h}', "unit 'h': choose from s, ms"),
-        (SPEC[8:-2] + ', time_s: [0.0]}', 'engine has points and engine.csv: give one'),
-        (SPEC[8:-2] + ', start_s: soon}', "engine.start_s is 'soon': give a number in s"),
-        (SPEC[8:-2].replace(': t,', ': 3,') + '}', 'engine.time is 3: give text'),
+        (SPEC[8:-2].replace('N m', 'rpm') + '}', '', ''),
+        (SPEC[8:-2] + ', time_unit: h}', '', ''),
+        (SPEC[8:-2] + ', time_s: [0.0]}', 'engine', 'line 4'),
+        (SPEC[8:-2] + ', start_s: soon}', 'engine.start_s', 'line 4'),
+        (SPEC[8:-2].replace(': t,', ': 3,') + '}', 'engine.time', 'line 4'),
     ],
 )
-def test_a_bad_description_of_a_file_is_refused_by_its_key(folder, spec, complaint):
-    with pytest.raises(ParameterError) as raised:
+def test_a_bad_description_of_a_file_is_refused_by_its_key(folder, spec, key, place):
+    with refused(ParameterError, key=key, place=place):
         load(folder, f'{HEAD}engine: {spec}\n')
-    assert complaint in str(raised.value)
-    assert 'mine.yaml: line 4: ' in str(raised.value)
 
 
 def test_a_file_that_is_set_without_its_description_is_refused_with_the_missing_keys():
-    with pytest.raises(ParameterError) as raised:
+    with refused(ParameterError, key='engine.time'):
         load_scenario('thesis', ['engine.csv=pedal.csv'])
-    needed = 'engine.csv needs engine.time, engine.value, engine.unit beside it: give all'
-    assert needed in str(raised.value)
 
 
 def test_a_file_with_too_many_rows_is_refused_and_the_most_survive_their_yaml(folder):
@@ -163,13 +160,13 @@ def test_a_file_with_too_many_rows_is_refused_and_the_most_survive_their_yaml(fo
     scenario = load(folder)
     assert load(folder, scenario_to_yaml(scenario)).engine == scenario.engine
     file.write_text('t,other,torque\n' + ''.join(rows))
-    with pytest.raises(ParameterError, match=f'line 2002: more than {MOST_ROWS} rows'):
+    with refused(ParameterError, place='pedal.csv: line 2002'):
         load(folder)
 
 
 def test_a_slope_profile_and_a_constant_slope_do_not_go_together(folder):
     text = f'{HEAD}{SPEC}slope: {{time_s: [0.0], slope_rad: [0.1]}}\n'
-    with pytest.raises(ParameterError, match='slope has points, and load.slope_rad is 0.2 rad'):
+    with refused(ParameterError, key='slope', place='mine.yaml: line 5'):
         load(folder, text, ['load.slope_rad=0.2'])
 
 
@@ -185,13 +182,13 @@ def test_a_factor_multiplies_the_values_of_a_profile(folder):
 
 
 @pytest.mark.parametrize(
-    ('change', 'reason'),
+    ('change', 'key'),
     [
-        ('engine.factor=much', r"engine.factor is 'much': give a number"),
-        ('engine.factor=-1', r'engine.torque_n_m.* is -.*: it must be at least 0'),
-        ('load.factor=2', 'unknown key load.factor'),
+        ('engine.factor=much', 'engine.factor'),
+        ('engine.factor=-1', 'engine.torque_n_m[1]'),
+        ('load.factor=2', 'load.factor'),
     ],
 )
-def test_a_factor_that_cannot_be_used_is_named(change, reason):
-    with pytest.raises(ParameterError, match=reason):
+def test_a_factor_that_cannot_be_used_is_named(change, key):
+    with refused(ParameterError, key=key):
         load_scenario('thesis', [change])

@@ -3,6 +3,7 @@
 """A wrong key of a scenario is refused with the few keys that may be meant."""
 
 import pytest
+from refusals import refused
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import options_of
@@ -70,7 +71,5 @@ def test_in_a_section_its_own_keys_come_first_and_symbols_count_too():
 
 
 def test_a_name_unlike_any_key_of_its_section_is_answered_with_the_keys_of_the_section():
-    with pytest.raises(
-        ParameterError, match='unknown key closing.zebra: known: slip_band_rad_s, dwell_s'
-    ):
+    with refused(ParameterError, key='closing.zebra'):
         load_scenario('launch', ['closing.zebra=0.7'])

@@ -3,6 +3,7 @@
 """Settings that contradict each other are refused; the start state fits the architecture."""
 
 import pytest
+from refusals import refused
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.scenario.file import load_scenario
@@ -14,12 +15,12 @@ EARLY_END = load_scenario('thesis', ['reference.reference_end_s=0.6'])
 
 
 def test_an_unknown_architecture_lists_all_four():
-    with pytest.raises(ParameterError, match='base, feedforward, feedforward_tanh, detailed'):
+    with refused(ParameterError, key='architecture'):
         RunSettings(THESIS, architecture='open_loop')
 
 
 def test_a_tanh_that_ends_no_later_than_control_starts_is_refused():
-    with pytest.raises(ParameterError, match='reference_end_s is 0.6 s: it must be after'):
+    with refused(ParameterError, key='reference.reference_end_s'):
         RunSettings(EARLY_END, architecture='feedforward_tanh')
 
 
@@ -32,7 +33,7 @@ def test_the_end_does_not_matter_to_a_ramp(architecture):
 def test_the_shape_of_the_scenario_is_taken_or_refused(architecture):
     scenario = load_scenario('thesis', ['reference.shape=polynomial'])
     if architecture == 'feedforward_tanh':
-        with pytest.raises(ParameterError, match='feedforward_tanh has a tanh'):
+        with refused(ParameterError, key='reference.shape'):
             RunSettings(scenario, architecture)
     else:
         assert RunSettings(scenario, architecture).reference_shape == 'polynomial'
@@ -67,5 +68,5 @@ def test_a_driveline_whose_elements_cannot_stick_together_is_no_scenario():
 
 
 def test_a_clutch_without_heat_capacity_is_refused():
-    with pytest.raises(ParameterError, match=r'heat\.plate_j_k is 0.5 J/K: it must be at least 1'):
+    with refused(ParameterError, key='heat.plate_j_k'):
         load_scenario('thesis', ['heat.plate_j_k=0.5'])

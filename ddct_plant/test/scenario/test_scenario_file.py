@@ -6,6 +6,7 @@ import copy
 import json
 
 import pytest
+from refusals import refused
 
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.scenario.file import (
@@ -55,17 +56,18 @@ def test_a_scenario_may_have_a_schema_version_and_a_written_one_does(scenario_fi
 
 
 @pytest.mark.parametrize(
-    ('version', 'complaint'),
+    ('version', 'advice'),
     [
-        ('2', 'schema_version is 2, this version reads up to 1: update the project'),
-        ('0', 'schema_version is 0: give a whole number from 1 to 1'),
-        ('1.0', 'schema_version is 1.0: give a whole number'),
-        ('true', 'schema_version is True: give a whole number'),
+        ('2', 'update the project'),
+        ('0', 'a whole number'),
+        ('1.0', 'a whole number'),
+        ('true', 'a whole number'),
     ],
 )
-def test_a_schema_version_that_is_not_known_is_refused(scenario_file, version, complaint):
-    with pytest.raises(DdctError, match=f'mine.yaml: line 1: {complaint}'):
+def test_a_schema_version_that_is_not_known_is_refused(scenario_file, version, advice):
+    with refused(DdctError, key='schema_version', place='mine.yaml: line 1') as caught:
         load_scenario(scenario_file(f'schema_version: {version}\n{MINIMAL}'))
+    assert advice in str(caught.value)
 
 
 def test_a_file_without_a_name_is_named_after_itself(scenario_file):
@@ -80,41 +82,40 @@ def test_an_override_changes_one_key_and_the_digest(scenario_file):
 
 
 @pytest.mark.parametrize(
-    ('text', 'complaint'),
+    ('text', 'key', 'place'),
     [
-        (MINIMAL + 'lod: {}', 'unknown key lod: did you mean load?'),
-        (MINIMAL + 'load: {slope_deg: 1.0}', 'did you mean load.slope_rad'),
-        (MINIMAL + 'load: {slope_rad: .nan}', 'load.slope_rad is nan'),
-        (MINIMAL + 'load: {slope_rad: steep}', "load.slope_rad is 'steep'"),
-        (MINIMAL + 'load: 3', 'load: give keys and values'),
-        (MINIMAL + 'reference: {slope_rad_s2: -1.0}', 'reference.slope_rad_s2 is -1'),
-        (MINIMAL + 'reference: {shape: step}', "unknown reference.shape 'step': choose from ramp"),
-        (MINIMAL + 'reference: {shape: 1}', 'reference.shape is 1: give text'),
-        (MINIMAL + 'reference: {reference_end_s: 0.905}', 'reference.reference_end_s is 0.905'),
-        (MINIMAL + 'driveline: {vehicle_inertia: 0.0}', 'driveline.vehicle_inertia is 0'),
-        (MINIMAL + 'controllers: [pi]', 'controllers: give gains by controller name'),
-        (MINIMAL.replace('1.0\ncontrol', '0.005\ncontrol'), 'duration_s is 0.005'),
-        (MINIMAL.replace('[0.6, 1.0]', '[1.0, 0.6]'), 'score_window_s ends at 0.6'),
-        (MINIMAL.replace('[0.6, 1.0]', '0.6'), 'score_window_s'),
-        (MINIMAL.replace('[0.0]', '0.0'), 'engine.time_s'),
-        (MINIMAL.replace('duration_s: 1.0\n', ''), 'key duration_s is missing'),
-        ('- 1', 'must be a mapping'),
-        ('a: [', 'not valid YAML'),
+        (MINIMAL + 'lod: {}', 'lod', 'line 5'),
+        (MINIMAL + 'load: {slope_deg: 1.0}', 'load.slope_deg', 'line 5'),
+        (MINIMAL + 'load: {slope_rad: .nan}', 'load.slope_rad', 'line 5'),
+        (MINIMAL + 'load: {slope_rad: steep}', 'load.slope_rad', 'line 5'),
+        (MINIMAL + 'load: 3', 'load', 'line 5'),
+        (MINIMAL + 'reference: {slope_rad_s2: -1.0}', 'reference.slope_rad_s2', 'line 5'),
+        (MINIMAL + 'reference: {shape: step}', 'reference.shape', 'line 5'),
+        (MINIMAL + 'reference: {shape: 1}', 'reference.shape', 'line 5'),
+        (MINIMAL + 'reference: {reference_end_s: 0.905}', 'reference.reference_end_s', 'line 5'),
+        (MINIMAL + 'driveline: {vehicle_inertia: 0.0}', 'driveline.vehicle_inertia', 'line 5'),
+        (MINIMAL + 'controllers: [pi]', 'controllers', 'line 5'),
+        (MINIMAL.replace('1.0\ncontrol', '0.005\ncontrol'), 'duration_s', 'line 1'),
+        (MINIMAL.replace('[0.6, 1.0]', '[1.0, 0.6]'), 'score_window_s', 'line 3'),
+        (MINIMAL.replace('[0.6, 1.0]', '0.6'), 'score_window_s', 'line 3'),
+        (MINIMAL.replace('[0.0]', '0.0'), 'engine.time_s', 'line 4'),
+        (MINIMAL.replace('duration_s: 1.0\n', ''), 'duration_s', ''),
+        ('- 1', '', ''),
+        ('a: [', '', 'line 2'),
         (
             MINIMAL + 'duration_s: 2.0',
-            "line 5: the key 'duration_s' is given twice, first in line 1",
+            '',
+            'line 5',
         ),
-        (MINIMAL + 'description: !!python/object/apply:os.getcwd []', 'the tag'),
-        (MINIMAL + 'load: &a {x: *a}', 'the alias *a'),
-        ('[' * 2000, 'nested more than'),
+        (MINIMAL + 'description: !!python/object/apply:os.getcwd []', '', 'line 5'),
+        (MINIMAL + 'load: &a {x: *a}', '', 'line 5'),
+        ('[' * 2000, '', 'line 1'),
     ],
 )
-def test_a_bad_scenario_is_refused_with_the_key(scenario_file, text, complaint):
+def test_a_bad_scenario_is_refused_with_the_key(scenario_file, text, key, place):
     path = scenario_file(text)
-    with pytest.raises(DdctError) as caught:
+    with refused(DdctError, key=key, place=place):
         load_scenario(path)
-    assert complaint in str(caught.value)
-    assert '\n' not in str(caught.value)
 
 
 @pytest.mark.parametrize(
@@ -126,9 +127,9 @@ def test_a_bad_scenario_is_refused_with_the_key(scenario_file, text, complaint):
 )
 def test_a_name_that_could_be_part_of_a_path_is_refused(scenario_file, name):
     path = scenario_file(MINIMAL + f'name: {json.dumps(name)}')
-    with pytest.raises(ParameterError, match='name is .*use up to 64 letters'):
+    with refused(ParameterError, key='name', place='mine.yaml: line 5'):
         load_scenario(path)
-    with pytest.raises(ParameterError, match='name is .*use up to 64 letters'):
+    with refused(ParameterError, key='name'):
         load_scenario('thesis', [f'name={json.dumps(name)}'])
 
 
@@ -140,7 +141,7 @@ def test_a_plain_name_is_taken(scenario_file, name):
 def test_a_file_whose_name_is_no_plain_one_needs_a_name_inside(tmp_path):
     path = tmp_path / 'up the hill.yaml'
     path.write_text(MINIMAL)
-    with pytest.raises(ParameterError, match="name is 'up the hill'"):
+    with refused(ParameterError, key='name'):
         load_scenario(str(path))
     path.write_text(MINIMAL + 'name: hill')
     assert load_scenario(str(path)).name == 'hill'
@@ -149,7 +150,7 @@ def test_a_file_whose_name_is_no_plain_one_needs_a_name_inside(tmp_path):
 def test_no_object_is_built_from_a_file(scenario_file, tmp_path):
     made = tmp_path / 'made'
     evil = f'description: !!python/object/apply:os.mkdir ["{made}"]'
-    with pytest.raises(DdctError, match='the tag'):
+    with refused(DdctError, place='mine.yaml: line 5'):
         load_scenario(scenario_file(MINIMAL + evil))
     assert not made.exists()
 
@@ -193,7 +194,7 @@ def test_exponents_are_numbers_as_people_write_them(text):
 
 
 def test_text_that_only_looks_like_an_exponent_stays_text():
-    with pytest.raises(ParameterError, match='give a number'):
+    with refused(ParameterError, key='load.slope_rad'):
         load_scenario('thesis', ['load.slope_rad=1e'])
 
 

@@ -3,6 +3,7 @@
 """Sections of stick-slip runs are read whole, or refused with file, line and key."""
 
 import pytest
+from refusals import refused
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.scenario.file import load_scenario, scenario_digest, scenario_to_yaml
@@ -76,56 +77,61 @@ def test_an_empty_section_of_limits_takes_the_default_engine(scenario_file):
 
 
 @pytest.mark.parametrize(
-    ('text', 'complaint'),
+    ('text', 'key', 'place'),
     [
-        ('friction: {static_over_kinetic: 0.9}', 'line 5: friction.static_over_kinetic is 0.9'),
-        ('friction:\n  slip_rad_s: [0]\n', 'line 5: friction.slip_share has 0 values for the 1'),
-        ('friction: {most_n_m: 0}', 'line 5: friction.most_n_m is 0 N m: it must be above 0'),
+        ('friction: {static_over_kinetic: 0.9}', 'friction.static_over_kinetic', 'line 5'),
+        ('friction:\n  slip_rad_s: [0]\n', 'friction.slip_share', 'line 5'),
+        ('friction: {most_n_m: 0}', 'friction.most_n_m', 'line 5'),
         (
             'driveline:\n  engine_inertia: 1e308\n  shaft_inertia: 1e308\n  vehicle_inertia: 1e20',
-            'line 7: driveline.shaft_inertia is 1e+308: give inertias, damping and stiffness of a '
-            'car (friction system: h g of the elements (0, 1) is singular',
+            '',
+            'line 7',
         ),
-        ('driveline: {total_ratio: 1e-200}', 'line 5: driveline.total_ratio is 1e-200: give'),
-        ('heat:\n  plate_c: 20.0\n  facing_j_k: -163.0', 'line 7: heat.facing_j_k is -163 J/K'),
-        ('closing: {margin: 0.9}', 'line 5: closing.margin is 0.9'),
-        ('closing:\n  dwell_s: 0.015', 'line 6: closing.dwell_s is 0.015 s'),
+        ('driveline: {total_ratio: 1e-200}', '', 'line 5'),
+        ('heat:\n  plate_c: 20.0\n  facing_j_k: -163.0', 'heat.facing_j_k', 'line 7'),
+        ('closing: {margin: 0.9}', 'closing.margin', 'line 5'),
+        ('closing:\n  dwell_s: 0.015', 'closing.dwell_s', 'line 6'),
         (
             'brake:\n  torque_n_m: [1.0, 0.0]\n  time_s: [1.0, 1.0]',
-            'line 7: brake.time_s goes from 1 to 1: it must rise',
+            'brake.time_s',
+            'line 7',
         ),
         (
             'brake:\n  time_s: [0.0, 1.0]\n  torque_n_m:\n  - 5.0\n  - -5.0',
-            'line 9: brake.torque_n_m[1] is -5 N m: it must be at least 0',
+            'brake.torque_n_m[1]',
+            'line 9',
         ),
         (
             'engine_limits:\n  full_load_n_m: [9.0, 9.0]\n  friction_n_m: [9.0, 9.0]\n'
             '  speed_rad_s: [0.0, 600.0]',
-            'line 8: engine_limits.speed_rad_s goes from 0 to 600 rad/s: the torque curves must '
-            'cover the speeds from stall_rad_s, 52.36, to over_rev_rad_s, 785.4',
+            'engine_limits.speed_rad_s',
+            'line 8',
         ),
         (
             'initial:\n  engine_speed_rad_s: 100.0\n  clutch_phase: locked',
-            "line 7: initial.clutch_phase is 'locked', but the slip speed is -60 rad/s",
+            'initial.clutch_phase',
+            'line 7',
         ),
         (
             'initial:\n  clutch_phase: slipping',
-            "line 6: initial.clutch_phase is 'slipping', but both plates have one speed",
+            'initial.clutch_phase',
+            'line 6',
         ),
-        ('initial: {clutch_phase: wet}', "line 5: unknown initial.clutch_phase 'wet': choose"),
-        ('load:\n  slope_deg: 1.0', 'line 6: unknown key load.slope_deg: did you mean load.slope'),
-        ('load:\n  slope_rad: .nan', 'line 6: load.slope_rad is nan'),
-        ('engine_authority:\n  minimum_torque_n_m: 2000.0', 'line 6: engine_authority.minimum'),
-        ('reference: 3', 'line 5: reference: give keys and values'),
+        ('initial: {clutch_phase: wet}', 'initial.clutch_phase', 'line 5'),
+        ('load:\n  slope_deg: 1.0', 'load.slope_deg', 'line 6'),
+        ('load:\n  slope_rad: .nan', 'load.slope_rad', 'line 6'),
+        (
+            'engine_authority:\n  minimum_torque_n_m: 2000.0',
+            'engine_authority.minimum_torque_n_m',
+            'line 6',
+        ),
+        ('reference: 3', 'reference', 'line 5'),
     ],
 )
-def test_a_bad_value_is_refused_with_its_line(scenario_file, text, complaint):
+def test_a_bad_value_is_refused_with_its_line(scenario_file, text, key, place):
     path = scenario_file(BASE + text)
-    with pytest.raises(ParameterError) as caught:
+    with refused(ParameterError, key=key, place=place):
         load_scenario(path)
-    message = str(caught.value)
-    assert message.startswith(f'scenario {path}: {complaint}')
-    assert '\n' not in message
 
 
 @pytest.mark.parametrize(
@@ -133,12 +139,11 @@ def test_a_bad_value_is_refused_with_its_line(scenario_file, text, complaint):
 )
 def test_a_bad_value_that_was_set_has_no_line_of_the_file(scenario_file, override):
     path = scenario_file(BASE)
-    with pytest.raises(ParameterError) as caught:
+    with refused(ParameterError, key='engine.torque_n_m[0]', place=f'scenario {path}'):
         load_scenario(path, [override])
-    assert str(caught.value).startswith(f'scenario {path}: engine.torque_n_m[0] is -1 N m')
 
 
 def test_a_missing_key_of_a_section_has_the_line_of_the_section(scenario_file):
     path = scenario_file(BASE.replace('{time_s: [0.0], torque_n_m: [100.0]}', '{time_s: [0.0]}'))
-    with pytest.raises(ParameterError, match=r'line 4: key engine\.torque_n_m is missing'):
+    with refused(ParameterError, key='engine.torque_n_m', place='mine.yaml: line 4'):
         load_scenario(path)

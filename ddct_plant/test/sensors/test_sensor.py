@@ -8,6 +8,7 @@ import math
 
 import numpy as np
 import pytest
+from refusals import refused
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.sensors.parameters import EngineSpeedSensor, EngineTorqueEstimate, SensorOptions
@@ -182,25 +183,23 @@ def test_errors_of_a_shaft_sensor_come_after_the_count():
 
 
 @pytest.mark.parametrize(
-    ('given', 'words'),
+    ('given', 'key'),
     [
-        ({'noise_rad_s': -1.0}, 'noise_rad_s is -1 rad/s: it must be at least 0'),
-        ({'noise_rad_s': math.inf}, 'noise_rad_s'),
-        ({'dropout': 1.0}, 'dropout is 1: give a share below 1'),
-        ({'dropout': -0.1}, 'dropout is -0.1: it must be at least 0'),
-        ({'dropout': 1.5}, 'dropout is 1.5: it must be at most 1'),
-        ({'dropout': 0.8, 'dropout_burst': 2.0}, 'dropout_burst is 2: with a dropout of 0.8'),
-        ({'dropout_burst': 0.5}, 'dropout_burst is 0.5: it must be at least 1'),
-        ({'delay_s': 0.015}, 'delay_s is 0.015 s: give a multiple of 0.01 s'),
-        ({'delay_s': -0.01}, 'delay_s is -0.01 s: it must be at least 0'),
-        ({'gain': 0.0}, 'gain is 0: it must be above 0'),
-        ({'teeth': 1.5}, 'teeth is 1.5: give a whole number'),
-        ({'count_s': 0.0}, 'count_s is 0 s: it must be above 0'),
-        ({'quantum_rad_s': math.nan}, 'quantum_rad_s'),
+        ({'noise_rad_s': -1.0}, 'sensors.engine_speed.noise_rad_s'),
+        ({'noise_rad_s': math.inf}, 'sensors.engine_speed.noise_rad_s'),
+        ({'dropout': 1.0}, 'sensors.engine_speed.dropout'),
+        ({'dropout': -0.1}, 'sensors.engine_speed.dropout'),
+        ({'dropout': 1.5}, 'sensors.engine_speed.dropout'),
+        ({'dropout': 0.8, 'dropout_burst': 2.0}, 'sensors.engine_speed.dropout_burst'),
+        ({'dropout_burst': 0.5}, 'sensors.engine_speed.dropout_burst'),
+        ({'delay_s': 0.015}, 'sensors.engine_speed.delay_s'),
+        ({'delay_s': -0.01}, 'sensors.engine_speed.delay_s'),
+        ({'gain': 0.0}, 'sensors.engine_speed.gain'),
+        ({'teeth': 1.5}, 'sensors.engine_speed.teeth'),
+        ({'count_s': 0.0}, 'sensors.engine_speed.count_s'),
+        ({'quantum_rad_s': math.nan}, 'sensors.engine_speed.quantum_rad_s'),
     ],
 )
-def test_a_bad_value_is_refused_by_its_key(given, words):
-    with pytest.raises(ParameterError) as caught:
+def test_a_bad_value_is_refused_by_its_key(given, key):
+    with refused(ParameterError, key=key):
         EngineSpeedSensor(**given)
-    assert str(caught.value).startswith('sensors.engine_speed.')
-    assert words in str(caught.value)

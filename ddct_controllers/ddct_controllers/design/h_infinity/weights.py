@@ -124,13 +124,15 @@ def stable_weight(name: str, weight: FactoredTransferFunction) -> StateSpace:
     if weight.zeros.size > weight.poles.size:
         raise ParameterError(
             f'{name} has {weight.zeros.size} zeros and {weight.poles.size} poles: '
-            'make it proper, with a pole far beyond the crossover for each zero too many'
+            'make it proper, with a pole far beyond the crossover for each zero too many',
+            key=name,
         )
     if np.any(weight.poles.real >= 0.0):
         worst = weight.poles[np.argmax(weight.poles.real)]
         raise ParameterError(
             f'{name} has a pole at {worst:.4g} rad/s: no feedback can move a pole of a weight; '
-            'replace s by s + epsilon, or reflect the pole to the left'
+            'replace s by s + epsilon, or reflect the pole to the left',
+            key=name,
         )
     return weight.to_state_space()
 
@@ -146,4 +148,4 @@ def _require_peak(
     try:
         require_number(name, peak, above=above, at_least=at_least)
     except ParameterError as error:
-        raise ParameterError(f'{error}: {why}') from error
+        raise ParameterError(f'{error}: {why}', key=name) from error

@@ -38,7 +38,9 @@ class TimeSpecifications:
         require_number('overshoot', percent, unit='%', above=0.0)
         if percent >= 100.0:
             raise ParameterError(
-                f'overshoot is {percent:g} %: it must be below 100 %, where oscillation never ends'
+                f'overshoot is {percent:g} %: it must be below 100 %, where oscillation never '
+                'ends',
+                key='overshoot',
             )
 
     @property

@@ -124,7 +124,8 @@ def _require_effect(settings: MpcSettings, prediction: Prediction, weighted: np.
         name = INPUT_NAMES[int(np.argmin(felt))]
         raise ParameterError(
             f'MPC: prediction_steps is {settings.prediction_steps}: within them no weighted '
-            f'output feels a move of {name}: choose more'
+            f'output feels a move of {name}: choose more',
+            key='MPC: prediction_steps',
         )
 
 
@@ -135,7 +136,9 @@ def _require_weighted_moves(settings: MpcSettings, hessian: np.ndarray) -> None:
     if not weighed.all() and longest > 0:
         raise ParameterError(
             f'MPC: control_steps is {settings.control_steps}, too long for prediction_steps, '
-            f'{settings.prediction_steps}: nothing weighs the last moves: choose at most {longest}'
+            f'{settings.prediction_steps}: nothing weighs the last moves: choose at most '
+            f'{longest}',
+            key='MPC: control_steps',
         )
 
 

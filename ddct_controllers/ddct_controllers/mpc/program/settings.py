@@ -62,10 +62,14 @@ class InputTerms:
         if not self.lowest < self.highest:
             raise ParameterError(
                 f'MPC: the lowest torque, {self.lowest:g} N m, must be below the highest, '
-                f'{self.highest:g} N m'
+                f'{self.highest:g} N m',
+                key='MPC: the lowest torque',
             )
         if not self.rate_n_m_s > 0.0:
-            raise ParameterError(f'MPC: rate_n_m_s is {self.rate_n_m_s:g}: it must be above 0')
+            raise ParameterError(
+                f'MPC: rate_n_m_s is {self.rate_n_m_s:g}: it must be above 0',
+                key='MPC: rate_n_m_s',
+            )
 
 
 @dataclass(frozen=True)
@@ -94,7 +98,8 @@ class OutputTerms:
         if not self.lowest < self.highest:
             raise ParameterError(
                 f'MPC: the lowest output, {self.lowest:g}, must be below the highest, '
-                f'{self.highest:g}'
+                f'{self.highest:g}',
+                key='MPC: the lowest output',
             )
 
 
@@ -150,10 +155,11 @@ class MpcSettings(OptionGroup, prefix='MPC: '):
         if self.control_steps > self.prediction_steps:
             raise ParameterError(
                 f'MPC: control_steps is {self.control_steps}, longer than prediction_steps, '
-                f'{self.prediction_steps}: choose at most that'
+                f'{self.prediction_steps}: choose at most that',
+                key='MPC: control_steps',
             )
         if not self.outputs or not 1 <= len(self.inputs) <= 2:
-            raise ParameterError('MPC: give at least one output, and one or two inputs')
+            raise ParameterError('MPC: give at least one output, and one or two inputs', key='MPC')
 
 
 def weight(default: float | None, meaning: str, otherwise: str = '') -> Any:

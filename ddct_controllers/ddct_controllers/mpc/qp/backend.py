@@ -96,16 +96,19 @@ class QpBackend(ABC):
         if f.shape != (size,) or lower.shape != (rows,) or upper.shape != (rows,):
             raise ParameterError(
                 f'QP: f is {f.shape}, lower {lower.shape} and upper {upper.shape}; '
-                f'({size},), ({rows},) and ({rows},) are needed'
+                f'({size},), ({rows},) and ({rows},) are needed',
+                key='f',
             )
         # The product, which is infinite above 1e154 too, saves the slower check in the loop.
         if not (math.isfinite(f @ f) or np.isfinite(f).all()):
-            raise ParameterError(f'QP: f is not finite: {f}')
+            raise ParameterError(f'QP: f is not finite: {f}', key='f')
         usable = np.maximum(lower, -_LARGEST) <= np.minimum(upper, _LARGEST)
         if not usable.all():
             row = int(np.argmin(usable))
             raise ParameterError(
-                f'QP: row {row} must lie between {lower[row]:g} and {upper[row]:g}: no number does'
+                f'QP: row {row} must lie between {lower[row]:g} and {upper[row]:g}: no number '
+                'does',
+                key=f'row {row}',
             )
 
 
@@ -134,5 +137,6 @@ def solver_package(name: str) -> Any:
         (other,) = set(BACKENDS) - {name}
         raise DdctError(
             f'the QP backend {name} needs the package {name}: pip install {name}, or choose '
-            f'{other}'
+            f'{other}',
+            key=name,
         ) from error

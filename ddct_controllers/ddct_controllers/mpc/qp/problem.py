@@ -51,13 +51,14 @@ class QpStructure:
     def __post_init__(self) -> None:
         own_matrices(self, 'QP', hessian='nn', constraints='mn')
         if not self.hessian.size:
-            raise ParameterError('QP: the hessian is empty: give it a variable')
+            raise ParameterError('QP: the hessian is empty: give it a variable', key='hessian')
         _require_definite(self.hessian)
         rows = len(self.constraints)
         soft = np.array(np.zeros(rows, dtype=bool) if self.soft is None else self.soft)
         if soft.shape != (rows,) or soft.dtype != bool:
             raise ParameterError(
-                f'QP: soft is {soft.dtype} {soft.shape}, it must be {rows} booleans'
+                f'QP: soft is {soft.dtype} {soft.shape}, it must be {rows} booleans',
+                key='soft',
             )
         if soft.any():
             require_number('QP: soft_weight', self.soft_weight, above=0.0)
@@ -90,13 +91,16 @@ class QpSolution:
 def _require_definite(hessian: np.ndarray) -> None:
     """Raise ParameterError unless `hessian` is symmetric and safely positive definite."""
     if np.abs(hessian - hessian.T).max() > _ASYMMETRY * np.abs(hessian).max():
-        raise ParameterError('QP: the hessian is not symmetric: mend what builds it')
+        raise ParameterError(
+            'QP: the hessian is not symmetric: mend what builds it', key='hessian'
+        )
     diagonal = np.diag(hessian)
     if np.any(diagonal <= 0.0):
         variable = int(np.argmin(diagonal))
         raise ParameterError(
             f'QP: variable {variable} costs nothing (its diagonal of the hessian is '
-            f'{diagonal[variable]:g}): give it a weight above 0'
+            f'{diagonal[variable]:g}): give it a weight above 0',
+            key=f'variable {variable}',
         )
     scale = 1.0 / np.sqrt(diagonal)
     eigenvalues = np.linalg.eigvalsh(hessian * scale * scale[:, None])
@@ -104,5 +108,6 @@ def _require_definite(hessian: np.ndarray) -> None:
         raise ParameterError(
             'QP: the hessian is singular to working precision (its eigenvalues, scaled to a unit '
             f'diagonal, are {eigenvalues[0]:.1e} to {eigenvalues[-1]:.1e}; at most a ratio of '
-            f'{WORST_CONDITION:g} is solved): raise the weights on the inputs or their moves'
+            f'{WORST_CONDITION:g} is solved): raise the weights on the inputs or their moves',
+            key='hessian',
         )

@@ -7,6 +7,7 @@ import math
 import control
 import numpy as np
 import pytest
+from refusals import refused
 
 from ddct_controllers.design.analysis.closed_loop import overshoot, rise_time_s, step_response
 from ddct_controllers.design.analysis.loops import ContinuousLoop, continuous_loop, sampled_loop
@@ -92,5 +93,5 @@ def test_rise_is_interpolated_and_none_when_the_final_value_is_not_reached():
 def test_a_dead_time_or_a_bad_duration_is_refused():
     with pytest.raises(ParameterError, match='delay of 0.01 s has no state space'):
         step_response(ContinuousLoop(SECOND_ORDER, 0.01), 1.0)
-    with pytest.raises(ParameterError, match='duration_s'):
+    with refused(ParameterError, key='duration_s'):
         step_response(ContinuousLoop(SECOND_ORDER), 0.0)

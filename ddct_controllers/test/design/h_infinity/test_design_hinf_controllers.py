@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from refusals import refused
 from scipy.optimize import minimize_scalar
 
 from ddct_controllers.design.analysis.closed_loop import overshoot, rise_time_s, step_response
@@ -55,7 +56,7 @@ def test_each_is_a_linear_controller_of_the_registry(name):
 @pytest.mark.parametrize('name', SYNTHESISED)
 def test_each_takes_no_gains(name):
     settings = RunSettings(load_scenario('thesis', [f'controllers.{name}={{gain: 2.0}}']))
-    with pytest.raises(ParameterError, match=f'controllers.{name}: gain given'):
+    with refused(ParameterError, key=f'controllers.{name}'):
         make_controller(name, settings)
 
 

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from refusals import refused
 from scipy.optimize import brentq
 
 from ddct_controllers.design.analysis.closed_loop import overshoot, rise_time_s, step_response
@@ -82,21 +83,21 @@ def test_a_well_damped_prototype_has_no_peak_of_t():
 
 
 @pytest.mark.parametrize(
-    ('rise_time', 'specified_overshoot', 'complaint'),
+    ('rise_time', 'specified_overshoot', 'key'),
     [
-        (-0.1, 0.14, 'rise time is -0.1 s: it must be above 0'),
-        (0.0, 0.14, 'rise time is 0 s: it must be above 0'),
-        (20.0, 0.14, 'rise time is 20 s: it must be at most 5'),
-        (math.nan, 0.14, 'rise time is nan: give a finite number'),
-        (0.25, 0.0, 'overshoot is 0 %: it must be above 0'),
-        (0.25, -0.1, 'overshoot is -10 %: it must be above 0'),
-        (0.25, 1.0, 'overshoot is 100 %: it must be below 100'),
-        (0.25, math.inf, 'overshoot is inf: give a finite number'),
-        (0.25, '14', "overshoot is '14': give a number"),
+        (-0.1, 0.14, 'rise time'),
+        (0.0, 0.14, 'rise time'),
+        (20.0, 0.14, 'rise time'),
+        (math.nan, 0.14, 'rise time'),
+        (0.25, 0.0, 'overshoot'),
+        (0.25, -0.1, 'overshoot'),
+        (0.25, 1.0, 'overshoot'),
+        (0.25, math.inf, 'overshoot'),
+        (0.25, '14', 'overshoot'),
     ],
 )
-def test_specifications_without_sense_are_named(rise_time, specified_overshoot, complaint):
-    with pytest.raises(ParameterError, match=complaint):
+def test_specifications_without_sense_are_named(rise_time, specified_overshoot, key):
+    with refused(ParameterError, key=key):
         TimeSpecifications(rise_time, specified_overshoot)
 
 

@@ -8,6 +8,7 @@ import sys
 
 import numpy as np
 import pytest
+from refusals import refused
 
 from ddct_controllers.mpc.qp.backend import BACKENDS, DEFAULT_BACKEND, make_backend
 from ddct_controllers.mpc.qp.problem import QpStructure
@@ -21,23 +22,23 @@ backends = pytest.mark.parametrize('name', BACKENDS)
 
 @backends
 @pytest.mark.parametrize(
-    ('f', 'lower', 'upper', 'complaint'),
+    ('f', 'lower', 'upper', 'key'),
     [
-        ([math.nan], [0.0], [1.0], 'f is not finite'),
-        ([INF], [0.0], [1.0], 'f is not finite'),
+        ([math.nan], [0.0], [1.0], 'f'),
+        ([INF], [0.0], [1.0], 'f'),
         ([0.0], [math.nan], [1.0], 'row 0'),
         ([0.0], [0.0], [math.nan], 'row 0'),
-        ([0.0], [2.0], [1.0], 'row 0 must lie between 2 and 1'),
+        ([0.0], [2.0], [1.0], 'row 0'),
         ([0.0], [INF], [INF], 'row 0'),
         ([0.0], [-INF], [-INF], 'row 0'),
-        ([0.0, 0.0], [0.0], [1.0], r'f is \(2,\)'),
-        ([0.0], [0.0, 0.0], [1.0], r'lower \(2,\)'),
-        ([0.0], [0.0], [], r'upper \(0,\)'),
+        ([0.0, 0.0], [0.0], [1.0], 'f'),
+        ([0.0], [0.0, 0.0], [1.0], 'f'),
+        ([0.0], [0.0], [], 'f'),
     ],
 )
-def test_bad_vectors_are_named_and_harm_nothing(name, f, lower, upper, complaint):
+def test_bad_vectors_are_named_and_harm_nothing(name, f, lower, upper, key):
     backend = make_backend(name, ONE, 1000)
-    with pytest.raises(ParameterError, match=complaint):
+    with refused(ParameterError, key=key):
         backend.solve(f, lower, upper)
     assert backend.solve([-3.0], [0.0], [1.0]).z[0] == pytest.approx(1.0, rel=1e-5)
 
@@ -89,19 +90,19 @@ def test_a_structure_keeps_its_own_copy():
 
 @pytest.mark.parametrize('limit', [0, -1, 2.5, True])
 def test_an_iteration_limit_below_one_is_refused(limit):
-    with pytest.raises(ParameterError, match='iteration_limit'):
+    with refused(ParameterError, key='QP: iteration_limit'):
         make_backend(DEFAULT_BACKEND, ONE, limit)
 
 
 def test_an_unknown_backend_is_refused_with_the_choices():
-    with pytest.raises(ParameterError, match='choose from daqp, osqp'):
+    with refused(ParameterError, key='QP backend'):
         make_backend('simplex', ONE, 1000)
 
 
 @backends
 def test_a_missing_solver_is_named(name, monkeypatch):
     monkeypatch.setitem(sys.modules, name, None)
-    with pytest.raises(DdctError, match=f'pip install {name}'):
+    with refused(DdctError, key=name):
         make_backend(name, ONE, 1000)
 
 

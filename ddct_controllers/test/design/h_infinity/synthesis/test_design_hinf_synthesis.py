@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from refusals import refused
 
 from ddct_controllers.design.analysis.loops import plant_in_rpm
 from ddct_controllers.design.h_infinity import problem as hinf_problem
@@ -196,7 +197,7 @@ def test_the_thesis_constant_w_2_alone_has_no_solution():
 
 def test_an_unstable_w_1_is_named():
     """W_s with its poles at 0 keeps no loop from being stable, but no controller can move them."""
-    with pytest.raises(ParameterError, match='W_1 has a pole at'):
+    with refused(ParameterError, key='W_1'):
         mixed_sensitivity(plant_in_rpm(), PRINTED.sensitivity.transfer_function(), W_2)
 
 
@@ -249,7 +250,7 @@ def test_a_design_that_hold_and_delay_make_unstable_is_not_returned():
 
 
 def test_the_back_off_is_at_least_one():
-    with pytest.raises(ParameterError, match='back-off from the optimum is 0.9'):
+    with refused(ParameterError, key='back-off from the optimum'):
         design_h_infinity(make_weights('thesis', back_off=0.9))
 
 
@@ -272,5 +273,5 @@ def test_the_error_of_the_lmi_method_without_clarabel_names_the_package(monkeypa
 
 
 def test_an_unknown_method_lists_the_known_ones():
-    with pytest.raises(ParameterError, match='choose from riccati, lmi'):
+    with refused(ParameterError, key='method'):
         design_h_infinity(PRINTED, method='guess')
