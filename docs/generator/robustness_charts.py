@@ -13,7 +13,8 @@ from PIL.PngImagePlugin import PngInfo
 
 from ddct_bringup.reproduction.values.orders import WORN
 from ddct_bringup.sweep.state_map import draw_states, edges_of, state_legend
-from ddct_controllers.design.drawing.chart_style import BLACK, chart_style, save_chart
+from ddct_controllers.design.drawing.chart_style import chart_style, save_chart
+from ddct_controllers.design.drawing.line_styles import BLACK
 from generator.pages import DOCS
 from generator.robustness_map import ARCHITECTURE, WEAR, StateMap
 from generator.robustness_tables import PLANTS

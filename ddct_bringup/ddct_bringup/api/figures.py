@@ -9,14 +9,10 @@ from matplotlib.figure import Figure
 from ddct_bringup.api.runs import Run, as_runs
 from ddct_bringup.report.chart_signals import ChartSignal, chart_signals_of
 from ddct_bringup.report.runs import common_conditions, run_labels, varied_conditions
-from ddct_controllers.design.drawing.chart_style import (
-    chart_style,
-    controllers_text,
-    headed,
-    look_style,
-)
+from ddct_controllers.design.drawing.chart_style import chart_style, controllers_text, headed
 from ddct_controllers.design.drawing.charts import label_time_axis
 from ddct_controllers.design.drawing.line_looks import looks_of
+from ddct_controllers.design.drawing.line_styles import look_style
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import require_known
 from ddct_plant.scenario.differences import scenario_title

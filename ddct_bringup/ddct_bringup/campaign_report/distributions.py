@@ -2,10 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Figure of a campaign: distributions of the main metrics, a curve for each controller."""
 
-from collections.abc import Mapping
 from pathlib import Path
 from textwrap import fill
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -15,8 +13,9 @@ from ddct_bringup.campaign_report.results import Group, Results
 from ddct_bringup.report.page_parts import unit_text
 from ddct_bringup.verdict.metric_definitions import FURTHER, TABLE_5_1
 from ddct_bringup.verdict.state import ENGAGED, INVALID
-from ddct_controllers.design.drawing.chart_style import chart_style, look_style, save_chart
+from ddct_controllers.design.drawing.chart_style import chart_style, save_chart
 from ddct_controllers.design.drawing.line_looks import looks_of
+from ddct_controllers.design.drawing.line_styles import LineStyle, look_style
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.program.table import Quantity
 
@@ -90,7 +89,7 @@ def _conditions(results: Results) -> str:
 
 
 def _draw(
-    axes: Axes, results: Results, group: Group, quantity: Quantity, style: Mapping[str, Any]
+    axes: Axes, results: Results, group: Group, quantity: Quantity, style: LineStyle
 ) -> None:
     """Draw one curve; a controller without an engaged run has a line at zero."""
     outcomes = results.outcomes[group.rows]

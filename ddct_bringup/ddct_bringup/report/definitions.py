@@ -9,7 +9,7 @@ from ddct_bringup.report.chart_signals import ChartSignal
 from ddct_bringup.report.page_parts import unit_text
 from ddct_bringup.verdict.criteria import CRITERIA
 from ddct_bringup.verdict.metric_definitions import FURTHER, METRICS, TABLE_5_1
-from ddct_controllers.design.analysis.margins import LOOP_FIGURES
+from ddct_controllers.design.analysis.margins import LOOP_QUANTITIES
 from ddct_plant.program.table import Quantity
 
 
@@ -122,7 +122,7 @@ def definitions(
         'Metrics': tuple(map(_defined, (*TABLE_5_1, *FURTHER))),
         'Criteria': _criteria(),
         'States and limits': _STATES,
-        'Frequency': (*_LOOPS, *map(_defined, LOOP_FIGURES)),
+        'Frequency': (*_LOOPS, *map(_defined, LOOP_QUANTITIES)),
         'Update times': _TIMES,
         'Origin': _ORIGIN,
     }

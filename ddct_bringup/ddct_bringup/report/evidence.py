@@ -13,7 +13,7 @@ from typing import Any
 
 from ddct_bringup.report.page_parts import number_text
 from ddct_bringup.report.runs import ReportRun
-from ddct_controllers.design.analysis.margins import LOOP_FIGURES
+from ddct_controllers.design.analysis.margins import LOOP_QUANTITIES
 from ddct_controllers.workflows.evidence import Evidence, actuator_conditions, frequency_evidence
 from ddct_plant.base.errors import DdctError, ParameterError, require_number
 from ddct_plant.files.input_file import parse_json, read_text_file
@@ -103,7 +103,7 @@ def _is_whole(entry: Any, wear_gain: float) -> bool:
         point = next(each for each in entry['wear'] if each['wear_gain'] == wear_gain)
         interval = entry['stable_wear_gain'] or {}
         for value in (
-            *(point[figure.key] for figure in LOOP_FIGURES),
+            *(point[figure.key] for figure in LOOP_QUANTITIES),
             *(interval.get(end) for end in ('lowest', 'highest')),
             entry['corners']['sensitivity_peak'],
         ):
@@ -148,7 +148,7 @@ class LoopRow:
     loop: LoopEvidence
     stable: bool
     cells: tuple[tuple[float | None, str], ...]
-    """Cells (value, text) for each of `LOOP_FIGURES`."""
+    """Cells (value, text) for each of `LOOP_QUANTITIES`."""
     stable_wear: str
     """Range of wear gains in which the loop is stable."""
     corner_peak: str
@@ -183,7 +183,7 @@ def _row(evidence: LoopEvidence, entry: Evidence, point: Evidence) -> LoopRow:
         loop=evidence,
         stable=point['stable'],
         cells=tuple(
-            (point[each.key], number_text(point[each.key], each.form)) for each in LOOP_FIGURES
+            (point[each.key], number_text(point[each.key], each.form)) for each in LOOP_QUANTITIES
         ),
         stable_wear=f'{number_text(interval.get("lowest"), ".2f")} to '
         f'{number_text(interval.get("highest"), ".2f")}',

@@ -38,7 +38,7 @@ from ddct_bringup.scores.tables import fallback_note
 from ddct_bringup.thesis.table_5_1 import PREDICTION_TOLERANCE
 from ddct_bringup.verdict.limits import Limits
 from ddct_bringup.verdict.metric_definitions import FURTHER, TABLE_5_1
-from ddct_controllers.design.analysis.margins import LOOP_FIGURES
+from ddct_controllers.design.analysis.margins import LOOP_QUANTITIES
 from ddct_controllers.design.drawing.line_looks import (
     DARK_COLOURS,
     LIGHT_COLOURS,
@@ -96,7 +96,7 @@ def report_page(
         columns=[(column, metric_cells(column, runs, thesis_rows)) for column in TABLE_5_1],
         further=[(column, metric_cells(column, runs, thesis_rows)) for column in FURTHER],
         prediction_tolerance=PREDICTION_TOLERANCE,
-        loop_columns=LOOP_FIGURES,
+        loop_columns=LOOP_QUANTITIES,
         loops=loop_rows(evidence),
         no_loops=without_evidence(evidence),
         computed=COMPUTED,

@@ -22,7 +22,7 @@ from ddct_bringup.verdict.state import (
     RUNAWAY,
     STATES,
 )
-from ddct_controllers.design.drawing.chart_style import BLACK, ORANGE, PURPLE, VERMILLION
+from ddct_controllers.design.drawing.line_styles import BLACK, ORANGE, PURPLE, VERMILLION
 from ddct_plant.models.engine_limits import OVER_REVVED, STALLED
 
 STATE_COLOURS: Mapping[str, str] = {

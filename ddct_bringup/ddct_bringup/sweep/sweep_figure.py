@@ -23,13 +23,12 @@ from ddct_bringup.sweep.state_map import (
 from ddct_bringup.sweep.sweep import Sweep
 from ddct_bringup.verdict.state import ENGAGED
 from ddct_controllers.design.drawing.chart_style import (
-    GREY,
     chart_style,
-    controller_style,
     controllers_text,
     headed,
     save_chart,
 )
+from ddct_controllers.design.drawing.line_styles import GREY, controller_style
 from ddct_controllers.registry import controller_label
 from ddct_plant.program.table import Quantity
 
@@ -101,7 +100,8 @@ def _draw_metric(
     low, high = _range(values[engaged], values)
     axes.set_ylim(low, high)
     for name, each, good in zip(names, values, engaged, strict=True):
-        style = {'marker': 'o', **controller_style(name), 'markersize': 4.0, 'markevery': None}
+        style = controller_style(name)
+        style |= {'marker': style.get('marker', 'o'), 'markersize': 4.0, 'markevery': None}
         axes.plot(places, each, color=style['color'], linewidth=0.6, alpha=0.5)
         axes.plot(places, np.where(good, each, np.nan), label=name, **style)
         at = np.clip(np.nan_to_num(each, nan=low), low, high)

@@ -10,7 +10,7 @@ from ddct_bringup.report.page_parts import unit_text
 from ddct_bringup.verdict.criteria import CRITERIA
 from ddct_bringup.verdict.metric_definitions import FURTHER, TABLE_5_1
 from ddct_bringup.verdict.state import STATES
-from ddct_controllers.design.analysis.margins import LOOP_FIGURES
+from ddct_controllers.design.analysis.margins import LOOP_QUANTITIES
 
 SIGNALS = (*CHART_SIGNALS, *CLUTCH_SIGNALS, *SENSOR_SIGNALS)
 GROUPS = definitions(SIGNALS, thesis=True)
@@ -21,7 +21,7 @@ GROUPS = definitions(SIGNALS, thesis=True)
     [
         ('Metrics', (*TABLE_5_1, *FURTHER)),
         ('Criteria', CRITERIA),
-        ('Frequency', LOOP_FIGURES),
+        ('Frequency', LOOP_QUANTITIES),
     ],
 )
 def test_every_quantity_of_the_tables_is_defined_with_its_unit_and_when_it_has_no_value(

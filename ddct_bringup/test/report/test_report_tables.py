@@ -14,7 +14,7 @@ from ddct_bringup.report.score_tables import comparable_rows, metric_cells
 from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_bringup.scores.scoring import METRIC_NAMES
 from ddct_bringup.verdict.metric_definitions import TABLE_5_1
-from ddct_controllers.design.analysis.margins import LOOP_FIGURES
+from ddct_controllers.design.analysis.margins import LOOP_QUANTITIES
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
@@ -106,7 +106,7 @@ def test_a_run_without_update_times_has_none():
 
 
 def test_evidence_is_shown_at_the_wear_gain_of_the_run():
-    figures = {column.key: 1.0 for column in LOOP_FIGURES}
+    figures = {column.key: 1.0 for column in LOOP_QUANTITIES}
     entry = {
         'linear': True,
         'wear': [

@@ -16,7 +16,8 @@ from ddct_bringup.sweep.sweep_figure import sweep_figure
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_bringup.verdict.metric_definitions import TABLE_5_1
 from ddct_bringup.verdict.state import ENGAGED, INVALID, NOT_ENGAGED, RUNAWAY, STATES
-from ddct_controllers.design.drawing.chart_style import chart_style, controller_style, save_chart
+from ddct_controllers.design.drawing.chart_style import chart_style, save_chart
+from ddct_controllers.design.drawing.line_styles import controller_style
 from ddct_plant.scenario.file import ScenarioFile
 
 TIME = TABLE_5_1[:1]

@@ -4,7 +4,6 @@
 
 import sys
 from types import FunctionType
-from typing import Any
 
 import numpy as np
 
@@ -102,7 +101,7 @@ def reset(subject: Subject) -> str:
 
 def _shared(controller: Controller, package: str) -> dict[str, str]:
     """Return by name the plain values that objects of the controller's classes share."""
-    owners: dict[str, Any] = {}
+    owners: dict[str, object] = {}
     for each in type(controller).__mro__:
         if each.__module__.partition('.')[0] == package:
             owners[each.__module__] = sys.modules[each.__module__]

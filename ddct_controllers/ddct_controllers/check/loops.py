@@ -116,7 +116,7 @@ def stability(subject: Subject) -> str:
     if not margins.stable:
         raise CheckFailedError(
             'the sampled loop of its linear_model has a pole on or outside the unit circle: lower '
-            'the gain (design margins has the figures)'
+            'the gain (design margins has the margins)'
         )
     return (
         f'all poles of the sampled loop are inside the unit circle; gain margin '

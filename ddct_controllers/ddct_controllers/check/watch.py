@@ -48,20 +48,20 @@ class OutputMonitor(io.TextIOBase):
         return len(text)
 
 
-class RecordedGains(dict[str, Any]):
+class RecordedGains(dict[str, object]):
     """Gains of a context, with a record of the names that are read, and where."""
 
-    def __init__(self, gains: Mapping[str, Any]) -> None:
+    def __init__(self, gains: Mapping[str, object]) -> None:
         """Copy the gains."""
         super().__init__(gains)
         self.places: dict[str, str] = {}
 
-    def __getitem__(self, name: str) -> Any:
+    def __getitem__(self, name: str) -> object:
         """Return a gain and record the access."""
         self._record(name)
         return super().__getitem__(name)
 
-    def get(self, name: str, default: Any = None) -> Any:
+    def get(self, name: str, default: object = None) -> object:
         """Return a gain or the default, and record the access."""
         self._record(name)
         return super().get(name, default)

@@ -145,8 +145,8 @@ def _fmu_input(variable: Any, ours: object) -> FmuInput:
     return FmuInput(variable, read, ahead)
 
 
-def _outputs(fmu: Fmu, section: Mapping[str, Any]) -> Mapping[str, Any]:
-    outputs: dict[str, Any] = {}
+def _outputs(fmu: Fmu, section: Mapping[str, object]) -> Mapping[str, object]:
+    outputs: dict[str, object] = {}
     for name, ours in section.items():
         key = f'fmu.outputs.{name}'
         variable = _variable(fmu, 'outputs', name, 'output')

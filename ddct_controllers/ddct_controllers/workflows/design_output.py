@@ -29,7 +29,7 @@ _OPTIONS: OptionTable = {
         'default': None,
         'help': 'replace an earlier design',
     },
-    '--json': {'metavar': 'FILE', 'help': 'write all figures; - is standard output'},
+    '--json': {'metavar': 'FILE', 'help': 'write all results; - is standard output'},
 }
 
 

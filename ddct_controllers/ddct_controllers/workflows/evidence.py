@@ -14,7 +14,7 @@ import numpy as np
 
 from ddct_controllers.design.analysis.closed_loop import driveline_mode
 from ddct_controllers.design.analysis.loops import sampled_loop
-from ddct_controllers.design.analysis.margins import LOOP_FIGURE_OF, loop_margins, unstable_poles
+from ddct_controllers.design.analysis.margins import LOOP_QUANTITY_OF, loop_margins, unstable_poles
 from ddct_controllers.design.analysis.worst_corner import (
     PARAMETER_SPREAD,
     WEAR_GAINS,
@@ -38,9 +38,9 @@ Evidence = dict[str, Any]
 """Plain values by name; a margin is None where nothing limits it, or the loop is unstable."""
 _DIGITS = 6
 _MARGINS = (
-    ('gain margin', LOOP_FIGURE_OF['gain_margin_db']),
-    ('phase margin', replace(LOOP_FIGURE_OF['phase_margin_deg'], form='.0f')),
-    ('delay margin', LOOP_FIGURE_OF['delay_margin_s']),
+    ('gain margin', LOOP_QUANTITY_OF['gain_margin_db']),
+    ('phase margin', replace(LOOP_QUANTITY_OF['phase_margin_deg'], form='.0f')),
+    ('delay margin', LOOP_QUANTITY_OF['delay_margin_s']),
 )
 
 
@@ -197,7 +197,7 @@ def _stability(model: StateSpace, settings: RunSettings) -> str:
             '(the run goes on)'
         )
     margins = loop_margins(loop).plain()
-    texts = (f'{words} {figure.cell(margins)} {figure.unit}' for words, figure in _MARGINS)
+    texts = (f'{words} {quantity.cell(margins)} {quantity.unit}' for words, quantity in _MARGINS)
     return f'{where} is stable: {", ".join(texts)}'
 
 

@@ -6,7 +6,7 @@ import argparse
 from functools import partial
 from typing import Any
 
-from ddct_controllers.design.analysis.margins import LOOP_FIGURE_OF
+from ddct_controllers.design.analysis.margins import LOOP_QUANTITY_OF
 from ddct_controllers.registry import (
     controller_label,
     require_known_controllers,
@@ -45,7 +45,7 @@ def add_parser(subparsers: Any) -> None:
         '--wear-gain', type=float, default=1.0, metavar='X', help='K_usura, 1 if new'
     )
     add_scenario_options(parser, set_example='driveline.halfshaft_stiffness=8000')
-    parser.add_argument('--json', metavar='FILE', help='write all figures; - is standard output')
+    parser.add_argument('--json', metavar='FILE', help='write all results; - is standard output')
     parser.set_defaults(run=run)
 
 
@@ -80,7 +80,7 @@ def margins_table(evidence: Evidence, settings: RunSettings) -> Table:
     changed = scenario_title(scenario.name, changed_values(scenario))
     headers = (
         *('controller', 'stable'),
-        *(figure.heading for figure in LOOP_FIGURE_OF.values()),
+        *(quantity.heading for quantity in LOOP_QUANTITY_OF.values()),
         *('wear below', 'corner M_s', f'unstable of {evidence["conditions"]["corners"]}'),
     )
     rows = [
@@ -94,8 +94,8 @@ def _row(entry: Evidence, wear_gain: float) -> list[str]:
     return [
         entry['controller'],
         'yes' if point['stable'] else 'no',
-        *(figure.cell(point) for figure in LOOP_FIGURE_OF.values()),
+        *(quantity.cell(point) for quantity in LOOP_QUANTITY_OF.values()),
         text_or_dash((entry['stable_wear_gain'] or {}).get('highest'), '.2f'),
-        LOOP_FIGURE_OF['sensitivity_peak'].cell(entry['corners']),
+        LOOP_QUANTITY_OF['sensitivity_peak'].cell(entry['corners']),
         str(entry['corners']['unstable']),
     ]

@@ -10,6 +10,7 @@ from typing import Any
 from ddct_controllers.workflows.plant_on_paper import (
     INPUTS,
     STATES,
+    PlantOnPaper,
     as_mat,
     as_matlab,
     factored_text,
@@ -68,7 +69,7 @@ def run(options: argparse.Namespace) -> int:
     return 0
 
 
-def _export(file: str, paper: dict[str, Any]) -> None:
+def _export(file: str, paper: PlantOnPaper) -> None:
     if file.endswith('.json'):
         write_json(file, paper)
     elif file.endswith('.m'):
@@ -82,7 +83,7 @@ def _export(file: str, paper: dict[str, Any]) -> None:
         write_bytes(file, content.getvalue())
 
 
-def paper_tables(paper: dict[str, Any]) -> dict[str, Table]:
+def paper_tables(paper: PlantOnPaper) -> dict[str, Table]:
     """Return the tables of a plant on paper by name."""
     space = paper['state_space']
     columns = (*STATES, *INPUTS)
@@ -108,7 +109,9 @@ def paper_tables(paper: dict[str, Any]) -> dict[str, Table]:
             ('', *columns),
             dynamics,
         ),
-        'outputs': Table('C and D, likewise', ('', *columns), outputs),
+        'outputs': Table(
+            'C and D: each row is the sum of its numbers times the column', ('', *columns), outputs
+        ),
         'transfer_functions': Table(
             'Transfer functions, s in rad/s; a delay of '
             f'{paper["actuator_delay_s"]:g} s before G_a',

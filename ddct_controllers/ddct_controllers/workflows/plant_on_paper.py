@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The linear plant of a scenario as equations with numbers, for a page, JSON, MATLAB and scipy."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from functools import reduce
-from typing import Any
+from typing import Literal, TypedDict
 
 import numpy as np
 
@@ -39,10 +39,67 @@ STATES, INPUTS, OUTPUTS = (
 )
 """Unit of each state, input and output of the driveline by its symbol."""
 _STATIC_INPUTS = {'C_m': '1', 'C_load': '1', 'w_m': 'N m s/rad', 'w_p': 'N m s/rad'}
-MATRICES = 'ABCD'
+MATRICES: tuple[Literal['A', 'B', 'C', 'D'], ...] = ('A', 'B', 'C', 'D')
 
 
-def plant_on_paper(scenario: Scenario) -> dict[str, Any]:
+class ParameterEntry(TypedDict):
+    """One parameter of the driveline."""
+
+    name: str
+    """Key in the section `driveline` of a scenario."""
+    value: float
+    unit: str
+
+
+class StateSpaceEntry(TypedDict):
+    """The driveline as x' = A x + B u, y = C x + D u."""
+
+    states: dict[str, str]
+    """Units by symbol, in the order of the rows of A."""
+    inputs: dict[str, str]
+    outputs: dict[str, str]
+    A: list[list[float]]
+    B: list[list[float]]
+    C: list[list[float]]
+    D: list[list[float]]
+
+
+class FunctionEntry(TypedDict):
+    """One transfer function from an input to an output."""
+
+    input: str
+    output: str
+    gain: float
+    numerator: list[Factor]
+    """Factors: a number a is (s + a), a pair (b, c) is (s^2 + b s + c)."""
+    denominator: list[Factor]
+    num: list[float]
+    """Coefficients with the gain, the highest power first."""
+    den: list[float]
+
+
+class StaticFactor(TypedDict):
+    """Factor of one signal in C_fOL."""
+
+    factor: float
+    unit: str
+
+
+class PlantOnPaper(TypedDict):
+    """The linear plant of a scenario, as it is written as JSON."""
+
+    scenario: str
+    parameters: dict[str, ParameterEntry]
+    """Parameters by their symbol in the thesis."""
+    state_space: StateSpaceEntry
+    transfer_functions: dict[str, FunctionEntry]
+    """Transfer functions by their symbol."""
+    actuator_delay_s: float
+    c_fol: dict[str, StaticFactor]
+    """Factors of the static torque by signal."""
+
+
+def plant_on_paper(scenario: Scenario) -> PlantOnPaper:
     """
     Return the linear plant with its names and units, plain enough for JSON.
 
@@ -69,11 +126,13 @@ def plant_on_paper(scenario: Scenario) -> dict[str, Any]:
             'states': STATES,
             'inputs': INPUTS,
             'outputs': OUTPUTS,
-            # + 0.0 makes 0 of -0.
-            **{name: (getattr(model, name.lower()) + 0.0).tolist() for name in MATRICES},
+            'A': _rows(model.a),
+            'B': _rows(model.b),
+            'C': _rows(model.c),
+            'D': _rows(model.d),
         },
         'transfer_functions': {
-            name: {'input': source, 'output': output, **_entry(function)}
+            name: _function_entry(source, output, function)
             for name, (source, output, function) in transfer_functions.items()
         },
         'actuator_delay_s': scenario.actuator.delay_s,
@@ -86,8 +145,16 @@ def plant_on_paper(scenario: Scenario) -> dict[str, Any]:
     }
 
 
-def _entry(function: FactoredTransferFunction) -> dict[str, Any]:
+def _rows(matrix: np.ndarray) -> list[list[float]]:
+    """Return the rows of a matrix, with 0 for -0."""
+    rows: list[list[float]] = (matrix + 0.0).tolist()
+    return rows
+
+
+def _function_entry(source: str, output: str, function: FactoredTransferFunction) -> FunctionEntry:
     return {
+        'input': source,
+        'output': output,
         'gain': function.gain,
         'numerator': list(function.numerator),
         'denominator': list(function.denominator),
@@ -101,16 +168,23 @@ def _polynomial(factors: Sequence[Factor]) -> np.ndarray:
     return reduce(np.polymul, each, np.ones(1))
 
 
-def factored_text(entry: Mapping[str, Any]) -> str:
+def factored_text(entry: FunctionEntry) -> str:
     """Return a transfer function as the thesis prints it: gain (s + a) (s^2 + b s + c) / [...]."""
-    above, below = (factors_text(entry[side], digits=6) for side in ('numerator', 'denominator'))
+    above, below = (
+        factors_text(side, digits=6) for side in (entry['numerator'], entry['denominator'])
+    )
     return f'{entry["gain"]:.6g} {above}'.rstrip() + f' / [{below}]'
 
 
-def as_matlab(paper: Mapping[str, Any]) -> str:
+def as_matlab(paper: PlantOnPaper) -> str:
     """Return a script for MATLAB or Octave that builds the systems under their names."""
     space = paper['state_space']
-    names = (f"'{key}', {_cell(space[group])}" for key, group in _MATLAB_NAMES.items())
+    signals = (
+        ('State', space['states']),
+        ('Input', space['inputs']),
+        ('Output', space['outputs']),
+    )
+    names = (f"'{kind}Name', {_cell(symbols)}" for kind, symbols in signals)
     factors = [each['factor'] for each in paper['c_fol'].values()]
     lines = [
         f'% The linear plant of scenario {paper["scenario"]}: SI units, torques in N m.',
@@ -131,18 +205,15 @@ def as_matlab(paper: Mapping[str, Any]) -> str:
     return '\n'.join(lines) + '\n'
 
 
-_MATLAB_NAMES = {'StateName': 'states', 'InputName': 'inputs', 'OutputName': 'outputs'}
-
-
 def _row(numbers: Sequence[float]) -> str:
     return ' '.join(map(repr, numbers))
 
 
-def _cell(names: Sequence[str]) -> str:
+def _cell(names: Iterable[str]) -> str:
     return '{' + ', '.join(f"'{name}'" for name in names) + '}'
 
 
-def as_mat(paper: Mapping[str, Any]) -> dict[str, Any]:
+def as_mat(paper: PlantOnPaper) -> dict[str, object]:
     """Return the variables of a .mat file: matrices, parameters, num and den of each function."""
     space = paper['state_space']
     functions = paper['transfer_functions'].items()

@@ -15,7 +15,7 @@ from scipy.io import loadmat
 
 from ddct_controllers.workflows.design_program import main
 from ddct_controllers.workflows.plant_command import paper_tables
-from ddct_controllers.workflows.plant_on_paper import factored_text, plant_on_paper
+from ddct_controllers.workflows.plant_on_paper import MATRICES, factored_text, plant_on_paper
 from ddct_plant.models.driveline_model import driveline_matrices
 from ddct_plant.models.static_torque import constant_slip_torque
 from ddct_plant.scenario.file import load_scenario
@@ -40,7 +40,7 @@ def test_the_actuator_is_the_scenarios(capsys: pytest.CaptureFixture[str]) -> No
 def test_the_transfer_functions_are_those_of_the_state_space() -> None:
     paper = plant_on_paper(load_scenario('thesis', STIFFER))
     space = paper['state_space']
-    system = control.ss(*(space[name] for name in 'ABCD'))
+    system = control.ss(*(space[name] for name in MATRICES))
     for name, column in (('P_1', 0), ('P_2', 1), ('P_3', 2)):
         function = paper['transfer_functions'][name]
         w = np.logspace(-2, 3, 50)

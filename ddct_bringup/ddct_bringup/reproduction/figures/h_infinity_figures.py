@@ -20,8 +20,8 @@ from ddct_controllers.design.analysis.loops import (
     continuous_loop,
     plant_in_rpm,
 )
-from ddct_controllers.design.drawing.chart_style import BLACK, BOUND_LINE, SKY
 from ddct_controllers.design.drawing.charts import draw_bound
+from ddct_controllers.design.drawing.line_styles import BLACK, BOUND_LINE, SKY
 from ddct_controllers.design.h_infinity.recipes import PRINTED_WEIGHTS, THESIS_SPECIFICATIONS
 from ddct_controllers.design.h_infinity.uncertainty import (
     PRINTED_W_U,

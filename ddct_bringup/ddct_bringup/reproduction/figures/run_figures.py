@@ -4,7 +4,6 @@
 
 from collections.abc import Sequence
 from functools import partial
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -14,7 +13,7 @@ from ddct_bringup.reproduction.figures.run_groups import RUN_GROUPS, RunGroup
 from ddct_bringup.reproduction.figures.thesis_figure import ThesisFigure, draw_over_time
 from ddct_bringup.reproduction.runs import HeadlessRun, thesis_run
 from ddct_bringup.thesis.table_5_1 import CALIBRATED, PREDICTED, thesis_row
-from ddct_controllers.design.drawing.chart_style import REFERENCE_LINE, controller_style
+from ddct_controllers.design.drawing.line_styles import REFERENCE_LINE, LineStyle, controller_style
 from ddct_controllers.registry import controller_label
 from ddct_plant.base.units import rpm_from_rad_s
 
@@ -62,7 +61,7 @@ def _legend(chosen: str, wear_gain: float, group: RunGroup) -> str:
 
 def _draw(axes: Axes, group: RunGroup, quantity: str, own: Sequence[str]) -> str:
     runs: dict[str, HeadlessRun] = {}
-    styles: dict[str, dict[str, Any]] = {'reference': REFERENCE_LINE}
+    styles: dict[str, LineStyle] = {'reference': REFERENCE_LINE}
     for chosen in (*group.controllers, *own):
         for repeat, wear in enumerate(group.wear_gains):
             legend = _legend(chosen, wear, group)

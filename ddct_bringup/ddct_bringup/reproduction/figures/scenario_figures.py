@@ -20,7 +20,7 @@ from ddct_bringup.reproduction.values.plant_values import (
     deviations,
     plant_slips,
 )
-from ddct_controllers.design.drawing.chart_style import GREY, REFERENCE_LINE
+from ddct_controllers.design.drawing.line_styles import GREY, REFERENCE_LINE, LineStyle
 from ddct_plant.base.timebase import steps_in
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.scenario.settings import RunSettings
@@ -50,7 +50,8 @@ def _draw_reference(axes: Axes) -> str:
     start_s = THESIS_SCENARIO.control_start_s
     reference = _reference_rpm(thesis_run('pi', 'detailed', 1.0))
     start = np.array([start_s, start_s]), np.array([0.0, 1.0])
-    across = {'color': GREY, 'linewidth': 1.0, 'transform': axes.get_xaxis_transform()}
+    to_axes = axes.get_xaxis_transform()
+    across: LineStyle = {'color': GREY, 'linewidth': 1.0, 'transform': to_axes}
     draw_over_time(
         *(axes, 'Slip speed reference, rpm', (0.0, _LAST_S)),
         {'reference': reference, 'control starts': start},

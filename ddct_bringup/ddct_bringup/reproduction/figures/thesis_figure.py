@@ -4,7 +4,6 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -13,13 +12,14 @@ from matplotlib.figure import Figure
 from ddct_controllers.design.analysis.closed_loop import overshoot, rise_time_s, step_response
 from ddct_controllers.design.analysis.loops import LoopCurve, continuous_loop
 from ddct_controllers.design.analysis.margins import loop_margins
-from ddct_controllers.design.drawing.chart_style import controller_style, line_styles, new_chart
+from ddct_controllers.design.drawing.chart_style import new_chart
 from ddct_controllers.design.drawing.charts import (
     draw_nichols,
     draw_step_response,
     label_time_axis,
 )
 from ddct_controllers.design.drawing.distinct_lines import distinct_styles
+from ddct_controllers.design.drawing.line_styles import LineStyle, controller_style, line_styles
 from ddct_controllers.design.drawing.nichols import nichols_curve
 from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
 from ddct_controllers.design.loop_shaping.verification import contours
@@ -65,7 +65,7 @@ def draw_over_time(
     quantity: str,
     range_s: tuple[float, float],
     lines: Mapping[str, tuple[np.ndarray, np.ndarray]],
-    styles: Mapping[str, dict[str, Any]],
+    styles: Mapping[str, LineStyle],
 ) -> None:
     """
     Draw (time, values) by name; lines without a style in `styles` get the next free one.
@@ -79,7 +79,7 @@ def draw_over_time(
     label_time_axis(axes, quantity, range_s)
 
 
-def _solid(controller: str) -> dict[str, Any]:
+def _solid(controller: str) -> LineStyle:
     """Return a solid style for the only loop of a chart; bounds and references are dashed."""
     return {**controller_style(controller), 'linestyle': '-'}
 

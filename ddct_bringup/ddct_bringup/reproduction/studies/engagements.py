@@ -23,7 +23,7 @@ from ddct_bringup.reproduction.studies.study import (
     headers,
 )
 from ddct_bringup.verdict.state import SUCCESSES
-from ddct_controllers.design.drawing.chart_style import BLACK, BLUE, GREY, VERMILLION
+from ddct_controllers.design.drawing.line_styles import BLACK, BLUE, GREY, VERMILLION
 from ddct_controllers.registry import own_controller_names
 from ddct_plant.base.timebase import PERIOD_S, time_of_step
 from ddct_plant.models.clutch import CLUTCHES, STICK_SLIP

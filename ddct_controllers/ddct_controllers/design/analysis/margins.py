@@ -21,7 +21,7 @@ from ddct_controllers.design.state_space import close_loop
 from ddct_plant.linear.lti import StateSpace
 from ddct_plant.program.table import PURE, Quantity
 
-LOOP_FIGURES = (
+LOOP_QUANTITIES = (
     Quantity(
         'gain_margin_db',
         'GM',
@@ -48,10 +48,10 @@ LOOP_FIGURES = (
     Quantity('driveline_mode_damping', 'damping', PURE, '.3f', 'damping ratio of that mode'),
 )
 """Quantities in every table of loops as they run."""
-LOOP_FIGURE_OF = {
-    figure.key: figure
-    for figure in (
-        *LOOP_FIGURES,
+LOOP_QUANTITY_OF = {
+    quantity.key: quantity
+    for quantity in (
+        *LOOP_QUANTITIES,
         Quantity(
             'driveline_mode_torsion_rpm',
             'w_sr',
@@ -62,8 +62,8 @@ LOOP_FIGURE_OF = {
     )
 }
 """Quantities of a loop as it runs, by their keys."""
-DESIGN_FIGURE_OF = LOOP_FIGURE_OF | {
-    name: replace(LOOP_FIGURE_OF[name], form='.3f')
+DESIGN_QUANTITY_OF = LOOP_QUANTITY_OF | {
+    name: replace(LOOP_QUANTITY_OF[name], form='.3f')
     for name in ('sensitivity_peak', 'complementary_peak')
 }
 """Quantities of a loop by their keys, with peaks as precise as a design's specifications."""
@@ -74,7 +74,7 @@ class LoopMargins:
     """
     Margins of a stable closed loop to instability, with crossover and bandwidth.
 
-    `LOOP_FIGURES` defines the quantities. Each is None when the closed loop is unstable, and
+    `LOOP_QUANTITIES` defines the quantities. Each is None when the closed loop is unstable, and
     infinite where nothing limits it.
     """
 

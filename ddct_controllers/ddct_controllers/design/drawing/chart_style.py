@@ -1,16 +1,12 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""
-Style of all charts, and their files: a picture (PNG), a scalable drawing (SVG) and the data (CSV).
-
-The colours are distinct for colour-blind readers.
-"""
+"""Style of all charts, and their files: PNG, SVG (scalable) and CSV (the data)."""
 
 import io
 import re
 from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager
-from itertools import cycle, zip_longest
+from itertools import zip_longest
 from pathlib import Path
 from textwrap import wrap
 from typing import Any
@@ -22,33 +18,10 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.text import Text
 
-from ddct_controllers.design.drawing.line_looks import DASHES, DOTS, LineLook, controller_look
+from ddct_controllers.design.drawing.line_styles import LINE_WIDTH
 from ddct_plant.files.csv_table import csv_text
 from ddct_plant.files.output_file import write_bytes, write_text
 
-BLACK = '#000000'
-GREY = '#7f7f7f'
-BLUE = '#0072b2'
-VERMILLION = '#d55e00'
-GREEN = '#009e73'
-PURPLE = '#cc79a7'
-ORANGE = '#e69f00'
-SKY = '#56b4e9'
-_COLOURS = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY)
-"""Colours of lines: the palette of Okabe and Ito without its yellow, which is faint on white."""
-_DASHES = (DASHES[0], *DASHES[2:], DOTS)
-"""
-Dashes of lines, as lengths of line and gap in points, empty for a solid line.
-
-There are as many as colours, so that lines differ in a grey print; none is the dash of references.
-"""
-REFERENCE_LINE: dict[str, Any] = {'color': BLACK, 'linestyle': '--', 'linewidth': 1.3}
-"""Matplotlib keywords of the line of a reference, which a signal should follow."""
-BOUND_LINE: dict[str, Any] = {'color': VERMILLION, 'linestyle': '--', 'linewidth': 1.6}
-"""Matplotlib keywords of the line of a bound, which a signal should not exceed."""
-LINE_WIDTH = 1.5
-"""Width of a line in points; matplotlib's dash lengths are multiples of it."""
-_MARKERS = {'circle': 'o', 'square': 's', 'star': '*', 'plus': 'P'}
 INDEXED_SYMBOL = re.compile(r'(?<!\w)([A-Za-zζωσ])_([A-Za-z0-9]+)(?:\^(-?\d+))?')
 """Pattern of a symbol with an index and optionally a power, such as W_s^-1."""
 _LETTERS_IN = 10.0
@@ -100,31 +73,6 @@ def headed(title: str, conditions: str, width_in: float) -> str:
 def controllers_text(names: Sequence[str]) -> str:
     """Return the names of the controllers for a title, or their number when they are many."""
     return ', '.join(names) if len(names) <= _MOST_NAMED else f'{len(names)} controllers'
-
-
-def line_styles() -> Iterator[dict[str, Any]]:
-    """Yield matplotlib keywords of one line after the other, without end."""
-    pairs = zip(cycle(_COLOURS), cycle(_DASHES), strict=False)
-    return ({'color': colour, 'linestyle': dash_style(dash)} for colour, dash in pairs)
-
-
-def dash_style(dash: tuple[int, ...]) -> Any:
-    """Return matplotlib's `linestyle` for these lengths of line and gap in points."""
-    return (0, tuple(length / LINE_WIDTH for length in dash)) if dash else '-'
-
-
-def controller_style(name: str, repeat: int = 0) -> dict[str, Any]:
-    """Return matplotlib keywords of a controller's line, see `controller_look`."""
-    return look_style(controller_look(name, repeat))
-
-
-def look_style(look: LineLook) -> dict[str, Any]:
-    """Return matplotlib keywords of a line with this look."""
-    style: dict[str, Any] = {'color': look.light, 'linestyle': dash_style(look.dash)}
-    if look.mark:
-        style |= {'marker': _MARKERS[look.mark], 'markersize': 6.0, 'markevery': (0.06, 0.17)}
-        style['markerfacecolor'] = look.light if look.filled else 'white'
-    return style
 
 
 def save_chart(figure: Figure, path: Path) -> None:

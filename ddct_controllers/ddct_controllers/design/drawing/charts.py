@@ -5,7 +5,6 @@
 import math
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -17,7 +16,9 @@ from ddct_controllers.design.analysis.loops import (
     continuous_loop,
     sampled_loop,
 )
-from ddct_controllers.design.drawing.chart_style import (
+from ddct_controllers.design.drawing.chart_style import chart_style, new_chart, save_figure
+from ddct_controllers.design.drawing.line_looks import DASHES
+from ddct_controllers.design.drawing.line_styles import (
     BLACK,
     BLUE,
     BOUND_LINE,
@@ -26,13 +27,10 @@ from ddct_controllers.design.drawing.chart_style import (
     ORANGE,
     REFERENCE_LINE,
     VERMILLION,
-    chart_style,
+    LineStyle,
     dash_style,
     line_styles,
-    new_chart,
-    save_figure,
 )
-from ddct_controllers.design.drawing.line_looks import DASHES
 from ddct_controllers.design.drawing.nichols import (
     TURN_DEG,
     NicholsCurve,
@@ -58,7 +56,7 @@ def draw_nichols(
     curves: Mapping[str, NicholsCurve],
     specifications: TimeSpecifications,
     *,
-    styles: Iterable[dict[str, Any]] | None = None,
+    styles: Iterable[LineStyle] | None = None,
 ) -> None:
     """
     Draw loops by name in a Nichols chart.
@@ -87,7 +85,7 @@ def draw_nichols(
 def draw_step_response(
     axes: Axes,
     responses: Mapping[str, tuple[np.ndarray, np.ndarray]],
-    styles: Iterable[dict[str, Any]] | None = None,
+    styles: Iterable[LineStyle] | None = None,
 ) -> None:
     """
     Draw (time, output) of unit steps by name, with rise time and overshoot in the legend.

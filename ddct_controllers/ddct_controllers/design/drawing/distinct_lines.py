@@ -8,21 +8,21 @@ line changes between charts only where another line of the chart requires it.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any, TypeVar
+from typing import TypeVar
 
-from ddct_controllers.design.drawing.chart_style import GREY, LINE_WIDTH, dash_style
 from ddct_controllers.design.drawing.line_looks import DASHES, DOTS, LIGHT_COLOURS
+from ddct_controllers.design.drawing.line_styles import GREY, LINE_WIDTH, LineStyle, dash_style
 
 _COLOURS = (*LIGHT_COLOURS, '#c77400', GREY)
 _DASHES = (*DASHES, DOTS, (16, 3, 7, 3))
 """Dashes of lines, as lengths of line and gap in points; a page has them in pixels."""
 _SOLID, _DASHED = DASHES[:2]
-_NAMED: Mapping[Any, tuple[int, ...]] = {'-': _SOLID, '--': _DASHED}
+_NAMED: Mapping[str, tuple[int, ...]] = {'-': _SOLID, '--': _DASHED}
 """Dash for each named `linestyle` of matplotlib, whose dashed line is nearly ours."""
 Part = TypeVar('Part')
 
 
-def distinct_styles(styles: Mapping[str, Mapping[str, Any]]) -> dict[str, dict[str, Any]]:
+def distinct_styles(styles: Mapping[str, LineStyle]) -> dict[str, LineStyle]:
     """
     Return matplotlib keywords of each line by name, with no colour and no dash used twice.
 
@@ -30,11 +30,11 @@ def distinct_styles(styles: Mapping[str, Mapping[str, Any]]) -> dict[str, dict[s
     others. Of more than eight lines the last keep their colour and dash; marks may distinguish
     them.
     """
-    apart: dict[str, dict[str, Any]] = {}
+    apart: dict[str, LineStyle] = {}
     own_colours = [style['color'] for style in styles.values()]
     own_dashes = list(map(_dash, styles.values()))
     for name in sorted(styles, key=lambda name: _rank(styles[name])):
-        style, others = dict(styles[name]), apart.values()
+        style, others = styles[name].copy(), apart.values()
         colours = [other['color'] for other in others]
         style['color'] = _free(style['color'], colours, _COLOURS, own_colours)
         dash = _free(_dash(style), list(map(_dash, others)), _DASHES, own_dashes)
@@ -46,16 +46,18 @@ def distinct_styles(styles: Mapping[str, Mapping[str, Any]]) -> dict[str, dict[s
     return {name: apart[name] for name in styles}
 
 
-def _rank(style: Mapping[str, Any]) -> int:
+def _rank(style: LineStyle) -> int:
     if style.get('linestyle') == '--':
         return 0
     return 1 if _dash(style) == _SOLID else 2
 
 
-def _dash(style: Mapping[str, Any]) -> tuple[int, ...]:
+def _dash(style: LineStyle) -> tuple[int, ...]:
     """Return the dash of a line, as lengths of line and gap in points."""
     line = style.get('linestyle', '-')
-    return _NAMED[line] if line in _NAMED else tuple(round(LINE_WIDTH * each) for each in line[1])
+    if isinstance(line, str):
+        return _NAMED[line]
+    return tuple(round(LINE_WIDTH * each) for each in line[1])
 
 
 def _free(

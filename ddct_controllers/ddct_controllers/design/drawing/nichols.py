@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
+from ddct_controllers.design.drawing.line_styles import LineStyle
 from ddct_plant.base.errors import require_number
 
 _CURVE_POINTS = 720
@@ -21,22 +22,13 @@ _MAGNITUDES_DB = (6.0, 3.0, 1.0, 0.0, -1.0, -3.0, -6.0, -12.0, -20.0)
 """Levels of |T| in dB that the grid has."""
 _PHASES_DEG = (-30.0, -60.0, -90.0, -120.0, -150.0, -210.0, -240.0, -270.0, -300.0, -330.0)
 """Levels of arg T in degrees that the grid has."""
-_LINE: dict[str, Any] = {
+_LINE: LineStyle = {
     'color': '#c4c4c4',
     'linewidth': 0.7,
     'linestyle': (0, (1, 1)),
     'zorder': 1.2,
 }
-_PHASE_LINE = _LINE | {'linestyle': (0, (4, 4))}
-_TEXT: dict[str, Any] = {
-    'color': '#6e6e6e',
-    'fontsize': 7.5,
-    'clip_on': True,
-    'zorder': 1.5,
-    'horizontalalignment': 'center',
-    'verticalalignment': 'center',
-    'bbox': {'facecolor': 'white', 'edgecolor': 'none', 'pad': 0.6},
-}
+_PHASE_LINE: LineStyle = _LINE | {'linestyle': (0, (4, 4))}
 _LABEL = 'closed loop: |T| in dB, arg T in °'
 _INSET = 0.045
 """Distance of a label from the edge of the chart, as a share of its height or width."""
@@ -150,7 +142,18 @@ def _label(
 ) -> None:
     for turn in _turns(phase_deg):
         if phase_deg[0] < at_deg + turn * TURN_DEG < phase_deg[1]:
-            axes.text(at_deg + turn * TURN_DEG, at_db, text.replace('-', '−'), **_TEXT)
+            axes.text(
+                at_deg + turn * TURN_DEG,
+                at_db,
+                text.replace('-', '−'),
+                color='#6e6e6e',
+                fontsize=7.5,
+                clip_on=True,
+                zorder=1.5,
+                horizontalalignment='center',
+                verticalalignment='center',
+                bbox={'facecolor': 'white', 'edgecolor': 'none', 'pad': 0.6},
+            )
 
 
 def _turns(phase_deg: tuple[float, float]) -> range:

@@ -130,7 +130,7 @@ def provenance(recipe: str, specifications: TimeSpecifications, design: HinfDesi
 def loop_record(
     loop: ContinuousLoop | StateSpace, weights: HinfWeights, specifications: TimeSpecifications
 ) -> Record:
-    """Return weighted norms, step figures and margins of a loop; only `stable` if unstable."""
+    """Return weighted norms, step response and margins of a loop; only `stable` if unstable."""
     if not closed_loop_stable(loop):
         return {'stable': False}
     norms = weighted_norms(loop, weights.sensitivity, weights.complementary, PRINTED_W_U)

@@ -4,13 +4,13 @@
 
 from collections.abc import Mapping, Sequence
 
-from ddct_controllers.design.analysis.margins import DESIGN_FIGURE_OF
+from ddct_controllers.design.analysis.margins import DESIGN_QUANTITY_OF
 from ddct_controllers.design.h_infinity.report import Record
 from ddct_controllers.design.state_space import factors_text
 from ddct_plant.program.table import Table, text_or_dash
 
-_LOOP_FIGURES = [
-    DESIGN_FIGURE_OF[name]
+_LOOP_QUANTITIES = [
+    DESIGN_QUANTITY_OF[name]
     for name in (
         *('crossover_rad_s', 'sensitivity_peak', 'complementary_peak'),
         *('phase_margin_deg', 'gain_margin_db', 'delay_margin_s'),
@@ -18,7 +18,7 @@ _LOOP_FIGURES = [
 ]
 _LOOP_HEADERS = (
     *('controller', 'loop', 'W_s S', 'W_t T', 'W_u T', 't_r s', 's^ %', 'met'),
-    *(figure.heading for figure in _LOOP_FIGURES),
+    *(quantity.heading for quantity in _LOOP_QUANTITIES),
 )
 
 
@@ -45,7 +45,7 @@ def design_tables(records: Sequence[Record], uncertainty: Record) -> dict[str, T
 
 
 def loop_table(loops: Mapping[str, Record]) -> Table:
-    """Return norms, step figures and margins of the loops of named controllers."""
+    """Return norms, step response and margins of the loops of named controllers."""
     return Table(
         'Loops: norms by the weights, step response and whether it meets both, margins',
         _LOOP_HEADERS,
@@ -170,7 +170,7 @@ def _corner_table(records: Sequence[Record]) -> Table:
                 record['name'],
                 str(record['corners']['corners']),
                 str(record['corners']['unstable']),
-                DESIGN_FIGURE_OF['sensitivity_peak'].cell(record['corners']),
+                DESIGN_QUANTITY_OF['sensitivity_peak'].cell(record['corners']),
                 f'{record["corners"]["wear_gain"]:.2f}',
                 ', '.join(f'{name} {x:g}' for name, x in record['corners']['factors'].items()),
             )
@@ -188,5 +188,5 @@ def _loop_cells(loop: Record) -> tuple[str, ...]:
         text_or_dash(loop['rise_time_s'], '.3f'),
         f'{100.0 * loop["overshoot"]:.1f}',
         'yes' if loop['meets_specifications'] else 'no',
-        *(figure.cell(loop) for figure in _LOOP_FIGURES),
+        *(quantity.cell(loop) for quantity in _LOOP_QUANTITIES),
     )

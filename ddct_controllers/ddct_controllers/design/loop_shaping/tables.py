@@ -4,7 +4,7 @@
 
 from collections.abc import Sequence
 
-from ddct_controllers.design.analysis.margins import DESIGN_FIGURE_OF
+from ddct_controllers.design.analysis.margins import DESIGN_QUANTITY_OF
 from ddct_controllers.design.loop_shaping.report import Record
 from ddct_controllers.design.loop_shaping.specifications import (
     TimeSpecifications,
@@ -12,8 +12,8 @@ from ddct_controllers.design.loop_shaping.specifications import (
 )
 from ddct_plant.program.table import Table, text_or_dash
 
-_LOOP_FIGURES = [
-    DESIGN_FIGURE_OF[name]
+_LOOP_QUANTITIES = [
+    DESIGN_QUANTITY_OF[name]
     for name in (
         *('crossover_rad_s', 'phase_margin_deg', 'gain_margin_db'),
         *('sensitivity_peak', 'complementary_peak'),
@@ -21,7 +21,7 @@ _LOOP_FIGURES = [
 ]
 _LOOP_HEADERS = (
     'unstable poles',
-    *(figure.heading for figure in _LOOP_FIGURES),
+    *(quantity.heading for quantity in _LOOP_QUANTITIES),
     *('S_p curve', 'T_p curve'),
 )
 _TRANSLATED = (
@@ -53,9 +53,9 @@ def design_tables(record: Record) -> tuple[Table, Table]:
     """Return the tables of `design_record`: specified and reached quantities, and G_c(s)."""
     wanted, found = record['specifications'], record['sampled_loop']
     peaks = {contour['name']: contour for contour in record['contours']}
-    figures = Table(
+    quantities = Table(
         f'{record["name"]}: {record["structure"]}, {record["integrators"]} integrator(s)',
-        ('figure', 'asked for', 'sampled loop', 'unit'),
+        ('quantity', 'specified', 'sampled loop', 'unit'),
         [
             _row('rise time', wanted['rise_time_s'], found['rise_time_s'], 's'),
             _row('overshoot', 100.0 * wanted['overshoot'], 100.0 * found['overshoot'], '%'),
@@ -77,7 +77,7 @@ def design_tables(record: Record) -> tuple[Table, Table]:
             ('denominator', _factors(controller['denominator'])),
         ],
     )
-    return figures, parts
+    return quantities, parts
 
 
 def _specification_table() -> Table:
@@ -114,7 +114,7 @@ def _placement_table(placements: Sequence[Record]) -> Table:
     }
     return Table(
         'G_c2 as printed, and as the rule gives it',
-        ('figure', *(one['version'] for one in placements)),
+        ('quantity', *(one['version'] for one in placements)),
         [(name, *cells) for name, cells in lines.items()],
     )
 
@@ -131,7 +131,7 @@ def _loop_cells(row: Record) -> tuple[str, ...]:
     kept_out = {contour['name']: contour['respected'] for contour in row['contours']}
     return (
         str(row['unstable_poles']),
-        *(figure.cell(row) for figure in _LOOP_FIGURES),
+        *(quantity.cell(row) for quantity in _LOOP_QUANTITIES),
         'kept out of' if kept_out['S'] else 'crossed',
         'kept out of' if kept_out['T'] else 'crossed',
     )

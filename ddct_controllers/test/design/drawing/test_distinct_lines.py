@@ -4,8 +4,8 @@
 
 from itertools import combinations
 
-from ddct_controllers.design.drawing.chart_style import REFERENCE_LINE, controller_style
 from ddct_controllers.design.drawing.distinct_lines import distinct_styles
+from ddct_controllers.design.drawing.line_styles import REFERENCE_LINE, controller_style
 
 
 def test_a_line_keeps_what_no_other_line_has():

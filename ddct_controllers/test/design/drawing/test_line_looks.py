@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from ddct_controllers.design.drawing.chart_style import chart_style, controller_style
+from ddct_controllers.design.drawing.chart_style import chart_style
 from ddct_controllers.design.drawing.line_looks import (
     DARK_COLOURS,
     DASHES,
@@ -21,6 +21,7 @@ from ddct_controllers.design.drawing.line_looks import (
     looks_of,
     sample_svg,
 )
+from ddct_controllers.design.drawing.line_styles import controller_style
 from ddct_controllers.registry import own_controller_names
 
 LINEAR_TO_XYZ = np.array(
@@ -152,6 +153,7 @@ def test_the_sample_of_the_page_and_the_line_of_a_figure_agree(name):
     assert dash == look.dash
     with chart_style():
         drawn = Figure().subplots().plot([0.0, 1.0], **style)[0]
-        lengths = [1.5 * part for part in style['linestyle'][1]] if dash else []
-    assert lengths == pytest.approx(list(dash))
+        line_style = style['linestyle']
+    lengths = () if isinstance(line_style, str) else line_style[1]
+    assert [1.5 * part for part in lengths] == pytest.approx(list(dash))
     assert (drawn.get_marker() != 'None') is bool(marks) is bool(look.mark)
