@@ -1,23 +1,26 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Write what is generated in the pages: tables, their charts, and the block diagrams."""
+"""Write what is generated in the pages: tables, charts, block diagrams, results in sentences."""
 
 import argparse
 import sys
 
 from generator.block_diagrams import drawings
 from generator.pages import DOCS, fill_pages
+from generator.results import fill_results, results
 from generator.tables import TABLES
 
 from ddct_plant.base.errors import DdctError
 
 DIAGRAMS = 'diagrams'
+RESULTS = 'results'
+"""Kind of the results in sentences, the last: they follow from tables."""
 
 
 def main() -> None:
     """Write all, or the kinds that are named, and tell which pages have changed."""
     parser = argparse.ArgumentParser(description=__doc__, epilog='all of it takes minutes')
-    kinds = (DIAGRAMS, *TABLES)
+    kinds = (DIAGRAMS, *TABLES, RESULTS)
     parser.add_argument('kind', nargs='*', help=f'some of {", ".join(kinds)} (default: all)')
     wanted = parser.parse_args().kind or kinds
     if unknown := set(wanted) - set(kinds):
@@ -28,7 +31,8 @@ def main() -> None:
             for file, drawing in drawings().items():
                 (DOCS / 'images' / file).write_text(drawing, encoding='utf-8')
             continue
-        for page in fill_pages(kind, TABLES[kind]()):
+        changed = fill_results(results()) if kind == RESULTS else fill_pages(kind, TABLES[kind]())
+        for page in changed:
             print(f'docs: {page.relative_to(DOCS.parent)} has changed')
 
 

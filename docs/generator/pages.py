@@ -32,6 +32,11 @@ def shown_tables(kind: str, docs: Path = DOCS) -> dict[str, str]:
     return shown
 
 
+def rows_of(shown: str) -> list[tuple[str, ...]]:
+    """Return the cells of each row of a table as the pages show it, without its header."""
+    return [tuple(line[2:-2].split(' | ')) for line in shown.splitlines()[2:]]
+
+
 def fill_pages(kind: str, tables: Mapping[str, Table], docs: Path = DOCS) -> list[Path]:
     """
     Write every table of a kind in its place and return the pages that have changed.

@@ -14,7 +14,7 @@ from ddct_bringup.reproduction.numbers.gate_tables import page_tables
 from ddct_bringup.reproduction.studies.command import STUDIES
 from ddct_controllers.design.analysis.loops import continuous_loop, sampled_loop
 from ddct_controllers.design.analysis.worst_corner import PlantCorners
-from ddct_controllers.design.drawing.chart_style import chart_style, save_chart
+from ddct_controllers.design.drawing.chart_style import chart_style
 from ddct_controllers.design.h_infinity.recipes import PRINTED_WEIGHTS, THESIS_SPECIFICATIONS
 from ddct_controllers.design.h_infinity.report import (
     Record,
@@ -48,6 +48,7 @@ from generator.score_tables import score_tables
 from generator.sensor_table import sensor_table
 from generator.speed_charts import draw_speed
 from generator.speed_history import digest_of, histories, speed_tables
+from generator.study_charts import save_study_chart
 
 
 def calibration_tables() -> Mapping[str, Table]:
@@ -112,7 +113,7 @@ def studies_and_charts() -> Mapping[str, Table]:
     for name, study in studies.items():
         if study.draw is not None:
             with chart_style():
-                save_chart(study.draw(), DOCS / 'images' / f'{name}.png')
+                save_study_chart(study.draw(), DOCS / 'images' / f'{name}.png')
     return studies
 
 

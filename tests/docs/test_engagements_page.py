@@ -4,6 +4,8 @@
 
 import pytest
 from generator.pages import DOCS, shown_tables
+from generator.pages import rows_of as rows_of_table
+from generator.study_charts import drawn_curves, samples
 
 from ddct_bringup.reproduction.studies import engagements
 from ddct_bringup.reproduction.studies.table_5_2 import rows_of
@@ -24,14 +26,17 @@ LARGEST_CHART_BYTES = 150_000
 
 
 def rows_on_page(study: str) -> list[tuple[str, ...]]:
-    return [tuple(line[2:-2].split(' | ')) for line in SHOWN[study].splitlines()[2:]]
+    return rows_of_table(SHOWN[study])
 
 
 @pytest.mark.parametrize('study', engagements.ENGAGEMENTS)
-def test_a_row_of_each_table_is_what_the_run_gives(study):
+def test_a_row_of_each_table_and_a_curve_of_each_chart_is_what_the_run_gives(study):
     row, slip = engagements.engagement(SAMPLE[study])
     assert row in rows_on_page(study), MAKE
     assert slip.state == row[2]
+    curves = drawn_curves(DOCS / 'images' / f'{study}.png')
+    drawn = curves[slip.controller][f'K_usura {slip.label}']
+    assert drawn == pytest.approx(samples(slip.rpm), abs=1.0, rel=1e-3), MAKE
 
 
 @pytest.mark.parametrize('study', engagements.ENGAGEMENTS)
@@ -48,22 +53,11 @@ def test_rows_of_table_5_2_are_what_the_runs_give(clutch):
     assert [row for row in rows_of(clutch, 1.3) if row not in shown] == [], MAKE
 
 
-def test_the_overview_says_how_many_words_of_table_5_2_hold():
-    text = (DOCS / 'thesis' / 'reproducing.md').read_text(encoding='utf-8')
-    section = ' '.join(text.partition('## Table 5.2')[2].split())
-    held = {}
-    for clutch in ('linear', 'stick_slip'):
-        rows = [row for row in rows_on_page('table_5_2_in_numbers') if row[0] == clutch]
-        words = [word for row in rows for word in row[-2:] if word != '-']
-        assert len(words) == 16
-        held[clutch] = sum(word.endswith(': holds') for word in words)
-    assert f'linear clutch {held["linear"]} of the 16 hold' in section
-    assert f'plates that stick {held["stick_slip"]} of the 16 holds' in section
-
-
 @pytest.mark.parametrize('study', engagements.ENGAGEMENTS)
 def test_a_small_chart_stands_beside_each_table(study):
     texts = [page.read_text(encoding='utf-8') for page in DOCS.rglob('*.md')]
     (text,) = [text for text in texts if f'<!-- studies: {study} -->' in text]
     assert f'](../images/{study}.png)' in text
-    assert (DOCS / 'images' / f'{study}.png').stat().st_size < LARGEST_CHART_BYTES
+    picture = DOCS / 'images' / f'{study}.png'
+    assert picture.stat().st_size < LARGEST_CHART_BYTES
+    assert list(drawn_curves(picture)) == list(controller_names()), MAKE

@@ -7,10 +7,13 @@ import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 import pytest
+from generator import results as results_module
 from generator.block_diagrams import drawings
 from generator.launch_table import launch_table
 from generator.option_tables import TABLES as OPTION_TABLES
 from generator.pages import DOCS, as_markdown, fill_pages, shown_tables
+from generator.results import PAGES as RESULT_PAGES
+from generator.results import fill_results, marked_results, results
 from generator.score_tables import score_tables
 from generator.sensor_table import sensor_table
 from generator.tables import TABLES as COMPUTED
@@ -67,7 +70,7 @@ def test_every_mark_is_of_a_kind_that_one_command_writes() -> None:
     texts = [page.read_text(encoding='utf-8') for page in DOCS.rglob('*.md')]
     marks = [mark for text in texts for mark in re.findall(r'<!-- (.*?) -->', text)]
     kinds = {mark.partition(':')[0] for mark in marks} - {'end'}
-    assert kinds == set(COMPUTED)
+    assert kinds == {*COMPUTED, 'result'}
     assert marks.count('end') == len(marks) / 2
 
 
@@ -87,6 +90,27 @@ def test_the_table_of_launches_is_what_the_scenarios_give() -> None:
 def test_the_table_of_sensors_is_what_its_runs_give() -> None:
     computed = as_markdown({'in_thesis': sensor_table()})
     assert shown_tables('sensors') == computed, 'run: make docs KINDS=sensors'
+
+
+def test_every_result_in_a_sentence_is_what_its_tables_and_runs_give() -> None:
+    shown = [(page.name, *each) for page in RESULT_PAGES for each in marked_results(page)]
+    assert len(shown) > 20
+    computed = results()
+    expected = [(page, name, computed.get(name)) for page, name, _ in shown]
+    assert shown == expected, 'run: make docs KINDS=results'
+
+
+def test_results_are_filled_in_and_an_unknown_one_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    page = tmp_path / 'page.md'
+    page.write_text('A <!-- result: a -->1<!-- end --> b <!-- result: a -->1<!-- end -->.\n')
+    monkeypatch.setattr(results_module, 'PAGES', (page,))
+    assert fill_results({'a': '2', 'b': '3'}) == [page]
+    assert marked_results(page) == [('a', '2'), ('a', '2')]
+    assert fill_results({'a': '2'}) == []
+    with pytest.raises(DdctError):
+        fill_results({'b': '3'})
 
 
 def test_the_diagrams_are_what_the_program_draws() -> None:

@@ -83,13 +83,12 @@ def test_only_hinf2_is_engaged_at_both_wear_gains_of_table_5_2(maps: dict[str, S
         assert at_both == ['hinf2']
 
 
-def test_the_page_counts_the_runs_that_diverge(maps: dict[str, StateMap]) -> None:
+def test_only_mpc4_on_the_linear_plant_has_runs_that_diverge(maps: dict[str, StateMap]) -> None:
     diverged = maps['delay'].states == INVALID
     places = {tuple(place) for place in np.argwhere(diverged)[:, [0, 2]].tolist()}
     found = maps['delay']
     mpc4, linear = found.spec.controllers.index('mpc4'), found.values('clutch').index('linear')
     assert places == {(mpc4, linear)}
-    assert f'{diverged.sum()} runs\n  of the map over delay' in PAGE
 
 
 def test_ranges_are_told_by_their_ends_and_gaps_part_them() -> None:

@@ -1,0 +1,125 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""
+Results that stand in the sentences of the pages, by the names of their marks.
+
+A result is between `<!-- result: NAME -->` and `<!-- end -->`, on README or a page of docs, and
+may be there several times. Results follow from tables that the pages show and from runs of the
+thesis's scenario, so `make docs KINDS=results` comes after the other kinds.
+"""
+
+import re
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from ddct_bringup.reproduction.runs import thesis_run
+from ddct_bringup.thesis.table_5_1 import ROW_OF, TABLE_METRICS
+from ddct_bringup.verdict.criteria import CRITERIA
+from ddct_bringup.verdict.state import ENGAGED, INVALID, NOT_ENGAGED
+from ddct_controllers.registry import own_controller_names
+from ddct_plant.base.errors import DdctError
+from generator.pages import DOCS, rows_of, shown_tables
+from generator.robustness_map import kept_maps
+
+HOLDS = ': holds'
+"""End of a word of Table 5.2 that our runs confirm."""
+_WORN = '1.3'
+_SHORT = dict(zip(TABLE_METRICS, ('t_a', 'w_sr', 'a_x'), strict=True))
+_FORMS = dict(zip(TABLE_METRICS, ('.2f', '.2f', '.3f'), strict=True))
+_MARKED = re.compile(r'(<!-- result: (\w+) -->)(.*?)(<!-- end -->)', re.DOTALL)
+PAGES = (DOCS.parent / 'README.md', *sorted(DOCS.rglob('*.md')))
+
+
+def marked_results(page: Path) -> list[tuple[str, str]]:
+    """Return name and text of each result on a page, in their order."""
+    return [(match[2], match[3]) for match in _MARKED.finditer(page.read_text(encoding='utf-8'))]
+
+
+def fill_results(computed: Mapping[str, str]) -> list[Path]:
+    """
+    Write the results into all pages and return those that have changed.
+
+    Raise DdctError for a name that nothing computes.
+    """
+    names = {name for page in PAGES for name, _ in marked_results(page)}
+    if unknown := sorted(names - set(computed)):
+        raise DdctError(f'the pages have the result {unknown[0]}: known: {", ".join(computed)}')
+    changed = []
+    for page in PAGES:
+        old = page.read_text(encoding='utf-8')
+        new = _MARKED.sub(lambda match: f'{match[1]}{computed[match[2]]}{match[4]}', old)
+        if new != old:
+            page.write_text(new, encoding='utf-8')
+            changed.append(page)
+    return changed
+
+
+def results() -> Mapping[str, str]:
+    """Return the text of each result by name."""
+    return {
+        'controllers': str(len(own_controller_names())),
+        'criteria': str(len(CRITERIA)),
+        'diverged_runs': str(int(np.sum(kept_maps()['delay'].states == INVALID))),
+        **_thesis_numbers(),
+        **_table_5_2(),
+        **_engagements(),
+        **_table_5_1(),
+    }
+
+
+def _thesis_numbers() -> dict[str, str]:
+    """Return the counts of the list of numbers: entries, and facts by verdict."""
+    counts = {row[0]: row[1:] for row in rows_of(shown_tables('numbers')['facts'])}
+    facts = {verdict: int(count) for verdict, (_, count) in counts.items()}
+    fits = facts['calibrated hit'], facts['calibrated miss']
+    predictions = facts['predicted hit'], facts['predicted miss']
+    return {
+        'gate_entries': counts['all'][0],
+        'gate_facts': counts['all'][1],
+        'gate_reproduced': str(facts['reproduced']),
+        'gate_errata': str(facts['erratum']),
+        'gate_fits': f'{fits[0]} of {sum(fits)}',
+        'gate_predictions': f'{predictions[0]} of {sum(predictions)}',
+    }
+
+
+def _table_5_2() -> dict[str, str]:
+    """Return how many of the words of Table 5.2 hold with each clutch."""
+    rows = rows_of(shown_tables('studies')['table_5_2_in_numbers'])
+    held = {}
+    for clutch in ('linear', 'stick_slip'):
+        words = [word for row in rows if row[0] == clutch for word in row[-2:] if word != '-']
+        holding = sum(word.endswith(HOLDS) for word in words)
+        held[f'table_5_2_{clutch}'] = f'{holding} of the {len(words)}'
+    return held
+
+
+def _engagements() -> dict[str, str]:
+    """Return how many controllers engage, or do not, in `thesis` with the clutch at wear 1.3."""
+    tables = shown_tables('studies')
+    states = {
+        clutch: [
+            row[2] for row in rows_of(tables[f'engagements_thesis_{clutch}']) if row[0] == _WORN
+        ]
+        for clutch in ('linear', 'stick_slip')
+    }
+    sticking = states['stick_slip']
+    return {
+        'engaged_sticking': f'{sticking.count(ENGAGED)} of {len(sticking)}',
+        'not_engaged_linear': str(states['linear'].count(NOT_ENGAGED)),
+    }
+
+
+def _table_5_1() -> dict[str, str]:
+    """Return values of PI, MPC3 and MPC4 in `thesis`, and deviations from the print in %."""
+    texts = {}
+    for controller in ('pi', 'mpc3', 'mpc4'):
+        printed = ROW_OF[controller].printed_values()
+        for metric, value in thesis_run(controller, 'detailed', 1.0).table_values.items():
+            if value is not None:
+                name = f'{controller}_{_SHORT[metric]}'
+                texts[name] = f'{value:{_FORMS[metric]}}'
+                texts[f'{name}_off'] = f'{abs(100.0 * (value / printed[metric] - 1.0)):.0f} %'
+    return texts
