@@ -3,6 +3,7 @@
 """The commands of the documentation, sorted by how a test runs them."""
 
 import shlex
+import subprocess
 import sys
 from unittest.mock import patch
 
@@ -40,6 +41,10 @@ SHELL_BLOCKS = [block for block in blocks() if block.is_shell]
 SOURCE = '. install/setup.bash'
 _DESIGN = 'ddct design'
 _RUNS = ('bringup', 'compare')
+_TOOLS = ('cp ', 'cc ')
+"""Commands of others that end by themselves."""
+_OWN_PROCESS = ('&', 'realtime', 'ddct campaign')
+"""Parts of commands that need processes of their own; a campaign's workers outlast a test."""
 _NOT_HEADLESS = ('--help', '--list', '--headless', '--single-process', 'realtime')
 
 
@@ -54,10 +59,10 @@ def label(block: Block) -> str:
 
 
 def in_this_process(block: Block) -> bool:
-    """Say whether all commands are programs of ours that end by themselves, without a graph."""
+    """Return whether all commands end by themselves, without a graph, and some are ours."""
     commands = [line for line in commands_of(block) if line != SOURCE]
-    return bool(commands) and all(
-        line.startswith('ddct ') and '&' not in line and 'realtime' not in line
+    return any(line.startswith('ddct ') for line in commands) and all(
+        line.startswith(('ddct ', *_TOOLS)) and not any(words in line for words in _OWN_PROCESS)
         for line in commands
     )
 
@@ -69,13 +74,15 @@ def is_design(block: Block) -> bool:
 
 def run_here(line: str) -> int:
     """
-    Run one `ddct PROGRAM ARGUMENTS` in this process and return its exit code.
+    Run one `ddct PROGRAM ARGUMENTS` in this process, or a tool, and return its exit code.
 
     A run of the graph takes place without it, which is faster; other tests run the real thing.
     """
     if line == SOURCE:
         return 0
     command = shlex.split(line, comments=True)
+    if line.startswith(_TOOLS):
+        return subprocess.run(command, check=False).returncode
     if command[1] in _RUNS and not any(words in line for words in _NOT_HEADLESS):
         command.append('--headless')
     try:

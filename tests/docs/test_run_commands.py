@@ -18,7 +18,14 @@ from support.documented import Block
 BLOCKS = [block for block in SHELL_BLOCKS if in_this_process(block) and not is_design(block)]
 
 
+DONE: set[str] = set()
+"""Commands of `reproduce` that have been run: they read nothing that others write, or leave."""
+
+
 @pytest.mark.parametrize('block', BLOCKS, ids=label)
 def test_commands_run(block: Block, shared_runs: Path) -> None:
     for line in commands_of(block):
-        assert run_here(line) == 0, line
+        if line not in DONE:
+            assert run_here(line) == 0, line
+        if line.startswith('ddct reproduce '):
+            DONE.add(line)
