@@ -10,15 +10,18 @@ from ddct_plant.scenario.control import ClosingParameters
 
 class ClosingStage:
     """
-    Adds to the open loop the torque with which a locked clutch stays locked.
+    The torque added to the open loop with which a locked clutch stays locked.
 
-    A locked clutch carries C_fOL, so a request of C_fOL is the limit at which it slips. The stage
-    closes when slip speed and reference have been within the band for the dwell time with feedback
-    on: a reference beyond it still demands slip. The request then continues from its last value,
-    without a jump, and its margin over |C_fOL| grows along the ramp; it never falls below the
-    margin with which feedback had locked a worn clutch. If the clutch slips all the same, the
-    margin is wrong by an amount that only feedback can find: the stage opens, and what it added
-    fades along the ramp while feedback acts again.
+    A locked clutch carries C_fOL, so it slips when the request is below |C_fOL|. The margin is the
+    request less |C_fOL|.
+
+    - The stage closes when slip speed and reference have been within the band for the dwell time
+      with feedback on. A reference beyond the band still demands slip.
+    - While it is closed, the request continues from its last value without a jump, and the margin
+      moves along the ramp to its target. The target is at least the margin at which the stage
+      closed: that is what a worn clutch needed to lock.
+    - When the clutch slips all the same, the margin was too small, and only feedback can find by
+      how much. The stage opens, and what it added fades along the ramp while feedback acts.
     """
 
     def __init__(self, parameters: ClosingParameters, static_torque: StaticTorque) -> None:
@@ -29,7 +32,7 @@ class ClosingStage:
         self._fade_steps = steps_in('closing.engine_fade_s', parameters.engine_fade_s)
         self._most_change = parameters.ramp_n_m_s * PERIOD_S
         self._samples_within = 0
-        self._added = self._margin = self._least_margin = self._missing = 0.0
+        self._added = self._margin = self._least_margin = self._margin_left = 0.0
         self.closed = False
         """Whether the clutch counts as locked, so that feedback is off."""
 
@@ -50,11 +53,11 @@ class ClosingStage:
         """
         # Feedback that requests more than the stage may is not at the limit of slip: it stays on.
         in_reach = self.closed or last_request <= self._parameters.most_n_m
-        alike = feedback_on and in_reach and self._within_band(measurement)
-        self._samples_within = self._samples_within + 1 if alike else 0
+        within = feedback_on and in_reach and self._within_band(measurement)
+        self._samples_within = self._samples_within + 1 if within else 0
         was_closed, self.closed = self.closed, self._samples_within > self._dwell_steps
         if not self.closed:
-            self._added = self._nearer(self._added, 0.0)
+            self._added = self._along_ramp(self._added, 0.0)
             return self._added
         carried = abs(
             self._static_torque.torque(
@@ -66,9 +69,9 @@ class ClosingStage:
         )
         if not was_closed:
             self._margin = self._least_margin = max(last_request, 0.0) - carried
-        wanted = self._wanted_margin(carried)
-        self._margin = self._nearer(self._margin, wanted)
-        self._missing = wanted - self._margin
+        target = self._target_margin(carried)
+        self._margin = self._along_ramp(self._margin, target)
+        self._margin_left = target - self._margin
         self._added = carried + self._margin - open_loop
         return self._added
 
@@ -82,7 +85,7 @@ class ClosingStage:
     def status(self) -> Status:
         """Pair for `controller/status`: the state of the stage."""
         if self.closed:
-            state = 'closing' if self._missing else 'closed'
+            state = 'closing' if self._margin_left else 'closed'
         else:
             state = 'opening' if self._added else 'open'
         return (('closing', state),)
@@ -91,14 +94,14 @@ class ClosingStage:
         band = self._parameters.slip_band_rad_s
         return abs(measurement.slip_speed) <= band and abs(measurement.slip_reference[0]) <= band
 
-    def _wanted_margin(self, carried: float) -> float:
+    def _target_margin(self, carried: float) -> float:
         """Return the target margin over |C_fOL| in N m within the clutch's capacity."""
         p = self._parameters
-        wanted = max((p.margin - 1.0) * carried + p.reserve_n_m, self._least_margin)
-        return max(min(wanted, p.most_n_m - carried), 0.0)
+        target = max((p.margin - 1.0) * carried + p.reserve_n_m, self._least_margin)
+        return max(min(target, p.most_n_m - carried), 0.0)
 
-    def _nearer(self, torque: float, wanted: float) -> float:
-        """Return the torque in N m a period later along the ramp."""
-        if abs(wanted - torque) <= self._most_change:
-            return wanted
-        return torque + (self._most_change if wanted > torque else -self._most_change)
+    def _along_ramp(self, torque: float, target: float) -> float:
+        """Return the torque in N m a period later, on its ramp to the target."""
+        if abs(target - torque) <= self._most_change:
+            return target
+        return torque + (self._most_change if target > torque else -self._most_change)

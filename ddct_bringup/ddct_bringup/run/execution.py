@@ -119,7 +119,7 @@ def _print_loop_summary(plan: RunPlan) -> None:
     if not isinstance(plan.controller, str) or not is_controller_file(plan.controller):
         return
     # Only here: scipy's searches take long to import.
-    from ddct_controllers.workflows.evidence import loop_summary
+    from ddct_controllers.workflows.loop_summary import loop_summary
 
     for line in loop_summary(plan.controller, plan.settings):
         print(line, file=sys.stderr, flush=True)

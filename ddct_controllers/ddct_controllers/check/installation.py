@@ -70,8 +70,8 @@ def installation(subject: Subject) -> str:
     """Check that the installed code is the code in the folder that it was installed from."""
     if not subject.entry_points:
         raise CheckSkippedError('no package of its own')
-    spec = inspect.getmodule(subject.entry_points[0].load())
-    file = Path(str(getattr(spec, '__file__', '')))
+    module = inspect.getmodule(subject.entry_points[0].load())
+    file = Path(str(getattr(module, '__file__', '')))
     for folder, editable in _installed_from(subject.name):
         if editable:
             return f'linked to {folder}: an edited file runs at once'

@@ -15,9 +15,11 @@ from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import PERIOD_S
 
 SPIKE_RAD_S = 200.0
-HARD_RAD_S = 300.0
+"""Additional slip in rad/s for one period."""
+LASTING_RAD_S = 300.0
 """Additional slip in rad/s over half a second, more than any clutch torque can reduce."""
 SETTLED_N_M = 1.0
+"""Largest change of the torque in N m that may be left at the end after one NaN."""
 WITHIN_STEPS = 30
 """Number of periods within which a controller must have reacted to slip."""
 
@@ -65,12 +67,12 @@ def spike(subject: Subject) -> str:
 
 def saturation(subject: Subject) -> str:
     """Check that the torques stay finite under slip that no torque reduces."""
-    torques = subject.replay(lambda m: more_slip(m, HARD_RAD_S), steps=round(0.5 / PERIOD_S))
-    change = _finite(subject, torques, f'{HARD_RAD_S:g} rad/s more slip over 0.5 s')
+    torques = subject.replay(lambda m: more_slip(m, LASTING_RAD_S), steps=round(0.5 / PERIOD_S))
+    change = _finite(subject, torques, f'{LASTING_RAD_S:g} rad/s more slip over 0.5 s')
     most = float(np.abs(change).max())
     return (
-        f'{HARD_RAD_S:g} rad/s more slip over 0.5 s asks up to {most:.4g} N m more; 0.5 s later '
-        f'{np.abs(change[-1]).max():.4g} N m of it are left'
+        f'{LASTING_RAD_S:g} rad/s more slip over 0.5 s asks up to {most:.4g} N m more; 0.5 s '
+        f'later {np.abs(change[-1]).max():.4g} N m of it are left'
     )
 
 

@@ -146,6 +146,7 @@ def _fmu_input(variable: Any, ours: object) -> FmuInput:
 
 
 def _outputs(fmu: Fmu, section: Mapping[str, object]) -> Mapping[str, object]:
+    """Return the output variables of the FMU by CLUTCH and ENGINE, the latter where it has one."""
     outputs: dict[str, object] = {}
     for name, ours in section.items():
         key = f'fmu.outputs.{name}'

@@ -48,6 +48,7 @@ def linear_in(file: ControllerFile, kind: str) -> tuple[LinearSystem, str]:
             given = in_z(given)
         sampled(given, discretisation)
     except ParameterError as error:
+        # The error of one coefficient has a line of its own, that of the whole system has none.
         if line_of(f'{error.key} {error}', file.lines):
             raise
         raise ParameterError(f'{kind}: {error}', key=kind) from error

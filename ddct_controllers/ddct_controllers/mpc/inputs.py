@@ -24,18 +24,19 @@ Bounds = tuple[np.ndarray, np.ndarray]
 
 class ClutchInput:
     """
-    The clutch torque request, open loop included, and its limits; the rate goes before the level.
+    The clutch torque request, open loop included, and its limits of level and rate.
 
-    A limit of the level that the rate cannot keep, as the last request is too far beyond it, gives
-    way to the nearest level that the rate reaches. So there always is a request within the limits.
+    Where the last request is so far beyond a limit of the level that the rate cannot keep it, the
+    limit gives way to the nearest level that the rate reaches. So there always is a request within
+    the limits.
     """
 
     def __init__(self, program: CondensedProgram, terms: InputTerms) -> None:
         self._program = program
         self._rows, self._soft_rows = program.level_rows[CLUTCH], program.structure.soft_rows
         self._lowest, self._highest = terms.lowest, terms.highest
-        self._change = terms.rate_n_m_s * PERIOD_S
-        self._reach = self._change * np.arange(1, len(self._rows) + 1)
+        self._most_change = terms.rate_n_m_s * PERIOD_S
+        self._reach = self._most_change * np.arange(1, len(self._rows) + 1)
         self.reset()
 
     def reset(self) -> None:
@@ -67,13 +68,13 @@ class ClutchInput:
         """
         lower, upper = self._program.lower, self._program.upper
         room = ROOM * (1.0 + abs(last))
-        nearest = self._change - room
-        kept = self._lowest <= last + nearest and last - nearest <= self._highest
+        change = self._most_change - room
+        level_kept = self._lowest <= last + change and last - change <= self._highest
         soft = divisor != 1.0 and len(self._soft_rows)
-        if kept and not soft:
+        if level_kept and not soft:
             return lower, upper
         lower, upper = lower.copy(), upper.copy()
-        if not kept:
+        if not level_kept:
             reach = self._reach - room
             lower[self._rows] = np.minimum(lower[self._rows], last + reach)
             upper[self._rows] = np.maximum(upper[self._rows], last - reach)
@@ -85,7 +86,7 @@ class ClutchInput:
     def nearest(self, level: float, last: float) -> float:
         """Return the allowed request nearest to `level`, N m; `last` is the request before."""
         level = min(max(level, self._lowest), self._highest)
-        return min(max(level, last - self._change), last + self._change)
+        return min(max(level, last - self._most_change), last + self._most_change)
 
     def keep(self, request: float, measurement: Measurement) -> float:
         """Return the controller's own part of the request in N m, and store the request."""

@@ -7,15 +7,8 @@ import io
 from pathlib import Path
 from typing import Any
 
-from ddct_controllers.workflows.plant_on_paper import (
-    INPUTS,
-    STATES,
-    PlantOnPaper,
-    as_mat,
-    as_matlab,
-    factored_text,
-    plant_on_paper,
-)
+from ddct_controllers.workflows.plant_on_paper import INPUTS, STATES, PlantOnPaper, plant_on_paper
+from ddct_controllers.workflows.plant_text import as_mat, as_matlab, factored_text
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.files.output_file import require_place, write_bytes, write_json, write_text
 from ddct_plant.program.command_line import show_and_write

@@ -5,7 +5,8 @@
 import pytest
 
 from ddct_controllers.registry import make_controller
-from ddct_controllers.workflows.evidence import formula, loop_evidence, loop_summary
+from ddct_controllers.workflows.evidence import loop_evidence
+from ddct_controllers.workflows.loop_summary import formula, loop_summary
 from ddct_plant.linear.lti import FactoredTransferFunction
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings

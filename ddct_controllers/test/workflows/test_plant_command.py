@@ -15,7 +15,8 @@ from scipy.io import loadmat
 
 from ddct_controllers.workflows.design_program import main
 from ddct_controllers.workflows.plant_command import paper_tables
-from ddct_controllers.workflows.plant_on_paper import MATRICES, factored_text, plant_on_paper
+from ddct_controllers.workflows.plant_on_paper import MATRICES, plant_on_paper
+from ddct_controllers.workflows.plant_text import factored_text
 from ddct_plant.models.driveline_model import driveline_matrices
 from ddct_plant.models.static_torque import constant_slip_torque
 from ddct_plant.scenario.file import load_scenario

@@ -54,8 +54,9 @@ RECIPES = {
 """
 Weights by the name of the option --weights, for the specifications of Section 3.2.
 
-Those of Section 3.2.1, K and w_2 as printed; those that lead to nearly the printed Hinf1; the
-first with one more on the torque, and hold and delay in the plant.
+- `thesis`: the weights of Section 3.2.1, with K and w_2 as printed.
+- `fitted`: weights that lead to nearly the printed Hinf1.
+- `sampled`: those of `thesis` with one more on the torque, for a plant with hold and delay.
 """
 PRINTED_WEIGHTS = HinfWeights(
     SensitivityWeight(low_frequency_gain=0.15, peak=1.33),
@@ -108,6 +109,7 @@ def _either(given: float | None, otherwise: float) -> float:
 def _effort(
     recipe: EffortWeight | None, torque: float | None, slower: float
 ) -> EffortWeight | None:
+    """Return the weight on the torque; `torque` replaces that of the recipe where it is given."""
     if recipe is None:
         if torque is not None:
             raise ParameterError('only the sampled design weighs the torque: leave out its weight')

@@ -38,7 +38,8 @@ class SensitivityWeight:
         """Check both; raise ParameterError that names a bad one."""
         require_number('K, the low-frequency gain of S,', self.low_frequency_gain, above=0.0)
         _require_peak(
-            'S_p, the bound on |S|,',
+            'S_p',
+            '|S|',
             self.peak,
             above=1.0,
             why='the loop falls off twice, so |S| exceeds 1 somewhere (Bode)',
@@ -79,7 +80,8 @@ class ComplementaryWeight:
     def __post_init__(self) -> None:
         """Check all; raise ParameterError that names a bad one."""
         _require_peak(
-            'T_p, the bound on |T|,',
+            'T_p',
+            '|T|',
             self.peak,
             at_least=1.0,
             why='with an integrator in the loop T is 1 at rest',
@@ -139,13 +141,15 @@ def stable_weight(name: str, weight: FactoredTransferFunction) -> StateSpace:
 
 def _require_peak(
     name: str,
+    function: str,
     peak: float,
     *,
     above: float | None = None,
     at_least: float | None = None,
     why: str,
 ) -> None:
+    """Raise ParameterError with the reason `why` for a bound of a function that is too low."""
     try:
-        require_number(name, peak, above=above, at_least=at_least)
+        require_number(f'{name}, the bound on {function},', peak, above=above, at_least=at_least)
     except ParameterError as error:
         raise ParameterError(f'{error}: {why}', key=name) from error

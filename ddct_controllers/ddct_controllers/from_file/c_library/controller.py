@@ -64,7 +64,7 @@ class CLibraryController(Controller):
                 stdout=2,  # what C prints is no result of the program
             )
         self._end = weakref.finalize(self, _end, self._channel, self._process)
-        about = parse_json(self._received('it was loaded').decode())
+        about = parse_json(self._received(when='it was loaded').decode())
         if 'error' in about:
             self._end()
             raise ParameterError(f'{self._where}: {about["error"]}')
@@ -86,21 +86,21 @@ class CLibraryController(Controller):
         return Command(clutch, pairs, engine if self.commands_engine else None)
 
     def _call(self, call: int, measurement: Measurement | None = None) -> tuple[float, float, int]:
-        request, at = bytes([call]), f'{_CALLS[call]} was called'
+        request, when = bytes([call]), f'{_CALLS[call]} was called'
         if measurement is not None:
-            at += f' at step {measurement.step}'
+            when += f' at step {measurement.step}'
             references = (*measurement.slip_reference, *measurement.slip_reference_rate)
             request += self._layout.pack(*_SCALARS(measurement), *references)
         with contextlib.suppress(OSError):  # it ended before; `_received` raises
             self._channel.send(request)
-        clutch, engine, status = host.ANSWER.unpack(self._received(at))
+        clutch, engine, status = host.ANSWER.unpack(self._received(when))
         if status < 0:
             self._end()
-            raise DdctError(f'{self._where}: it returned {status} when {at}: mend the C')
+            raise DdctError(f'{self._where}: it returned {status} when {when}: mend the C')
         return clutch, engine, status
 
-    def _received(self, at: str) -> bytes:
-        """Return the next message; raise DdctError when the process ended instead."""
+    def _received(self, when: str) -> bytes:
+        """Return the next message; raise DdctError, with the call, when the process has ended."""
         try:
             answer = self._channel.recv(host.MOST_BYTES)
         except OSError:
@@ -114,7 +114,7 @@ class CLibraryController(Controller):
             how = f'it gave no answer within {host.MOST_SECONDS} s'
         elif code < 0:
             how = f'it crashed ({signal.Signals(-code).name})'
-        raise DdctError(f'{self._where}: {how} when {at}: mend the C')
+        raise DdctError(f'{self._where}: {how} when {when}: mend the C')
 
 
 def _end(channel: socket.socket, process: 'subprocess.Popen[bytes]') -> None:

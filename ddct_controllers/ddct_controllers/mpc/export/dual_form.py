@@ -67,18 +67,22 @@ def dual_form(structure: QpStructure) -> DualForm:
 @dataclass(frozen=True, eq=False)
 class KnownColumns:
     """
-    f = gradient @ known, and bounds less shift @ the first of known.
+    Columns of a program for one vector of known values, which the exported C fills each period.
 
-    known holds the observer's state, the inputs before the first move, C_m as measured, C_load,
+    The vector has the observer's state, the inputs before the first move, C_m as measured, C_load,
     the open loop and its jump, then the engine's deviation if C_m is commanded, and the references
-    of w_d and of dw_d/dt.
+    of w_d and of dw_d/dt: f = gradient @ vector, and the bounds are reduced by shift @ its part
+    before the references.
     """
 
     gradient: np.ndarray
+    """Map from the vector to f, a row for each variable."""
     shift: np.ndarray
-    """Columns of the bounds' shift, without those of the references."""
+    """Map from the vector without its references, a row for each row of the program."""
     slip_references: int
+    """Number of references of w_d in the vector."""
     rate_references: int
+    """Number of references of dw_d/dt in the vector."""
 
 
 def known_columns(program: CondensedProgram, states: int, settings: MpcSettings) -> KnownColumns:
