@@ -59,13 +59,13 @@ class Measurement:
         slip_reference_rate: Sequence[float],
     ) -> 'Measurement':
         """Return the measured signals of a plant at step k, with the reference of that step."""
-        engine_speed, shaft_speed, wheel_speed = observation.measured.joint_speed[:3]
+        measured = observation.measured
         return cls(
             step=step,
-            engine_speed=engine_speed,
-            shaft_speed=shaft_speed,
-            wheel_speed=wheel_speed,
-            vehicle_speed=observation.measured.vehicle_speed,
+            engine_speed=measured.engine_speed,
+            shaft_speed=measured.shaft_speed,
+            wheel_speed=measured.wheel_speed,
+            vehicle_speed=measured.vehicle_speed,
             engine_torque=observation.engine_torque,
             slip_reference=slip_reference,
             slip_reference_rate=slip_reference_rate,

@@ -71,9 +71,9 @@ def nominal_slip(scenario: Scenario) -> list[float]:
     for step in range(scenario.control_start_step + 1):
         observation = plant.observe(step)
         slips.append(observation.true.slip_speed)
-        engine_speed, shaft_speed = observation.true.joint_speed[:2]
         load_torque = load.torque(observation.true.vehicle_speed, time_of_step(step))
         assert observation.delivered is not None
-        request = static.torque(observation.delivered, load_torque, engine_speed, shaft_speed)
+        speeds = observation.true.engine_speed, observation.true.shaft_speed
+        request = static.torque(observation.delivered, load_torque, *speeds)
         plant.advance(plant.reply(step, observation, request, None))
     return slips

@@ -41,6 +41,6 @@ def _row(name: str, controller: str) -> tuple[str, ...]:
         f'{locked_s:.2f}',
         str(len(events)),
         f'{1e-3 * trajectory.friction_work.sum():.1f}',
-        f'{trajectory.joint_effort[:, 1].max():.0f}',
-        f'{3.6 * trajectory.joint_speed[-1, 2] * wheel_radius:.1f}',
+        f'{trajectory.primary_shaft_effort.max():.0f}',
+        f'{3.6 * trajectory.wheel_speed[-1] * wheel_radius:.1f}',
     )

@@ -16,10 +16,10 @@ from ddct_bringup.bag.run_facts import MEASURED, RunFacts
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.options import options_of, require_known
-from ddct_plant.base.timebase import PERIOD_S, SUBSTEPS, time_of_step
+from ddct_plant.base.timebase import PERIOD_S, time_of_step
 from ddct_plant.files.input_file import SCHEMA_KEY, located
-from ddct_plant.graph.topics import JOINTS, RunKind, recorded_topics
-from ddct_plant.measured.columns import ColumnMap
+from ddct_plant.graph.topics import RunKind, Signal, recorded_topics
+from ddct_plant.measured.columns import QUANTITIES, TIME, ColumnMap
 from ddct_plant.measured.log import MeasuredLog, read_log
 
 NEEDED = ('engine_speed', 'shaft_speed')
@@ -29,9 +29,12 @@ _LONGEST_GAP_S = 0.1
 _SLOWEST_S = 0.02
 """Largest sample period, s, of signals that contain modes of the driveline."""
 _AVERAGED_BELOW_S = 0.5 * PERIOD_S
-_JOINT_SPEEDS = ('engine_speed', 'shaft_speed', 'wheel_speed', TORSION)
-_JOINT_EFFORTS = ('engine_torque', 'clutch_torque', 'load_torque', 'driveshaft_torque')
-_SINGLE = ('vehicle_speed', 'vehicle_accel', 'engine_torque', 'load_torque', 'torque_request')
+_MORE_SIGNALS = {
+    TORSION: ('driveshaft_speed',),
+    'engine_torque': ('engine_effort',),
+    'load_torque': ('wheel_effort',),
+}
+"""Signals that have a quantity too, besides the one in `QUANTITIES`."""
 
 
 def add_columns_option(parser: argparse.ArgumentParser) -> None:
@@ -86,8 +89,8 @@ def read_measured_run(path: Path, columns: ColumnMap) -> Recording:
         values[TORSION] = run.gear.wheel_speed(values['shaft_speed']) - values['wheel_speed']
     else:
         absent[TORSION] = 'w_sr needs the column wheel_speed and run.total_ratio'
-    for name in (*_JOINT_EFFORTS, *_SINGLE, 'slip_reference'):
-        if name not in values:
+    for name in QUANTITIES:
+        if name not in (*values, TIME, 'wheel_speed'):
             absent[name] = f'the log has no {name}'
     for name, of in (('vehicle_accel', 'vehicle_accel'), (TORSION, 'wheel_speed')):
         if name in values and (apart := _apart(log, of)) > _SLOWEST_S:
@@ -148,20 +151,24 @@ def _apart(log: MeasuredLog, name: str) -> float:
 
 def _trajectory(values: Mapping[str, np.ndarray], steps: int) -> Trajectory:
     """Return every signal that a run with the linear clutch has; NaN for those not in the log."""
-    count = steps + 1
-    nothing = np.full(count, np.nan)
-    columns: dict[str, Any] = {
-        signal.name: nothing if signal.unit else ((),) * count
-        for topic in recorded_topics(RunKind())
-        for signal in topic.signals_in(RunKind())
-    }
-    for name, width in (('joint_position', len(JOINTS)), ('actuator_torque', SUBSTEPS + 1)):
-        columns[name] = np.full((count, width), np.nan)
-    columns['clutch_torque'] = columns['actuator_torque']
-    columns['joint_speed'] = np.column_stack([values.get(n, nothing) for n in _JOINT_SPEEDS])
-    columns['joint_effort'] = np.column_stack([values.get(n, nothing) for n in _JOINT_EFFORTS])
-    columns['slip_speed'] = values['engine_speed'] - values['shaft_speed']
-    columns['slip_reference'] = values.get('slip_reference', nothing)[:, None]
-    columns['slip_reference_rate'] = nothing[:, None]
-    columns |= {name: values.get(name, nothing) for name in _SINGLE}
-    return Trajectory.of_columns(columns)
+    run = RunKind()
+    trajectory = Trajectory.of_columns(
+        {
+            signal.name: _nothing(signal, steps + 1)
+            for topic in recorded_topics(run)
+            for signal in topic.signals_in(run)
+        }
+    )
+    for name, samples in values.items():
+        own = (QUANTITIES[name].signal,) if name in QUANTITIES else ()
+        for quantity in (*own, *_MORE_SIGNALS.get(name, ())):
+            trajectory.at_tick(quantity)[:] = samples
+    trajectory.slip_speed[:] = values['engine_speed'] - values['shaft_speed']
+    return trajectory
+
+
+def _nothing(signal: Signal, count: int) -> Any:
+    """Return `count` rows of NaN, or empty texts."""
+    if not signal.unit:
+        return ((),) * count
+    return np.full(count if signal.size == 1 else (count, signal.size or 1), np.nan)

@@ -11,7 +11,13 @@ from typing import Any
 import numpy as np
 
 from ddct_plant.base.errors import DdctError
-from ddct_plant.graph.topics import ENGINE_REQUEST, SENSED_SLIP, Signal, all_signals
+from ddct_plant.graph.topics import (
+    ENGINE_REQUEST,
+    SENSED_SLIP,
+    Signal,
+    all_signals,
+    quantities,
+)
 
 
 @dataclass(frozen=True)
@@ -19,7 +25,8 @@ class Trajectory:
     """
     Signals of a run at the stamps t_0..t_N; row k is step k, so N + 1 rows, all SI.
 
-    A signal of `ddct_plant.graph.topics` is an attribute of its name. States, slip and vehicle
+    A signal of `ddct_plant.graph.topics` is an attribute of its name, and so is each quantity of a
+    signal that has several, such as `engine_speed` of `joint_speed`. States, slip and vehicle
     signals are valid at t_k (efforts and `vehicle_accel` are left limits); torques, reference
     and request answer t_k and apply over [t_k, t_k+1]. Replies to t_N are kept although
     nothing applied them.
@@ -43,13 +50,30 @@ class Trajectory:
         )
 
     def __getattr__(self, name: str) -> Any:
-        """Return a signal, or None where the run lacks it; AttributeError for an unknown name."""
+        """
+        Return a signal, or a quantity of one that has several; None where the run lacks it.
+
+        Raise AttributeError for an unknown name.
+        """
         signals = self.__dict__.get('signals', {})
         if name in signals:
             return signals[name]
         if name in _signal_names():
             return None
-        raise AttributeError(f'there is no signal {name}')
+        if name not in quantities():
+            raise AttributeError(f'there is no signal {name}')
+        return self.at_tick(name)
+
+    def at_tick(self, name: str) -> Any:
+        """
+        Return a quantity with one value per tick, (N+1,): its value at the tick.
+
+        For a preview and for a torque within the period it is the first value of each row. None
+        where the run lacks it; raise KeyError for an unknown name.
+        """
+        signal, index = quantities()[name]
+        values = self.signals.get(signal.name)
+        return values if values is None or index is None else values[..., index]
 
     @property
     def two_input(self) -> bool:

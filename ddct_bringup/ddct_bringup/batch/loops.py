@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Closed loops of many runs as columns, the counterpart of `ClosedLoop`, and their references."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cache
+from itertools import accumulate
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from ddct_bringup.batch.columns import Filters, distinct
 from ddct_bringup.batch.plants import Plants
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.base.units import rpm_from_rad_s
+from ddct_plant.graph.topics import all_signals
 from ddct_plant.linear.lti import StateSpace
 from ddct_plant.models.actuator import ActuatorParameters
 from ddct_plant.scenario.control import PROFILE
@@ -19,8 +21,11 @@ from ddct_plant.scenario.settings import RunSettings
 from ddct_reference.factory import make_descent
 
 RAMP = 'ramp'
-_ROWS = 14
-"""Number of signals per step; each joint has its own."""
+_SIGNALS = (
+    *('joint_speed', 'joint_effort', 'slip_speed', 'vehicle_accel'),
+    *('load_torque', 'slip_reference', 'torque_request', 'torque_demand'),
+)
+"""Signals that are recorded at each step, in the order of the values of a step."""
 OpenLoops = Callable[[int, np.ndarray], np.ndarray]
 """Function of step and C_load that returns the open-loop torques in N m, (R,)."""
 
@@ -37,7 +42,8 @@ def simulate_batch(runs: Sequence[RunSettings], feedback: Sequence[StateSpace]) 
     references = References(runs, steps)
     open_loop, filters = _open_loops(runs, plants), Filters(feedback)
     feedback_start = start if runs[0].detailed else 0
-    record = np.empty((steps + 1, _ROWS, len(runs)))
+    rows = _rows()
+    record = np.empty((steps + 1, max(each.stop for each in rows.values()), len(runs)))
     for step in range(steps + 1):
         now = plants.outputs()
         load = plants.load_torque(step)
@@ -52,7 +58,7 @@ def simulate_batch(runs: Sequence[RunSettings], feedback: Sequence[StateSpace]) 
             plants.engine_torque[step],
         ]
         plants.advance(step, load, request)
-    return _trajectory(record)
+    return _trajectory(record, rows)
 
 
 def _open_loops(runs: Sequence[RunSettings], plants: Plants) -> OpenLoops:
@@ -72,22 +78,24 @@ def _open_loops(runs: Sequence[RunSettings], plants: Plants) -> OpenLoops:
     return lambda step, load: filters.update(torques[step], load)
 
 
-def _trajectory(record: np.ndarray) -> Trajectory:
-    """Return the trajectory of recorded rows (N+1, rows, R)."""
+def _rows() -> dict[str, slice]:
+    """Return by signal of `_SIGNALS` the rows of its values; a preview has its first value."""
+    sizes = {signal.name: signal.size or 1 for signal in all_signals()}
+    ends = list(accumulate((sizes[name] for name in _SIGNALS), initial=0))
+    return {name: slice(*ends[at : at + 2]) for at, name in enumerate(_SIGNALS)}
+
+
+def _trajectory(record: np.ndarray, rows: Mapping[str, slice]) -> Trajectory:
+    """Return the trajectory of recorded values (N+1, rows, R)."""
     # The samples of each run are contiguous, so metrics are summed in the order of a single run.
     signals = np.empty((record.shape[1], record.shape[2], record.shape[0]))
     for index in range(len(signals)):
         signals[index] = record[:, index].T
+    single = {signal.name for signal in all_signals() if signal.size == 1}
     return Trajectory(
         {
-            'joint_speed': np.moveaxis(signals[:4], 0, -1),
-            'joint_effort': np.moveaxis(signals[4:8], 0, -1),
-            'slip_speed': signals[8],
-            'vehicle_accel': signals[9],
-            'load_torque': signals[10],
-            'slip_reference': signals[11, :, :, np.newaxis],
-            'torque_request': signals[12],
-            'torque_demand': signals[13],
+            name: signals[place.start] if name in single else np.moveaxis(signals[place], 0, -1)
+            for name, place in rows.items()
         }
     )
 

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Linear plants of many runs: engine, load, actuator, clutch and driveline."""
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -22,6 +23,7 @@ _STATES = slice(0, len(STATES))
 _ENGINE, _LOAD = len(STATES), len(STATES) + 1
 _ACTUATOR = slice(_LOAD + 1, _LOAD + 7)
 """Row indices of the input of a step: states, C_m, C_load, and `values` of `Actuators`."""
+_NO_ANGLES = (math.nan,) * 3
 _LAG_STATES = slice(0, 4)
 _EARLIER, _LATER = 4, 5
 """Row indices of the input of an actuator: states of G_a, and both requests in a period."""
@@ -67,8 +69,8 @@ class Plants:
         self._torques: Any = (start.engine_torque, start.clutch_torque, start.load_torque)
 
     def outputs(self) -> Any:
-        """Return `DrivelineOutputs` at the current step, each value (R,), without angles."""
-        states: Any = self._values[_STATES]
+        """Return `DrivelineOutputs` at the current step, each value (R,); the angles are NaN."""
+        states: Any = [*self._values[_STATES], *_NO_ANGLES]
         return driveline_outputs(self._driveline, self._wheel_radius, states, self._torques)
 
     def load_torque(self, step: int) -> np.ndarray:

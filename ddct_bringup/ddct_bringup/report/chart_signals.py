@@ -48,7 +48,7 @@ CHART_SIGNALS = (
         'e',
         'rpm',
         'reference less w_d. Below zero the clutch slips more than it should.',
-        lambda run: rpm_from_rad_s(run.slip_reference[:, 0] - run.slip_speed),
+        lambda run: rpm_from_rad_s(run.at_tick('slip_reference') - run.slip_speed),
     ),
     ChartSignal(
         'w_sr',
@@ -56,7 +56,7 @@ CHART_SIGNALS = (
         'w_sr',
         'rpm',
         'speed of the inner end of the driveshaft less that of the wheel. Above zero it winds up.',
-        lambda run: rpm_from_rad_s(run.joint_speed[:, 3]),
+        lambda run: rpm_from_rad_s(run.driveshaft_speed),
     ),
     ChartSignal(
         'A_x',
@@ -80,7 +80,7 @@ CHART_SIGNALS = (
         'C_f',
         'N m',
         'what the actuator gives, after its delay and its dynamics.',
-        lambda run: run.actuator_torque[:, 0],
+        lambda run: run.at_tick('actuator_torque'),
     ),
     ChartSignal(
         'C_f_clutch',
@@ -88,7 +88,7 @@ CHART_SIGNALS = (
         'C_f',
         'N m',
         'what the clutch can transmit: that of the actuator times the wear gain.',
-        lambda run: run.clutch_torque[:, 0],
+        lambda run: run.at_tick('clutch_torque'),
     ),
     ChartSignal(
         'C_m',
@@ -110,8 +110,8 @@ def _capacity(run: Trajectory) -> np.ndarray:
     """
     if run.clutch_phase is None:
         return np.full(run.steps + 1, np.nan)
-    locked = run.clutch_phase == LOCKED
-    return np.where(locked, run.clutch_static_torque[:, 0], run.clutch_torque[:, 0])
+    static, kinetic = run.at_tick('clutch_static_torque'), run.at_tick('clutch_torque')
+    return np.where(run.clutch_phase == LOCKED, static, kinetic)
 
 
 TRANSMITTED = ChartSignal(
@@ -120,7 +120,7 @@ TRANSMITTED = ChartSignal(
     'C_f',
     'N m',
     'what passes through the plates. A thin line is what they can carry.',
-    lambda run: run.joint_effort[:, 1],
+    lambda run: run.primary_shaft_effort,
     _capacity,
 )
 
@@ -166,7 +166,7 @@ LOG_SIGNALS = (
         'w_m',
         'rpm',
         'speed of the engine.',
-        lambda run: rpm_from_rad_s(run.joint_speed[:, 0]),
+        lambda run: rpm_from_rad_s(run.engine_speed),
     ),
     ChartSignal(
         'V_x',
@@ -183,7 +183,7 @@ LOG_SIGNALS = (
         'C_s',
         'N m',
         'at the wheels. Above zero it drives them.',
-        lambda run: run.joint_effort[:, 3],
+        lambda run: run.driveshaft_effort,
     ),
 )
 """Signals of logs of a car, and of the runs compared with them."""

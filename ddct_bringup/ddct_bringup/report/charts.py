@@ -89,7 +89,7 @@ def charted_signals(runs: Sequence[ChartRun]) -> list[ChartSignal]:
 
 def has_reference(runs: Sequence[ChartRun]) -> bool:
     """Return whether any run has a slip reference; only some logs have one."""
-    return any(np.isfinite(run.trajectory.slip_reference[:, 0]).any() for run in runs)
+    return any(np.isfinite(run.trajectory.at_tick('slip_reference')).any() for run in runs)
 
 
 def _drawn(runs: Sequence[ChartRun]) -> list[tuple[ChartSignal, ...]]:
@@ -105,7 +105,7 @@ def _source(trajectory: Trajectory, quantities: Sequence[ChartSignal]) -> Column
         columns[quantity.key] = quantity.values(trajectory)
         if quantity.limit:
             columns[quantity.limit_key] = quantity.limit(trajectory)
-    columns['reference'] = rpm_from_rad_s(trajectory.slip_reference[:, 0])
+    columns['reference'] = rpm_from_rad_s(trajectory.at_tick('slip_reference'))
     return ColumnDataSource({key: values.astype(np.float32) for key, values in columns.items()})
 
 

@@ -36,11 +36,8 @@ class ClosedLoop:
     def reply(self, step: int) -> dict[str, Any]:
         """Return every signal of step k by its name in `Trajectory`; advance all but the plant."""
         observation = self.plant.observe(step)
-        slip_speed, shaft_speed = (
-            observation.measured.slip_speed,
-            observation.measured.joint_speed[1],
-        )
-        speeds, rates = self._reference.update(step, slip_speed, shaft_speed)
+        measured = observation.measured
+        speeds, rates = self._reference.update(step, measured.slip_speed, measured.shaft_speed)
         measurement = Measurement.of_plant(step, observation, speeds, rates)
         started = time.perf_counter()
         request = self._architecture.update(measurement)

@@ -14,17 +14,16 @@ from ddct_plant.base.errors import printable
 from ddct_plant.files.csv_table import csv_text
 from ddct_plant.graph.topics import (
     JOINT_STATES,
-    JOINTS,
     SENSED_JOINT_STATES,
-    SENSED_JOINTS,
     SLIP,
     SLIP_REFERENCE,
     Signal,
     all_signals,
+    column_name,
 )
 
-_OF_JOINTS = ((JOINT_STATES, JOINTS), (SENSED_JOINT_STATES, SENSED_JOINTS))
-"""Topics with one value per joint, and the joints of each."""
+_OF_JOINTS = (JOINT_STATES, SENSED_JOINT_STATES)
+"""Topics with one value per joint: the first columns, joint by joint."""
 
 
 def scores_csv(runs: Sequence[Entry]) -> str:
@@ -60,11 +59,9 @@ def signal_columns(trajectory: Trajectory) -> dict[str, np.ndarray]:
     For previews and for torques within a period it is the value at the tick.
     """
     columns = {'time_s': trajectory.time_s, **_joint_columns(trajectory)}
-    of_joints = [signal for topic, _ in _OF_JOINTS for signal in topic.signals]
     for signal in sorted(all_signals(), key=_place):
-        if signal.unit and signal.name in trajectory.signals and signal not in of_joints:
-            values = trajectory.signals[signal.name]
-            columns[signal.column] = np.array(values).reshape(len(values), -1)[:, 0]
+        if signal.unit and signal.name in trajectory.signals and not signal.parts:
+            columns[signal.column] = trajectory.at_tick(signal.name)
     return columns
 
 
@@ -74,10 +71,10 @@ def _text(value: Any) -> Any:
 
 def _joint_columns(trajectory: Trajectory) -> dict[str, np.ndarray]:
     return {
-        signal.column.replace('joint', joint): trajectory.signals[signal.name][:, index]
-        for topic, joints in _OF_JOINTS
-        for index, joint in enumerate(joints)
-        for signal in topic.signals
+        column_name(name, signal.unit): trajectory.at_tick(name)
+        for topic in _OF_JOINTS
+        for names in zip(*(signal.parts for signal in topic.signals), strict=True)
+        for name, signal in zip(names, topic.signals, strict=True)
         if signal.name in trajectory.signals
     }
 

@@ -203,9 +203,9 @@ def _window_metrics(trajectory: Trajectory, first: int, last: int) -> dict[str, 
     # The filters get no sample after the window, so a longer run has the same metrics.
     acceleration = trajectory.vehicle_accel[..., : last + 1]
     weighted = weighted_acceleration(acceleration)[..., window]
-    error = (trajectory.slip_reference[..., 0] - trajectory.slip_speed)[..., window]
+    error = (trajectory.at_tick('slip_reference') - trajectory.slip_speed)[..., window]
     values = (
-        rpm_from_rad_s(np.std(trajectory.joint_speed[..., window, 3], axis=-1)),
+        rpm_from_rad_s(np.std(trajectory.driveshaft_speed[..., window], axis=-1)),
         np.std(acceleration[..., window], axis=-1),
         rpm_from_rad_s(np.sqrt(np.mean(error**2, axis=-1))),
         vibration_dose(weighted),

@@ -46,7 +46,7 @@ def engine_end(recording: Recording) -> str | None:
     """Return `stalled` or `over_revved` where the last state of the engine ended the run."""
     if recording.settings is None:
         return None
-    speed = float(recording.trajectory.joint_speed[-1, 0])
+    speed = float(recording.trajectory.engine_speed[-1])
     return recording.settings.scenario.end_cause(speed)
 
 

@@ -14,8 +14,6 @@ from ddct_plant.base.units import rad_s_from_rpm
 
 LEAST_SLIP_RPM = 50.0
 """Least slip at control start, in rpm; below it the minimum is too small for a useful ratio."""
-_PRIMARY = 1
-"""Index of the primary shaft among the joints; its effort is C_f."""
 
 
 def slips_at(trajectory: Trajectory, start: int) -> np.ndarray:
@@ -48,7 +46,7 @@ def friction_work(trajectory: Trajectory, start: int = 0) -> np.ndarray:
     if trajectory.friction_work is not None:
         # The work recorded at a step is that of the period before; at step 0 it is zero.
         return np.sum(trajectory.friction_work[..., start + 1 if start else 0 :], axis=-1)
-    torque = trajectory.joint_effort[..., start:, _PRIMARY]
+    torque = trajectory.primary_shaft_effort[..., start:]
     return scipy.integrate.trapezoid(
         np.abs(torque * trajectory.slip_speed[..., start:]), dx=PERIOD_S
     )

@@ -24,8 +24,6 @@ from ddct_plant.base.timebase import PERIOD_S, steps_in, time_of_step
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.models.driveline import RELEASE
 
-_DRIVESHAFT = 3
-"""Index of the driveshaft among the joints."""
 Values = float | int | np.ndarray
 """One number, or one number per run, (R,)."""
 
@@ -47,7 +45,7 @@ class JudgedRun:
     @cached_property
     def torsion_speed_rpm(self) -> np.ndarray:
         """Torsion speed w_sr in rpm, (N+1,)."""
-        return rpm_from_rad_s(self.trajectory.joint_speed[..., _DRIVESHAFT])
+        return rpm_from_rad_s(self.trajectory.driveshaft_speed)
 
     @cached_property
     def shuffle(self) -> tuple[Values | None, Values | None]:
@@ -88,7 +86,7 @@ class JudgedRun:
     @property
     def driveshaft_torque(self) -> np.ndarray:
         """Torque of the driveshaft in N m from control start on."""
-        return self.trajectory.joint_effort[..., self.control_start :, _DRIVESHAFT]
+        return self.trajectory.driveshaft_effort[..., self.control_start :]
 
     @property
     def driving_acceleration(self) -> Values | None:
@@ -99,7 +97,7 @@ class JudgedRun:
         """
         if self.plant is None:
             return None
-        torque = np.max(self.trajectory.joint_effort[..., _DRIVESHAFT], axis=-1)
+        torque = np.max(self.trajectory.driveshaft_effort, axis=-1)
         return torque / (self.plant.wheel_radius * self.plant.mass)
 
     @cached_property

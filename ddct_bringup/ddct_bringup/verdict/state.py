@@ -32,7 +32,6 @@ OSCILLATING, RUNAWAY, INVALID = 'oscillating', 'runaway', 'invalid'
 SUCCESSES = (ENGAGED, NEARLY_ENGAGED)
 """States of a successful engagement, the best first."""
 STATES = (*SUCCESSES, NOT_ENGAGED, OSCILLATING, RUNAWAY, STALLED, OVER_REVVED, INVALID)
-_ENGINE = 0
 """Index of the engine among the joints."""
 DOUBT = 2.0
 """Half-width of the 95 % confidence interval of a slope, in standard errors."""
@@ -56,10 +55,10 @@ def slip_state(
     cycle = cycle_of(slip, turns, rules)
     if success := _success(trajectory.clutch_phase, slip, cycle, rules):
         return success
-    reference = abs(rpm_from_rad_s(trajectory.slip_reference[-1, 0]))
+    reference = abs(rpm_from_rad_s(trajectory.at_tick('slip_reference')[-1]))
     apart = _driven_apart(slip, rules) if cycle is None else _swings_apart(slip, turns, rules)
     if plant is not None:
-        fastest = trajectory.joint_speed[-1 - _window(rules) :, _ENGINE].max()
+        fastest = trajectory.engine_speed[-1 - _window(rules) :].max()
         apart = apart or (fastest >= plant.cut_speed and _stays_grown(slip, rules))
     if apart and reference <= rules.engaged_slip:
         return RUNAWAY

@@ -7,11 +7,13 @@ Nodes, recorder, reader, trajectory, the tables of signals and the live view use
 values and units. A new topic is one entry below, and the node that publishes it.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cache
 from operator import itemgetter
 from typing import Any
 
+from ddct_plant.base.timebase import SUBSTEPS
 from ddct_plant.graph.message_kinds import (
     ClassOf,
     Joints,
@@ -27,10 +29,12 @@ from ddct_plant.graph.message_kinds import (
     ros_class,
 )
 from ddct_plant.models.clutch import LINEAR, STICK_SLIP
+from ddct_plant.models.driveline import JointValues
+from ddct_plant.sensors.sensed import SensedJoints
 
-JOINTS = ('engine', 'primary_shaft', 'wheel', 'driveshaft')
+JOINTS = JointValues._fields
 """Names of the joints in `driveline/joint_states`, in their order."""
-SENSED_JOINTS = JOINTS[:3]
+SENSED_JOINTS = SensedJoints._fields
 """Joints whose speed a sensor measures."""
 BASE_LINK = 'base_link'
 """Frame of the car's body (REP-105), x forward: of its motion, and of what joints carry."""
@@ -62,23 +66,41 @@ class RunKind:
 
 @dataclass(frozen=True)
 class Signal:
-    """One quantity of a topic, with one row per tick in a trajectory."""
+    """One quantity of a topic, or several of one unit, with one row per tick in a trajectory."""
 
     name: str
     unit: str
     """SI unit, such as 'rad/s'; '1' for a bare number, '' for a signal that is not numeric."""
     about: str
-    """Meaning, and shape if it is more than one number."""
+    """Meaning."""
+    size: int | None = 1
+    """Number of values in a row; None where it differs from run to run, as for a preview."""
+    parts: tuple[str, ...] = ()
+    """Names of the values of a row that has several quantities; else empty."""
     when: Callable[[RunKind], bool] | None = None
     """Condition on the runs that have it, among those with its topic; None for all of them."""
+
+    def __post_init__(self) -> None:
+        """Raise ValueError where a row does not have one value per name."""
+        if self.parts and len(self.parts) != self.size:
+            raise ValueError(f'{self.name} has {self.size} values and {len(self.parts)} names')
 
     @property
     def column(self) -> str:
         """Name of its column in a table: the name, and the unit if it has one."""
-        if self.unit == '1':
-            return self.name
-        unit = self.unit.replace('/', '_').replace(' ', '_').replace('^', '').lower()
-        return f'{self.name}_{unit}'
+        return column_name(self.name, self.unit)
+
+    @property
+    def quantities(self) -> tuple[str, ...]:
+        """Names of its quantities: those of its values, or its own name."""
+        return self.parts or (self.name,)
+
+
+def column_name(name: str, unit: str) -> str:
+    """Return the name of a quantity's column in a table: its name, and the unit if it has one."""
+    if unit in ('', '1'):
+        return name
+    return f'{name}_{unit.replace("/", "_").replace(" ", "_").replace("^", "").lower()}'
 
 
 @dataclass(frozen=True, eq=False)
@@ -175,6 +197,21 @@ def _sensed(run: RunKind) -> bool:
     return run.sensed
 
 
+def _of_joints(
+    prefix: str, quantity: str, joints: tuple[str, ...], unit: str, about: str
+) -> Signal:
+    """Return the signal with one value per joint, each named after its joint and the quantity."""
+    parts = tuple(f'{prefix}{joint}_{quantity}' for joint in joints)
+    return Signal(f'{prefix}joint_{quantity}', unit, about, len(joints), parts)
+
+
+def _torque_row(name: str, about: str, **options: Any) -> Signal:
+    return Signal(name, 'N m', f'{about}, at 0, 1, ..., 10 ms after t_k', SUBSTEPS + 1, **options)
+
+
+_REPEATED = '1 where the last value is repeated, else 0'
+
+
 def _of_sensor(
     name: str, kind: MessageKind, publisher: str, frame: str, measured: Signal
 ) -> Topic:
@@ -191,10 +228,6 @@ def _flags_of_sensors(
     return Topic(name, kind, publisher, signals, when=_sensed, later=True)
 
 
-def _flag(name: str, which: str = '') -> Signal:
-    return Signal(name, '1', f'{which}1 where the last value is repeated, else 0')
-
-
 _TRAJECTORY = 'trajectory_msgs/msg/JointTrajectory'
 
 
@@ -205,9 +238,9 @@ JOINT_STATES = Topic(
     Joints('sensor_msgs/msg/JointState', JOINTS),
     'driveline',
     (
-        Signal('joint_position', 'rad', '(4,) driveshaft is theta_sr, the others begin at 0'),
-        Signal('joint_speed', 'rad/s', '(4,) w_m, w_p, w_r, w_sr'),
-        Signal('joint_effort', 'N m', '(4,) C_m, transmitted C_f, C_load, shaft torque'),
+        _of_joints('', 'position', JOINTS, 'rad', 'angles from 0, theta_sr of the driveshaft'),
+        _of_joints('', 'speed', JOINTS, 'rad/s', 'w_m, w_p, w_r, w_sr'),
+        _of_joints('', 'effort', JOINTS, 'N m', 'C_m, transmitted C_f, C_load, shaft torque'),
     ),
     BASE_LINK,
 )
@@ -248,7 +281,7 @@ SENSED_JOINT_STATES = _of_sensor(
     Joints('sensor_msgs/msg/JointState', SENSED_JOINTS, ('velocity',)),
     'driveline',
     BASE_LINK,
-    Signal('sensed_joint_speed', 'rad/s', '(3,) w_m, w_p, w_r as measured'),
+    _of_joints('sensed_', 'speed', SENSED_JOINTS, 'rad/s', 'w_m, w_p, w_r as measured'),
 )
 SENSED_SLIP = _of_sensor(
     'sensors/slip',
@@ -268,9 +301,9 @@ SENSOR_STATUS = _flags_of_sensors(
     'sensors/status',
     'driveline',
     (
-        (_flag('sensed_joint_held', '(3,) '), SENSED_JOINTS),
-        (_flag('sensed_slip_held'), ('slip',)),
-        (_flag('sensed_vehicle_held'), ('vehicle',)),
+        (_of_joints('sensed_', 'held', SENSED_JOINTS, '1', _REPEATED), SENSED_JOINTS),
+        (Signal('sensed_slip_held', '1', _REPEATED), ('slip',)),
+        (Signal('sensed_vehicle_held', '1', _REPEATED), ('vehicle',)),
     ),
 )
 TORQUE_DEMAND = _torque(
@@ -287,7 +320,9 @@ SENSED_ENGINE_TORQUE = _of_sensor(
     Signal('sensed_engine_torque', 'N m', 'C_m as estimated'),
 )
 ENGINE_SENSOR_STATUS = _flags_of_sensors(
-    'sensors/engine_torque_status', 'engine', ((_flag('sensed_torque_held'), ('engine_torque',)),)
+    'sensors/engine_torque_status',
+    'engine',
+    ((Signal('sensed_torque_held', '1', _REPEATED), ('engine_torque',)),),
 )
 LOAD_TORQUE = _torque(
     'load/torque', 'load', WHEEL_LINK, 'load_torque', 'C_load, held over the period'
@@ -305,8 +340,8 @@ SLIP_REFERENCE = Topic(
     PreviewPoints(_TRAJECTORY, ('clutch_slip',)),
     'reference',
     (
-        Signal('slip_reference', 'rad/s', '(P+1,) column i is i x 10 ms ahead'),
-        Signal('slip_reference_rate', 'rad/s^2', '(P+1,) over the period that follows'),
+        Signal('slip_reference', 'rad/s', 'value i is i x 10 ms ahead', None),
+        Signal('slip_reference_rate', 'rad/s^2', 'each over the period that follows', None),
     ),
     CLUTCH_LINK,
 )
@@ -343,7 +378,7 @@ ACTUATOR_TORQUE = Topic(
     'actuator/torque',
     TorqueRows(_TRAJECTORY, ('clutch',)),
     'actuator',
-    (Signal('actuator_torque', 'N m', '(11,) at 0, 1, ..., 10 ms after t_k'),),
+    (_torque_row('actuator_torque', 'torque of the actuator'),),
     CLUTCH_LINK,
 )
 CLUTCH_TORQUE = Topic(
@@ -351,13 +386,11 @@ CLUTCH_TORQUE = Topic(
     TorqueRows(_TRAJECTORY, ('clutch', 'clutch_static')),
     'clutch',
     (
-        Signal(
+        _torque_row(
             'clutch_torque',
-            'N m',
-            '(11,) as actuator_torque, after wear; of a clutch that '
-            'sticks the capacity while it slips',
+            'torque after wear; of a clutch that sticks the capacity while it slips',
         ),
-        Signal('clutch_static_torque', 'N m', '(11,) while it sticks', when=_stick_slip),
+        _torque_row('clutch_static_torque', 'capacity while it sticks', when=_stick_slip),
     ),
     CLUTCH_LINK,
 )
@@ -439,3 +472,22 @@ def all_signals() -> tuple[Signal, ...]:
         for signal in topic.signals
     ]
     return tuple(signal for _, signal in sorted(ranked, key=itemgetter(0)))
+
+
+def quantities() -> Mapping[str, tuple[Signal, int | None]]:
+    """
+    Return by name of each quantity its signal, and the index of its value at the tick in a row.
+
+    The index is None for a signal with one value.
+    """
+    return _quantities(TOPICS)
+
+
+@cache
+def _quantities(topics: tuple[Topic, ...]) -> Mapping[str, tuple[Signal, int | None]]:
+    return {
+        name: (signal, None if signal.size == 1 else index)
+        for topic in topics
+        for signal in topic.signals
+        for index, name in enumerate(signal.quantities)
+    }

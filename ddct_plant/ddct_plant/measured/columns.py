@@ -14,6 +14,7 @@ from ddct_plant.base.options import close_name, require_known
 from ddct_plant.base.units import si_values
 from ddct_plant.files.input_file import located, user_text
 from ddct_plant.files.yaml_text import parse_yaml
+from ddct_plant.graph.topics import column_name, quantities
 
 TIME = 'time'
 DATE_TIME = 'iso8601'
@@ -30,31 +31,39 @@ MOST_DELAY_S = 0.1
 class LogQuantity:
     """A quantity that a log may have."""
 
-    unit: str
-    """SI unit."""
     symbol: str
     """Symbol of the thesis, empty for none."""
     meaning: str
     """Meaning in a few words."""
-    own_column: str
-    """Name of its column in the output of `score --signals-csv`."""
+    signal: str
+    """Name of this quantity among the signals of a run, empty for the time."""
+
+    @property
+    def unit(self) -> str:
+        """SI unit."""
+        return quantities()[self.signal][0].unit if self.signal else 's'
+
+    @property
+    def own_column(self) -> str:
+        """Name of its column in the output of `score --signals-csv`."""
+        return column_name(self.signal or TIME, self.unit)
 
 
 QUANTITIES: Mapping[str, LogQuantity] = {
-    TIME: LogQuantity('s', 't', 'time, from any instant', 'time_s'),
-    'engine_speed': LogQuantity('rad/s', 'w_m', 'engine', 'engine_speed_rad_s'),
-    'shaft_speed': LogQuantity('rad/s', 'w_p', 'primary shaft', 'primary_shaft_speed_rad_s'),
-    'wheel_speed': LogQuantity('rad/s', 'w_r', 'wheels, their mean', 'wheel_speed_rad_s'),
-    'engine_torque': LogQuantity('N m', 'C_m', 'at the crankshaft', 'engine_torque_n_m'),
+    TIME: LogQuantity('t', 'time, from any instant', ''),
+    'engine_speed': LogQuantity('w_m', 'engine', 'engine_speed'),
+    'shaft_speed': LogQuantity('w_p', 'primary shaft', 'primary_shaft_speed'),
+    'wheel_speed': LogQuantity('w_r', 'wheels, their mean', 'wheel_speed'),
+    'engine_torque': LogQuantity('C_m', 'at the crankshaft', 'engine_torque'),
     'clutch_torque': LogQuantity(
-        'N m', 'C_f', 'transmitted, positive towards the wheels', 'primary_shaft_effort_n_m'
+        'C_f', 'transmitted, positive towards the wheels', 'primary_shaft_effort'
     ),
-    'load_torque': LogQuantity('N m', 'C_load', 'at the wheels', 'load_torque_n_m'),
-    'driveshaft_torque': LogQuantity('N m', '', 'at the wheels', 'driveshaft_effort_n_m'),
-    'vehicle_speed': LogQuantity('m/s', 'V_x', 'of the car', 'vehicle_speed_m_s'),
-    'vehicle_accel': LogQuantity('m/s^2', 'A_x', 'of the car', 'vehicle_accel_m_s2'),
-    'slip_reference': LogQuantity('rad/s', '', 'what w_m - w_p should be', 'slip_reference_rad_s'),
-    'torque_request': LogQuantity('N m', '', 'asked of the clutch', 'torque_request_n_m'),
+    'load_torque': LogQuantity('C_load', 'at the wheels', 'load_torque'),
+    'driveshaft_torque': LogQuantity('', 'at the wheels', 'driveshaft_effort'),
+    'vehicle_speed': LogQuantity('V_x', 'of the car', 'vehicle_speed'),
+    'vehicle_accel': LogQuantity('A_x', 'of the car', 'vehicle_accel'),
+    'slip_reference': LogQuantity('', 'what w_m - w_p should be', 'slip_reference'),
+    'torque_request': LogQuantity('', 'asked of the clutch', 'torque_request'),
 }
 
 OWN_HELD = ('engine_torque',)

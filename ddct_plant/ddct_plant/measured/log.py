@@ -6,26 +6,14 @@ import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-from mcap.exceptions import McapError
-from mcap.reader import make_reader
-from mcap_ros2.decoder import DecoderFactory
 
 from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.base.timebase import START_NS, SUBSTEP_NS, SUBSTEPS
 from ddct_plant.base.units import si_values
 from ddct_plant.files.csv_table import CsvTable, read_csv
 from ddct_plant.files.input_file import mcap_of
-from ddct_plant.graph.topics import (
-    CLUTCH_PHASE,
-    CLUTCH_TORQUE,
-    ENGINE_TORQUE,
-    JOINT_STATES,
-    VEHICLE_ACCEL,
-    Topic,
-)
+from ddct_plant.measured.bag_log import read_bag_signals
 from ddct_plant.measured.columns import (
     DATE_TIME,
     HELD,
@@ -44,7 +32,6 @@ HIGHEST_SPEED = 1000.0
 """Highest speed in rad/s of an engine, shaft or wheel of a car; 3000 rpm read as rad/s is
 higher."""
 SPEEDS = ('engine_speed', 'shaft_speed', 'wheel_speed')
-_BAG_TOPICS = (JOINT_STATES, ENGINE_TORQUE, CLUTCH_TORQUE, CLUTCH_PHASE, VEHICLE_ACCEL)
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,7 +79,8 @@ def read_log(path: Path, columns: ColumnMap, needed: Sequence[str] = ()) -> Meas
     """
     try:
         if path.suffix == '.mcap' or path.is_dir():
-            log = _read_bag_log(path)
+            bag = mcap_of(path)
+            log = MeasuredLog(path, _digest(bag), *read_bag_signals(bag), OWN_HELD)
         else:
             log = _read_csv_log(path, columns, needed)
     except ParameterError as error:
@@ -149,59 +137,6 @@ def _require_speed(table: CsvTable, columns: ColumnMap, name: str, values: np.nd
             f'{table.place(row, column.column)}: {name} is {values[row]:g} rad/s: is it '
             f'in another unit than {column.unit}?'
         )
-
-
-def _read_bag_log(path: Path) -> MeasuredLog:
-    """
-    Return the signals of a recorded bag that a car's own sensors would measure.
-
-    Speeds, C_m and A_x are sampled every 10 ms. C_f is sampled every 1 ms with the linear clutch;
-    with the stick-slip clutch it is the transmitted torque just before each tick. C_load is
-    omitted, because no car measures it. In a run with sensors the signals are the true ones, too.
-    """
-    bag = mcap_of(path)
-    try:
-        values = _bag_values(bag)
-    except (McapError, OSError, ValueError, LookupError, AttributeError) as error:
-        raise DdctError(f'{bag}: cannot be read as a bag ({error}): repair it first') from error
-    joints, torques = values[JOINT_STATES], values[ENGINE_TORQUE]
-    if not joints or not torques:
-        raise DdctError(f'{bag}: no {JOINT_STATES.resolved_name}: not a recording of this project')
-    by_stamp: dict[str, dict[int, float]] = {name: {} for name in SPEEDS}
-    for stamp, (_, speeds, _) in joints.items():
-        for name, speed in zip(SPEEDS, speeds, strict=False):
-            by_stamp[name][stamp] = speed
-    by_stamp['engine_torque'] = {stamp: torque for stamp, (torque,) in torques.items()}
-    if values[CLUTCH_PHASE]:
-        by_stamp['clutch_torque'] = {t: efforts[1] for t, (_, _, efforts) in joints.items()}
-    else:
-        last = max(joints)
-        by_stamp['clutch_torque'] = {
-            stamp + index * SUBSTEP_NS: nodes[index]
-            for stamp, (nodes, *_) in values[CLUTCH_TORQUE].items()
-            for index in range(SUBSTEPS if stamp < last else 1)
-        }
-    accels = values[VEHICLE_ACCEL]
-    by_stamp['vehicle_accel'] = {stamp: accel for stamp, (accel,) in accels.items()}
-    stamps = sorted(set().union(*by_stamp.values()))
-    signals = {
-        name: np.array([found.get(stamp, np.nan) for stamp in stamps])
-        for name, found in by_stamp.items()
-    }
-    time_s = (np.array(stamps) - START_NS) / 1e9
-    return MeasuredLog(path, _digest(bag), time_s, signals, OWN_HELD)
-
-
-def _bag_values(bag: Path) -> dict[Topic, dict[int, tuple[Any, ...]]]:
-    """Return the values of the messages, by topic and by stamp in ns."""
-    topics = {topic.resolved_name: topic for topic in _BAG_TOPICS}
-    values: dict[Topic, dict[int, tuple[Any, ...]]] = {topic: {} for topic in _BAG_TOPICS}
-    with bag.open('rb') as file:
-        reader = make_reader(file, decoder_factories=[DecoderFactory()])
-        for _, channel, message, decoded in reader.iter_decoded_messages(list(topics)):
-            topic = topics[channel.topic]
-            values[topic][message.log_time] = topic.values(decoded)
-    return values
 
 
 def _digest(path: Path) -> str:

@@ -49,16 +49,24 @@ class PhaseEvent(NamedTuple):
     """
 
 
-class DrivelineOutputs(NamedTuple):
-    """The signals of a tick; joints in the order engine, primary shaft, wheel, driveshaft."""
+class JointValues(NamedTuple):
+    """Values of one quantity by joint; their order is that of the joints in messages."""
 
-    joint_position: list[float]
-    """Angles in rad, (4,): theta_sr of the driveshaft, the others integrated from 0."""
-    joint_speed: list[float]
-    """Speeds w_m, w_p, w_r, w_sr in rad/s, (4,)."""
-    joint_effort: list[float]
-    """Torques in N m, (4,), left limits: C_m, transmitted C_f, C_load, shaft torque at the
-    wheel."""
+    engine: float
+    primary_shaft: float
+    wheel: float
+    driveshaft: float
+
+
+class DrivelineOutputs(NamedTuple):
+    """The signals of a tick."""
+
+    joint_position: JointValues
+    """Angles in rad: theta_sr of the driveshaft, the others integrated from 0."""
+    joint_speed: JointValues
+    """Speeds w_m, w_p, w_r, w_sr in rad/s."""
+    joint_effort: JointValues
+    """Torques in N m, left limits: C_m, transmitted C_f, C_load, shaft torque at the wheel."""
     slip_speed: float
     """Slip speed w_d = w_m - w_p in rad/s."""
     vehicle_speed: float
@@ -71,6 +79,26 @@ class DrivelineOutputs(NamedTuple):
     """Exact friction work in J of the last period."""
     phase_events: tuple[PhaseEvent, ...] | None = None
     """Events at slip zero in the last period, in the order of time."""
+
+    @property
+    def engine_speed(self) -> float:
+        """Engine speed w_m in rad/s."""
+        return self.joint_speed.engine
+
+    @property
+    def shaft_speed(self) -> float:
+        """Speed of the primary shaft w_p in rad/s."""
+        return self.joint_speed.primary_shaft
+
+    @property
+    def wheel_speed(self) -> float:
+        """Wheel speed w_r in rad/s."""
+        return self.joint_speed.wheel
+
+    @property
+    def twist(self) -> float:
+        """Twist of the driveshaft theta_sr in rad."""
+        return self.joint_position.driveshaft
 
 
 def driveline_outputs(
@@ -90,16 +118,16 @@ def driveline_outputs(
     The last three arguments are the fields of `DrivelineOutputs` for a stick-slip clutch. The slip
     is exactly 0 while the clutch sticks, and the acceleration while the wheels stick.
     """
-    engine, shaft, wheel, twist, *angles = state
+    engine, shaft, wheel, twist, engine_angle, shaft_angle, wheel_angle = state
     p = parameters
     twist_speed = p.gear.wheel_speed(shaft) - wheel
     shaft_torque = p.halfshaft_damping * twist_speed + p.halfshaft_stiffness * twist
     engine_torque, clutch_torque, load_torque = torques
     wheel_accel = 0.0 if wheels_stick else (shaft_torque - load_torque) / p.vehicle_inertia
     return DrivelineOutputs(
-        joint_position=[*angles, twist],
-        joint_speed=[engine, shaft, wheel, twist_speed],
-        joint_effort=[engine_torque, clutch_torque, load_torque, shaft_torque],
+        joint_position=JointValues(engine_angle, shaft_angle, wheel_angle, twist),
+        joint_speed=JointValues(engine, shaft, wheel, twist_speed),
+        joint_effort=JointValues(engine_torque, clutch_torque, load_torque, shaft_torque),
         slip_speed=0.0 if clutch_sticks else engine - shaft,
         vehicle_speed=wheel_radius * wheel,
         vehicle_accel=wheel_radius * wheel_accel,

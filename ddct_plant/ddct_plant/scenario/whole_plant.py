@@ -114,7 +114,7 @@ class WholePlant:
         # A controller that commands the engine receives the demand, others the delivered torque.
         if self._two_input:
             return Observation(outputs, measured, demand, None, demand)
-        torque = reported = self._engine.torque(step, speed=outputs.joint_speed[0])
+        torque = reported = self._engine.torque(step, speed=outputs.engine_speed)
         if self._estimate is not None:
             reported = self._estimate.measure(step, torque).sensed_engine_torque
         return Observation(outputs, measured, demand, torque, reported)
@@ -131,7 +131,7 @@ class WholePlant:
         actuator_torque = self.actuator.update(torque_request)
         engine_torque = observation.delivered
         if engine_torque is None:
-            engine_torque = self._engine.torque(step, engine_request, outputs.joint_speed[0])
+            engine_torque = self._engine.torque(step, engine_request, outputs.engine_speed)
         reply = {
             'joint_position': outputs.joint_position,
             'joint_speed': outputs.joint_speed,

@@ -14,8 +14,16 @@ class MeasuredSpeeds(Protocol):
     """Speeds that controller and reference receive: measured by sensors, or true without them."""
 
     @property
-    def joint_speed(self) -> list[float]:
-        """Speeds in rad/s; the first three are w_m, w_p and w_r."""
+    def engine_speed(self) -> float:
+        """Engine speed w_m in rad/s."""
+
+    @property
+    def shaft_speed(self) -> float:
+        """Speed of the primary shaft w_p in rad/s."""
+
+    @property
+    def wheel_speed(self) -> float:
+        """Wheel speed w_r in rad/s."""
 
     @property
     def slip_speed(self) -> float:
@@ -26,13 +34,21 @@ class MeasuredSpeeds(Protocol):
         """Vehicle speed V_x in m/s."""
 
 
+class SensedJoints(NamedTuple):
+    """Values of one quantity by joint with a speed sensor, in the order of their message."""
+
+    engine: float
+    primary_shaft: float
+    wheel: float
+
+
 class SpeedMeasurements(NamedTuple):
     """Measurements of the speed sensors at one step, under the names of the run's signals."""
 
-    sensed_joint_speed: list[float]
-    """Measured speeds w_m, w_p, w_r in rad/s, (3,)."""
-    sensed_joint_held: list[float]
-    """Flags of w_m, w_p, w_r, (3,): 1 where the last value is repeated, else 0."""
+    sensed_joint_speed: SensedJoints
+    """Measured speeds w_m, w_p, w_r in rad/s."""
+    sensed_joint_held: SensedJoints
+    """Flags of w_m, w_p, w_r: 1 where the last value is repeated, else 0."""
     sensed_slip_speed: float
     """Slip speed in rad/s: measured w_m less measured w_p."""
     sensed_slip_held: float
@@ -43,9 +59,19 @@ class SpeedMeasurements(NamedTuple):
     """Flag of the vehicle speed: 1 where the last value is repeated, else 0."""
 
     @property
-    def joint_speed(self) -> list[float]:
-        """Measured speeds w_m, w_p, w_r in rad/s, (3,)."""
-        return self.sensed_joint_speed
+    def engine_speed(self) -> float:
+        """Measured engine speed w_m in rad/s."""
+        return self.sensed_joint_speed.engine
+
+    @property
+    def shaft_speed(self) -> float:
+        """Measured speed of the primary shaft w_p in rad/s."""
+        return self.sensed_joint_speed.primary_shaft
+
+    @property
+    def wheel_speed(self) -> float:
+        """Measured wheel speed w_r in rad/s."""
+        return self.sensed_joint_speed.wheel
 
     @property
     def slip_speed(self) -> float:
@@ -98,26 +124,20 @@ class DrivelineSensors(Sensors[DrivelineOutputs, SpeedMeasurements]):
 
     def __init__(self, parameters: SensorParameters, seed: int) -> None:
         """Make the four sensors; their random numbers follow from the seed of the run."""
-        self._shafts = [
-            ShaftSensor(options, name, seed)
-            for name, options in (
-                ('engine_speed', parameters.engine_speed),
-                ('shaft_speed', parameters.shaft_speed),
-                ('wheel_speed', parameters.wheel_speed),
-            )
-        ]
+        self._engine = ShaftSensor(parameters.engine_speed, 'engine_speed', seed)
+        self._shaft = ShaftSensor(parameters.shaft_speed, 'shaft_speed', seed)
+        self._wheel = ShaftSensor(parameters.wheel_speed, 'wheel_speed', seed)
         self._vehicle = Sensor(parameters.vehicle_speed, 'vehicle_speed', seed)
 
     def _take(self, truth: DrivelineOutputs) -> SpeedMeasurements:
-        shafts = [
-            sensor.take(truth.joint_position[joint], truth.joint_speed[joint])
-            for joint, sensor in enumerate(self._shafts)
-        ]
-        engine, shaft, _ = shafts
+        angles, speeds = truth.joint_position, truth.joint_speed
+        engine = self._engine.take(angles.engine, speeds.engine)
+        shaft = self._shaft.take(angles.primary_shaft, speeds.primary_shaft)
+        wheel = self._wheel.take(angles.wheel, speeds.wheel)
         vehicle = self._vehicle.take(truth.vehicle_speed)
         return SpeedMeasurements(
-            sensed_joint_speed=[sample.value for sample in shafts],
-            sensed_joint_held=[float(sample.held) for sample in shafts],
+            sensed_joint_speed=SensedJoints(engine.value, shaft.value, wheel.value),
+            sensed_joint_held=SensedJoints(*map(float, (engine.held, shaft.held, wheel.held))),
             sensed_slip_speed=engine.value - shaft.value,
             sensed_slip_held=float(engine.held or shaft.held),
             sensed_vehicle_speed=vehicle.value,

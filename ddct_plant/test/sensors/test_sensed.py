@@ -7,7 +7,7 @@ import dataclasses
 import pytest
 
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.models.driveline import DrivelineOutputs
+from ddct_plant.models.driveline import DrivelineOutputs, JointValues
 from ddct_plant.scenario.differences import changed_values
 from ddct_plant.scenario.file import load_scenario, scenario_digest, scenario_to_yaml
 from ddct_plant.scenario.plant import driveline_sensors, torque_estimate
@@ -32,9 +32,11 @@ assert NOISY is not None
 
 
 def outputs(step: int) -> DrivelineOutputs:
-    speeds = [160.0 + 0.1 * step, 150.0, 16.0, 0.0]
-    positions = [0.01 * step * speed for speed in speeds]
-    return DrivelineOutputs(positions, speeds, [0.0] * 4, speeds[0] - speeds[1], 5.0, 0.0)
+    speeds = JointValues(160.0 + 0.1 * step, 150.0, 16.0, 0.0)
+    positions = JointValues(*(0.01 * step * speed for speed in speeds))
+    none = JointValues(0.0, 0.0, 0.0, 0.0)
+    slip = speeds.engine - speeds.primary_shaft
+    return DrivelineOutputs(positions, speeds, none, slip, 5.0, 0.0)
 
 
 def run(sensors: DrivelineSensors, steps: int = 200):

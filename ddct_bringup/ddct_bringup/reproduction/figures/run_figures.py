@@ -41,8 +41,8 @@ def _line(run: Trajectory, quantity: str) -> tuple[np.ndarray, np.ndarray]:
     """Return time in s and w_d, its reference or w_sr in rpm, or A_x in m/s^2, from _FIRST_S."""
     speeds = {
         'w_d': run.slip_speed,
-        'reference': run.slip_reference[:, 0],
-        'w_sr': run.joint_speed[:, 3],
+        'reference': run.at_tick('slip_reference'),
+        'w_sr': run.driveshaft_speed,
     }
     values = rpm_from_rad_s(speeds[quantity]) if quantity in speeds else run.vehicle_accel
     shown = run.time_s >= _FIRST_S

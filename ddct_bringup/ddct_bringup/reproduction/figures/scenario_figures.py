@@ -35,7 +35,7 @@ _PRINTED_PLANT = 'LTI, coefficients as printed'
 
 def _reference_rpm(run: HeadlessRun) -> tuple[np.ndarray, np.ndarray]:
     """Return time in s, up to _LAST_S, and the slip reference of a run in rpm."""
-    reference = rpm_from_rad_s(run.trajectory.slip_reference[:, 0])
+    reference = rpm_from_rad_s(run.trajectory.at_tick('slip_reference'))
     return run.trajectory.time_s[:_SHOWN], reference[:_SHOWN]
 
 

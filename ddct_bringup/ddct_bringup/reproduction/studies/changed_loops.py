@@ -130,9 +130,7 @@ class LoopWithMeasuredState(ClosedLoop):
     def __init__(self, settings: RunSettings, controller: MpcController[MeasuredState]) -> None:
         """Start in the run's initial state."""
         super().__init__(settings, controller)
-        controller.observer.twist = lambda: float(
-            self.plant.driveline.outputs().joint_position[TWIST]
-        )
+        controller.observer.twist = lambda: self.plant.driveline.outputs().twist
 
 
 def slip_after_load_step(

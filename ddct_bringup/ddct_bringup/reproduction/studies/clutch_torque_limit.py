@@ -142,8 +142,8 @@ def _predict(run: Trajectory, start: int, last: int) -> dict[str, tuple[np.ndarr
     """
     driveline, vehicle = THESIS_SCENARIO.driveline, THESIS_SCENARIO.vehicle
     model = transmission_model(driveline)
-    w_m, w_p, w_r, _ = run.joint_speed[0]
-    state = model.at_rest((w_m, w_p, w_r), run.joint_position[0, 3], run.torque_request[0])
+    speeds = run.engine_speed[0], run.primary_shaft_speed[0], run.wheel_speed[0]
+    state = model.at_rest(speeds, run.driveshaft_position[0], run.torque_request[0])
     inputs = np.column_stack([run.torque_request, run.engine_torque, run.load_torque])
     for k in range(start):
         state = model.a @ state + model.b @ inputs[k]

@@ -1,0 +1,90 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Signals of a recorded bag as a car's own sensors would measure them."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from mcap.exceptions import McapError
+from mcap.reader import make_reader
+from mcap_ros2.decoder import DecoderFactory
+
+from ddct_plant.base.errors import DdctError
+from ddct_plant.base.timebase import START_NS, SUBSTEP_NS, SUBSTEPS
+from ddct_plant.graph.topics import (
+    CLUTCH_PHASE,
+    CLUTCH_TORQUE,
+    ENGINE_TORQUE,
+    JOINT_STATES,
+    VEHICLE_ACCEL,
+    quantities,
+)
+from ddct_plant.measured.columns import QUANTITIES
+
+_TOPICS = (JOINT_STATES, ENGINE_TORQUE, CLUTCH_TORQUE, CLUTCH_PHASE, VEHICLE_ACCEL)
+_MEASURED = (
+    *('engine_speed', 'shaft_speed', 'wheel_speed'),
+    *('engine_torque', 'clutch_torque', 'vehicle_accel'),
+)
+_Rows = Mapping[int, Any]
+"""Values of a signal by stamp in ns."""
+
+
+def read_bag_signals(bag: Path) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+    """
+    Return the times in s of the MCAP file of a bag, (n,), and by quantity its values, (n,).
+
+    Speeds, C_m and A_x are sampled every 10 ms. C_f is sampled every 1 ms with the linear clutch;
+    with the stick-slip clutch it is the transmitted torque just before each tick. C_load is
+    omitted, because no car measures it. In a run with sensors the signals are the true ones, too.
+    Raise DdctError for a file that is no recording of this project.
+    """
+    try:
+        rows = _signal_rows(bag)
+    except (McapError, OSError, ValueError, LookupError, AttributeError) as error:
+        raise DdctError(f'{bag}: cannot be read as a bag ({error}): repair it first') from error
+    if not rows['joint_speed'] or not rows['engine_torque']:
+        raise DdctError(f'{bag}: no {JOINT_STATES.resolved_name}: not a recording of this project')
+    by_stamp = {name: _at_ticks(rows, QUANTITIES[name].signal) for name in _MEASURED}
+    if not rows['clutch_phase']:
+        by_stamp['clutch_torque'] = _within_periods(
+            rows['clutch_torque'], max(rows['joint_speed'])
+        )
+    stamps = sorted(set().union(*by_stamp.values()))
+    signals = {
+        name: np.array([found.get(stamp, np.nan) for stamp in stamps])
+        for name, found in by_stamp.items()
+    }
+    return (np.array(stamps) - START_NS) / 1e9, signals
+
+
+def _at_ticks(rows: Mapping[str, _Rows], name: str) -> dict[int, float]:
+    """Return a quantity by stamp in ns."""
+    signal, index = quantities()[name]
+    found = rows[signal.name]
+    return {stamp: row if index is None else row[index] for stamp, row in found.items()}
+
+
+def _within_periods(rows: _Rows, last: int) -> dict[int, float]:
+    """Return a torque every 1 ms by stamp in ns, up to the stamp `last`."""
+    return {
+        stamp + index * SUBSTEP_NS: torques[index]
+        for stamp, torques in rows.items()
+        for index in range(SUBSTEPS if stamp < last else 1)
+    }
+
+
+def _signal_rows(bag: Path) -> dict[str, dict[int, Any]]:
+    """Return the values of the messages, by signal and by stamp in ns."""
+    topics = {topic.resolved_name: topic for topic in _TOPICS}
+    rows: dict[str, dict[int, Any]] = {s.name: {} for topic in _TOPICS for s in topic.signals}
+    with bag.open('rb') as file:
+        reader = make_reader(file, decoder_factories=[DecoderFactory()])
+        for _, channel, message, decoded in reader.iter_decoded_messages(list(topics)):
+            topic = topics[channel.topic]
+            # The linear clutch has the first of its two signals only.
+            for signal, values in zip(topic.signals, topic.values(decoded), strict=False):
+                rows[signal.name][message.log_time] = values
+    return rows
