@@ -19,7 +19,7 @@ from ddct_plant.graph.follower import FollowerNode, Reply
 from ddct_plant.graph.node import Output
 from ddct_plant.graph.settings import declare
 from ddct_plant.graph.spin import run_node
-from ddct_plant.graph.topics import (
+from ddct_plant.signals.topics import (
     CONTROLLER_STATUS,
     CONTROLLER_TIMING,
     ENGINE_REQUEST,

@@ -14,11 +14,11 @@ from ddct_controllers.architecture import make_architecture
 from ddct_controllers.feedforward import Feedforward
 from ddct_controllers.interface import Command, Controller, Measurement
 from ddct_plant.base.errors import DdctError, ForeignError
-from ddct_plant.graph.topics import TORQUE_PARTS
 from ddct_plant.models.load import RoadLoad
 from ddct_plant.models.static_torque import constant_slip_torque
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import ARCHITECTURES, RunSettings
+from ddct_plant.signals.topics import TORQUE_PARTS
 
 SETTINGS = RunSettings(load_scenario('thesis'))
 START = SETTINGS.scenario.control_start_step

@@ -10,7 +10,7 @@ from ddct_plant.graph.follower import FollowerNode, Reply
 from ddct_plant.graph.node import Output
 from ddct_plant.graph.settings import declare
 from ddct_plant.graph.spin import run_node
-from ddct_plant.graph.topics import SLIP_REFERENCE, measurement_topics
+from ddct_plant.signals.topics import SLIP_REFERENCE, measurement_topics
 from ddct_reference.factory import make_reference
 
 

@@ -14,9 +14,9 @@ from ddct_bringup.run.headless import run_headless
 from ddct_bringup.scores.scoring import score_recording
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.base.errors import DdctError
-from ddct_plant.graph.topics import TOPICS
 from ddct_plant.measured.columns import own_columns
 from ddct_plant.measured.log import read_log
+from ddct_plant.signals.topics import TOPICS
 
 EARLIER = Path(__file__).parent / 'earlier'
 """Bags of the commit in their custom data: of a run with sensors, and of one in real time."""

@@ -28,7 +28,7 @@ COPY_BAG = """
     from ddct_bringup.bag.file.records import read_records
     from ddct_bringup.bag.writer import new_bag
     from ddct_plant.base.errors import DdctError
-    from ddct_plant.graph.topics import TOPICS
+    from ddct_plant.signals.topics import TOPICS
 
     source, folder = map(Path, sys.argv[1:3])
     last_step, limit = map(int, sys.argv[3:])

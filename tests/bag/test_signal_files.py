@@ -12,9 +12,9 @@ from ddct_bringup.programs.score import main
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.scores.csv_text import signal_columns
 from ddct_bringup.scores.signal_files import signal_file_stems
-from ddct_plant.graph.topics import all_signals
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.signals.topics import all_signals
 
 MOST_LETTERS = 63
 """Longest name of a variable in MATLAB: letters, digits and underscores, a letter first."""

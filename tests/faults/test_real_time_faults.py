@@ -23,7 +23,7 @@ from ddct_bringup.scores.scoring import score_recording
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.base.timebase import PERIOD_S, stamp_of_step
 from ddct_plant.fail_safe.request_watch import CLUTCH_TIMEOUT_S, FailSafeSettings
-from ddct_plant.graph.topics import CLUTCH_TORQUE, LOAD_TORQUE, TOPICS
+from ddct_plant.signals.topics import CLUTCH_TORQUE, LOAD_TORQUE, TOPICS
 
 CLUTCH, LOAD = CLUTCH_TORQUE.name, LOAD_TORQUE.name
 FROM_STEP = 20

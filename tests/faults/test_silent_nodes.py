@@ -11,8 +11,8 @@ from support.processes import START_S, Programs
 from support.runs import plan
 
 from ddct_plant.base.timebase import stamp_of_step
-from ddct_plant.graph.topics import LOAD_TORQUE
 from ddct_plant.nodes.driveline_node import DrivelineNode
+from ddct_plant.signals.topics import LOAD_TORQUE
 from ddct_plant.ticks.tick_owner import TickOwner
 
 LOAD = LOAD_TORQUE.name

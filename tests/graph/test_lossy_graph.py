@@ -17,7 +17,7 @@ from support.waiting import wait_until
 
 from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.processes.graph_nodes import GRAPH_NODES
-from ddct_plant.graph.topics import TOPICS, RunKind, recorded_topics
+from ddct_plant.signals.topics import TOPICS, RunKind, recorded_topics
 
 INPUTS = {
     'engine': ['driveline/joint_states'],

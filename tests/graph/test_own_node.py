@@ -13,9 +13,9 @@ from support.documented import ROOT, blocks
 
 from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.run.headless import run_headless
-from ddct_plant.graph.topics import all_signals
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.signals.topics import all_signals
 
 PAGE = 'docs/develop/own_node.md'
 EXAMPLES = sorted((ROOT / 'docs' / 'examples').glob('own_*.py'))

@@ -10,7 +10,7 @@ from support.runs import LAYOUTS, bag_bytes, expected, plan, record
 from support.sensors import ALL_ON, FLAGS
 
 from ddct_bringup.bag.reader import read_bag
-from ddct_plant.graph.topics import SENSED_SLIP
+from ddct_plant.signals.topics import SENSED_SLIP
 
 DURATION_S = 0.7
 SEED = 2**31 - 1

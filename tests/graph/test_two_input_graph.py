@@ -22,11 +22,11 @@ from support.silent_controller import run_until_silent
 from ddct_bringup.run.plan import RunPlan
 from ddct_plant.base.timebase import PERIOD_S, stamp_of_step, step_of_stamp
 from ddct_plant.fail_safe.request_watch import REQUEST_TIMEOUT_S
-from ddct_plant.graph.message_kinds import stamp_ns
 from ddct_plant.graph.qos import LOOP_QOS, RECORDER_QOS
-from ddct_plant.graph.topics import ENGINE_REQUEST, ENGINE_TORQUE, JOINT_STATES
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.signals.message_kinds import stamp_ns
+from ddct_plant.signals.topics import ENGINE_REQUEST, ENGINE_TORQUE, JOINT_STATES
 
 SLEW_N_M_S = 500.0
 LITTLE_SLEW = f'engine_authority.slew_n_m_s={SLEW_N_M_S}'

@@ -22,7 +22,7 @@ from ddct_bringup.live import live_node
 from ddct_plant.base.timebase import START_NS, stamp_of_step
 from ddct_plant.graph.qos import LATCHED_QOS, LOOP_QOS
 from ddct_plant.graph.spin import make_executor
-from ddct_plant.graph.topics import CLOCK, RUN_INFO
+from ddct_plant.signals.topics import CLOCK, RUN_INFO
 
 pytestmark = pytest.mark.usefixtures('extras')
 

@@ -104,7 +104,7 @@ def implied_by_ros(package: str) -> set[str]:
     # `ros_class` imports the package of each topic's type.
     if package not in ('ddct_plant', 'ddct_bringup'):
         return set()
-    from ddct_plant.graph.topics import TOPICS
+    from ddct_plant.signals.topics import TOPICS
 
     return {topic.type.partition('/')[0] for topic in TOPICS} | {'builtin_interfaces'}
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_plant.graph.topics import all_signals, quantities
+from ddct_plant.signals.topics import all_signals, quantities
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = ('ddct_plant', 'ddct_reference', 'ddct_controllers', 'ddct_bringup')

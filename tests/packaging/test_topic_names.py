@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from ddct_plant.graph import topics
-from ddct_plant.graph.topics import TOPICS, Topic
+from ddct_plant.signals import topics
+from ddct_plant.signals.topics import TOPICS, Topic
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = ('ddct_plant', 'ddct_reference', 'ddct_controllers', 'ddct_bringup')
@@ -33,7 +33,7 @@ def test_no_name_of_a_topic_is_spelled_outside_the_table() -> None:
     spelled = [
         f'{file.relative_to(ROOT)}:{node.lineno}: {node.value}'
         for file in product_files()
-        if file != ROOT / 'ddct_plant' / 'ddct_plant' / 'graph' / TABLE
+        if file != ROOT / 'ddct_plant' / 'ddct_plant' / 'signals' / TABLE
         for node in ast.walk(ast.parse(file.read_text(encoding='utf-8')))
         if isinstance(node, ast.Constant) and node.value in NAMES
     ]

@@ -15,10 +15,10 @@ from trajectory_msgs.msg import JointTrajectory
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_plant.base.timebase import step_of_stamp
-from ddct_plant.graph.message_kinds import stamp_ns
 from ddct_plant.graph.qos import RECORDER_QOS
 from ddct_plant.graph.spin import make_executor
-from ddct_plant.graph.topics import CLUTCH_TORQUE
+from ddct_plant.signals.message_kinds import stamp_ns
+from ddct_plant.signals.topics import CLUTCH_TORQUE
 
 
 class Observer(Node):

@@ -8,8 +8,8 @@ from typing import Any
 from rclpy.node import Node
 
 from ddct_plant.base.timebase import step_of_stamp
-from ddct_plant.graph.message_kinds import stamp_ns
 from ddct_plant.graph.qos import RECORDER_QOS
+from ddct_plant.signals.message_kinds import stamp_ns
 
 
 def tampered_remap(topic: str) -> list[str]:

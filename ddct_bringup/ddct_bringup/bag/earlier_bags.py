@@ -10,7 +10,7 @@ repeated sample was the frame 'held' in the header, or the effort of a measured 
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from ddct_plant.graph.topics import (
+from ddct_plant.signals.topics import (
     CONTROLLER_STATUS,
     ENGINE_SENSOR_STATUS,
     SENSED_ENGINE_TORQUE,

@@ -26,9 +26,11 @@ from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import stamp_of_step
 from ddct_plant.files.input_file import SCHEMA_KEY, located, mcap_of
 from ddct_plant.files.yaml_text import parse_yaml
-from ddct_plant.graph.message_kinds import stamp_ns
 from ddct_plant.graph.node_names import StatusName, name_in_graph
-from ddct_plant.graph.topics import (
+from ddct_plant.scenario.content import scenario_from_mapping
+from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.signals.message_kinds import stamp_ns
+from ddct_plant.signals.topics import (
     DIAGNOSTICS,
     JOINT_STATES,
     RUN_INFO,
@@ -37,8 +39,6 @@ from ddct_plant.graph.topics import (
     all_topics,
     recorded_topics,
 )
-from ddct_plant.scenario.content import scenario_from_mapping
-from ddct_plant.scenario.settings import RunSettings
 
 
 @dataclass(frozen=True)

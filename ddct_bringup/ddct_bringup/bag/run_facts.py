@@ -11,7 +11,7 @@ from ddct_plant.base.errors import DdctError, ParameterError, require_name, requ
 from ddct_plant.base.timebase import steps_in
 from ddct_plant.files.input_file import parse_json
 from ddct_plant.graph.node_names import StatusName
-from ddct_plant.graph.topics import (
+from ddct_plant.signals.topics import (
     ENGINE_REQUEST,
     SAFE_STATE,
     SENSED_TOPICS,

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from ddct_plant.base.errors import DdctError
-from ddct_plant.graph.topics import (
+from ddct_plant.signals.topics import (
     ENGINE_REQUEST,
     SENSED_SLIP,
     Signal,
@@ -25,8 +25,8 @@ class Trajectory:
     """
     Signals of a run at the stamps t_0..t_N; row k is step k, so N + 1 rows, all SI.
 
-    A signal of `ddct_plant.graph.topics` is an attribute of its name, and so is each quantity of a
-    signal that has several, such as `engine_speed` of `joint_speed`. States, slip and vehicle
+    A signal of `ddct_plant.signals.topics` is an attribute of its name, and so is each quantity
+    of a signal that has several, such as `engine_speed` of `joint_speed`. States, slip and vehicle
     signals are valid at t_k (efforts and `vehicle_accel` are left limits); torques, reference
     and request answer t_k and apply over [t_k, t_k+1]. Replies to t_N are kept although
     nothing applied them.

@@ -18,7 +18,7 @@ from ddct_bringup.bag.run_facts import RunFacts, run_info_order
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.bag.writer import new_bag
 from ddct_plant.base.timebase import START_NS, stamp_of_step
-from ddct_plant.graph.topics import RUN_INFO, recorded_topics
+from ddct_plant.signals.topics import RUN_INFO, recorded_topics
 
 _ZEROS = b'\x00\x01' + bytes(510)
 """CDR of zeros, longer than any recorded type: decodes as zeros, empty texts and empty lists."""

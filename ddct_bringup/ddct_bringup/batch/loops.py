@@ -13,11 +13,11 @@ from ddct_bringup.batch.columns import Filters, distinct
 from ddct_bringup.batch.plants import Plants
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.base.units import rpm_from_rad_s
-from ddct_plant.graph.topics import all_signals
 from ddct_plant.linear.lti import StateSpace
 from ddct_plant.models.actuator import ActuatorParameters
 from ddct_plant.scenario.control import PROFILE
 from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.signals.topics import all_signals
 from ddct_reference.factory import make_descent
 
 RAMP = 'ramp'

@@ -16,7 +16,7 @@ from ddct_plant.base.timebase import START_NS
 from ddct_plant.graph.node import GraphNode
 from ddct_plant.graph.node_names import name_in_graph
 from ddct_plant.graph.qos import LIVE_QOS
-from ddct_plant.graph.topics import (
+from ddct_plant.signals.topics import (
     CLOCK,
     RECORDER_ACK,
     RUN_INFO,

@@ -8,7 +8,7 @@ from typing import Any
 from ddct_bringup.bag.file.message_definitions import load_definition
 from ddct_bringup.bag.file.metadata import SERIALIZATION
 from ddct_plant.base.errors import DdctError
-from ddct_plant.graph.topics import all_topics
+from ddct_plant.signals.topics import all_topics
 
 _BACKLOG = 65_536
 """

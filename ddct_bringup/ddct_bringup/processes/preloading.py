@@ -48,7 +48,7 @@ def _load_messages() -> None:
     import rcl_interfaces.srv
     from rclpy.type_support import check_for_type_support
 
-    from ddct_plant.graph.topics import all_topics
+    from ddct_plant.signals.topics import all_topics
 
     classes = [topic.message_class for topic in all_topics()]
     classes += [rcl_interfaces.msg.Log, rcl_interfaces.msg.ParameterEvent]

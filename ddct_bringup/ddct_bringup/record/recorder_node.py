@@ -28,7 +28,7 @@ from ddct_plant.graph.qos import RECORDER_QOS
 from ddct_plant.graph.settings import declare
 from ddct_plant.graph.sole_publishers import publishers_of
 from ddct_plant.graph.spin import run_node
-from ddct_plant.graph.topics import (
+from ddct_plant.signals.topics import (
     CONTROLLER_TIMING,
     DIAGNOSTICS,
     JOINT_STATES,

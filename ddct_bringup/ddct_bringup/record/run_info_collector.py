@@ -14,8 +14,8 @@ from ddct_bringup.bag.run_facts import (
 from ddct_plant.base.errors import DdctError
 from ddct_plant.graph.node_names import name_in_graph
 from ddct_plant.graph.run_info import run_info_pairs
-from ddct_plant.graph.topics import RUN_INFO
 from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.signals.topics import RUN_INFO
 
 
 class RunInfoCollector:

@@ -17,8 +17,8 @@ from ddct_bringup.report.chart_signals import chart_signals_of
 from ddct_bringup.report.charts import ChartRun, chart_document
 from ddct_bringup.report.phase_lanes import LANES, OPACITY, phase_spans
 from ddct_controllers.design.drawing.line_looks import LineLook
-from ddct_plant.graph.topics import all_signals
 from ddct_plant.models.driveline import PhaseEvent
+from ddct_plant.signals.topics import all_signals
 
 STEPS = 20
 RPM = 30.0 / math.pi

@@ -11,8 +11,8 @@ import pytest
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_bringup.scores.metrics import Metrics, compute_metrics
-from ddct_plant.graph.topics import all_signals
 from ddct_plant.models.driveline import PhaseEvent
+from ddct_plant.signals.topics import all_signals
 
 STEPS = 300
 TIME = np.arange(STEPS + 1) / 100.0

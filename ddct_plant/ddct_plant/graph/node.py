@@ -14,7 +14,6 @@ from rclpy.timer import Timer
 
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import STEPS_PER_S, stamp_of_step
-from ddct_plant.graph.message_kinds import stamp_ns
 from ddct_plant.graph.node_names import StatusName
 from ddct_plant.graph.qos import (
     LATCHED_QOS,
@@ -27,7 +26,14 @@ from ddct_plant.graph.qos import (
 )
 from ddct_plant.graph.run_info import run_info_pairs
 from ddct_plant.graph.settings import declare_settings
-from ddct_plant.graph.topics import DIAGNOSTICS, RUN_INFO, SAFE_STATE, SINCE, Topic
+from ddct_plant.signals.message_kinds import stamp_ns
+from ddct_plant.signals.topics import (
+    DIAGNOSTICS,
+    RUN_INFO,
+    SAFE_STATE,
+    SINCE,
+    Topic,
+)
 from ddct_plant.ticks.stamp_limit import StampLimit
 
 STEADY = Clock(clock_type=ClockType.STEADY_TIME)

@@ -13,7 +13,8 @@ from mcap_ros2.decoder import DecoderFactory
 
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import START_NS, SUBSTEP_NS, SUBSTEPS
-from ddct_plant.graph.topics import (
+from ddct_plant.measured.columns import QUANTITIES
+from ddct_plant.signals.topics import (
     CLUTCH_PHASE,
     CLUTCH_TORQUE,
     ENGINE_TORQUE,
@@ -21,7 +22,6 @@ from ddct_plant.graph.topics import (
     VEHICLE_ACCEL,
     quantities,
 )
-from ddct_plant.measured.columns import QUANTITIES
 
 _TOPICS = (JOINT_STATES, ENGINE_TORQUE, CLUTCH_TORQUE, CLUTCH_PHASE, VEHICLE_ACCEL)
 _MEASURED = (

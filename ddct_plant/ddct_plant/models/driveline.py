@@ -58,6 +58,14 @@ class JointValues(NamedTuple):
     driveshaft: float
 
 
+class SensedJoints(NamedTuple):
+    """Values of one quantity by joint with a speed sensor, in the order of their message."""
+
+    engine: float
+    primary_shaft: float
+    wheel: float
+
+
 class DrivelineOutputs(NamedTuple):
     """The signals of a tick."""
 

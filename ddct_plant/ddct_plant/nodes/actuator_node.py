@@ -11,8 +11,8 @@ from ddct_plant.graph.follower import FollowerNode, Reply
 from ddct_plant.graph.node import Output, SafeStateReport
 from ddct_plant.graph.settings import declare_fail_safe
 from ddct_plant.graph.spin import run_node
-from ddct_plant.graph.topics import ACTUATOR_TORQUE, CLOCK, TORQUE_REQUEST
 from ddct_plant.scenario.plant import initial_state, make_actuator
+from ddct_plant.signals.topics import ACTUATOR_TORQUE, CLOCK, TORQUE_REQUEST
 
 REQUEST = TORQUE_REQUEST.name
 

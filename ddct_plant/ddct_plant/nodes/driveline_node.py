@@ -13,7 +13,8 @@ from ddct_plant.graph.node_names import StatusName
 from ddct_plant.graph.settings import declare, declare_fail_safe
 from ddct_plant.graph.sole_publishers import SolePublishers
 from ddct_plant.graph.spin import run_node
-from ddct_plant.graph.topics import (
+from ddct_plant.scenario.plant import driveline_sensors, initial_state, make_driveline
+from ddct_plant.signals.topics import (
     CLOCK,
     CLUTCH_PHASE,
     CLUTCH_TORQUE,
@@ -34,7 +35,6 @@ from ddct_plant.graph.topics import (
     RunKind,
     Topic,
 )
-from ddct_plant.scenario.plant import driveline_sensors, initial_state, make_driveline
 from ddct_plant.ticks.realtime_owner import RealtimeOwner
 from ddct_plant.ticks.tick_owner import TickOwner, TickPlan, driveline_info
 

@@ -13,7 +13,8 @@ from ddct_plant.graph.follower import FollowerNode, Reply
 from ddct_plant.graph.node import Output, SafeStateReport
 from ddct_plant.graph.settings import declare, declare_timeout
 from ddct_plant.graph.spin import run_node
-from ddct_plant.graph.topics import (
+from ddct_plant.scenario.plant import make_engine, torque_estimate
+from ddct_plant.signals.topics import (
     ENGINE_REQUEST,
     ENGINE_SENSOR_STATUS,
     ENGINE_TORQUE,
@@ -21,7 +22,6 @@ from ddct_plant.graph.topics import (
     SENSED_ENGINE_TORQUE,
     TORQUE_DEMAND,
 )
-from ddct_plant.scenario.plant import make_engine, torque_estimate
 
 REQUEST = ENGINE_REQUEST.name
 

@@ -5,7 +5,7 @@
 from abc import ABC, abstractmethod
 from typing import Generic, NamedTuple, Protocol, TypeVar
 
-from ddct_plant.models.driveline import DrivelineOutputs
+from ddct_plant.models.driveline import DrivelineOutputs, SensedJoints
 from ddct_plant.sensors.parameters import SensorParameters
 from ddct_plant.sensors.sensor import Sensor, ShaftSensor
 
@@ -32,14 +32,6 @@ class MeasuredSpeeds(Protocol):
     @property
     def vehicle_speed(self) -> float:
         """Vehicle speed V_x in m/s."""
-
-
-class SensedJoints(NamedTuple):
-    """Values of one quantity by joint with a speed sensor, in the order of their message."""
-
-    engine: float
-    primary_shaft: float
-    wheel: float
 
 
 class SpeedMeasurements(NamedTuple):

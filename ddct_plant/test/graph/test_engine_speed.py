@@ -10,8 +10,8 @@ import pytest
 pytest.importorskip('rclpy')
 
 from ddct_plant.base.timebase import stamp_of_step  # noqa: E402
-from ddct_plant.graph.topics import JOINT_STATES  # noqa: E402
 from ddct_plant.nodes.engine_node import EngineNode  # noqa: E402
+from ddct_plant.signals.topics import JOINT_STATES
 
 MESSAGE = JOINT_STATES.message(stamp_of_step(3), [0.0] * 4, [104.72, 16.0, 1.0, 0.5], [0.0] * 4)
 

@@ -12,7 +12,7 @@ from typing import Any  # noqa: E402
 from ddct_plant.base.errors import DdctError  # noqa: E402
 from ddct_plant.base.timebase import stamp_of_step  # noqa: E402
 from ddct_plant.graph import follower  # noqa: E402
-from ddct_plant.graph.topics import ENGINE_REQUEST, JOINT_STATES  # noqa: E402
+from ddct_plant.signals.topics import ENGINE_REQUEST, JOINT_STATES
 
 TRIGGER, OTHER = JOINT_STATES.name, ENGINE_REQUEST.name
 

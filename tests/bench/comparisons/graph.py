@@ -13,7 +13,7 @@ from bench.skeleton.comparison import Bench, Sides, comparison, curve
 from bench.skeleton.workspace import Workspace
 
 from ddct_plant.base.timebase import PERIOD_S
-from ddct_plant.graph.topics import RunKind, recorded_topics
+from ddct_plant.signals.topics import RunKind, recorded_topics
 
 CHAIN = 'the bare rclpy chain'
 STEPS, FEWER_STEPS = 1000, 500

@@ -14,7 +14,9 @@ from operator import itemgetter
 from typing import Any
 
 from ddct_plant.base.timebase import SUBSTEPS
-from ddct_plant.graph.message_kinds import (
+from ddct_plant.models.clutch import LINEAR, STICK_SLIP
+from ddct_plant.models.driveline import JointValues, SensedJoints
+from ddct_plant.signals.message_kinds import (
     ClassOf,
     Joints,
     MessageKind,
@@ -28,9 +30,6 @@ from ddct_plant.graph.message_kinds import (
     Write,
     ros_class,
 )
-from ddct_plant.models.clutch import LINEAR, STICK_SLIP
-from ddct_plant.models.driveline import JointValues
-from ddct_plant.sensors.sensed import SensedJoints
 
 JOINTS = JointValues._fields
 """Names of the joints in `driveline/joint_states`, in their order."""
