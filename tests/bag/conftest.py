@@ -14,7 +14,8 @@ from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.bag.writer import new_bag
 from ddct_plant.models.driveline import PhaseEvent
-from ddct_plant.signals.topics import RunKind, all_topics, recorded_topics
+from ddct_plant.signals.signal import RunKind
+from ddct_plant.signals.topics import all_topics, recorded_topics
 
 RUN_INFO = {'/load': {'version': '1.0'}, '/engine': {'version': '1.0', 'seed': '0'}}
 

@@ -9,7 +9,8 @@ from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 
 from ddct_bringup.bag.reader import mcap_of, read_bag
-from ddct_plant.signals.topics import RunKind, recorded_topics
+from ddct_plant.signals.signal import RunKind
+from ddct_plant.signals.topics import recorded_topics
 
 rosbags_rosbag2 = pytest.importorskip('rosbags.rosbag2', reason='rosbags reads the bag')
 rosbags_typesys = pytest.importorskip('rosbags.typesys', reason='rosbags reads the bag')

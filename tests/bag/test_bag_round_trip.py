@@ -14,8 +14,10 @@ from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.bag.writer import new_bag
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import START_NS, stamp_of_step
-from ddct_plant.signals.message_kinds import MessageKind
-from ddct_plant.signals.topics import RunKind, Topic, recorded_topics
+from ddct_plant.signals.message_kind import MessageKind
+from ddct_plant.signals.signal import RunKind
+from ddct_plant.signals.topic import Topic
+from ddct_plant.signals.topics import recorded_topics
 
 
 def test_trajectory_comes_back_to_the_last_bit(bags, trajectory):

@@ -19,8 +19,9 @@ from ddct_controllers.registry import make_controller
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import step_of_stamp
 from ddct_plant.signals import topics
-from ddct_plant.signals.message_kinds import Scalar, stamp_ns
-from ddct_plant.signals.topics import RunKind, Signal, Topic
+from ddct_plant.signals.message_kind import Scalar, stamp_ns
+from ddct_plant.signals.signal import RunKind, Signal
+from ddct_plant.signals.topic import Topic
 
 RUN = plan('pi', 'single-process', duration_s=0.3)
 

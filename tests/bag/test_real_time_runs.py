@@ -12,7 +12,8 @@ from ddct_bringup.bag.writer import new_bag
 from ddct_bringup.programs import bringup, compare, score
 from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_plant.base.timebase import stamp_of_step
-from ddct_plant.signals.topics import DIAGNOSTICS, RunKind, recorded_topics
+from ddct_plant.signals.signal import RunKind
+from ddct_plant.signals.topics import DIAGNOSTICS, recorded_topics
 
 STEPS = 60
 COUNTS = {'steps': STEPS, 'resends': 0, 'late_messages': 0, 'worst_tick_lateness_us': 1234}

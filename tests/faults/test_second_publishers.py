@@ -16,12 +16,9 @@ from ddct_bringup.processes.graph_nodes import NODE_NAMES
 from ddct_plant.graph import sole_publishers
 from ddct_plant.graph.qos import RECORDER_QOS
 from ddct_plant.nodes.driveline_node import DrivelineNode
-from ddct_plant.signals.topics import (
-    ENGINE_REQUEST,
-    TOPICS,
-    RunKind,
-    Topic,
-)
+from ddct_plant.signals.signal import RunKind
+from ddct_plant.signals.topic import Topic
+from ddct_plant.signals.topics import ENGINE_REQUEST, TOPICS
 from ddct_plant.ticks.realtime_owner import RealtimeOwner
 
 STALL_S = 0.03

@@ -17,7 +17,8 @@ from support.waiting import wait_until
 
 from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.processes.graph_nodes import GRAPH_NODES
-from ddct_plant.signals.topics import TOPICS, RunKind, recorded_topics
+from ddct_plant.signals.signal import RunKind
+from ddct_plant.signals.topics import TOPICS, recorded_topics
 
 INPUTS = {
     'engine': ['driveline/joint_states'],

@@ -22,7 +22,7 @@ from ddct_plant.base.timebase import PERIOD_S, stamp_of_step, step_of_stamp
 from ddct_plant.fail_safe.request_watch import FailSafeSettings
 from ddct_plant.graph.qos import LOOP_QOS, RECORDER_QOS
 from ddct_plant.nodes.driveline_node import DrivelineNode
-from ddct_plant.signals.message_kinds import stamp_ns
+from ddct_plant.signals.message_kind import stamp_ns
 from ddct_plant.signals.topics import ACTUATOR_TORQUE, CLOCK, TORQUE_REQUEST
 from ddct_plant.ticks.realtime_owner import RealtimeOwner
 

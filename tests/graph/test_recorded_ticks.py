@@ -11,7 +11,8 @@ from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 from support.runs import plan, record
 
-from ddct_plant.signals.topics import RunKind, recorded_topics
+from ddct_plant.signals.signal import RunKind
+from ddct_plant.signals.topics import recorded_topics
 
 STEPS = 300
 STAMPS = [1_000_000_000 + step * 10_000_000 for step in range(STEPS + 1)]

@@ -25,7 +25,7 @@ from ddct_plant.fail_safe.request_watch import REQUEST_TIMEOUT_S
 from ddct_plant.graph.qos import LOOP_QOS, RECORDER_QOS
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
-from ddct_plant.signals.message_kinds import stamp_ns
+from ddct_plant.signals.message_kind import stamp_ns
 from ddct_plant.signals.topics import ENGINE_REQUEST, ENGINE_TORQUE, JOINT_STATES
 
 SLEW_N_M_S = 500.0

@@ -15,8 +15,9 @@ from viewer import Viewer, address_in
 
 from ddct_bringup.bag.file.message_definitions import load_definition
 from ddct_plant.base.timebase import START_NS
-from ddct_plant.signals.message_kinds import stamp_ns
-from ddct_plant.signals.topics import TOPICS, RunKind, recorded_topics
+from ddct_plant.signals.message_kind import stamp_ns
+from ddct_plant.signals.signal import RunKind
+from ddct_plant.signals.topics import TOPICS, recorded_topics
 
 Start = Callable[..., tuple[Program, str]]
 TICK_TOPICS = [topic.resolved_name for topic in recorded_topics(RunKind()) if topic.every_tick]

@@ -10,7 +10,8 @@ from pathlib import Path
 import pytest
 
 from ddct_plant.signals import topics
-from ddct_plant.signals.topics import TOPICS, Topic
+from ddct_plant.signals.topic import Topic
+from ddct_plant.signals.topics import TOPICS
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = ('ddct_plant', 'ddct_reference', 'ddct_controllers', 'ddct_bringup')

@@ -17,7 +17,7 @@ from ddct_bringup.bag.trajectory import Trajectory
 from ddct_plant.base.timebase import step_of_stamp
 from ddct_plant.graph.qos import RECORDER_QOS
 from ddct_plant.graph.spin import make_executor
-from ddct_plant.signals.message_kinds import stamp_ns
+from ddct_plant.signals.message_kind import stamp_ns
 from ddct_plant.signals.topics import CLUTCH_TORQUE
 
 

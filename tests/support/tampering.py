@@ -9,7 +9,7 @@ from rclpy.node import Node
 
 from ddct_plant.base.timebase import step_of_stamp
 from ddct_plant.graph.qos import RECORDER_QOS
-from ddct_plant.signals.message_kinds import stamp_ns
+from ddct_plant.signals.message_kind import stamp_ns
 
 
 def tampered_remap(topic: str) -> list[str]:

@@ -10,6 +10,7 @@ repeated sample was the frame 'held' in the header, or the effort of a measured 
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import (
     CONTROLLER_STATUS,
     ENGINE_SENSOR_STATUS,
@@ -19,7 +20,6 @@ from ddct_plant.signals.topics import (
     SENSED_VEHICLE_SPEED,
     SENSOR_STATUS,
     TORQUE_PARTS,
-    Topic,
 )
 
 Messages = Mapping[str, Sequence[tuple[int, Any]]]

@@ -20,7 +20,8 @@ from ddct_plant.base.timebase import PERIOD_S, time_of_step
 from ddct_plant.files.input_file import SCHEMA_KEY, located
 from ddct_plant.measured.columns import QUANTITIES, TIME, ColumnMap
 from ddct_plant.measured.log import MeasuredLog, read_log
-from ddct_plant.signals.topics import RunKind, Signal, recorded_topics
+from ddct_plant.signals.signal import RunKind, Signal
+from ddct_plant.signals.topics import recorded_topics
 
 NEEDED = ('engine_speed', 'shaft_speed')
 TORSION = 'torsion_speed'

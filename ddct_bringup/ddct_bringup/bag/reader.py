@@ -29,13 +29,13 @@ from ddct_plant.files.yaml_text import parse_yaml
 from ddct_plant.graph.node_names import StatusName, name_in_graph
 from ddct_plant.scenario.content import scenario_from_mapping
 from ddct_plant.scenario.settings import RunSettings
-from ddct_plant.signals.message_kinds import stamp_ns
+from ddct_plant.signals.message_kind import stamp_ns
+from ddct_plant.signals.signal import RunKind
+from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import (
     DIAGNOSTICS,
     JOINT_STATES,
     RUN_INFO,
-    RunKind,
-    Topic,
     all_topics,
     recorded_topics,
 )

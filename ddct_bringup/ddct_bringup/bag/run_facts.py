@@ -11,6 +11,7 @@ from ddct_plant.base.errors import DdctError, ParameterError, require_name, requ
 from ddct_plant.base.timebase import steps_in
 from ddct_plant.files.input_file import parse_json
 from ddct_plant.graph.node_names import StatusName
+from ddct_plant.signals.signal import RunKind
 from ddct_plant.signals.topics import (
     ENGINE_REQUEST,
     SAFE_STATE,
@@ -18,7 +19,6 @@ from ddct_plant.signals.topics import (
     SINCE,
     TICKS,
     TORQUE_PARTS,
-    RunKind,
 )
 
 _NAMES = ('controller', 'architecture', 'scenario', 'clutch', 'mode')

@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 
 from ddct_plant.base.errors import DdctError
+from ddct_plant.signals.signal import Signal
 from ddct_plant.signals.topics import (
     ENGINE_REQUEST,
     SENSED_SLIP,
-    Signal,
     all_signals,
     quantities,
 )

@@ -24,7 +24,7 @@ from ddct_bringup.bag.file.metadata import (
     write_metadata,
 )
 from ddct_plant.base.errors import DdctError
-from ddct_plant.signals.topics import Topic
+from ddct_plant.signals.topic import Topic
 
 _CHUNK_BYTES = 64 * 1024
 """Size of an MCAP chunk in bytes, about 0.2 s of a run; a killed recorder loses its last chunk."""

@@ -16,12 +16,12 @@ from ddct_plant.base.timebase import START_NS
 from ddct_plant.graph.node import GraphNode
 from ddct_plant.graph.node_names import name_in_graph
 from ddct_plant.graph.qos import LIVE_QOS
+from ddct_plant.signals.signal import RunKind
+from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import (
     CLOCK,
     RECORDER_ACK,
     RUN_INFO,
-    RunKind,
-    Topic,
     all_topics,
     recorded_topics,
 )

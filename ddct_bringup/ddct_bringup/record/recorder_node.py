@@ -28,14 +28,14 @@ from ddct_plant.graph.qos import RECORDER_QOS
 from ddct_plant.graph.settings import declare
 from ddct_plant.graph.sole_publishers import publishers_of
 from ddct_plant.graph.spin import run_node
+from ddct_plant.signals.signal import RunKind
+from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import (
     CONTROLLER_TIMING,
     DIAGNOSTICS,
     JOINT_STATES,
     RECORDER_ACK,
     RUN_INFO,
-    RunKind,
-    Topic,
     all_topics,
     recorded_topics,
     tick_names,

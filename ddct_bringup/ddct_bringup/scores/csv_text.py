@@ -12,14 +12,13 @@ from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.scores.scoring import NOT_COMPUTED, Entry
 from ddct_plant.base.errors import printable
 from ddct_plant.files.csv_table import csv_text
+from ddct_plant.signals.signal import Signal, column_name
 from ddct_plant.signals.topics import (
     JOINT_STATES,
     SENSED_JOINT_STATES,
     SLIP,
     SLIP_REFERENCE,
-    Signal,
     all_signals,
-    column_name,
 )
 
 _OF_JOINTS = (JOINT_STATES, SENSED_JOINT_STATES)

@@ -72,7 +72,7 @@ def test_a_message_made_without_ros_is_serialised_as_one_of_ros(type_name):
     serialization = pytest.importorskip('rclpy.serialization', reason='ROS is not installed')
     from ddct_bringup.bag.file.cdr import CdrNormaliser
     from ddct_bringup.bag.trajectory_bag import serialiser
-    from ddct_plant.signals.message_kinds import ros_class
+    from ddct_plant.signals.message_kind import ros_class
 
     clean = CdrNormaliser(load_definition(type_name)).normalise
     theirs = clean(serialization.serialize_message(ros_class(type_name)()))

@@ -8,12 +8,12 @@ from made_run import made_facts
 from ddct_bringup.bag.ticks import check_ticks, complete_ticks, tick_topics
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import stamp_of_step
+from ddct_plant.signals.signal import RunKind
 from ddct_plant.signals.topics import (
     CLOCK,
     SENSED_TOPICS,
     SLIP,
     TOPICS,
-    RunKind,
     recorded_topics,
     tick_names,
 )

@@ -11,7 +11,8 @@ from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import step_of_stamp
 from ddct_plant.graph.node import GraphNode, Output
 from ddct_plant.graph.sole_publishers import publishers_of
-from ddct_plant.signals.topics import CLOCK, Topic, tick_names
+from ddct_plant.signals.topic import Topic
+from ddct_plant.signals.topics import CLOCK, tick_names
 from ddct_plant.ticks.join import JoinResult, StampJoin
 from ddct_plant.ticks.stamp_limit import StampLimit
 

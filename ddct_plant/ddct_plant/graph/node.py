@@ -26,13 +26,13 @@ from ddct_plant.graph.qos import (
 )
 from ddct_plant.graph.run_info import run_info_pairs
 from ddct_plant.graph.settings import declare_settings
-from ddct_plant.signals.message_kinds import stamp_ns
+from ddct_plant.signals.message_kind import stamp_ns
+from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import (
     DIAGNOSTICS,
     RUN_INFO,
     SAFE_STATE,
     SINCE,
-    Topic,
 )
 from ddct_plant.ticks.stamp_limit import StampLimit
 

@@ -11,7 +11,7 @@ from rclpy.subscription import Subscription
 from ddct_plant.base.errors import DdctError
 from ddct_plant.graph.node import GraphNode
 from ddct_plant.graph.qos import RECORDER_QOS
-from ddct_plant.signals.message_kinds import ros_class
+from ddct_plant.signals.message_kind import ros_class
 from ddct_plant.signals.topics import all_topics
 from ddct_plant.ticks.sequence import SequenceWatch
 

@@ -14,6 +14,8 @@ from ddct_plant.graph.settings import declare, declare_fail_safe
 from ddct_plant.graph.sole_publishers import SolePublishers
 from ddct_plant.graph.spin import run_node
 from ddct_plant.scenario.plant import driveline_sensors, initial_state, make_driveline
+from ddct_plant.signals.signal import RunKind
+from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import (
     CLOCK,
     CLUTCH_PHASE,
@@ -32,8 +34,6 @@ from ddct_plant.signals.topics import (
     TICKS,
     VEHICLE_ACCEL,
     VEHICLE_SPEED,
-    RunKind,
-    Topic,
 )
 from ddct_plant.ticks.realtime_owner import RealtimeOwner
 from ddct_plant.ticks.tick_owner import TickOwner, TickPlan, driveline_info

@@ -7,29 +7,21 @@ Nodes, recorder, reader, trajectory, the tables of signals and the live view use
 values and units. A new topic is one entry below, and the node that publishes it.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from operator import itemgetter
 from typing import Any
 
 from ddct_plant.base.timebase import SUBSTEPS
-from ddct_plant.models.clutch import LINEAR, STICK_SLIP
+from ddct_plant.models.clutch import STICK_SLIP
 from ddct_plant.models.driveline import JointValues, SensedJoints
-from ddct_plant.signals.message_kinds import (
-    ClassOf,
-    Joints,
-    MessageKind,
-    NamedTorques,
-    PhaseReport,
-    PreviewPoints,
-    SampleFlags,
-    Scalar,
-    Status,
-    TorqueRows,
-    Write,
-    ros_class,
-)
+from ddct_plant.signals.joints import Joints, NamedTorques
+from ddct_plant.signals.message_kind import MessageKind, Scalar
+from ddct_plant.signals.points import PreviewPoints, TorqueRows
+from ddct_plant.signals.signal import RunKind, Signal
+from ddct_plant.signals.statuses import PhaseReport, SampleFlags, Status
+from ddct_plant.signals.topic import Topic
 
 JOINTS = JointValues._fields
 """Names of the joints in `driveline/joint_states`, in their order."""
@@ -45,131 +37,6 @@ SAFE_STATE = ': safe state'
 """Ending, after the node's name, of the name of the status of a node in its safe state."""
 SINCE = 'since_ns'
 """Key of the stamp in ns at which the safe state began."""
-
-
-@dataclass(frozen=True)
-class RunKind:
-    """Properties of a run that decide which topics it has; every node and reader has them."""
-
-    lockstep: bool = True
-    """Whether the owner of time waits for every reply."""
-    two_input: bool = False
-    """Whether the controller also commands the engine."""
-    clutch: str = LINEAR
-    """Name of the clutch model."""
-    sensed: bool = False
-    """Whether controller and reference read sensors in place of the truth."""
-    earlier: bool = False
-    """Whether its bag was recorded before the topics with `Topic.later` existed."""
-
-
-@dataclass(frozen=True)
-class Signal:
-    """One quantity of a topic, or several of one unit, with one row per tick in a trajectory."""
-
-    name: str
-    unit: str
-    """SI unit, such as 'rad/s'; '1' for a bare number, '' for a signal that is not numeric."""
-    about: str
-    """Meaning."""
-    size: int | None = 1
-    """Number of values in a row; None where it differs from run to run, as for a preview."""
-    parts: tuple[str, ...] = ()
-    """Names of the values of a row that has several quantities; else empty."""
-    when: Callable[[RunKind], bool] | None = None
-    """Condition on the runs that have it, among those with its topic; None for all of them."""
-
-    def __post_init__(self) -> None:
-        """Raise ValueError where a row does not have one value per name."""
-        if self.parts and len(self.parts) != self.size:
-            raise ValueError(f'{self.name} has {self.size} values and {len(self.parts)} names')
-
-    @property
-    def column(self) -> str:
-        """Name of its column in a table: the name, and the unit if it has one."""
-        return column_name(self.name, self.unit)
-
-    @property
-    def quantities(self) -> tuple[str, ...]:
-        """Names of its quantities: those of its values, or its own name."""
-        return self.parts or (self.name,)
-
-
-def column_name(name: str, unit: str) -> str:
-    """Return the name of a quantity's column in a table: its name, and the unit if it has one."""
-    if unit in ('', '1'):
-        return name
-    return f'{name}_{unit.replace("/", "_").replace(" ", "_").replace("^", "").lower()}'
-
-
-@dataclass(frozen=True, eq=False)
-class Topic:
-    """One topic: its name, message kind, publisher and signals."""
-
-    name: str
-    """Name that nodes use: relative, except `/clock` and `/diagnostics`."""
-    kind: MessageKind
-    """Adapter for its message type."""
-    publisher: str
-    """Name of the node that publishes it."""
-    signals: tuple[Signal, ...] = ()
-    """Signals, one for each value of a message."""
-    frame: str = ''
-    """Coordinate frame of its values; '' for values that have none, as diagnostics."""
-    every_tick: bool = True
-    """Whether a lock-step run has exactly one message per tick, from one publisher."""
-    latched: bool = False
-    """Whether its durability is transient local, with depth 1."""
-    wall_clock: bool = False
-    """Whether it carries wall-clock values, which a lock-step recording must not contain."""
-    when: Callable[[RunKind], bool] | None = None
-    """Condition on the runs that have the topic; None for all of them."""
-    later: bool = False
-    """Whether earlier bags lack it: their signals of this topic are in other messages."""
-
-    @property
-    def type(self) -> str:
-        """Name of the message type, such as 'sensor_msgs/msg/JointState'."""
-        return self.kind.type
-
-    @property
-    def message_class(self) -> Any:
-        """The ROS class of its messages."""
-        return ros_class(self.kind.type)
-
-    @property
-    def resolved_name(self) -> str:
-        """The name in a bag, outside any namespace, with its leading slash."""
-        return self.name if self.name.startswith('/') else f'/{self.name}'
-
-    @property
-    def is_tick(self) -> bool:
-        """Whether the owner of time publishes it with every tick; all others are replies."""
-        return self.every_tick and self.publisher == 'driveline'
-
-    def in_run(self, run: RunKind) -> bool:
-        """Return whether a run has this topic."""
-        return (self.when is None or self.when(run)) and not (run.earlier and self.later)
-
-    def signals_in(self, run: RunKind) -> tuple[Signal, ...]:
-        """Return the signals of this topic in a run that has the topic."""
-        return tuple(each for each in self.signals if each.when is None or each.when(run))
-
-    def writer(self, class_of: ClassOf = ros_class) -> Write:
-        """Return a function `write(stamp_ns, *values)` that fills one message of its own."""
-        return self.kind.writer(class_of, self.frame)
-
-    def message(self, stamp: int, *values: Any, **options: Any) -> Any:
-        """Return a new message with a stamp in ns and the values of `signals`."""
-        return self.writer()(stamp, *values, **options)
-
-    def values(self, message: Any) -> tuple[Any, ...]:
-        """Return the values of `signals` in a message, unchecked."""
-        return self.kind.values(message)
-
-    def read(self, message: Any, **options: Any) -> Any:
-        """Return the values for a node; raise DdctError for values unfit for the loop."""
-        return self.kind.read(self.name, message, **options)
 
 
 def _torque(

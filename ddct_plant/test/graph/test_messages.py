@@ -14,7 +14,7 @@ import diagnostic_msgs.msg as rclpy_diagnostics  # noqa: E402
 from ddct_plant.base.errors import DdctError  # noqa: E402
 from ddct_plant.base.timebase import stamp_of_step  # noqa: E402
 from ddct_plant.signals import topics  # noqa: E402
-from ddct_plant.signals.message_kinds import NS_PER_S, Scalar, stamp_ns  # noqa: E402
+from ddct_plant.signals.message_kind import NS_PER_S, Scalar, stamp_ns  # noqa: E402
 
 STAMP = stamp_of_step(123)
 LATER = stamp_of_step(124)

@@ -10,12 +10,12 @@ pytest.importorskip('trajectory_msgs.msg', reason='needs the ROS message types')
 from ddct_plant.base.errors import DdctError  # noqa: E402
 from ddct_plant.base.timebase import stamp_of_step  # noqa: E402
 from ddct_plant.models.driveline import PhaseEvent  # noqa: E402
+from ddct_plant.signals.signal import RunKind
 from ddct_plant.signals.topics import (
     CLUTCH_PHASE,
     CLUTCH_TEMPERATURE,
     CLUTCH_TORQUE,
     HOLDING_TORQUE,
-    RunKind,
 )
 
 STAMP, LATER = stamp_of_step(123), stamp_of_step(124)

@@ -4,7 +4,8 @@
 
 import pytest
 
-from ddct_plant.signals.topics import Signal, all_signals
+from ddct_plant.signals.signal import Signal
+from ddct_plant.signals.topics import all_signals
 
 
 def test_signals_are_numbers_then_text_then_what_only_some_runs_have():

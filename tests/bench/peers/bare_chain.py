@@ -26,7 +26,9 @@ from std_msgs.msg import Header
 from ddct_plant.base.timebase import START_NS
 from ddct_plant.graph.qos import LOOP_QOS, RECORDER_QOS
 from ddct_plant.graph.spin import SLICE_S, make_executor
-from ddct_plant.signals.topics import RunKind, Topic, recorded_topics
+from ddct_plant.signals.signal import RunKind
+from ddct_plant.signals.topic import Topic
+from ddct_plant.signals.topics import recorded_topics
 
 TICK = ('/clock', 'clutch/slip', 'driveline/joint_states', 'vehicle/twist', 'vehicle/accel')
 STATUS = tuple((f'a_key_of_the_status_{i}', '123.4567890123456') for i in range(4))

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 from ddct_bringup.bag.file.message_definitions import PRIMITIVES, STRING, MessageDefinition
 from ddct_plant.base.errors import DdctError
-from ddct_plant.signals.message_kinds import NS_PER_S
+from ddct_plant.signals.message_kind import NS_PER_S
 
 _HEADER = b'\x00\x01'
 """First bytes of plain little-endian CDR; two option bytes follow, then the body."""

@@ -1,0 +1,77 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Adapters for JointState: values by joint, or torques by name."""
+
+import math
+from array import array
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from ddct_plant.base.errors import DdctError
+from ddct_plant.signals.message_kind import ClassOf, MessageKind, finite_values
+
+
+@dataclass(frozen=True)
+class Joints(MessageKind):
+    """Adapter for a JointState: position in rad, speed in rad/s, effort in N m of each joint."""
+
+    names: tuple[str, ...]
+    """Names of the joints, in the order of the message."""
+    fields: tuple[str, ...] = ('position', 'velocity', 'effort')
+    """Fields of the message that are filled."""
+
+    def _filler(self, message: Any, class_of: ClassOf) -> Callable[..., None]:
+        message.name = list(self.names)
+        if 'effort' not in self.fields:
+            # NaN is "not measured". rclpy may add bytes to a message that ends in an empty array.
+            message.effort = array('d', [math.nan] * len(self.names))
+
+        def fill(*columns: Sequence[float]) -> None:
+            for field, numbers in zip(self.fields, columns, strict=True):
+                setattr(message, field, array('d', numbers))
+
+        return fill
+
+    def values(self, message: Any) -> tuple[Any, ...]:
+        """Return a row of numbers per field; raise DdctError for other joints."""
+        if tuple(message.name) != self.names:
+            raise DdctError(
+                f'the joints are {", ".join(message.name)}, not {", ".join(self.names)}'
+            )
+        self._speeds('the message', message)
+        return tuple(getattr(message, field) for field in self.fields)
+
+    def read(self, topic: str, message: Any) -> list[float]:
+        """Return the speeds; raise DdctError unless there is a finite one for each joint."""
+        return finite_values(topic, self._speeds(topic, message))
+
+    def _speeds(self, topic: str, message: Any) -> Sequence[float]:
+        names = list(self.names)
+        if list(message.name) != names or len(message.velocity) != len(names):
+            raise DdctError(
+                f'{topic} names {list(message.name)} with {len(message.velocity)} velocities: '
+                f'it needs one velocity for each of {names}, in this order'
+            )
+        return message.velocity
+
+
+@dataclass(frozen=True)
+class NamedTorques(MessageKind):
+    """Adapter for a JointState that has torques alone: one effort in N m for each name."""
+
+    names: tuple[str, ...]
+    """Names of the torques, in the order of the values; a message may have another order."""
+
+    def _filler(self, message: Any, class_of: ClassOf) -> Callable[..., None]:
+        message.name = list(self.names)
+
+        def fill(*torques: float) -> None:
+            message.effort = array('d', torques)
+
+        return fill
+
+    def values(self, message: Any) -> tuple[float, ...]:
+        """Return the torques in N m; raise LookupError where a name or an effort is missing."""
+        torques = dict(zip(message.name, message.effort, strict=False))
+        return tuple(torques[name] for name in self.names)

@@ -1,0 +1,125 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""
+Adapters for the message types of the graph: make, fill and read messages, all in SI units.
+
+ROS is imported only when a message is made, and reading only uses attributes, so that messages of
+rclpy and messages decoded from a bag are read alike. Building a message costs 1 to 60 us, filling
+one far below 1 us, so a writer keeps one message and fills it anew for every tick.
+"""
+
+import importlib
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from operator import attrgetter
+from typing import Any
+
+from ddct_plant.base.errors import require_finite, require_number
+
+NS_PER_S = 1_000_000_000
+Write = Callable[..., Any]
+"""Function `write(stamp_ns, *values)`: fills the one message that it keeps, and returns it."""
+ClassOf = Callable[[str], Any]
+"""Function from the name of a message type to its class: `ros_class`, or one without ROS."""
+
+
+def ros_class(type_name: str) -> Any:
+    """Return the ROS class of a type such as 'sensor_msgs/msg/JointState'."""
+    package, kind, name = type_name.split('/')
+    return getattr(importlib.import_module(f'{package}.{kind}'), name)
+
+
+def stamp_ns(message: Any) -> int:
+    """Return the stamp in ns of a message with a header, of a Header, of a Clock or of a Time."""
+    time = _time_of(message)
+    return time.sec * NS_PER_S + time.nanosec
+
+
+def set_time(time: Any, time_ns: int) -> None:
+    """Set a Time or a Duration to `time_ns` in ns."""
+    time.sec, time.nanosec = divmod(time_ns, NS_PER_S)
+
+
+def _time_of(message: Any) -> Any:
+    header = getattr(message, 'header', message)
+    return getattr(header, 'stamp', None) or getattr(message, 'clock', message)
+
+
+@dataclass(frozen=True)
+class MessageKind:
+    """Adapter for one message type; this base carries the stamp only."""
+
+    type: str
+    """Name of the message type, such as 'sensor_msgs/msg/JointState'."""
+
+    def writer(self, class_of: ClassOf = ros_class, frame: str = '') -> Write:
+        """
+        Return a function that fills one message of its own, from values as of `values`.
+
+        `frame` is the coordinate frame of the values, '' for values without one.
+        """
+        message = class_of(self.type)()
+        if frame:
+            message.header.frame_id = frame
+        time, fill = _time_of(message), self._filler(message, class_of)
+
+        def write(stamp: int, *values: Any, **options: Any) -> Any:
+            set_time(time, stamp)
+            fill(*values, **options)
+            return message
+
+        return write
+
+    def _filler(self, message: Any, class_of: ClassOf) -> Callable[..., None]:
+        """Return a function that sets the values of the new `message` and of its parts."""
+        return lambda: None
+
+    def values(self, message: Any) -> tuple[Any, ...]:
+        """Return the values in a message, unchecked."""
+        return ()
+
+    def read(self, topic: str, message: Any) -> Any:
+        """Return the values for a node; raise DdctError for values unfit for the loop."""
+
+
+@dataclass(frozen=True)
+class Scalar(MessageKind):
+    """Adapter for one number."""
+
+    path: str
+    """Path of the number in the message, such as 'twist.angular.x'."""
+    at_least: float | None = None
+    """Lowest value that a node accepts, None for no bound."""
+
+    def _filler(self, message: Any, class_of: ClassOf) -> Callable[..., None]:
+        parent, _, field = self.path.rpartition('.')
+        holder = attrgetter(parent)(message) if parent else message
+
+        def fill(value: float) -> None:
+            setattr(holder, field, value)
+
+        return fill
+
+    @cached_property
+    def _get(self) -> Callable[[Any], float]:
+        return attrgetter(self.path)
+
+    def values(self, message: Any) -> tuple[float]:
+        """Return the number."""
+        return (self._get(message),)
+
+    def read(self, topic: str, message: Any) -> float:
+        """Return the number; raise DdctError unless finite and high enough."""
+        if self.at_least is None:
+            return require_finite(topic, self._get(message))
+        return require_number(topic, self._get(message), at_least=self.at_least)
+
+
+def finite_values(topic: str, values: Sequence[float]) -> list[float]:
+    """Return the values of a message on `topic`; raise DdctError unless all are finite."""
+    if not all(map(math.isfinite, values)):
+        for value in values:
+            require_finite(topic, value)
+    return list(values)
