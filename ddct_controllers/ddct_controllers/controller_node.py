@@ -103,13 +103,13 @@ class ControllerNode(FollowerNode):
         return SLIP_REFERENCE.read(message, preview_steps=self._controller.preview_steps)
 
     def _measure(self, step: int, inputs: dict[str, Any]) -> Measurement:
-        engine, shaft, wheel = inputs[self._measured_topics.joint_states.name][:3]
+        joint_speed = inputs[self._measured_topics.joint_states.name]
         speeds, rates = inputs[SLIP_REFERENCE.name]
         return Measurement(
             step=step,
-            engine_speed=engine,
-            shaft_speed=shaft,
-            wheel_speed=wheel,
+            engine_speed=joint_speed.engine,
+            shaft_speed=joint_speed.primary_shaft,
+            wheel_speed=joint_speed.wheel,
             vehicle_speed=inputs[self._measured_topics.vehicle_speed.name],
             engine_torque=inputs[self._engine_topic.name],
             slip_reference=speeds,

@@ -43,7 +43,7 @@ class ReferenceNode(FollowerNode):
         """Return the reference at t_k and ahead."""
         shaft_speed = math.nan
         if self._reference.follows_shaft:
-            shaft_speed = inputs[self._seen.joint_states.name][1]
+            shaft_speed = inputs[self._seen.joint_states.name].primary_shaft
         speeds, rates = self._reference.update(step, inputs[self._seen.slip.name], shaft_speed)
         return (self._output.fill(stamp_ns, speeds, rates),)
 

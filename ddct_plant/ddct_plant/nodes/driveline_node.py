@@ -26,10 +26,8 @@ from ddct_plant.signals.topics import (
     JOINT_STATES,
     LOAD_TORQUE,
     RECORDER_ACK,
-    SENSED_JOINT_STATES,
     SENSED_SLIP,
-    SENSED_VEHICLE_SPEED,
-    SENSOR_STATUS,
+    SENSED_TOPICS,
     SLIP,
     TICKS,
     VEHICLE_ACCEL,
@@ -40,8 +38,10 @@ from ddct_plant.ticks.tick_owner import TickOwner, TickPlan, driveline_info
 
 TORQUES = (ENGINE_TORQUE, LOAD_TORQUE, CLUTCH_TORQUE, HOLDING_TORQUE)
 """Topics of the torques that the driveline integrates, in the order of its `step`."""
-SENSED = (SENSED_SLIP, SENSED_JOINT_STATES, SENSED_VEHICLE_SPEED, SENSOR_STATUS)
-"""Topics of a tick that carry measurements of the sensors and their flags."""
+SENSED = sorted(
+    (topic for topic in SENSED_TOPICS if topic.is_tick), key=lambda topic: topic is not SENSED_SLIP
+)
+"""Topics of a tick that carry measurements of the sensors and their flags, the slip first."""
 TICK = (CLOCK, *SENSED, SLIP, CLUTCH_PHASE, JOINT_STATES, VEHICLE_SPEED, VEHICLE_ACCEL)
 """Topics of a tick, in the order of publication: the slip has the longest way round the loop."""
 WATCH_PERIOD_S = 0.02
@@ -72,7 +72,7 @@ class DrivelineNode(GraphNode):
         self._sole_publishers = SolePublishers(self, lambda: self._publish_tick(self.owner.step))
         self.owner = self._make_owner()
         self._outputs = [
-            (Output(self, topic), topic.signals, topic in SENSED)
+            (Output(self, topic), [signal.name for signal in topic.signals])
             for topic in TICK
             if topic.in_run(self._run)
         ]
@@ -156,10 +156,11 @@ class DrivelineNode(GraphNode):
     def _publish_tick(self, step: int) -> None:
         stamp = stamp_of_step(step)
         true = self.driveline.outputs()
-        measured = self._sensors.measure(step, true) if self._sensors else None
-        for output, signals, sensed in self._outputs:
-            source = measured if sensed else true
-            output.fill(stamp, *[getattr(source, signal.name) for signal in signals]).publish()
+        values = true._asdict()
+        if self._sensors:
+            values |= self._sensors.measure(step, true).signals
+        for output, names in self._outputs:
+            output.fill(stamp, *[values[name] for name in names]).publish()
         if isinstance(self.owner, RealtimeOwner) and self.owner.safe:
             why = f'no {CLUTCH_TORQUE.name} for longer than clutch_timeout_s: opening the clutch'
             self._safe_state.publish(step, stamp, why)

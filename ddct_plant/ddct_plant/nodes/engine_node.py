@@ -14,12 +14,12 @@ from ddct_plant.graph.node import Output, SafeStateReport
 from ddct_plant.graph.settings import declare, declare_timeout
 from ddct_plant.graph.spin import run_node
 from ddct_plant.scenario.plant import make_engine, torque_estimate
+from ddct_plant.sensors.sensed import TorqueEstimate
 from ddct_plant.signals.topics import (
     ENGINE_REQUEST,
-    ENGINE_SENSOR_STATUS,
     ENGINE_TORQUE,
     JOINT_STATES,
-    SENSED_ENGINE_TORQUE,
+    SENSED_TOPICS,
     TORQUE_DEMAND,
 )
 
@@ -60,8 +60,11 @@ class EngineNode(FollowerNode):
         self._torque = Output(self, ENGINE_TORQUE)
         self._estimate = torque_estimate(self.settings)
         if self._estimate is not None:
-            self._estimated = Output(self, SENSED_ENGINE_TORQUE)
-            self._estimate_status = Output(self, ENGINE_SENSOR_STATUS)
+            self._estimated = [
+                (Output(self, topic), [signal.name for signal in topic.signals])
+                for topic in SENSED_TOPICS
+                if topic.publisher == TorqueEstimate.publisher
+            ]
         self.publish_run_info(engine_info(self._two_input, timeout_s))
         readers = {JOINT_STATES: self._speed}
         if self._two_input:
@@ -90,17 +93,17 @@ class EngineNode(FollowerNode):
         delivered = self._torque.fill(stamp, torque)
         if self._estimate is None:
             return (delivered,)
-        estimate = self._estimate.measure(step, torque)
-        return (
-            self._estimated.fill(stamp, estimate.sensed_engine_torque),
-            self._estimate_status.fill(stamp, estimate.sensed_torque_held),
-            delivered,
-        )
+        values = self._estimate.measure(step, torque).signals
+        estimated = [
+            output.fill(stamp, *[values[name] for name in names])
+            for output, names in self._estimated
+        ]
+        return (*estimated, delivered)
 
     def _speed(self, message: Any) -> float:
         """Return w_m in rad/s for an engine with limits, else 0 to save time."""
         limited = self.settings.scenario.engine_limits is not None
-        return JOINT_STATES.read(message)[0] if limited else 0.0
+        return JOINT_STATES.read(message).engine if limited else 0.0
 
     def _on_tick(self, stamp: int, speed: float) -> None:
         step = step_of_stamp(stamp)

@@ -116,7 +116,7 @@ class WholePlant:
             return Observation(outputs, measured, demand, None, demand)
         torque = reported = self._engine.torque(step, speed=outputs.engine_speed)
         if self._estimate is not None:
-            reported = self._estimate.measure(step, torque).sensed_engine_torque
+            reported = self._estimate.measure(step, torque).engine_torque
         return Observation(outputs, measured, demand, torque, reported)
 
     def reply(
@@ -149,8 +149,8 @@ class WholePlant:
         if self._two_input:
             reply['engine_torque_request'] = engine_request
         if self._sensors is not None and self._estimate is not None:
-            reply |= self._sensors.measure(step, outputs)._asdict()
-            reply |= self._estimate.measure(step, engine_torque)._asdict()
+            reply |= self._sensors.measure(step, outputs).signals
+            reply |= self._estimate.measure(step, engine_torque).signals
         return reply
 
     @property

@@ -3,11 +3,15 @@
 """The sensors of a run, and their measurements at one step."""
 
 from abc import ABC, abstractmethod
-from typing import Generic, NamedTuple, Protocol, TypeVar
+from collections.abc import Mapping, Sequence
+from operator import itemgetter
+from typing import Any, Generic, NamedTuple, Protocol, TypeVar
 
-from ddct_plant.models.driveline import DrivelineOutputs, SensedJoints
-from ddct_plant.sensors.parameters import SensorParameters
-from ddct_plant.sensors.sensor import Sensor, ShaftSensor
+from ddct_plant.models.driveline import DrivelineOutputs
+from ddct_plant.sensors.parameters import SensorParameters, SpeedSensor
+from ddct_plant.sensors.sensor import Sample, Sensor, ShaftSensor
+from ddct_plant.signals.sensed import SensedQuantity
+from ddct_plant.signals.topics import quantities, sensed_quantities, sensed_signals
 
 
 class MeasuredSpeeds(Protocol):
@@ -34,66 +38,83 @@ class MeasuredSpeeds(Protocol):
         """Vehicle speed V_x in m/s."""
 
 
+SensorSignals = Mapping[str, float | Sequence[float]]
+"""Measurements and flags of sensors at one step, by signal."""
+
+
 class SpeedMeasurements(NamedTuple):
-    """Measurements of the speed sensors at one step, under the names of the run's signals."""
+    """Measurements of the driveline's sensors at one step."""
 
-    sensed_joint_speed: SensedJoints
-    """Measured speeds w_m, w_p, w_r in rad/s."""
-    sensed_joint_held: SensedJoints
-    """Flags of w_m, w_p, w_r: 1 where the last value is repeated, else 0."""
-    sensed_slip_speed: float
-    """Slip speed in rad/s: measured w_m less measured w_p."""
-    sensed_slip_held: float
-    """Flag of the slip speed: 1 where w_m or w_p is repeated, else 0."""
-    sensed_vehicle_speed: float
+    engine_speed: float
+    """Measured engine speed w_m in rad/s."""
+    shaft_speed: float
+    """Measured speed of the primary shaft w_p in rad/s."""
+    wheel_speed: float
+    """Measured wheel speed w_r in rad/s."""
+    slip_speed: float
+    """Slip speed w_d in rad/s: measured w_m less measured w_p."""
+    vehicle_speed: float
     """Measured vehicle speed V_x in m/s."""
-    sensed_vehicle_held: float
-    """Flag of the vehicle speed: 1 where the last value is repeated, else 0."""
-
-    @property
-    def engine_speed(self) -> float:
-        """Measured engine speed w_m in rad/s."""
-        return self.sensed_joint_speed.engine
-
-    @property
-    def shaft_speed(self) -> float:
-        """Measured speed of the primary shaft w_p in rad/s."""
-        return self.sensed_joint_speed.primary_shaft
-
-    @property
-    def wheel_speed(self) -> float:
-        """Measured wheel speed w_r in rad/s."""
-        return self.sensed_joint_speed.wheel
-
-    @property
-    def slip_speed(self) -> float:
-        """Measured slip speed w_d in rad/s."""
-        return self.sensed_slip_speed
-
-    @property
-    def vehicle_speed(self) -> float:
-        """Measured vehicle speed V_x in m/s."""
-        return self.sensed_vehicle_speed
+    signals: SensorSignals
+    """Every measurement of these sensors, with its flag."""
 
 
 class TorqueMeasurement(NamedTuple):
-    """Estimate of the engine torque at one step, under the names of the run's signals."""
+    """Estimate of the engine torque at one step."""
 
-    sensed_engine_torque: float
+    engine_torque: float
     """Estimated C_m in N m over the coming period."""
-    sensed_torque_held: float
-    """Flag of the estimate: 1 where the last value is repeated, else 0."""
+    signals: SensorSignals
+    """The estimate with its flag."""
 
 
 Truth = TypeVar('Truth', contravariant=True)
 Measured = TypeVar('Measured')
 
 
-class Sensors(ABC, Generic[Truth, Measured]):
-    """Base of sensors that are sampled once per step of a run."""
+class _Model:
+    """Model of the sensor of one quantity, which takes its true value out of the signals."""
 
-    _step = -1
-    _measured: Measured
+    def __init__(self, quantity: SensedQuantity, parameters: SensorParameters, seed: int) -> None:
+        self.measured, self.flag = quantity.measured, quantity.flag
+        options = parameters.of(quantity.sensor)
+        self._true = _getter(quantity.true)
+        self._shaft: ShaftSensor | None = None
+        if isinstance(options, SpeedSensor):
+            self._shaft = ShaftSensor(options, quantity.sensor, seed)
+            self._angle = _getter(quantity.angle)
+        else:
+            self._sensor = Sensor(options, quantity.sensor, seed)
+
+    def take(self, true: Mapping[str, Any]) -> Sample:
+        """Return the measurement at the next step, for the true signals of that step."""
+        if self._shaft is None:
+            return self._sensor.take(self._true(true))
+        return self._shaft.take(self._angle(true), self._true(true))
+
+
+def _getter(quantity: str) -> Any:
+    """Return a function that takes a quantity out of signals by name."""
+    signal, index = quantities()[quantity]
+    if index is None:
+        return itemgetter(signal.name)
+    return lambda true: true[signal.name][index]
+
+
+class Sensors(ABC, Generic[Truth, Measured]):
+    """Base of the sensors of one node, which are sampled once per step of a run."""
+
+    publisher = ''
+    """Name of the node that publishes their measurements."""
+
+    def __init__(self, parameters: SensorParameters, seed: int) -> None:
+        """Make the sensors; their random numbers follow from the seed of the run."""
+        self._models = [
+            _Model(each, parameters, seed) for each in sensed_quantities(self.publisher)
+        ]
+        self._signals = sensed_signals(self.publisher)
+        self._step = -1
+        self._measured: Measured
 
     def measure(self, step: int, truth: Truth) -> Measured:
         """
@@ -110,40 +131,49 @@ class Sensors(ABC, Generic[Truth, Measured]):
     def _take(self, truth: Truth) -> Measured:
         """Return the measurement of the next step."""
 
+    def _samples(self, true: Mapping[str, Any]) -> dict[str, float]:
+        """Return measurements and flags of the next step by quantity, for the true signals."""
+        values: dict[str, float] = {}
+        for model in self._models:
+            sample = model.take(true)
+            values[model.measured], values[model.flag] = sample.value, float(sample.held)
+        return values
+
+    def _by_signal(self, values: Mapping[str, float]) -> SensorSignals:
+        """Return the signals of measurements and flags by quantity."""
+        return {
+            signal.name: [values[name] for name in signal.parts]
+            if signal.parts
+            else values[signal.name]
+            for signal in self._signals
+        }
+
 
 class DrivelineSensors(Sensors[DrivelineOutputs, SpeedMeasurements]):
-    """The sensors of w_m, w_p, w_r and V_x."""
+    """The sensors of w_m, w_p, w_r, V_x and of any other output of the driveline."""
 
-    def __init__(self, parameters: SensorParameters, seed: int) -> None:
-        """Make the four sensors; their random numbers follow from the seed of the run."""
-        self._engine = ShaftSensor(parameters.engine_speed, 'engine_speed', seed)
-        self._shaft = ShaftSensor(parameters.shaft_speed, 'shaft_speed', seed)
-        self._wheel = ShaftSensor(parameters.wheel_speed, 'wheel_speed', seed)
-        self._vehicle = Sensor(parameters.vehicle_speed, 'vehicle_speed', seed)
+    publisher = 'driveline'
 
     def _take(self, truth: DrivelineOutputs) -> SpeedMeasurements:
-        angles, speeds = truth.joint_position, truth.joint_speed
-        engine = self._engine.take(angles.engine, speeds.engine)
-        shaft = self._shaft.take(angles.primary_shaft, speeds.primary_shaft)
-        wheel = self._wheel.take(angles.wheel, speeds.wheel)
-        vehicle = self._vehicle.take(truth.vehicle_speed)
+        values = self._samples(truth._asdict())
+        engine, shaft = values['sensed_engine_speed'], values['sensed_primary_shaft_speed']
+        flags = values['sensed_engine_held'], values['sensed_primary_shaft_held']
+        values['sensed_slip_speed'], values['sensed_slip_held'] = engine - shaft, max(flags)
         return SpeedMeasurements(
-            sensed_joint_speed=SensedJoints(engine.value, shaft.value, wheel.value),
-            sensed_joint_held=SensedJoints(*map(float, (engine.held, shaft.held, wheel.held))),
-            sensed_slip_speed=engine.value - shaft.value,
-            sensed_slip_held=float(engine.held or shaft.held),
-            sensed_vehicle_speed=vehicle.value,
-            sensed_vehicle_held=float(vehicle.held),
+            engine_speed=engine,
+            shaft_speed=shaft,
+            wheel_speed=values['sensed_wheel_speed'],
+            slip_speed=values['sensed_slip_speed'],
+            vehicle_speed=values['sensed_vehicle_speed'],
+            signals=self._by_signal(values),
         )
 
 
 class TorqueEstimate(Sensors[float, TorqueMeasurement]):
     """The estimate of the engine torque C_m."""
 
-    def __init__(self, parameters: SensorParameters, seed: int) -> None:
-        """Make the estimate; its random numbers follow from the seed of the run."""
-        self._sensor = Sensor(parameters.engine_torque, 'engine_torque', seed)
+    publisher = 'engine'
 
     def _take(self, truth: float) -> TorqueMeasurement:
-        value, held = self._sensor.take(truth)
-        return TorqueMeasurement(value, float(held))
+        values = self._samples({'engine_torque': truth})
+        return TorqueMeasurement(values['sensed_engine_torque'], self._by_signal(values))

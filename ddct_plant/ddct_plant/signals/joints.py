@@ -4,8 +4,10 @@
 
 import math
 from array import array
+from collections import namedtuple
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 from ddct_plant.base.errors import DdctError
@@ -42,9 +44,14 @@ class Joints(MessageKind):
         self._speeds('the message', message)
         return tuple(getattr(message, field) for field in self.fields)
 
-    def read(self, topic: str, message: Any) -> list[float]:
-        """Return the speeds; raise DdctError unless there is a finite one for each joint."""
-        return finite_values(topic, self._speeds(topic, message))
+    def read(self, topic: str, message: Any) -> Any:
+        """Return the speeds by joint; raise DdctError unless each joint has a finite one."""
+        return self._by_joint(*finite_values(topic, self._speeds(topic, message)))
+
+    @cached_property
+    def _by_joint(self) -> Callable[..., Any]:
+        """Class of named tuples with a value per joint."""
+        return namedtuple('ByJoint', self.names)  # noqa: PYI024 the names are data
 
     def _speeds(self, topic: str, message: Any) -> Sequence[float]:
         names = list(self.names)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ddct_plant.signals.message_kind import ClassOf, MessageKind, Write, ros_class
+from ddct_plant.signals.sensed import Sensed
 from ddct_plant.signals.signal import RunKind, Signal
 
 
@@ -32,6 +33,8 @@ class Topic:
     """Whether it carries wall-clock values, which a lock-step recording must not contain."""
     when: Callable[[RunKind], bool] | None = None
     """Condition on the runs that have the topic; None for all of them."""
+    sensed: Sensed | None = None
+    """Sensors that it carries measurements of; None for a topic of others."""
     later: bool = False
     """Whether earlier bags lack it: their signals of this topic are in other messages."""
 

@@ -8,7 +8,7 @@ values and units. A new topic is one entry below, and the node that publishes it
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from operator import itemgetter
 from typing import Any
@@ -19,6 +19,7 @@ from ddct_plant.models.driveline import JointValues, SensedJoints
 from ddct_plant.signals.joints import Joints, NamedTorques
 from ddct_plant.signals.message_kind import MessageKind, Scalar
 from ddct_plant.signals.points import PreviewPoints, TorqueRows
+from ddct_plant.signals.sensed import REPEATED, Sensed, SensedQuantity
 from ddct_plant.signals.signal import RunKind, Signal
 from ddct_plant.signals.statuses import PhaseReport, SampleFlags, Status
 from ddct_plant.signals.topic import Topic
@@ -75,23 +76,58 @@ def _torque_row(name: str, about: str, **options: Any) -> Signal:
     return Signal(name, 'N m', f'{about}, at 0, 1, ..., 10 ms after t_k', SUBSTEPS + 1, **options)
 
 
-_REPEATED = '1 where the last value is repeated, else 0'
+def _sensor(name: str, true: Topic, flag: str = '', status: str = '') -> Topic:
+    """
+    Return the topic of a sensor of the one signal of the topic `true`; more follows from it.
 
-
-def _of_sensor(
-    name: str, kind: MessageKind, publisher: str, frame: str, measured: Signal
-) -> Topic:
-    return Topic(name, kind, publisher, (measured,), frame, when=_sensed)
-
-
-def _flags_of_sensors(
-    name: str, publisher: str, flags: tuple[tuple[Signal, tuple[str, ...]], ...]
-) -> Topic:
-    kind = SampleFlags(
-        'diagnostic_msgs/msg/DiagnosticArray', tuple(statuses for _, statuses in flags)
+    The sensor and its options have the name of the signal, its measurement the prefix `sensed_`.
+    Flag and status of a repeated sample have their own names where these are given.
+    """
+    (signal,) = true.signals
+    measured = replace(signal, name=f'sensed_{signal.name}', about=f'{signal.about}, as measured')
+    flag = flag or f'{measured.name}_held'
+    sensed = Sensed(
+        (SensedQuantity(signal.name, signal.name, measured.name, flag),),
+        Signal(flag, '1', REPEATED),
+        (status or signal.name,),
     )
-    signals = tuple(signal for signal, _ in flags)
-    return Topic(name, kind, publisher, signals, when=_sensed, later=True)
+    return Topic(
+        name, true.kind, true.publisher, (measured,), true.frame, when=_sensed, sensed=sensed
+    )
+
+
+def _shaft_sensors(*sensors: tuple[str, str]) -> Sensed:
+    """Return the sensors of shaft speeds, each given by its name and its joint."""
+    return Sensed(
+        tuple(
+            SensedQuantity(
+                name,
+                f'{joint}_speed',
+                f'sensed_{joint}_speed',
+                f'sensed_{joint}_held',
+                f'{joint}_position',
+            )
+            for name, joint in sensors
+        ),
+        _of_joints('sensed_', 'held', SENSED_JOINTS, '1', REPEATED),
+        SENSED_JOINTS,
+    )
+
+
+def _sensor_status(name: str, *sensed: Topic) -> Topic:
+    """Return the topic of the flags of sensors whose measurements are on other topics."""
+    each = [topic.sensed for topic in sensed if topic.sensed]
+    kind = SampleFlags(
+        'diagnostic_msgs/msg/DiagnosticArray', tuple(sensors.statuses for sensors in each)
+    )
+    flags = tuple(sensors.flags for sensors in each)
+    return Topic(name, kind, sensed[0].publisher, flags, when=_sensed, later=True)
+
+
+def _sensor_topics(publisher: str) -> tuple[Topic, ...]:
+    """Return the topics of sensors of a node that are declared so far."""
+    topics = (each for each in tuple(globals().values()) if isinstance(each, Topic))
+    return tuple(each for each in topics if each.sensed and each.publisher == publisher)
 
 
 _TRAJECTORY = 'trajectory_msgs/msg/JointTrajectory'
@@ -142,54 +178,36 @@ VEHICLE_ACCEL = Topic(
     (Signal('vehicle_accel', 'm/s^2', 'A_x'),),
     BASE_LINK,
 )
-SENSED_JOINT_STATES = _of_sensor(
+SENSED_JOINT_STATES = Topic(
     'sensors/joint_states',
     Joints('sensor_msgs/msg/JointState', SENSED_JOINTS, ('velocity',)),
     'driveline',
+    (_of_joints('sensed_', 'speed', SENSED_JOINTS, 'rad/s', 'w_m, w_p, w_r as measured'),),
     BASE_LINK,
-    _of_joints('sensed_', 'speed', SENSED_JOINTS, 'rad/s', 'w_m, w_p, w_r as measured'),
-)
-SENSED_SLIP = _of_sensor(
-    'sensors/slip',
-    Scalar('geometry_msgs/msg/TwistStamped', 'twist.angular.x'),
-    'driveline',
-    CLUTCH_LINK,
-    Signal('sensed_slip_speed', 'rad/s', 'w_m - w_p as measured'),
-)
-SENSED_VEHICLE_SPEED = _of_sensor(
-    'sensors/twist',
-    Scalar('geometry_msgs/msg/TwistStamped', 'twist.linear.x'),
-    'driveline',
-    BASE_LINK,
-    Signal('sensed_vehicle_speed', 'm/s', 'V_x as measured'),
-)
-SENSOR_STATUS = _flags_of_sensors(
-    'sensors/status',
-    'driveline',
-    (
-        (_of_joints('sensed_', 'held', SENSED_JOINTS, '1', _REPEATED), SENSED_JOINTS),
-        (Signal('sensed_slip_held', '1', _REPEATED), ('slip',)),
-        (Signal('sensed_vehicle_held', '1', _REPEATED), ('vehicle',)),
+    when=_sensed,
+    sensed=_shaft_sensors(
+        ('engine_speed', 'engine'), ('shaft_speed', 'primary_shaft'), ('wheel_speed', 'wheel')
     ),
 )
+SENSED_SLIP = Topic(
+    'sensors/slip',
+    SLIP.kind,
+    'driveline',
+    (Signal('sensed_slip_speed', 'rad/s', 'w_m - w_p as measured'),),
+    CLUTCH_LINK,
+    when=_sensed,
+    sensed=Sensed((), Signal('sensed_slip_held', '1', REPEATED), ('slip',)),
+)
+SENSED_VEHICLE_SPEED = _sensor('sensors/twist', VEHICLE_SPEED, 'sensed_vehicle_held', 'vehicle')
+SENSOR_STATUS = _sensor_status('sensors/status', *_sensor_topics('driveline'))
 TORQUE_DEMAND = _torque(
     'engine/torque_demand', 'engine', ENGINE_LINK, 'torque_demand', "the driver's demand at t_k"
 )
 ENGINE_TORQUE = _torque(
     'engine/torque', 'engine', ENGINE_LINK, 'engine_torque', 'C_m, held over the period'
 )
-SENSED_ENGINE_TORQUE = _of_sensor(
-    'sensors/engine_torque',
-    Scalar('geometry_msgs/msg/WrenchStamped', 'wrench.torque.x'),
-    'engine',
-    ENGINE_LINK,
-    Signal('sensed_engine_torque', 'N m', 'C_m as estimated'),
-)
-ENGINE_SENSOR_STATUS = _flags_of_sensors(
-    'sensors/engine_torque_status',
-    'engine',
-    ((Signal('sensed_torque_held', '1', _REPEATED), ('engine_torque',)),),
-)
+SENSED_ENGINE_TORQUE = _sensor('sensors/engine_torque', ENGINE_TORQUE, 'sensed_torque_held')
+ENGINE_SENSOR_STATUS = _sensor_status('sensors/engine_torque_status', *_sensor_topics('engine'))
 LOAD_TORQUE = _torque(
     'load/torque', 'load', WHEEL_LINK, 'load_torque', 'C_load, held over the period'
 )
@@ -311,6 +329,18 @@ wall clock."""
 
 SENSED_TOPICS = tuple(topic for topic in TOPICS if topic.when is _sensed)
 """Topics of the sensors."""
+
+
+def sensed_quantities(publisher: str = '') -> tuple[SensedQuantity, ...]:
+    """Return the quantities that sensors measure, all or those that one node publishes."""
+    topics = (each for each in TOPICS if publisher in ('', each.publisher))
+    return tuple(each for topic in topics if topic.sensed for each in topic.sensed.quantities)
+
+
+def sensed_signals(publisher: str) -> tuple[Signal, ...]:
+    """Return the signals of sensors that a node publishes, measurements and flags."""
+    topics = (each for each in SENSED_TOPICS if each.publisher == publisher)
+    return tuple(signal for topic in topics for signal in topic.signals)
 
 
 def all_topics() -> tuple[Topic, ...]:

@@ -101,7 +101,8 @@ def test_sensed_joints_have_speeds_alone_and_leave_no_array_empty_at_the_end():
     write = topic.writer()
     some = write(STAMP, [1.0, 2.0, 3.0])
     assert list(some.name) == ['engine', 'primary_shaft', 'wheel']
-    assert topic.read(some) == [1.0, 2.0, 3.0]
+    assert tuple(topic.read(some)) == (1.0, 2.0, 3.0)
+    assert topic.read(some).primary_shaft == 2.0
     assert [list(each) for each in topic.values(some)] == [[1.0, 2.0, 3.0]]
     assert len(some.effort) == 3
     assert all(math.isnan(each) for each in some.effort)

@@ -3,6 +3,7 @@
 """The sensors of a run together: what depends on what, and on nothing else."""
 
 import dataclasses
+from typing import Any
 
 import pytest
 
@@ -12,10 +13,10 @@ from ddct_plant.scenario.differences import changed_values
 from ddct_plant.scenario.file import load_scenario, scenario_digest, scenario_to_yaml
 from ddct_plant.scenario.plant import driveline_sensors, torque_estimate
 from ddct_plant.scenario.settings import RunSettings
-from ddct_plant.sensors.parameters import SensorParameters, ShaftSpeedSensor
+from ddct_plant.sensors.parameters import OPTIONS, SensorParameters
 from ddct_plant.sensors.sensed import DrivelineSensors, TorqueEstimate
 
-NOISY = load_scenario(
+NOISY: Any = load_scenario(
     'thesis',
     {
         'sensors.engine_speed.noise_rad_s': 0.2,
@@ -46,11 +47,10 @@ def run(sensors: DrivelineSensors, steps: int = 200):
 def test_the_measured_slip_is_the_difference_of_the_measured_speeds_with_the_flag_of_either():
     flags = set()
     for sensed in run(DrivelineSensors(NOISY, 0)):
-        engine, shaft, _ = sensed.sensed_joint_speed
-        assert sensed.sensed_slip_speed == engine - shaft
-        held = sensed.sensed_joint_held[:2]
-        assert sensed.sensed_slip_held == max(held)
-        flags.add(tuple(held))
+        assert sensed.slip_speed == sensed.engine_speed - sensed.shaft_speed
+        engine, shaft, _ = sensed.signals['sensed_joint_held']
+        assert sensed.signals['sensed_slip_held'] == max(engine, shaft)
+        flags.add((engine, shaft))
     assert flags == {(0.0, 0.0), (0.0, 1.0), (1.0, 0.0), (1.0, 1.0)}
 
 
@@ -72,21 +72,25 @@ def test_steps_that_real_time_leaves_out_use_up_their_numbers():
 
 def test_no_sensor_draws_from_the_numbers_of_another():
     all_of_them = run(DrivelineSensors(NOISY, 3))
-    shaft = SensorParameters(shaft_speed=NOISY.shaft_speed)
+    made: Any = SensorParameters
+    shaft = made(shaft_speed=NOISY.shaft_speed)
     alone = run(DrivelineSensors(shaft, 3))
-    other = run(DrivelineSensors(dataclasses.replace(NOISY, shaft_speed=ShaftSpeedSensor()), 3))
+    other = run(
+        DrivelineSensors(dataclasses.replace(NOISY, shaft_speed=OPTIONS['shaft_speed']()), 3)
+    )
     for every, one, rest in zip(all_of_them, alone, other, strict=True):
-        assert every.sensed_joint_speed[1] == one.sensed_joint_speed[1]
-        assert every.sensed_joint_speed[0] == rest.sensed_joint_speed[0]
-        assert every.sensed_vehicle_speed == rest.sensed_vehicle_speed
+        assert every.shaft_speed == one.shaft_speed
+        assert every.engine_speed == rest.engine_speed
+        assert every.vehicle_speed == rest.vehicle_speed
 
 
 def test_the_numbers_of_a_seed_stay_what_they_are():
     # As numpy 2 draws them with PCG64: another version of it that changes them is found here.
     first = run(DrivelineSensors(NOISY, 0), 2)
     estimate = TorqueEstimate(NOISY, 0)
-    numbers = [*first[1].sensed_joint_speed, first[1].sensed_vehicle_speed]
-    numbers.append(estimate.measure(1, 80.0).sensed_engine_torque)
+    speeds = first[1]
+    numbers = [speeds.engine_speed, speeds.shaft_speed, speeds.wheel_speed, speeds.vehicle_speed]
+    numbers.append(estimate.measure(1, 80.0).engine_torque)
     assert [round(number, 9) for number in numbers] == [
         159.77095561,
         149.96149763,

@@ -5,15 +5,18 @@
 import dataclasses
 import itertools
 import math
+from typing import Any
 
 import numpy as np
 import pytest
 from refusals import refused
 
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.sensors.parameters import EngineSpeedSensor, EngineTorqueEstimate, SensorOptions
+from ddct_plant.sensors.parameters import OPTIONS, SensorOptions
 from ddct_plant.sensors.sensor import Sensor, ShaftSensor, ToothCount, gaussian, losses
 
+EngineSpeedSensor: Any = OPTIONS['engine_speed']
+EngineTorqueEstimate: Any = OPTIONS['engine_torque']
 Z = 4.5
 """Standard errors that an estimate may be off: by chance once in 150 000 tests."""
 N = 40_000
