@@ -13,11 +13,12 @@ from support.runs import expected, plan
 
 from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.run.headless import ClosedLoop, run_loop
+from ddct_bringup.run.headless import ClosedLoop, run_headless, run_loop
 from ddct_bringup.scores.csv_text import signals_csv
 from ddct_controllers.registry import make_controller
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import step_of_stamp
+from ddct_plant.scenario.whole_plant import PlantReply
 from ddct_plant.signals import topics
 from ddct_plant.signals.message_kind import Scalar, stamp_ns
 from ddct_plant.signals.signal import RunKind, Signal
@@ -55,8 +56,10 @@ def add(monkeypatch: pytest.MonkeyPatch) -> Any:
 class LoopWithMore(ClosedLoop):
     """Closed loop whose load also gives the made-up torque."""
 
-    def reply(self, step: int) -> dict[str, Any]:
-        return {**super().reply(step), 'made_up_torque': value_at(step)}
+    def reply(self, step: int) -> PlantReply:
+        reply = super().reply(step)
+        reply.signals['made_up_torque'] = value_at(step)
+        return reply
 
 
 def headless_run() -> Trajectory:
@@ -75,16 +78,23 @@ def csv_columns(text: str) -> dict[str, tuple[str, ...]]:
 
 
 def test_a_bag_of_the_headless_loop_has_it(add: Any, bags: Any) -> None:
-    before = signals_csv(read_bag(bags.write(expected(RUN), folder='before')))
+    without = expected(RUN)
+    before = signals_csv(read_bag(bags.write(without, folder='before')))
     add(entry())
     run = headless_run()
     recording = read_bag(bags.write(run))
     assert recording.counts['/load/made_up'] == run.steps + 1
-    assert recording.trajectory.sha256() == run.sha256() != expected(RUN).sha256()
+    assert recording.trajectory.sha256() == run.sha256() != without.sha256()
     columns = csv_columns(signals_csv(recording))
     made_up = columns.pop('made_up_torque_n_m')
     assert [float(text) for text in made_up] == [value_at(k) for k in range(run.steps + 1)]
     assert columns == csv_columns(before)
+
+
+def test_a_run_whose_loop_does_not_compute_it_is_refused(add: Any) -> None:
+    add(entry())
+    with pytest.raises(DdctError, match='nothing computes made_up_torque'):
+        run_headless(RUN.settings, 'pi')
 
 
 def test_the_recorder_waits_for_it_at_every_tick(add: Any, tmp_path: Path) -> None:

@@ -11,12 +11,13 @@ from typing import Any
 import numpy as np
 
 from ddct_plant.base.errors import DdctError
-from ddct_plant.signals.signal import Signal
+from ddct_plant.signals.signal import RunKind, Signal, SignalValue
 from ddct_plant.signals.topics import (
     ENGINE_REQUEST,
     SENSED_SLIP,
     all_signals,
     quantities,
+    signals_of,
 )
 
 
@@ -48,6 +49,19 @@ class Trajectory:
                 if signal.name in columns
             }
         )
+
+    @classmethod
+    def of_rows(cls, rows: Sequence[Mapping[str, SignalValue]], kind: RunKind) -> 'Trajectory':
+        """
+        Return the trajectory of a run of a kind, from its signals by name at each step.
+
+        It has the signals that the table of topics gives this kind of run. Raise DdctError for one
+        that the rows lack.
+        """
+        names = [signal.name for signal in signals_of(kind)]
+        if lacking := [name for name in names if rows[0].get(name) is None]:
+            raise DdctError(f'nothing computes {", ".join(lacking)}, which this run has')
+        return cls.of_columns({name: [row[name] for row in rows] for name in names})
 
     def __getattr__(self, name: str) -> Any:
         """

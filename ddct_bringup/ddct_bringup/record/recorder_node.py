@@ -28,7 +28,6 @@ from ddct_plant.graph.qos import RECORDER_QOS
 from ddct_plant.graph.settings import declare
 from ddct_plant.graph.sole_publishers import publishers_of
 from ddct_plant.graph.spin import run_node
-from ddct_plant.signals.signal import RunKind
 from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import (
     CONTROLLER_TIMING,
@@ -85,9 +84,7 @@ class RecorderNode(GraphNode):
             ),
         )
         self._nodes = RunInfoCollector(self.settings, self._two_input, nodes)
-        self._run = RunKind(
-            self.settings.lockstep, self._two_input, self.settings.clutch, self.settings.sensed
-        )
+        self._run = self.settings.kind(two_input=self._two_input)
         self._topics = recorded_topics(self._run)
         self._tick_topics = [topic.name for topic in self._topics if topic.every_tick]
         self._buffer = TickBuffer(

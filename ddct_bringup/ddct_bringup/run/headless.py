@@ -10,7 +10,6 @@ The result equals that of the graph, in any process layout, to the last bit.
 """
 
 import time
-from typing import Any
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.run.timing_and_failure import RunTiming
@@ -18,7 +17,7 @@ from ddct_controllers.architecture import make_architecture
 from ddct_controllers.interface import Controller, Measurement
 from ddct_controllers.registry import Chosen, make_controller
 from ddct_plant.scenario.settings import RunSettings
-from ddct_plant.scenario.whole_plant import WholePlant
+from ddct_plant.scenario.whole_plant import PlantReply, WholePlant
 from ddct_reference.factory import make_reference
 
 
@@ -27,14 +26,16 @@ class ClosedLoop:
 
     def __init__(self, settings: RunSettings, controller: Controller) -> None:
         """Start in the run's initial state."""
+        self.kind = settings.kind(two_input=controller.commands_engine)
+        """Kind of the run, which decides which signals it has."""
         self.plant = WholePlant(settings, two_input=controller.commands_engine)
         self._reference = make_reference(settings, controller.preview_steps)
         self._architecture = make_architecture(settings, controller)
         self.update_time_us = 0.0
         """Wall time of the controller's last update, us."""
 
-    def reply(self, step: int) -> dict[str, Any]:
-        """Return every signal of step k by its name in `Trajectory`; advance all but the plant."""
+    def reply(self, step: int) -> PlantReply:
+        """Return torques and every signal of step k; advance all but the plant."""
         observation = self.plant.observe(step)
         measured = observation.measured
         speeds, rates = self._reference.update(step, measured.slip_speed, measured.shaft_speed)
@@ -43,13 +44,15 @@ class ClosedLoop:
         request = self._architecture.update(measurement)
         self.update_time_us = 1e6 * (time.perf_counter() - started)
         reply = self.plant.reply(step, observation, request.torque, request.engine_torque)
-        reply['slip_reference'] = speeds
-        reply['slip_reference_rate'] = rates
-        reply['status'] = request.status
-        reply |= request.parts
+        reply.signals.update(
+            slip_reference=speeds,
+            slip_reference_rate=rates,
+            status=request.status,
+            **request.parts,
+        )
         return reply
 
-    def advance(self, reply: dict[str, Any]) -> None:
+    def advance(self, reply: PlantReply) -> None:
         """Integrate the driveline over the period that `reply` answered."""
         self.plant.advance(reply)
 
@@ -77,14 +80,16 @@ def run_loop(loop: ClosedLoop, steps: int, timing: RunTiming | None = None) -> T
     """
     timing = RunTiming() if timing is None else timing
     started = time.perf_counter()
-    rows = [loop.reply(0)]
+    reply = loop.reply(0)
+    rows = [reply.signals]
     timing.update_times_us.append(loop.update_time_us)
     for step in range(1, steps + 1):
-        loop.advance(rows[-1])
-        rows.append(loop.reply(step))
+        loop.advance(reply)
+        reply = loop.reply(step)
+        rows.append(reply.signals)
         timing.update_times_us.append(loop.update_time_us)
         if loop.plant.over:
             break
     timing.steps = len(rows) - 1
     timing.wall_time_s = time.perf_counter() - started
-    return Trajectory.of_columns({name: [row[name] for row in rows] for name in rows[0]})
+    return Trajectory.of_rows(rows, loop.kind)

@@ -184,7 +184,7 @@ class ExactLoop(ClosedLoop):
 
     def advance(self, reply):
         super().advance(reply)
-        inputs = reply['torque_request'], reply['engine_torque'], reply['load_torque']
+        inputs = reply.signals['torque_request'], reply.engine_torque, reply.load_torque
         self._state = self._exact.a @ self._state + self._exact.b @ inputs
         assert isinstance(self.plant.driveline, Driveline)
         self.plant.driveline._state_and_inputs[:4] = self._state[:4]

@@ -14,7 +14,6 @@ from ddct_plant.graph.settings import declare, declare_fail_safe
 from ddct_plant.graph.sole_publishers import SolePublishers
 from ddct_plant.graph.spin import run_node
 from ddct_plant.scenario.plant import driveline_sensors, initial_state, make_driveline
-from ddct_plant.signals.signal import RunKind
 from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import (
     CLOCK,
@@ -62,9 +61,7 @@ class DrivelineNode(GraphNode):
     def __init__(self, **kwargs: Any) -> None:
         """Build the driveline in its initial state; a timer starts the run once the node spins."""
         super().__init__('driveline', **kwargs)
-        self._run = RunKind(
-            self.settings.lockstep, clutch=self.settings.clutch, sensed=self.settings.sensed
-        )
+        self._run = self.settings.kind()
         self._torques = [topic for topic in TORQUES if topic.in_run(self._run)]
         self.plan = self._declare_plan()
         self.driveline = make_driveline(self.settings, initial_state(self.settings))

@@ -9,6 +9,7 @@ from ddct_plant.base.options import OptionGroup, option, option_field
 from ddct_plant.models.clutch import CLUTCHES, STICK_SLIP, WEAR_GAIN
 from ddct_plant.scenario.control import ENGINE_SPEED_TARGET, PROFILE
 from ddct_plant.scenario.scenario import Scenario
+from ddct_plant.signals.signal import RunKind
 
 ARCHITECTURES = ('base', 'feedforward', 'feedforward_tanh', 'detailed')
 """Names of the control architectures: those of Section 1.6, and CRF's detailed model (1.4)."""
@@ -71,6 +72,10 @@ class RunSettings(OptionGroup):
     def lockstep(self) -> bool:
         """Whether the owner of time waits for every reply."""
         return self.mode == 'lockstep'
+
+    def kind(self, *, two_input: bool = False) -> RunKind:
+        """Return the kind of the run, which decides its topics; `two_input` of its controller."""
+        return RunKind(self.lockstep, two_input, self.clutch, self.sensed)
 
     def _require_clutch(self) -> None:
         """Refuse a scenario with keys that the linear clutch would ignore."""

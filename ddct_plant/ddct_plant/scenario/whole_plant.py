@@ -20,6 +20,7 @@ from ddct_plant.scenario.plant import (
 )
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.sensors.sensed import MeasuredSpeeds
+from ddct_plant.signals.signal import SignalValue
 
 
 class TorqueActuator(Protocol):
@@ -29,27 +30,31 @@ class TorqueActuator(Protocol):
         """Return the torque in N m at 0, 1, ..., 10 ms, (11,), and accept a request in N m."""
 
 
+class ClutchReply(NamedTuple):
+    """The clutch's answer to the torque of the actuator over a period."""
+
+    torques: tuple[Any, ...]
+    """Torques in N m that the driveline integrates, in the order of its `step`."""
+    signals: dict[str, SignalValue]
+    """Signals of the clutch and of the friction at the wheels, by name."""
+
+
 class Linear:
     """The linear clutch, as part of the plant."""
-
-    torques = ('clutch_torque',)
-    """Names of the torques in `reply` that the driveline integrates, in the order of its
-    `step`."""
 
     def __init__(self, settings: RunSettings) -> None:
         self._clutch = linear_clutch(settings)
 
     def reply(
         self, step: int, actuator_torque: list[float], outputs: DrivelineOutputs
-    ) -> dict[str, Any]:
-        """Return the signals of the clutch for the period of t_k, by name."""
-        return {'clutch_torque': self._clutch.transmit(actuator_torque)}
+    ) -> ClutchReply:
+        """Return the transmitted torque for the period of t_k."""
+        torque = self._clutch.transmit(actuator_torque)
+        return ClutchReply((torque,), {'clutch_torque': torque})
 
 
 class StickSlip:
     """The stick-slip clutch and the friction at the wheels, as parts of the plant."""
-
-    torques = ('clutch_torque', 'clutch_static_torque', 'holding_torque')
 
     def __init__(self, settings: RunSettings) -> None:
         self._clutch = stick_slip_clutch(settings)
@@ -57,21 +62,35 @@ class StickSlip:
 
     def reply(
         self, step: int, actuator_torque: list[float], outputs: DrivelineOutputs
-    ) -> dict[str, Any]:
-        """Return the signals for the period of t_k and the phase signals at t_k, by name."""
+    ) -> ClutchReply:
+        """Return the capacities for the period of t_k, and the temperature."""
         assert outputs.friction_work is not None
         clutch = self._clutch.reply(
             step, actuator_torque, outputs.slip_speed, outputs.friction_work
         )
-        return {
-            'clutch_torque': clutch.kinetic,
-            'clutch_static_torque': clutch.static,
-            'clutch_temperature': clutch.temperature_c,
-            'holding_torque': self._holding.capacity(time_of_step(step)),
-            'clutch_phase': outputs.clutch_phase,
-            'friction_work': outputs.friction_work,
-            'phase_events': outputs.phase_events,
-        }
+        holding = self._holding.capacity(time_of_step(step))
+        return ClutchReply(
+            (clutch.kinetic, clutch.static, holding),
+            {
+                'clutch_torque': clutch.kinetic,
+                'clutch_static_torque': clutch.static,
+                'clutch_temperature': clutch.temperature_c,
+                'holding_torque': holding,
+            },
+        )
+
+
+class PlantReply(NamedTuple):
+    """The plant's answer to the requests of a step."""
+
+    engine_torque: float
+    """C_m in N m over the period."""
+    load_torque: float
+    """C_load in N m over the period."""
+    clutch_torques: tuple[Any, ...]
+    """Torques in N m of the clutch and of the friction at the wheels, as `ClutchReply` has."""
+    signals: dict[str, SignalValue]
+    """Signals of the plant at this step, by name."""
 
 
 class Observation(NamedTuple):
@@ -125,43 +144,35 @@ class WholePlant:
         observation: Observation,
         torque_request: float,
         engine_request: float | None,
-    ) -> dict[str, Any]:
-        """Return the plant's signals of step k by name; both requests are in N m."""
+    ) -> PlantReply:
+        """Return torques and signals of step k; both requests are in N m."""
         outputs = observation.true
         actuator_torque = self.actuator.update(torque_request)
         engine_torque = observation.delivered
         if engine_torque is None:
             engine_torque = self._engine.torque(step, engine_request, outputs.engine_speed)
-        reply = {
-            'joint_position': outputs.joint_position,
-            'joint_speed': outputs.joint_speed,
-            'joint_effort': outputs.joint_effort,
-            'slip_speed': outputs.slip_speed,
-            'vehicle_speed': outputs.vehicle_speed,
-            'vehicle_accel': outputs.vehicle_accel,
+        load_torque = self._load.torque(outputs.vehicle_speed, time_of_step(step))
+        clutch = self._friction.reply(step, actuator_torque, outputs)
+        signals: dict[str, SignalValue] = {
+            **outputs._asdict(),
             'torque_demand': observation.demand,
             'engine_torque': engine_torque,
-            'load_torque': self._load.torque(outputs.vehicle_speed, time_of_step(step)),
+            'load_torque': load_torque,
             'torque_request': torque_request,
+            'engine_torque_request': engine_request,
             'actuator_torque': actuator_torque,
-            **self._friction.reply(step, actuator_torque, outputs),
+            **clutch.signals,
         }
-        if self._two_input:
-            reply['engine_torque_request'] = engine_request
         if self._sensors is not None and self._estimate is not None:
-            reply |= self._sensors.measure(step, outputs).signals
-            reply |= self._estimate.measure(step, engine_torque).signals
-        return reply
+            signals |= self._sensors.measure(step, outputs).signals
+            signals |= self._estimate.measure(step, engine_torque).signals
+        return PlantReply(engine_torque, load_torque, clutch.torques, signals)
 
     @property
     def over(self) -> bool:
         """Whether the run ends with the present state, because the engine stalls or over-revs."""
         return bool(self._scenario.end_cause(self.driveline.engine_speed))
 
-    def advance(self, reply: dict[str, Any]) -> None:
-        """Integrate the driveline over one period with the torques of `reply`, in N m."""
-        self.driveline.step(
-            reply['engine_torque'],
-            reply['load_torque'],
-            *map(reply.__getitem__, self._friction.torques),
-        )
+    def advance(self, reply: PlantReply) -> None:
+        """Integrate the driveline over one period with the torques of `reply`."""
+        self.driveline.step(reply.engine_torque, reply.load_torque, *reply.clutch_torques)

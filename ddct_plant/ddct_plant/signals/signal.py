@@ -2,10 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """A signal of a run: its name, unit and size, and the runs that have it."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from ddct_plant.models.clutch import LINEAR
+
+SignalValue = float | Sequence[float] | tuple[object, ...] | None
+"""Value of a signal at one step: a number, several, texts or events; None where a run lacks it."""
 
 
 @dataclass(frozen=True)

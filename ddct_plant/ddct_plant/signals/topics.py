@@ -355,6 +355,11 @@ def recorded_topics(run: RunKind) -> tuple[Topic, ...]:
     )
 
 
+def signals_of(run: RunKind) -> tuple[Signal, ...]:
+    """Return the signals that a run has."""
+    return tuple(each for topic in recorded_topics(run) for each in topic.signals_in(run))
+
+
 def tick_names() -> frozenset[str]:
     """Return the names of the topics that the owner of time publishes with every tick."""
     return frozenset(topic.name for topic in TOPICS if topic.is_tick)

@@ -21,10 +21,8 @@ def test_the_load_is_that_of_the_slope_at_the_time_of_each_step(clutch):
     for step in range(60):
         observation = plant.observe(step)
         reply = plant.reply(step, observation, 0.0, None)
-        assert reply['load_torque'] == load.torque(
-            observation.true.vehicle_speed, time_of_step(step)
-        )
-        found.append(reply['load_torque'])
+        assert reply.load_torque == load.torque(observation.true.vehicle_speed, time_of_step(step))
+        found.append(reply.load_torque)
         plant.advance(reply)
     assert found[-1] > found[0] + 400.0, 'at 0.118 rad'
 
@@ -37,6 +35,6 @@ def test_a_commanded_engine_delivers_what_its_limits_allow_at_the_speed_of_the_e
     engine_speed, shaft_speed = observation.true.joint_speed[:2]
     assert engine_speed == pytest.approx(104.72)
     assert shaft_speed == 0.0
-    found = plant.reply(0, observation, 0.0, 80.0)['engine_torque']
+    found = plant.reply(0, observation, 0.0, 80.0).engine_torque
     assert found == engine.torque(0, 80.0, engine_speed)
     assert found != make_engine(settings).torque(0, 80.0, shaft_speed)

@@ -150,10 +150,10 @@ def slip_after_load_step(
     slip = np.zeros(settings.scenario.steps + 1)
     for step in range(len(slip)):
         reply = loop.reply(step)
-        slip[step] = reply['slip_speed']
+        slip[step] = loop.plant.driveline.outputs().slip_speed
         each_step()
         if step >= load_step_index:
-            reply['load_torque'] += load_step_n_m
+            reply = reply._replace(load_torque=reply.load_torque + load_step_n_m)
         loop.advance(reply)
     return slip
 
