@@ -17,6 +17,7 @@ from ddct_plant.base.options import Option
 from ddct_plant.base.timebase import stamp_of_step
 from ddct_plant.graph.follower import FollowerNode, Reply
 from ddct_plant.graph.node import Output
+from ddct_plant.graph.node_reports import timing_pairs
 from ddct_plant.graph.settings import declare
 from ddct_plant.graph.spin import run_node
 from ddct_plant.signals.topics import (
@@ -117,9 +118,8 @@ class ControllerNode(FollowerNode):
         )
 
     def _publish_timing(self, step: int) -> None:
-        times = ' '.join(f'{value:.3f}' for value in self._update_times_us)
+        pairs = timing_pairs(self._update_times_us)
         self._update_times_us = []
-        pairs = [('update_times_us', times)]
         self._timing.fill(stamp_of_step(step), pairs).publish()
 
     def _make_controller(self, name: str) -> tuple[Controller, dict[str, str]]:

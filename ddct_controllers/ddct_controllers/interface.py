@@ -11,6 +11,7 @@ from typing import Any, ClassVar, Generic, TypeVar
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import REQUIRED, Options
 from ddct_plant.base.units import rpm_from_rad_s
+from ddct_plant.graph.node_reports import CONTROLLER, TWO_INPUT, flag
 from ddct_plant.linear.lti import StateSpace
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.scenario.whole_plant import Observation
@@ -181,10 +182,9 @@ class Controller(ABC):
         The exact gains follow, and the digests of the files that it is made of.
         """
         gains = {f'gains.{gain}': repr(value) for gain, value in self.gains().items()}
-        two_input = str(self.commands_engine).lower()
         return {
-            'controller': name,
-            'two_input': two_input,
+            CONTROLLER: name,
+            TWO_INPUT: flag(self.commands_engine),
             'computed_from': self.computed_from,
             **gains,
             **self.digests,

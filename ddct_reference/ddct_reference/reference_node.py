@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 from ddct_plant.base.options import Option
 from ddct_plant.graph.follower import FollowerNode, Reply
 from ddct_plant.graph.node import Output
+from ddct_plant.graph.node_reports import reference_info
 from ddct_plant.graph.settings import declare
 from ddct_plant.graph.spin import run_node
 from ddct_plant.signals.topics import SLIP_REFERENCE, measurement_topics
@@ -34,7 +35,7 @@ class ReferenceNode(FollowerNode):
         )
         self._reference = make_reference(self.settings, preview_steps)
         self._output = Output(self, SLIP_REFERENCE)
-        self.publish_run_info({'preview_steps': str(preview_steps)})
+        self.publish_run_info(reference_info(preview_steps))
         self._seen = measurement_topics(sensed=self.settings.sensed)
         shafts = (self._seen.joint_states,) if self._reference.follows_shaft else ()
         self.follow(self._seen.slip, *shafts)

@@ -21,8 +21,9 @@ from support.runs import expected, plan
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.run.description import custom_data
 from ddct_bringup.run.plan import RunPlan
+from ddct_plant.graph.node_reports import TICKS
 from ddct_plant.models.driveline import PHASES
-from ddct_plant.signals.topics import RUN_INFO, TICKS, TOPICS
+from ddct_plant.signals.topics import RUN_INFO, TOPICS
 
 Record = Callable[[RunPlan], Messages]
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from ddct_plant.graph.run_info import run_info_pairs
+from ddct_plant.graph.node_reports import run_info_pairs
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 

@@ -11,13 +11,11 @@ from ddct_plant.base.errors import DdctError, ParameterError, require_name, requ
 from ddct_plant.base.timebase import steps_in
 from ddct_plant.files.input_file import parse_json
 from ddct_plant.graph.node_names import StatusName
+from ddct_plant.graph.node_reports import SAFE_STATE, TICKS, TickCounts, safe_state_since
 from ddct_plant.signals.signal import RunKind
 from ddct_plant.signals.topics import (
     ENGINE_REQUEST,
-    SAFE_STATE,
     SENSED_TOPICS,
-    SINCE,
-    TICKS,
     TORQUE_PARTS,
 )
 
@@ -147,16 +145,17 @@ class RealtimeFacts(RealtimeCounts):
         """Store one status of `/diagnostics`; return whether it is one of this project's."""
         try:
             if name.node and name.what == SAFE_STATE:
-                self.safe_states[name.node] = int(pairs[SINCE])
+                self.safe_states[name.node] = safe_state_since(pairs)
                 return True
             if name != (DRIVELINE_NODE, TICKS):
                 return False
-            for count in ('steps', 'missed_steps', 'resends', 'late_messages'):
-                setattr(self, count, int(pairs[count]))
-            if 'worst_tick_lateness_us' in pairs:
-                self.worst_lateness_us = float(pairs['worst_tick_lateness_us'])
+            counts = TickCounts.of(pairs)
         except (KeyError, ValueError):
             return False
+        self.steps, self.resends = counts.steps, counts.resends
+        self.missed_steps, self.late_messages = counts.missed_steps, counts.late_messages
+        if counts.worst_lateness_us is not None:
+            self.worst_lateness_us = counts.worst_lateness_us
         return True
 
 

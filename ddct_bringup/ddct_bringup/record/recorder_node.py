@@ -24,6 +24,7 @@ from ddct_plant.base.options import Option
 from ddct_plant.base.timebase import START_NS, stamp_of_step
 from ddct_plant.graph.node import GraphNode, create_publisher
 from ddct_plant.graph.node_names import StatusName, name_in_graph
+from ddct_plant.graph.node_reports import update_times
 from ddct_plant.graph.qos import RECORDER_QOS
 from ddct_plant.graph.settings import declare
 from ddct_plant.graph.sole_publishers import publishers_of
@@ -185,8 +186,7 @@ class RecorderNode(GraphNode):
 
     def _on_timing(self, cdr: bytes) -> None:
         _, pairs = CONTROLLER_TIMING.read(_message(CONTROLLER_TIMING, cdr))
-        times = pairs.get('update_times_us', '')
-        self._timing.update_times_us += [float(value) for value in times.split()]
+        self._timing.update_times_us += update_times(pairs)
         self._record_unordered(CONTROLLER_TIMING, cdr)
 
     def _on_diagnostics(self, cdr: bytes) -> None:

@@ -13,7 +13,7 @@ from ddct_bringup.bag.run_facts import (
 )
 from ddct_plant.base.errors import DdctError
 from ddct_plant.graph.node_names import name_in_graph
-from ddct_plant.graph.run_info import run_info_pairs
+from ddct_plant.graph.node_reports import CONTROLLER, STEPS, TWO_INPUT, flag, run_info_pairs
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.signals.topics import RUN_INFO
 
@@ -28,7 +28,7 @@ class RunInfoCollector:
         A name without a slash is that of a node in the recorder's own namespace.
         """
         self._settings = settings
-        self._two_input = str(two_input).lower()
+        self._two_input = flag(two_input)
         self._expected = {name_in_graph(node) for node in expected}
         self._received: RunInfoOfNodes = {}
 
@@ -39,15 +39,15 @@ class RunInfoCollector:
         Raise DdctError when its settings differ from the recorder's, or its pairs from
         earlier ones.
         """
-        for key, ours in run_info_pairs(self._settings):
+        for key, ours in run_info_pairs(self._settings).items():
             if pairs.get(key, ours) != ours:
                 raise DdctError(
                     f'node {node} runs with {key} {pairs[key]} and the recorder with {ours}: '
                     'start every node with the same settings'
                 )
-        if pairs.get('two_input', self._two_input) != self._two_input:
+        if pairs.get(TWO_INPUT, self._two_input) != self._two_input:
             raise DdctError(
-                f'node {node} runs with two_input {pairs["two_input"]} and the recorder with '
+                f'node {node} runs with two_input {pairs[TWO_INPUT]} and the recorder with '
                 f'{self._two_input}: start engine and recorder with the two_input of the '
                 'controller, as --ros-args -p two_input:=true when it commands the engine'
             )
@@ -68,12 +68,12 @@ class RunInfoCollector:
     @property
     def controller(self) -> str:
         """Name of the controller; DdctError when no node has published it."""
-        return self._value(CONTROLLER_NODE, 'controller')
+        return self._value(CONTROLLER_NODE, CONTROLLER)
 
     @property
     def steps(self) -> int:
         """N, the number of periods; DdctError when the driveline has not published it."""
-        steps = self._value(DRIVELINE_NODE, 'steps')
+        steps = self._value(DRIVELINE_NODE, STEPS)
         if not steps.isdecimal():
             raise DdctError(
                 f'{RUN_INFO.name} of node {DRIVELINE_NODE} has steps {steps!r}: '

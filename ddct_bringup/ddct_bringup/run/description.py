@@ -9,14 +9,11 @@ from pathlib import Path
 from ddct_bringup.bag.run_facts import RunFacts, RunInfoOfNodes
 from ddct_controllers.interface import Controller
 from ddct_plant.base.timebase import time_of_step
-from ddct_plant.fail_safe.guarded import engine_info
-from ddct_plant.fail_safe.request_watch import FailSafeSettings
 from ddct_plant.graph.node_names import name_in_graph
-from ddct_plant.graph.run_info import run_info_pairs
+from ddct_plant.graph.node_reports import node_info
 from ddct_plant.program.command_line import package_version
 from ddct_plant.scenario.file import scenario_to_yaml
 from ddct_plant.scenario.settings import RunSettings
-from ddct_plant.ticks.tick_owner import driveline_info
 
 UNKNOWN = 'unknown'
 DIRTY = '-dirty'
@@ -59,19 +56,8 @@ def run_info_of(
     settings: RunSettings, name: str, controller: Controller, steps: int
 ) -> RunInfoOfNodes:
     """Return the `run_info` that the nodes of a graph with these settings publish."""
-    extra: dict[str, dict[str, str]] = {
-        'engine': engine_info(controller.commands_engine),
-        'load': {},
-        'clutch': {},
-        'driveline': driveline_info(steps),
-        'actuator': FailSafeSettings().info(),
-        'reference': {'preview_steps': str(controller.preview_steps)},
-        'controller': controller.info(name),
-        'recorder': {},
-    }
-    return {
-        name_in_graph(node): dict(run_info_pairs(settings, pairs)) for node, pairs in extra.items()
-    }
+    info = node_info(settings, controller.info(name), controller.preview_steps, steps)
+    return {name_in_graph(node): pairs for node, pairs in info.items()}
 
 
 def source_commit(file: Path = Path(__file__)) -> str:

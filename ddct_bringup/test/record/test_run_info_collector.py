@@ -6,7 +6,7 @@ import pytest
 
 from ddct_bringup.record.run_info_collector import RunInfoCollector
 from ddct_plant.base.errors import DdctError
-from ddct_plant.graph.run_info import run_info_pairs
+from ddct_plant.graph.node_reports import run_info_pairs
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 

@@ -7,7 +7,6 @@ from typing import Generic, TypeVar
 
 from ddct_plant.fail_safe.request_watch import (
     MOST_CATCH_UP_STEPS,
-    REQUEST_TIMEOUT_S,
     FailSafe,
     FailSafeSettings,
     RequestWatch,
@@ -17,11 +16,6 @@ from ddct_plant.models.engine import Engine
 
 Answer = TypeVar('Answer')
 """Type of the torque that a device delivers over one period."""
-
-
-def engine_info(two_input: bool, request_timeout_s: float = REQUEST_TIMEOUT_S) -> dict[str, str]:
-    """Return the engine's `run_info` entries: two inputs or not, and timeout of requests in s."""
-    return {'two_input': str(two_input).lower(), 'request_timeout_s': repr(request_timeout_s)}
 
 
 def steps_to_make_up(next_step: int, step: int) -> range:

@@ -3,7 +3,7 @@
 """Timeout of requests, and the ramp to an open clutch, of a run in real time."""
 
 import math
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 
 from ddct_plant.base.options import OptionGroup, option
 from ddct_plant.base.timebase import PERIOD_NS, PERIOD_S
@@ -37,10 +37,6 @@ class FailSafeSettings(OptionGroup):
         above=0.0,
         at_most=1e6,
     )
-
-    def info(self) -> dict[str, str]:
-        """Return both values as text for `run_info`, by name."""
-        return {name: repr(value) for name, value in asdict(self).items()}
 
 
 class RequestWatch:

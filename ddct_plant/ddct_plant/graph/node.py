@@ -15,6 +15,7 @@ from rclpy.timer import Timer
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import STEPS_PER_S, stamp_of_step
 from ddct_plant.graph.node_names import StatusName
+from ddct_plant.graph.node_reports import SAFE_STATE, run_info_pairs, safe_state_pairs
 from ddct_plant.graph.qos import (
     LATCHED_QOS,
     LOOP_QOS,
@@ -24,15 +25,12 @@ from ddct_plant.graph.qos import (
     overriding_options,
     own_copy,
 )
-from ddct_plant.graph.run_info import run_info_pairs
 from ddct_plant.graph.settings import declare_settings
 from ddct_plant.signals.message_kind import stamp_ns
 from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import (
     DIAGNOSTICS,
     RUN_INFO,
-    SAFE_STATE,
-    SINCE,
 )
 from ddct_plant.ticks.stamp_limit import StampLimit
 
@@ -89,7 +87,7 @@ class SafeStateReport:
             self._node.get_logger().error(f'safe state from stamp {stamp} ns on: {why}')
         elif step % STEPS_PER_S:
             return
-        pairs = ((SINCE, str(self._since)), ('why', why))
+        pairs = safe_state_pairs(self._since, why)
         name = StatusName(self._node.get_fully_qualified_name(), SAFE_STATE)
         self._output.fill(stamp, pairs, name=str(name), error=why).publish()
 
@@ -121,7 +119,7 @@ class GraphNode(Node):
         """Publish this node's settings, latched and stamped t_0, with `extra` entries."""
         pairs = run_info_pairs(self.settings, extra)
         name = self.get_fully_qualified_name()
-        Output(self, RUN_INFO).fill(stamp_of_step(0), pairs, name=name).publish()
+        Output(self, RUN_INFO).fill(stamp_of_step(0), pairs.items(), name=name).publish()
 
     def subscribe_values(
         self,

@@ -9,6 +9,7 @@ from ddct_plant.fail_safe.guarded import GuardedActuator
 from ddct_plant.fail_safe.request_watch import REQUEST_TIMEOUT_S
 from ddct_plant.graph.follower import FollowerNode, Reply
 from ddct_plant.graph.node import Output, SafeStateReport
+from ddct_plant.graph.node_reports import actuator_info
 from ddct_plant.graph.settings import declare_fail_safe
 from ddct_plant.graph.spin import run_node
 from ddct_plant.scenario.plant import initial_state, make_actuator
@@ -43,7 +44,7 @@ class ActuatorNode(FollowerNode):
         self._actuator = GuardedActuator(actuator, initial.torque_request, fail_safe)
         self._torque = Output(self, ACTUATOR_TORQUE)
         self._requests_without_clock = 0
-        self.publish_run_info(fail_safe.info())
+        self.publish_run_info(actuator_info(fail_safe))
         self.follow(TORQUE_REQUEST)
         if not self.settings.lockstep:
             self._safe_state = SafeStateReport(self)

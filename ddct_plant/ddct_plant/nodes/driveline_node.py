@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Node `driveline`: owns time, integrates the stiff states and publishes them at every tick."""
 
+from dataclasses import replace
 from functools import partial
 from typing import Any, ClassVar
 
@@ -10,6 +11,7 @@ from ddct_plant.base.timebase import LONGEST_S, PERIOD_S, STEPS_PER_S, stamp_of_
 from ddct_plant.fail_safe.request_watch import CLUTCH_TIMEOUT_S
 from ddct_plant.graph.node import GraphNode, Output, SafeStateReport
 from ddct_plant.graph.node_names import StatusName
+from ddct_plant.graph.node_reports import TICKS, TickCounts, driveline_info
 from ddct_plant.graph.settings import declare, declare_fail_safe
 from ddct_plant.graph.sole_publishers import SolePublishers
 from ddct_plant.graph.spin import run_node
@@ -28,12 +30,11 @@ from ddct_plant.signals.topics import (
     SENSED_SLIP,
     SENSED_TOPICS,
     SLIP,
-    TICKS,
     VEHICLE_ACCEL,
     VEHICLE_SPEED,
 )
 from ddct_plant.ticks.realtime_owner import RealtimeOwner
-from ddct_plant.ticks.tick_owner import TickOwner, TickPlan, driveline_info
+from ddct_plant.ticks.tick_owner import TickOwner, TickPlan
 
 TORQUES = (ENGINE_TORQUE, LOAD_TORQUE, CLUTCH_TORQUE, HOLDING_TORQUE)
 """Topics of the torques that the driveline integrates, in the order of its `step`."""
@@ -163,20 +164,15 @@ class DrivelineNode(GraphNode):
             self._safe_state.publish(step, stamp, why)
         if step % STEPS_PER_S == 0 or step == self.owner.last_step:
             name = StatusName(self.get_fully_qualified_name(), TICKS)
-            self._diagnostics.fill(stamp, self._counts(), name=str(name)).publish()
+            self._diagnostics.fill(stamp, self._counts().pairs(), name=str(name)).publish()
 
-    def _counts(self) -> list[tuple[str, str]]:
+    def _counts(self) -> TickCounts:
         owner = self.owner
-        pairs = [
-            ('steps', str(owner.step)),
-            ('resends', str(owner.resends)),
-            ('missed_steps', str(owner.missed_steps)),
-            ('late_messages', str(owner.late)),
-        ]
-        if isinstance(owner, RealtimeOwner):
-            pairs += [(f'missed {topic}', str(n)) for topic, n in owner.missed_replies.items()]
-            pairs.append(('worst_tick_lateness_us', f'{1e6 * owner.worst_lateness_s:.0f}'))
-        return pairs
+        counts = TickCounts(owner.step, owner.resends, owner.missed_steps, owner.late)
+        if not isinstance(owner, RealtimeOwner):
+            return counts
+        lateness_us = 1e6 * owner.worst_lateness_s
+        return replace(counts, worst_lateness_us=lateness_us, missed_replies=owner.missed_replies)
 
 
 def main() -> int:

@@ -7,10 +7,11 @@ from typing import Any, ClassVar
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.options import Option
 from ddct_plant.base.timebase import step_of_stamp
-from ddct_plant.fail_safe.guarded import GuardedEngine, engine_info
+from ddct_plant.fail_safe.guarded import GuardedEngine
 from ddct_plant.fail_safe.request_watch import REQUEST_TIMEOUT_S
 from ddct_plant.graph.follower import FollowerNode, Reply
 from ddct_plant.graph.node import Output, SafeStateReport
+from ddct_plant.graph.node_reports import engine_info
 from ddct_plant.graph.settings import declare, declare_timeout
 from ddct_plant.graph.spin import run_node
 from ddct_plant.scenario.plant import make_engine, torque_estimate

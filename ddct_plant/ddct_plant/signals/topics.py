@@ -32,12 +32,6 @@ BASE_LINK = 'base_link'
 """Frame of the car's body (REP-105), x forward: of its motion, and of what joints carry."""
 ENGINE_LINK, CLUTCH_LINK, WHEEL_LINK = 'engine_link', 'clutch_link', 'wheel_link'
 """Frames whose x axis is the axis on which crankshaft, clutch and wheels turn."""
-TICKS = ': ticks'
-"""Ending, after the driveline's name, of the name of the status with its counts."""
-SAFE_STATE = ': safe state'
-"""Ending, after the node's name, of the name of the status of a node in its safe state."""
-SINCE = 'since_ns'
-"""Key of the stamp in ns at which the safe state began."""
 
 
 def _torque(

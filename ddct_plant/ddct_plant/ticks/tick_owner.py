@@ -42,16 +42,6 @@ class TickPlan:
         return (*self.torques, self.recorder) if self.recorder else self.torques
 
 
-def driveline_info(steps: int, clutch: FailSafeSettings | None = None) -> dict[str, str]:
-    """Return the `run_info` entries of the driveline: N, timeout and rate of its fail-safe."""
-    clutch = clutch or FailSafeSettings(CLUTCH_TIMEOUT_S)
-    return {
-        'steps': str(steps),
-        'clutch_timeout_s': repr(clutch.request_timeout_s),
-        'fail_safe_ramp_n_m_s': repr(clutch.fail_safe_ramp_n_m_s),
-    }
-
-
 class TickOwner:
     """
     Publish a tick, wait for every reply stamped exactly t_k, integrate, go on: lock-step.

@@ -1,0 +1,157 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""
+What every node publishes about itself and about a run, as pairs of key and text, and their reader.
+
+`run_info` is equal in the graph and in headless runs. Counts, safe states and update times exist
+in graphs only. No ROS is needed here.
+"""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+
+from ddct_plant.fail_safe.request_watch import (
+    CLUTCH_TIMEOUT_S,
+    REQUEST_TIMEOUT_S,
+    FailSafeSettings,
+)
+from ddct_plant.program.command_line import package_version
+from ddct_plant.scenario.file import scenario_digest
+from ddct_plant.scenario.settings import RunSettings
+
+Pairs = dict[str, str]
+"""Texts by key."""
+CONTROLLER, STEPS, TWO_INPUT = 'controller', 'steps', 'two_input'
+"""Keys on `run_info` without which there is no recording, or which the recorder compares."""
+TICKS = ': ticks'
+"""Ending, after the driveline's name, of the name of the status with its counts."""
+SAFE_STATE = ': safe state'
+"""Ending, after the node's name, of the name of the status of a node in its safe state."""
+_SINCE = 'since_ns'
+_UPDATE_TIMES = 'update_times_us'
+_LATENESS = 'worst_tick_lateness_us'
+
+
+def run_info_pairs(settings: RunSettings, own: Mapping[str, str] | None = None) -> Pairs:
+    """Return the `run_info` of a node: version and settings of the run, then `own` pairs."""
+    return {
+        'version': package_version(),
+        'scenario': settings.scenario.name,
+        'scenario_digest': scenario_digest(settings.scenario),
+        'architecture': settings.architecture,
+        'clutch': settings.clutch,
+        'wear_gain': repr(settings.wear_gain),
+        'mode': settings.mode,
+        'seed': str(settings.seed),
+        **(own or {}),
+    }
+
+
+def engine_info(two_input: bool, request_timeout_s: float = REQUEST_TIMEOUT_S) -> Pairs:
+    """Return the engine's own pairs: two inputs or not, and timeout of requests in s."""
+    return {TWO_INPUT: flag(two_input), 'request_timeout_s': repr(request_timeout_s)}
+
+
+def actuator_info(fail_safe: FailSafeSettings | None = None) -> Pairs:
+    """Return the actuator's own pairs: timeout of requests in s, rate of its ramp in N m/s."""
+    fail_safe = fail_safe or FailSafeSettings()
+    return {'request_timeout_s': repr(fail_safe.request_timeout_s), **_ramp(fail_safe)}
+
+
+def driveline_info(steps: int, fail_safe: FailSafeSettings | None = None) -> Pairs:
+    """Return the driveline's own pairs: N, timeout in s and rate of its fail-safe in N m/s."""
+    fail_safe = fail_safe or FailSafeSettings(CLUTCH_TIMEOUT_S)
+    timeout = {'clutch_timeout_s': repr(fail_safe.request_timeout_s)}
+    return {STEPS: str(steps), **timeout, **_ramp(fail_safe)}
+
+
+def reference_info(preview_steps: int) -> Pairs:
+    """Return the reference's own pair: the number of periods that it looks ahead."""
+    return {'preview_steps': str(preview_steps)}
+
+
+def node_info(
+    settings: RunSettings, controller: Mapping[str, str], preview_steps: int, steps: int
+) -> dict[str, Pairs]:
+    """
+    Return the `run_info` of each node of a graph with default timeouts, by the node's name.
+
+    `controller` are the own pairs of the controller, from `Controller.info`.
+    """
+    own: dict[str, Mapping[str, str]] = {
+        'engine': engine_info(controller[TWO_INPUT] == flag(True)),
+        'load': {},
+        'clutch': {},
+        'driveline': driveline_info(steps),
+        'actuator': actuator_info(),
+        'reference': reference_info(preview_steps),
+        'controller': controller,
+        'recorder': {},
+    }
+    return {node: run_info_pairs(settings, pairs) for node, pairs in own.items()}
+
+
+def flag(value: bool) -> str:
+    """Return the text of a flag: true or false."""
+    return str(value).lower()
+
+
+def _ramp(fail_safe: FailSafeSettings) -> Pairs:
+    return {'fail_safe_ramp_n_m_s': repr(fail_safe.fail_safe_ramp_n_m_s)}
+
+
+@dataclass(frozen=True)
+class TickCounts:
+    """The driveline's counts of a run, the content of its status `TICKS`."""
+
+    steps: int
+    """Step of the counts."""
+    resends: int
+    """Number of ticks that were sent again."""
+    missed_steps: int
+    """Number of steps that held the last torque because a reply was missing."""
+    late_messages: int
+    """Number of replies to a tick that was over."""
+    worst_lateness_us: float | None = None
+    """Largest lateness of a step, us; None in lock-step."""
+    missed_replies: Mapping[str, int] = field(default_factory=dict)
+    """Number of missing replies by topic; empty in lock-step."""
+
+    def pairs(self) -> list[tuple[str, str]]:
+        """Return the pairs of the status."""
+        counts = {key: getattr(self, key) for key in _COUNTS}
+        counts |= {f'missed {topic}': count for topic, count in self.missed_replies.items()}
+        pairs = [(key, str(count)) for key, count in counts.items()]
+        if self.worst_lateness_us is not None:
+            pairs.append((_LATENESS, f'{self.worst_lateness_us:.0f}'))
+        return pairs
+
+    @classmethod
+    def of(cls, pairs: Mapping[str, str]) -> 'TickCounts':
+        """Return the counts in the pairs of a status; raise KeyError or ValueError."""
+        lateness = float(pairs[_LATENESS]) if _LATENESS in pairs else None
+        steps, resends, missed_steps, late_messages = (int(pairs[key]) for key in _COUNTS)
+        return cls(steps, resends, missed_steps, late_messages, lateness)
+
+
+_COUNTS = ('steps', 'resends', 'missed_steps', 'late_messages')
+
+
+def safe_state_pairs(since_ns: int, why: str) -> list[tuple[str, str]]:
+    """Return the pairs of a safe state that began at a stamp in ns."""
+    return [(_SINCE, str(since_ns)), ('why', why)]
+
+
+def safe_state_since(pairs: Mapping[str, str]) -> int:
+    """Return the stamp in ns at which a safe state began; raise KeyError or ValueError."""
+    return int(pairs[_SINCE])
+
+
+def timing_pairs(update_times_us: Iterable[float]) -> list[tuple[str, str]]:
+    """Return the pairs of `controller/timing`, for update times in us."""
+    return [(_UPDATE_TIMES, ' '.join(f'{time:.3f}' for time in update_times_us))]
+
+
+def update_times(pairs: Mapping[str, str]) -> list[float]:
+    """Return the update times in us in the pairs of `controller/timing`; raise ValueError."""
+    return [float(time) for time in pairs.get(_UPDATE_TIMES, '').split()]
