@@ -2,15 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Read a recorded bag into a trajectory, its facts and counts, without ROS."""
 
-from collections import defaultdict
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from mcap_ros2.decoder import DecoderFactory
-
+from ddct_bringup.bag.decoding import decoded_messages
 from ddct_bringup.bag.earlier_bags import Messages, Values, earlier_values
 from ddct_bringup.bag.file.records import BagRecords, read_records
 from ddct_bringup.bag.run_facts import (
@@ -29,14 +27,12 @@ from ddct_plant.files.yaml_text import parse_yaml
 from ddct_plant.graph.node_names import StatusName, name_in_graph
 from ddct_plant.scenario.content import scenario_from_mapping
 from ddct_plant.scenario.settings import RunSettings
-from ddct_plant.signals.message_kind import stamp_ns
 from ddct_plant.signals.signal import RunKind
 from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import (
     DIAGNOSTICS,
     JOINT_STATES,
     RUN_INFO,
-    all_topics,
     recorded_topics,
 )
 
@@ -118,7 +114,7 @@ def recording_of(records: BagRecords) -> Recording:
     if JOINT_STATES.resolved_name not in records.topics:
         raise DdctError(f'no topic {JOINT_STATES.resolved_name}: not a recording of this project')
     facts = RunFacts.from_custom_data(records.custom_data)
-    messages = _decode(records)
+    messages = decoded_messages(records)
     stamps = {topic: [stamp for stamp, _ in each] for topic, each in messages.items()}
     run = facts.kind_of_bag(records.topics)
     last = check_ticks(stamps, run)
@@ -157,43 +153,6 @@ def _realtime(messages: list[tuple[int, Any]]) -> RealtimeFacts:
             name, pairs = DIAGNOSTICS.read(message)
             facts.receive(StatusName.of(name), pairs)
     return facts
-
-
-def _decode(records: BagRecords) -> dict[str, list[tuple[int, Any]]]:
-    """Return the (stamp in ns, message) pairs of each known topic, in the order of the file."""
-    decoders = _decoders(records)
-    messages: dict[str, list[tuple[int, Any]]] = defaultdict(list)
-    for topic, log_time, data in records.messages:
-        if (decode := decoders.get(topic)) is None:
-            continue
-        try:
-            message = decode(data)
-            stamp = stamp_ns(message)
-        except Exception as error:  # the decoder has no common base of its errors
-            raise DdctError(f'{topic} at {log_time} ns cannot be decoded ({error})') from error
-        if stamp != log_time:
-            raise DdctError(f'{topic} at {log_time} ns carries the stamp {stamp} ns')
-        messages[topic].append((stamp, message))
-    return dict(messages)
-
-
-def _decoders(records: BagRecords) -> dict[str, Callable[[bytes], Any]]:
-    """Return a decoder for each known topic; raise DdctError for a topic of another type."""
-    factory = DecoderFactory()
-    ours = {topic.resolved_name: topic.type for topic in all_topics()}
-    decoders = {}
-    for channel in records.channels.values():
-        if (type_name := ours.get(channel.topic)) is None:
-            continue
-        schema = records.schemas.get(channel.schema_id)
-        try:
-            decoder = factory.decoder_for(channel.message_encoding, schema)
-        except Exception as error:  # the decoder has no common base of its errors
-            raise DdctError(f'{channel.topic}: unusable message definition ({error})') from error
-        if schema is None or schema.name != type_name or decoder is None:
-            raise DdctError(f'{channel.topic} does not carry CDR messages of type {type_name}')
-        decoders[channel.topic] = decoder
-    return decoders
 
 
 def _values(topic: Topic, messages: Messages, run: RunKind) -> Values:

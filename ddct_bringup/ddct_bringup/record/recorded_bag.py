@@ -1,0 +1,106 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""The bag of a run while it is recorded: opened once every node is known, written in order."""
+
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from rclpy.serialization import serialize_message
+
+from ddct_bringup.bag.file.cdr import stamp_of_cdr
+from ddct_bringup.bag.writer import BagWriter, new_bag
+from ddct_bringup.record.run_info_collector import RunInfoCollector
+from ddct_bringup.record.tick_buffer import Tick
+from ddct_bringup.run.description import custom_data
+from ddct_plant.base.timebase import START_NS, stamp_of_step
+from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.signals.topic import Topic
+from ddct_plant.signals.topics import RECORDER_ACK, RUN_INFO
+
+
+class RecordedBag:
+    """Bag that is opened with the first tick after every node has published its `run_info`."""
+
+    def __init__(
+        self,
+        path: tuple[Path, str],
+        topics: Sequence[Topic],
+        settings: RunSettings,
+        nodes: RunInfoCollector,
+        acknowledge: Callable[[int], bytes],
+    ) -> None:
+        """
+        Store folder and name of the bag, and the topics that it has.
+
+        `acknowledge` publishes the acknowledgement of a stamp in ns, and returns its bytes.
+        """
+        self._path = path
+        self._topics = topics
+        self._tick_topics = [topic.name for topic in topics if topic.every_tick]
+        self._settings = settings
+        self._nodes = nodes
+        self._acknowledge = acknowledge
+        self._bag: BagWriter | None = None
+        self._unwritten: list[tuple[int, Tick]] = []
+        self._unordered: list[tuple[str, int, bytes]] = []
+        self._first_tick_at = 0.0
+        self.steps = 0
+        """Step of the last written tick."""
+        self.wall_time_s = 0.0
+        """Wall time from the first written tick to the last, s."""
+
+    @property
+    def is_open(self) -> bool:
+        """Whether the bag has been created."""
+        return self._bag is not None
+
+    def write_ticks(self, ticks: Sequence[tuple[int, Tick]]) -> None:
+        """Write complete ticks, given with their steps; keep them until the bag can be opened."""
+        self._unwritten += ticks
+        if not self._unwritten:
+            return
+        bag = self._bag or self._open()
+        if bag is None:
+            return
+        for step, tick in self._unwritten:
+            self._write_tick(bag, stamp_of_step(step), tick)
+            self.steps = step
+        self.wall_time_s = time.monotonic() - self._first_tick_at
+        self._unwritten = []
+
+    def write_unordered(self, topic: Topic, cdr: bytes) -> None:
+        """Write a serialised message that belongs to no tick, if the bag has its topic."""
+        if topic not in self._topics:
+            return
+        if self._bag is None:
+            self._unordered.append((topic.name, stamp_of_cdr(cdr), cdr))
+        else:
+            self._bag.write(topic.name, stamp_of_cdr(cdr), cdr)
+
+    def close(self) -> None:
+        """Finish the bag; raise DdctError when that fails."""
+        if self._bag is not None:
+            self._bag.close()
+
+    def _write_tick(self, bag: BagWriter, stamp: int, tick: Tick) -> None:
+        # The tick is in memory now: the graph continues while it is being written.
+        tick[RECORDER_ACK.name] = self._acknowledge(stamp)
+        for topic in self._tick_topics:
+            if topic in tick:
+                bag.write(topic, stamp, tick[topic])
+
+    def _open(self) -> BagWriter | None:
+        """Create the bag with every `run_info`; None while one is missing."""
+        if self._nodes.missing():
+            return None
+        facts = custom_data(self._settings, self._nodes.controller, self._nodes.steps)
+        bag = self._bag = new_bag(*self._path, self._topics, facts)
+        for node, pairs in self._nodes.received().items():
+            # A new message: a third party's node may stamp its own with wall-clock time.
+            message = RUN_INFO.message(START_NS, pairs.items(), name=node)
+            bag.write(RUN_INFO.name, START_NS, serialize_message(message))
+        for topic, stamp, cdr in self._unordered:
+            bag.write(topic, stamp, cdr)
+        self._first_tick_at = time.monotonic()
+        return bag
