@@ -111,7 +111,7 @@ def controllers() -> Table:
         for architecture in ARCHITECTURES:
             trajectory = run_headless(RunSettings(SCENARIO, architecture), name)
             error = trajectory.slip_reference[:, 0] - trajectory.slip_speed
-            deviation = _metrics(trajectory).torsion_speed_std_rpm
+            deviation = _metrics(trajectory)['torsion_speed_std_rpm']
             cells += [f'{np.abs(error).max():.1f}', f'{deviation:.2f}']
         rows.append((name, *cells))
     headers = [head for each in ARCHITECTURES for head in (f'{each}, peak', 'σ w_sr')]
@@ -129,8 +129,8 @@ def _slip_and_deviations(trajectory: Trajectory) -> tuple[str, ...]:
     found = _metrics(trajectory)
     return (
         f'{trajectory.slip_speed[SCENARIO.control_start_step]:.1f}',
-        f'{found.torsion_speed_std_rpm:.2f}',
-        f'{found.acceleration_std_m_s2:.3f}',
+        f'{found["torsion_speed_std_rpm"]:.2f}',
+        f'{found["acceleration_std_m_s2"]:.3f}',
     )
 
 

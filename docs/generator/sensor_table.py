@@ -56,7 +56,7 @@ def _row(
             control_start_s=scenario.control_start_s,
             score_window_s=scenario.score_window_s,
             timing=None,
-        )._asdict()
+        )
         for seed in seeds
     ]
     cells = [_range([run[key] for run in runs], form) for key, form in _COLUMNS.values()]

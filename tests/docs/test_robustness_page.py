@@ -38,8 +38,8 @@ def test_runs_of_the_map_end_as_it_says(name: str, maps: dict[str, StateMap]) ->
     assert len(kept) == campaign.runs
     for index in range(0, campaign.runs, STRIDE):
         run = campaign.run(index)
-        entry = scored_headless(run.settings, run.controller, packaged_limits())
-        assert entry['verdict']['state'] == kept[index], f'run {index}, {run.varied}: {AGAIN}'
+        scores = scored_headless(run.settings, run.controller, packaged_limits())
+        assert scores.verdict.state == kept[index], f'run {index}, {run.varied}: {AGAIN}'
 
 
 def test_the_tables_are_those_of_the_maps(maps: dict[str, StateMap]) -> None:

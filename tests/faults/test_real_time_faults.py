@@ -76,10 +76,10 @@ def test_bad_requests_count_as_missing_and_open_the_clutch(
     torque = recording.trajectory.clutch_torque[:, 0]
     assert torque[FROM_STEP - 1] > 50.0
     assert torque[-1] < 1.0
-    entry = score_recording(recording, 'bag', packaged_limits())
-    assert not entry['valid']
-    assert f'/actuator at {opened / 100:g} s' in entry['safe_state']
-    assert entry['safe_state'] in entry['reason']
+    scores = score_recording(recording, 'bag', packaged_limits())
+    assert not scores.valid
+    assert f'/actuator at {opened / 100:g} s' in scores.safe_state
+    assert scores.safe_state in scores.reason
 
 
 FALSE_VALUES: dict[str, tuple[Any, ...]] = {

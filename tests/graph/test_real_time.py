@@ -50,8 +50,8 @@ def test_real_time_without_a_miss_is_lock_step_to_the_last_bit(
     assert recording.missed == {}
     assert recording.realtime.missed_steps == 0
     assert recording.trajectory.sha256() == expected(run).sha256()
-    entry = score_recording(recording, 'bag', packaged_limits())
-    assert (entry['valid'], entry['safe_state']) == (True, '')
+    scores = score_recording(recording, 'bag', packaged_limits())
+    assert (scores.valid, scores.safe_state) == (True, '')
 
 
 @pytest.mark.parametrize('layout', ['processes', 'single-process'])

@@ -17,8 +17,8 @@ from ddct_bringup.bag.measured_run import read_measured_run
 from ddct_bringup.programs import report, score
 from ddct_bringup.run.timing_and_failure import NOTE_FILE
 from ddct_bringup.scores.csv_text import signals_csv
-from ddct_bringup.scores.metrics import Metrics
-from ddct_bringup.scores.scoring import NEEDS, score_recording
+from ddct_bringup.scores.document import run_entry
+from ddct_bringup.scores.scoring import METRIC_NAMES, NEEDS, score_recording
 from ddct_bringup.verdict.criteria import CRITERION_UNITS
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.measured.columns import QUANTITIES, load_columns
@@ -63,7 +63,8 @@ def test_our_own_signals_as_a_foreign_log_have_the_scores_of_the_bag(tmp_path: P
     ratio = recording.settings.scenario.driveline.gear.total_ratio
     (tmp_path / 'drive.csv').write_text(signals_csv(recording))
     (tmp_path / 'map.yaml').write_text(OURS.replace('run: {', f'run: {{total_ratio: {ratio!r}, '))
-    found, wanted = scored(tmp_path), score_recording(recording, 'pi', packaged_limits())
+    scores = score_recording(recording, 'pi', packaged_limits())
+    found, wanted = scored(tmp_path), run_entry(scores)
     of_time = ('update_time_median_us', 'update_time_p99_us', 'missed_steps', 'resends')
     for name, value in wanted['metrics'].items():
         if name not in (*of_time, 'worst_lateness_us'):
@@ -140,7 +141,7 @@ def test_the_page_lists_the_quantities_with_their_units() -> None:
 
 def test_every_named_quantity_is_a_metric_or_a_criterion() -> None:
     named = {name for names in NEEDS.values() for name in names}
-    assert named <= set(Metrics._fields) | set(CRITERION_UNITS)
+    assert named <= set(METRIC_NAMES) | set(CRITERION_UNITS)
 
 
 @pytest.mark.parametrize(

@@ -17,7 +17,7 @@ from ddct_bringup.campaign_report.folder import write_campaign_page
 from ddct_bringup.campaign_report.reading import read_table, results_of
 from ddct_bringup.campaign_report.summary import Summary, summary_of
 from ddct_bringup.sweep.axis import Axis, axis, axis_of
-from ddct_bringup.sweep.sweep import OVER, Sweep
+from ddct_bringup.sweep.sweep import Sweep
 from ddct_bringup.verdict.limits import load_limits
 from ddct_controllers.registry import controller_label
 
@@ -86,7 +86,7 @@ def sweep(
     judged_by = load_limits(limits)
     planned = Sweep(base, [_axis(key, over[key]) for key in over], chosen, judged_by)
     with planned.runs() as runs:
-        return pandas_module().DataFrame([result_row(each, each[OVER]) for each in runs])
+        return pandas_module().DataFrame([result_row(each.scores, each.point) for each in runs])
 
 
 def _axis(key: str, values: str | Iterable[Any]) -> Axis:

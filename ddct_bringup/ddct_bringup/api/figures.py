@@ -34,8 +34,8 @@ def figure(
     shown = as_runs(runs)
     if not shown or not quantities:
         raise ParameterError('a figure needs a run and a quantity')
-    labels = run_labels([each.entry for each in shown])
-    looks = looks_of(each.entry['controller'] or each.entry['bag'] for each in shown)
+    labels = run_labels([each.scores for each in shown])
+    looks = looks_of(each.scores.label for each in shown)
     end_s = max(each.trajectory.time_s[-1] for each in shown)
     with chart_style():
         drawing = Figure(figsize=(_WIDTH_IN, _CHART_IN * len(quantities) + _TITLE_IN))
@@ -52,16 +52,16 @@ def figure(
 
 def _title(runs: Sequence[Run]) -> str:
     """Return the title: controllers, varied conditions, and below them the common conditions."""
-    entries = [run.entry for run in runs]
-    names = dict.fromkeys(entry['controller'] or entry['bag'] for entry in entries)
+    scored = [run.scores for run in runs]
+    names = dict.fromkeys(each.label for each in scored)
     scenarios = dict.fromkeys(
-        scenario_title(entry['scenario'] or 'no scenario', entry['scenario_changes'] or ())
-        for entry in entries
+        scenario_title(each.scenario or 'no scenario', each.scenario_changes or ())
+        for each in scored
     )
-    varied = [key.replace('_', ' ') for key in varied_conditions(entries)]
+    varied = [key.replace('_', ' ') for key in varied_conditions(scored)]
     varied = ['scenario', *varied] if len(scenarios) > 1 else varied
     over = f' over {", ".join(varied)}' if varied else ''
-    shared = ', '.join(common_conditions(entries))
+    shared = ', '.join(common_conditions(scored))
     title = f'{controllers_text(list(names))}{over}'
     return headed(title, f'{"; ".join(scenarios)}; {shared}', _WIDTH_IN)
 

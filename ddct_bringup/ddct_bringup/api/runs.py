@@ -24,7 +24,10 @@ from ddct_bringup.run.output_folder import run_folder
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.run.timing_and_failure import RunTiming, read_timing
 from ddct_bringup.scores.csv_text import score_row, signal_columns
-from ddct_bringup.scores.scoring import Entry, score_recording, score_run
+from ddct_bringup.scores.document import verdict_entry
+from ddct_bringup.scores.metrics import Metrics
+from ddct_bringup.scores.scored_run import ScoredRun
+from ddct_bringup.scores.scoring import score_recording, score_run
 from ddct_bringup.verdict.limits import Limits, load_limits
 from ddct_controllers.from_python import chosen_from
 from ddct_controllers.registry import (
@@ -48,8 +51,8 @@ class Run:
     """One run: simulated, recorded from the graph, or loaded from a bag."""
 
     recording: Recording
-    entry: Entry
-    """Entry of the run as in `scores.json`."""
+    scores: ScoredRun
+    """Facts, metrics and verdict of the run."""
     timing: RunTiming | None
     """Wall-clock times and counts; None of a bag without `timing.json`."""
     chosen: Chosen
@@ -59,9 +62,10 @@ class Run:
         """Return one line on the run, which a notebook prints after a cell that ends with it."""
         facts = self.recording.facts
         counts = 'valid' if self.valid else f'not valid: {self.reason}'
+        verdict = self.scores.verdict
         return (
             f'<Run of {self.controller}: {facts.scenario}, {facts.duration_s:g} s, wear gain '
-            f'{facts.wear_gain:g}, {self.verdict["state"]}, limits {self.verdict["limits"]}, '
+            f'{facts.wear_gain:g}, {verdict.state}, limits {verdict.limits}, '
             f'{counts}>'
         )
 
@@ -79,7 +83,7 @@ class Run:
     def settings(self) -> RunSettings:
         """Settings of the run; DdctError for a bag whose scenario this version cannot build."""
         if self.recording.settings is None:
-            raise DdctError(f'{self.entry["bag"]}: its scenario cannot be built by this version')
+            raise DdctError(f'{self.scores.bag}: its scenario cannot be built by this version')
         return self.recording.settings
 
     @property
@@ -88,24 +92,24 @@ class Run:
         return self.recording.trajectory
 
     @property
-    def metrics(self) -> dict[str, Any]:
+    def metrics(self) -> Metrics:
         """Metrics of `scores.json` by name; None for an undefined one."""
-        return self.entry['metrics']
+        return self.scores.metrics
 
     @property
-    def verdict(self) -> dict[str, Any]:
+    def verdict(self) -> Mapping[str, Any]:
         """Verdict with `state`, `limits` and `criteria`, as in docs/use/verdict.md."""
-        return self.entry['verdict']
+        return verdict_entry(self.scores.verdict)
 
     @property
     def valid(self) -> bool:
         """Whether the run is valid: recorded as planned, and finite."""
-        return self.entry['valid']
+        return self.scores.valid
 
     @property
     def reason(self) -> str:
         """Reason of a run that is not valid; empty for a valid one."""
-        return self.entry['reason']
+        return self.scores.reason
 
     def dataframe(self) -> Any:
         """Return the signals as a pandas DataFrame: a row per 10 ms, indexed by `time_s`."""
@@ -230,7 +234,7 @@ def load(bag: str | Path, *, limits: str | Path | None = None) -> Run:
 
 def table(runs: Run | Iterable[Run]) -> Any:
     """Return a pandas DataFrame with a row per run: its facts, metrics and verdict."""
-    return pandas_module().DataFrame([score_row(each.entry) for each in as_runs(runs)])
+    return pandas_module().DataFrame([score_row(each.scores) for each in as_runs(runs)])
 
 
 def as_runs(runs: Run | Iterable[Run]) -> list[Run]:
@@ -293,9 +297,9 @@ def _execute(plan: RunPlan, folder: Path, parent: WarmParent | None) -> None:
 
 def _read(bag: Path, name: str, limits: Limits, chosen: Chosen = '') -> Run:
     recording = read_bag(bag)
-    entry = score_recording(recording, name, limits)
+    scores = score_recording(recording, name, limits)
     timing = read_timing(recording.path.parent)
-    return Run(recording, entry, timing, chosen or recording.facts.controller)
+    return Run(recording, scores, timing, chosen or recording.facts.controller)
 
 
 def pandas_module() -> Any:

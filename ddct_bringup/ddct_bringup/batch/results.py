@@ -13,8 +13,8 @@ import scipy
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.batch.columns import stacked
-from ddct_bringup.scores.metrics import metric_values
-from ddct_bringup.scores.scoring import METRIC_NAMES, Entry
+from ddct_bringup.scores.metrics import METRIC_NAMES, metric_values
+from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.verdict.criteria import existing, finite, raw_criteria
 from ddct_bringup.verdict.judged_run import JudgedRun, Values, step_at
 from ddct_bringup.verdict.limits import Limits
@@ -33,13 +33,12 @@ _PADDING = 3 * (2 * BAND_PASS_ORDER + 1)
 
 def stacked_results(
     runs: Sequence[RunSettings], trajectory: Trajectory, limits: Limits
-) -> list[Entry]:
+) -> list[ScoredRun]:
     """
     Return the results of runs of one length, control start and score window.
 
-    `trajectory` is a stack of these runs in which all values are finite. A result is the entry of
-    a valid run in `scores.json`, without the keys that need a bag or a clock: the times of updates
-    are None.
+    `trajectory` is a stack of these runs in which all values are finite. All are valid, and have
+    neither a bag nor facts: the caller knows them. The times of updates are None.
     """
     scenario = runs[0].scenario
     start = scenario.control_start_step
@@ -70,8 +69,7 @@ def stacked_results(
             exists=by_existence[index],
             traction=judged_traction(finite(driving[index]), plant, limits),
         )
-        counts = {'valid': True, 'reason': ''}
-        results.append({'metrics': by_metric[index], 'verdict': verdict, **counts})
+        results.append(ScoredRun('', None, True, '', by_metric[index], verdict))
     return results
 
 

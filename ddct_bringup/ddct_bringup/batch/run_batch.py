@@ -20,7 +20,7 @@ import numpy as np
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.batch.loops import reference_kind, simulate_batch
 from ddct_bringup.batch.results import one_or_more, stacked_results
-from ddct_bringup.scores.scoring import Entry
+from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.verdict.limits import Limits
 from ddct_controllers.interface import Controller
 from ddct_plant.base.errors import DdctError
@@ -40,7 +40,7 @@ _Linear = tuple[RunSettings, StateSpace]
 """Settings of a run, and its linear feedback."""
 
 
-def run_batch(runs: Sequence[Run], limits: Limits) -> list[Entry | None]:
+def run_batch(runs: Sequence[Run], limits: Limits) -> list[ScoredRun | None]:
     """
     Return the result of each run as `stacked_results`, in order; all are `batchable`.
 
@@ -49,7 +49,7 @@ def run_batch(runs: Sequence[Run], limits: Limits) -> list[Entry | None]:
     gets its reason there, and a chaotic one gets repeatable metrics.
     """
     linear = _linear(runs)
-    results: list[Entry | None] = [None] * len(runs)
+    results: list[ScoredRun | None] = [None] * len(runs)
     for chunk in _chunks(linear):
         found = _results([linear[index] for index in chunk], limits)
         for index, result in zip(chunk, found, strict=True):
@@ -109,7 +109,7 @@ def _chunks(runs: Sequence[_Linear]) -> list[list[int]]:
     ]
 
 
-def _results(runs: Sequence[_Linear], limits: Limits) -> list[Entry | None]:
+def _results(runs: Sequence[_Linear], limits: Limits) -> list[ScoredRun | None]:
     try:
         with np.errstate(all='ignore'):  # what is not finite has no result
             stack = _stack(runs)

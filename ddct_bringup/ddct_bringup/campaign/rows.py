@@ -13,7 +13,8 @@ from ddct_bringup.run.headless import run_headless
 from ddct_bringup.run.options import run_settings
 from ddct_bringup.run.plan import require_headless
 from ddct_bringup.run.timing_and_failure import RunTiming
-from ddct_bringup.scores.scoring import Entry, entry_without_score, score_run
+from ddct_bringup.scores.scored_run import ScoredRun
+from ddct_bringup.scores.scoring import run_without_score, score_run
 from ddct_bringup.verdict.criteria import CRITERIA
 from ddct_bringup.verdict.limits import Limits
 from ddct_bringup.verdict.metric_definitions import FURTHER, TABLE_5_1
@@ -27,8 +28,6 @@ from ddct_plant.scenario.settings import RunSettings
 
 SERIAL, VECTORISED = 'serial', 'vectorised'
 """Values of the column `path`: simulated step by step, or together with other runs."""
-WALL_CLOCK = ('update_time_median_us', 'update_time_p99_us')
-"""Metrics that differ between repetitions; missed steps and lateness do not without a graph."""
 METRIC_COLUMNS = tuple(figure.key for figure in (*TABLE_5_1, *FURTHER))
 """Metrics of `scores.json` that are equal in every repetition of a run."""
 CRITERION = 'criterion.'
@@ -83,39 +82,37 @@ def require_suitable(controller: Chosen, settings: RunSettings) -> None:
         return
 
 
-def scored_headless(settings: RunSettings, controller: Chosen, limits: Limits) -> Entry:
+def scored_headless(settings: RunSettings, controller: Chosen, limits: Limits) -> ScoredRun:
     """
-    Carry out a run headless and return its entry of `scores.json`, with the reason if it fails.
+    Carry out a run headless and return its scores, with the reason if it fails.
 
     It has no wall-clock metrics: a row is equal in every repetition.
     """
-    name, timing = controller_label(controller), RunTiming()
+    name = controller_label(controller)
     try:
         require_headless(settings)
-        trajectory = run_headless(settings, controller, timing)
+        trajectory = run_headless(settings, controller)
     except DdctError as error:
         reason = str(error)
     except FOREIGN_FAILURES as error:  # a failed run must not end the others
         reason = printable(f'{type(error).__name__}: {error}')
     else:
-        entry = score_run(in_memory(settings, name, trajectory), name, limits, timing)
-        entry['metrics'] |= dict.fromkeys(WALL_CLOCK)
-        return entry
-    return entry_without_score(name, facts_of(settings, name, settings.scenario.steps), reason)
+        # Without update times, since no wall-clock time is measured.
+        return score_run(in_memory(settings, name, trajectory), name, limits, RunTiming())
+    return run_without_score(name, facts_of(settings, name, settings.scenario.steps), reason)
 
 
-def result_row(entry: Entry, varied: Mapping[str, Any], path: str = SERIAL) -> dict[str, Any]:
+def result_row(run: ScoredRun, varied: Mapping[str, Any], path: str = SERIAL) -> dict[str, Any]:
     """Return a run as one row: controller, path, varied values, metrics, verdict, criteria."""
-    verdict = entry['verdict']
-    criteria = {f'{CRITERION}{each["name"]}': each['value'] for each in verdict['criteria']}
+    criteria = run.verdict.values
     return {
-        'controller': entry['controller'],
+        'controller': run.controller,
         'path': path,
         **varied,
-        **{name: entry['metrics'][name] for name in METRIC_COLUMNS},
-        'valid': entry['valid'],
-        'reason': entry['reason'],
-        'verdict_state': verdict['state'],
-        'verdict_limits': verdict['limits'],
-        **{name: criteria.get(name) for name in CRITERION_COLUMNS},
+        **{name: run.metrics[name] for name in METRIC_COLUMNS},
+        'valid': run.valid,
+        'reason': run.reason,
+        'verdict_state': run.verdict.state,
+        'verdict_limits': run.verdict.limits,
+        **{f'{CRITERION}{each.key}': criteria.get(each.key) for each in CRITERIA},
     }

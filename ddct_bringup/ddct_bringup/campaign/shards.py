@@ -4,7 +4,7 @@
 
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -16,7 +16,8 @@ from ddct_bringup.campaign.manifest import require_code
 from ddct_bringup.campaign.rows import SERIAL, VECTORISED, result_row, scored_headless
 from ddct_bringup.campaign.runs import Campaign, CampaignRun
 from ddct_bringup.campaign.spec import CampaignSpec
-from ddct_bringup.scores.scoring import Entry
+from ddct_bringup.run.description import facts_of
+from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.verdict.limits import Limits
 from ddct_controllers.interface import THESIS, Controller
 from ddct_controllers.registry import make_controller, own_controller_names
@@ -60,16 +61,16 @@ def compute_rows(runs: Sequence[CampaignRun], limits: Limits) -> list[dict[str, 
     found = _vectorised(runs, limits)
     rows = []
     for run in runs:
-        entry, path = found.get(run.index), VECTORISED
-        if entry is None:
-            entry, path = scored_headless(run.settings, run.controller, limits), SERIAL
+        scored, path = found.get(run.index), VECTORISED
+        if scored is None:
+            scored, path = scored_headless(run.settings, run.controller, limits), SERIAL
         ours = {INDEX: run.index, SEED: run.settings.seed}
-        rows.append({**ours, **result_row(entry, run.varied, path)})
+        rows.append({**ours, **result_row(scored, run.varied, path)})
     return rows
 
 
-def _vectorised(runs: Sequence[CampaignRun], limits: Limits) -> dict[int, Entry]:
-    """Return the entries of the runs that can be computed at once, by index."""
+def _vectorised(runs: Sequence[CampaignRun], limits: Limits) -> dict[int, ScoredRun]:
+    """Return the scores of the runs that can be computed at once, by index."""
     suited = []
     shared: dict[str, Controller] = {}
     for run in runs:
@@ -81,10 +82,17 @@ def _vectorised(runs: Sequence[CampaignRun], limits: Limits) -> dict[int, Entry]
             suited.append((run, controller))
     results = run_batch([(run.settings, controller) for run, controller in suited], limits)
     return {
-        run.index: {'controller': run.controller.name, **result}
+        run.index: _with_facts(result, run)
         for (run, _), result in zip(suited, results, strict=True)
         if result is not None
     }
+
+
+def _with_facts(scored: ScoredRun, run: CampaignRun) -> ScoredRun:
+    name = run.controller.name
+    return replace(
+        scored, bag=name, facts=facts_of(run.settings, name, run.settings.scenario.steps)
+    )
 
 
 def _controller(run: CampaignRun, shared: dict[str, Controller]) -> Controller:

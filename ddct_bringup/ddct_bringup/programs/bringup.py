@@ -78,19 +78,20 @@ def _run(
     ):
         run_with_progress(plan, folder.path, live=live, parent=parent)
     recording = read_bag(folder.path)
-    entry = score_recording(recording, plan.name, limits)
-    if not entry['valid']:
+    scores = score_recording(recording, plan.name, limits)
+    if not scores.valid:
         _print_notes(recording, folder.path)
-        raise DdctError(f'{folder.path}: not valid: {entry["reason"]}')
+        raise DdctError(f'{folder.path}: not valid: {scores.reason}')
     folder.commit()
     print(folder.final, flush=True)
-    if changes := entry['scenario_changes']:
-        print(f'{PROGRAM}: {scenario_title(entry["scenario"], changes)}', file=sys.stderr)
+    if changes := scores.scenario_changes:
+        title = scenario_title(plan.settings.scenario.name, changes)
+        print(f'{PROGRAM}: {title}', file=sys.stderr)
     _print_notes(recording, folder.final)
-    for note in slow_notes(entry):
+    for note in slow_notes(scores):
         print(f'{PROGRAM}: {note}', file=sys.stderr)
-    verdict = entry['verdict']
-    print(f'{PROGRAM}: state {verdict["state"]}, limits {verdict["limits"]}', file=sys.stderr)
+    verdict = scores.verdict
+    print(f'{PROGRAM}: state {verdict.state}, limits {verdict.limits}', file=sys.stderr)
 
 
 def _print_notes(recording: Recording, folder: Path) -> None:

@@ -32,7 +32,8 @@ from ddct_bringup.run.execution import run_with_progress
 from ddct_bringup.run.options import add_layout_options
 from ddct_bringup.run.output_folder import StagedFolder, run_folder
 from ddct_bringup.run.plan import RunPlan
-from ddct_bringup.scores.scoring import Entry, score_recording
+from ddct_bringup.scores.scored_run import ScoredRun
+from ddct_bringup.scores.scoring import score_recording
 from ddct_bringup.verdict.limits import Limits, add_limits_option, load_limits
 from ddct_plant.base.errors import DdctError, printable
 from ddct_plant.files.output_file import STDOUT, require_place, write_json, write_text
@@ -103,8 +104,8 @@ def _replay(options: argparse.Namespace) -> int:
     run = campaign.run(options.index)
     plan = RunPlan(run.settings, campaign.chosen(options.index), options.layout)
     with run_folder(options.out, plan.name, overwrite=options.overwrite) as folder:
-        entry = _made_again(plan, folder, row, limits)
-    found = differences(row, {SEED: run.settings.seed, **result_row(entry, run.varied)})
+        scored = _made_again(plan, folder, row, limits)
+    found = differences(row, {SEED: run.settings.seed, **result_row(scored, run.varied)})
     if options.json:
         report = {'index': options.index, 'path': row[PATH], 'differences': found}
         write_json(options.json, report)
@@ -120,7 +121,9 @@ def _replay(options: argparse.Namespace) -> int:
     return 1 if found else 0
 
 
-def _made_again(plan: RunPlan, folder: StagedFolder, row: dict[str, Any], limits: Limits) -> Entry:
+def _made_again(
+    plan: RunPlan, folder: StagedFolder, row: dict[str, Any], limits: Limits
+) -> ScoredRun:
     """Execute the run of a row and return its scores; commit the folder of a valid run."""
     try:
         run_with_progress(plan, folder.path)
@@ -128,11 +131,11 @@ def _made_again(plan: RunPlan, folder: StagedFolder, row: dict[str, Any], limits
         if row['valid'] or not row['reason']:
             raise
         raise DdctError(f'it fails as its row says ({row["reason"]}): {error}') from error
-    entry = score_recording(read_bag(folder.path), plan.name, limits)
-    if entry['valid']:
+    scored = score_recording(read_bag(folder.path), plan.name, limits)
+    if scored.valid:
         folder.commit()
         print(folder.final, flush=True)
-    return entry
+    return scored
 
 
 def _show(options: argparse.Namespace) -> int:

@@ -26,7 +26,8 @@ from ddct_bringup.run.output_folder import StagedFolder, locked_folders, mark_fo
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.run.timing_and_failure import note_failure
 from ddct_bringup.scores.comparison_table import print_comparison
-from ddct_bringup.scores.scoring import Entry, scores_document
+from ddct_bringup.scores.document import scores_document
+from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.verdict.limits import Limits, add_limits_option, load_limits
 from ddct_controllers.registry import controller_label, working_controllers
 from ddct_controllers.workflows.evidence import frequency_evidence
@@ -102,10 +103,10 @@ def _run_all(
         _run(plan, folder.path, f'{index} of {len(plans)}, ', limits, parent)
         for index, plan in enumerate(plans, start=1)
     ]
-    entries = [run.entry for run in runs]
-    write_json(str(folder.path / SCORES_FILE), scores_document(entries, limits))
-    _report(entries, plans, settings, options, limits)
-    failed = [plan.name for plan, entry in zip(plans, entries, strict=True) if not entry['valid']]
+    scored = [run.scores for run in runs]
+    write_json(str(folder.path / SCORES_FILE), scores_document(scored, limits))
+    _report(scored, plans, settings, options, limits)
+    failed = [plan.name for plan, run in zip(plans, scored, strict=True) if not run.valid]
     if len(failed) == len(plans):
         print_logs_with_warnings(PROGRAM, [folder.path / plan.name for plan in plans])
         raise DdctError(f'no run is valid ({", ".join(failed)}): {folder.left}')
@@ -137,7 +138,7 @@ def _run(
         run = read_run(bag, out, limits)
         if run.recording is not None:
             return run
-        reason = run.entry['reason']
+        reason = run.scores.reason
     except DdctError as error:
         reason = str(error)
     reason = reason.replace(f'{bag}/', '')  # the folder gets its final name later
@@ -147,18 +148,18 @@ def _run(
 
 
 def _report(
-    entries: list[Entry],
+    scored: list[ScoredRun],
     plans: list[RunPlan],
     settings: RunSettings,
     options: argparse.Namespace,
     limits: Limits,
 ) -> None:
     if options.json:
-        write_json(options.json, scores_document(entries, limits))
+        write_json(options.json, scores_document(scored, limits))
     stream = sys.stderr if options.json == STDOUT else sys.stdout
     for line in settings.scenario.adjusted:
         print(printable(line), file=stream)
-    print_comparison(entries, settings, options.overrides, stream)
+    print_comparison(scored, settings, options.overrides, stream)
     print_computed_from([plan.controller for plan in plans], stream)
 
 

@@ -65,9 +65,9 @@ def _report(argv: list[str]) -> int:
         )
         write_report(runs, options.out, limits)
     for run in runs:
-        if not run.entry['valid']:
-            complain(PROGRAM, f'{run.entry["bag"]}: {run.entry["reason"]}')
-    return 0 if all(run.entry['valid'] for run in runs) else 1
+        if not run.scores.valid:
+            complain(PROGRAM, f'{run.scores.bag}: {run.scores.reason}')
+    return 0 if all(run.scores.valid for run in runs) else 1
 
 
 def require_chart_library() -> None:
@@ -103,7 +103,7 @@ def write_report(runs: Sequence[ReportRun], out: str, limits: Limits) -> None:
     from ddct_bringup.report.page import report_page
 
     if all(run.recording is None for run in runs):
-        reasons = '; '.join(run.entry['reason'] for run in runs)
+        reasons = '; '.join(run.scores.reason for run in runs)
         raise DdctError(f'none of the {len(runs)} bags can be read, so nothing to show: {reasons}')
     require_one_scenario(runs)
     with Console(file=sys.stderr).status('frequency evidence'):

@@ -13,12 +13,9 @@ from ddct_bringup.bag.repair import repair_bag
 from ddct_bringup.run.output_folder import is_ours, locked_folders
 from ddct_bringup.scores.bags import bag_name, bags_in
 from ddct_bringup.scores.csv_text import scores_csv
-from ddct_bringup.scores.scoring import (
-    Entry,
-    score_recording,
-    scores_document,
-    unreadable_entry,
-)
+from ddct_bringup.scores.document import scores_document
+from ddct_bringup.scores.scored_run import ScoredRun
+from ddct_bringup.scores.scoring import score_recording, unreadable_run
 from ddct_bringup.scores.signal_files import signal_file_stems, write_signals
 from ddct_bringup.scores.tables import BAG, COLUMNS, CONTROLLER, WEAR, print_runs
 from ddct_bringup.scores.validity import MISS_TOLERANCE
@@ -70,7 +67,7 @@ def _score(argv: list[str]) -> int:
             write_text(options.csv, scores_csv(runs))
     table = sys.stderr if STDOUT in (options.json, options.csv) else sys.stdout
     print_runs(runs, (BAG, CONTROLLER, WEAR, *COLUMNS), table)
-    return 0 if all(run['valid'] for run in runs) else 1
+    return 0 if all(run.valid for run in runs) else 1
 
 
 def _run_folders(options: argparse.Namespace, bags: Iterable[Path]) -> list[Path]:
@@ -84,7 +81,7 @@ def _run_folders(options: argparse.Namespace, bags: Iterable[Path]) -> list[Path
 
 def _scored(
     bags: Sequence[tuple[Path, Path | None]], options: argparse.Namespace, limits: Limits
-) -> list[Entry]:
+) -> list[ScoredRun]:
     runs = []
     wanted = {ending: each for ending, each in _signal_folders(options).items() if each}
     stems = signal_file_stems(bags) if wanted else {}
@@ -99,9 +96,9 @@ def _scored(
                 write_signals(target, f'{stems[bag]}.{ending}', recording)
             runs.append(score_recording(recording, name, limits))
         except DdctError as error:
-            entry = unreadable_entry(bag, error, relative_to=folder)
-            complain(PROGRAM, entry['reason'])
-            runs.append(entry)
+            unreadable = unreadable_run(bag, error, relative_to=folder)
+            complain(PROGRAM, unreadable.reason)
+            runs.append(unreadable)
     return runs
 
 

@@ -18,11 +18,11 @@ from ddct_bringup.run.options import (
     controllers_of,
     print_choices,
 )
-from ddct_bringup.scores.scoring import Entry
 from ddct_bringup.scores.tables import table_console
 from ddct_bringup.sweep.axis import axis_of
 from ddct_bringup.sweep.sweep import (
     Sweep,
+    SweptRun,
     sweep_csv,
     sweep_document,
     sweep_notes,
@@ -94,7 +94,7 @@ def _sweep(argv: list[str]) -> int:
         from ddct_bringup.sweep.sweep_figure import write_sweep_figure
 
         write_sweep_figure(sweep, runs, metrics, Path(options.figure))
-    failed = sum(not run['valid'] for run in runs)
+    failed = sum(not run.scores.valid for run in runs)
     if failed:
         complain(PROGRAM, f'{failed} of {len(runs)} runs are not valid: the lines above say why')
     return 1 if failed else 0
@@ -114,7 +114,7 @@ def _planned(options: argparse.Namespace) -> Sweep:
     return sweep
 
 
-def _carried_out(sweep: Sweep) -> list[Entry]:
+def _carried_out(sweep: Sweep) -> list[SweptRun]:
     started = time.monotonic()
     with sweep.runs() as runs:
         done = list(with_progress(runs, len(sweep), f'{len(sweep)} runs'))

@@ -105,7 +105,7 @@ def report_page(
         short_commit=short_commit,
         facts=recordings[0].facts,
         scenario_title=_scenario_title(runs),
-        conditions=common_conditions([run.entry for run in runs]),
+        conditions=common_conditions([run.scores for run in runs]),
         sensors=_sensors(runs),
         scenario_text=''
         if recordings[0].measured
@@ -140,9 +140,9 @@ def _other_times(
 
 def _scenario_title(runs: Sequence[ReportRun]) -> str:
     """Return the common scenario of the readable runs with its changes."""
-    entries = [run.entry for run in runs if run.recording is not None]
-    changes = (entry['scenario_changes'] for entry in entries if entry['scenario_changes'])
-    return scenario_title(entries[0]['scenario'], next(changes, ()))
+    readable = [run.scores for run in runs if run.recording is not None]
+    changes = (run.scenario_changes for run in readable if run.scenario_changes)
+    return scenario_title(readable[0].scenario or '', next(changes, ()))
 
 
 def _sensors(runs: Sequence[ReportRun]) -> str | None:
@@ -154,10 +154,10 @@ def _sensors(runs: Sequence[ReportRun]) -> str | None:
 
 def _page_runs(runs: Sequence[ReportRun]) -> list[dict[str, Any]]:
     """Return the data of each run for the template."""
-    entries = [run.entry for run in runs]
-    looks = looks_of(entry['controller'] or entry['bag'] for entry in entries)
+    scored = [run.scores for run in runs]
+    looks = looks_of(run.label for run in scored)
     of_each = zip(
-        runs, run_labels(entries), looks, _shown_at_first(runs), comparable_rows(runs), strict=True
+        runs, run_labels(scored), looks, _shown_at_first(runs), comparable_rows(runs), strict=True
     )
     return [
         {
@@ -165,14 +165,14 @@ def _page_runs(runs: Sequence[ReportRun]) -> list[dict[str, Any]]:
             'label': label,
             'look': look,
             'sample': Markup(sample_svg(look)),
-            'entry': run.entry,
+            'scores': run.scores,
             'recording': run.recording,
             'charted': run.recording is not None,
             'measured': run.measured,
             'simulated': run.recording is not None and not run.measured,
             'on': on,
             'thesis': row,
-            'fallback': fallback_note(run.entry) if run.entry['fallbacks'] else '',
+            'fallback': fallback_note(run.scores) if run.scores.fallbacks else '',
             'times': update_times(run),
             'origin': run_origin(run),
         }

@@ -59,7 +59,7 @@ def pareto_view(runs: Sequence[ReportRun]) -> ParetoView | None:
     magnitudes = _magnitudes(runs)
     if len(magnitudes) < 2:
         return None
-    engaged = [index for index, run in enumerate(runs) if run.entry['verdict']['state'] == ENGAGED]
+    engaged = [index for index, run in enumerate(runs) if run.scores.verdict.state == ENGAGED]
     fronts = {
         pair_key(first, second): non_dominated(
             {
@@ -101,11 +101,11 @@ def _magnitudes(runs: Sequence[ReportRun]) -> dict[str, dict[int, float]]:
     """Return the magnitudes of the valid runs by criterion, where two or more runs have one."""
     found: dict[str, dict[int, float]] = {criterion.key: {} for criterion in CRITERIA}
     for index, run in enumerate(runs):
-        if not run.entry['valid']:
+        if not run.scores.valid:
             continue
-        for each in run.entry['verdict']['criteria']:
-            if each['value'] is not None:
-                found[each['name']][index] = abs(each['value'])
+        for name, value in run.scores.verdict.values.items():
+            if value is not None:
+                found[name][index] = abs(value)
     return {name: values for name, values in found.items() if len(values) >= 2}
 
 

@@ -31,11 +31,11 @@ class RunOrigin:
 
 def run_origin(run: ReportRun) -> RunOrigin:
     """Return the origin of a run, with dashes for missing facts of a log or an unreadable bag."""
-    unknown = [name for name in _CONDITIONS if run.entry[name] is None]
-    if run.measured:
-        unknown.append('seed')
+    unknown = ('seed',) if run.measured else ()
+    facts = run.scores.facts
     conditions = tuple(
-        (name, '–' if name in unknown else str(run.entry[name])) for name in _CONDITIONS
+        (name, '–' if facts is None or name in unknown else str(getattr(facts, name)))
+        for name in _CONDITIONS
     )
     told = {} if run.recording is None else run.recording.run_info.get(CONTROLLER_NODE, {})
     conditions += (('computed_from', told.get('computed_from', '–')),)
@@ -70,8 +70,8 @@ class UpdateTimes:
 def update_times(run: ReportRun) -> UpdateTimes | None:
     """Return the update times of a run, None where none were recorded."""
     timing = run.timing
-    median, p99 = (run.entry['metrics'][f'update_time_{name}_us'] for name in ('median', 'p99'))
-    if timing is None or median is None:
+    median, p99 = (run.scores.metrics[f'update_time_{name}_us'] for name in ('median', 'p99'))
+    if timing is None or median is None or p99 is None:
         return None
     over_period = int(np.sum(np.array(timing.update_times_us) > 1e6 * PERIOD_S))
     return UpdateTimes(median, p99, max(timing.update_times_us), timing, over_period)

@@ -14,14 +14,11 @@ from pathlib import Path
 
 from ddct_bringup.bag.measured_run import read_recording
 from ddct_bringup.bag.reader import Recording
-from ddct_bringup.bag.run_facts import MEASURED
+from ddct_bringup.bag.run_facts import MEASURED, RunFacts
 from ddct_bringup.run.timing_and_failure import RunTiming, read_timing
 from ddct_bringup.scores.bags import bag_name
-from ddct_bringup.scores.scoring import (
-    Entry,
-    score_recording,
-    unreadable_entry,
-)
+from ddct_bringup.scores.scored_run import ScoredRun
+from ddct_bringup.scores.scoring import score_recording, unreadable_run
 from ddct_bringup.verdict.limits import Limits
 from ddct_controllers.registry import controller_names
 from ddct_plant.base.errors import DdctError
@@ -29,12 +26,12 @@ from ddct_plant.measured.columns import ColumnMap
 from ddct_plant.scenario.file import scenario_digest
 from ddct_plant.scenario.settings import RunSettings
 
-_CONDITIONS: dict[str, Callable[[Entry], str]] = {
-    'architecture': lambda entry: str(entry['architecture']),
-    'clutch': lambda entry: f'{entry["clutch"]} clutch',
-    'wear_gain': lambda entry: f'wear {entry["wear_gain"]:g}',
-    'mode': lambda entry: str(entry['mode']),
-    'seed': lambda entry: f'seed {entry["seed"]}',
+_CONDITIONS: dict[str, Callable[[RunFacts], str]] = {
+    'architecture': lambda facts: facts.architecture,
+    'clutch': lambda facts: f'{facts.clutch} clutch',
+    'wear_gain': lambda facts: f'wear {facts.wear_gain:g}',
+    'mode': lambda facts: facts.mode,
+    'seed': lambda facts: f'seed {facts.seed}',
 }
 """Conditions of a run that its label contains when the runs differ in them."""
 
@@ -43,8 +40,7 @@ _CONDITIONS: dict[str, Callable[[Entry], str]] = {
 class ReportRun:
     """One bag and its content."""
 
-    entry: Entry
-    """Entry of the run, as in `scores.json`."""
+    scores: ScoredRun
     recording: Recording | None = None
     """Recording; None where the bag cannot be read."""
     timing: RunTiming | None = None
@@ -77,19 +73,17 @@ def read_run(
     """Read and judge a bag, which is named relative to the folder; never raises DdctError."""
     try:
         recording = read_recording(bag, columns)
-        entry = score_recording(recording, bag_name(bag, folder), limits)
+        scores = score_recording(recording, bag_name(bag, folder), limits)
         timing = None if recording.measured else read_timing(recording.path.parent)
-        return ReportRun(entry, recording, timing, recording.settings)
+        return ReportRun(scores, recording, timing, recording.settings)
     except DdctError as error:
-        return ReportRun(unreadable_entry(bag, error, relative_to=folder))
+        return ReportRun(unreadable_run(bag, error, relative_to=folder))
 
 
 def in_order(runs: Sequence[ReportRun]) -> list[ReportRun]:
     """Return the runs in the order of their controllers in the registry, logs last."""
     places = {name: place for place, name in enumerate(controller_names())}
-    return sorted(
-        runs, key=lambda run: (run.measured, places.get(run.entry['controller'], len(places)))
-    )
+    return sorted(runs, key=lambda run: (run.measured, places.get(run.scores.label, len(places))))
 
 
 def require_one_scenario(runs: Sequence[ReportRun]) -> None:
@@ -99,12 +93,12 @@ def require_one_scenario(runs: Sequence[ReportRun]) -> None:
     Simulated runs have one scenario when its values are equal. For a log only the name is known.
     """
     bags: dict[str, list[str]] = {}
-    names = {run.entry['scenario'] for run in runs if run.recording is not None}
+    names = {run.scores.scenario for run in runs if run.recording is not None}
     logs = [run for run in runs if run.measured]
     for run in runs:
         if run.recording is not None and not (run.measured and len(names) == 1):
             digest = f' (digest {run.digest})' if run.digest else ''
-            bags.setdefault(f'{run.entry["scenario"]}{digest}', []).append(run.entry['bag'])
+            bags.setdefault(f'{run.scores.scenario}{digest}', []).append(run.scores.bag)
     if len(bags) > 1:
         parts = '; '.join(f'{scenario}: {", ".join(of)}' for scenario, of in bags.items())
         of_logs = ', or write run.scenario in the column map of a log that was such a drive'
@@ -114,52 +108,48 @@ def require_one_scenario(runs: Sequence[ReportRun]) -> None:
         )
 
 
-def run_labels(entries: Sequence[Entry]) -> list[str]:
+def run_labels(runs: Sequence[ScoredRun]) -> list[str]:
     """
     Return one label per run: its controller, and the conditions in which the runs differ.
 
     Where that is not unique the bag is added. A bag without a controller has its own name.
     """
-    differing = varied_conditions(entries)
-    labels = [_label(entry, differing) for entry in entries]
+    differing = varied_conditions(runs)
+    labels = [_label(run, differing) for run in runs]
     counts = Counter(labels)
     labels = [
-        f'{label} ({entry["bag"]})' if counts[label] > 1 else label
-        for label, entry in zip(labels, entries, strict=True)
+        f'{label} ({run.bag})' if counts[label] > 1 else label
+        for label, run in zip(labels, runs, strict=True)
     ]
     return _numbered(labels)
 
 
-def varied_conditions(entries: Sequence[Entry]) -> list[str]:
+def varied_conditions(runs: Sequence[ScoredRun]) -> list[str]:
     """Return the keys of the conditions in which simulated runs differ; labels contain them."""
-    known = _simulated(entries)
-    return [key for key in _CONDITIONS if len({entry[key] for entry in known}) > 1]
+    known = _simulated(runs)
+    return [key for key in _CONDITIONS if len({getattr(facts, key) for facts in known}) > 1]
 
 
-def common_conditions(entries: Sequence[Entry]) -> list[str]:
+def common_conditions(runs: Sequence[ScoredRun]) -> list[str]:
     """Return the conditions that all simulated runs share, and how many logs there are."""
-    known = _simulated(entries)
-    shared = [key for key in _CONDITIONS if len({entry[key] for entry in known}) == 1]
-    logs = sum(map(_is_log, entries))
+    known = _simulated(runs)
+    shared = [key for key in _CONDITIONS if len({getattr(facts, key) for facts in known}) == 1]
+    logs = sum(run.measured for run in runs)
     of_logs = [f'{logs} {"log" if logs == 1 else "logs"} of a car'] if logs else []
     return [*(_CONDITIONS[key](known[0]) for key in shared), *of_logs]
 
 
-def _simulated(entries: Sequence[Entry]) -> list[Entry]:
-    """Return the entries with conditions: those of simulated runs whose bags could be read."""
-    return [each for each in entries if each['controller'] is not None and not _is_log(each)]
+def _simulated(runs: Sequence[ScoredRun]) -> list[RunFacts]:
+    """Return the facts of the simulated runs whose bags could be read."""
+    return [run.facts for run in runs if run.facts is not None and not run.measured]
 
 
-def _is_log(entry: Entry) -> bool:
-    return bool(entry['mode'] == MEASURED)
-
-
-def _label(entry: Entry, differing: Sequence[str]) -> str:
-    if entry['controller'] is None:
-        return str(entry['bag'])
-    if _is_log(entry):
-        return f'{entry["controller"]}, {MEASURED}'
-    return ', '.join([entry['controller'], *(_CONDITIONS[key](entry) for key in differing)])
+def _label(run: ScoredRun, differing: Sequence[str]) -> str:
+    if run.facts is None:
+        return run.bag
+    if run.measured:
+        return f'{run.facts.controller}, {MEASURED}'
+    return ', '.join([run.facts.controller, *(_CONDITIONS[key](run.facts) for key in differing)])
 
 
 def _numbered(labels: Sequence[str]) -> list[str]:

@@ -4,15 +4,13 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from ddct_bringup.report.page_parts import number_text, value_text
 from ddct_bringup.report.runs import ReportRun
-from ddct_bringup.scores.scoring import NOT_COMPUTED
 from ddct_bringup.thesis.predictions import predicted_range
 from ddct_bringup.thesis.table_5_1 import PREDICTED, ThesisRow, is_thesis_run, thesis_row
 from ddct_bringup.verdict.criteria import CRITERIA
-from ddct_bringup.verdict.verdict import NO_LIMIT, TRACTION
+from ddct_bringup.verdict.verdict import NO_LIMIT, TRACTION, CriterionResult
 from ddct_plant.program.table import Quantity
 
 _NO_PHASES = 'a log does not tell when the plates were locked'
@@ -50,7 +48,7 @@ class Cell:
 def comparable_rows(runs: Sequence[ReportRun]) -> list[ThesisRow | None]:
     """Return for each run the row of Table 5.1 that it is comparable with."""
     return [
-        thesis_row(run.entry['controller'])
+        thesis_row(run.scores.label)
         if run.settings is not None and is_thesis_run(run.settings)
         else None
         for run in runs
@@ -61,14 +59,14 @@ def metric_cells(
     column: Quantity, runs: Sequence[ReportRun], rows: Sequence[ThesisRow | None]
 ) -> list[Cell]:
     """Return one cell per run; bars have the scale of the largest value, computed or printed."""
-    values = [run.entry['metrics'][column.key] for run in runs]
+    values = [run.scores.metrics[column.key] for run in runs]
     printed = [
         row if row is not None and column.key in row.printed_values() else None for row in rows
     ]
     figures = [row.printed_values()[column.key] for row in printed if row is not None]
     largest = max((abs(value) for value in (*values, *figures) if value is not None), default=0.0)
     return [
-        _cell(column, value, row, largest or 1.0, valid=run.entry['valid'])
+        _cell(column, value, row, largest or 1.0, valid=run.scores.valid)
         for run, value, row in zip(runs, values, printed, strict=True)
     ]
 
@@ -144,12 +142,8 @@ _TRACTION = Quantity(
 
 def verdict_rows(runs: Sequence[ReportRun]) -> list[VerdictRow]:
     """Return a row per criterion, then the traction; a run not judged has no values."""
-    judged = [{each['name']: each for each in run.entry['verdict']['criteria']} for run in runs]
-    reasons = [
-        {**(OF_NO_LOG if run.measured else {}), **run.entry.get(NOT_COMPUTED, {})} for run in runs
-    ]
-    for each, run in zip(judged, runs, strict=True):
-        each[TRACTION] = run.entry['verdict'][TRACTION]
+    judged = [{each.name: each for each in run.scores.verdict.results} for run in runs]
+    reasons = [{**(OF_NO_LOG if run.measured else {}), **run.scores.not_computed} for run in runs]
     return [
         _verdict_row(
             figure,
@@ -161,22 +155,21 @@ def verdict_rows(runs: Sequence[ReportRun]) -> list[VerdictRow]:
 
 
 def _verdict_row(
-    criterion: Quantity, found: Sequence[dict[str, Any] | None], reasons: Sequence[str]
+    criterion: Quantity, found: Sequence[CriterionResult | None], reasons: Sequence[str]
 ) -> VerdictRow:
     # All runs of a page have one scenario, so one limit applies to all.
-    limited = next((each for each in found if each and each['limit'] is not None), None)
+    limited = next((each for each in found if each and each.limit is not None), None)
     return VerdictRow(
         criterion=criterion,
-        limit=value_text(limited['limit']) if limited else '',
-        source=limited['source'] if limited else '',
-        convention=bool(limited and limited['convention']),
+        limit=value_text(limited.limit) if limited else '',
+        source=(limited.source or '') if limited else '',
+        convention=bool(limited and limited.convention),
         cells=tuple(_verdict_cell(*each) for each in zip(found, reasons, strict=True)),
     )
 
 
-def _verdict_cell(found: dict[str, Any] | None, undefined: str) -> VerdictCell:
+def _verdict_cell(found: CriterionResult | None, undefined: str) -> VerdictCell:
     if found is None:
         return VerdictCell(None, value_text(None), NO_LIMIT, NOT_JUDGED)
-    value = found['value']
-    why_dash = undefined if value is None else ''
-    return VerdictCell(value, value_text(value), found['state'], why_dash)
+    why_dash = undefined if found.value is None else ''
+    return VerdictCell(found.value, value_text(found.value), found.state, why_dash)

@@ -4,7 +4,6 @@
 
 from dataclasses import dataclass
 from functools import cache, cached_property
-from typing import Any
 
 import numpy as np
 
@@ -45,16 +44,16 @@ class HeadlessRun:
         )
 
     @property
-    def table_values(self) -> dict[str, Any]:
+    def table_values(self) -> dict[str, float | None]:
         """Values of the three metrics of Table 5.1 by name; None for an undefined one."""
-        return {name: getattr(self.metrics, name) for name in TABLE_METRICS}
+        return {name: self.metrics[name] for name in TABLE_METRICS}
 
     @cached_property
     def verdict(self) -> Verdict:
         """Verdict of the run by the packaged limits."""
         name = str(self.controller)
         recording = in_memory(self.settings, name, self.trajectory)
-        return score_run(recording, name, packaged_limits(), timing=None)['verdict']
+        return score_run(recording, name, packaged_limits(), timing=None).verdict
 
     @property
     def slip_rpm(self) -> np.ndarray:

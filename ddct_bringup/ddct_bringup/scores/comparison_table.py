@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import TextIO
 
-from ddct_bringup.scores.scoring import Entry
+from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.scores.tables import (
     ACCELERATION_STD,
     CONTROLLER,
@@ -40,7 +40,7 @@ _NO_ROW = 'Table 5.1 has no row of this controller'
 
 
 def print_comparison(
-    runs: Sequence[Entry], settings: RunSettings, overrides: Sequence[str], stream: TextIO
+    runs: Sequence[ScoredRun], settings: RunSettings, overrides: Sequence[str], stream: TextIO
 ) -> None:
     """
     Print one row per run.
@@ -61,7 +61,7 @@ def print_comparison(
             Column('thesis row', '', _use, number=False, undefined=_NO_ROW),
         ]
     print_runs(runs, [*columns, FINAL_SLIP, PEAK_JERK, VALID], stream, _title(settings, overrides))
-    if compared and any(thesis_row(run['controller']) for run in runs):
+    if compared and any(thesis_row(run.controller or '') for run in runs):
         print(_NOTE, file=stream)
 
 
@@ -75,25 +75,25 @@ def _title(settings: RunSettings, overrides: Sequence[str]) -> str:
 
 def _with_range(column: RunColumn, name: str) -> RunColumn:
     """Return the column of a metric with the predicted range in a second line."""
-    return replace(column, below=lambda run: predicted_range(run['controller'], name))
+    return replace(column, below=lambda run: predicted_range(run.controller or '', name))
 
 
 def _thesis(quantity: Quantity) -> RunColumn:
     """Return the column of the printed value, with hit or miss below where it is predicted."""
 
-    def value(run: Entry) -> float | None:
-        row = thesis_row(run['controller'])
+    def value(run: ScoredRun) -> float | None:
+        row = thesis_row(run.controller or '')
         return row.printed_values()[quantity.key] if row else None
 
-    def below(run: Entry) -> str:
-        row = thesis_row(run['controller'])
-        if row is None or row.use != PREDICTED or not run['valid']:
+    def below(run: ScoredRun) -> str:
+        row = thesis_row(run.controller or '')
+        if row is None or row.use != PREDICTED or not run.valid:
             return ''
-        return row.verdict(quantity.key, run['metrics'][quantity.key])
+        return row.verdict(quantity.key, run.metrics[quantity.key])
 
     return Column(f'thesis\n{quantity.unit}', '.2f', value, below=below)
 
 
-def _use(run: Entry) -> str | None:
-    row = thesis_row(run['controller'])
+def _use(run: ScoredRun) -> str | None:
+    row = thesis_row(run.controller or '')
     return row.use if row else None

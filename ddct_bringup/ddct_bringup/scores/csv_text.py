@@ -3,13 +3,13 @@
 """Scores and signals as CSV."""
 
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 import numpy as np
 
 from ddct_bringup.bag.reader import Recording
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.scores.scoring import NOT_COMPUTED, Entry
+from ddct_bringup.scores.document import FACTS
+from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_plant.base.errors import printable
 from ddct_plant.files.csv_table import csv_text
 from ddct_plant.signals.signal import Signal, column_name
@@ -21,26 +21,37 @@ from ddct_plant.signals.topics import (
     all_signals,
 )
 
+Cell = str | float | int | list[str] | None
+"""Value in one column of a row."""
 _OF_JOINTS = (JOINT_STATES, SENSED_JOINT_STATES)
 """Topics with one value per joint: the first columns, joint by joint."""
 
 
-def scores_csv(runs: Sequence[Entry]) -> str:
+def scores_csv(runs: Sequence[ScoredRun]) -> str:
     """Return the scores as CSV, one row per run: facts, metrics and verdict."""
     return rows_csv([score_row(run) for run in runs])
 
 
-def rows_csv(rows: Sequence[Mapping[str, Any]]) -> str:
+def rows_csv(rows: Sequence[Mapping[str, Cell]]) -> str:
     """Return rows of equal columns, at least one, as CSV below the names of the columns."""
     return csv_text(rows[0], ([_text(value) for value in row.values()] for row in rows))
 
 
-def score_row(run: Entry) -> dict[str, Any]:
+def score_row(run: ScoredRun) -> dict[str, Cell]:
     """Return the facts, metrics and verdict of a run by column."""
-    verdict = {f'verdict_{key}': run['verdict'][key] for key in ('state', 'limits')}
-    row = {**run, **run['metrics'], **verdict}
-    nested = ('metrics', 'verdict', NOT_COMPUTED)
-    return {key: value for key, value in row.items() if key not in nested}
+    return {
+        'bag': run.bag,
+        **{name: getattr(run.facts, name, None) for name in FACTS},
+        'valid': run.valid,
+        'reason': run.reason,
+        'fallbacks': run.fallbacks,
+        'safe_state': run.safe_state,
+        'before_schema': run.before_schema,
+        'scenario_changes': None if run.scenario_changes is None else list(run.scenario_changes),
+        **run.metrics,
+        'verdict_state': run.verdict.state,
+        'verdict_limits': run.verdict.limits,
+    }
 
 
 def signals_csv(recording: Recording) -> str:
@@ -64,7 +75,7 @@ def signal_columns(trajectory: Trajectory) -> dict[str, np.ndarray]:
     return columns
 
 
-def _text(value: Any) -> Any:
+def _text(value: Cell) -> Cell:
     return printable(value) if isinstance(value, str) else value
 
 

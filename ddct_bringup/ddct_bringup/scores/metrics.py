@@ -3,7 +3,7 @@
 """Metrics of one run; a metric that is undefined is None, never a placeholder number."""
 
 import math
-from typing import NamedTuple
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -16,74 +16,27 @@ from ddct_bringup.verdict.zero_slip import first_lock, first_zero_slip
 from ddct_plant.base.timebase import PERIOD_S, steps_in, time_of_step
 from ddct_plant.base.units import rpm_from_rad_s
 
-
-class Metrics(NamedTuple):
-    """
-    The metrics of one run.
-
-    Those over the score window take every sample from its first to its last time, both included,
-    whatever comes after; they are None when the run ends before.
-    """
-
-    engagement_time_s: float | None
-    """
-    Engagement time t_a in s (thesis Section 5.1): from control start to the first sign change of
-    w_d, interpolated linearly between samples. None without one, or when w_d is zero at control
-    start. For a stick-slip clutch, to the exact instant of the first lock or passage through zero.
-    """
-    torsion_speed_std_rpm: float | None
-    """Standard deviation (ddof 0) of w_sr in rpm over the score window."""
-    acceleration_std_m_s2: float | None
-    """Standard deviation (ddof 0) of A_x in m/s^2 over the score window."""
-    slip_rmse_rpm: float | None
-    """Root mean square of reference minus slip in rpm over the score window."""
-    slip_final_rpm: float | None
-    """Last sample of w_d in rpm, with its sign."""
-    peak_jerk_m_s3: float | None
-    """
-    Largest magnitude of the jerk in m/s^3 from control start to the end of the run, with A_x
-    low-passed at 20 Hz without delay. None also when the run ends before the score window.
-    """
-    vdv_m_s1_75: float | None
-    """
-    Vibration dose value in m/s^1.75 over the score window, with the weighting `VDV_WEIGHTING`.
-    """
-    weighted_acceleration_m_s2: float | None
-    """Root mean square of A_x in m/s^2 over the score window, with the weighting of the dose."""
-    friction_energy_j: float | None
-    """
-    Friction work of the clutch in J over the whole run: exact where the run records it, otherwise
-    the integral of |C_f w_d| by the trapezoidal rule.
-    """
-    lockup_slip_acceleration_rad_s2: float | None
-    """
-    Slope of w_d in rad/s^2 at its first sign change, between the samples around it. For a
-    stick-slip clutch the exact slope just before the first lock after control start.
-    """
-    torque_total_variation_n_m: float | None
-    """
-    Sum of the magnitudes of all changes of the clutch torque request in N m over the whole run.
-    """
-    steps: int
-    """Number of periods in the run."""
-    update_time_median_us: float | None
-    """
-    Median time of a controller update in us; this and all following metrics are None without
-    timing.json.
-    """
-    update_time_p99_us: float | None
-    """99th percentile of the time of a controller update in us."""
-    missed_steps: int | None
-    """Number of steps without a reply of the controller, in real time."""
-    resends: int | None
-    """Number of ticks that the owner of time published again, in lock-step."""
-    worst_lateness_us: float | None
-    """
-    Largest delay of a step of the driveline after its due time in us, in real time; None in
-    lock-step.
-    """
-
-
+Metrics = Mapping[str, float | int | None]
+"""Value of every metric by its key in `scores.json`; None where it is undefined."""
+METRIC_NAMES = (
+    'engagement_time_s',
+    'torsion_speed_std_rpm',
+    'acceleration_std_m_s2',
+    'slip_rmse_rpm',
+    'slip_final_rpm',
+    'peak_jerk_m_s3',
+    'vdv_m_s1_75',
+    'weighted_acceleration_m_s2',
+    'friction_energy_j',
+    'lockup_slip_acceleration_rad_s2',
+    'torque_total_variation_n_m',
+    'steps',
+    'update_time_median_us',
+    'update_time_p99_us',
+    'missed_steps',
+    'resends',
+    'worst_lateness_us',
+)
 _OF_WINDOW = (
     'torsion_speed_std_rpm',
     'acceleration_std_m_s2',
@@ -103,14 +56,15 @@ def compute_metrics(
     """Compute every metric; times are scenario times in s, multiples of 10 ms."""
     start = steps_in('control_start_s', control_start_s)
     window = tuple(steps_in('score_window_s', time) for time in score_window_s)
-    values = {**metric_values(trajectory, start, window), **_update_times(timing)}
-    return Metrics(
-        **{name: finite(value) for name, value in values.items()},
-        steps=trajectory.steps,
-        missed_steps=timing.missed_steps if timing else None,
-        resends=timing.resends if timing else None,
-        worst_lateness_us=timing.worst_lateness_us if timing else None,
-    )
+    values = {
+        **metric_values(trajectory, start, window),
+        **_update_times(timing),
+        'steps': trajectory.steps,
+        'missed_steps': timing.missed_steps if timing else None,
+        'resends': timing.resends if timing else None,
+        'worst_lateness_us': timing.worst_lateness_us if timing else None,
+    }
+    return {name: finite(values[name]) for name in METRIC_NAMES}
 
 
 def metric_values(

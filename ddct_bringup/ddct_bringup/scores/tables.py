@@ -8,10 +8,10 @@ from typing import TextIO
 from rich.console import Console
 from rich.text import Text
 
-from ddct_bringup.scores.scoring import NOT_COMPUTED, Entry
+from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.verdict.metric_definitions import METRICS, NO_TIMING, TABLE_5_1
 from ddct_bringup.verdict.state import SUCCESSES
-from ddct_bringup.verdict.verdict import BEYOND, NO_LIMIT, TRACTION
+from ddct_bringup.verdict.verdict import BEYOND, NO_LIMIT
 from ddct_plant.base.errors import printable
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.program.table import UNDEFINED, Column, Quantity, drawn_by_rich, table_of
@@ -21,13 +21,8 @@ _PIPED_WIDTH = 200
 """Width in characters of a table written to a file or pipe."""
 
 
-RunColumn = Column[Entry]
+RunColumn = Column[ScoredRun]
 """One column of a table of runs."""
-
-
-def fact(name: str, heading: str, form: str = '', *, number: bool = False) -> RunColumn:
-    """Return the column of a fact of a run, such as its controller."""
-    return Column(heading, form, lambda run: run[name], number=number)
 
 
 def metric(quantity: Quantity, heading: str = '') -> RunColumn:
@@ -35,18 +30,18 @@ def metric(quantity: Quantity, heading: str = '') -> RunColumn:
     return Column(
         heading or f'{quantity.symbol}\n{quantity.unit}',
         quantity.form,
-        lambda run: run['metrics'][quantity.key],
+        lambda run: run.metrics[quantity.key],
         undefined=quantity.undefined,
     )
 
 
-BAG = fact('bag', 'bag')
-CONTROLLER = fact('controller', 'controller')
-WEAR = fact('wear_gain', 'wear', 'g', number=True)
+BAG: RunColumn = Column('bag', '', lambda run: run.bag, number=False)
+CONTROLLER: RunColumn = Column('controller', '', lambda run: run.controller, number=False)
+WEAR: RunColumn = Column('wear', 'g', lambda run: run.facts.wear_gain if run.facts else None)
 ENGAGEMENT_TIME, TORSION_STD, ACCELERATION_STD = (metric(each) for each in TABLE_5_1)
 FINAL_SLIP = metric(METRICS['slip_final_rpm'], 'final\nw_d rpm')
 PEAK_JERK = metric(METRICS['peak_jerk_m_s3'], 'jerk\nm/s^3')
-VALID: RunColumn = Column('valid', '', lambda run: 'yes' if run['valid'] else 'NO', number=False)
+VALID: RunColumn = Column('valid', '', lambda run: 'yes' if run.valid else 'NO', number=False)
 
 COLUMNS = (
     ENGAGEMENT_TIME,
@@ -59,10 +54,10 @@ COLUMNS = (
 )
 """Columns of every table of runs, after those that identify the run."""
 
-STATE: RunColumn = Column('state', '', lambda run: run['verdict']['state'], number=False)
+STATE: RunColumn = Column('state', '', lambda run: run.verdict.state, number=False)
 VERDICT_COLUMNS: tuple[RunColumn, ...] = (
     STATE,
-    Column('limits', '', lambda run: run['verdict']['limits'], number=False),
+    Column('limits', '', lambda run: run.verdict.limits, number=False),
 )
 """
 Columns of the verdict, before the last column of a wide terminal; else in lines below the table.
@@ -72,7 +67,7 @@ REALTIME_COLUMNS: tuple[RunColumn, ...] = (
     Column(
         'latest\nms',
         '.2f',
-        lambda run: _in_ms(run['metrics']['worst_lateness_us']),
+        lambda run: _in_ms(run.metrics['worst_lateness_us']),
         undefined=f'it ran in lock-step, or {NO_TIMING}',
     ),
     Column(
@@ -93,7 +88,10 @@ def table_console(stream: TextIO) -> Console:
 
 
 def print_runs(
-    runs: Sequence[Entry], columns: Sequence[RunColumn], stream: TextIO, title: str | None = None
+    runs: Sequence[ScoredRun],
+    columns: Sequence[RunColumn],
+    stream: TextIO,
+    title: str | None = None,
 ) -> None:
     """
     Print one row per run with its verdict, then explanatory notes.
@@ -102,10 +100,10 @@ def print_runs(
     the scenario with its changes; where the runs have several scenarios each row has its own below
     it.
     """
-    scenarios = {_scenario(run) for run in runs if run['scenario'] is not None}
+    scenarios = {_scenario(run) for run in runs if run.scenario is not None}
     if title is None and len(scenarios) == 1:
         (title,) = scenarios
-    if any(run['mode'] == 'realtime' for run in runs):
+    if any(run.facts and run.facts.mode == 'realtime' for run in runs):
         columns = [*columns[:-1], *REALTIME_COLUMNS, columns[-1]]
     console = table_console(stream)
     wide = [*columns[:-1], *VERDICT_COLUMNS, columns[-1]]
@@ -119,20 +117,20 @@ def print_runs(
         console.print(Text(text), soft_wrap=True)
     for run in runs:
         verdict = [] if wide_enough else [_verdict_text(run)]
-        scenario = [_scenario(run)] if title is None and run['scenario'] is not None else []
+        scenario = [_scenario(run)] if title is None and run.scenario is not None else []
         for text in [*scenario, *verdict, *run_notes(run)]:
-            console.print(Text(printable(f'{run["bag"]}: {text}'), 'bold'), soft_wrap=True)
+            console.print(Text(printable(f'{run.bag}: {text}'), 'bold'), soft_wrap=True)
     for text in beyond_notes(runs):
         console.print(Text(printable(text), 'bold'), soft_wrap=True)
 
 
-def _verdict_text(run: Entry) -> str:
+def _verdict_text(run: ScoredRun) -> str:
     return ', '.join(f'{each.heading} {each.text(run)}' for each in VERDICT_COLUMNS)
 
 
-def dash_notes(runs: Sequence[Entry], columns: Sequence[RunColumn]) -> list[str]:
+def dash_notes(runs: Sequence[ScoredRun], columns: Sequence[RunColumn]) -> list[str]:
     """Return a note on the meaning of the dash for each column where a readable run has one."""
-    read = [run for run in runs if run['metrics']['steps'] is not None]
+    read = [run for run in runs if run.metrics['steps'] is not None]
     return [
         f"{column.heading.splitlines()[0]} '-': {column.undefined}."
         for column in columns
@@ -140,50 +138,47 @@ def dash_notes(runs: Sequence[Entry], columns: Sequence[RunColumn]) -> list[str]
     ]
 
 
-def run_notes(run: Entry) -> list[str]:
+def run_notes(run: ScoredRun) -> list[str]:
     """Return notes on one run: why it is invalid, or on limitations of its scores."""
-    notes = [] if run['valid'] else [f'not valid: {run["reason"]}']
-    if run['valid'] and run['fallbacks']:
+    notes = [] if run.valid else [f'not valid: {run.reason}']
+    if run.valid and run.fallbacks:
         notes.append(fallback_note(run))
     notes += [*slow_notes(run), *unknown_limits_notes(run)]
     figures: dict[str, list[str]] = {}
-    for name, why in run.get(NOT_COMPUTED, {}).items():
+    for name, why in run.not_computed.items():
         figures.setdefault(why, []).append(name)
     notes += [f'{why}: no {", ".join(names)}' for why, names in figures.items()]
-    if run['before_schema']:
+    if run.before_schema:
         notes.append('recorded before scenarios had a schema_version: judged by what it holds')
     return notes
 
 
-def beyond_notes(runs: Sequence[Entry]) -> list[str]:
+def beyond_notes(runs: Sequence[ScoredRun]) -> list[str]:
     """Return for each exceeded limit its source, and the runs that exceed it with their values."""
     beyond: dict[str, list[str]] = {}
     for run in runs:
-        traction = {'name': TRACTION, **(run['verdict']['traction'] or {'state': NO_LIMIT})}
-        for each in (*run['verdict']['criteria'], traction):
-            if each['state'] == BEYOND:
-                limit = f'beyond {each["name"]} {each["limit"]:g} {each["unit"]}'
-                found = beyond.setdefault(f'{limit} ({each["source"]})', [])
-                found.append(f'{run["bag"]} {each["value"]:.4g}')
+        for each in run.verdict.results:
+            if each.state == BEYOND:
+                limit = f'beyond {each.name} {each.limit:g} {each.unit}'
+                found = beyond.setdefault(f'{limit} ({each.source})', [])
+                found.append(f'{run.bag} {each.value:.4g}')
     return [f'{limit}: {", ".join(found)}' for limit, found in beyond.items()]
 
 
-def unknown_limits_notes(run: Entry) -> list[str]:
+def unknown_limits_notes(run: ScoredRun) -> list[str]:
     """Return the limits of a successful run that cannot be checked because a value is missing."""
-    verdict = run['verdict']
+    verdict = run.verdict
     unknown = [
-        each['name']
-        for each in verdict['criteria']
-        if each['limit'] is not None and each['value'] is None
+        each.name for each in verdict.criteria if each.limit is not None and each.value is None
     ]
-    if not unknown or verdict['state'] not in SUCCESSES or verdict['limits'] != NO_LIMIT:
+    if not unknown or verdict.state not in SUCCESSES or verdict.limits != NO_LIMIT:
         return []
     return [f'not known to keep within its limits: no value of {", ".join(unknown)}']
 
 
-def slow_notes(run: Entry) -> list[str]:
+def slow_notes(run: ScoredRun) -> list[str]:
     """Return a note if more than 1 % of a controller's updates are longer than the period."""
-    median, most = (_in_ms(run['metrics'][f'update_time_{name}_us']) for name in ('median', 'p99'))
+    median, most = (_in_ms(run.metrics[f'update_time_{name}_us']) for name in ('median', 'p99'))
     if median is None or most is None or most <= 1e3 * PERIOD_S:
         return []
     return [
@@ -192,20 +187,20 @@ def slow_notes(run: Entry) -> list[str]:
     ]
 
 
-def fallback_note(run: Entry) -> str:
+def fallback_note(run: ScoredRun) -> str:
     """Return a note on a run whose controller had steps without a solution of its program."""
     return (
-        f'at {run["fallbacks"]} of {run["metrics"]["steps"]} steps its program had no solution in '
+        f'at {run.fallbacks} of {run.metrics["steps"]} steps its program had no solution in '
         'time: the figures are partly those of its fallback'
     )
 
 
-def _scenario(run: Entry) -> str:
-    return scenario_title(run['scenario'], run['scenario_changes'] or ())
+def _scenario(run: ScoredRun) -> str:
+    return scenario_title(run.scenario or '', run.scenario_changes or ())
 
 
-def _safe_state(run: Entry) -> str | None:
-    return None if run['safe_state'] is None else run['safe_state'] or 'none'
+def _safe_state(run: ScoredRun) -> str | None:
+    return None if run.safe_state is None else run.safe_state or 'none'
 
 
 def _in_ms(time_us: float | None) -> float | None:

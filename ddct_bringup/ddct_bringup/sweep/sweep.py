@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A sweep: every controller at every point of its axes, headless, scored, judged, tabulated."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from functools import cached_property
@@ -16,7 +16,8 @@ from ddct_bringup.campaign.rows import (
     scored_headless,
 )
 from ddct_bringup.scores.csv_text import rows_csv
-from ddct_bringup.scores.scoring import Entry
+from ddct_bringup.scores.document import run_entry
+from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.scores.tables import CONTROLLER, STATE, RunColumn, dash_notes, metric
 from ddct_bringup.sweep.axis import MOST, Axis, value_text
 from ddct_bringup.verdict.limits import Limits
@@ -31,6 +32,15 @@ SCHEMA_VERSION = 1
 """Schema version of the output of `ddct sweep --json`."""
 OVER = 'over'
 """Key in a run's entry of the values by the keys of the axes."""
+
+
+@dataclass(frozen=True)
+class SweptRun:
+    """One run of a sweep."""
+
+    point: Mapping[str, Any]
+    """Values by the keys of the axes."""
+    scores: ScoredRun
 
 
 @dataclass(frozen=True)
@@ -96,24 +106,23 @@ class Sweep:
         """Return the number of runs."""
         return len(self.controllers) * len(self.points)
 
-    def run(self, index: int) -> Entry:
-        """
-        Carry out one run; those of the first controller come first.
-
-        Its entry is that of `scores.json`, with its values under `OVER` instead of a bag.
-        """
+    def run(self, index: int) -> SweptRun:
+        """Carry out one run; those of the first controller come first."""
         controller, point = divmod(index, len(self.points))
-        entry = scored_headless(self.settings[point], self.controllers[controller], self.limits)
-        del entry['bag']
-        return {OVER: self.points[point], **entry}
+        scores = scored_headless(self.settings[point], self.controllers[controller], self.limits)
+        return SweptRun(self.points[point], scores)
 
-    def runs(self) -> AbstractContextManager[Iterator[Entry]]:
+    def runs(self) -> AbstractContextManager[Iterator[SweptRun]]:
         """Carry out all runs on all cores as the iterator is consumed, see `in_processes`."""
         return in_processes(self.run, len(self))
 
 
-def sweep_document(sweep: Sweep, runs: Sequence[Entry]) -> dict[str, Any]:
-    """Return the document of `--json`: the axes, the limits, and a row per run."""
+def sweep_document(sweep: Sweep, runs: Sequence[SweptRun]) -> Mapping[str, Any]:
+    """
+    Return the document of `--json`: the axes, the limits, and a row per run.
+
+    A row is the entry of `scores.json`, with the run's values under `OVER` instead of a bag.
+    """
     return {
         'schema_version': SCHEMA_VERSION,
         'over': [
@@ -122,34 +131,45 @@ def sweep_document(sweep: Sweep, runs: Sequence[Entry]) -> dict[str, Any]:
         ],
         'controllers': [controller_label(each) for each in sweep.controllers],
         'limits': sweep.limits.origin,
-        'rows': list(runs),
+        'rows': [_row(run) for run in runs],
     }
 
 
-def sweep_csv(runs: Sequence[Entry]) -> str:
+def _row(run: SweptRun) -> Mapping[str, Any]:
+    entry = run_entry(run.scores)
+    return {OVER: run.point, **{key: value for key, value in entry.items() if key != 'bag'}}
+
+
+def sweep_csv(runs: Sequence[SweptRun]) -> str:
     """Return the text of `--csv`: a row per run, with the columns of a campaign."""
-    return rows_csv([result_row(run, run[OVER]) for run in runs])
+    return rows_csv([result_row(run.scores, run.point) for run in runs])
 
 
-def sweep_table(sweep: Sweep, runs: Sequence[Entry], metrics: Sequence[Quantity]) -> Table:
+def sweep_table(sweep: Sweep, runs: Sequence[SweptRun], metrics: Sequence[Quantity]) -> Table:
     """Return the table with a row per run: controller, varied values, metrics and state."""
     title = f'{sweep.conditions}; {sweep.varied}'
-    columns = [CONTROLLER, *map(_place, sweep.axes), *map(metric, metrics), STATE]
+    of_runs = [_of_swept(each) for each in (CONTROLLER, *map(metric, metrics), STATE)]
+    columns = [of_runs[0], *map(_place, sweep.axes), *of_runs[1:]]
     return table_of(title, columns, runs)
 
 
-def _place(axis: Axis) -> RunColumn:
+def _of_swept(column: RunColumn) -> Column[SweptRun]:
+    """Return the column of the scores of swept runs."""
+    return Column(column.heading, column.form, lambda run: column.value(run.scores), column.number)
+
+
+def _place(axis: Axis) -> Column[SweptRun]:
     heading = f'{axis.key}\n{axis.unit}' if axis.unit else axis.key
-    return Column(heading, '', lambda run: value_text(run[OVER][axis.key]), number=axis.numeric)
+    return Column(heading, '', lambda run: value_text(run.point[axis.key]), number=axis.numeric)
 
 
-def sweep_notes(runs: Sequence[Entry], metrics: Sequence[Quantity]) -> list[str]:
+def sweep_notes(runs: Sequence[SweptRun], metrics: Sequence[Quantity]) -> list[str]:
     """Return notes on dashes, and on invalid runs with their values, as `wear_gain=0.7`."""
     failed: dict[str, list[str]] = {}
     for run in runs:
-        if not run['valid']:
-            reason = f'{run["controller"]} is not valid: {run["reason"]}'
-            place = ', '.join(f'{key}={value_text(value)}' for key, value in run[OVER].items())
+        if not run.scores.valid:
+            reason = f'{run.scores.controller} is not valid: {run.scores.reason}'
+            place = ', '.join(f'{key}={value_text(value)}' for key, value in run.point.items())
             failed.setdefault(reason, []).append(place)
     notes = [f'{reason} (at {"; ".join(places)})' for reason, places in failed.items()]
-    return [*dash_notes(runs, [metric(each) for each in metrics]), *notes]
+    return [*dash_notes([run.scores for run in runs], [metric(each) for each in metrics]), *notes]

@@ -12,7 +12,6 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from ddct_bringup.report.page_parts import unit_text
-from ddct_bringup.scores.scoring import Entry
 from ddct_bringup.sweep.state_map import (
     draw_states,
     edges_of,
@@ -20,7 +19,7 @@ from ddct_bringup.sweep.state_map import (
     places_of,
     state_legend,
 )
-from ddct_bringup.sweep.sweep import Sweep
+from ddct_bringup.sweep.sweep import Sweep, SweptRun
 from ddct_bringup.verdict.state import ENGAGED
 from ddct_controllers.design.drawing.chart_style import (
     chart_style,
@@ -51,7 +50,7 @@ runaway would leave no room for the others.
 
 
 def write_sweep_figure(
-    sweep: Sweep, runs: Sequence[Entry], metrics: Sequence[Quantity], path: Path
+    sweep: Sweep, runs: Sequence[SweptRun], metrics: Sequence[Quantity], path: Path
 ) -> None:
     """Write the figure as PNG or SVG by the file's ending; raise DdctError where it cannot be."""
     with chart_style():
@@ -63,10 +62,10 @@ def _title(sweep: Sweep, names: Sequence[str], width_in: float) -> str:
     return headed(f'{controllers_text(names)} {sweep.varied}', sweep.conditions, width_in)
 
 
-def sweep_figure(sweep: Sweep, runs: Sequence[Entry], metrics: Sequence[Quantity]) -> Figure:
+def sweep_figure(sweep: Sweep, runs: Sequence[SweptRun], metrics: Sequence[Quantity]) -> Figure:
     """Return the figure of the runs of a sweep over one axis or two, in its order."""
     names = [controller_label(each) for each in sweep.controllers]
-    states = np.array([run['verdict']['state'] for run in runs]).reshape(len(names), -1)
+    states = np.array([run.scores.verdict.state for run in runs]).reshape(len(names), -1)
     if len(sweep.axes) > 1:
         return _maps(sweep, names, states)
     lane = 0.5 + _LANE_IN * len(names)
@@ -76,7 +75,7 @@ def sweep_figure(sweep: Sweep, runs: Sequence[Entry], metrics: Sequence[Quantity
     panels[0].set_title(_title(sweep, names, _WIDTH_IN))  # below the legend
     places = places_of(sweep.axes[0])
     for axes, figure in zip(panels, metrics, strict=False):
-        values = np.array([run['metrics'][figure.key] for run in runs], dtype=float)
+        values = np.array([run.scores.metrics[figure.key] for run in runs], dtype=float)
         axes.set_ylabel(', '.join(filter(None, (figure.symbol, unit_text(figure.unit)))))
         _draw_metric(axes, places, names, values.reshape(states.shape), states == ENGAGED)
     lines = panels[0].get_legend_handles_labels()

@@ -3,19 +3,64 @@
 """Verdict of one run: its state, and each criterion with its limit. There is no overall score."""
 
 from collections.abc import Mapping
-from typing import Any
+from dataclasses import dataclass
 
 from ddct_bringup.verdict.criteria import CRITERIA
 from ddct_bringup.verdict.limits import CONVENTION, Limit, Limits
 from ddct_bringup.verdict.plant import JudgedPlant
 from ddct_bringup.verdict.state import INVALID, SUCCESSES
 
-Verdict = dict[str, Any]
-"""State, limits, criteria and traction of a run, under the keys of `scores.json`."""
 WITHIN, BEYOND, NO_LIMIT, FAILED = 'within', 'beyond', 'no_limit', 'failed'
 TRACTION = 'traction'
-"""Key of the traction in a verdict, next to the criteria."""
+"""Name of the traction, which is judged next to the criteria."""
 _TRACTION_UNIT = 'm/s^2'
+
+
+@dataclass(frozen=True)
+class CriterionResult:
+    """Value of one criterion in a run, compared with its limit; fields as in `scores.json`."""
+
+    name: str
+    """Name of the criterion, or `TRACTION`."""
+    value: float | int | None
+    """Value in `unit`; None where it is not defined."""
+    unit: str
+    limit: float | None
+    """Largest magnitude in `unit`; None where no limit applies."""
+    source: str | None
+    """Publication and clause of the limit, or for a convention its reason."""
+    convention: bool
+    """Whether the limit is a convention rather than published."""
+    state: str
+    """WITHIN, BEYOND or NO_LIMIT."""
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """Verdict of one run."""
+
+    state: str
+    """State at the end of the run, one of `STATES`."""
+    limits: str
+    """Comparison of all criteria with their limits: WITHIN, BEYOND, NO_LIMIT or FAILED."""
+    criteria: tuple[CriterionResult, ...]
+    """Result of every criterion, in the order of `CRITERIA`; empty of an unreadable run."""
+    traction: CriterionResult | None
+    """Largest driving force over the mass in m/s^2 as a criterion; None of an unreadable run."""
+
+    @property
+    def results(self) -> tuple[CriterionResult, ...]:
+        """Results of all criteria, followed by the traction."""
+        return self.criteria if self.traction is None else (*self.criteria, self.traction)
+
+    @property
+    def values(self) -> dict[str, float | int | None]:
+        """Value of every criterion by name, without the traction."""
+        return {each.name: each.value for each in self.criteria}
+
+
+UNREADABLE = Verdict(INVALID, FAILED, (), None)
+"""Verdict of a run whose recording cannot be read."""
 
 
 def verdict_of(
@@ -24,8 +69,8 @@ def verdict_of(
     limits: Limits,
     scenario: str,
     *,
-    exists: Mapping[str, Any],
-    traction: Mapping[str, Any] | None = None,
+    exists: Mapping[str, object],
+    traction: CriterionResult | None = None,
 ) -> Verdict:
     """
     Return the verdict of a run of a scenario from its state and the values of its criteria.
@@ -38,59 +83,41 @@ def verdict_of(
     `judged_traction`.
     """
     strictest = {key: limit for key, limit in limits.of(scenario).items() if exists[key]}
-    criteria = [
+    criteria = tuple(
         _judged(criterion.key, criterion.unit, values[criterion.key], strictest.get(criterion.key))
         for criterion in CRITERIA
-    ]
+    )
     traction = traction or judged_traction(None, None, limits)
-    found = {criterion['state'] for criterion in criteria if criterion['limit'] is not None}
+    found = {criterion.state for criterion in criteria if criterion.limit is not None}
     overall = NO_LIMIT
     if state not in SUCCESSES:
         overall = FAILED
-    elif BEYOND in (*found, traction['state']):
+    elif BEYOND in (*found, traction.state):
         overall = BEYOND
     elif found == {WITHIN}:
         overall = WITHIN
-    return {'state': state, 'limits': overall, 'criteria': criteria, TRACTION: dict(traction)}
-
-
-def verdict_of_unreadable() -> Verdict:
-    """Return the verdict of a run whose recording cannot be read."""
-    return {'state': INVALID, 'limits': FAILED, 'criteria': [], TRACTION: None}
+    return Verdict(state, overall, criteria, traction)
 
 
 def judged_traction(
     value: float | int | None, plant: JudgedPlant | None, limits: Limits
-) -> dict[str, Any]:
+) -> CriterionResult:
     """Return the largest driving force over the mass, and its limit for the driven axle."""
     rule = limits.traction
-    limit = rule.limit(plant.gravity) if rule and plant else None
-    return {
-        'value': value,
-        'unit': _TRACTION_UNIT,
-        'limit': limit,
-        'source': f'{CONVENTION}: {rule.reason}' if rule and plant else None,
-        'convention': limit is not None,
-        'state': _state(value, limit),
-    }
+    if rule is None or plant is None:
+        return _judged(TRACTION, _TRACTION_UNIT, value, None)
+    largest, reason = rule.limit(plant.gravity), f'{CONVENTION}: {rule.reason}'
+    limit = Limit(TRACTION, largest, _TRACTION_UNIT, None, reason, convention=True)
+    return _judged(TRACTION, _TRACTION_UNIT, value, limit)
 
 
 def _judged(
     name: str, unit: str, value: float | int | None, limit: Limit | None
-) -> dict[str, Any]:
-    """Return the entry of one criterion; the limit applies to the magnitude of its value."""
-    return {
-        'name': name,
-        'value': value,
-        'unit': unit,
-        'limit': limit.value if limit else None,
-        'source': limit.source if limit else None,
-        'convention': limit.convention if limit else False,
-        'state': _state(value, limit.value if limit else None),
-    }
-
-
-def _state(value: float | int | None, limit: float | None) -> str:
-    if value is None or limit is None:
-        return NO_LIMIT
-    return WITHIN if abs(value) <= limit else BEYOND
+) -> CriterionResult:
+    """Return the result of one criterion; the limit applies to the magnitude of its value."""
+    if limit is None:
+        return CriterionResult(name, value, unit, None, None, False, NO_LIMIT)
+    state = NO_LIMIT
+    if value is not None:
+        state = WITHIN if abs(value) <= limit.value else BEYOND
+    return CriterionResult(name, value, unit, limit.value, limit.source, limit.convention, state)

@@ -109,7 +109,7 @@ def test_a_run_is_printed_as_one_line(worn):
     assert repr(worn) == (
         '<Run of ls8: thesis, 3 s, wear gain 0.7, engaged, limits beyond, valid>'
     )
-    crashed = replace(worn, entry={**worn.entry, 'valid': False, 'reason': 'it crashed'})
+    crashed = replace(worn, scores=replace(worn.scores, valid=False, reason='it crashed'))
     assert repr([crashed]).endswith(', not valid: it crashed>]')
 
 
@@ -241,7 +241,7 @@ def test_adjusted_scenario_values_give_a_warning_and_nothing_is_printed(capfd):
 def test_a_run_of_a_named_controller_goes_between_processes(worn):
     copy = pickle.loads(pickle.dumps(worn))
     assert copy.trajectory.sha256() == worn.trajectory.sha256()
-    assert (copy.entry, copy.settings) == (worn.entry, worn.settings)
+    assert (copy.scores, copy.settings) == (worn.scores, worn.settings)
 
 
 def test_runs_in_threads_are_those_of_the_main_one(worn):
@@ -311,9 +311,9 @@ def test_a_loaded_run_is_judged_by_the_limits_that_are_given(tmp_path):
     mine.write_text(f'{packaged}  - {convention}\n', encoding='utf-8')
 
     def limit_of(run):
-        criteria = run.entry['verdict']['criteria']
-        (found,) = [each for each in criteria if each['name'] == 'weighted_acceleration']
-        return found['limit']
+        criteria = run.scores.verdict.criteria
+        (found,) = [each for each in criteria if each.name == 'weighted_acceleration']
+        return found.limit
 
     assert limit_of(api.load(kept.path)) == limit_of(kept) > 0.001
     assert limit_of(api.load(kept.path, limits=mine)) == 0.001

@@ -124,5 +124,5 @@ def test_a_foreign_linear_controller_has_the_results_of_the_run_step_by_step():
     (ours,) = run_batch([(SETTINGS, controller)], packaged_limits())
     assert ours is not None
     expected = scored_headless(SETTINGS, chosen_from(controller), packaged_limits())
-    for name, value in expected['metrics'].items():
-        assert ours['metrics'][name] == (None if value is None else pytest.approx(value, rel=1e-9))
+    for name, value in expected.metrics.items():
+        assert ours.metrics[name] == (None if value is None else pytest.approx(value, rel=1e-9))

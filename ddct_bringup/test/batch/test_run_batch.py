@@ -99,10 +99,6 @@ def step_by_step(settings, controller):
     return scored_headless(settings, chosen_from(controller, 'same'), LIMITS)
 
 
-def criteria(verdict):
-    return {each['name']: each['value'] for each in verdict['criteria']}
-
-
 def assert_close(values, expected):
     assert values.keys() == expected.keys()
     for name, value in expected.items():
@@ -119,21 +115,21 @@ def test_every_run_can_be_in_a_batch(runs):
 
 def test_metrics_and_criteria_are_those_of_the_run_step_by_step(batch, serial):
     for ours, expected in zip(batch, serial, strict=True):
-        assert_close(ours['metrics'], expected['metrics'])
-        assert_close(criteria(ours['verdict']), criteria(expected['verdict']))
+        assert_close(ours.metrics, expected.metrics)
+        assert_close(ours.verdict.values, expected.verdict.values)
 
 
 def test_states_are_those_of_the_run_step_by_step(batch, serial):
     for ours, expected in zip(batch, serial, strict=True):
-        assert (ours['valid'], ours['reason']) == (expected['valid'], expected['reason'])
-        assert ours['verdict']['limits'] == expected['verdict']['limits']
-        assert ours['verdict']['state'] == expected['verdict']['state']
+        assert (ours.valid, ours.reason) == (expected.valid, expected.reason)
+        assert ours.verdict.limits == expected.verdict.limits
+        assert ours.verdict.state == expected.verdict.state
 
 
 def test_the_runs_are_of_many_kinds(serial):
-    states = Counter(result['verdict']['state'] for result in serial)
+    states = Counter(result.verdict.state for result in serial)
     assert len(states) >= 3
-    crossed = Counter(result['metrics']['engagement_time_s'] is None for result in serial)
+    crossed = Counter(result.metrics['engagement_time_s'] is None for result in serial)
     assert min(crossed[True], crossed[False]) >= 5
 
 
@@ -174,9 +170,9 @@ def test_every_run_is_scored_over_its_own_window():
     together = run_batch(runs, LIMITS)
     for ours, run in zip(together, runs, strict=True):
         expected = step_by_step(*run)
-        assert_close(ours['metrics'], expected['metrics'])
-        assert_close(criteria(ours['verdict']), criteria(expected['verdict']))
-    assert len({each['metrics']['slip_rmse_rpm'] for each in together}) == len(windows)
+        assert_close(ours.metrics, expected.metrics)
+        assert_close(ours.verdict.values, expected.verdict.values)
+    assert len({each.metrics['slip_rmse_rpm'] for each in together}) == len(windows)
 
 
 def test_a_run_that_grows_beyond_all_numbers_has_no_result():

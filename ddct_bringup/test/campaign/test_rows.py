@@ -6,7 +6,7 @@ import pytest
 from refusals import refused
 
 from ddct_bringup import api
-from ddct_bringup.campaign.rows import WALL_CLOCK, RunBase, result_row, scored_headless
+from ddct_bringup.campaign.rows import RunBase, result_row, scored_headless
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_controllers.from_python import chosen_from
 from ddct_plant.base.errors import ParameterError
@@ -48,11 +48,12 @@ def test_a_value_that_the_scenario_refuses_is_named():
 
 
 def test_a_run_has_the_metrics_and_the_verdict_of_the_same_run_alone():
-    entry = scored_headless(BASE.at({'wear_gain': 0.9}), 'ls8', packaged_limits())
+    run = scored_headless(BASE.at({'wear_gain': 0.9}), 'ls8', packaged_limits())
     alone = api.run('ls8', duration=2.0, clutch='stick_slip', wear_gain=0.9)
-    assert entry['metrics'] == {**alone.metrics, **dict.fromkeys(WALL_CLOCK)}
-    assert entry['verdict'] == alone.verdict
-    row = result_row(entry, {'wear_gain': 0.9})
+    wall_clock = dict.fromkeys(('update_time_median_us', 'update_time_p99_us'))
+    assert run.metrics == {**alone.metrics, **wall_clock}
+    assert run.verdict == alone.scores.verdict
+    row = result_row(run, {'wear_gain': 0.9})
     assert (row['controller'], row['path'], row['wear_gain']) == ('ls8', 'serial', 0.9)
     assert row['friction_energy_j'] == alone.metrics['friction_energy_j']
     assert (row['valid'], row['verdict_state']) == (True, alone.verdict['state'])
@@ -62,8 +63,8 @@ def test_a_run_has_the_metrics_and_the_verdict_of_the_same_run_alone():
 
 def test_a_failed_run_is_invalid_with_its_reason_and_without_scores():
     chosen = chosen_from(Diverging, 'diverging')
-    entry = scored_headless(BASE.at({'wear_gain': 0.9}), chosen, packaged_limits())
-    row = result_row(entry, {'wear_gain': 0.9})
+    run = scored_headless(BASE.at({'wear_gain': 0.9}), chosen, packaged_limits())
+    row = result_row(run, {'wear_gain': 0.9})
     assert (row['valid'], row['verdict_state']) == (False, 'invalid')
     assert 'diverging' in row['reason']
     assert row['engagement_time_s'] is row['slip_final_rpm'] is None

@@ -18,7 +18,7 @@ from ddct_bringup.report.page import report_page
 from ddct_bringup.report.page_parts import symbols
 from ddct_bringup.report.runs import ReportRun
 from ddct_bringup.run.headless import run_headless
-from ddct_bringup.scores.scoring import score_recording, unreadable_entry
+from ddct_bringup.scores.scoring import score_recording, unreadable_run
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.base.errors import DdctError
 from ddct_plant.scenario.file import load_scenario
@@ -86,7 +86,7 @@ def html() -> str:
             ReportRun(score_recording(whole, bag, packaged_limits()), whole)
             for bag in (f'{EVIL}/a', f'{EVIL}/b')
         ),
-        ReportRun(unreadable_entry(Path(EVIL), DdctError(f'damaged {EVIL}'))),
+        ReportRun(unreadable_run(Path(EVIL), DdctError(f'damaged {EVIL}'))),
     ]
     limits = replace(packaged_limits(), origin={**packaged_limits().origin, 'name': EVIL})
     return report_page(runs, [], limits)

@@ -7,6 +7,7 @@ import dataclasses
 import json
 
 import pytest
+from made_scores import made_scores
 from test_report_escaping import SETTINGS, recording
 
 from ddct_bringup.report import evidence
@@ -35,7 +36,7 @@ def remark(tmp_path, monkeypatch, whole, run):
 
     def read(text: str, settings: RunSettings = SETTINGS) -> str:
         (tmp_path / FREQUENCY_FILE).write_text(text, encoding='utf-8')
-        (loop,) = evidence.evidence_of([ReportRun({'controller': 'pi'}, found, None, settings)])
+        (loop,) = evidence.evidence_of([ReportRun(made_scores('pi'), found, None, settings)])
         assert len(loop_rows([loop])) == 1
         return loop.remark
 

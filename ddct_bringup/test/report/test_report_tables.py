@@ -6,13 +6,13 @@ import dataclasses
 import re
 
 import pytest
+from made_scores import made_scores
 
 from ddct_bringup.report.evidence import NOT_LINEAR, LoopEvidence, loop_rows, without_evidence
 from ddct_bringup.report.run_tables import TICKS, time_place, update_times
 from ddct_bringup.report.runs import ReportRun
 from ddct_bringup.report.score_tables import comparable_rows, metric_cells
 from ddct_bringup.run.timing_and_failure import RunTiming
-from ddct_bringup.scores.scoring import METRIC_NAMES
 from ddct_bringup.verdict.metric_definitions import TABLE_5_1
 from ddct_controllers.design.analysis.margins import LOOP_QUANTITIES
 from ddct_plant.scenario.file import load_scenario
@@ -21,14 +21,8 @@ from ddct_plant.scenario.settings import RunSettings
 THESIS = load_scenario('thesis')
 
 
-def run(controller='ls8', settings=None, timing=None, **metrics):
-    entry = {
-        'bag': controller,
-        'controller': controller,
-        'valid': True,
-        'metrics': dict.fromkeys(METRIC_NAMES) | metrics,
-    }
-    return ReportRun(entry, timing=timing, settings=settings)
+def run(controller='ls8', settings=None, timing=None, valid=True, **metrics):
+    return ReportRun(made_scores(controller, valid=valid, **metrics), None, timing, settings)
 
 
 @pytest.mark.parametrize(
@@ -78,8 +72,7 @@ def test_a_predicted_value_has_its_range_and_its_verdict_and_a_calibrated_one_ha
 
 def test_a_run_that_is_not_valid_neither_hits_nor_misses():
     hit = run('mpc3', RunSettings(THESIS), engagement_time_s=0.62)
-    failed = run('mpc3', RunSettings(THESIS), engagement_time_s=0.62)
-    failed.entry['valid'] = False
+    failed = run('mpc3', RunSettings(THESIS), valid=False, engagement_time_s=0.62)
     runs = [hit, failed]
     cells = metric_cells(TABLE_5_1[0], runs, comparable_rows(runs))
     assert [cell.verdict for cell in cells] == ['hit', '']

@@ -3,6 +3,7 @@
 """The verdict table and the Pareto view of the report, from entries alone."""
 
 import pytest
+from made_scores import made_scores
 
 from ddct_bringup.report.page_parts import unit_text, value_text
 from ddct_bringup.report.pareto import DEFAULT_PAIR, non_dominated, pair_key, pareto_view
@@ -10,7 +11,7 @@ from ddct_bringup.report.runs import ReportRun
 from ddct_bringup.report.score_tables import NOT_JUDGED, verdict_rows
 from ddct_bringup.verdict.criteria import CRITERIA
 from ddct_bringup.verdict.limits import packaged_limits
-from ddct_bringup.verdict.verdict import verdict_of, verdict_of_unreadable
+from ddct_bringup.verdict.verdict import verdict_of
 
 
 def run(state='engaged', **values):
@@ -18,10 +19,10 @@ def run(state='engaged', **values):
     found = dict.fromkeys(criterion.key for criterion in CRITERIA) | values
     exists = dict.fromkeys(found, True)
     verdict = verdict_of(state, found, packaged_limits(), 'thesis', exists=exists)
-    return ReportRun({'valid': True, 'reason': '', 'verdict': verdict})
+    return ReportRun(made_scores(verdict=verdict))
 
 
-FAILED = ReportRun({'valid': False, 'reason': 'killed', 'verdict': verdict_of_unreadable()})
+FAILED = ReportRun(made_scores(valid=False, reason='killed'))
 
 
 def row_of(name, runs):

@@ -9,7 +9,7 @@ import pytest
 from ddct_bringup.run.description import custom_data
 from ddct_bringup.run.timing_and_failure import NOTE_FILE, failed_run, note_failure
 from ddct_bringup.scores.bags import find_bags
-from ddct_bringup.scores.scoring import unreadable_entry
+from ddct_bringup.scores.scoring import unreadable_run
 from ddct_plant.base.errors import DdctError
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
@@ -65,7 +65,7 @@ def test_the_folder_of_a_failed_run_is_found_with_or_without_a_bag(tmp_path: Pat
 
 def test_a_failed_run_is_recognised_by_its_note_and_not_by_its_missing_bag(tmp_path: Path) -> None:
     note_failure(tmp_path, 'node clutch was killed', FACTS)
-    entry = unreadable_entry(tmp_path, DdctError('no .mcap file'))
-    assert (entry['valid'], entry['reason']) == (False, 'node clutch was killed')
-    assert (entry['controller'], entry['wear_gain']) == ('ls8', 0.7)
-    assert set(entry['metrics'].values()) == {None}
+    run = unreadable_run(tmp_path, DdctError('no .mcap file'))
+    assert (run.valid, run.reason) == (False, 'node clutch was killed')
+    assert (run.controller, run.facts.wear_gain) == ('ls8', 0.7)
+    assert set(run.metrics.values()) == {None}

@@ -17,8 +17,8 @@ LIMITS = packaged_limits()
 @lru_cache
 def scored(scenario, controller, wear_gain=1.0):
     settings = RunSettings(load_scenario(scenario), clutch='stick_slip', wear_gain=wear_gain)
-    entry = scored_headless(settings, controller, LIMITS)
-    return entry['metrics'], {each['name']: each['value'] for each in entry['verdict']['criteria']}
+    run = scored_headless(settings, controller, LIMITS)
+    return run.metrics, run.verdict.values
 
 
 @pytest.mark.slow

@@ -117,10 +117,10 @@ def test_as_drawn_mpc3_is_what_a_simulation_of_its_own_gives():
     ours = thesis_run('mpc3', 'detailed', 1.0).trajectory
     np.testing.assert_allclose(ours.torque_request, peer.torque_request, atol=1e-6)
     figures_of_peer = HeadlessRun(SETTINGS, 'as drawn', peer).metrics
-    assert figures_of_peer.engagement_time_s == pytest.approx(0.580, abs=5e-4)
-    assert figures_of_peer.torsion_speed_std_rpm == pytest.approx(1.788, abs=5e-4)
-    assert figures_of_peer.acceleration_std_m_s2 == pytest.approx(0.2885, abs=5e-5)
-    assert figures_of_peer.slip_final_rpm == pytest.approx(5.70, abs=5e-3)
+    assert figures_of_peer['engagement_time_s'] == pytest.approx(0.580, abs=5e-4)
+    assert figures_of_peer['torsion_speed_std_rpm'] == pytest.approx(1.788, abs=5e-4)
+    assert figures_of_peer['acceleration_std_m_s2'] == pytest.approx(0.2885, abs=5e-5)
+    assert figures_of_peer['slip_final_rpm'] == pytest.approx(5.70, abs=5e-3)
 
 
 def test_mpc_preview_is_mpc3_with_full_information():

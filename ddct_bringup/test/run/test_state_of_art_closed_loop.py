@@ -142,7 +142,7 @@ def test_a_faster_engagement_shakes_the_driveline_more():
     torsion = [
         headless_run(
             RunSettings(load_scenario('thesis', [f'pedal_position={pedal}'])), 'pedal_mpc'
-        ).metrics.torsion_speed_std_rpm
+        ).metrics['torsion_speed_std_rpm']
         for pedal in (0.0, 0.5, 1.0)
     ]
     assert torsion == sorted(torsion)

@@ -6,11 +6,10 @@ import dataclasses
 import io
 
 import pytest
+from made_scores import made_scores
 from printed_table import value_under
 
 from ddct_bringup.scores.comparison_table import print_comparison
-from ddct_bringup.scores.scoring import METRIC_NAMES
-from ddct_bringup.verdict.verdict import verdict_of_unreadable
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
@@ -26,20 +25,8 @@ OURS = {
 
 
 def entry(controller='ls8', *, valid=True):
-    return {
-        'bag': controller,
-        'controller': controller,
-        'wear_gain': 1.0,
-        'mode': 'lockstep',
-        'valid': valid,
-        'reason': '' if valid else 'node clutch was killed',
-        'metrics': {**dict.fromkeys(METRIC_NAMES), **OURS},
-        'verdict': verdict_of_unreadable(),
-        'fallbacks': None,
-        'before_schema': False,
-        'scenario_changes': [],
-        'scenario': 'thesis',
-    }
+    reason = '' if valid else 'node clutch was killed'
+    return made_scores(controller, valid=valid, reason=reason, **OURS)
 
 
 def printed(settings=None, overrides=(), runs=()):

@@ -87,19 +87,19 @@ def test_torques_that_the_bag_lacks_count_as_misses(topic):
 @pytest.mark.parametrize('node', ['/actuator', '/engine', '/driveline'])
 def test_a_safe_state_makes_a_run_invalid_and_is_named(node):
     since = {node: stamp_of_step(87)}
-    entry = scored(recording(facts(safe_states=since)))
-    assert (entry['valid'], entry['safe_state']) == (False, f'{node} at 0.87 s')
-    assert entry['reason'] == f'safe state entered by {node} at 0.87 s'
+    run = scored(recording(facts(safe_states=since)))
+    assert (run.valid, run.safe_state) == (False, f'{node} at 0.87 s')
+    assert run.reason == f'safe state entered by {node} at 0.87 s'
 
 
 def test_scores_have_the_safe_state_in_real_time_only():
-    assert scored(recording())['safe_state'] == ''
-    assert scored(recording(mode='lockstep'))['safe_state'] is None
+    assert scored(recording()).safe_state == ''
+    assert scored(recording(mode='lockstep')).safe_state is None
 
 
 def test_scores_contain_the_worst_lateness_of_the_timing_file(tmp_path):
     RunTiming(missed_steps=2, worst_lateness_us=1500.0).write(tmp_path)
-    metrics = scored(recording(path=tmp_path / 'x.mcap'))['metrics']
+    metrics = scored(recording(path=tmp_path / 'x.mcap')).metrics
     assert (metrics['missed_steps'], metrics['worst_lateness_us']) == (2, 1500.0)
 
 

@@ -28,7 +28,7 @@ ENGINE_LIMITS = EngineLimits(stall_rad_s=52.0, over_rev_rad_s=785.0)
 
 
 def scored(last_engine_speed, rows=301, engine_limits=ENGINE_LIMITS, **signals):
-    """Return the entry of a run that ends after `rows` samples at this engine speed."""
+    """Return the scores of a run that ends after `rows` samples at this engine speed."""
     cut = {name: value[:rows] for name, value in {**TRAJECTORY.signals, **signals}.items()}
     speeds = cut['joint_speed'].copy()
     speeds[-1, 0] = last_engine_speed
@@ -43,35 +43,31 @@ def scored(last_engine_speed, rows=301, engine_limits=ENGINE_LIMITS, **signals):
     ('speed', 'state'), [(52.0, 'stalled'), (10.0, 'stalled'), (785.0, 'over_revved')]
 )
 def test_a_run_that_its_engine_ended_is_valid_and_has_that_as_its_state(speed, state):
-    entry = scored(speed, rows=100)
-    assert (entry['valid'], entry['reason']) == (True, '')
-    assert entry['verdict']['state'] == state
-    assert entry['metrics']['torsion_speed_std_rpm'] is None
+    run = scored(speed, rows=100)
+    assert (run.valid, run.reason) == (True, '')
+    assert run.verdict.state == state
+    assert run.metrics['torsion_speed_std_rpm'] is None
 
 
 def test_an_early_end_without_a_cause_is_not_valid():
-    for entry in (scored(200.0, rows=100), scored(10.0, rows=100, engine_limits=None)):
-        assert (entry['valid'], entry['verdict']['state']) == (False, 'invalid')
-        assert entry['reason'] == 'ended early: 99 of 300 steps'
+    for run in (scored(200.0, rows=100), scored(10.0, rows=100, engine_limits=None)):
+        assert (run.valid, run.verdict.state) == (False, 'invalid')
+        assert run.reason == 'ended early: 99 of 300 steps'
 
 
 def test_a_stall_with_a_value_that_is_not_finite_is_not_valid():
     accelerations = TRAJECTORY.vehicle_accel.copy()
     accelerations[50] = np.inf
-    entry = scored(10.0, rows=100, vehicle_accel=accelerations)
-    assert (entry['valid'], entry['verdict']['state']) == (False, 'invalid')
+    run = scored(10.0, rows=100, vehicle_accel=accelerations)
+    assert (run.valid, run.verdict.state) == (False, 'invalid')
 
 
 def test_a_whole_run_of_a_good_controller_is_engaged():
-    entry = scored(TRAJECTORY.joint_speed[-1, 0])
-    assert (entry['valid'], entry['verdict']['state']) == (True, 'engaged')
-    time = next(c for c in entry['verdict']['criteria'] if c['name'] == 'engagement_time')
-    assert time['value'] == entry['metrics']['engagement_time_s']
+    run = scored(TRAJECTORY.joint_speed[-1, 0])
+    assert (run.valid, run.verdict.state) == (True, 'engaged')
+    assert run.verdict.values['engagement_time'] == run.metrics['engagement_time_s']
 
 
 def test_the_facts_of_the_run_are_those_of_the_bag():
-    entry = scored(200.0)
-    facts = dataclasses.asdict(FACTS)
-    assert {key: entry[key] for key in ('controller', 'scenario', 'wear_gain')} == {
-        key: facts[key] for key in ('controller', 'scenario', 'wear_gain')
-    }
+    run = scored(200.0)
+    assert run.facts == FACTS

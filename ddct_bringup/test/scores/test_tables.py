@@ -3,41 +3,16 @@
 """Tables of runs on terminals, in pipes, and without colours."""
 
 import io
+from dataclasses import replace
 
 import pytest
+from made_scores import made_result, made_verdict
+from made_scores import made_scores as run
 from printed_table import value_under
 
 from ddct_bringup.scores.scoring import METRIC_NAMES
-from ddct_bringup.scores.tables import COLUMNS, CONTROLLER, WEAR, metric, print_runs
-from ddct_bringup.verdict.verdict import verdict_of_unreadable
+from ddct_bringup.scores.tables import BAG, COLUMNS, CONTROLLER, WEAR, metric, print_runs
 from ddct_plant.program.table import Column, Quantity
-
-
-def run(
-    controller='pi',
-    *,
-    valid=True,
-    reason='',
-    mode='lockstep',
-    safe_state=None,
-    verdict=None,
-    **metrics,
-):
-    return {
-        'bag': controller,
-        'controller': controller,
-        'wear_gain': 1.0,
-        'mode': mode,
-        'safe_state': safe_state,
-        'valid': valid,
-        'reason': reason,
-        'metrics': {**dict.fromkeys(METRIC_NAMES), **metrics},
-        'verdict': verdict or verdict_of_unreadable(),
-        'fallbacks': None,
-        'before_schema': False,
-        'scenario_changes': [],
-        'scenario': 'thesis',
-    }
 
 
 class Terminal(io.StringIO):
@@ -93,7 +68,7 @@ def test_a_pipe_gets_no_escape_sequence_and_no_cut_cell():
 
 
 def test_brackets_are_printed_as_they_are():
-    assert '[bold]' in printed([run('[bold]')])
+    assert '[bold]' in printed([run(bag='[bold]')], (BAG, *COLUMNS))
 
 
 def test_no_color_is_honoured(monkeypatch):
@@ -157,7 +132,7 @@ def test_every_metric_can_be_a_column(name):
 @pytest.mark.parametrize('stream', [io.StringIO, Terminal])
 def test_no_control_character_of_a_bag_reaches_the_terminal(stream):
     evil = '\x1b]0;title\x07\x1b[2J\x9b31m\nsecond line'
-    text = printed([run(evil, valid=False, reason=evil)], stream=stream())
+    text = printed([run(bag=evil, valid=False, reason=evil)], (BAG, *COLUMNS), stream())
     assert not set(text) & set('\x07\x9b')
     assert '\x1b]' not in text
     assert '\x1b[2J' not in text
@@ -165,14 +140,9 @@ def test_no_control_character_of_a_bag_reaches_the_terminal(stream):
 
 
 def verdict_beyond():
-    within = {'name': 'peak_jerk', 'value': 1.0, 'unit': 'm/s^3', 'limit': 2.0, 'source': 'A, 1'}
-    beyond = {'name': 'judder', 'value': 4.0, 'unit': 'rpm', 'limit': 3.0, 'source': 'B, 2'}
-    return {
-        'state': 'nearly_engaged',
-        'limits': 'beyond',
-        'traction': None,
-        'criteria': [{**within, 'state': 'within'}, {**beyond, 'state': 'beyond'}],
-    }
+    within = made_result('peak_jerk', 1.0, 2.0, unit='m/s^3')
+    beyond = made_result('judder', 4.0, 3.0, unit='rpm', source='B, 2', state='beyond')
+    return made_verdict('nearly_engaged', 'beyond', within, beyond)
 
 
 def test_a_run_has_its_state_its_limits_and_a_note_on_each_one_exceeded():
@@ -190,20 +160,19 @@ def test_a_limit_is_named_once_with_all_runs_beyond_it():
 
 
 def test_a_run_above_the_traction_of_the_driven_axle_is_named():
-    traction = {'value': 12.79, 'unit': 'm/s^2', 'limit': 4.905, 'source': 'convention: C'}
-    traction |= {'convention': True, 'state': 'beyond'}
-    text = printed([run('mpc4', verdict={**verdict_beyond(), 'traction': traction})])
+    source = {'source': 'convention: C', 'convention': True}
+    traction = made_result('traction', 12.79, 4.905, unit='m/s^2', state='beyond', **source)
+    text = printed([run('mpc4', verdict=replace(verdict_beyond(), traction=traction))])
     assert 'beyond traction 4.905 m/s^2 (convention: C): mpc4 12.79\n' in text
 
 
 def test_an_engaged_run_has_a_note_on_limits_that_cannot_be_checked():
-    no_value = {'name': 'peak_temperature', 'value': None, 'unit': 'degC', 'limit': 300.0}
-    criteria = [{**no_value, 'source': 'A, 1', 'state': 'no_limit'}]
-    engaged = {'state': 'engaged', 'limits': 'no_limit', 'criteria': criteria, 'traction': None}
+    no_value = made_result('peak_temperature', None, 300.0, unit='degC', state='no_limit')
+    engaged = made_verdict('engaged', 'no_limit', no_value)
     said = 'pi: not known to keep within its limits: no value of peak_temperature\n'
     assert said in printed([run(verdict=engaged)])
     for other in ({'state': 'runaway'}, {'limits': 'beyond'}):
-        assert 'not known' not in printed([run(verdict={**engaged, **other})])
+        assert 'not known' not in printed([run(verdict=replace(engaged, **other))])
 
 
 def test_a_narrow_terminal_has_state_and_limits_in_lines_of_their_own(monkeypatch):
@@ -232,20 +201,18 @@ def test_a_run_that_could_not_be_read_has_one_reason_for_its_dashes():
 
 
 def test_a_bag_from_before_the_schema_is_marked():
-    assert 'pi: recorded before' in printed([{**run(), 'before_schema': True}])
+    assert 'pi: recorded before' in printed([run(before_schema=True)])
 
 
 def test_the_title_is_the_scenario_with_what_is_changed_in_it():
-    changed = [
-        {**run(name), 'scenario_changes': ['load.slope_rad=0.05']} for name in ('pi', 'ls8')
-    ]
+    changed = [run(name, scenario_changes=('load.slope_rad=0.05',)) for name in ('pi', 'ls8')]
     first = printed(changed).splitlines()[0]
     assert first.strip() == 'thesis, 1 value changed: load.slope_rad=0.05'
     assert printed([run('pi'), run('ls8')]).splitlines()[0].strip() == 'thesis'
 
 
 def test_with_several_scenarios_each_row_has_its_own():
-    text = printed([run('pi'), {**run('ls8'), 'scenario_changes': ['load.slope_rad=0.05']}])
+    text = printed([run('pi'), run('ls8', scenario_changes=('load.slope_rad=0.05',))])
     assert '\npi: thesis\n' in text
     assert '\nls8: thesis, 1 value changed: load.slope_rad=0.05\n' in text
     assert 'thesis' not in text.splitlines()[0]

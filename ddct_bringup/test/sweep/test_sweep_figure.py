@@ -6,12 +6,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from made_scores import made_scores, made_verdict
 from matplotlib.colors import to_hex
 
 from ddct_bringup.campaign.rows import RunBase
 from ddct_bringup.sweep.axis import axis_of
 from ddct_bringup.sweep.state_map import STATE_COLOURS, edges_of
-from ddct_bringup.sweep.sweep import OVER, Sweep
+from ddct_bringup.sweep.sweep import Sweep, SweptRun
 from ddct_bringup.sweep.sweep_figure import sweep_figure
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_bringup.verdict.metric_definitions import TABLE_5_1
@@ -27,12 +28,11 @@ def drawn(over: list[str], controllers: list[str], runs: list[tuple[str, float |
     """Return the figure of runs with these states and engagement times."""
     base = RunBase(ScenarioFile.read('thesis'), {}, {}, labels=())
     sweep = Sweep(base, [axis_of(text) for text in over], controllers, packaged_limits())
-    entries = [
-        {'verdict': {'state': state}, 'metrics': {'engagement_time_s': value}}
-        for state, value in runs
+    scored = [
+        made_scores(verdict=made_verdict(state), engagement_time_s=value) for state, value in runs
     ]
     places = sweep.points * len(controllers)
-    swept = [{OVER: place, **entry} for place, entry in zip(places, entries, strict=True)]
+    swept = [SweptRun(place, scores) for place, scores in zip(places, scored, strict=True)]
     with chart_style():
         return sweep_figure(sweep, swept, TIME)
 

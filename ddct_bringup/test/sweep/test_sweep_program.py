@@ -44,10 +44,9 @@ def test_rows_are_those_of_the_runs_alone_with_what_belongs_to_the_key(swept):
         alone = api.run('ls8', duration=SHORT_S, wear_gain=0.9, set={'vehicle.mass_kg': 1800.0})
     assert row['verdict'] == alone.verdict
     assert row['metrics']['slip_final_rpm'] == alone.metrics['slip_final_rpm']
-    assert row['scenario_changes'] == alone.entry['scenario_changes']
+    assert row['scenario_changes'] == list(alone.scores.scenario_changes)
     assert any(
-        change.startswith('driveline.vehicle_inertia')
-        for change in alone.entry['scenario_changes']
+        change.startswith('driveline.vehicle_inertia') for change in alone.scores.scenario_changes
     )
     assert rows[2]['metrics']['slip_final_rpm'] != row['metrics']['slip_final_rpm']
 

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Every criterion for a run with known values."""
 
-from dataclasses import replace
+from dataclasses import asdict, replace
 
 import numpy as np
 import pytest
@@ -27,7 +27,7 @@ PLANT = JudgedPlant.of_parameters(DrivelineParameters(), VehicleParameters())
 
 def values(run, start=CONTROL_START, engagements=1000.0):
     metrics = compute_metrics(run, control_start_s=start / 100.0, score_window_s=WINDOW_S)
-    judged = JudgedRun(run, start, WINDOW_S, metrics._asdict(), engagements, PLANT)
+    judged = JudgedRun(run, start, WINDOW_S, metrics, engagements, PLANT)
     return criterion_values(judged)
 
 
@@ -239,7 +239,7 @@ def test_friction_work_is_relative_to_the_loss_of_two_free_inertias():
     torque = np.where(slip > 0.0, demand + PLANT.engine_inertia * slip_rad_s / time_s, 0.0)
     run = made_run(slip, joint_effort=shaft(torque, 1))
     heavy = replace(PLANT, rest_inertia=1e9)
-    metrics = compute_metrics(run, control_start_s=0.6, score_window_s=WINDOW_S)._asdict()
+    metrics = compute_metrics(run, control_start_s=0.6, score_window_s=WINDOW_S)
     judged = JudgedRun(run, CONTROL_START, WINDOW_S, metrics, 1.0, heavy)
     found = criterion_values(judged)['friction_work_over_least']
     assert found == pytest.approx(1.0 + demand * time_s / (PLANT.engine_inertia * slip_rad_s))
@@ -257,7 +257,7 @@ def test_friction_work_before_control_start_does_not_count():
 def test_with_hardly_any_slip_at_control_start_there_is_no_minimum_of_the_work():
     for slip_rpm, exists in ((49.9, False), (50.1, True), (-50.1, True)):
         run = made_run(np.full(301, slip_rpm), friction_work=np.ones(301))
-        metrics = compute_metrics(run, control_start_s=0.6, score_window_s=WINDOW_S)._asdict()
+        metrics = compute_metrics(run, control_start_s=0.6, score_window_s=WINDOW_S)
         judged = JudgedRun(run, CONTROL_START, WINDOW_S, metrics, 1.0, PLANT)
         value = criterion_values(judged)['friction_work_over_least']
         assert (value is not None) == exists == existing(judged)['friction_work_over_least']
@@ -288,7 +288,7 @@ def test_the_limit_of_judder_is_the_shuffle_that_alone_is_felt():
 def test_the_daily_dose_is_that_of_all_engagements_in_the_sense_of_the_directive():
     acceleration = np.sin(2 * np.pi * T[:201])
     run = made_run(np.zeros(201), vehicle_accel=acceleration)
-    one = compute_metrics(run, control_start_s=0.6, score_window_s=WINDOW_S).vdv_m_s1_75
+    one = compute_metrics(run, control_start_s=0.6, score_window_s=WINDOW_S)['vdv_m_s1_75']
     # Vibration 16 times as long has twice the dose; horizontal axes count 1.4 fold.
     assert values(run, engagements=16.0)['daily_vibration_dose'] == pytest.approx(2.8 * one)
 
@@ -298,7 +298,7 @@ def test_weighted_acceleration_of_a_sine_is_its_rms_times_the_weight():
     run = made_run(np.zeros(len(t)), vehicle_accel=2.0 * np.sin(2 * np.pi * t))
     metrics = compute_metrics(run, control_start_s=0.6, score_window_s=(20.0, 39.99))
     expected = 1.011 * 2.0 / np.sqrt(2.0)
-    assert metrics.weighted_acceleration_m_s2 == pytest.approx(expected, rel=0.01)
+    assert metrics['weighted_acceleration_m_s2'] == pytest.approx(expected, rel=0.01)
 
 
 def test_a_jolt_after_the_score_window_counts_as_one_within_it():
@@ -312,7 +312,7 @@ def test_a_jolt_after_the_score_window_counts_as_one_within_it():
         control_start_s=0.6,
         score_window_s=WINDOW_S,
     )
-    assert jolt(1.2)[0] == pytest.approx(within.weighted_acceleration_m_s2, rel=0.01)
+    assert jolt(1.2)[0] == pytest.approx(within['weighted_acceleration_m_s2'], rel=0.01)
     assert jolt(2.5) == pytest.approx(jolt(1.2), rel=0.05)
     assert jolt(0.2)[0] < 0.5 * jolt(1.2)[0]  # a jolt before control start does not count
 
@@ -359,11 +359,11 @@ limits:
     def judged(scenario='thesis', state='engaged', without=(), **given):
         exists = {key: key not in without for key in known}
         verdict = verdict_of(state, {**known, **given}, limits, scenario, exists=exists)
-        return verdict, {each['name']: each for each in verdict['criteria']}
+        return verdict, {each.name: each for each in verdict.criteria}
 
     verdict, criteria = judged(slip_acceleration_at_lock=-41.0, peak_jerk=6.0)
-    assert (verdict['state'], verdict['limits']) == ('engaged', 'beyond')
-    assert criteria['slip_acceleration_at_lock'] == {
+    assert (verdict.state, verdict.limits) == ('engaged', 'beyond')
+    assert asdict(criteria['slip_acceleration_at_lock']) == {
         'name': 'slip_acceleration_at_lock',
         'value': -41.0,
         'unit': 'rad/s^2',
@@ -372,28 +372,28 @@ limits:
         'convention': False,
         'state': 'beyond',
     }
-    assert [criteria['judder'][key] for key in ('source', 'convention')] == ['convention: C', True]
-    assert [criteria['peak_jerk'][key] for key in ('limit', 'state')] == [None, 'no_limit']
-    assert judged('launch', peak_jerk=6.0)[0]['limits'] == 'beyond'
-    assert judged(slip_acceleration_at_lock=-40.0, judder=5.0)[0]['limits'] == 'within'
+    assert (criteria['judder'].source, criteria['judder'].convention) == ('convention: C', True)
+    assert (criteria['peak_jerk'].limit, criteria['peak_jerk'].state) == (None, 'no_limit')
+    assert judged('launch', peak_jerk=6.0)[0].limits == 'beyond'
+    assert judged(slip_acceleration_at_lock=-40.0, judder=5.0)[0].limits == 'within'
     assert (
-        judged(slip_acceleration_at_lock=-40.0)[0]['limits'] == 'no_limit'
+        judged(slip_acceleration_at_lock=-40.0)[0].limits == 'no_limit'
     )  # the judder has no value
-    assert judged(peak_jerk=6.0)[0]['limits'] == 'no_limit'
+    assert judged(peak_jerk=6.0)[0].limits == 'no_limit'
     # An undefined criterion of a plant does not count; without a limit there is no result.
     without = judged(slip_acceleration_at_lock=-40.0, without=['judder'])
-    assert without[0]['limits'] == 'within'
-    assert [without[1]['judder'][key] for key in ('limit', 'state')] == [None, 'no_limit']
+    assert without[0].limits == 'within'
+    assert (without[1]['judder'].limit, without[1]['judder'].state) == (None, 'no_limit')
     none = judged(without=['judder', 'slip_acceleration_at_lock'])
-    assert none[0]['limits'] == 'no_limit'
+    assert none[0].limits == 'no_limit'
     for state in STATES:
         success = state in ('engaged', 'nearly_engaged')
         found = judged(state=state, slip_acceleration_at_lock=-40.0, judder=4.0)
-        assert found[0]['limits'] == ('within' if success else 'failed')
+        assert found[0].limits == ('within' if success else 'failed')
         beyond = judged(state=state, slip_acceleration_at_lock=-41.0)
-        assert beyond[0]['limits'] == ('beyond' if success else 'failed')
+        assert beyond[0].limits == ('beyond' if success else 'failed')
     undefined = judged()[1]['judder']
-    assert (undefined['value'], undefined['limit'], undefined['state']) == (None, 5.0, 'no_limit')
+    assert (undefined.value, undefined.limit, undefined.state) == (None, 5.0, 'no_limit')
 
 
 def test_the_packaged_file_limits_the_dose_by_the_action_value():

@@ -19,7 +19,7 @@ docs/thesis/predictions.md states the choice.
 """
 
 import dataclasses
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import cache
 from pathlib import Path
 
@@ -83,23 +83,29 @@ def why_not_admissible(scenario: Scenario) -> list[str]:
     growth = pi_growth_rate(scenario.driveline, *values[4:])
     if growth >= 0.0:
         against.append(f'the PI loop grows by {growth:.2g}/s')
-    figures = _row_values(scenario)
-    for row, found in figures.items():
+    whole = {}
+    for row, found in _row_values(scenario).items():
         missing = [name for name, value in found.items() if value is None]
         if missing:
             against.append(f'{row} has no {", ".join(missing)}')
-    whole = {row: found for row, found in figures.items() if None not in found.values()}
+        else:
+            whole[row] = _defined(found)
     return against + outside_tolerance(residual_rows(whole))
 
 
 def fitted_rows(scenario: Scenario) -> list[Record]:
     """Return the nine values of the whole run, as in the record of the calibration."""
-    return residual_rows(_row_values(scenario))
+    values = _row_values(scenario).items()
+    return residual_rows({row: _defined(found) for row, found in values})
 
 
-def _row_values(scenario: Scenario) -> dict[str, dict[str, float]]:
+def _row_values(scenario: Scenario) -> dict[str, dict[str, float | None]]:
     """Return the values of the fitted rows by name; None where one is undefined."""
     return {row: headless_run(RunSettings(scenario), row).table_values for row in ROWS}
+
+
+def _defined(values: Mapping[str, float | None]) -> dict[str, float]:
+    return {name: value for name, value in values.items() if value is not None}
 
 
 def find_members(frozen: Scenario, progress: Progress) -> list[Scenario]:

@@ -149,14 +149,15 @@ def row_values(scenario: Scenario, controller: str) -> dict[str, float]:
     _, end = scenario.score_window_s
     shortened = dataclasses.replace(scenario, duration_s=end)
     run = headless_run(RunSettings(shortened), controller)
-    figures, final_rpm = run.table_values, run.metrics.slip_final_rpm
+    figures, final_rpm = run.table_values, run.metrics['slip_final_rpm']
     if figures['engagement_time_s'] is None and final_rpm is not None:
         left = abs(rad_s_from_rpm(final_rpm)) / scenario.reference.slope_rad_s2
         figures['engagement_time_s'] = end - scenario.control_start_s + left
-    missing = [name for name, value in figures.items() if value is None]
+    defined = {name: value for name, value in figures.items() if value is not None}
+    missing = [name for name in figures if name not in defined]
     if missing:
         raise DdctError(f'{controller} has no {", ".join(missing)}: narrow the bounds')
-    return figures
+    return defined
 
 
 def fit(

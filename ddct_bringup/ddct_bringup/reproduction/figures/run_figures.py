@@ -93,7 +93,7 @@ def _scores(group: RunGroup, runs: dict[str, HeadlessRun], quantity: str) -> str
 
 
 def _texts(runs: dict[str, HeadlessRun], metric: str, form: str) -> str:
-    values = {name: getattr(run.metrics, metric) for name, run in runs.items()}
+    values = {name: run.metrics[metric] for name, run in runs.items()}
     return ', '.join(
         f'{name} {"none" if value is None else format(value, form)}'
         for name, value in values.items()

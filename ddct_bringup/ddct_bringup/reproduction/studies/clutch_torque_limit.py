@@ -12,7 +12,7 @@ from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.reproduction.runs import THESIS_SCENARIO, thesis_run
 from ddct_bringup.reproduction.studies.study import Study
 from ddct_bringup.scores.metrics import Metrics
-from ddct_bringup.thesis.table_5_1 import THESIS_TABLE, ThesisRow
+from ddct_bringup.thesis.table_5_1 import THESIS_TABLE
 from ddct_controllers.mpc.model.transmission_model import (
     ENGINE_TORQUE,
     LOAD_TORQUE,
@@ -50,13 +50,13 @@ def clutch_torque_limit() -> Study:
     rows = []
     for controller in (*(row.controller for row in clutch_only), 'hinf_sampled'):
         run = thesis_run(controller, 'detailed', 1.0)
-        time = run.metrics.engagement_time_s
+        time = run.metrics['engagement_time_s']
         if time is None:
             raise DdctError(f'{controller} does not engage in the thesis scenario')
         strays = strays_after(run.trajectory, round(time, 2))
         rows.append(_cells(controller, time, strays, run.metrics))
     rows += [
-        _cells(f'{row.label} as printed', row.engagement_time_s, strays, row)
+        _cells(f'{row.label} as printed', row.engagement_time_s, strays, row.printed_values())
         for row in clutch_only
         for strays in PRINTED_STRAYS_RAD_S
     ]
@@ -83,16 +83,16 @@ def strays_after(run: Trajectory, engagement_time_s: float) -> float:
 
 
 def _cells(
-    label: str, engagement_time_s: float, strays_rad_s: float, figures: Metrics | ThesisRow
+    label: str, engagement_time_s: float, strays_rad_s: float, figures: Metrics
 ) -> tuple[str, ...]:
     bound = limit_at(round(engagement_time_s, 2), strays_rad_s)
     return (
         label,
         f'{engagement_time_s:.2f}',
         f'{strays_rad_s:.1f}',
-        text_or_dash(figures.torsion_speed_std_rpm, '.2f'),
+        text_or_dash(figures['torsion_speed_std_rpm'], '.2f'),
         f'{bound.torsion_speed_std_rpm:.2f}',
-        text_or_dash(figures.acceleration_std_m_s2, '.3f'),
+        text_or_dash(figures['acceleration_std_m_s2'], '.3f'),
         f'{bound.acceleration_std_m_s2:.3f}',
     )
 

@@ -6,7 +6,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -57,9 +56,9 @@ class Slip:
     """Slip speed w_d in rpm, (N+1,)."""
 
 
-def criterion(run: HeadlessRun, name: str) -> Any:
+def criterion(run: HeadlessRun, name: str) -> float | int | None:
     """Return the value of a criterion of a run."""
-    return next(each['value'] for each in run.verdict['criteria'] if each['name'] == name)
+    return run.verdict.values[name]
 
 
 def _together(run: HeadlessRun) -> float | None:
@@ -69,8 +68,8 @@ def _together(run: HeadlessRun) -> float | None:
 
 
 COLUMNS: tuple[StudyColumn, ...] = (
-    Column('state', '', lambda run: run.verdict['state']),
-    Column('limits', '', lambda run: run.verdict['limits']),
+    Column('state', '', lambda run: run.verdict.state),
+    Column('limits', '', lambda run: run.verdict.limits),
     Column('lock s', '.2f', _together),
     Column('friction kJ', '.1f', friction_kj),
     Column('releases', '.0f', partial(criterion, name='releases_after_lock')),
@@ -85,7 +84,7 @@ def engagement(case: Case) -> tuple[tuple[str, ...], Slip]:
     run = headless_run(settings, controller)
     label = f'{wear_gain:g}'
     row = (label, controller, *cells(COLUMNS, run))
-    return row, Slip(controller, label, run.verdict['state'], run.start, run.slip_rpm)
+    return row, Slip(controller, label, run.verdict.state, run.start, run.slip_rpm)
 
 
 def _engagements(scenario: str, clutch: str) -> Study:

@@ -4,7 +4,6 @@
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from operator import attrgetter
 
 import matplotlib.figure
 import numpy as np
@@ -82,13 +81,13 @@ def deviation_range(trajectory: Trajectory) -> str:
 
 def friction_kj(run: HeadlessRun) -> float | None:
     """Return the friction work of the clutch in kJ."""
-    energy = run.metrics.friction_energy_j
+    energy = run.metrics['friction_energy_j']
     return None if energy is None else energy / 1000.0
 
 
 def metric_column(quantity: Quantity, form: str, heading: str = '') -> StudyColumn:
     """Return the column of a metric; the heading defaults to its symbol and unit."""
-    return Column(heading or quantity.heading, form, attrgetter(f'metrics.{quantity.key}'))
+    return Column(heading or quantity.heading, form, lambda run: run.metrics[quantity.key])
 
 
 def close_column(header: str) -> StudyColumn:

@@ -49,7 +49,7 @@ def rows_of(clutch: str, wear_gain: float) -> list[tuple[str, ...]]:
     """Return a row per controller."""
     settings = RunSettings(THESIS_SCENARIO, WORN_ARCHITECTURE, clutch=clutch, wear_gain=wear_gain)
     runs = {name: headless_run(settings, name) for name in SLIP_RATINGS}
-    states = {name: run.verdict['state'] for name, run in runs.items()}
+    states = {name: run.verdict.state for name, run in runs.items()}
     figures = rows_of_table_5_2(runs)
     ranked = [_with_states(row, states) for row in figures]
     words = [ratings_of(row) for row in ranked]

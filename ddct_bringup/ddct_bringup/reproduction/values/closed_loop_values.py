@@ -136,9 +136,9 @@ def _table_5_1() -> dict[str, Value | None]:
     found: dict[str, Value | None] = {}
     for controller in ROW_OF:
         figures = thesis_run(controller, 'detailed', 1.0).table_values
-        if figures['engagement_time_s'] is None:
-            figures['engagement_time_s'] = NOT_REACHED
         found |= {f'5.1 {controller} {name}': value for name, value in figures.items()}
+        if figures['engagement_time_s'] is None:
+            found[f'5.1 {controller} engagement_time_s'] = NOT_REACHED
     return found
 
 

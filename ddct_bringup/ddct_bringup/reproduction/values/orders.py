@@ -46,7 +46,7 @@ def metric(name: str, controllers: Iterable[str], architecture: str = 'detailed'
 
 
 def _metric_of(name: str, runs: Mapping[str, HeadlessRun]) -> Row:
-    found = {controller: getattr(run.metrics, name) for controller, run in runs.items()}
+    found = {controller: run.metrics[name] for controller, run in runs.items()}
     return {
         controller: math.inf if value is None else float(value)
         for controller, value in found.items()

@@ -76,7 +76,7 @@ def test_wear_figure_shows_hinf2_at_both_ends_of_the_wear():
 
 
 def torsion_std_rpm(controller: str, architecture: str) -> float:
-    return thesis_run(controller, architecture, 1.0).metrics.torsion_speed_std_rpm
+    return thesis_run(controller, architecture, 1.0).metrics['torsion_speed_std_rpm']
 
 
 def test_verdicts_on_the_h_infinity_figures_hold():
@@ -107,9 +107,9 @@ def test_verdicts_on_the_predictive_figures_hold():
     previous = [metrics(name) for name in ('ls8', 'hinf1')]
     for name in ('mpc1', 'mpc2', 'mpc3'):
         for other in previous:
-            assert metrics(name).slip_rmse_rpm < other.slip_rmse_rpm
-            assert metrics(name).torsion_speed_std_rpm > other.torsion_speed_std_rpm
-            assert metrics(name).acceleration_std_m_s2 > other.acceleration_std_m_s2
+            assert metrics(name)['slip_rmse_rpm'] < other['slip_rmse_rpm']
+            assert metrics(name)['torsion_speed_std_rpm'] > other['torsion_speed_std_rpm']
+            assert metrics(name)['acceleration_std_m_s2'] > other['acceleration_std_m_s2']
     mpc3, hinf1 = thesis_row('mpc3'), thesis_row('hinf1')
     assert mpc3.torsion_speed_std_rpm > hinf1.torsion_speed_std_rpm
     assert mpc3.acceleration_std_m_s2 > hinf1.acceleration_std_m_s2
@@ -127,7 +127,7 @@ def test_verdict_on_the_figures_of_mpc4_holds():
     said = f'comes down to 10 rpm, {share:.0f} % of where it began, in {first_s:.2f} s'
     assert said in (DOCS / 'thesis' / 'mpc4_readings.md').read_text(encoding='utf-8')
     np.testing.assert_array_equal(np.diff(near), 1)
-    times = [metrics(name).engagement_time_s for name in ('ls8', 'hinf1', 'mpc3', 'pi')]
+    times = [metrics(name)['engagement_time_s'] for name in ('ls8', 'hinf1', 'mpc3', 'pi')]
     assert min(times) > 0.46
     torsion = rpm_from_rad_s(run.joint_speed[:, 3])
     assert np.abs(torsion[np.isclose(run.time_s, 0.8).argmax() :]).max() < 0.25

@@ -6,10 +6,10 @@ import dataclasses
 import io
 
 import pytest
+from made_scores import made_scores
 
 from ddct_bringup.reproduction.numbers.gate import thesis_numbers
 from ddct_bringup.scores.comparison_table import print_comparison
-from ddct_bringup.scores.scoring import METRIC_NAMES
 from ddct_bringup.thesis import predictions
 from ddct_bringup.thesis.predictions import Prediction, Predictions
 from ddct_bringup.thesis.table_5_1 import (
@@ -19,7 +19,6 @@ from ddct_bringup.thesis.table_5_1 import (
     THESIS_TABLE,
     thesis_row,
 )
-from ddct_bringup.verdict.verdict import verdict_of_unreadable
 from ddct_plant.scenario.file import load_scenario, scenario_digest
 from ddct_plant.scenario.settings import RunSettings
 
@@ -37,19 +36,7 @@ VALUES = (0.62, 1.2, 0.19)
 
 def run(controller, figures=VALUES):
     names = ('engagement_time_s', 'torsion_speed_std_rpm', 'acceleration_std_m_s2')
-    return {
-        'bag': controller,
-        'controller': controller,
-        'mode': 'lockstep',
-        'valid': True,
-        'reason': '',
-        'metrics': dict.fromkeys(METRIC_NAMES) | dict(zip(names, figures, strict=True)),
-        'verdict': verdict_of_unreadable(),
-        'fallbacks': None,
-        'before_schema': False,
-        'scenario_changes': [],
-        'scenario': 'thesis',
-    }
+    return made_scores(controller, **dict(zip(names, figures, strict=True)))
 
 
 @pytest.fixture(autouse=True)

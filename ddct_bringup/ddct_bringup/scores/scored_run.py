@@ -1,0 +1,55 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""The scored run: facts, validity, metrics and verdict of one run."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from ddct_bringup.bag.run_facts import MEASURED, RunFacts
+from ddct_bringup.scores.metrics import Metrics
+from ddct_bringup.verdict.verdict import Verdict
+
+
+@dataclass(frozen=True)
+class ScoredRun:
+    """One run with its scores, for every table, file and page that shows it."""
+
+    bag: str
+    """Name of the bag; that of the controller for a run without one."""
+    facts: RunFacts | None
+    """Facts of the run; None where the bag has none that can be read."""
+    valid: bool
+    reason: str
+    """Reason why the run is not valid; empty for a valid one."""
+    metrics: Metrics
+    verdict: Verdict
+    fallbacks: int | None = None
+    """Number of steps without a solution of the controller's program; None without a count."""
+    safe_state: str | None = None
+    """Nodes in their safe state with the scenario time; None in lock-step."""
+    before_schema: bool | None = None
+    """Whether the scenario is older than its version numbers; None of an unreadable run."""
+    scenario_changes: tuple[str, ...] | None = None
+    """Changes of the packaged scenario as KEY=VALUE; None where the scenario is unknown."""
+    not_computed: Mapping[str, str] = field(default_factory=dict)
+    """Reason by metric or criterion that lacks its value, where the reason is known."""
+
+    @property
+    def controller(self) -> str | None:
+        """Name of the controller; None where it cannot be read."""
+        return self.facts.controller if self.facts else None
+
+    @property
+    def scenario(self) -> str | None:
+        """Name of the scenario; None where it cannot be read."""
+        return self.facts.scenario if self.facts else None
+
+    @property
+    def label(self) -> str:
+        """Name of the controller, or of the bag where the controller cannot be read."""
+        return self.controller or self.bag
+
+    @property
+    def measured(self) -> bool:
+        """Whether this is the log of another tool."""
+        return self.facts is not None and self.facts.mode == MEASURED
