@@ -10,8 +10,9 @@ from unittest.mock import patch
 import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.metrics.metric import Metrics
+from ddct_bringup.metrics.values import compute_metrics
 from ddct_bringup.run.headless import run_headless
-from ddct_bringup.scores.metrics import Metrics, compute_metrics
 from ddct_controllers import feedforward
 from ddct_controllers.design.analysis.loops import sampled_plant
 from ddct_controllers.design.feedforward import TORQUE_RATE_WEIGHT, design_feedforward

@@ -2,9 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tables of metrics, criteria and limits with the names of the programs."""
 
-from ddct_bringup.verdict.criteria import CRITERIA
+from ddct_bringup.metrics.catalogue import CRITERIA, METRICS
 from ddct_bringup.verdict.limits import packaged_limits
-from ddct_bringup.verdict.metric_definitions import METRICS
 from ddct_plant.program.table import Table
 
 _HEADERS = ('unit', 'what it is', 'no value when')

@@ -6,8 +6,8 @@ import re
 from collections.abc import Sequence
 from typing import Any
 
+from ddct_bringup.metrics.values import compute_metrics
 from ddct_bringup.run.headless import run_headless
-from ddct_bringup.scores.metrics import compute_metrics
 from ddct_plant.files.yaml_text import parse_yaml
 from ddct_plant.program.table import Table
 from ddct_plant.scenario.file import load_scenario

@@ -16,9 +16,9 @@ import pytest
 
 from ddct_bringup.bag.reader import mcap_of
 from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.metrics.catalogue import CRITERION_UNITS
 from ddct_bringup.programs.score import main
 from ddct_bringup.run.timing_and_failure import RunTiming
-from ddct_bringup.verdict.criteria import CRITERION_UNITS
 from ddct_bringup.verdict.limits import load_limits
 from ddct_plant.scenario.file import load_scenario, scenario_to_yaml
 

@@ -7,8 +7,9 @@ from pathlib import Path
 
 from support.documented import ROOT
 
+from ddct_bringup.metrics.catalogue import METRICS
 from ddct_bringup.scores.document import run_entry
-from ddct_bringup.scores.scoring import METRIC_NAMES, run_without_score
+from ddct_bringup.scores.scoring import run_without_score
 from ddct_bringup.verdict.state import STATES
 from ddct_bringup.verdict.verdict import BEYOND, FAILED, NO_LIMIT, WITHIN
 
@@ -24,7 +25,7 @@ def named(page: Path, heading: str) -> list[str]:
 
 def test_every_metric_and_every_other_key_of_a_run_is_on_the_page() -> None:
     page = USE / 'metrics_and_symbols.md'
-    assert sorted(named(page, 'Metrics of scores.json')) == sorted(METRIC_NAMES)
+    assert sorted(named(page, 'Metrics of scores.json')) == sorted(METRICS)
     others = run_entry(run_without_score('bag', None, 'why')).keys() - {'metrics'}
     assert sorted(named(page, 'Other keys of a run')) == sorted(others)
 

@@ -14,12 +14,12 @@ from support.other_car import COLUMNS, LASTS_S, TRUE, drive, write_csv
 from support.runs import plan, record
 
 from ddct_bringup.bag.measured_run import read_measured_run
+from ddct_bringup.metrics.catalogue import CRITERION_UNITS, METRICS, NEEDED_BY
 from ddct_bringup.programs import report, score
 from ddct_bringup.run.timing_and_failure import NOTE_FILE
 from ddct_bringup.scores.csv_text import signals_csv
 from ddct_bringup.scores.document import run_entry
-from ddct_bringup.scores.scoring import METRIC_NAMES, NEEDS, score_recording
-from ddct_bringup.verdict.criteria import CRITERION_UNITS
+from ddct_bringup.scores.scoring import score_recording
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.measured.columns import QUANTITIES, load_columns
 
@@ -116,7 +116,7 @@ def test_a_log_of_two_speeds_alone_still_has_its_engagement(folder: Path) -> Non
     assert run['metrics']['slip_final_rpm'] is not None
     assert set(run['not_computed']) == {
         name
-        for names in NEEDS.values()
+        for names in NEEDED_BY.values()
         for name in names
         if {**run['metrics'], **_values(run)}[name] is None
     }
@@ -140,8 +140,8 @@ def test_the_page_lists_the_quantities_with_their_units() -> None:
 
 
 def test_every_named_quantity_is_a_metric_or_a_criterion() -> None:
-    named = {name for names in NEEDS.values() for name in names}
-    assert named <= set(METRIC_NAMES) | set(CRITERION_UNITS)
+    named = {name for names in NEEDED_BY.values() for name in names}
+    assert named <= set(METRICS) | set(CRITERION_UNITS)
 
 
 @pytest.mark.parametrize(

@@ -18,6 +18,7 @@ from ddct_bringup.bag.reader import Recording, read_bag
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.bag.writer import bag_file
 from ddct_bringup.campaign.rows import RunBase
+from ddct_bringup.metrics.metric import Metrics
 from ddct_bringup.processes.warm_parent import WarmParent
 from ddct_bringup.run.execution import execute, parent_for, simulate
 from ddct_bringup.run.output_folder import run_folder
@@ -25,7 +26,6 @@ from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.run.timing_and_failure import RunTiming, read_timing
 from ddct_bringup.scores.csv_text import score_row, signal_columns
 from ddct_bringup.scores.document import verdict_entry
-from ddct_bringup.scores.metrics import Metrics
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.scores.scoring import score_recording, score_run
 from ddct_bringup.verdict.limits import Limits, load_limits

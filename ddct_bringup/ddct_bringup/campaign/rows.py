@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from ddct_bringup.metrics.catalogue import CRITERIA, FURTHER, TABLE_5_1
 from ddct_bringup.run.description import facts_of
 from ddct_bringup.run.execution import in_memory
 from ddct_bringup.run.headless import run_headless
@@ -15,9 +16,7 @@ from ddct_bringup.run.plan import require_headless
 from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.scores.scoring import run_without_score, score_run
-from ddct_bringup.verdict.criteria import CRITERIA
 from ddct_bringup.verdict.limits import Limits
-from ddct_bringup.verdict.metric_definitions import FURTHER, TABLE_5_1
 from ddct_controllers.architecture import make_architecture
 from ddct_controllers.registry import Chosen, controller_label, make_controller
 from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError, ParameterError, printable

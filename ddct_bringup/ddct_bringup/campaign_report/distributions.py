@@ -10,8 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ddct_bringup.campaign_report.results import Group, Results
+from ddct_bringup.metrics.catalogue import FURTHER, TABLE_5_1
 from ddct_bringup.report.page_parts import unit_text
-from ddct_bringup.verdict.metric_definitions import FURTHER, TABLE_5_1
 from ddct_bringup.verdict.state import ENGAGED, INVALID
 from ddct_controllers.design.drawing.chart_style import chart_style, save_chart
 from ddct_controllers.design.drawing.line_looks import looks_of

@@ -20,6 +20,7 @@ from ddct_bringup.campaign_report.reading import read_table, results_of
 from ddct_bringup.campaign_report.results import Results
 from ddct_bringup.campaign_report.summary import Summary, summary_of
 from ddct_bringup.campaign_report.tables import MAIN
+from ddct_bringup.metrics.catalogue import TABLE_5_1
 from ddct_bringup.report.page_parts import (
     MARKER,
     json_data,
@@ -29,7 +30,6 @@ from ddct_bringup.report.page_parts import (
     value_text,
 )
 from ddct_bringup.run.output_folder import locked_folders
-from ddct_bringup.verdict.metric_definitions import TABLE_5_1
 from ddct_bringup.verdict.state import ENGAGED, INVALID
 from ddct_controllers.design.drawing.chart_style import chart_bytes, chart_style
 from ddct_plant.files.output_file import write_json, write_text

@@ -13,8 +13,7 @@ import numpy as np
 from ddct_bringup.campaign.columns import CONTROLLER, INDEX, SEED
 from ddct_bringup.campaign.rows import CRITERION
 from ddct_bringup.campaign_report.outcome import outcomes_of
-from ddct_bringup.verdict.criteria import CRITERIA
-from ddct_bringup.verdict.metric_definitions import FURTHER, TABLE_5_1
+from ddct_bringup.metrics.catalogue import CRITERIA, FURTHER, TABLE_5_1
 from ddct_plant.program.table import Quantity
 
 _NOT_JUDGED = ('steps',)

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from ddct_bringup.campaign_report import texts
 from ddct_bringup.campaign_report.summary import Summary
-from ddct_bringup.verdict.metric_definitions import METRICS, TABLE_5_1
+from ddct_bringup.metrics.catalogue import METRICS, TABLE_5_1
 from ddct_plant.base.errors import printable
 from ddct_plant.program.table import UNDEFINED, Table, print_tables, text_or_dash
 

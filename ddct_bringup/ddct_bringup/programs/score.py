@@ -10,6 +10,7 @@ from pathlib import Path
 from ddct_bringup.bag.measured_run import add_columns_option, is_log, read_recording
 from ddct_bringup.bag.reader import Recording
 from ddct_bringup.bag.repair import repair_bag
+from ddct_bringup.metrics.comfort import VDV_WEIGHTING
 from ddct_bringup.run.output_folder import is_ours, locked_folders
 from ddct_bringup.scores.bags import bag_name, bags_in
 from ddct_bringup.scores.csv_text import scores_csv
@@ -20,7 +21,6 @@ from ddct_bringup.scores.signal_files import signal_file_stems, write_signals
 from ddct_bringup.scores.tables import BAG, COLUMNS, CONTROLLER, WEAR, print_runs
 from ddct_bringup.scores.validity import MISS_TOLERANCE
 from ddct_bringup.verdict.limits import Limits, add_limits_option, load_limits
-from ddct_bringup.verdict.metric_definitions import VDV_WEIGHTING
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.output_file import STDOUT, require_one_for_stdout, write_json, write_text
 from ddct_plant.measured.columns import ColumnMap, load_columns

@@ -11,6 +11,7 @@ from pathlib import Path
 from rich.text import Text
 
 from ddct_bringup.campaign.rows import base_of
+from ddct_bringup.metrics.catalogue import METRICS, TABLE_5_1
 from ddct_bringup.run.options import (
     ALL,
     add_controllers_option,
@@ -29,7 +30,6 @@ from ddct_bringup.sweep.sweep import (
     sweep_table,
 )
 from ddct_bringup.verdict.limits import add_limits_option, load_limits
-from ddct_bringup.verdict.metric_definitions import METRICS, TABLE_5_1
 from ddct_controllers.registry import controller_label, working_controllers
 from ddct_plant.base.errors import ParameterError, printable
 from ddct_plant.base.options import require_known

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.verdict.zero_slip import LOCKED
+from ddct_bringup.metrics.zero_slip import LOCKED
 from ddct_plant.base.units import rpm_from_rad_s
 
 

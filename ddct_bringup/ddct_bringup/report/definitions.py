@@ -5,10 +5,9 @@
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from ddct_bringup.metrics.catalogue import CRITERIA, FURTHER, METRICS, TABLE_5_1
 from ddct_bringup.report.chart_signals import ChartSignal
 from ddct_bringup.report.page_parts import unit_text
-from ddct_bringup.verdict.criteria import CRITERIA
-from ddct_bringup.verdict.metric_definitions import FURTHER, METRICS, TABLE_5_1
 from ddct_controllers.design.analysis.margins import LOOP_QUANTITIES
 from ddct_plant.program.table import Quantity
 
@@ -128,16 +127,11 @@ def definitions(
     }
 
 
-_METRIC_SYMBOLS = {metric.meaning: metric.symbol for metric in METRICS.values()}
-
-
 def _criteria() -> tuple[Definition, ...]:
     """Return the definitions of the criteria; one that is a metric too refers to it."""
     return tuple(
-        Definition(
-            each.symbol, f'the metric {_METRIC_SYMBOLS[each.meaning]}.', unit_text(each.unit)
-        )
-        if each.meaning in _METRIC_SYMBOLS
+        Definition(each.symbol, f'the metric {METRICS[each.metric].symbol}.', unit_text(each.unit))
+        if each.metric
         else _defined(each)
         for each in CRITERIA
     )

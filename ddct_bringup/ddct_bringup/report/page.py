@@ -13,6 +13,7 @@ from markupsafe import Markup
 
 from ddct_bringup.bag.reader import Recording
 from ddct_bringup.bag.run_facts import RunFacts
+from ddct_bringup.metrics.catalogue import FURTHER, TABLE_5_1
 from ddct_bringup.report.charts import (
     NEUTRAL,
     ChartRun,
@@ -37,7 +38,6 @@ from ddct_bringup.run.description import short_commit
 from ddct_bringup.scores.tables import fallback_note
 from ddct_bringup.thesis.table_5_1 import PREDICTION_TOLERANCE
 from ddct_bringup.verdict.limits import Limits
-from ddct_bringup.verdict.metric_definitions import FURTHER, TABLE_5_1
 from ddct_controllers.design.analysis.margins import LOOP_QUANTITIES
 from ddct_controllers.design.drawing.line_looks import (
     DARK_COLOURS,

@@ -12,9 +12,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations_with_replacement
 
+from ddct_bringup.metrics.catalogue import CRITERIA
+from ddct_bringup.metrics.metric import Criterion
 from ddct_bringup.report.page_parts import unit_text, value_text
 from ddct_bringup.report.runs import ReportRun
-from ddct_bringup.verdict.criteria import CRITERIA, Criterion
 from ddct_bringup.verdict.state import ENGAGED
 
 DEFAULT_PAIR = ('friction_energy', 'peak_jerk')

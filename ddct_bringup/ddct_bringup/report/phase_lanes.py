@@ -10,7 +10,7 @@ from bokeh.models.renderers import GlyphRenderer
 from bokeh.plotting import figure
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.verdict.zero_slip import LOCKED, SLIPPING
+from ddct_bringup.metrics.zero_slip import LOCKED, SLIPPING
 from ddct_plant.models.driveline import LOCK, RELEASE
 
 LANES = 'phases'

@@ -5,11 +5,11 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from ddct_bringup.metrics.catalogue import CRITERIA
 from ddct_bringup.report.page_parts import number_text, value_text
 from ddct_bringup.report.runs import ReportRun
 from ddct_bringup.thesis.predictions import predicted_range
 from ddct_bringup.thesis.table_5_1 import PREDICTED, ThesisRow, is_thesis_run, thesis_row
-from ddct_bringup.verdict.criteria import CRITERIA
 from ddct_bringup.verdict.verdict import NO_LIMIT, TRACTION, CriterionResult
 from ddct_plant.program.table import Quantity
 

@@ -8,9 +8,10 @@ from functools import cache, cached_property
 import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.metrics.metric import Metrics
+from ddct_bringup.metrics.values import compute_metrics
 from ddct_bringup.run.execution import in_memory
 from ddct_bringup.run.headless import run_headless
-from ddct_bringup.scores.metrics import Metrics, compute_metrics
 from ddct_bringup.scores.scoring import score_run
 from ddct_bringup.thesis.table_5_1 import TABLE_METRICS
 from ddct_bringup.verdict.limits import packaged_limits

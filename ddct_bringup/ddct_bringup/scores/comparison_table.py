@@ -6,12 +6,14 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import TextIO
 
+from ddct_bringup.metrics.catalogue import TABLE_5_1
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.scores.tables import (
     ACCELERATION_STD,
     CONTROLLER,
     ENGAGEMENT_TIME,
     FINAL_SLIP,
+    FURTHER_COLUMNS,
     PEAK_JERK,
     TORSION_STD,
     VALID,
@@ -25,7 +27,6 @@ from ddct_bringup.thesis.table_5_1 import (
     is_thesis_run,
     thesis_row,
 )
-from ddct_bringup.verdict.metric_definitions import TABLE_5_1
 from ddct_plant.program.table import Column, Quantity
 from ddct_plant.scenario.differences import changed_values, scenario_title
 from ddct_plant.scenario.settings import RunSettings
@@ -60,7 +61,12 @@ def print_comparison(
             ),
             Column('thesis row', '', _use, number=False, undefined=_NO_ROW),
         ]
-    print_runs(runs, [*columns, FINAL_SLIP, PEAK_JERK, VALID], stream, _title(settings, overrides))
+    print_runs(
+        runs,
+        [*columns, FINAL_SLIP, PEAK_JERK, *FURTHER_COLUMNS, VALID],
+        stream,
+        _title(settings, overrides),
+    )
     if compared and any(thesis_row(run.controller or '') for run in runs):
         print(_NOTE, file=stream)
 

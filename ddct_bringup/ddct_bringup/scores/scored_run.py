@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from ddct_bringup.bag.run_facts import MEASURED, RunFacts
-from ddct_bringup.scores.metrics import Metrics
+from ddct_bringup.metrics.metric import Metrics
 from ddct_bringup.verdict.verdict import Verdict
 
 

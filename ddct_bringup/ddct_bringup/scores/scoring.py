@@ -7,47 +7,25 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from ddct_bringup.bag.file.records import salvage_records
-from ddct_bringup.bag.measured_run import TORSION
 from ddct_bringup.bag.reader import Recording
 from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.metrics.catalogue import METRICS, NEEDED_BY
+from ddct_bringup.metrics.engagement import Engagement
+from ddct_bringup.metrics.metric import Metrics, finite
+from ddct_bringup.metrics.plant import JudgedPlant
+from ddct_bringup.metrics.values import criteria_of, existing, metrics_of, window_steps
 from ddct_bringup.run.timing_and_failure import RunTiming, failed_run, read_timing
 from ddct_bringup.scores.bags import bag_name
-from ddct_bringup.scores.metrics import METRIC_NAMES, Metrics, compute_metrics
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.scores.validity import engine_end, safe_state, why_invalid
-from ddct_bringup.verdict.criteria import criterion_values, existing, finite
-from ddct_bringup.verdict.judged_run import JudgedRun
 from ddct_bringup.verdict.limits import Limits
-from ddct_bringup.verdict.plant import JudgedPlant
 from ddct_bringup.verdict.state import INVALID, slip_state
 from ddct_bringup.verdict.verdict import UNREADABLE, Verdict, judged_traction, verdict_of
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import steps_in
 from ddct_plant.files.input_file import mcap_of
 from ddct_plant.scenario.differences import changed_values
-
-NEEDS: Mapping[str, tuple[str, ...]] = {
-    TORSION: ('torsion_speed_std_rpm', 'judder', 'shuffle_amplitude', 'shuffle_decay'),
-    'vehicle_accel': (
-        'acceleration_std_m_s2',
-        'peak_jerk_m_s3',
-        'vdv_m_s1_75',
-        'weighted_acceleration_m_s2',
-        'peak_jerk',
-        'mean_jerk',
-        'mean_negative_jerk',
-        'mean_acceleration',
-        'peak_acceleration',
-        'weighted_acceleration',
-        'daily_vibration_dose',
-    ),
-    'slip_reference': ('slip_rmse_rpm',),
-    'clutch_torque': ('friction_energy_j', 'friction_energy', 'friction_work_over_least'),
-    'torque_request': ('torque_total_variation_n_m', 'request_variation'),
-    'driveshaft_torque': ('torque_dip',),
-}
-"""Required quantities of a log, by metric or criterion."""
 
 _COUNT = re.compile('[0-9]{1,9}')
 
@@ -70,14 +48,10 @@ def score_run(
 ) -> ScoredRun:
     """Score and judge a recording without reading files next to its bag."""
     facts = recording.facts
-    metrics = compute_metrics(
-        recording.trajectory,
-        control_start_s=facts.control_start_s,
-        score_window_s=facts.score_window_s,
-        timing=timing,
-    )
     reason = why_invalid(recording)
-    verdict = _verdict(recording, metrics, limits, valid=not reason)
+    engagement = engagement_of(recording, limits, timing)
+    metrics = metrics_of(engagement)
+    verdict = _verdict(recording, engagement, metrics, limits, valid=not reason)
     settings = recording.settings
     return ScoredRun(
         bag=bag,
@@ -112,7 +86,7 @@ def unreadable_run(path: Path, error: DdctError, *, relative_to: Path | None = N
 
 def run_without_score(bag: str, facts: RunFacts | None, reason: str) -> ScoredRun:
     """Return a failed run: invalid, with the facts that are available."""
-    metrics = dict.fromkeys(METRIC_NAMES)
+    metrics = dict.fromkeys(METRICS)
     return ScoredRun(bag, facts, False, reason, metrics, UNREADABLE)
 
 
@@ -121,7 +95,7 @@ def not_computed(recording: Recording, metrics: Metrics, verdict: Verdict) -> Ma
     values = {**verdict.values, **metrics}
     return {
         name: recording.absent[quantity]
-        for quantity, names in NEEDS.items()
+        for quantity, names in NEEDED_BY.items()
         for name in names
         if quantity in recording.absent and values.get(name) is None
     }
@@ -137,20 +111,31 @@ def fallbacks_in(trajectory: Trajectory) -> int | None:
     return int(count) if _COUNT.fullmatch(count) else None
 
 
-def _verdict(recording: Recording, metrics: Metrics, limits: Limits, *, valid: bool) -> Verdict:
-    facts, trajectory, rules = recording.facts, recording.trajectory, limits.rules
-    plant = JudgedPlant.of(recording.settings.scenario) if recording.settings else None
-    start = steps_in('control_start_s', facts.control_start_s)
+def engagement_of(recording: Recording, limits: Limits, timing: RunTiming | None) -> Engagement:
+    """Return the signals and conditions from which metrics and criteria are computed."""
+    facts, settings = recording.facts, recording.settings
+    return Engagement(
+        recording.trajectory,
+        steps_in('control_start_s', facts.control_start_s),
+        window_steps(facts.score_window_s),
+        limits.rules.engagements_a_day,
+        JudgedPlant.of(settings.scenario) if settings else None,
+        timing,
+    )
+
+
+def _verdict(
+    recording: Recording, engagement: Engagement, metrics: Metrics, limits: Limits, *, valid: bool
+) -> Verdict:
+    plant = engagement.plant
     state = engine_end(recording) if valid else INVALID
     if state is None:
-        state = slip_state(trajectory, start, rules, plant)
-    window_s, a_day = facts.score_window_s, rules.engagements_a_day
-    run = JudgedRun(trajectory, start, window_s, metrics, a_day, plant)
+        state = slip_state(recording.trajectory, engagement.control_start, limits.rules, plant)
     return verdict_of(
         state,
-        criterion_values(run),
+        criteria_of(engagement, metrics),
         limits,
-        facts.scenario,
-        exists=existing(run),
-        traction=judged_traction(finite(run.driving_acceleration), plant, limits),
+        recording.facts.scenario,
+        exists=existing(engagement),
+        traction=judged_traction(finite(engagement.driving_acceleration), plant, limits),
     )

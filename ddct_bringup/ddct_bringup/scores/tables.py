@@ -8,8 +8,9 @@ from typing import TextIO
 from rich.console import Console
 from rich.text import Text
 
+from ddct_bringup.metrics.catalogue import FURTHER, METRICS, TABLE_5_1
+from ddct_bringup.metrics.metric import NO_TIMING
 from ddct_bringup.scores.scored_run import ScoredRun
-from ddct_bringup.verdict.metric_definitions import METRICS, NO_TIMING, TABLE_5_1
 from ddct_bringup.verdict.state import SUCCESSES
 from ddct_bringup.verdict.verdict import BEYOND, NO_LIMIT
 from ddct_plant.base.errors import printable
@@ -39,8 +40,17 @@ BAG: RunColumn = Column('bag', '', lambda run: run.bag, number=False)
 CONTROLLER: RunColumn = Column('controller', '', lambda run: run.controller, number=False)
 WEAR: RunColumn = Column('wear', 'g', lambda run: run.facts.wear_gain if run.facts else None)
 ENGAGEMENT_TIME, TORSION_STD, ACCELERATION_STD = (metric(each) for each in TABLE_5_1)
-FINAL_SLIP = metric(METRICS['slip_final_rpm'], 'final\nw_d rpm')
-PEAK_JERK = metric(METRICS['peak_jerk_m_s3'], 'jerk\nm/s^3')
+_HEADINGS = {
+    'slip_final_rpm': 'final\nw_d rpm',
+    'slip_rmse_rpm': 'slip\nRMSE rpm',
+    'peak_jerk_m_s3': 'jerk\nm/s^3',
+}
+"""Headings shorter than symbol and unit, in the order of the columns."""
+FINAL_SLIP, SLIP_RMSE, PEAK_JERK = (metric(METRICS[key], text) for key, text in _HEADINGS.items())
+FURTHER_COLUMNS = tuple(
+    metric(each) for each in FURTHER if each.column and each.key not in _HEADINGS
+)
+"""Columns of all other metrics that are declared to have one."""
 VALID: RunColumn = Column('valid', '', lambda run: 'yes' if run.valid else 'NO', number=False)
 
 COLUMNS = (
@@ -48,8 +58,9 @@ COLUMNS = (
     TORSION_STD,
     ACCELERATION_STD,
     FINAL_SLIP,
-    metric(METRICS['slip_rmse_rpm'], 'slip\nRMSE rpm'),
+    SLIP_RMSE,
     PEAK_JERK,
+    *FURTHER_COLUMNS,
     VALID,
 )
 """Columns of every table of runs, after those that identify the run."""

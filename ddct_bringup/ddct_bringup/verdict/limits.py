@@ -17,7 +17,7 @@ from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
-from ddct_bringup.verdict.criteria import CRITERION_UNITS
+from ddct_bringup.metrics.catalogue import CRITERION_UNITS
 from ddct_bringup.verdict.traction import TractionRule
 from ddct_plant.base.errors import ParameterError, require_number
 from ddct_plant.base.options import require_known

@@ -19,10 +19,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.metrics.plant import JudgedPlant
+from ddct_bringup.metrics.zero_slip import LOCKED
 from ddct_bringup.verdict.limits import Rules
-from ddct_bringup.verdict.plant import JudgedPlant
 from ddct_bringup.verdict.swings import FEWEST_SWINGS, cycle_of, free_turns
-from ddct_bringup.verdict.zero_slip import LOCKED
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.models.engine_limits import OVER_REVVED, STALLED

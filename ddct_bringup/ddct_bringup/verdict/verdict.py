@@ -5,9 +5,9 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from ddct_bringup.verdict.criteria import CRITERIA
+from ddct_bringup.metrics.catalogue import CRITERIA
+from ddct_bringup.metrics.plant import JudgedPlant
 from ddct_bringup.verdict.limits import CONVENTION, Limit, Limits
-from ddct_bringup.verdict.plant import JudgedPlant
 from ddct_bringup.verdict.state import INVALID, SUCCESSES
 
 WITHIN, BEYOND, NO_LIMIT, FAILED = 'within', 'beyond', 'no_limit', 'failed'

@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.batch.results import JudgedRuns, one_or_more, stacked_plants
-from ddct_bringup.scores.metrics import metric_values
-from ddct_bringup.verdict.criteria import existing, finite, raw_criteria
-from ddct_bringup.verdict.judged_run import JudgedRun
-from ddct_bringup.verdict.plant import JudgedPlant
+from ddct_bringup.batch.results import one_or_more, stacked_plants
+from ddct_bringup.metrics.engagement import Engagement
+from ddct_bringup.metrics.metric import finite
+from ddct_bringup.metrics.plant import JudgedPlant
+from ddct_bringup.metrics.values import existing, raw_criteria, raw_metrics
+from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_plant.models.parameters import DrivelineParameters, VehicleParameters
 
 EXACT = ('friction_work_over_least', 'mean_acceleration', 'mean_negative_jerk')
@@ -50,23 +51,23 @@ def stack():
     )
 
 
-def judged(kind, trajectory, window=WINDOW, plant=None):
-    metrics: dict[str, Any] = dict(metric_values(trajectory, START, window))
-    if kind is JudgedRun:
-        metrics = {name: finite(value) for name, value in metrics.items()}
-    window_s = tuple(step / 100 for step in window)
-    return kind(trajectory, START, window_s, {**metrics, 'missed_steps': 0}, 12.0, plant)
+def judged(trajectory, window=WINDOW, plant=None):
+    return Engagement(trajectory, START, window, 12.0, plant, RunTiming())
+
+
+def criteria(engagement) -> dict[str, Any]:
+    return raw_criteria(engagement, raw_metrics(engagement))
 
 
 @pytest.mark.parametrize('window', [WINDOW, (200, 500)], ids=['scored', 'ends before'])
 def test_criteria_are_those_of_each_single_run(stack, window):
-    runs = judged(JudgedRuns, stack, window, stacked_plants(PLANTS))
-    ours: dict[str, Any] = raw_criteria(runs)
+    runs = judged(stack, window, stacked_plants(PLANTS))
+    ours = criteria(runs)
     exist = existing(runs)
     undefined = set()
     for run in range(RUNS):
-        alone = judged(JudgedRun, one_or_more(stack, run), window, PLANTS[run])
-        single = raw_criteria(alone)
+        alone = judged(one_or_more(stack, run), window, PLANTS[run])
+        single = criteria(alone)
         assert {
             name: np.broadcast_to(each, RUNS)[run] for name, each in exist.items()
         } == existing(alone)
@@ -88,10 +89,9 @@ def test_judder_begins_at_half_a_second_of_slipping_in_a_batch_as_in_a_single_ru
     slip[-1] = np.where((steps >= START + 5) & (steps < START + 125), 30.0, 0.0)
     signals = one_or_more(stack, slice(len(lengths))).signals
     trajectory = Trajectory({**signals, 'slip_speed': slip})
-    batch: Any = judged(JudgedRuns, trajectory).judder
-    single = [judged(JudgedRun, one_or_more(trajectory, run)).judder for run in range(len(slip))]
+    batch = judged(trajectory).judder
+    single = [finite(judged(one_or_more(trajectory, run)).judder) for run in range(len(slip))]
     assert [each is not None for each in single] == [length >= 51 for length in lengths[:-1]] + [
         True
     ]
-    for ours, alone in zip(batch.tolist(), single, strict=True):
-        assert finite(ours) == (None if alone is None else pytest.approx(alone, rel=1e-12))
+    assert [finite(each) for each in batch] == single

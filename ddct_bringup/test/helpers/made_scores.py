@@ -6,8 +6,8 @@ from typing import Any
 
 from made_run import made_facts
 
+from ddct_bringup.metrics.catalogue import METRICS
 from ddct_bringup.scores.scored_run import ScoredRun
-from ddct_bringup.scores.scoring import METRIC_NAMES
 from ddct_bringup.verdict.verdict import UNREADABLE, CriterionResult, Verdict
 
 FACTS = ('architecture', 'clutch', 'wear_gain', 'mode', 'seed', 'scenario')
@@ -26,7 +26,7 @@ def made_scores(controller: str = 'pi', **values: Any) -> ScoredRun:
         'facts': made_facts(controller=controller, **facts),
         'valid': True,
         'reason': '',
-        'metrics': {**dict.fromkeys(METRIC_NAMES), **values},
+        'metrics': {**dict.fromkeys(METRICS), **values},
         'verdict': UNREADABLE,
         'before_schema': False,
         'scenario_changes': (),

@@ -4,11 +4,10 @@
 
 import pytest
 
+from ddct_bringup.metrics.catalogue import CRITERIA, FURTHER, TABLE_5_1
 from ddct_bringup.report.chart_signals import CHART_SIGNALS, CLUTCH_SIGNALS, SENSOR_SIGNALS
 from ddct_bringup.report.definitions import definitions
 from ddct_bringup.report.page_parts import unit_text
-from ddct_bringup.verdict.criteria import CRITERIA
-from ddct_bringup.verdict.metric_definitions import FURTHER, TABLE_5_1
 from ddct_bringup.verdict.state import STATES
 from ddct_controllers.design.analysis.margins import LOOP_QUANTITIES
 

@@ -8,12 +8,12 @@ import re
 import pytest
 from made_scores import made_scores
 
+from ddct_bringup.metrics.catalogue import TABLE_5_1
 from ddct_bringup.report.evidence import NOT_LINEAR, LoopEvidence, loop_rows, without_evidence
 from ddct_bringup.report.run_tables import TICKS, time_place, update_times
 from ddct_bringup.report.runs import ReportRun
 from ddct_bringup.report.score_tables import comparable_rows, metric_cells
 from ddct_bringup.run.timing_and_failure import RunTiming
-from ddct_bringup.verdict.metric_definitions import TABLE_5_1
 from ddct_controllers.design.analysis.margins import LOOP_QUANTITIES
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings

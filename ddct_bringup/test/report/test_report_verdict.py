@@ -5,11 +5,11 @@
 import pytest
 from made_scores import made_scores
 
+from ddct_bringup.metrics.catalogue import CRITERIA
 from ddct_bringup.report.page_parts import unit_text, value_text
 from ddct_bringup.report.pareto import DEFAULT_PAIR, non_dominated, pair_key, pareto_view
 from ddct_bringup.report.runs import ReportRun
 from ddct_bringup.report.score_tables import NOT_JUDGED, verdict_rows
-from ddct_bringup.verdict.criteria import CRITERIA
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_bringup.verdict.verdict import verdict_of
 

@@ -6,8 +6,9 @@ from functools import lru_cache
 
 import pytest
 
+from ddct_bringup.metrics.engagement import Engagement
+from ddct_bringup.metrics.values import window_steps
 from ddct_bringup.run.headless import run_headless
-from ddct_bringup.verdict.judged_run import JudgedRun
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
@@ -21,7 +22,7 @@ def run(scenario, controller, *changes, wear_gain=1.0):
     )
     trajectory = run_headless(settings, controller)
     start, window_s = settings.scenario.control_start_step, settings.scenario.score_window_s
-    return JudgedRun(trajectory, start, window_s, {}, engagements_a_day=0.0), trajectory
+    return Engagement(trajectory, start, window_steps(window_s)), trajectory
 
 
 @pytest.mark.parametrize(

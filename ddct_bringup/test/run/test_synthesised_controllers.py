@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from tight_tolerance import tight_tolerance_run
 
+from ddct_bringup.metrics.metric import Metrics
+from ddct_bringup.metrics.values import compute_metrics
 from ddct_bringup.run.headless import run_headless
-from ddct_bringup.scores.metrics import Metrics, compute_metrics
 from ddct_bringup.thesis.table_5_1 import TABLE_METRICS, thesis_row
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings

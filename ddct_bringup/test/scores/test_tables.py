@@ -10,7 +10,7 @@ from made_scores import made_result, made_verdict
 from made_scores import made_scores as run
 from printed_table import value_under
 
-from ddct_bringup.scores.scoring import METRIC_NAMES
+from ddct_bringup.metrics.catalogue import METRICS
 from ddct_bringup.scores.tables import BAG, COLUMNS, CONTROLLER, WEAR, metric, print_runs
 from ddct_plant.program.table import Column, Quantity
 
@@ -38,7 +38,7 @@ def printed(runs, columns=(CONTROLLER, WEAR, *COLUMNS), stream=None):
     ],
 )
 def test_a_value_is_below_its_heading_and_unit(heading, unit, metric_name, value, shown):
-    others = dict.fromkeys(METRIC_NAMES, 1000.0)
+    others = dict.fromkeys(METRICS, 1000.0)
     text = printed([run(**{**others, metric_name: value})])
     assert value_under(text, heading, 'pi') == (unit, shown)
 
@@ -122,7 +122,7 @@ def test_a_real_time_run_shows_misses_lateness_and_safe_state_each_in_its_column
     assert 'missed' not in printed([run('mpc3')], columns)
 
 
-@pytest.mark.parametrize('name', METRIC_NAMES)
+@pytest.mark.parametrize('name', METRICS)
 def test_every_metric_can_be_a_column(name):
     column = metric(Quantity(name, 'symbol', 'unit', '.1f', 'meaning'), 'heading')
     assert isinstance(column, Column)
@@ -187,7 +187,7 @@ def test_every_dash_has_its_reason_once_below_the_table():
     text = printed([run('pi', steps=300), run('ls8', steps=300)])
     for heading in ('t_a', 'std w_sr', 'std A_x', 'final', 'slip', 'jerk'):
         assert text.count(f"{heading} '-': ") == 1
-    complete = dict.fromkeys(METRIC_NAMES, 1.0)
+    complete = dict.fromkeys(METRICS, 1.0)
     assert "'-'" not in printed([run(**complete)])
     assert "t_a '-': after control start" in printed(
         [run(**complete | {'engagement_time_s': None})]

@@ -10,12 +10,12 @@ from made_scores import made_scores, made_verdict
 from matplotlib.colors import to_hex
 
 from ddct_bringup.campaign.rows import RunBase
+from ddct_bringup.metrics.catalogue import TABLE_5_1
 from ddct_bringup.sweep.axis import axis_of
 from ddct_bringup.sweep.state_map import STATE_COLOURS, edges_of
 from ddct_bringup.sweep.sweep import Sweep, SweptRun
 from ddct_bringup.sweep.sweep_figure import sweep_figure
 from ddct_bringup.verdict.limits import packaged_limits
-from ddct_bringup.verdict.metric_definitions import TABLE_5_1
 from ddct_bringup.verdict.state import ENGAGED, INVALID, NOT_ENGAGED, RUNAWAY, STATES
 from ddct_controllers.design.drawing.chart_style import chart_style, save_chart
 from ddct_controllers.design.drawing.line_styles import controller_style

@@ -9,26 +9,28 @@ import pytest
 from made_run import CONTROL_START, RAD_S_PER_RPM, made_run, times
 from scipy.signal import butter, sosfiltfilt
 
-from ddct_bringup.scores.metrics import compute_metrics
-from ddct_bringup.verdict.criteria import CRITERION_UNITS, criterion_values, existing
-from ddct_bringup.verdict.judged_run import JudgedRun
+from ddct_bringup.metrics.catalogue import CRITERION_UNITS
+from ddct_bringup.metrics.engagement import Engagement
+from ddct_bringup.metrics.plant import JudgedPlant
+from ddct_bringup.metrics.values import compute_metrics, criteria_of, existing, metrics_of
+from ddct_bringup.metrics.vibration import weighted_acceleration
 from ddct_bringup.verdict.limits import limits_of_text, packaged_limits
-from ddct_bringup.verdict.plant import JudgedPlant
 from ddct_bringup.verdict.state import STATES
 from ddct_bringup.verdict.verdict import verdict_of
-from ddct_bringup.verdict.vibration import weighted_acceleration
 from ddct_plant.models.driveline import PhaseEvent
 from ddct_plant.models.parameters import DrivelineParameters, VehicleParameters
 
 T = times()
-WINDOW_S = (0.6, 2.0)
+WINDOW_S, WINDOW = (0.6, 2.0), (60, 200)
 PLANT = JudgedPlant.of_parameters(DrivelineParameters(), VehicleParameters())
 
 
 def values(run, start=CONTROL_START, engagements=1000.0):
-    metrics = compute_metrics(run, control_start_s=start / 100.0, score_window_s=WINDOW_S)
-    judged = JudgedRun(run, start, WINDOW_S, metrics, engagements, PLANT)
-    return criterion_values(judged)
+    return criteria(Engagement(run, start, WINDOW, engagements, PLANT))
+
+
+def criteria(engagement):
+    return criteria_of(engagement, metrics_of(engagement))
 
 
 def shaft(signal, index=3):
@@ -122,7 +124,7 @@ def test_judder_of_a_linear_clutch_that_never_comes_together_is_that_of_the_whol
 def test_the_limit_of_judder_does_not_apply_to_a_slip_that_is_too_short_for_it(samples):
     phase = phases((0, 2), (60, 1), (60 + samples, 2)) if samples else phases((0, 2))
     run = made_run(np.zeros(301), clutch_phase=phase)
-    judged = JudgedRun(run, CONTROL_START, WINDOW_S, {'missed_steps': 0}, 1.0)
+    judged = Engagement(run, CONTROL_START, WINDOW)
     assert existing(judged)['judder'] == (samples >= 51)
 
 
@@ -239,9 +241,9 @@ def test_friction_work_is_relative_to_the_loss_of_two_free_inertias():
     torque = np.where(slip > 0.0, demand + PLANT.engine_inertia * slip_rad_s / time_s, 0.0)
     run = made_run(slip, joint_effort=shaft(torque, 1))
     heavy = replace(PLANT, rest_inertia=1e9)
-    metrics = compute_metrics(run, control_start_s=0.6, score_window_s=WINDOW_S)
-    judged = JudgedRun(run, CONTROL_START, WINDOW_S, metrics, 1.0, heavy)
-    found = criterion_values(judged)['friction_work_over_least']
+    found = criteria(Engagement(run, CONTROL_START, WINDOW, plant=heavy))[
+        'friction_work_over_least'
+    ]
     assert found == pytest.approx(1.0 + demand * time_s / (PLANT.engine_inertia * slip_rad_s))
     limit = packaged_limits().of('thesis')['friction_work_over_least'].value
     assert limit == pytest.approx(found, rel=0.02)
@@ -257,18 +259,17 @@ def test_friction_work_before_control_start_does_not_count():
 def test_with_hardly_any_slip_at_control_start_there_is_no_minimum_of_the_work():
     for slip_rpm, exists in ((49.9, False), (50.1, True), (-50.1, True)):
         run = made_run(np.full(301, slip_rpm), friction_work=np.ones(301))
-        metrics = compute_metrics(run, control_start_s=0.6, score_window_s=WINDOW_S)
-        judged = JudgedRun(run, CONTROL_START, WINDOW_S, metrics, 1.0, PLANT)
-        value = criterion_values(judged)['friction_work_over_least']
+        judged = Engagement(run, CONTROL_START, WINDOW, plant=PLANT)
+        value = criteria(judged)['friction_work_over_least']
         assert (value is not None) == exists == existing(judged)['friction_work_over_least']
         unknown = replace(judged, plant=None)
-        assert criterion_values(unknown)['friction_work_over_least'] is None
+        assert criteria(unknown)['friction_work_over_least'] is None
         assert existing(unknown)['friction_work_over_least'] == exists
 
 
 def test_criteria_of_the_stick_slip_clutch_do_not_exist_for_a_linear_clutch():
     for run, expected in ((made_run(np.zeros(301)), False), (sticking({}, phases((0, 1))), True)):
-        found = existing(JudgedRun(run, CONTROL_START, WINDOW_S, {'engagement_time_s': None}, 1.0))
+        found = existing(Engagement(run, CONTROL_START, WINDOW))
         only = ('time_to_lock', 'peak_temperature', 'releases_after_lock')
         assert all(found[name] == expected for name in only)
         assert found['peak_jerk']

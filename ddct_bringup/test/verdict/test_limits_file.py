@@ -7,7 +7,7 @@ from importlib.resources import files
 
 import pytest
 
-from ddct_bringup.verdict.criteria import CRITERION_UNITS
+from ddct_bringup.metrics.catalogue import CRITERION_UNITS
 from ddct_bringup.verdict.limits import limits_of_text, load_limits, packaged_limits
 from ddct_plant.base.errors import DdctError
 

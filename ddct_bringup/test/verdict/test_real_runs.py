@@ -8,9 +8,9 @@ import pytest
 from labelled_runs import Spoiled
 
 from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.metrics.plant import JudgedPlant
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.verdict.limits import packaged_limits
-from ddct_bringup.verdict.plant import JudgedPlant
 from ddct_bringup.verdict.state import slip_state
 from ddct_controllers.interface import Command, Controller
 from ddct_controllers.registry import make_controller

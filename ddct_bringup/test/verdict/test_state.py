@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from made_run import CONTROL_START, RAD_S_PER_RPM, made_run, times
 
+from ddct_bringup.metrics.plant import JudgedPlant
+from ddct_bringup.metrics.zero_slip import LOCKED, SLIPPING
 from ddct_bringup.verdict.limits import packaged_limits
-from ddct_bringup.verdict.plant import JudgedPlant
 from ddct_bringup.verdict.state import slip_state
 from ddct_bringup.verdict.swings import turns_of
-from ddct_bringup.verdict.zero_slip import LOCKED, SLIPPING
 from ddct_plant.models.parameters import DrivelineParameters, VehicleParameters
 
 T = times()

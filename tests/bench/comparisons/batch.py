@@ -17,10 +17,10 @@ from bench.skeleton.comparison import Bench, Sides, comparison, curve
 
 from ddct_bringup.batch.results import stacked_results
 from ddct_bringup.batch.run_batch import MOST_RUNS, Run, trajectories
-from ddct_bringup.scores.metrics import metric_values
+from ddct_bringup.metrics.engagement import Engagement
+from ddct_bringup.metrics.values import raw_metrics, window_steps
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_controllers.registry import make_controller
-from ddct_plant.base.timebase import steps_in
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
@@ -71,11 +71,11 @@ def times_of(runs: list[Run]) -> dict[str, float]:
     """Return the processor times in s of the parts of a batch."""
     settings, limits = [each for each, _ in runs], packaged_limits()
     scenario = settings[0].scenario
-    window = tuple(steps_in('score_window_s', each) for each in scenario.score_window_s)
+    window = window_steps(scenario.score_window_s)
     started = time.process_time()
     stack = trajectories(runs)
     simulated = time.process_time()
-    metric_values(stack, scenario.control_start_step, window)
+    raw_metrics(Engagement(stack, scenario.control_start_step, window))
     scored = time.process_time()
     stacked_results(settings, stack, limits)
     judged = time.process_time()

@@ -4,6 +4,7 @@
 
 import dataclasses
 
+from ddct_bringup.metrics.catalogue import METRICS
 from ddct_bringup.reproduction.calibration.ensemble import fitted_rows, members
 from ddct_bringup.reproduction.calibration.parameters import largest_residual, values_of
 from ddct_bringup.reproduction.calibration.predicted_values import OPEN_LOOP
@@ -25,7 +26,6 @@ from ddct_bringup.thesis.table_5_1 import (
     TABLE_METRICS,
     ThesisRow,
 )
-from ddct_bringup.verdict.metric_definitions import METRICS
 from ddct_controllers.mpc.costs import TABLE_4_1
 from ddct_controllers.mpc.estimators import FULL
 from ddct_plant.program.table import text_or_dash

@@ -9,9 +9,9 @@ import numpy as np
 import scipy
 
 from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.metrics.metric import Metrics
 from ddct_bringup.reproduction.runs import THESIS_SCENARIO, thesis_run
 from ddct_bringup.reproduction.studies.study import Study
-from ddct_bringup.scores.metrics import Metrics
 from ddct_bringup.thesis.table_5_1 import THESIS_TABLE
 from ddct_controllers.mpc.model.transmission_model import (
     ENGINE_TORQUE,

@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
+from ddct_bringup.metrics.catalogue import METRICS
 from ddct_bringup.reproduction.runs import THESIS_SCENARIO, HeadlessRun, headless_run
 from ddct_bringup.reproduction.studies.changed_loops import model_without_actuator
 from ddct_bringup.reproduction.studies.study import (
@@ -17,7 +18,6 @@ from ddct_bringup.reproduction.studies.study import (
     metric_column,
 )
 from ddct_bringup.thesis.table_5_1 import ROW_OF
-from ddct_bringup.verdict.metric_definitions import METRICS
 from ddct_controllers.interface import Command, Controller, Measurement
 from ddct_controllers.mpc.controller import MpcController
 from ddct_controllers.mpc.costs import BASIS, TABLE_4_1, TableRow

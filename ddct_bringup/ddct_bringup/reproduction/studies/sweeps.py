@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ddct_bringup.metrics.catalogue import METRICS
 from ddct_bringup.reproduction.runs import (
     THESIS_SCENARIO,
     HeadlessRun,
@@ -23,7 +24,6 @@ from ddct_bringup.reproduction.studies.study import (
     metric_column,
     run_study,
 )
-from ddct_bringup.verdict.metric_definitions import METRICS
 from ddct_controllers.interface import ControllerContext
 from ddct_controllers.mpc.costs import BASIS, default_torsion_weight
 from ddct_controllers.state_of_art.controllers import STATE_OF_ART

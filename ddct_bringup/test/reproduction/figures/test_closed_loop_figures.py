@@ -12,6 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from tight_tolerance import tight_tolerance_run
 
+from ddct_bringup.metrics.metric import Metrics
 from ddct_bringup.reproduction.figures.command import (
     NOT_DRAWN,
     collect_figures,
@@ -19,7 +20,6 @@ from ddct_bringup.reproduction.figures.command import (
 from ddct_bringup.reproduction.figures.thesis_figure import figure_order
 from ddct_bringup.reproduction.runs import THESIS_SCENARIO, thesis_run
 from ddct_bringup.run.headless import run_headless
-from ddct_bringup.scores.metrics import Metrics
 from ddct_bringup.thesis.table_5_1 import thesis_row
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.scenario.settings import RunSettings

@@ -8,7 +8,7 @@ import numpy as np
 import scipy
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.verdict.plant import JudgedPlant
+from ddct_bringup.metrics.plant import JudgedPlant
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.base.units import rad_s_from_rpm
 

@@ -7,6 +7,7 @@ Jerk, weighted acceleration and vibration dose act on a passenger; judder, shuff
 are oscillations of driveline and car.
 """
 
+import math
 from functools import cache
 
 import numpy as np
@@ -19,6 +20,8 @@ _JERK_FILTER_ORDER = 2
 """Order of the Butterworth filter, which runs forward and backward once each."""
 JUDDER_BAND_HZ = (2.0, 20.0)
 BAND_PASS_ORDER = 2
+_PADDING = 3 * (2 * BAND_PASS_ORDER + 1)
+"""Number of samples that `sosfiltfilt` adds at each end of an interval."""
 SHORTEST_JUDDER_S = 1.0 / JUDDER_BAND_HZ[0]
 """
 Shortest slipping time in s for which a judder is computed: 51 samples.
@@ -118,32 +121,72 @@ def band_pass() -> np.ndarray:
     )
 
 
-def judder(torsion_speed: np.ndarray) -> float | None:
+def judder_of(torsion_speed: np.ndarray, first: np.ndarray, after: np.ndarray) -> np.ndarray:
     """
-    Return the r.m.s. of the (n,) w_sr between 2 and 20 Hz, in the unit of w_sr.
+    Return the r.m.s. between 2 and 20 Hz of the (..., n) w_sr from `first` to before `after`.
 
-    The samples are those while the clutch slips. A second-order Butterworth band-pass runs forward
-    and backward. None for less than `SHORTEST_JUDDER_S`.
+    The samples are those while the clutch slips, (...) each; the result has the unit of w_sr. A
+    second-order Butterworth band-pass runs forward and backward. NaN for less than
+    `SHORTEST_JUDDER_S`.
     """
-    if (len(torsion_speed) - 1) * PERIOD_S < SHORTEST_JUDDER_S:
-        return None
-    return float(np.sqrt(np.mean(scipy.signal.sosfiltfilt(band_pass(), torsion_speed) ** 2)))
+    rows = torsion_speed.reshape(-1, torsion_speed.shape[-1])
+    begins, length = np.ravel(first), np.ravel(after - first)
+    long = (length - 1) * PERIOD_S >= SHORTEST_JUDDER_S
+    found = np.full(len(rows), math.nan)
+    if long.any():
+        filtered = _band_passed(rows[long], begins[long, np.newaxis], length[long, np.newaxis])
+        # Each mean is that of its own samples alone, so it does not depend on other runs.
+        means = [np.mean(row[:n] ** 2) for row, n in zip(filtered, length[long], strict=True)]
+        found[long] = np.sqrt(means)
+    return found.reshape(np.shape(first))
 
 
-def shuffle(torsion_speed: np.ndarray) -> tuple[float | None, float | None]:
+def _band_passed(values: np.ndarray, first: np.ndarray, length: np.ndarray) -> np.ndarray:
     """
-    Return amplitude and decay time of the (n,) w_sr after lock.
+    Return values[r, first[r]:first[r] + length[r]] after `sosfiltfilt` with the band-pass.
+
+    `first` and `length` are (R, 1), each length above `_PADDING`. Each interval is shifted to the
+    start of its row, so that one call filters all; samples after an interval do not count.
+    """
+    sos = band_pass()
+    place = np.arange(values.shape[-1] + 2 * _PADDING)
+    padded = _padded(values, first, length, place - _PADDING)
+    forward = scipy.signal.sosfilt(sos, padded, zi=at_rest(sos, padded[:, :1]))[0]
+    turned = np.maximum(length + 2 * _PADDING - 1 - place, 0)
+    backward = np.take_along_axis(forward, turned, axis=-1)
+    filtered = scipy.signal.sosfilt(sos, backward, zi=at_rest(sos, backward[:, :1]))[0]
+    return np.take_along_axis(filtered, np.maximum(turned - _PADDING, 0), axis=-1)
+
+
+def _padded(
+    values: np.ndarray, first: np.ndarray, length: np.ndarray, sample: np.ndarray
+) -> np.ndarray:
+    """Return the intervals with point-symmetric extensions about their end values."""
+    last = length - 1
+    turned = np.where(sample > last, 2 * last - sample, np.abs(sample))
+    mirrored = np.take_along_axis(values, first + np.clip(turned, 0, last), axis=-1)
+    ends = np.take_along_axis(values, first + np.where(sample < 0, 0, last), axis=-1)
+    beyond = (sample < 0) | (sample > last)
+    return np.where(beyond, 2.0 * ends - mirrored, mirrored)
+
+
+def shuffle_of(torsion_speed: np.ndarray, start: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """
+    Return amplitude and decay time of the (..., n) w_sr from sample `start`, (...), on.
 
     The amplitude is the largest magnitude, in the unit of w_sr. The decay time in s is counted
-    from that sample until the magnitude stays below 1/e of it; None when the samples end before.
+    from that sample until the magnitude stays below 1/e of it; NaN when the samples end before.
+    Both are NaN where no sample is left, or one is not finite.
     """
-    if not torsion_speed.size or not np.isfinite(torsion_speed).all():
-        return None, None
-    magnitude = np.abs(torsion_speed)
-    peak = int(np.argmax(magnitude))
-    last = int(np.flatnonzero(magnitude >= magnitude[peak] / np.e)[-1])
-    decay = (last + 1 - peak) / STEPS_PER_S if last + 1 < len(magnitude) else None
-    return float(magnitude[peak]), decay
+    samples = np.arange(torsion_speed.shape[-1])
+    counted = samples >= start[..., np.newaxis]
+    magnitude = np.where(counted, np.abs(torsion_speed), -1.0)
+    peak, largest = np.argmax(magnitude, axis=-1), np.max(magnitude, axis=-1)
+    above = magnitude >= largest[..., np.newaxis] / np.e
+    after = len(samples) - np.argmax(above[..., ::-1], axis=-1)
+    defined = counted[..., -1] & np.isfinite(magnitude).all(axis=-1)
+    decay = np.where(defined & (after < len(samples)), (after - peak) / STEPS_PER_S, math.nan)
+    return np.where(defined, largest, math.nan), decay
 
 
 def torque_dip(torque: np.ndarray) -> np.ndarray | None:

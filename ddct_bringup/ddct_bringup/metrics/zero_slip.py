@@ -2,9 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Instants at which the plates of a stick-slip clutch lock, release or pass through zero slip."""
 
+import math
 from collections.abc import Iterator
 
+import numpy as np
+
 from ddct_bringup.bag.trajectory import Trajectory
+from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.models import driveline
 from ddct_plant.models.driveline import LOCK, PHASES, RELEASE, PhaseEvent
 
@@ -48,3 +52,26 @@ def first_zero_slip(trajectory: Trajectory, start: int) -> tuple[int, PhaseEvent
         ),
         None,
     )
+
+
+def first_sign_change(slip: np.ndarray, start: int) -> tuple[np.ndarray, np.ndarray]:
+    """
+    Return the time in s from step `start` to the first sign change, and the slope there, (...).
+
+    `slip` is (..., N+1) in rad/s, its slope in rad/s^2; both are NaN without a sign change.
+    """
+    if start >= slip.shape[-1]:
+        never = np.full(slip.shape[:-1], math.nan)
+        return never, never
+    changed = slip[..., start:] * np.sign(slip[..., start : start + 1]) <= 0.0
+    after = start + np.argmax(changed, axis=-1)
+    # Without a sign change argmax returns `start`, as it does where the slip is zero at `start`.
+    found = after > start
+    last, before = (_at(slip, np.maximum(after - back, 0)) for back in range(2))
+    step = before - last
+    time = (after - 1 - start + before / step) * PERIOD_S
+    return np.where(found, time, math.nan), np.where(found, -step / PERIOD_S, math.nan)
+
+
+def _at(values: np.ndarray, index: np.ndarray) -> np.ndarray:
+    return np.take_along_axis(values, index[..., np.newaxis], axis=-1)[..., 0]
