@@ -13,6 +13,8 @@ subclass `ParameterError`. Nothing is printed; scenario values that were adjuste
 from ddct_bringup.api.campaigns import CampaignResults, campaign, read_campaign, sweep
 from ddct_bringup.api.figures import figure
 from ddct_bringup.api.runs import Run, compare, load, run, table
+from ddct_bringup.scores.document import read_scores
+from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_controllers.interface import Command, Controller, ControllerContext, Measurement
 from ddct_controllers.registry import controller_names
 from ddct_plant.base.errors import DdctError, ParameterError
@@ -29,12 +31,14 @@ __all__ = [
     'Option',
     'ParameterError',
     'Run',
+    'ScoredRun',
     'campaign',
     'compare',
     'controller_names',
     'figure',
     'load',
     'read_campaign',
+    'read_scores',
     'run',
     'scenario_names',
     'sweep',

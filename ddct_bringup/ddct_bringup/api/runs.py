@@ -25,7 +25,7 @@ from ddct_bringup.run.output_folder import run_folder
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.run.timing_and_failure import RunTiming, read_timing
 from ddct_bringup.scores.csv_text import score_row, signal_columns
-from ddct_bringup.scores.document import verdict_entry
+from ddct_bringup.scores.document import run_entry, verdict_entry
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.scores.scoring import score_recording, score_run
 from ddct_bringup.verdict.limits import Limits, load_limits
@@ -90,6 +90,11 @@ class Run:
     def trajectory(self) -> Trajectory:
         """Trajectory of the run: every signal as an array, all SI."""
         return self.recording.trajectory
+
+    @property
+    def entry(self) -> Mapping[str, Any]:
+        """Entry of the run in `scores.json`."""
+        return run_entry(self.scores)
 
     @property
     def metrics(self) -> Metrics:

@@ -36,8 +36,8 @@ DRIVELINE_NODE = '/driveline'
 
 
 @dataclass(frozen=True)
-class RunFacts:
-    """Facts of a run that scoring needs and that its scores repeat."""
+class RunConditions:
+    """Conditions of a run, which its scores repeat."""
 
     controller: str
     architecture: str
@@ -48,17 +48,23 @@ class RunFacts:
     mode: str
     """'lockstep' or 'realtime', MEASURED of a log of another tool."""
     seed: int
+
+    def __post_init__(self) -> None:
+        """Raise ParameterError for a name that a bag could not store or return unchanged."""
+        for name in _NAMES:
+            require_name(name, getattr(self, name))
+
+
+@dataclass(frozen=True)
+class RunFacts(RunConditions):
+    """Facts of a run that scoring needs."""
+
     control_start_s: float
     """Scenario time at which feedback starts, s."""
     score_window_s: tuple[float, float]
     """Scenario time of the first and last scored sample, s."""
     duration_s: float
     """Planned duration of the run, s."""
-
-    def __post_init__(self) -> None:
-        """Raise ParameterError for a name that a bag could not store or return unchanged."""
-        for name in _NAMES:
-            require_name(name, getattr(self, name))
 
     @property
     def steps(self) -> int:

@@ -69,7 +69,8 @@ def first_sign_change(slip: np.ndarray, start: int) -> tuple[np.ndarray, np.ndar
     found = after > start
     last, before = (_at(slip, np.maximum(after - back, 0)) for back in range(2))
     step = before - last
-    time = (after - 1 - start + before / step) * PERIOD_S
+    with np.errstate(divide='ignore', invalid='ignore'):  # where there is none
+        time = (after - 1 - start + before / step) * PERIOD_S
     return np.where(found, time, math.nan), np.where(found, -step / PERIOD_S, math.nan)
 
 

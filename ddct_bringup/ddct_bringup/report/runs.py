@@ -14,7 +14,7 @@ from pathlib import Path
 
 from ddct_bringup.bag.measured_run import read_recording
 from ddct_bringup.bag.reader import Recording
-from ddct_bringup.bag.run_facts import MEASURED, RunFacts
+from ddct_bringup.bag.run_facts import MEASURED, RunConditions
 from ddct_bringup.run.timing_and_failure import RunTiming, read_timing
 from ddct_bringup.scores.bags import bag_name
 from ddct_bringup.scores.scored_run import ScoredRun
@@ -26,7 +26,7 @@ from ddct_plant.measured.columns import ColumnMap
 from ddct_plant.scenario.file import scenario_digest
 from ddct_plant.scenario.settings import RunSettings
 
-_CONDITIONS: dict[str, Callable[[RunFacts], str]] = {
+_CONDITIONS: dict[str, Callable[[RunConditions], str]] = {
     'architecture': lambda facts: facts.architecture,
     'clutch': lambda facts: f'{facts.clutch} clutch',
     'wear_gain': lambda facts: f'wear {facts.wear_gain:g}',
@@ -139,7 +139,7 @@ def common_conditions(runs: Sequence[ScoredRun]) -> list[str]:
     return [*(_CONDITIONS[key](known[0]) for key in shared), *of_logs]
 
 
-def _simulated(runs: Sequence[ScoredRun]) -> list[RunFacts]:
+def _simulated(runs: Sequence[ScoredRun]) -> list[RunConditions]:
     """Return the facts of the simulated runs whose bags could be read."""
     return [run.facts for run in runs if run.facts is not None and not run.measured]
 

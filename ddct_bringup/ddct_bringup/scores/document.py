@@ -1,14 +1,19 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""`scores.json`: scored runs as JSON."""
+"""`scores.json`: scored runs as JSON, written and read."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, fields
+from pathlib import Path
 from typing import Any
 
+from ddct_bringup.bag.run_facts import RunConditions
+from ddct_bringup.metrics.catalogue import CRITERIA, METRICS
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.verdict.limits import Limits
-from ddct_bringup.verdict.verdict import CriterionResult, Verdict
+from ddct_bringup.verdict.verdict import NO_LIMIT, TRACTION, CriterionResult, Verdict
+from ddct_plant.base.errors import DdctError
+from ddct_plant.files.input_file import parse_json, read_text_file
 
 SCHEMA_VERSION = 3
 """
@@ -19,8 +24,12 @@ values, and there was no `convention` and no `traction`.
 """
 NOT_COMPUTED = 'not_computed'
 """Key of the reasons by metric or criterion; only the log of another tool has it."""
-FACTS = ('controller', 'architecture', 'scenario', 'clutch', 'wear_gain', 'mode', 'seed')
-"""Facts of a run in its entry, in order."""
+FACTS = tuple(each.name for each in fields(RunConditions))
+"""Conditions of a run in its entry, in order."""
+_OLDEST = 2
+"""Oldest schema version that can be read."""
+NO_SUCH_METRIC = 'recorded before this metric existed'
+"""Reason for a metric or criterion that stored scores do not have."""
 
 
 def scores_document(runs: Sequence[ScoredRun], limits: Limits) -> Mapping[str, Any]:
@@ -62,3 +71,64 @@ def verdict_entry(verdict: Verdict) -> Mapping[str, Any]:
 
 def _without_name(result: CriterionResult) -> Mapping[str, Any]:
     return {key: value for key, value in asdict(result).items() if key != 'name'}
+
+
+def read_scores(path: str | Path) -> list[ScoredRun]:
+    """
+    Return the runs in a `scores.json`, that of an earlier version included.
+
+    A metric or criterion that the file does not have is None, with `NO_SUCH_METRIC` as its reason.
+    Raise DdctError for a file that cannot be read, or that is no `scores.json` of version 2 or 3.
+    """
+    try:
+        content = parse_json(read_text_file(Path(path)))
+        version = content['schema_version']
+        if not _OLDEST <= version <= SCHEMA_VERSION:
+            raise DdctError(f'schema_version is {version}, not {_OLDEST} to {SCHEMA_VERSION}')
+        return [_run_of(entry) for entry in content['runs']]
+    except OSError as error:
+        raise DdctError(f'{path}: cannot read the scores: {error.strerror}') from error
+    except (DdctError, LookupError, TypeError, AttributeError) as error:
+        raise DdctError(
+            f'{path}: not the scores of runs ({error!r}): score the bags again with ddct score'
+        ) from error
+
+
+def _run_of(entry: Mapping[str, Any]) -> ScoredRun:
+    verdict = _verdict_of(entry['verdict'])
+    metrics = entry['metrics']
+    of_verdict = (each.key for each in CRITERIA if each.key not in verdict.values)
+    missing = [key for key in METRICS if key not in metrics]
+    missing += of_verdict if verdict.criteria else ()
+    changes = entry['scenario_changes']
+    return ScoredRun(
+        bag=entry['bag'],
+        facts=RunConditions(**{name: entry[name] for name in FACTS})
+        if entry['controller'] is not None
+        else None,
+        valid=entry['valid'],
+        reason=entry['reason'],
+        metrics={key: metrics.get(key) for key in METRICS},
+        verdict=verdict,
+        fallbacks=entry['fallbacks'],
+        safe_state=entry['safe_state'],
+        before_schema=entry['before_schema'],
+        scenario_changes=None if changes is None else tuple(changes),
+        not_computed={**dict.fromkeys(missing, NO_SUCH_METRIC), **entry.get(NOT_COMPUTED, {})},
+    )
+
+
+def _verdict_of(entry: Mapping[str, Any]) -> Verdict:
+    traction = entry.get(TRACTION)
+    return Verdict(
+        entry['state'],
+        entry['limits'],
+        tuple(_result_of(each) for each in entry['criteria']),
+        None if traction is None else _result_of({**traction, 'name': TRACTION}),
+    )
+
+
+def _result_of(entry: Mapping[str, Any]) -> CriterionResult:
+    older = {'convention': False, 'state': NO_LIMIT}
+    known = {each.name for each in fields(CriterionResult)}
+    return CriterionResult(**{**older, **{key: entry[key] for key in entry if key in known}})

@@ -5,7 +5,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from ddct_bringup.bag.run_facts import MEASURED, RunFacts
+from ddct_bringup.bag.run_facts import MEASURED, RunConditions
 from ddct_bringup.metrics.metric import Metrics
 from ddct_bringup.verdict.verdict import Verdict
 
@@ -16,8 +16,8 @@ class ScoredRun:
 
     bag: str
     """Name of the bag; that of the controller for a run without one."""
-    facts: RunFacts | None
-    """Facts of the run; None where the bag has none that can be read."""
+    facts: RunConditions | None
+    """Conditions of the run; None where the bag has none that can be read."""
     valid: bool
     reason: str
     """Reason why the run is not valid; empty for a valid one."""

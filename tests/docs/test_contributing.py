@@ -1,0 +1,133 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""The diff in CONTRIBUTING.md that adds a metric is all that a new metric needs."""
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from textwrap import dedent
+
+import pytest
+from support.documented import ROOT
+
+from ddct_bringup.api import read_scores, run
+from ddct_bringup.scores.document import scores_document
+from ddct_bringup.verdict.limits import packaged_limits
+
+KEY, CRITERION = 'slip_peak_rpm', 'peak_slip'
+
+
+@pytest.fixture(scope='module')
+def patched(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a copy of the package with the diff, below a folder with scores of the code here."""
+    folder = tmp_path_factory.mktemp('metric')
+    shutil.copytree(ROOT / 'ddct_bringup' / 'ddct_bringup', folder / 'ddct_bringup/ddct_bringup')
+    page = (ROOT / 'CONTRIBUTING.md').read_text(encoding='utf-8')
+    section = page.partition('\n### A metric\n')[2]
+    diff = re.findall(r'^```diff\n(.*?)^```$', section, re.MULTILINE | re.DOTALL)[0]
+    subprocess.run(['git', 'apply', '-'], input=diff, text=True, cwd=folder, check=True)
+    before = [run('pi', out=folder / 'before').scores]
+    document = scores_document(before, packaged_limits())
+    (folder / 'scores.json').write_text(json.dumps(document), encoding='utf-8')
+    return folder
+
+
+def with_metric(folder: Path, script: str) -> str:
+    """Return the output of a script that runs with the copy of the package."""
+    path = f'{folder / "ddct_bringup"}:{os.environ.get("PYTHONPATH", "")}'
+    done = subprocess.run(
+        [sys.executable, '-c', dedent(script)],
+        cwd=folder,
+        env={**os.environ, 'PYTHONPATH': path},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def test_scores_table_and_verdict_have_it(patched: Path) -> None:
+    printed = with_metric(
+        patched,
+        """
+        import json, sys
+        from ddct_bringup.programs.score import main
+        main(['before/pi', '--json', 'after.json'])
+        """,
+    )
+    assert 'peak w_d' in printed
+    (after,) = json.loads((patched / 'after.json').read_text(encoding='utf-8'))['runs']
+    by_name = {each['name']: each for each in after['verdict']['criteria']}
+    assert after['metrics'][KEY] == by_name[CRITERION]['value'] > 1.0
+    assert (by_name[CRITERION]['unit'], by_name[CRITERION]['state']) == ('rpm', 'no_limit')
+    before = json.loads((patched / 'scores.json').read_text(encoding='utf-8'))['runs'][0]
+    assert before['metrics'] == {key: after['metrics'][key] for key in before['metrics']}
+
+
+def test_a_batch_has_the_value_of_each_single_run(patched: Path) -> None:
+    with_metric(
+        patched,
+        f"""
+        from ddct_bringup.batch.run_batch import run_batch
+        from ddct_bringup.campaign.rows import scored_headless
+        from ddct_bringup.verdict.limits import packaged_limits
+        from ddct_controllers.registry import make_controller
+        from ddct_plant.scenario.file import load_scenario
+        from ddct_plant.scenario.settings import RunSettings
+
+        scenario = load_scenario('thesis')
+        settings = [RunSettings(scenario, wear_gain=wear) for wear in (0.7, 1.0)]
+        runs = [(each, make_controller('pi', each)) for each in settings]
+        for each, found in zip(settings, run_batch(runs, packaged_limits())):
+            alone = scored_headless(each, 'pi', packaged_limits()).metrics['{KEY}']
+            assert abs(found.metrics['{KEY}'] / alone - 1.0) < 1e-9
+            assert found.verdict.values['{CRITERION}'] == found.metrics['{KEY}']
+        """,
+    )
+
+
+def test_campaigns_sweeps_report_and_pages_have_it(patched: Path) -> None:
+    with_metric(
+        patched,
+        f"""
+        import sys
+        sys.path.insert(0, {str(ROOT / 'docs')!r})
+        from ddct_bringup.campaign.rows import RunBase, result_row, scored_headless
+        from ddct_bringup.campaign_report.results import QUANTITIES
+        from ddct_bringup.programs.sweep import METRICS
+        from ddct_bringup.report.definitions import definitions
+        from ddct_bringup.verdict.limits import packaged_limits
+        from ddct_plant.scenario.file import ScenarioFile
+        from generator.score_tables import score_tables
+
+        settings = RunBase(ScenarioFile.read('thesis'), {{}}, {{}}, ()).at({{}})
+        row = result_row(scored_headless(settings, 'pi', packaged_limits()), {{}})
+        assert row['{KEY}'] == row['criterion.{CRITERION}'] > 1.0
+        assert '{KEY}' in [each.key for each in QUANTITIES] and '{KEY}' in METRICS
+        found = definitions((), thesis=False)
+        assert 'peak w_d' in [each.term for each in found['Metrics']]
+        assert 'peak slip' in [each.term for each in found['Criteria']]
+        assert '`{KEY}`' in [row[0] for row in score_tables()['metrics'].rows]
+        """,
+    )
+
+
+def test_scores_of_before_it_stay_readable(patched: Path) -> None:
+    with_metric(
+        patched,
+        f"""
+        from ddct_bringup.api import read_scores
+        from ddct_bringup.scores.document import NO_SUCH_METRIC, run_entry
+
+        (run,) = read_scores('scores.json')
+        assert run.metrics['{KEY}'] is None and run.metrics['steps'] == 300
+        assert run.not_computed == dict.fromkeys(('{KEY}', '{CRITERION}'), NO_SUCH_METRIC)
+        """,
+    )
+    (here,) = read_scores(patched / 'scores.json')
+    assert here.not_computed == {}
