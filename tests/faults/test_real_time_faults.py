@@ -19,7 +19,7 @@ from support.tampering import Tamperer, tampered_remap
 
 from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.run.timing_and_failure import read_timing
-from ddct_bringup.scores.scoring import score_recording
+from ddct_bringup.scores.scored_recording import score_recording
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.base.timebase import PERIOD_S, stamp_of_step
 from ddct_plant.fail_safe.request_watch import CLUTCH_TIMEOUT_S, FailSafeSettings
@@ -76,7 +76,7 @@ def test_bad_requests_count_as_missing_and_open_the_clutch(
     torque = recording.trajectory.clutch_torque[:, 0]
     assert torque[FROM_STEP - 1] > 50.0
     assert torque[-1] < 1.0
-    scores = score_recording(recording, 'bag', packaged_limits())
+    scores = score_recording(recording, 'bag', packaged_limits()).scores
     assert not scores.valid
     assert f'/actuator at {opened / 100:g} s' in scores.safe_state
     assert scores.safe_state in scores.reason

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from support.runs import bag_bytes, expected, plan, record
 
-from ddct_bringup.scores.scoring import score_recording
+from ddct_bringup.scores.scored_recording import score_recording
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.scenario.csv_profiles import MOST_ROWS
 
@@ -35,5 +35,5 @@ def test_graph_and_headless_agree_and_the_bag_needs_no_file(tmp_path: Path) -> N
     for recording in recordings:
         assert recording.trajectory.sha256() == wanted.sha256()
         assert recording.settings == plans[0].settings
-        assert score_recording(recording, 'x', packaged_limits()).valid
+        assert score_recording(recording, 'x', packaged_limits()).scores.valid
     assert bag_bytes(tmp_path / 'single-process') == bag_bytes(tmp_path / 'headless')

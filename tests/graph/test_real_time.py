@@ -14,7 +14,7 @@ from support.runs import expected, plan, record
 
 from ddct_bringup.bag.reader import Recording, read_bag
 from ddct_bringup.run.plan import RunPlan
-from ddct_bringup.scores.scoring import score_recording
+from ddct_bringup.scores.scored_recording import score_recording
 from ddct_bringup.scores.validity import MISS_TOLERANCE
 from ddct_bringup.verdict.limits import packaged_limits
 
@@ -50,7 +50,7 @@ def test_real_time_without_a_miss_is_lock_step_to_the_last_bit(
     assert recording.missed == {}
     assert recording.realtime.missed_steps == 0
     assert recording.trajectory.sha256() == expected(run).sha256()
-    scores = score_recording(recording, 'bag', packaged_limits())
+    scores = score_recording(recording, 'bag', packaged_limits()).scores
     assert (scores.valid, scores.safe_state) == (True, '')
 
 

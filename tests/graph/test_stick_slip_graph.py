@@ -8,7 +8,7 @@ import pytest
 from support.in_process_graph import GraphOf
 from support.runs import LAYOUTS, bag_bytes, expected, plan, record
 
-from ddct_bringup.scores.scoring import score_recording
+from ddct_bringup.scores.scored_recording import score_recording
 from ddct_bringup.verdict.limits import packaged_limits
 
 LAUNCH = (
@@ -67,7 +67,7 @@ def test_an_engine_that_over_revs_ends_every_layout_at_once_with_a_bag_that_coun
         assert speeds[-1] >= 200.0 > speeds[:-1].max()
         assert recording.trajectory.steps < run.steps
         assert recording.trajectory.sha256() == expected(run).sha256()
-        assert score_recording(recording, layout, packaged_limits()).valid
+        assert score_recording(recording, layout, packaged_limits()).scores.valid
         bags.append(bag_bytes(tmp_path / layout))
     assert bags[0] == bags[1] == bags[2]
 

@@ -19,7 +19,7 @@ from ddct_bringup.programs import report, score
 from ddct_bringup.run.timing_and_failure import NOTE_FILE
 from ddct_bringup.scores.csv_text import signals_csv
 from ddct_bringup.scores.document import run_entry
-from ddct_bringup.scores.scoring import score_recording
+from ddct_bringup.scores.scored_recording import score_recording
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.measured.columns import QUANTITIES, load_columns
 
@@ -63,7 +63,7 @@ def test_our_own_signals_as_a_foreign_log_have_the_scores_of_the_bag(tmp_path: P
     ratio = recording.settings.scenario.driveline.gear.total_ratio
     (tmp_path / 'drive.csv').write_text(signals_csv(recording))
     (tmp_path / 'map.yaml').write_text(OURS.replace('run: {', f'run: {{total_ratio: {ratio!r}, '))
-    scores = score_recording(recording, 'pi', packaged_limits())
+    scores = score_recording(recording, 'pi', packaged_limits()).scores
     found, wanted = scored(tmp_path), run_entry(scores)
     of_time = ('update_time_median_us', 'update_time_p99_us', 'missed_steps', 'resends')
     for name, value in wanted['metrics'].items():

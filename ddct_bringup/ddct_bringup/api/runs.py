@@ -20,14 +20,19 @@ from ddct_bringup.bag.writer import bag_file
 from ddct_bringup.campaign.rows import RunBase
 from ddct_bringup.metrics.metric import Metrics
 from ddct_bringup.processes.warm_parent import WarmParent
-from ddct_bringup.run.execution import execute, parent_for, simulate
+from ddct_bringup.run.execution import execute, parent_for
 from ddct_bringup.run.output_folder import run_folder
 from ddct_bringup.run.plan import RunPlan
-from ddct_bringup.run.timing_and_failure import RunTiming, read_timing
+from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_bringup.scores.csv_text import score_row, signal_columns
 from ddct_bringup.scores.document import run_entry, verdict_entry
+from ddct_bringup.scores.scored_recording import (
+    ScoredRecording,
+    run_and_score,
+    score_recording,
+    simulate_and_score,
+)
 from ddct_bringup.scores.scored_run import ScoredRun
-from ddct_bringup.scores.scoring import score_recording, score_run
 from ddct_bringup.verdict.limits import Limits, load_limits
 from ddct_controllers.from_python import chosen_from
 from ddct_controllers.registry import (
@@ -177,12 +182,10 @@ def _run(
     if out is not None:
         return _kept(plan, Path(out), limits, parent, overwrite=overwrite)
     if plan.layout == 'headless':
-        recording, timing = simulate(plan)
-        entry = score_run(recording, plan.name, limits, timing)
-        return Run(recording, entry, timing, plan.controller)
+        return _run_of(simulate_and_score(plan, limits), plan.controller)
     with tempfile.TemporaryDirectory(prefix='ddct-') as folder:
-        _execute(plan, Path(folder), parent)
-        return _read(Path(folder), plan.name, limits, plan.controller)
+        scored = run_and_score(plan, Path(folder), limits, partial(_execute, parent=parent))
+        return _run_of(scored, plan.controller)
 
 
 def compare(
@@ -234,7 +237,7 @@ def controllers_from(controllers: str | Iterable[Any] | Mapping[str, Any]) -> li
 def load(bag: str | Path, *, limits: str | Path | None = None) -> Run:
     """Return the run in a bag, given as its folder or .mcap file, scored with `limits`."""
     path = Path(bag)
-    return _read(path, path.as_posix(), load_limits(limits))
+    return _run_of(score_recording(read_bag(path), path.as_posix(), load_limits(limits)))
 
 
 def table(runs: Run | Iterable[Run]) -> Any:
@@ -286,8 +289,8 @@ def _kept(
     plan: RunPlan, out: Path, limits: Limits, parent: WarmParent | None, *, overwrite: bool
 ) -> Run:
     with run_folder(out, plan.name, overwrite=overwrite) as folder:
-        _execute(plan, folder.path, parent)
-        kept = _read(folder.path, plan.name, limits, plan.controller)
+        scored = run_and_score(plan, folder.path, limits, partial(_execute, parent=parent))
+        kept = _run_of(scored, plan.controller)
         if not kept.valid:
             return kept
         folder.commit()
@@ -300,11 +303,10 @@ def _execute(plan: RunPlan, folder: Path, parent: WarmParent | None) -> None:
         execute(plan, folder, parent=parent)
 
 
-def _read(bag: Path, name: str, limits: Limits, chosen: Chosen = '') -> Run:
-    recording = read_bag(bag)
-    scores = score_recording(recording, name, limits)
-    timing = read_timing(recording.path.parent)
-    return Run(recording, scores, timing, chosen or recording.facts.controller)
+def _run_of(scored: ScoredRecording, chosen: Chosen = '') -> Run:
+    assert scored.recording is not None, 'only a readable bag is scored here'
+    recording = scored.recording
+    return Run(recording, scored.scores, scored.timing, chosen or recording.facts.controller)
 
 
 def pandas_module() -> Any:

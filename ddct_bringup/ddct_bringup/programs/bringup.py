@@ -5,16 +5,16 @@
 import argparse
 import sys
 from contextlib import nullcontext
+from functools import partial
 from pathlib import Path
 
-from ddct_bringup.bag.reader import Recording, read_bag
 from ddct_bringup.processes.live_process import DEFAULT_PORT, live_view
 from ddct_bringup.processes.warm_parent import WarmParent
 from ddct_bringup.run.execution import parent_for, print_logs_with_warnings, run_with_progress
 from ddct_bringup.run.options import add_run_options, print_choices, settings_of
 from ddct_bringup.run.output_folder import StagedFolder, run_folder
 from ddct_bringup.run.plan import RunPlan
-from ddct_bringup.scores.scoring import score_recording
+from ddct_bringup.scores.scored_recording import ScoredRecording, run_and_score
 from ddct_bringup.scores.tables import slow_notes
 from ddct_bringup.scores.validity import realtime_summary
 from ddct_bringup.verdict.limits import Limits, add_limits_option, load_limits
@@ -76,29 +76,29 @@ def _run(
         if options.live is not None and parent
         else nullcontext() as live
     ):
-        run_with_progress(plan, folder.path, live=live, parent=parent)
-    recording = read_bag(folder.path)
-    scores = score_recording(recording, plan.name, limits)
+        execute = partial(run_with_progress, live=live, parent=parent)
+        run = run_and_score(plan, folder.path, limits, execute)
+    scores = run.scores
     if not scores.valid:
-        _print_notes(recording, folder.path)
+        _print_notes(run, folder.path)
         raise DdctError(f'{folder.path}: not valid: {scores.reason}')
     folder.commit()
     print(folder.final, flush=True)
     if changes := scores.scenario_changes:
         title = scenario_title(plan.settings.scenario.name, changes)
         print(f'{PROGRAM}: {title}', file=sys.stderr)
-    _print_notes(recording, folder.final)
+    _print_notes(run, folder.final)
     for note in slow_notes(scores):
         print(f'{PROGRAM}: {note}', file=sys.stderr)
     verdict = scores.verdict
     print(f'{PROGRAM}: state {verdict.state}, limits {verdict.limits}', file=sys.stderr)
 
 
-def _print_notes(recording: Recording, folder: Path) -> None:
+def _print_notes(run: ScoredRecording, folder: Path) -> None:
     """Print the logs with warnings and the summary of a real-time run on standard error."""
     print_logs_with_warnings(PROGRAM, [folder])
-    if not recording.facts.lockstep:
-        print(f'{PROGRAM}: {realtime_summary(recording)}', file=sys.stderr)
+    if run.recording and not run.recording.facts.lockstep:
+        print(f'{PROGRAM}: {realtime_summary(run.recording)}', file=sys.stderr)
 
 
 def _parser() -> argparse.ArgumentParser:

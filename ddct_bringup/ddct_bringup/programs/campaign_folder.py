@@ -11,7 +11,6 @@ from typing import Any
 import pyarrow as pa
 import pyarrow.csv as arrow_csv
 
-from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.campaign.columns import (
     PATH,
     SEED,
@@ -32,8 +31,8 @@ from ddct_bringup.run.execution import run_with_progress
 from ddct_bringup.run.options import add_layout_options
 from ddct_bringup.run.output_folder import StagedFolder, run_folder
 from ddct_bringup.run.plan import RunPlan
+from ddct_bringup.scores.scored_recording import run_and_score
 from ddct_bringup.scores.scored_run import ScoredRun
-from ddct_bringup.scores.scoring import score_recording
 from ddct_bringup.verdict.limits import Limits, add_limits_option, load_limits
 from ddct_plant.base.errors import DdctError, printable
 from ddct_plant.files.output_file import STDOUT, require_place, write_json, write_text
@@ -126,12 +125,11 @@ def _made_again(
 ) -> ScoredRun:
     """Execute the run of a row and return its scores; commit the folder of a valid run."""
     try:
-        run_with_progress(plan, folder.path)
+        scored = run_and_score(plan, folder.path, limits, run_with_progress).scores
     except DdctError as error:
         if row['valid'] or not row['reason']:
             raise
         raise DdctError(f'it fails as its row says ({row["reason"]}): {error}') from error
-    scored = score_recording(read_bag(folder.path), plan.name, limits)
     if scored.valid:
         folder.commit()
         print(folder.final, flush=True)

@@ -10,7 +10,7 @@ from pathlib import Path
 from ddct_bringup.processes.warm_parent import WarmParent
 from ddct_bringup.programs.report import REPORT_FILE, require_chart_library, write_report
 from ddct_bringup.report.evidence import FREQUENCY_FILE
-from ddct_bringup.report.runs import ReportRun, in_order, read_run
+from ddct_bringup.report.runs import in_order
 from ddct_bringup.run.description import custom_data
 from ddct_bringup.run.execution import parent_for, print_logs_with_warnings, run_with_progress
 from ddct_bringup.run.options import (
@@ -27,6 +27,7 @@ from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.run.timing_and_failure import note_failure
 from ddct_bringup.scores.comparison_table import print_comparison
 from ddct_bringup.scores.document import scores_document
+from ddct_bringup.scores.scored_recording import ScoredRecording, run_and_score, score_any_bag
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.verdict.limits import Limits, add_limits_option, load_limits
 from ddct_controllers.registry import controller_label, working_controllers
@@ -124,7 +125,7 @@ def _run_all(
 
 def _run(
     plan: RunPlan, out: Path, label: str, limits: Limits, parent: WarmParent | None
-) -> ReportRun:
+) -> ScoredRecording:
     """
     Execute, read and score one run; write the reason of a failed one into its folder.
 
@@ -134,17 +135,15 @@ def _run(
     bag = out / plan.name
     mark_folder(bag)
     try:
-        run_with_progress(plan, bag, label, parent=parent)
-        run = read_run(bag, out, limits)
-        if run.recording is not None:
-            return run
-        reason = run.scores.reason
+        return run_and_score(
+            plan, bag, limits, partial(run_with_progress, label=label, parent=parent)
+        )
     except DdctError as error:
         reason = str(error)
     reason = reason.replace(f'{bag}/', '')  # the folder gets its final name later
     complain(PROGRAM, f'{plan.name}: {reason}')
     note_failure(bag, reason, custom_data(plan.settings, plan.name, plan.steps))
-    return read_run(bag, out, limits)
+    return score_any_bag(bag, out, limits)
 
 
 def _report(

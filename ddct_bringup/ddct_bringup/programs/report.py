@@ -13,14 +13,10 @@ from rich.console import Console
 from ddct_bringup.bag.measured_run import add_columns_option
 from ddct_bringup.report.evidence import evidence_of
 from ddct_bringup.report.page_parts import MARKER
-from ddct_bringup.report.runs import (
-    ReportRun,
-    in_order,
-    read_run,
-    require_one_scenario,
-)
+from ddct_bringup.report.runs import in_order, require_one_scenario
 from ddct_bringup.run.output_folder import is_ours, locked_folders
 from ddct_bringup.scores.bags import bags_in
+from ddct_bringup.scores.scored_recording import ScoredRecording, score_any_bag
 from ddct_bringup.verdict.limits import Limits, add_limits_option, load_limits
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.output_file import STDOUT, require_place, write_text
@@ -61,7 +57,10 @@ def _report(argv: list[str]) -> int:
         bags = bags_in(options.runs)
         columns = load_columns(options.columns) if options.columns else None
         runs = in_order(
-            [read_run(*bag, limits, columns) for bag in with_progress(bags, len(bags), 'reading')]
+            [
+                score_any_bag(*bag, limits, columns)
+                for bag in with_progress(bags, len(bags), 'reading')
+            ]
         )
         write_report(runs, options.out, limits)
     for run in runs:
@@ -91,7 +90,7 @@ def _require_writable(out: str) -> None:
         raise DdctError(f'--out {out}: cannot be read ({error.strerror})') from error
 
 
-def write_report(runs: Sequence[ReportRun], out: str, limits: Limits) -> None:
+def write_report(runs: Sequence[ScoredRecording], out: str, limits: Limits) -> None:
     """
     Write the page of runs, in their order, judged by these limits.
 

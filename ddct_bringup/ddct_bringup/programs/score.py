@@ -15,8 +15,9 @@ from ddct_bringup.run.output_folder import is_ours, locked_folders
 from ddct_bringup.scores.bags import bag_name, bags_in
 from ddct_bringup.scores.csv_text import scores_csv
 from ddct_bringup.scores.document import scores_document
+from ddct_bringup.scores.scored_recording import score_recording
 from ddct_bringup.scores.scored_run import ScoredRun
-from ddct_bringup.scores.scoring import score_recording, unreadable_run
+from ddct_bringup.scores.scoring import unreadable_run
 from ddct_bringup.scores.signal_files import signal_file_stems, write_signals
 from ddct_bringup.scores.tables import BAG, COLUMNS, CONTROLLER, WEAR, print_runs
 from ddct_bringup.scores.validity import MISS_TOLERANCE
@@ -94,7 +95,7 @@ def _scored(
                 complain(PROGRAM, f'{name}: {line}')
             for ending, target in wanted.items():
                 write_signals(target, f'{stems[bag]}.{ending}', recording)
-            runs.append(score_recording(recording, name, limits))
+            runs.append(score_recording(recording, name, limits).scores)
         except DdctError as error:
             unreadable = unreadable_run(bag, error, relative_to=folder)
             complain(PROGRAM, unreadable.reason)

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from ddct_bringup.report.page_parts import number_text
-from ddct_bringup.report.runs import ReportRun
+from ddct_bringup.scores.scored_recording import ScoredRecording
 from ddct_controllers.design.analysis.margins import LOOP_QUANTITIES
 from ddct_controllers.workflows.evidence import Evidence, actuator_conditions, frequency_evidence
 from ddct_plant.base.errors import DdctError, ParameterError, require_number
@@ -44,14 +44,14 @@ class LoopEvidence:
         return next((point for point in points if point['wear_gain'] == self.wear_gain), None)
 
 
-def evidence_of(runs: Iterable[ReportRun]) -> list[LoopEvidence]:
+def evidence_of(runs: Iterable[ScoredRecording]) -> list[LoopEvidence]:
     """
     Return the evidence of every controller and wear gain of the readable runs, each once.
 
     A log has none, as its closed loop is not known.
     """
     found: dict[tuple[str, float], LoopEvidence | None] = {}
-    missing: dict[float, dict[str, ReportRun]] = {}
+    missing: dict[float, dict[str, ScoredRecording]] = {}
     logs: dict[str, LoopEvidence] = {}
     for run in runs:
         if run.recording is None:
@@ -72,7 +72,7 @@ def evidence_of(runs: Iterable[ReportRun]) -> list[LoopEvidence]:
     return [*(each or computed[key] for key, each in found.items()), *logs.values()]
 
 
-def _stored(run: ReportRun, controller: str, wear_gain: float) -> LoopEvidence | None:
+def _stored(run: ScoredRecording, controller: str, wear_gain: float) -> LoopEvidence | None:
     """Return the evidence of exactly this loop from the file next to the bag's folder, if any."""
     assert run.recording is not None
     content = _content(run.recording.path.parent.parent / FREQUENCY_FILE)
@@ -86,7 +86,7 @@ def _stored(run: ReportRun, controller: str, wear_gain: float) -> LoopEvidence |
     return LoopEvidence(controller, wear_gain, entry) if _is_whole(entry, wear_gain) else None
 
 
-def _has_actuator_of(run: ReportRun, conditions: Evidence) -> bool:
+def _has_actuator_of(run: ScoredRecording, conditions: Evidence) -> bool:
     """Return whether a file has the run's actuator; older ones have the printed one."""
     if run.settings is None:
         return True
@@ -123,7 +123,7 @@ def _content(file: Path) -> dict[str, Any]:
     return content if isinstance(content, dict) else {}
 
 
-def _computed(runs: Mapping[str, ReportRun], wear_gain: float) -> list[LoopEvidence]:
+def _computed(runs: Mapping[str, ScoredRecording], wear_gain: float) -> list[LoopEvidence]:
     """Return the evidence of the controllers in the loops of their runs, all of one wear gain."""
     settings = next((run.settings for run in runs.values() if run.settings), None)
     if settings is None:

@@ -27,7 +27,7 @@ from ddct_bringup.report.page_parts import MARKER, json_data, page_part, page_te
 from ddct_bringup.report.pareto import pair_key, pareto_view
 from ddct_bringup.report.phase_lanes import LANES, OPACITY
 from ddct_bringup.report.run_tables import TICKS, run_origin, time_place, update_times
-from ddct_bringup.report.runs import ReportRun, common_conditions, run_labels
+from ddct_bringup.report.runs import common_conditions, run_labels
 from ddct_bringup.report.score_tables import (
     NOT_JUDGED,
     comparable_rows,
@@ -35,6 +35,7 @@ from ddct_bringup.report.score_tables import (
     verdict_rows,
 )
 from ddct_bringup.run.description import short_commit
+from ddct_bringup.scores.scored_recording import ScoredRecording
 from ddct_bringup.scores.tables import fallback_note
 from ddct_bringup.thesis.table_5_1 import PREDICTION_TOLERANCE
 from ddct_bringup.verdict.limits import Limits
@@ -59,7 +60,7 @@ first ones.
 
 
 def report_page(
-    runs: Sequence[ReportRun], evidence: Sequence[LoopEvidence], limits: Limits
+    runs: Sequence[ScoredRecording], evidence: Sequence[LoopEvidence], limits: Limits
 ) -> str:
     """
     Return the HTML of a report on runs of one scenario, at least one of them readable.
@@ -119,7 +120,7 @@ def report_page(
     )
 
 
-def _simulated_first(runs: Sequence[ReportRun]) -> list[Recording]:
+def _simulated_first(runs: Sequence[ScoredRecording]) -> list[Recording]:
     """Return the recordings, those of logs last: they have fewer facts of the scenario."""
     read = [run.recording for run in runs if run.recording is not None]
     return sorted(read, key=lambda each: each.measured)
@@ -138,21 +139,21 @@ def _other_times(
     ]
 
 
-def _scenario_title(runs: Sequence[ReportRun]) -> str:
+def _scenario_title(runs: Sequence[ScoredRecording]) -> str:
     """Return the common scenario of the readable runs with its changes."""
     readable = [run.scores for run in runs if run.recording is not None]
     changes = (run.scenario_changes for run in readable if run.scenario_changes)
     return scenario_title(readable[0].scenario or '', next(changes, ()))
 
 
-def _sensors(runs: Sequence[ReportRun]) -> str | None:
+def _sensors(runs: Sequence[ScoredRecording]) -> str | None:
     """Return the sensor keys of the scenario as text; None where control uses the true signals."""
     told = (run.settings.scenario.sensors for run in runs if run.settings is not None)
     sensors = next(told, None)
     return None if sensors is None else sensors.text
 
 
-def _page_runs(runs: Sequence[ReportRun]) -> list[dict[str, Any]]:
+def _page_runs(runs: Sequence[ScoredRecording]) -> list[dict[str, Any]]:
     """Return the data of each run for the template."""
     scored = [run.scores for run in runs]
     looks = looks_of(run.label for run in scored)
@@ -192,7 +193,7 @@ def _chart_run(run: dict[str, Any]) -> ChartRun:
     )
 
 
-def _shown_at_first(runs: Sequence[ReportRun]) -> list[bool]:
+def _shown_at_first(runs: Sequence[ScoredRecording]) -> list[bool]:
     if len(runs) <= SHOWN_AT_FIRST:
         return [True] * len(runs)
     of_table = [row is not None for row in comparable_rows(runs)]

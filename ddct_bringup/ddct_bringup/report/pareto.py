@@ -15,7 +15,7 @@ from itertools import combinations_with_replacement
 from ddct_bringup.metrics.catalogue import CRITERIA
 from ddct_bringup.metrics.metric import Criterion
 from ddct_bringup.report.page_parts import unit_text, value_text
-from ddct_bringup.report.runs import ReportRun
+from ddct_bringup.scores.scored_recording import ScoredRecording
 from ddct_bringup.verdict.state import ENGAGED
 
 DEFAULT_PAIR = ('friction_energy', 'peak_jerk')
@@ -55,7 +55,7 @@ def pair_key(first: str, second: str) -> str:
     return ' '.join(sorted((first, second)))
 
 
-def pareto_view(runs: Sequence[ReportRun]) -> ParetoView | None:
+def pareto_view(runs: Sequence[ScoredRecording]) -> ParetoView | None:
     """Return the view of the runs, None where no two criteria have values of two runs."""
     magnitudes = _magnitudes(runs)
     if len(magnitudes) < 2:
@@ -98,7 +98,7 @@ def non_dominated(points: Mapping[int, tuple[float, float]]) -> list[int]:
     ]
 
 
-def _magnitudes(runs: Sequence[ReportRun]) -> dict[str, dict[int, float]]:
+def _magnitudes(runs: Sequence[ScoredRecording]) -> dict[str, dict[int, float]]:
     """Return the magnitudes of the valid runs by criterion, where two or more runs have one."""
     found: dict[str, dict[int, float]] = {criterion.key: {} for criterion in CRITERIA}
     for index, run in enumerate(runs):

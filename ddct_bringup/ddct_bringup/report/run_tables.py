@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ddct_bringup.bag.run_facts import CONTROLLER_NODE
-from ddct_bringup.report.runs import ReportRun
 from ddct_bringup.run.description import UNKNOWN
 from ddct_bringup.run.timing_and_failure import RunTiming
+from ddct_bringup.scores.scored_recording import ScoredRecording
 from ddct_plant.base.timebase import PERIOD_S
 
 _CONDITIONS = ('controller', 'architecture', 'clutch', 'wear_gain', 'mode', 'seed')
@@ -29,7 +29,7 @@ class RunOrigin:
     version: str
 
 
-def run_origin(run: ReportRun) -> RunOrigin:
+def run_origin(run: ScoredRecording) -> RunOrigin:
     """Return the origin of a run, with dashes for missing facts of a log or an unreadable bag."""
     unknown = ('seed',) if run.measured else ()
     facts = run.scores.facts
@@ -67,7 +67,7 @@ class UpdateTimes:
     """Number of updates that took longer than the period."""
 
 
-def update_times(run: ReportRun) -> UpdateTimes | None:
+def update_times(run: ScoredRecording) -> UpdateTimes | None:
     """Return the update times of a run, None where none were recorded."""
     timing = run.timing
     median, p99 = (run.scores.metrics[f'update_time_{name}_us'] for name in ('median', 'p99'))

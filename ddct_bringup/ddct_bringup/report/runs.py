@@ -1,30 +1,15 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""
-Runs of a report, read from their bags; a bag that cannot be read is included.
-
-Their labels are the controller, and the conditions in which they differ.
-"""
+"""Labels and order of the runs of a report: controller, and conditions in which they differ."""
 
 from collections import Counter
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from functools import cached_property
-from pathlib import Path
 
-from ddct_bringup.bag.measured_run import read_recording
-from ddct_bringup.bag.reader import Recording
 from ddct_bringup.bag.run_facts import MEASURED, RunConditions
-from ddct_bringup.run.timing_and_failure import RunTiming, read_timing
-from ddct_bringup.scores.bags import bag_name
+from ddct_bringup.scores.scored_recording import ScoredRecording
 from ddct_bringup.scores.scored_run import ScoredRun
-from ddct_bringup.scores.scoring import score_recording, unreadable_run
-from ddct_bringup.verdict.limits import Limits
 from ddct_controllers.registry import controller_names
 from ddct_plant.base.errors import DdctError
-from ddct_plant.measured.columns import ColumnMap
-from ddct_plant.scenario.file import scenario_digest
-from ddct_plant.scenario.settings import RunSettings
 
 _CONDITIONS: dict[str, Callable[[RunConditions], str]] = {
     'architecture': lambda facts: facts.architecture,
@@ -36,57 +21,13 @@ _CONDITIONS: dict[str, Callable[[RunConditions], str]] = {
 """Conditions of a run that its label contains when the runs differ in them."""
 
 
-@dataclass(frozen=True)
-class ReportRun:
-    """One bag and its content."""
-
-    scores: ScoredRun
-    recording: Recording | None = None
-    """Recording; None where the bag cannot be read."""
-    timing: RunTiming | None = None
-    """Timing; None without a `timing.json` next to the bag."""
-    settings: RunSettings | None = None
-    """Settings of the run, as `Recording.settings`."""
-
-    @property
-    def measured(self) -> bool:
-        """Whether it is the log of a car."""
-        return self.recording is not None and self.recording.measured
-
-    @cached_property
-    def digest(self) -> str | None:
-        """
-        Digest that distinguishes scenarios of one name, None where the bag has no settings.
-
-        It is computed from the settings: the bag's own digest changes when a version adds a
-        scenario key.
-        """
-        if self.settings:
-            return scenario_digest(self.settings.scenario)
-        nodes = self.recording.run_info.values() if self.recording else ()
-        return next((node['scenario_digest'] for node in nodes if 'scenario_digest' in node), None)
-
-
-def read_run(
-    bag: Path, folder: Path | None, limits: Limits, columns: ColumnMap | None = None
-) -> ReportRun:
-    """Read and judge a bag, which is named relative to the folder; never raises DdctError."""
-    try:
-        recording = read_recording(bag, columns)
-        scores = score_recording(recording, bag_name(bag, folder), limits)
-        timing = None if recording.measured else read_timing(recording.path.parent)
-        return ReportRun(scores, recording, timing, recording.settings)
-    except DdctError as error:
-        return ReportRun(unreadable_run(bag, error, relative_to=folder))
-
-
-def in_order(runs: Sequence[ReportRun]) -> list[ReportRun]:
+def in_order(runs: Sequence[ScoredRecording]) -> list[ScoredRecording]:
     """Return the runs in the order of their controllers in the registry, logs last."""
     places = {name: place for place, name in enumerate(controller_names())}
     return sorted(runs, key=lambda run: (run.measured, places.get(run.scores.label, len(places))))
 
 
-def require_one_scenario(runs: Sequence[ReportRun]) -> None:
+def require_one_scenario(runs: Sequence[ScoredRecording]) -> None:
     """
     Raise DdctError with the scenarios when the readable runs have different ones.
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from ddct_bringup.metrics.catalogue import CRITERIA
 from ddct_bringup.report.page_parts import number_text, value_text
-from ddct_bringup.report.runs import ReportRun
+from ddct_bringup.scores.scored_recording import ScoredRecording
 from ddct_bringup.thesis.predictions import predicted_range
 from ddct_bringup.thesis.table_5_1 import PREDICTED, ThesisRow, is_thesis_run, thesis_row
 from ddct_bringup.verdict.verdict import NO_LIMIT, TRACTION, CriterionResult
@@ -45,7 +45,7 @@ class Cell:
     """Hit or miss, for a predicted value of a valid run."""
 
 
-def comparable_rows(runs: Sequence[ReportRun]) -> list[ThesisRow | None]:
+def comparable_rows(runs: Sequence[ScoredRecording]) -> list[ThesisRow | None]:
     """Return for each run the row of Table 5.1 that it is comparable with."""
     return [
         thesis_row(run.scores.label)
@@ -56,7 +56,7 @@ def comparable_rows(runs: Sequence[ReportRun]) -> list[ThesisRow | None]:
 
 
 def metric_cells(
-    column: Quantity, runs: Sequence[ReportRun], rows: Sequence[ThesisRow | None]
+    column: Quantity, runs: Sequence[ScoredRecording], rows: Sequence[ThesisRow | None]
 ) -> list[Cell]:
     """Return one cell per run; bars have the scale of the largest value, computed or printed."""
     values = [run.scores.metrics[column.key] for run in runs]
@@ -140,7 +140,7 @@ _TRACTION = Quantity(
 )
 
 
-def verdict_rows(runs: Sequence[ReportRun]) -> list[VerdictRow]:
+def verdict_rows(runs: Sequence[ScoredRecording]) -> list[VerdictRow]:
     """Return a row per criterion, then the traction; a run not judged has no values."""
     judged = [{each.name: each for each in run.scores.verdict.results} for run in runs]
     reasons = [{**(OF_NO_LOG if run.measured else {}), **run.scores.not_computed} for run in runs]

@@ -15,7 +15,7 @@ from ddct_bringup.metrics.engagement import Engagement
 from ddct_bringup.metrics.metric import Metrics, finite
 from ddct_bringup.metrics.plant import JudgedPlant
 from ddct_bringup.metrics.values import criteria_of, existing, metrics_of, window_steps
-from ddct_bringup.run.timing_and_failure import RunTiming, failed_run, read_timing
+from ddct_bringup.run.timing_and_failure import RunTiming, failed_run
 from ddct_bringup.scores.bags import bag_name
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.scores.validity import engine_end, safe_state, why_invalid
@@ -28,19 +28,6 @@ from ddct_plant.files.input_file import mcap_of
 from ddct_plant.scenario.differences import changed_values
 
 _COUNT = re.compile('[0-9]{1,9}')
-
-
-def score_recording(recording: Recording, bag: str, limits: Limits) -> ScoredRun:
-    """
-    Score and judge a recording, with its `timing.json` if there is one; `bag` is its name.
-
-    The recording of a failed run has no score. Raise DdctError for timing that cannot be used.
-    """
-    if recording.measured:
-        return score_run(recording, bag, limits, None)
-    if failure := failed_run(recording.path.parent):
-        return run_without_score(bag, recording.facts, failure.reason)
-    return score_run(recording, bag, limits, read_timing(recording.path.parent))
 
 
 def score_run(

@@ -16,9 +16,9 @@ from ddct_bringup.bag.run_facts import RealtimeFacts
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.report.page import report_page
 from ddct_bringup.report.page_parts import symbols
-from ddct_bringup.report.runs import ReportRun
 from ddct_bringup.run.headless import run_headless
-from ddct_bringup.scores.scoring import score_recording, unreadable_run
+from ddct_bringup.scores.scored_recording import ScoredRecording, score_recording
+from ddct_bringup.scores.scoring import unreadable_run
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.base.errors import DdctError
 from ddct_plant.scenario.file import load_scenario
@@ -83,10 +83,10 @@ def html() -> str:
     runs = [
         # Two of one controller, so that the labels of the charts name the bags.
         *(
-            ReportRun(score_recording(whole, bag, packaged_limits()), whole)
+            ScoredRecording(score_recording(whole, bag, packaged_limits()).scores, whole)
             for bag in (f'{EVIL}/a', f'{EVIL}/b')
         ),
-        ReportRun(unreadable_run(Path(EVIL), DdctError(f'damaged {EVIL}'))),
+        ScoredRecording(unreadable_run(Path(EVIL), DdctError(f'damaged {EVIL}'))),
     ]
     limits = replace(packaged_limits(), origin={**packaged_limits().origin, 'name': EVIL})
     return report_page(runs, [], limits)

@@ -12,7 +12,7 @@ from test_report_escaping import SETTINGS, recording
 
 from ddct_bringup.report import evidence
 from ddct_bringup.report.evidence import COMPUTED, FREQUENCY_FILE, LoopEvidence, loop_rows
-from ddct_bringup.report.runs import ReportRun
+from ddct_bringup.scores.scored_recording import ScoredRecording
 from ddct_controllers.workflows.evidence import actuator_conditions, frequency_evidence
 from ddct_plant.scenario.file import load_scenario, scenario_digest
 from ddct_plant.scenario.settings import RunSettings
@@ -36,7 +36,8 @@ def remark(tmp_path, monkeypatch, whole, run):
 
     def read(text: str, settings: RunSettings = SETTINGS) -> str:
         (tmp_path / FREQUENCY_FILE).write_text(text, encoding='utf-8')
-        (loop,) = evidence.evidence_of([ReportRun(made_scores('pi'), found, None, settings)])
+        recorded = dataclasses.replace(found, simulated=settings)
+        (loop,) = evidence.evidence_of([ScoredRecording(made_scores('pi'), recorded)])
         assert len(loop_rows([loop])) == 1
         return loop.remark
 

@@ -9,8 +9,8 @@ from made_run import made_facts
 from ddct_bringup.bag.reader import Recording
 from ddct_bringup.bag.run_facts import RealtimeFacts
 from ddct_bringup.report.page import report_page
-from ddct_bringup.report.runs import ReportRun
 from ddct_bringup.run.headless import run_headless
+from ddct_bringup.scores.scored_recording import ScoredRecording
 from ddct_bringup.scores.scoring import score_run
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.scenario.file import load_scenario, scenario_to_yaml
@@ -39,8 +39,8 @@ def page(*changes: str) -> str:
         missed={},
         realtime=RealtimeFacts(),
     )
-    entry = score_run(recording, 'pi', packaged_limits(), None)
-    return report_page([ReportRun(entry, recording, None, settings)], [], packaged_limits())
+    scores = score_run(recording, 'pi', packaged_limits(), None)
+    return report_page([ScoredRecording(scores, recording)], [], packaged_limits())
 
 
 def test_sensors_are_named_and_have_their_chart():

@@ -4,16 +4,19 @@
 
 import dataclasses
 import re
+from pathlib import Path
 
 import pytest
+from made_run import made_facts, made_run, times
 from made_scores import made_scores
 
+from ddct_bringup.bag.reader import Recording
 from ddct_bringup.metrics.catalogue import TABLE_5_1
 from ddct_bringup.report.evidence import NOT_LINEAR, LoopEvidence, loop_rows, without_evidence
 from ddct_bringup.report.run_tables import TICKS, time_place, update_times
-from ddct_bringup.report.runs import ReportRun
 from ddct_bringup.report.score_tables import comparable_rows, metric_cells
 from ddct_bringup.run.timing_and_failure import RunTiming
+from ddct_bringup.scores.scored_recording import ScoredRecording
 from ddct_controllers.design.analysis.margins import LOOP_QUANTITIES
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
@@ -22,7 +25,10 @@ THESIS = load_scenario('thesis')
 
 
 def run(controller='ls8', settings=None, timing=None, valid=True, **metrics):
-    return ReportRun(made_scores(controller, valid=valid, **metrics), None, timing, settings)
+    facts = made_facts(controller=controller)
+    trajectory = made_run(times())
+    recording = Recording(Path(), trajectory, facts, simulated=settings)
+    return ScoredRecording(made_scores(controller, valid=valid, **metrics), recording, timing)
 
 
 @pytest.mark.parametrize(

@@ -8,8 +8,8 @@ from made_scores import made_scores
 from ddct_bringup.metrics.catalogue import CRITERIA
 from ddct_bringup.report.page_parts import unit_text, value_text
 from ddct_bringup.report.pareto import DEFAULT_PAIR, non_dominated, pair_key, pareto_view
-from ddct_bringup.report.runs import ReportRun
 from ddct_bringup.report.score_tables import NOT_JUDGED, verdict_rows
+from ddct_bringup.scores.scored_recording import ScoredRecording
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_bringup.verdict.verdict import verdict_of
 
@@ -19,10 +19,10 @@ def run(state='engaged', **values):
     found = dict.fromkeys(criterion.key for criterion in CRITERIA) | values
     exists = dict.fromkeys(found, True)
     verdict = verdict_of(state, found, packaged_limits(), 'thesis', exists=exists)
-    return ReportRun(made_scores(verdict=verdict))
+    return ScoredRecording(made_scores(verdict=verdict))
 
 
-FAILED = ReportRun(made_scores(valid=False, reason='killed'))
+FAILED = ScoredRecording(made_scores(valid=False, reason='killed'))
 
 
 def row_of(name, runs):

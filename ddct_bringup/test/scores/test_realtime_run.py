@@ -12,7 +12,7 @@ from ddct_bringup.bag.reader import Recording
 from ddct_bringup.bag.run_facts import RealtimeFacts
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.run.timing_and_failure import RunTiming
-from ddct_bringup.scores.scoring import score_recording
+from ddct_bringup.scores.scored_recording import score_recording
 from ddct_bringup.scores.validity import realtime_summary, why_invalid
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.base.timebase import stamp_of_step
@@ -48,7 +48,7 @@ def recording(
 
 
 def scored(run):
-    return score_recording(run, 'bag', packaged_limits())
+    return score_recording(run, 'bag', packaged_limits()).scores
 
 
 @pytest.mark.parametrize('mode', ['lockstep', 'realtime'])

@@ -13,7 +13,7 @@ from ddct_bringup.bag.reader import Recording
 from ddct_bringup.bag.run_facts import RealtimeFacts
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.run.headless import run_headless
-from ddct_bringup.scores.scoring import score_recording
+from ddct_bringup.scores.scored_recording import score_recording
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.models.engine_limits import EngineLimits
 from ddct_plant.scenario.file import load_scenario, scenario_to_yaml
@@ -36,7 +36,7 @@ def scored(last_engine_speed, rows=301, engine_limits=ENGINE_LIMITS, **signals):
     scenario = dataclasses.replace(SETTINGS.scenario, engine_limits=engine_limits)
     data = {'scenario_yaml': scenario_to_yaml(scenario)}
     recording = Recording(Path('x.mcap'), trajectory, FACTS, data, {}, {}, {}, RealtimeFacts())
-    return score_recording(recording, 'x', packaged_limits())
+    return score_recording(recording, 'x', packaged_limits()).scores
 
 
 @pytest.mark.parametrize(
