@@ -5,7 +5,7 @@
 import json
 from collections.abc import Callable, Mapping
 
-from ddct_bringup.reproduction.calibration.tables import all_tables
+from ddct_bringup.reproduction.calibration.record_tables import all_tables
 from ddct_bringup.reproduction.figures.command import NOT_DRAWN, collect_figures
 from ddct_bringup.reproduction.figures.thesis_figure import ThesisFigure
 from ddct_bringup.reproduction.numbers.command import SOURCES, compute

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from ddct_bringup.api.runs import base_from, controllers_from, pandas_module, plain
+from ddct_bringup.api.single_run import base_from, controllers_from, pandas_module, plain
 from ddct_bringup.campaign.columns import INDEX
 from ddct_bringup.campaign.conduct import carry_out
 from ddct_bringup.campaign.manifest import Manifest

@@ -14,8 +14,8 @@ from ddct_bringup.run.execution import parent_for, print_logs_with_warnings, run
 from ddct_bringup.run.options import add_run_options, print_choices, settings_of
 from ddct_bringup.run.output_folder import StagedFolder, run_folder
 from ddct_bringup.run.plan import RunPlan
+from ddct_bringup.scores.run_table import slow_notes
 from ddct_bringup.scores.scored_recording import ScoredRecording, run_and_score
-from ddct_bringup.scores.tables import slow_notes
 from ddct_bringup.scores.validity import realtime_summary
 from ddct_bringup.verdict.limits import Limits, add_limits_option, load_limits
 from ddct_controllers.registry import controller_label

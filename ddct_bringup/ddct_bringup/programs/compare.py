@@ -10,7 +10,7 @@ from pathlib import Path
 from ddct_bringup.processes.warm_parent import WarmParent
 from ddct_bringup.programs.report import REPORT_FILE, require_chart_library, write_report
 from ddct_bringup.report.evidence import FREQUENCY_FILE
-from ddct_bringup.report.runs import in_order
+from ddct_bringup.report.run_labels import in_order
 from ddct_bringup.run.description import custom_data
 from ddct_bringup.run.execution import parent_for, print_logs_with_warnings, run_with_progress
 from ddct_bringup.run.options import (

@@ -13,7 +13,7 @@ from rich.console import Console
 from ddct_bringup.bag.measured_run import add_columns_option
 from ddct_bringup.report.evidence import evidence_of
 from ddct_bringup.report.page_parts import MARKER
-from ddct_bringup.report.runs import in_order, require_one_scenario
+from ddct_bringup.report.run_labels import in_order, require_one_scenario
 from ddct_bringup.run.output_folder import is_ours, locked_folders
 from ddct_bringup.scores.bags import bags_in
 from ddct_bringup.scores.scored_recording import ScoredRecording, score_any_bag

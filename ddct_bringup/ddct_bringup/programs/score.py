@@ -15,11 +15,11 @@ from ddct_bringup.run.output_folder import is_ours, locked_folders
 from ddct_bringup.scores.bags import bag_name, bags_in
 from ddct_bringup.scores.csv_text import scores_csv
 from ddct_bringup.scores.document import scores_document
+from ddct_bringup.scores.run_table import BAG, COLUMNS, CONTROLLER, WEAR, print_runs
 from ddct_bringup.scores.scored_recording import score_recording
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.scores.scoring import unreadable_run
 from ddct_bringup.scores.signal_files import signal_file_stems, write_signals
-from ddct_bringup.scores.tables import BAG, COLUMNS, CONTROLLER, WEAR, print_runs
 from ddct_bringup.scores.validity import MISS_TOLERANCE
 from ddct_bringup.verdict.limits import Limits, add_limits_option, load_limits
 from ddct_plant.base.errors import DdctError

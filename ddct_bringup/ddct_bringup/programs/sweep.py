@@ -19,7 +19,7 @@ from ddct_bringup.run.options import (
     controllers_of,
     print_choices,
 )
-from ddct_bringup.scores.tables import table_console
+from ddct_bringup.scores.run_table import table_console
 from ddct_bringup.sweep.axis import axis_of
 from ddct_bringup.sweep.sweep import (
     Sweep,

@@ -26,8 +26,8 @@ from ddct_bringup.report.evidence import COMPUTED, LoopEvidence, loop_rows, with
 from ddct_bringup.report.page_parts import MARKER, json_data, page_part, page_template
 from ddct_bringup.report.pareto import pair_key, pareto_view
 from ddct_bringup.report.phase_lanes import LANES, OPACITY
+from ddct_bringup.report.run_labels import common_conditions, run_labels
 from ddct_bringup.report.run_tables import TICKS, run_origin, time_place, update_times
-from ddct_bringup.report.runs import common_conditions, run_labels
 from ddct_bringup.report.score_tables import (
     NOT_JUDGED,
     comparable_rows,
@@ -35,8 +35,8 @@ from ddct_bringup.report.score_tables import (
     verdict_rows,
 )
 from ddct_bringup.run.description import short_commit
+from ddct_bringup.scores.run_table import fallback_note
 from ddct_bringup.scores.scored_recording import ScoredRecording
-from ddct_bringup.scores.tables import fallback_note
 from ddct_bringup.thesis.table_5_1 import PREDICTION_TOLERANCE
 from ddct_bringup.verdict.limits import Limits
 from ddct_controllers.design.analysis.margins import LOOP_QUANTITIES

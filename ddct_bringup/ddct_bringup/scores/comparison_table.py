@@ -7,8 +7,7 @@ from dataclasses import replace
 from typing import TextIO
 
 from ddct_bringup.metrics.catalogue import TABLE_5_1
-from ddct_bringup.scores.scored_run import ScoredRun
-from ddct_bringup.scores.tables import (
+from ddct_bringup.scores.run_table import (
     ACCELERATION_STD,
     CONTROLLER,
     ENGAGEMENT_TIME,
@@ -20,6 +19,7 @@ from ddct_bringup.scores.tables import (
     RunColumn,
     print_runs,
 )
+from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.thesis.predictions import predicted_range
 from ddct_bringup.thesis.table_5_1 import (
     PREDICTED,

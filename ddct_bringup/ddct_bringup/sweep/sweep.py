@@ -17,8 +17,8 @@ from ddct_bringup.campaign.rows import (
 )
 from ddct_bringup.scores.csv_text import rows_csv
 from ddct_bringup.scores.document import run_entry
+from ddct_bringup.scores.run_table import CONTROLLER, STATE, RunColumn, dash_notes, metric
 from ddct_bringup.scores.scored_run import ScoredRun
-from ddct_bringup.scores.tables import CONTROLLER, STATE, RunColumn, dash_notes, metric
 from ddct_bringup.sweep.axis import MOST, Axis, value_text
 from ddct_bringup.verdict.limits import Limits
 from ddct_controllers.registry import Chosen, controller_label

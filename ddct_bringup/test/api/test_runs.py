@@ -17,7 +17,7 @@ import pytest
 from refusals import refused
 
 from ddct_bringup import api
-from ddct_bringup.api import runs
+from ddct_bringup.api import single_run
 from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.bag.trajectory_bag import write_trajectory
 from ddct_bringup.programs.bringup import main as bringup
@@ -293,7 +293,7 @@ def test_a_run_that_is_not_valid_leaves_a_good_result_as_it_is(tmp_path, monkeyp
         info = {'load': {'version': '0.1.0'}}
         write_trajectory(run_headless(settings, 'ls8'), folder, plan.name, data, info)
 
-    monkeypatch.setattr(runs, 'execute', half)
+    monkeypatch.setattr(single_run, 'execute', half)
     bad = api.run('ls8', duration=SHORT_S, out=tmp_path, overwrite=True)
     assert not bad.valid
     assert 'ended early' in bad.reason

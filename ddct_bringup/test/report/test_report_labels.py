@@ -4,7 +4,7 @@
 
 from made_scores import made_scores
 
-from ddct_bringup.report.runs import common_conditions, run_labels
+from ddct_bringup.report.run_labels import common_conditions, run_labels
 from ddct_bringup.scores.scoring import run_without_score
 
 

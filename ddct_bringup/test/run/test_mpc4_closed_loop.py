@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from ddct_bringup.reproduction.runs import HeadlessRun, StaticControllerAlone, thesis_run
+from ddct_bringup.reproduction.headless_run import HeadlessRun, StaticControllerAlone, thesis_run
 from ddct_bringup.reproduction.studies.changed_loops import (
     LoopWithoutActuator,
     closed_loop,

@@ -6,7 +6,12 @@ import numpy as np
 import pytest
 import scipy.linalg
 
-from ddct_bringup.reproduction.runs import THESIS_SCENARIO, HeadlessRun, headless_run, thesis_run
+from ddct_bringup.reproduction.headless_run import (
+    THESIS_SCENARIO,
+    HeadlessRun,
+    headless_run,
+    thesis_run,
+)
 from ddct_bringup.reproduction.studies.clutch_torque_limit import clutch_torque_limit, limit_at
 from ddct_bringup.reproduction.studies.readings import readings
 from ddct_bringup.reproduction.studies.study import TABLE_5_1, cells

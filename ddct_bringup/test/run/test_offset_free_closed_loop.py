@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ddct_bringup.reproduction.runs import headless_run
+from ddct_bringup.reproduction.headless_run import headless_run
 from ddct_bringup.reproduction.studies.changed_loops import NoisySpeeds, slip_after_load_step
 from ddct_bringup.reproduction.studies.study import FINER_WEAR_GAINS
 from ddct_bringup.reproduction.studies.sweeps import torsion_weight

@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from ddct_bringup.reproduction.runs import headless_run
+from ddct_bringup.reproduction.headless_run import headless_run
 from ddct_bringup.reproduction.studies import sweeps as studies
 from ddct_bringup.reproduction.studies.study import close_time_s
 from ddct_bringup.run.headless import run_headless

@@ -11,7 +11,7 @@ from made_scores import made_scores as run
 from printed_table import value_under
 
 from ddct_bringup.metrics.catalogue import METRICS
-from ddct_bringup.scores.tables import BAG, COLUMNS, CONTROLLER, WEAR, metric, print_runs
+from ddct_bringup.scores.run_table import BAG, COLUMNS, CONTROLLER, WEAR, metric, print_runs
 from ddct_plant.program.table import Column, Quantity
 
 

@@ -6,7 +6,7 @@ from functools import cache
 
 import pytest
 
-from ddct_bringup.reproduction.runs import headless_run
+from ddct_bringup.reproduction.headless_run import headless_run
 from ddct_plant.models.clutch import STICK_SLIP
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings

@@ -17,7 +17,7 @@ from ddct_bringup.reproduction.calibration.record import (
     check_frozen,
     scenario_text,
 )
-from ddct_bringup.reproduction.calibration.tables import all_tables, check_tables
+from ddct_bringup.reproduction.calibration.record_tables import all_tables, check_tables
 from ddct_bringup.thesis.predictions import FILE as PREDICTIONS_FILE
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.output_file import STDOUT, require_place, write_json, write_text

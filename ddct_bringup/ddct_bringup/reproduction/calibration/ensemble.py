@@ -38,7 +38,7 @@ from ddct_bringup.reproduction.calibration.parameters import (
 from ddct_bringup.reproduction.calibration.problem import Problem
 from ddct_bringup.reproduction.calibration.record import annotated_yaml
 from ddct_bringup.reproduction.calibration.search import WINDOW_ENDS_S, Progress, centre, rim
-from ddct_bringup.reproduction.runs import headless_run
+from ddct_bringup.reproduction.headless_run import headless_run
 from ddct_bringup.thesis.predictions import folder_of_members
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.output_file import write_text

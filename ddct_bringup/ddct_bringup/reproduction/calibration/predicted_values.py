@@ -10,7 +10,7 @@ qualitative rating of Table 5.2 the prediction is hit or miss, with the numbers 
 from collections.abc import Iterable
 
 from ddct_bringup.reproduction.calibration.search import Progress
-from ddct_bringup.reproduction.runs import StaticControllerAlone, headless_run
+from ddct_bringup.reproduction.headless_run import StaticControllerAlone, headless_run
 from ddct_bringup.reproduction.values.orders import (
     SLIP_RATINGS,
     WORN,

@@ -29,7 +29,7 @@ from ddct_bringup.reproduction.calibration.parameters import (
     pi_growth_rate,
     residual_rows,
 )
-from ddct_bringup.reproduction.runs import headless_run
+from ddct_bringup.reproduction.headless_run import headless_run
 from ddct_bringup.thesis.table_5_1 import TABLE_METRICS
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.units import rad_s_from_rpm

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.reproduction.figures.run_groups import RUN_GROUPS, RunGroup
 from ddct_bringup.reproduction.figures.thesis_figure import ThesisFigure, draw_over_time
-from ddct_bringup.reproduction.runs import HeadlessRun, thesis_run
+from ddct_bringup.reproduction.headless_run import HeadlessRun, thesis_run
 from ddct_bringup.thesis.table_5_1 import CALIBRATED, PREDICTED, thesis_row
 from ddct_controllers.design.drawing.line_styles import REFERENCE_LINE, LineStyle, controller_style
 from ddct_controllers.registry import controller_label

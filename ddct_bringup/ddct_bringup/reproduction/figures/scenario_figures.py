@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from ddct_bringup.reproduction.figures.thesis_figure import ThesisFigure, draw_over_time
-from ddct_bringup.reproduction.runs import (
+from ddct_bringup.reproduction.headless_run import (
     THESIS_SCENARIO,
     HeadlessRun,
     headless_run,

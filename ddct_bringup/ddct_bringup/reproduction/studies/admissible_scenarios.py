@@ -9,7 +9,7 @@ from ddct_bringup.reproduction.calibration.ensemble import fitted_rows, members
 from ddct_bringup.reproduction.calibration.parameters import largest_residual, values_of
 from ddct_bringup.reproduction.calibration.predicted_values import OPEN_LOOP
 from ddct_bringup.reproduction.calibration.problem import Problem, fit
-from ddct_bringup.reproduction.runs import (
+from ddct_bringup.reproduction.headless_run import (
     THESIS_SCENARIO,
     HeadlessRun,
     StaticControllerAlone,

@@ -10,7 +10,7 @@ import scipy
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.metrics.metric import Metrics
-from ddct_bringup.reproduction.runs import THESIS_SCENARIO, thesis_run
+from ddct_bringup.reproduction.headless_run import THESIS_SCENARIO, thesis_run
 from ddct_bringup.reproduction.studies.study import Study
 from ddct_bringup.thesis.table_5_1 import THESIS_TABLE
 from ddct_controllers.mpc.model.transmission_model import (

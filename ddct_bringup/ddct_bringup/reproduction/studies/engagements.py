@@ -11,7 +11,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ddct_bringup.reproduction.runs import THESIS_SCENARIO, HeadlessRun, headless_run
+from ddct_bringup.reproduction.headless_run import THESIS_SCENARIO, HeadlessRun, headless_run
 from ddct_bringup.reproduction.studies.study import (
     WEAR_GAINS,
     Study,

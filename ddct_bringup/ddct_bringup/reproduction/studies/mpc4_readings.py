@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.reproduction.runs import (
+from ddct_bringup.reproduction.headless_run import (
     THESIS_SCENARIO,
     THESIS_SETTINGS,
     HeadlessRun,

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from ddct_bringup.metrics.catalogue import METRICS
-from ddct_bringup.reproduction.runs import THESIS_SCENARIO, HeadlessRun, headless_run
+from ddct_bringup.reproduction.headless_run import THESIS_SCENARIO, HeadlessRun, headless_run
 from ddct_bringup.reproduction.studies.changed_loops import model_without_actuator
 from ddct_bringup.reproduction.studies.study import (
     TABLE_5_1,

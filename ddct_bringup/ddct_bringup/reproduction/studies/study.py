@@ -10,7 +10,7 @@ import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.metrics.catalogue import METRICS
-from ddct_bringup.reproduction.runs import HeadlessRun
+from ddct_bringup.reproduction.headless_run import HeadlessRun
 from ddct_bringup.thesis.table_5_1 import FORMS
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.base.units import rpm_from_rad_s

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from ddct_bringup.metrics.catalogue import METRICS
-from ddct_bringup.reproduction.runs import (
+from ddct_bringup.reproduction.headless_run import (
     THESIS_SCENARIO,
     HeadlessRun,
     headless_run,

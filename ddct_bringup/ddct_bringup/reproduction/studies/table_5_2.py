@@ -5,8 +5,8 @@
 import math
 from collections.abc import Mapping
 
+from ddct_bringup.reproduction.headless_run import THESIS_SCENARIO, headless_run
 from ddct_bringup.reproduction.numbers.thesis_number import Finding
-from ddct_bringup.reproduction.runs import THESIS_SCENARIO, headless_run
 from ddct_bringup.reproduction.studies.study import FINER_WEAR_GAINS, Study
 from ddct_bringup.reproduction.values.orders import (
     OSCILLATION_RATINGS,

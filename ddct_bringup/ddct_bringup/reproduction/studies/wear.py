@@ -4,7 +4,7 @@
 
 import numpy as np
 
-from ddct_bringup.reproduction.runs import THESIS_SCENARIO, HeadlessRun, thesis_run
+from ddct_bringup.reproduction.headless_run import THESIS_SCENARIO, HeadlessRun, thesis_run
 from ddct_bringup.reproduction.studies.changed_loops import NoisySpeeds, slip_after_load_step
 from ddct_bringup.reproduction.studies.study import (
     FINER_WEAR_GAINS,

@@ -7,8 +7,8 @@ The claims are the thesis's qualitative statements on its architectures and cont
 of each is in its entry of the gate's files: a strict order, or one by a factor.
 """
 
+from ddct_bringup.reproduction.headless_run import thesis_run
 from ddct_bringup.reproduction.numbers.thesis_number import Finding, Value
-from ddct_bringup.reproduction.runs import thesis_run
 from ddct_bringup.reproduction.values.orders import (
     CLEARLY,
     SLIP_RATINGS,

@@ -12,8 +12,8 @@ smallest.
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
+from ddct_bringup.reproduction.headless_run import HeadlessRun, thesis_run
 from ddct_bringup.reproduction.numbers.thesis_number import Finding
-from ddct_bringup.reproduction.runs import HeadlessRun, thesis_run
 from ddct_bringup.thesis.table_5_1 import TABLE_METRICS
 from ddct_plant.base.timebase import steps_in
 

@@ -18,7 +18,7 @@ from ddct_bringup.reproduction.calibration.parameters import (
 )
 from ddct_bringup.reproduction.calibration.problem import Problem, row_values
 from ddct_bringup.reproduction.calibration.record import scenario_text
-from ddct_bringup.reproduction.calibration.tables import all_tables
+from ddct_bringup.reproduction.calibration.record_tables import all_tables
 from ddct_plant.scenario.file import load_scenario
 
 DOCS = Path(__file__).resolve().parents[4] / 'docs'

@@ -17,7 +17,7 @@ from ddct_bringup.reproduction.figures.gallery import gallery_page
 from ddct_bringup.reproduction.figures.h_infinity_figures import H_INFINITY_FIGURES
 from ddct_bringup.reproduction.figures.loop_shaping_figures import LOOP_SHAPING_FIGURES
 from ddct_bringup.reproduction.figures.thesis_figure import ThesisFigure
-from ddct_bringup.reproduction.runs import thesis_run
+from ddct_bringup.reproduction.headless_run import thesis_run
 from ddct_controllers.design.analysis.closed_loop import step_response
 from ddct_controllers.design.analysis.loops import LoopCurve, continuous_loop
 from ddct_controllers.design.drawing.chart_style import typeset
