@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Time charts of the page: one per signal with all runs, on one time axis."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -54,7 +54,7 @@ class ChartRun:
     """Engagement time t_a of Table 5.1 in s, where the run is comparable."""
 
 
-def chart_document(runs: Sequence[ChartRun]) -> tuple[dict[str, Any], dict[str, str]]:
+def chart_document(runs: Sequence[ChartRun]) -> tuple[Mapping[str, object], dict[str, str]]:
     """Return the Bokeh document as JSON, and the id of each chart in it."""
     time_axis = Range1d(start=0.0, end=max(run.trajectory.time_s[-1] for run in runs))
     cursor = Span(dimension='height', line_color=NEUTRAL, line_width=1)

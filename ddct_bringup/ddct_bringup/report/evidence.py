@@ -114,7 +114,7 @@ def _is_whole(entry: Any, wear_gain: float) -> bool:
         return False
 
 
-def _content(file: Path) -> dict[str, Any]:
+def _content(file: Path) -> Mapping[str, Any]:
     """Return the JSON object in a file, empty where it is absent or not an object."""
     try:
         content = parse_json(read_text_file(file))

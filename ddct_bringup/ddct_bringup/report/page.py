@@ -2,10 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Build the page: one HTML file without external resources."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict
 from functools import cache
-from typing import Any
 
 import bokeh
 from bokeh.resources import Resources
@@ -16,7 +15,6 @@ from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.metrics.catalogue import FURTHER, TABLE_5_1
 from ddct_bringup.report.charts import (
     NEUTRAL,
-    ChartRun,
     chart_document,
     charted_signals,
     has_reference,
@@ -24,18 +22,20 @@ from ddct_bringup.report.charts import (
 from ddct_bringup.report.definitions import definitions
 from ddct_bringup.report.evidence import COMPUTED, LoopEvidence, loop_rows, without_evidence
 from ddct_bringup.report.page_parts import MARKER, json_data, page_part, page_template
+from ddct_bringup.report.page_runs import PageRun, chart_runs, page_runs
 from ddct_bringup.report.pareto import pair_key, pareto_view
 from ddct_bringup.report.phase_lanes import LANES, OPACITY
-from ddct_bringup.report.run_labels import common_conditions, run_labels
-from ddct_bringup.report.run_tables import TICKS, run_origin, time_place, update_times
+from ddct_bringup.report.run_labels import common_conditions
+from ddct_bringup.report.run_tables import (
+    TICKS,
+    time_place,
+)
 from ddct_bringup.report.score_tables import (
     NOT_JUDGED,
-    comparable_rows,
     metric_cells,
     verdict_rows,
 )
 from ddct_bringup.run.description import short_commit
-from ddct_bringup.scores.run_table import fallback_note
 from ddct_bringup.scores.scored_recording import ScoredRecording
 from ddct_bringup.thesis.table_5_1 import PREDICTION_TOLERANCE
 from ddct_bringup.verdict.limits import Limits
@@ -44,19 +44,12 @@ from ddct_controllers.design.drawing.line_looks import (
     DARK_COLOURS,
     LIGHT_COLOURS,
     css_colours,
-    looks_of,
-    sample_svg,
 )
 from ddct_plant.program.command_line import package_version
 from ddct_plant.scenario.differences import scenario_title
 
 _ROOM = 'ddct_bringup.report'
 _SCRIPTS = ('common.js', 'nearest.js', 'paper.js', 'page.js')
-SHOWN_AT_FIRST = 12
-"""
-Largest number of runs of which all are visible at first; of more only those of Table 5.1, or the
-first ones.
-"""
 
 
 def report_page(
@@ -67,9 +60,9 @@ def report_page(
 
     `limits` are those that judged them.
     """
-    shown = _page_runs(runs)
-    thesis_rows = [run['thesis'] for run in shown]
-    charted = [_chart_run(run) for run in shown if run['charted']]
+    shown = page_runs(runs)
+    thesis_rows = [run.thesis for run in shown]
+    charted = chart_runs(shown)
     document, roots = chart_document(charted)
     quantities = charted_signals(charted)
     pareto = pareto_view(runs)
@@ -114,8 +107,8 @@ def report_page(
         has_reference=has_reference(charted),
         other_times=_other_times(shown, recordings[0].facts),
         digest=next((run.digest for run in runs if run.digest), None),
-        commits=sorted({run['origin'].commit for run in shown if run['simulated']}),
-        versions=sorted({run['origin'].version for run in shown if run['simulated']}),
+        commits=sorted({run.origin.commit for run in shown if run.simulated}),
+        versions=sorted({run.origin.version for run in shown if run.simulated}),
         made_with={'ddct_bringup': package_version(), 'Bokeh': bokeh.__version__},
     )
 
@@ -126,11 +119,9 @@ def _simulated_first(runs: Sequence[ScoredRecording]) -> list[Recording]:
     return sorted(read, key=lambda each: each.measured)
 
 
-def _other_times(
-    shown: Sequence[Mapping[str, Any]], facts: RunFacts
-) -> list[tuple[str, RunFacts]]:
+def _other_times(shown: Sequence[PageRun], facts: RunFacts) -> list[tuple[str, RunFacts]]:
     """Return the labels and facts of runs with another control start or score window."""
-    of_runs = [(run['label'], run['recording'].facts) for run in shown if run['charted']]
+    of_runs = [(run.label, run.recording.facts) for run in shown if run.recording]
     times = (facts.control_start_s, facts.score_window_s)
     return [
         (label, each)
@@ -151,55 +142,6 @@ def _sensors(runs: Sequence[ScoredRecording]) -> str | None:
     told = (run.settings.scenario.sensors for run in runs if run.settings is not None)
     sensors = next(told, None)
     return None if sensors is None else sensors.text
-
-
-def _page_runs(runs: Sequence[ScoredRecording]) -> list[dict[str, Any]]:
-    """Return the data of each run for the template."""
-    scored = [run.scores for run in runs]
-    looks = looks_of(run.label for run in scored)
-    of_each = zip(
-        runs, run_labels(scored), looks, _shown_at_first(runs), comparable_rows(runs), strict=True
-    )
-    return [
-        {
-            'index': index,
-            'label': label,
-            'look': look,
-            'sample': Markup(sample_svg(look)),
-            'scores': run.scores,
-            'recording': run.recording,
-            'charted': run.recording is not None,
-            'measured': run.measured,
-            'simulated': run.recording is not None and not run.measured,
-            'on': on,
-            'thesis': row,
-            'fallback': fallback_note(run.scores) if run.scores.fallbacks else '',
-            'times': update_times(run),
-            'origin': run_origin(run),
-        }
-        for index, (run, label, look, on, row) in enumerate(of_each)
-    ]
-
-
-def _chart_run(run: dict[str, Any]) -> ChartRun:
-    return ChartRun(
-        index=run['index'],
-        label=run['label'],
-        look=run['look'],
-        trajectory=run['recording'].trajectory,
-        facts=run['recording'].facts,
-        shown=run['on'],
-        thesis_engagement_time_s=run['thesis'].engagement_time_s if run['thesis'] else None,
-    )
-
-
-def _shown_at_first(runs: Sequence[ScoredRecording]) -> list[bool]:
-    if len(runs) <= SHOWN_AT_FIRST:
-        return [True] * len(runs)
-    of_table = [row is not None for row in comparable_rows(runs)]
-    if 2 <= sum(of_table) <= SHOWN_AT_FIRST:
-        return of_table
-    return [index < SHOWN_AT_FIRST for index in range(len(runs))]
 
 
 @cache

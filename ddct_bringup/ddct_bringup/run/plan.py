@@ -4,7 +4,6 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from ddct_bringup.processes.graph_nodes import ANSWER_TIMEOUT_S
 from ddct_controllers.architecture import make_architecture
@@ -50,7 +49,7 @@ class RunPlan:
         """N, the number of periods."""
         return self.settings.scenario.steps
 
-    def node_parameters(self, folder: Path, work: Path) -> dict[str, dict[str, Any]]:
+    def node_parameters(self, folder: Path, work: Path) -> dict[str, dict[str, object]]:
         """
         Return the ROS parameters by node name for a bag in `folder`; '*' is every node.
 

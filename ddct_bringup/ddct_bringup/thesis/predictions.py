@@ -8,7 +8,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import Any
 
 from ddct_bringup.thesis.table_5_1 import FORMS
 from ddct_plant.files.input_file import parse_json
@@ -68,7 +67,7 @@ class Predictions:
     """Digest of the frozen scenario that the predictions belong to."""
     by_id: Mapping[str, Prediction]
 
-    def as_record(self) -> dict[str, Any]:
+    def as_record(self) -> Mapping[str, object]:
         """Return the content of FILE."""
         return {
             'scenario_digest': self.scenario_digest,

@@ -84,7 +84,7 @@ class Limits:
     limits: tuple[Limit, ...]
     traction: TractionRule | None
     """Limit of the traction of the driven axle; None where the file has none."""
-    origin: dict[str, Any] = field(compare=False)
+    origin: Mapping[str, str | int] = field(compare=False)
     """Name, digest and schema version of the file, under the keys of `scores.json`."""
 
     def of(self, scenario: str) -> dict[str, Limit]:
@@ -225,7 +225,7 @@ def _scenarios(path: str, value: Any) -> tuple[str, ...] | None:
 
 def _mapping(
     path: str, content: Any, required: Sequence[str], optional: Sequence[str] = ()
-) -> dict[str, Any]:
+) -> Mapping[str, Any]:
     """Return the mapping at `path`, '' for the whole file; require these keys and no others."""
     where = path or 'line 1'
     if not isinstance(content, dict):

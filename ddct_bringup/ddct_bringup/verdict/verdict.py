@@ -84,7 +84,9 @@ def verdict_of(
     """
     strictest = {key: limit for key, limit in limits.of(scenario).items() if exists[key]}
     criteria = tuple(
-        _judged(criterion.key, criterion.unit, values[criterion.key], strictest.get(criterion.key))
+        criterion_result(
+            criterion.key, criterion.unit, values[criterion.key], strictest.get(criterion.key)
+        )
         for criterion in CRITERIA
     )
     traction = traction or judged_traction(None, None, limits)
@@ -105,16 +107,20 @@ def judged_traction(
     """Return the largest driving force over the mass, and its limit for the driven axle."""
     rule = limits.traction
     if rule is None or plant is None:
-        return _judged(TRACTION, _TRACTION_UNIT, value, None)
+        return criterion_result(TRACTION, _TRACTION_UNIT, value, None)
     largest, reason = rule.limit(plant.gravity), f'{CONVENTION}: {rule.reason}'
     limit = Limit(TRACTION, largest, _TRACTION_UNIT, None, reason, convention=True)
-    return _judged(TRACTION, _TRACTION_UNIT, value, limit)
+    return criterion_result(TRACTION, _TRACTION_UNIT, value, limit)
 
 
-def _judged(
+def criterion_result(
     name: str, unit: str, value: float | int | None, limit: Limit | None
 ) -> CriterionResult:
-    """Return the result of one criterion; the limit applies to the magnitude of its value."""
+    """
+    Return the result of one criterion; the limit applies to the magnitude of its value.
+
+    The state of every criterion, and of the traction, is decided here.
+    """
     if limit is None:
         return CriterionResult(name, value, unit, None, None, False, NO_LIMIT)
     state = NO_LIMIT

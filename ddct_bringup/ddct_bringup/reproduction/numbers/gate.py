@@ -56,7 +56,7 @@ class GateRow:
             return verdict
         return f'{verdict} {"hit" if self.hit else "miss"}'
 
-    def as_dict(self) -> dict[str, Any]:
+    def as_dict(self) -> Mapping[str, object]:
         """Return the entry in `ddct reproduce numbers --json`; missing values are None."""
         number, value = self.number, self.computed
         return {
