@@ -11,7 +11,7 @@ import pytest
 from ddct_bringup.bag.reader import Recording, read_bag
 from ddct_bringup.bag.repair import repair_bag
 from ddct_bringup.run.headless import run_headless
-from ddct_bringup.scores.scoring import score_recording
+from ddct_bringup.scores.scored_recording import score_recording
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.base.errors import DdctError
 from ddct_plant.measured.columns import own_columns
@@ -60,7 +60,7 @@ def test_an_earlier_real_time_bag_is_scored():
     assert recording.missed == {}
     assert recording.realtime.steps == recording.trajectory.steps == 10
     assert (recording.trajectory.open_loop_torque > 0.0).all()
-    assert score_recording(recording, 'earlier', packaged_limits())['valid']
+    assert score_recording(recording, 'earlier', packaged_limits()).scores.valid
 
 
 def test_identification_reads_an_earlier_bag():

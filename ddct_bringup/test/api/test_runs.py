@@ -176,8 +176,8 @@ def test_the_nodes_of_all_compared_controllers_are_forked_by_one_warm_parent(mon
         parents.append(parent)
         execute(replace(plan, layout='headless'), folder)
 
-    execute = runs.execute
-    monkeypatch.setattr(runs, 'execute', without_nodes)
+    execute = single_run.execute
+    monkeypatch.setattr(single_run, 'execute', without_nodes)
     compared = api.compare('pi,ls8', duration=SHORT_S, headless=False)
     assert [each.controller for each in compared] == ['pi', 'ls8']
     first, second = parents

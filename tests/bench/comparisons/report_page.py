@@ -12,9 +12,9 @@ from report.headless_chromium import chromium, visit
 
 from ddct_bringup.bag.trajectory_bag import write_trajectory
 from ddct_bringup.report.page import report_page
-from ddct_bringup.report.runs import read_run
 from ddct_bringup.run.description import custom_data
 from ddct_bringup.run.headless import run_headless
+from ddct_bringup.scores.scored_recording import score_any_bag
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_controllers.registry import own_controller_names
 from ddct_plant.scenario.file import load_scenario
@@ -47,7 +47,7 @@ def _page(names: list[str], folder: Path) -> str:
     for bag in bags:
         write_trajectory(trajectory, bag, bag.name, custom_data(settings, bag.name, steps), {})
     limits = packaged_limits()
-    return report_page([read_run(bag, folder, limits) for bag in bags], [], limits)
+    return report_page([score_any_bag(bag, folder, limits) for bag in bags], [], limits)
 
 
 REPORTS = tuple(_drawn(label) for label in COUNTS)

@@ -13,7 +13,7 @@ from bench.skeleton.comparison import Bench, Sides, comparison
 from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.run.execution import execute
 from ddct_bringup.run.plan import RunPlan
-from ddct_bringup.scores.scoring import score_recording
+from ddct_bringup.scores.scored_recording import score_recording
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings

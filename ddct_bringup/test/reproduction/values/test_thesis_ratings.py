@@ -102,7 +102,7 @@ def test_standard_deviations_are_shown_with_their_units():
 
 
 def test_value_that_does_not_exist_is_infinite(monkeypatch):
-    none = SimpleNamespace(metrics=SimpleNamespace(engagement_time_s=None))
+    none = SimpleNamespace(metrics={'engagement_time_s': None})
     monkeypatch.setattr(orders, 'thesis_run', lambda *arguments: none)
     assert orders.metric('engagement_time_s', ('mpc4',)) == {'mpc4': math.inf}
 
