@@ -9,9 +9,13 @@ An `Option` describes one value. Frozen dataclasses carry it in their fields (`o
 
 import dataclasses
 import difflib
+import math
+import sys
 import typing
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache, cached_property
+from types import MappingProxyType
 from typing import Any, ClassVar, TypeVar
 
 from ddct_plant.base.errors import ParameterError, require_choice, require_number, require_rising
@@ -103,6 +107,20 @@ class Option:
             raise ParameterError(f'{name} is {value!r}: give a whole number', key=name)
         return int(value)
 
+    @cached_property
+    def ends(self) -> tuple[float, float]:
+        """
+        Ends of a range in which every float is valid, both included; (inf, -inf) for none.
+
+        The check of one such value is a comparison, while `checked` converts it and names it.
+        """
+        if self.kind is not float or self.many or self.choices or self.whole_periods:
+            return math.inf, -math.inf
+        low = -sys.float_info.max if self.at_least is None else self.at_least
+        if self.above is not None:
+            low = max(low, math.nextafter(self.above, math.inf))
+        return low, sys.float_info.max if self.at_most is None else self.at_most
+
     @property
     def default_text(self) -> str:
         """Text of the default for pages and terminals."""
@@ -162,6 +180,7 @@ def key_of(field: 'dataclasses.Field[Any]') -> str:
     return field.metadata.get('key') or field.name
 
 
+@cache
 def group_of(field: 'dataclasses.Field[Any]') -> type['OptionGroup'] | None:
     """Return the type of a field's group of options, also if it may be None; else None."""
     for kind in (field.type, *typing.get_args(field.type)):
@@ -172,8 +191,14 @@ def group_of(field: 'dataclasses.Field[Any]') -> type['OptionGroup'] | None:
 
 def options_of(group: type) -> Options:
     """Return the options in the fields of a dataclass, in their order."""
-    fields = dataclasses.fields(group)
-    return {f.name: f.metadata['option'] for f in fields if 'option' in f.metadata}
+    if group not in _OPTIONS:
+        fields = [each for each in dataclasses.fields(group) if 'option' in each.metadata]
+        _OPTIONS[group] = MappingProxyType({each.name: each.metadata['option'] for each in fields})
+    return _OPTIONS[group]
+
+
+_OPTIONS: dict[type, Options] = {}
+"""Options of the dataclasses that were requested before."""
 
 
 @dataclass(frozen=True)
@@ -191,6 +216,9 @@ class OptionGroup:
         """Check every option; raise ParameterError that names a bad one."""
         for name, described in options_of(type(self)).items():
             value = getattr(self, name)
+            low, high = described.ends
+            if type(value) is float and low <= value <= high:
+                continue
             if value is not None or described.default is not None:
                 described.checked(f'{self.prefix}{name}', value)
 

@@ -87,6 +87,8 @@ def states_and_torques(parameters: DrivelineParameters) -> tuple[np.ndarray, np.
 
 def _stacked(rows: Sequence[Sequence[float]]) -> np.ndarray:
     """Return the matrices (..., rows, columns) of entries that are numbers or arrays, (...)."""
+    if not any(isinstance(entry, np.ndarray) for row in rows for entry in row):
+        return np.array(rows)
     entries = np.broadcast_arrays(*(entry for row in rows for entry in row))
     return np.stack(entries, axis=-1).reshape(*entries[0].shape, len(rows), len(rows[0]))
 

@@ -66,6 +66,8 @@ def with_points(
         section = content.get(name)
         if not isinstance(section, Mapping):
             continue
+        if not {_FILE, FACTOR} & section.keys():
+            continue
         section, value = dict(section), value_name(group)
         factor = FACTOR_OPTION.checked(
             f'{name}.{FACTOR}', section.pop(FACTOR, FACTOR_OPTION.default)

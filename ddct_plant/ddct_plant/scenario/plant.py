@@ -26,6 +26,9 @@ from ddct_plant.models.stick_slip_driveline import (
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.sensors.sensed import DrivelineSensors, TorqueEstimate
 
+_SMALLEST, _LARGEST = 1e-12, 1e12
+"""Magnitudes in SI units far beyond those of any driveline, between which nothing overflows."""
+
 
 def require_driveline(parameters: DrivelineParameters, clutch: str) -> None:
     """
@@ -37,12 +40,23 @@ def require_driveline(parameters: DrivelineParameters, clutch: str) -> None:
     try:
         if clutch == STICK_SLIP:
             friction_integrator(parameters)
-        else:
+        elif not _usual(parameters):
             friction_system(parameters)
     except (ParameterError, ArithmeticError) as error:
         raise ParameterError(
             f'{_least_usual(parameters)}: give inertias, damping and stiffness of a car ({error})'
         ) from error
+
+
+def _usual(parameters: DrivelineParameters) -> bool:
+    """
+    Return whether H_S G_S, which is -diag(1/J_m + 1/J_p, 1/J_v), is regular by its magnitudes.
+
+    Between them no entry of the system and no determinant is rounded to zero or infinity.
+    """
+    # Inertias and the ratio are positive; a damping may be zero.
+    values = parameters.values().values()
+    return all(value == 0.0 or _SMALLEST <= value <= _LARGEST for value in values)
 
 
 def make_driveline(settings: RunSettings, initial: InitialState) -> Driveline | StickSlipDriveline:
