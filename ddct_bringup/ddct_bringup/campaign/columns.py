@@ -4,20 +4,28 @@
 
 import json
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import pyarrow as pa
 import pyarrow.parquet as parquet
 
-from ddct_bringup.campaign.rows import CRITERION_COLUMNS, METRIC_COLUMNS, SERIAL
+from ddct_bringup.campaign.rows import (
+    CONTROLLER,
+    CRITERION_COLUMNS,
+    INDEX,
+    METRIC_COLUMNS,
+    PATH,
+    SEED,
+    SERIAL,
+    Row,
+)
 from ddct_bringup.campaign.spec import CampaignSpec
 from ddct_plant.base.errors import DdctError
 
 SCHEMA_VERSION = 2
 """Schema version of the columns; from version 2 on each row has its `seed`."""
-INDEX, CONTROLLER, PATH, SEED = 'index', 'controller', 'path', 'seed'
 _COMPRESSION = 'zstd'
 _ROW_GROUP = 50_000
 """Smallest number of rows in a row group except the last: each group costs a reader memory."""
@@ -48,11 +56,19 @@ def schema_of(spec: CampaignSpec) -> pa.Schema:
     return pa.schema(fields, {'schema_version': str(SCHEMA_VERSION)})
 
 
-def shard_bytes(schema: pa.Schema, rows: Iterable[Mapping[str, Any]]) -> bytes:
+def shard_bytes(schema: pa.Schema, rows: Sequence[Row]) -> bytes:
     """Return rows as a Parquet file, the same bytes for the same rows."""
-    cells = [{name: _cell(row[name]) for name in schema.names} for row in rows]
+    columns = [
+        pa.array(
+            [_cell(row[field.name]) for row in rows]
+            if pa.types.is_string(field.type)
+            else [row[field.name] for row in rows],
+            field.type,
+        )
+        for field in schema
+    ]
     sink = pa.BufferOutputStream()
-    table = pa.Table.from_pylist(cells, schema)
+    table = pa.Table.from_arrays(columns, schema=schema)
     parquet.write_table(table, sink, compression=_COMPRESSION)
     return sink.getvalue().to_pybytes()
 

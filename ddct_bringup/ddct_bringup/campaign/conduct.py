@@ -87,11 +87,8 @@ def _begin(
         raise DdctError(f'{out}: there is nothing to go on with: leave --resume out')
     if out.is_dir() and {each.name for each in out.iterdir()} - {MARKER, SHARDS}:
         raise DdctError(f'{out} holds other results: choose another --out')
-    progress = Progress('planned', campaign.cases)
-    for done in campaign.plan():
-        require_going_on(stopped)
-        progress.update(done)
-    progress.end()
+    campaign.require_sound()
+    require_going_on(stopped)
     mark_folder(out)
     (out / SHARDS).mkdir(exist_ok=True)
     manifest.write(out)
@@ -105,7 +102,12 @@ def _shards(
     size, runs = manifest.shard_size, manifest.runs
     return {
         out / SHARDS / f'{first:08d}.parquet': ShardJob(
-            campaign.spec, limits, manifest.code_digest, first, min(first + size, runs)
+            campaign.spec,
+            limits,
+            manifest.code_digest,
+            manifest.spec_digest,
+            first,
+            min(first + size, runs),
         )
         for first in range(0, runs, size)
     }

@@ -14,25 +14,27 @@ import numpy as np
 from numpy.random import Philox, SeedSequence
 
 _WORDS = 4
-"""Number of 32-bit words in the hash of a key."""
+"""Number of 32-bit words in the hash of a key, and of 64-bit words for one counter."""
 _LARGEST_SEED = 2**31
 """Exclusive upper bound of the seeds of runs."""
 _SEED = ' seed of the run'
 """Key of the seeds of runs; no other key begins with a space."""
 
 
-def uniform(root: int, key: str, case: int) -> float:
-    """Return a uniform random number between 0 and 1, both excluded, from the 53 highest bits."""
-    return ((_bits(root, key, case) >> 11) + 0.5) * 2.0**-53
+def uniforms(root: int, key: str, cases: range) -> list[float]:
+    """Return a uniform random number between 0 and 1, both excluded, for each of some cases."""
+    return [((bits >> 11) + 0.5) * 2.0**-53 for bits in _bits(root, key, cases)]
 
 
-def run_seed(root: int, case: int) -> int:
-    """Return the seed of the random numbers within the runs of a case."""
-    return _bits(root, _SEED, case) % _LARGEST_SEED
+def run_seeds(root: int, cases: range) -> list[int]:
+    """Return the seed of the random numbers within the runs of each of some cases."""
+    return [bits % _LARGEST_SEED for bits in _bits(root, _SEED, cases)]
 
 
-def _bits(root: int, key: str, case: int) -> int:
-    return int(Philox(key=_stream(root, key), counter=case).random_raw())
+def _bits(root: int, key: str, cases: range) -> list[int]:
+    """Return 64 random bits for each of some successive cases; one counter gives four words."""
+    generator = Philox(key=_stream(root, key), counter=cases.start)
+    return [int(word) for word in generator.random_raw(_WORDS * len(cases))[::_WORDS]]
 
 
 @cache

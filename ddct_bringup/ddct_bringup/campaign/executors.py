@@ -2,56 +2,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """Executors that compute shards: processes of this machine, or a Dask cluster."""
 
-import multiprocessing
-import os
 import time
 from collections.abc import Iterator
-from concurrent.futures import Executor, ProcessPoolExecutor
-from contextlib import contextmanager
+from concurrent.futures import Executor
+from contextlib import closing, contextmanager
 
-from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError, ParameterError
-from ddct_plant.program.workers import begin_worker
+from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError
+from ddct_plant.program.workers import WorkerPool
 
 CONNECT_S = 10.0
 """Longest time in s for the connection to a scheduler."""
 LOST_S = 30.0
 """Longest time in s without any worker in a cluster."""
-_ONE_THREAD = dict.fromkeys(('OPENBLAS_NUM_THREADS', 'OMP_NUM_THREADS', 'MKL_NUM_THREADS'), '1')
-"""Environment of the workers: one thread, so that sums have one order and workers do not wait."""
-
-
-class LocalWorkers:
-    """Processes of this machine, each with one numerics thread; `count` at once."""
-
-    def __init__(self, count: int | None = None) -> None:
-        """Use `count` workers, by default one per core; raise ParameterError for less than one."""
-        if count is not None and count < 1:
-            raise ParameterError(f'workers is {count}: give 1 or more')
-        self.count = count or len(os.sched_getaffinity(0))
-        self._pool: ProcessPoolExecutor | None = None
-
-    def executor(self) -> Executor:
-        """Return a new pool; a former pool has broken."""
-        self.close()
-        # Each worker is a new interpreter: a fork would inherit the locks of threads and of BLAS.
-        context = multiprocessing.get_context('spawn')
-        self._pool = ProcessPoolExecutor(self.count, context, begin_worker)
-        return self._pool
-
-    def require_alive(self) -> None:
-        """Do nothing: a pool whose processes die breaks without a check."""
-
-    def close(self) -> None:
-        """Kill the processes; unfinished results are lost."""
-        if self._pool is None:
-            return
-        processes = list((self._pool._processes or {}).values())
-        self._pool.shutdown(wait=False, cancel_futures=True)
-        for process in processes:
-            process.kill()
-        for process in processes:
-            process.join()
-        self._pool = None
 
 
 class DaskWorkers:
@@ -102,21 +64,13 @@ class DaskWorkers:
         self._client.close(timeout=CONNECT_S)
 
 
-Workers = LocalWorkers | DaskWorkers
+Workers = WorkerPool | DaskWorkers
 """Executor of shards, and its number of workers."""
 
 
 @contextmanager
 def workers_of(count: int | None, scheduler: str | None) -> Iterator[Workers]:
     """Yield the workers of a scheduler address, or local ones, and close them."""
-    workers: Workers = DaskWorkers(scheduler) if scheduler else LocalWorkers(count)
-    before = {name: os.environ.get(name) for name in _ONE_THREAD}
-    os.environ.update(_ONE_THREAD)
-    try:
+    workers: Workers = DaskWorkers(scheduler) if scheduler else WorkerPool(count)
+    with closing(workers):
         yield workers
-    finally:
-        for name, value in before.items():
-            os.environ.pop(name, None)
-            if value is not None:
-                os.environ[name] = value
-        workers.close()

@@ -25,6 +25,10 @@ from ddct_plant.models.clutch import LINEAR
 from ddct_plant.scenario.file import ScenarioFile, parsed_override
 from ddct_plant.scenario.settings import RunSettings
 
+INDEX, CONTROLLER, PATH, SEED = 'index', 'controller', 'path', 'seed'
+"""Columns of a row before those of the varied keys."""
+Row = Mapping[str, object]
+"""Row of `results.parquet`: values by column."""
 SERIAL, VECTORISED = 'serial', 'vectorised'
 """Values of the column `path`: simulated step by step, or together with other runs."""
 METRIC_COLUMNS = tuple(figure.key for figure in (*TABLE_5_1, *FURTHER))
@@ -101,12 +105,12 @@ def scored_headless(settings: RunSettings, controller: Chosen, limits: Limits) -
     return run_without_score(name, facts_of(settings, name, settings.scenario.steps), reason)
 
 
-def result_row(run: ScoredRun, varied: Mapping[str, Any], path: str = SERIAL) -> dict[str, Any]:
+def result_row(run: ScoredRun, varied: Mapping[str, Any], path: str = SERIAL) -> Row:
     """Return a run as one row: controller, path, varied values, metrics, verdict, criteria."""
     criteria = run.verdict.values
     return {
-        'controller': run.controller,
-        'path': path,
+        CONTROLLER: run.controller,
+        PATH: path,
         **varied,
         **{name: run.metrics[name] for name in METRIC_COLUMNS},
         'valid': run.valid,

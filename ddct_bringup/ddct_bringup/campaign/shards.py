@@ -3,25 +3,14 @@
 """Shards, the unit of work: the runs of a fixed range of indices, whose rows become one file."""
 
 import time
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import dataclass
 
-import numpy as np
-
-from ddct_bringup.batch.batchable import batchable
-from ddct_bringup.batch.run_batch import run_batch
-from ddct_bringup.campaign.columns import INDEX, SEED, schema_of, shard_bytes
+from ddct_bringup.campaign.columns import schema_of, shard_bytes
 from ddct_bringup.campaign.manifest import require_code
-from ddct_bringup.campaign.rows import SERIAL, VECTORISED, result_row, scored_headless
-from ddct_bringup.campaign.runs import Campaign, CampaignRun
+from ddct_bringup.campaign.runs import Campaign
+from ddct_bringup.campaign.scored import Scorer
 from ddct_bringup.campaign.spec import CampaignSpec
-from ddct_bringup.run.description import facts_of
-from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.verdict.limits import Limits
-from ddct_controllers.interface import THESIS, Controller
-from ddct_controllers.registry import make_controller, own_controller_names
-from ddct_plant.base.errors import FOREIGN_FAILURES
 
 
 @dataclass(frozen=True)
@@ -32,6 +21,8 @@ class ShardJob:
     limits: Limits
     code: str
     """Digest of the sources that compute the campaign."""
+    digest: str
+    """Digest of the specification and of the files that it names."""
     first: int
     last: int
     """One after the last index."""
@@ -46,61 +37,19 @@ def timed_shard(job: ShardJob) -> tuple[bytes, float]:
 def compute_shard(job: ShardJob) -> bytes:
     """Return the file content of a shard; raise DdctError where this machine cannot compute it."""
     require_code(job.code)
-    campaign = Campaign(job.spec)
-    runs = [campaign.run(index) for index in range(job.first, job.last)]
-    with np.errstate(all='ignore'):  # a value that is not finite becomes a reason in its row
-        return shard_bytes(schema_of(job.spec), compute_rows(runs, job.limits))
+    campaign, scorer = _prepared(job)
+    found = scorer.scored(campaign.planned(job.first, job.last))
+    return shard_bytes(schema_of(job.spec), [each.row() for each in found])
 
 
-def compute_rows(runs: Sequence[CampaignRun], limits: Limits) -> list[dict[str, Any]]:
-    """
-    Return a row for every run, in their order; a failed run has a row with its reason.
-
-    Linear runs are computed at once, all others step by step.
-    """
-    found = _vectorised(runs, limits)
-    rows = []
-    for run in runs:
-        scored, path = found.get(run.index), VECTORISED
-        if scored is None:
-            scored, path = scored_headless(run.settings, run.controller, limits), SERIAL
-        ours = {INDEX: run.index, SEED: run.settings.seed}
-        rows.append({**ours, **result_row(scored, run.varied, path)})
-    return rows
+_kept: dict[str, tuple[Campaign, Scorer]] = {}
+"""Last campaign of this worker, by its digests: its shards share what does not vary."""
 
 
-def _vectorised(runs: Sequence[CampaignRun], limits: Limits) -> dict[int, ScoredRun]:
-    """Return the scores of the runs that can be computed at once, by index."""
-    suited = []
-    shared: dict[str, Controller] = {}
-    for run in runs:
-        try:
-            controller = _controller(run, shared)
-        except FOREIGN_FAILURES:
-            continue  # the run step by step gives the reason
-        if not batchable(run.settings, controller):
-            suited.append((run, controller))
-    results = run_batch([(run.settings, controller) for run, controller in suited], limits)
-    return {
-        run.index: _with_facts(result, run)
-        for (run, _), result in zip(suited, results, strict=True)
-        if result is not None
-    }
-
-
-def _with_facts(scored: ScoredRun, run: CampaignRun) -> ScoredRun:
-    name = run.controller.name
-    return replace(
-        scored, bag=name, facts=facts_of(run.settings, name, run.settings.scenario.steps)
-    )
-
-
-def _controller(run: CampaignRun, shared: dict[str, Controller]) -> Controller:
-    """Return the controller of a run; a packaged one that no run changes is built once."""
-    spec = run.controller
-    if spec.computed_from != THESIS or spec.name not in own_controller_names():
-        return make_controller(spec, run.settings)
-    key = repr((spec.name, run.settings.scenario.controllers.get(spec.name)))
-    if key not in shared:
-        shared[key] = make_controller(spec, run.settings)
-    return shared[key]
+def _prepared(job: ShardJob) -> tuple[Campaign, Scorer]:
+    """Return the campaign of a shard with its scorer; a worker builds them once."""
+    key = f'{job.digest} {job.spec.folder} {job.limits.origin}'
+    if key not in _kept:
+        _kept.clear()
+        _kept[key] = Campaign(job.spec), Scorer(job.limits)
+    return _kept[key]

@@ -109,7 +109,7 @@ def _planned(options: argparse.Namespace) -> Sweep:
         first = base.at({axis.key: axis.values[0] for axis in axes})
         names = working_controllers(first, partial(complain, PROGRAM))
     sweep = Sweep(base, axes, names, load_limits(options.limits))
-    for line in sweep.settings[0].scenario.adjusted:
+    for line in sweep.first.scenario.adjusted:
         complain(PROGRAM, f'at the first point {line}')
     return sweep
 

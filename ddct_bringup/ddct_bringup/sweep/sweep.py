@@ -3,28 +3,25 @@
 """A sweep: every controller at every point of its axes, headless, scored, judged, tabulated."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import product
+from math import prod
 from typing import Any
 
-from ddct_bringup.campaign.rows import (
-    RunBase,
-    require_suitable,
-    result_row,
-    scored_headless,
-)
+from ddct_bringup.campaign.keys import SCENARIO
+from ddct_bringup.campaign.rows import RunBase, result_row
+from ddct_bringup.campaign.run_set import RunSet
+from ddct_bringup.campaign.scored import scored_runs
 from ddct_bringup.scores.csv_text import rows_csv
 from ddct_bringup.scores.document import run_entry
 from ddct_bringup.scores.run_table import CONTROLLER, STATE, RunColumn, dash_notes, metric
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.sweep.axis import MOST, Axis, value_text
 from ddct_bringup.verdict.limits import Limits
-from ddct_controllers.registry import Chosen, controller_label
+from ddct_controllers.registry import Chosen, controller_label, controller_spec
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.program.table import Column, Quantity, Table, table_of
-from ddct_plant.program.workers import in_processes
 from ddct_plant.scenario.differences import scenario_title
 from ddct_plant.scenario.settings import RunSettings
 
@@ -53,40 +50,41 @@ class Sweep:
     limits: Limits
 
     def __post_init__(self) -> None:
-        """Build the settings of every point, and every controller at the first; DdctError."""
+        """Build the settings of points, and every controller at the first; raise DdctError."""
         keys = [axis.key for axis in self.axes]
         for key in keys:
             if keys.count(key) > 1:
                 raise ParameterError(f'--over names {key} twice: name each key once')
-        if len(self.points) > MOST:
+        points = prod(len(axis.values) for axis in self.axes)
+        if points > MOST:
             raise ParameterError(
-                f'--over gives {len(self.points)} points: at most {MOST}, `ddct campaign` is '
-                'made for more'
+                f'--over gives {points} points: at most {MOST}, `ddct campaign` is made for more'
             )
-        first = self.settings[0]
-        if not first.lockstep:
+        if not self.first.lockstep:
             raise ParameterError(
-                f'mode is {first.mode}, but a sweep needs no graph: leave the mode out'
+                f'mode is {self.first.mode}, but a sweep needs no graph: leave the mode out'
             )
-        for controller in self.controllers:
-            require_suitable(controller, first)
+        self.run_set.require_sound()
 
     @cached_property
-    def points(self) -> list[dict[str, Any]]:
-        """Every combination of the axes' values, the last axis fastest."""
-        keys = [axis.key for axis in self.axes]
-        values = product(*(axis.values for axis in self.axes))
-        return [dict(zip(keys, point, strict=True)) for point in values]
+    def run_set(self) -> RunSet:
+        """Runs of every controller at every point; the last axis changes fastest."""
+        return RunSet(
+            controllers=[controller_spec(each) for each in self.controllers],
+            bases={self.base.file.name: self.base},
+            common={SCENARIO: self.base.file.name},
+            grid={axis.key: axis.values for axis in self.axes},
+        )
 
     @cached_property
-    def settings(self) -> list[RunSettings]:
-        """Settings of every point."""
-        return [self.base.at(point) for point in self.points]
+    def first(self) -> RunSettings:
+        """Settings of the first point."""
+        return self.base.at({axis.key: axis.values[0] for axis in self.axes})
 
     @property
     def conditions(self) -> str:
         """Common conditions of all runs as a heading: scenario, architecture, clutch, wear."""
-        settings = self.settings[0]
+        settings = self.first
         changes = [f'{key}={value}' for key, value in self.base.changes.items()]
         swept = [axis.key for axis in self.axes]
         shared = {
@@ -104,17 +102,17 @@ class Sweep:
 
     def __len__(self) -> int:
         """Return the number of runs."""
-        return len(self.controllers) * len(self.points)
+        return self.run_set.runs
 
-    def run(self, index: int) -> SweptRun:
-        """Carry out one run; those of the first controller come first."""
-        controller, point = divmod(index, len(self.points))
-        scores = scored_headless(self.settings[point], self.controllers[controller], self.limits)
-        return SweptRun(self.points[point], scores)
+    @contextmanager
+    def runs(self) -> Iterator[Iterator[SweptRun]]:
+        """
+        Carry out all runs on all cores as the iterator is consumed; see `scored_runs`.
 
-    def runs(self) -> AbstractContextManager[Iterator[SweptRun]]:
-        """Carry out all runs on all cores as the iterator is consumed, see `in_processes`."""
-        return in_processes(self.run, len(self))
+        Those of the first controller come first.
+        """
+        with scored_runs(self.run_set, self.limits, at_once=False) as found:
+            yield (SweptRun(each.varied, each.scores) for each in found)
 
 
 def sweep_document(sweep: Sweep, runs: Sequence[SweptRun]) -> Mapping[str, Any]:

@@ -8,7 +8,13 @@ from typing import Any
 import pytest
 from refusals import refused
 
-from ddct_bringup.campaign.runs import Campaign, CampaignRun
+from ddct_bringup.campaign.run_set import (
+    MOST_CHECKED,
+    CampaignRun,
+    RefusedRun,
+    checked_cases,
+)
+from ddct_bringup.campaign.runs import Campaign
 from ddct_bringup.campaign.spec import spec_of
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.scenario.file import load_scenario
@@ -54,8 +60,8 @@ def test_another_key_does_not_change_what_a_key_draws() -> None:
     more = {'pedal_position': {'distribution': 'uniform', 'low': 0, 'high': 1}, **vary}
     other = campaign(random={'samples': 3, 'vary': more})
     for case in range(12):
-        drawn = other.varied(case)['vehicle.mass_kg']
-        assert drawn == campaign().varied(case)['vehicle.mass_kg']
+        drawn = other.varied(range(case, case + 1))[0]['vehicle.mass_kg']
+        assert drawn == campaign().varied(range(12))[case]['vehicle.mass_kg']
 
 
 def test_dependent_values_change_with_varied_ones() -> None:
@@ -101,10 +107,12 @@ def test_a_file_of_a_profile_varies_where_the_scenario_takes_one(tmp_path: Path)
 def test_a_sample_that_the_scenario_refuses_is_named_with_its_index_and_values() -> None:
     made = campaign(grid={'duration_s': [1.0, 3.0], 'control_start_s': [0.6, 2.4]})
     with pytest.raises(ParameterError, match=r'run 3 \(duration_s 1.0, control_start_s 2.4, veh'):
-        list(made.plan())
+        made.require_sound()
 
 
-def test_planning_builds_each_case_once(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_check_before_the_first_run_builds_each_case_once(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     made = campaign()
     built: list[int] = []
     run = made.run
@@ -114,14 +122,37 @@ def test_planning_builds_each_case_once(monkeypatch: pytest.MonkeyPatch) -> None
         return run(index)
 
     monkeypatch.setattr(made, 'run', counted)
-    list(made.plan())
+    made.require_sound()
     assert built == [*range(made.cases)]
+
+
+def test_the_check_before_the_first_run_does_not_grow_with_the_number_of_runs() -> None:
+    assert checked_cases(3) == [0, 1, 2]
+    assert len(checked_cases(MOST_CHECKED)) == MOST_CHECKED
+    for cases in (10 * MOST_CHECKED, 1_000_001):
+        checked = checked_cases(cases)
+        assert (checked[0], checked[-1], len(checked)) == (0, cases - 1, MOST_CHECKED)
+        assert sorted(set(checked)) == checked
+
+
+def test_a_range_of_runs_is_built_as_each_of_them_alone() -> None:
+    made = campaign()
+    assert [*made.planned(5, 17)] == [made.run(index) for index in range(5, 17)]
+
+
+def test_a_run_that_cannot_be_built_is_named_and_does_not_end_the_others() -> None:
+    made = campaign(grid={'duration_s': [1.0, 3.0], 'control_start_s': [0.6, 2.4]})
+    runs = [*made.planned(0, made.runs)]
+    left_out = [run.index for run in runs if isinstance(run, RefusedRun)]
+    assert left_out == [3, 4, 5, 9, 10, 11, 15, 16, 17, 21, 22, 23]
+    with pytest.raises(ParameterError, match=r'run 4 \(duration_s 1.0, control_start_s 2.4, veh'):
+        made.run(4)
 
 
 def test_a_controller_that_does_not_suit_the_run_is_refused_before_the_first_run() -> None:
     made = campaign(grid={'controllers.ls8.gain': [1.0, 2.0]})
     with refused(ParameterError, key='controllers.ls8'):
-        list(made.plan())
+        made.require_sound()
 
 
 def test_two_controllers_of_one_name_are_refused(tmp_path: Path) -> None:

@@ -13,13 +13,13 @@ import pyarrow.parquet as parquet
 import pytest
 from in_this_process import OneByOne, in_this_process
 
-from ddct_bringup.campaign import conduct, shards
+from ddct_bringup.campaign import conduct, run_set, scored, shards
 from ddct_bringup.campaign.columns import COMPARED, differences
 from ddct_bringup.campaign.conduct import RESULTS, SHARDS, carry_out
 from ddct_bringup.campaign.manifest import MANIFEST, Manifest, code_digest
 from ddct_bringup.campaign.rows import METRIC_COLUMNS
 from ddct_bringup.campaign.runs import Campaign
-from ddct_bringup.campaign.shards import compute_rows
+from ddct_bringup.campaign.scored import Scorer
 from ddct_bringup.campaign.spec import spec_of
 from ddct_bringup.run.output_folder import locked_folders
 from ddct_bringup.verdict.limits import limits_of_text, packaged_limits
@@ -120,7 +120,7 @@ def test_what_an_interruption_left_is_completed_without_loss_or_duplicates(
     whole: Path, tmp_path: Path, use
 ) -> None:
     out = tmp_path / 'out'
-    looks = iter([False] * 5 + [True] * 99)
+    looks = iter([False] * 2 + [True] * 99)
     use(OneByOne())
     with pytest.raises(KeyboardInterrupt, match='what is done stays: go on with --resume'):
         carry_out(made(), packaged_limits(), out, stopped=lambda: next(looks))
@@ -141,6 +141,21 @@ def test_a_refused_sample_ends_the_campaign_before_anything_is_written(tmp_path:
     ):
         carried_out(tmp_path / 'out', grid=grid)
     assert not (tmp_path / 'out').exists()
+
+
+def test_a_sample_refused_after_the_start_is_a_row_with_its_reason(
+    tmp_path: Path, use, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(run_set, 'MOST_CHECKED', 2)  # the first case and the last
+    grid = {'duration_s': [3.0], 'control_start_s': [0.6, 2.4, 0.7]}
+    use(OneByOne())
+    carried_out(tmp_path / 'out', grid=grid)
+    rows = parquet.read_table(tmp_path / 'out' / RESULTS).to_pylist()
+    refused = [row for row in rows if row['control_start_s'] == 2.4]
+    assert [row['index'] for row in rows if not row['valid']] == [row['index'] for row in refused]
+    assert refused[0]['reason'].startswith('run 2 (duration_s 3.0, control_start_s 2.4, veh')
+    assert (refused[0]['verdict_state'], refused[0]['path']) == ('invalid', 'serial')
+    assert len({row['seed'] for row in refused}) == len(refused) / 2  # one for both controllers
 
 
 def test_planning_can_be_interrupted(tmp_path: Path) -> None:
@@ -260,12 +275,12 @@ def test_what_is_linear_is_computed_at_once_and_all_else_step_by_step(
     kinds = {'controllers': ['wild.yaml', 'pi'], 'architecture': 'base'}
     grid = {'clutch': ['linear', 'stick_slip'], 'wear_gain': [0.7, 1.0], 'duration_s': [1.2]}
     made = Campaign(spec_of({**kinds, 'grid': grid}, tmp_path))
-    runs = [made.run(index) for index in range(made.runs)]
-    rows = compute_rows(runs, packaged_limits())
+    scorer = Scorer(packaged_limits())
+    rows = [each.row() for each in scorer.scored(made.planned(0, made.runs))]
     assert [row['path'] for row in rows] == ['serial'] * 4 + ['vectorised'] * 2 + ['serial'] * 2
     assert [row['valid'] for row in rows] == [False] * 4 + [True] * 4
-    monkeypatch.setattr(shards, 'batchable', lambda settings, controller: 'not now')
-    again = compute_rows(runs, packaged_limits())
+    monkeypatch.setattr(scored, 'batchable', lambda settings, controller: 'not now')
+    again = [each.row() for each in scorer.scored(made.planned(0, made.runs))]
     assert {row['path'] for row in again} == {'serial'}
     assert [differences(row, other) for row, other in zip(rows, again, strict=True)] == [[]] * 8
 

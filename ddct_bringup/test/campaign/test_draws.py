@@ -5,13 +5,18 @@
 import numpy as np
 import pytest
 
-from ddct_bringup.campaign.draws import run_seed, uniform
+from ddct_bringup.campaign.draws import run_seeds, uniforms
+
+
+def uniform(root: int, key: str, case: int) -> float:
+    return uniforms(root, key, range(case, case + 1))[0]
+
 
 KEPT = [0.42601729733199983, 0.4218546285402463, 469517763]
 
 
 def test_numbers_are_those_of_philox_whatever_the_version_of_numpy() -> None:
-    found = [uniform(7, 'wear_gain', 0), uniform(7, 'wear_gain', 12345), run_seed(7, 0)]
+    found = [uniform(7, 'wear_gain', 0), uniform(7, 'wear_gain', 12345), run_seeds(7, range(1))[0]]
     assert found == KEPT
 
 
@@ -28,3 +33,9 @@ def test_numbers_of_cases_and_of_keys_are_uniform_and_not_related() -> None:
     assert counts.min() > 150
     assert abs(np.corrcoef(drawn)[0, 1]) < 0.08
     assert abs(np.corrcoef(drawn[0][1:], drawn[0][:-1])[0, 1]) < 0.08
+
+
+def test_the_numbers_of_many_cases_are_those_of_each_case_alone() -> None:
+    cases = range(1234, 1334)
+    assert uniforms(7, 'wear_gain', cases) == [uniform(7, 'wear_gain', case) for case in cases]
+    assert run_seeds(7, cases) == [run_seeds(7, range(case, case + 1))[0] for case in cases]

@@ -5,11 +5,11 @@
 from pathlib import Path
 from typing import Any
 
-from ddct_bringup.campaign import shards
+from ddct_bringup.campaign import scored
 from ddct_bringup.campaign.columns import differences
 from ddct_bringup.campaign.rows import VECTORISED
 from ddct_bringup.campaign.runs import Campaign
-from ddct_bringup.campaign.shards import compute_rows
+from ddct_bringup.campaign.scored import Scorer
 from ddct_bringup.campaign.spec import spec_of
 from ddct_bringup.verdict.limits import packaged_limits
 
@@ -19,14 +19,15 @@ GAIN = 'controllers.pi.proportional_gain'
 def rows_of(**content: Any) -> list[dict[str, Any]]:
     """Return the rows of all runs of a specification, computed as one shard."""
     campaign = Campaign(spec_of(content, Path()))
-    return compute_rows([campaign.run(index) for index in range(campaign.runs)], packaged_limits())
+    found = Scorer(packaged_limits()).scored(campaign.planned(0, campaign.runs))
+    return [dict(each.row()) for each in found]
 
 
 def test_each_run_has_a_controller_of_its_own_gains(monkeypatch) -> None:
     content = {'controllers': ['pi'], 'grid': {GAIN: [0.05, 0.1, 0.2], 'wear_gain': [0.8, 1.0]}}
     rows = rows_of(**content)
     assert {row['path'] for row in rows} == {VECTORISED}
-    monkeypatch.setattr(shards, 'batchable', lambda settings, controller: 'not now')
+    monkeypatch.setattr(scored, 'batchable', lambda settings, controller: 'not now')
     alone = rows_of(**content)
     for row, expected in zip(rows, alone, strict=True):
         assert differences(row, {**expected, 'path': VECTORISED}) == []
@@ -38,7 +39,7 @@ def test_each_run_is_scored_over_the_window_that_its_scenario_gives(monkeypatch)
     content = {'controllers': ['ls8'], 'grid': grid}
     rows = rows_of(**content)
     assert {row['path'] for row in rows} == {VECTORISED}
-    monkeypatch.setattr(shards, 'batchable', lambda settings, controller: 'not now')
+    monkeypatch.setattr(scored, 'batchable', lambda settings, controller: 'not now')
     alone = rows_of(**content)
     for row, expected in zip(rows, alone, strict=True):
         assert differences(row, expected) == []

@@ -14,7 +14,7 @@ UNUSED: Any = None
 
 
 def job(first: int, last: int) -> ShardJob:
-    return ShardJob(UNUSED, UNUSED, '', first, last)
+    return ShardJob(UNUSED, UNUSED, '', '', first, last)
 
 
 def test_before_the_first_shard_there_is_no_estimate() -> None:

@@ -1,19 +1,24 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Work shared among forked processes of this machine; it may refer to any object."""
+"""
+Work shared among processes of this machine, forked from this one.
+
+A worker has all that the program has imported and built, so it starts at once, and the work may
+refer to any object. It uses one thread for numerics.
+"""
 
 import ctypes
 import multiprocessing
 import os
 import signal
 from collections.abc import Callable, Iterator
-from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures import Executor, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import Any, TypeVar
 
-from ddct_plant.base.errors import DdctError
+from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.program.supervision import end_with_parent
 
 _SET_THREADS = (
@@ -29,29 +34,72 @@ _CHUNKS_EACH = 8
 Result = TypeVar('Result')
 
 
+class WorkerPool:
+    """Processes of this machine, each with one numerics thread; `count` at once."""
+
+    def __init__(self, count: int | None = None, work: Callable[[int], Any] | None = None) -> None:
+        """
+        Use `count` workers, by default one per core; raise ParameterError for less than one.
+
+        `work` is the function of `in_processes`; without it work is submitted to `executor`.
+        """
+        self.count = worker_count(count)
+        self._work = work
+        self._pool: ProcessPoolExecutor | None = None
+
+    def executor(self) -> Executor:
+        """Return a new pool; a former pool has broken."""
+        self.close()
+        context = multiprocessing.get_context('fork')
+        self._pool = ProcessPoolExecutor(self.count, context, _begin, (self._work,))
+        return self._pool
+
+    def require_alive(self) -> None:
+        """Do nothing: a pool whose processes die breaks without a check."""
+
+    def close(self) -> None:
+        """Kill the processes; unfinished results are lost."""
+        if self._pool is None:
+            return
+        processes = list((self._pool._processes or {}).values())
+        self._pool.shutdown(wait=False, cancel_futures=True)
+        for process in processes:
+            process.kill()
+        for process in processes:
+            process.join()
+        self._pool = None
+
+
+def worker_count(count: int | None) -> int:
+    """Return a number of workers, by default that of the cores; ParameterError for less than 1."""
+    if count is not None and count < 1:
+        raise ParameterError(f'workers is {count}: give 1 or more')
+    return count or len(os.sched_getaffinity(0))
+
+
 @contextmanager
 def in_processes(
-    work: Callable[[int], Result], count: int, workers: int | None = None
+    work: Callable[[int], Result],
+    count: int,
+    workers: int | None = None,
+    *,
+    chunk: int | None = None,
 ) -> Iterator[Iterator[Result]]:
     """
     Yield the results of `work(0)` to `work(count - 1)`, in this order, computed as they are taken.
 
     `workers` is the number of processes, by default that of the cores; 1 means this process.
-    Only results are passed between processes, so `work` may be any function. Taking a result
-    raises DdctError when a worker was killed.
+    `chunk` is the number of results that a worker sends together. Only results are passed between
+    processes, so `work` may be any function. Taking a result raises DdctError when a worker was
+    killed.
     """
-    workers = min(workers or len(os.sched_getaffinity(0)), count)
+    workers = min(worker_count(workers), count)
     if workers < 2:
         yield map(work, range(count))
         return
-    context = multiprocessing.get_context('fork')
-    with ProcessPoolExecutor(workers, context, _begin, (work,)) as pool:
-        chunk = max(1, min(_LARGEST_CHUNK, count // (_CHUNKS_EACH * workers)))
-        results = pool.map(_at, range(count), chunksize=chunk)
-        try:
-            yield _taken(results)
-        finally:
-            pool.shutdown(wait=False, cancel_futures=True)
+    with closing(WorkerPool(workers, work)) as pool:
+        chunk = chunk or max(1, min(_LARGEST_CHUNK, count // (_CHUNKS_EACH * workers)))
+        yield _taken(pool.executor().map(_at, range(count), chunksize=chunk))
 
 
 def _taken(results: Iterator[Result]) -> Iterator[Result]:
@@ -63,22 +111,18 @@ def _taken(results: Iterator[Result]) -> Iterator[Result]:
         ) from error
 
 
-_work: Callable[[int], Any]
+_work: Callable[[int], Any] | None = None
 """Function that a forked worker computes."""
 
 
-def _begin(work: Callable[[int], Any]) -> None:
+def _begin(work: Callable[[int], Any] | None) -> None:
+    """Prepare a worker: it ignores Ctrl-C, and is killed when the program ends."""
     global _work
     _work = work
-    begin_worker()
-    one_numeric_thread()
-
-
-def begin_worker() -> None:
-    """Prepare a worker: it ignores Ctrl-C, and is killed when the program ends."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     end_with_parent(signal.SIGKILL)
+    one_numeric_thread()
 
 
 def one_numeric_thread() -> None:
@@ -96,4 +140,5 @@ def one_numeric_thread() -> None:
 
 
 def _at(index: int) -> Any:
+    assert _work is not None
     return _work(index)

@@ -1,0 +1,148 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Score the runs of a run set: linear ones at once, all others step by step."""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from itertools import chain
+from typing import Any
+
+import numpy as np
+
+from ddct_bringup.batch.batchable import batchable
+from ddct_bringup.batch.run_batch import run_batch
+from ddct_bringup.campaign.rows import (
+    CONTROLLER,
+    INDEX,
+    SEED,
+    SERIAL,
+    VECTORISED,
+    Row,
+    result_row,
+    scored_headless,
+)
+from ddct_bringup.campaign.run_set import CampaignRun, RefusedRun, RunSet
+from ddct_bringup.run.description import facts_of
+from ddct_bringup.scores.scored_run import ScoredRun
+from ddct_bringup.scores.scoring import run_without_score
+from ddct_bringup.verdict.limits import Limits
+from ddct_controllers.interface import THESIS, Controller
+from ddct_controllers.registry import make_controller, own_controller_names
+from ddct_plant.base.errors import FOREIGN_FAILURES
+from ddct_plant.program.workers import in_processes, worker_count
+
+_LARGEST_PART = {True: 1000, False: 16}
+"""Largest number of runs that a worker hands over together, at once (True) or step by step."""
+_PARTS_EACH = 8
+"""Least number of parts for each worker, so that all end together."""
+
+
+@dataclass(frozen=True)
+class ScoredCampaignRun:
+    """Scores of one run, and what distinguishes it from the others."""
+
+    index: int
+    controller: str
+    seed: int
+    """Seed of the random numbers within the run."""
+    varied: Mapping[str, Any]
+    """Values by key, as they were given."""
+    scores: ScoredRun
+    path: str
+    """Whether it was computed `serial` or `vectorised`."""
+
+    def row(self) -> Row:
+        """Return the row of the run, by the columns of `results.parquet`."""
+        ours = {INDEX: self.index, SEED: self.seed}
+        row = result_row(self.scores, self.varied, self.path)
+        return {**ours, **row, CONTROLLER: self.controller}
+
+
+@dataclass
+class Scorer:
+    """Scores runs; controllers that no run changes are built once."""
+
+    limits: Limits
+    at_once: bool = True
+    """Whether linear runs are computed together, to 1e-9 of the run step by step."""
+    _shared: dict[str, Controller] = field(default_factory=dict)
+
+    def scored(self, runs: Iterable[CampaignRun | RefusedRun]) -> list[ScoredCampaignRun]:
+        """
+        Return every run with its scores, in their order.
+
+        A failed run, and one whose settings cannot be built, has its reason.
+        """
+        planned = list(runs)
+        # A value that is not finite becomes a reason in the row of its run.
+        with np.errstate(all='ignore'):
+            found = self._together([run for run in planned if isinstance(run, CampaignRun)])
+            return [self._of(run, found.get(run.index)) for run in planned]
+
+    def _of(self, run: CampaignRun | RefusedRun, found: ScoredRun | None) -> ScoredCampaignRun:
+        name, path, scores = run.controller.name, VECTORISED, found
+        if isinstance(run, RefusedRun):
+            path, scores = SERIAL, run_without_score(name, None, str(run.error))
+        elif scores is None:
+            path, scores = SERIAL, scored_headless(run.settings, run.controller, self.limits)
+        return ScoredCampaignRun(run.index, name, run.seed, run.varied, scores, path)
+
+    def _together(self, runs: Sequence[CampaignRun]) -> dict[int, ScoredRun]:
+        """Return the scores of the runs that can be computed at once, by index."""
+        suited = []
+        for run in runs if self.at_once else ():
+            try:
+                controller = self._controller(run)
+            except FOREIGN_FAILURES:
+                continue  # the run step by step gives the reason
+            if not batchable(run.settings, controller):
+                suited.append((run, controller))
+        results = run_batch(
+            [(run.settings, controller) for run, controller in suited], self.limits
+        )
+        return {
+            run.index: _with_facts(result, run)
+            for (run, _), result in zip(suited, results, strict=True)
+            if result is not None
+        }
+
+    def _controller(self, run: CampaignRun) -> Controller:
+        """Return the controller of a run; a packaged one that no run changes is built once."""
+        spec = run.controller
+        if spec.computed_from != THESIS or spec.name not in own_controller_names():
+            return make_controller(spec, run.settings)
+        key = repr((spec.name, run.settings.scenario.controllers.get(spec.name)))
+        if key not in self._shared:
+            self._shared[key] = make_controller(spec, run.settings)
+        return self._shared[key]
+
+
+def _with_facts(scores: ScoredRun, run: CampaignRun) -> ScoredRun:
+    name = run.controller.name
+    return replace(
+        scores, bag=name, facts=facts_of(run.settings, name, run.settings.scenario.steps)
+    )
+
+
+@contextmanager
+def scored_runs(
+    runs: RunSet, limits: Limits, *, workers: int | None = None, at_once: bool = True
+) -> Iterator[Iterator[ScoredCampaignRun]]:
+    """
+    Yield an iterator over all runs with their scores, in the order of their indices.
+
+    They are computed while it is consumed, by `workers` processes, by default one per core; none
+    is kept. Call `RunSet.require_sound` before: here a run that cannot be built has its reason.
+    """
+    scorer = Scorer(limits, at_once)
+    count = worker_count(workers)
+    size = max(1, min(_LARGEST_PART[at_once], runs.runs // (_PARTS_EACH * count)))
+    parts = -(-runs.runs // size)
+
+    def part(number: int) -> list[ScoredCampaignRun]:
+        first = number * size
+        return scorer.scored(runs.planned(first, min(first + size, runs.runs)))
+
+    with in_processes(part, parts, count, chunk=1) as found:
+        yield chain.from_iterable(found)
