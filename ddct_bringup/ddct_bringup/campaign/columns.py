@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Columns of `results.parquet`, and the conversion of rows to the bytes of a Parquet file."""
 
-import json
 import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -11,6 +10,7 @@ from typing import Any
 import pyarrow as pa
 import pyarrow.parquet as parquet
 
+from ddct_bringup.campaign.arrow_columns import arrow_column, read_parquet
 from ddct_bringup.campaign.rows import (
     CONTROLLER,
     CRITERION_COLUMNS,
@@ -58,15 +58,7 @@ def schema_of(spec: CampaignSpec) -> pa.Schema:
 
 def shard_bytes(schema: pa.Schema, rows: Sequence[Row]) -> bytes:
     """Return rows as a Parquet file, the same bytes for the same rows."""
-    columns = [
-        pa.array(
-            [_cell(row[field.name]) for row in rows]
-            if pa.types.is_string(field.type)
-            else [row[field.name] for row in rows],
-            field.type,
-        )
-        for field in schema
-    ]
+    columns = [arrow_column(field.type, [row[field.name] for row in rows]) for field in schema]
     sink = pa.BufferOutputStream()
     table = pa.Table.from_arrays(columns, schema=schema)
     parquet.write_table(table, sink, compression=_COMPRESSION)
@@ -76,7 +68,7 @@ def shard_bytes(schema: pa.Schema, rows: Sequence[Row]) -> bytes:
 def contains_rows(path: Path, schema: pa.Schema, first: int, last: int) -> bool:
     """Return whether a file is complete, with the rows `first` to `last`, `last` excluded."""
     try:
-        table = parquet.read_table(path)
+        table = read_parquet(path)
     except (OSError, pa.ArrowException):
         return False
     return table.schema.equals(schema) and table[INDEX].to_pylist() == list(range(first, last))
@@ -99,7 +91,7 @@ def merge(
             parquet.ParquetWriter(file, schema, compression=_COMPRESSION) as writer,
         ):
             for first in range(0, len(shards), in_group):
-                tables = [parquet.read_table(each) for each in shards[first : first + in_group]]
+                tables = [read_parquet(each) for each in shards[first : first + in_group]]
                 writer.write_table(pa.concat_tables(tables))
         partial.replace(target)
     except (OSError, pa.ArrowException) as error:
@@ -145,11 +137,6 @@ def _same(ours: Any, theirs: Any, rtol: float) -> bool:
     if isinstance(ours, float) and isinstance(theirs, (int, float)):
         return math.isclose(ours, theirs, rel_tol=rtol)
     return ours == theirs
-
-
-def _cell(value: Any) -> Any:
-    """Return the value of a cell; a list or a group of keys becomes text."""
-    return json.dumps(value) if isinstance(value, (list, tuple, Mapping)) else value
 
 
 def _type(spec: CampaignSpec, key: str) -> pa.DataType:

@@ -164,6 +164,13 @@ def _worst(
 ) -> list[tuple[float | None, int | None]]:
     """Return per cell the value of largest magnitude of its valid runs, and that run's index."""
     values = np.where(results.outcomes == INVALID, np.nan, results.columns[key])
+    index = results.columns['index']
+    if isinstance(parts, np.ndarray):
+        rows = parts[:, 0]
+        return [
+            (None, None) if np.isnan(value) else (float(f'{value:.{_DIGITS}g}'), run)
+            for value, run in zip(values[rows].tolist(), index[rows].tolist(), strict=True)
+        ]
     found: list[tuple[float | None, int | None]] = []
     for rows in parts:
         if np.isnan(values[rows]).all():
@@ -171,7 +178,7 @@ def _worst(
         else:
             row = rows[np.nanargmax(np.abs(values[rows]))]
             value = float(f'{values[row]:.{_DIGITS}g}')
-            found.append((value, int(results.columns['index'][row])))
+            found.append((value, int(index[row])))
     return found
 
 

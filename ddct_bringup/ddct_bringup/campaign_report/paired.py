@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Differences of two controllers on the same cases."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -68,8 +69,16 @@ def median_interval(values: np.ndarray) -> tuple[float, float] | None:
     """
     outside = (1.0 - CONFIDENCE) / 2.0
     runs = len(values)
-    rank = int(scipy.stats.binom.ppf(outside, runs, 0.5)) if runs else 0
+    rank = _quantile_of_half(outside, runs) if runs else 0
     if rank < 1:
         return None
     ordered = np.sort(values)
     return float(ordered[rank - 1]), float(ordered[runs - rank])
+
+
+def _quantile_of_half(probability: float, runs: int) -> int:
+    """Return the smallest k with P(Binomial(runs, 1/2) <= k) of at least a probability."""
+    # The same as scipy.stats.binom.ppf; scipy.stats takes long to import.
+    rank = math.ceil(scipy.special.bdtrik(probability, runs, 0.5))
+    below = rank > 0 and scipy.special.bdtr(rank - 1, runs, 0.5) >= probability
+    return rank - 1 if below else rank

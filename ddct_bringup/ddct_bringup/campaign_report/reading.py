@@ -4,9 +4,10 @@
 
 from pathlib import Path
 
+import numpy as np
 import pyarrow as pa
-import pyarrow.parquet as parquet
 
+from ddct_bringup.campaign.arrow_columns import numpy_column, read_parquet
 from ddct_bringup.campaign.columns import COMPARED, CONTROLLER, INDEX, PATH, SCHEMA_VERSION
 from ddct_bringup.campaign.conduct import RESULTS
 from ddct_bringup.campaign.keys import COMMON, SCENARIO, option_of
@@ -33,7 +34,7 @@ def read_table(folder: Path, manifest: Manifest) -> pa.Table:
     """
     path = folder / RESULTS
     try:
-        table = parquet.read_table(path)
+        table = read_parquet(path)
         known = table.schema.metadata or {}
         require_schema_version(
             {SCHEMA_KEY: int(known.get(SCHEMA_KEY.encode(), 0))}, SCHEMA_VERSION
@@ -50,7 +51,7 @@ def read_table(folder: Path, manifest: Manifest) -> pa.Table:
     for name in (*REQUIRED, *manifest.grid, *manifest.random):
         if name not in table.column_names:
             raise DdctError(f'{path}: it has no column {name}: {_RESUME_ADVICE}')
-    if table[INDEX].to_pylist() != list(range(manifest.runs)):
+    if not np.array_equal(numpy_column(table[INDEX]), np.arange(manifest.runs)):
         raise DdctError(
             f'{path}: its rows are not the {manifest.runs} runs that {folder} was started with: '
             f'{_RESUME_ADVICE}'
@@ -60,7 +61,7 @@ def read_table(folder: Path, manifest: Manifest) -> pa.Table:
 
 def results_of(manifest: Manifest, table: pa.Table) -> Results:
     """Return the results from the rows and the manifest."""
-    columns = {name: table[name].to_numpy() for name in table.column_names}
+    columns = {name: numpy_column(table[name]) for name in table.column_names}
     ours = (*REQUIRED, PATH, *COMPARED, *manifest.grid, *manifest.random)
     absent = tuple(name for name in COMPARED if name not in columns)
     unknown = tuple(name for name in columns if name not in ours)

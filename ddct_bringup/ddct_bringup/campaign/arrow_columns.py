@@ -1,0 +1,73 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""
+Columns of Arrow from values and back, without `pyarrow.array` and `to_numpy`.
+
+Both import pandas where it is installed, which takes longer than a thousand linear runs.
+"""
+
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as parquet
+
+_NUMBERS = {pa.int64(): np.int64, pa.float64(): np.float64}
+
+
+def read_parquet(path: Path) -> pa.Table:
+    """Return all rows of a Parquet file; raise OSError or ArrowException where that fails."""
+    with parquet.ParquetFile(path) as file:
+        return file.read()
+
+
+def arrow_column(kind: pa.DataType, values: Sequence[object]) -> pa.Array:
+    """
+    Return the column of a type, one of int64, float64, bool and string; None is a null.
+
+    In a column of strings a list or a group of keys becomes its JSON.
+    """
+    present = np.array([value is not None for value in values])
+    nulls = None if present.all() else _bits(present)
+    if kind in _NUMBERS:
+        filled = [0 if value is None else value for value in values]
+        buffers = [nulls, pa.py_buffer(np.array(filled, dtype=_NUMBERS[kind]))]
+    elif pa.types.is_boolean(kind):
+        buffers = [nulls, _bits(np.array([bool(value) for value in values]))]
+    else:
+        texts = [_text(value).encode() for value in values]
+        ends = np.cumsum([0, *map(len, texts)], dtype=np.int32)
+        buffers = [nulls, pa.py_buffer(ends), pa.py_buffer(b''.join(texts))]
+    return pa.Array.from_buffers(kind, len(values), buffers)
+
+
+def numpy_column(column: pa.ChunkedArray) -> np.ndarray:
+    """Return a column of a table, (n,): numbers with NaN for null, or objects with None."""
+    if column.type in _NUMBERS and column.num_chunks:
+        return np.concatenate([_numbers(chunk) for chunk in column.chunks])
+    if pa.types.is_string(column.type):
+        return np.array(column.to_pylist(), dtype=object)
+    if pa.types.is_boolean(column.type) and not column.null_count:
+        return np.array(column.to_pylist(), dtype=bool)
+    return np.asarray(column.to_numpy())
+
+
+def _numbers(array: pa.Array) -> np.ndarray:
+    valid, data = array.buffers()
+    values = np.frombuffer(data, _NUMBERS[array.type])[array.offset : array.offset + len(array)]
+    if not array.null_count:
+        return values
+    bits = np.unpackbits(np.frombuffer(valid, np.uint8), bitorder='little')
+    return np.where(bits[array.offset : array.offset + len(array)] == 1, values, np.nan)
+
+
+def _bits(values: np.ndarray) -> pa.Buffer:
+    return pa.py_buffer(np.packbits(values, bitorder='little'))
+
+
+def _text(value: object) -> str:
+    if isinstance(value, (list, tuple, Mapping)):
+        return json.dumps(value)
+    return '' if value is None else str(value)

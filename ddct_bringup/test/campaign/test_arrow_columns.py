@@ -1,0 +1,75 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Columns of results are those of pyarrow, without the import of pandas."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as parquet
+import pytest
+
+from ddct_bringup.campaign.arrow_columns import arrow_column, numpy_column, read_parquet
+
+COLUMNS: dict[str, tuple[pa.DataType, list[object]]] = {
+    'index': (pa.int64(), [3, -(2**53), 5]),
+    'gear': (pa.int64(), [3, None, 5]),
+    'jerk': (pa.float64(), [0.1, None, float('inf')]),
+    'whole': (pa.float64(), [1, 2.5, 3]),
+    'none': (pa.float64(), [None, None, None]),
+    'valid': (pa.bool_(), [True, False, True]),
+    'maybe': (pa.bool_(), [True, None, False]),
+    'reason': (pa.string(), ['', 'größer → 3', None]),
+}
+
+
+@pytest.mark.parametrize('name', COLUMNS)
+def test_a_column_is_that_of_pyarrow_and_comes_back_as_its_numbers(
+    tmp_path: Path, name: str
+) -> None:
+    kind, values = COLUMNS[name]
+    column = arrow_column(kind, values)
+    column.validate(full=True)
+    assert column.equals(pa.array(values, kind))
+    parquet.write_table(pa.table({name: column}), tmp_path / 'results.parquet')
+    read = read_parquet(tmp_path / 'results.parquet')[name]
+    ours, theirs = numpy_column(read), read.to_numpy()
+    assert ours.dtype == theirs.dtype
+    np.testing.assert_array_equal(ours, theirs)
+
+
+def test_the_columns_of_several_row_groups_are_joined(tmp_path: Path) -> None:
+    table = pa.table({'gear': pa.array([1, 2, None, 4], pa.int64())})
+    parquet.write_table(table, tmp_path / 'results.parquet', row_group_size=2)
+    column = read_parquet(tmp_path / 'results.parquet')['gear'].slice(1)
+    np.testing.assert_array_equal(numpy_column(column), [2.0, np.nan, 4.0])
+
+
+def test_a_list_and_a_group_of_keys_become_json() -> None:
+    column = arrow_column(pa.string(), [[0.6, 1.1], {'csv': 'a.csv'}])
+    assert column.to_pylist() == ['[0.6, 1.1]', '{"csv": "a.csv"}']
+
+
+def test_a_worker_writes_and_a_page_reads_rows_without_pandas_or_scipy_stats(
+    tmp_path: Path,
+) -> None:
+    code = (
+        'import sys\nfrom pathlib import Path\n'
+        'from ddct_bringup.campaign.conduct import carry_out\n'
+        'from ddct_bringup.campaign.runs import Campaign\n'
+        'from ddct_bringup.campaign.spec import spec_of\n'
+        'from ddct_bringup.campaign_report.folder import write_campaign_page\n'
+        'from ddct_bringup.verdict.limits import packaged_limits\n'
+        "content = {'controllers': ['pi', 'ls8'], 'grid': {'wear_gain': [0.8, 0.9, 1.0, 1.1]}}\n"
+        'out = Path(sys.argv[1])\n'
+        'made = Campaign(spec_of(content, Path()))\n'
+        'carry_out(made, packaged_limits(), out, workers=1)\n'
+        'write_campaign_page(out)\n'
+        "assert not {'pandas', 'scipy.stats'} & set(sys.modules)\n"
+    )
+    done = subprocess.run(
+        [sys.executable, '-c', code, str(tmp_path / 'out')], capture_output=True, check=False
+    )
+    assert done.returncode == 0, done.stderr.decode()
