@@ -3,7 +3,10 @@
 """Controllers written in C run from a file like any other; their errors have one line."""
 
 import gc
+import os
+import signal
 import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -14,11 +17,12 @@ from support.exported_mpc import STRICT, compile_c, run_settings
 from ddct_bringup.programs.bringup import main as bringup
 from ddct_bringup.run.headless import run_headless
 from ddct_controllers.check.checks import FAIL, check_controller
-from ddct_controllers.from_file.c_library import host
+from ddct_controllers.from_file.c_library import host, loaded
 from ddct_controllers.interface import Command, Controller
 from ddct_controllers.mpc.export.export_controller import export_controller
-from ddct_controllers.registry import make_controller
+from ddct_controllers.registry import controller_spec, make_controller
 from ddct_plant.base.errors import DdctError
+from ddct_plant.program.workers import in_processes
 
 TOLERANCE_N_M = 1e-6
 """Tolerance in N m, as between the C and Python of a controller: both solvers leave about 1e-9."""
@@ -249,9 +253,61 @@ def test_a_file_without_a_library_is_refused(tmp_path, content, complaint):
 
 def test_no_process_is_left_behind(library):
     controller: Any = make_controller(library(TEMPLATE), SETTINGS)
-    process = controller._process
+    process = Path(f'/proc/{controller._process}')
+    assert process.exists()
     del controller
-    assert process.poll() == 0
+    assert not process.exists()
+
+
+def test_a_library_is_loaded_once_for_all_controllers_and_workers(library, monkeypatch):
+    spec = controller_spec(library(TEMPLATE))
+    started: list[Any] = []
+    start: Any = subprocess.Popen
+
+    def counted(*given: Any, **named: Any) -> Any:
+        started.append(given)
+        return start(*given, **named)
+
+    monkeypatch.setattr(loaded.subprocess, 'Popen', counted)
+
+    def torques(_: int = 0) -> list[float]:
+        return run_headless(SETTINGS, spec).torque_request.tolist()
+
+    first = torques()
+    assert torques() == first
+    with in_processes(torques, 4, 2) as found:
+        assert [*found] == [first] * 4
+    assert len(started) == 1
+    again = run_headless(SETTINGS, library(command('command->clutch_torque = 7.0;')))
+    assert again.torque_request.tolist() != first, 'a library that was compiled again is the old'
+
+
+def test_static_variables_of_c_start_anew_for_each_controller(library):
+    body = 'static double calls = 0.0; calls += 1.0; command->clutch_torque = calls;'
+    file = library(command(body))
+    first, again = (run_headless(SETTINGS, file).torque_request.tolist() for _ in range(2))
+    assert first[-1] > 30.0
+    assert again == first
+
+
+KILLED = """
+import os, sys
+from ddct_controllers.registry import controller_spec, make_controller
+from support.exported_mpc import run_settings
+made = make_controller(sys.argv[1], run_settings('duration_s=1'))
+print(made._process, flush=True)
+os.kill(os.getpid(), 9)
+"""
+"""Program that is killed while it has a controller of a library."""
+
+
+def test_a_killed_program_leaves_no_process_of_a_library(library):
+    environment = {**os.environ, 'PYTHONPATH': os.pathsep.join(sys.path)}
+    command = [sys.executable, '-c', KILLED, library(TEMPLATE)]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+    # The pipe of standard error ends with the last process that has it, so all have ended.
+    assert done.returncode == -signal.SIGKILL
+    assert not Path(f'/proc/{int(done.stdout)}').exists()
 
 
 def test_the_header_is_c_as_strict_as_the_export(tmp_path):

@@ -3,17 +3,20 @@
 """A controller in a shared library, and the loader of `c_library`."""
 
 import contextlib
-import signal
-import socket
 import struct
-import subprocess
-import sys
 import weakref
 from operator import attrgetter
 from pathlib import Path
 from types import MappingProxyType
 
 from ddct_controllers.from_file.c_library import host
+from ddct_controllers.from_file.c_library.loaded import (
+    LoadedLibrary,
+    end_process,
+    exit_text,
+    loaded_library,
+    received,
+)
 from ddct_controllers.from_file.controller_file import ControllerFile, mapping
 from ddct_controllers.interface import (
     UNSTATED,
@@ -23,8 +26,7 @@ from ddct_controllers.interface import (
     ControllerSpec,
     Measurement,
 )
-from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.files.input_file import parse_json
+from ddct_plant.base.errors import DdctError
 
 KIND = 'c_library'
 _SCALARS = attrgetter(
@@ -40,9 +42,13 @@ def c_library_spec(file: ControllerFile) -> ControllerSpec[Controller]:
     content = mapping(KIND, file.keys(KIND)[KIND], ('file',))['file']
     path = file.named_file(KIND, content, 'a shared library, compiled first')
 
+    libraries: list[LoadedLibrary] = []
+
     def make(context: ControllerContext) -> Controller:
         with file.located():
-            return CLibraryController(path)
+            controller = CLibraryController(path)
+        libraries[:] = [controller.library]  # it stays loaded between the runs of a campaign
+        return controller
 
     return ControllerSpec(file.name, make, {}, UNSTATED)
 
@@ -53,22 +59,13 @@ class CLibraryController(Controller):
     method_names = MappingProxyType({name: f'ddct_controller_{name}' for name in _CALLS.values()})
 
     def __init__(self, path: Path) -> None:
-        """Start the process; raise ParameterError when the library cannot be used."""
+        """Start its process; raise ParameterError when the library cannot be used."""
         self._where = f'{KIND}.file: {path}'
-        self._channel, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-        with theirs:
-            self._process = subprocess.Popen(
-                [sys.executable, '-P', host.__file__, str(path.resolve()), str(theirs.fileno())],
-                pass_fds=[theirs.fileno()],
-                stdin=subprocess.DEVNULL,
-                stdout=2,  # what C prints is no result of the program
-            )
-        self._end = weakref.finalize(self, _end, self._channel, self._process)
-        about = parse_json(self._received(when='it was loaded').decode())
-        if 'error' in about:
-            self._end()
-            raise ParameterError(f'{self._where}: {about["error"]}')
-        self.preview_steps, self.commands_engine = about['preview_steps'], about['two_input']
+        self.library = loaded_library(path, self._where)
+        self.preview_steps = self.library.preview_steps
+        self.commands_engine = self.library.commands_engine
+        self._channel, self._process = self.library.start()
+        self._end = weakref.finalize(self, end_process, self._channel, self._process)
         self._layout = struct.Struct(f'q7d{2 * (self.preview_steps + 1)}d')
 
     def reset(self) -> None:
@@ -100,28 +97,10 @@ class CLibraryController(Controller):
         return clutch, engine, status
 
     def _received(self, when: str) -> bytes:
-        """Return the next message; raise DdctError, with the call, when the process has ended."""
-        try:
-            answer = self._channel.recv(host.MOST_BYTES)
-        except OSError:
-            answer = b''
-        if answer:
+        """Return the next message; raise DdctError when the process ended instead."""
+        answer = received(self._channel)
+        if len(answer) > host.EXITED.size:
             return answer
-        code = self._process.wait()
+        (code,) = host.EXITED.unpack(answer) if answer else (0,)
         self._end()
-        how = f'it ended with exit code {code}'
-        if code == -signal.SIGALRM:
-            how = f'it gave no answer within {host.MOST_SECONDS} s'
-        elif code < 0:
-            how = f'it crashed ({signal.Signals(-code).name})'
-        raise DdctError(f'{self._where}: {how} when {when}: mend the C')
-
-
-def _end(channel: socket.socket, process: 'subprocess.Popen[bytes]') -> None:
-    """Let the process end by itself, which flushes what C has printed, or end it."""
-    channel.close()
-    try:
-        process.wait(timeout=1.0)
-    except subprocess.TimeoutExpired:
-        process.kill()
-        process.wait()
+        raise DdctError(f'{self._where}: {exit_text(code)} when {when}: mend the C')

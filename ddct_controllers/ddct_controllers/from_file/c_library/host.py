@@ -1,14 +1,18 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
 """
-The process around a controller's library: loads it and makes its calls.
+The process that loads a controller's library, and the processes that make its calls.
 
-It is a process of its own because C may crash, loop for ever or print. Replies go over a socket, a
-message each; the process ends when the other end closes.
+They are processes of their own because C may crash, loop for ever or print. The library is loaded
+once. Each controller has a fork of the process that loaded it, so that none sees what another has
+left in static variables. Replies go over a socket, a message each; a process ends when the other
+end closes.
 """
 
+import contextlib
 import json
 import math
+import os
 import re
 import signal
 import socket
@@ -26,6 +30,11 @@ First byte of a request; UPDATE and HOLD continue with a measurement as C has it
 """
 ANSWER = struct.Struct('ddi')
 """Struct of a reply: clutch and engine torque in N m, and the function's return value."""
+STARTED, EXITED = struct.Struct('i'), struct.Struct('h')
+"""
+Structs of the first message for a controller, the id of its process, and of the last one, the
+exit code of the process. No reply has the size of the last one.
+"""
 MOST_BYTES = 1 << 16
 """Largest size of a message in bytes."""
 MOST_PREVIEW_STEPS = 1000
@@ -52,6 +61,7 @@ class Library:
         # object that is const would be a constant of the compiler's, which it has none of.
         declarations = re.sub(r'^#(.*\\\n)*.*\n', '', header, flags=re.MULTILINE)
         ffi.cdef(declarations.replace('extern const ', 'extern '))
+        ffi.cdef('int fflush(void *stream);')
         try:
             self._library = ffi.dlopen(path)
         except OSError as error:
@@ -83,6 +93,10 @@ class Library:
         self._measurement.slip_reference_rate = self._references + self.preview_steps + 1
         before_references = ffi.offsetof('ddct_measurement', 'slip_reference')
         self._scalars = ffi.buffer(self._measurement, before_references)
+
+    def flush(self) -> None:
+        """Write what C has printed, which a fork would print again."""
+        self._ffi.dlopen(None).fflush(self._ffi.NULL)
 
     def answer(self, request: bytes) -> bytes:
         """Execute one request and return the reply."""
@@ -116,25 +130,62 @@ class Library:
 
 
 def main() -> None:
-    """Serve the library argv[1] on the socket with the file descriptor argv[2]."""
+    """
+    Load the library argv[1] and describe it over the socket with the file descriptor argv[2].
+
+    After that each socket received there gets a process that calls the library.
+    """
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the program
     path, descriptor = sys.argv[1:]
-    with socket.socket(fileno=int(descriptor)) as channel:
+    with socket.socket(fileno=int(descriptor)) as control:
         signal.alarm(MOST_SECONDS)
         try:
             library = Library(path)
         except LibraryError as error:
             words = str(error).encode(errors='replace').decode()  # a path may be no UTF-8
-            channel.send(json.dumps({'error': words}).encode())
+            control.send(json.dumps({'error': words}).encode())
             return
         about = {'preview_steps': library.preview_steps, 'two_input': library.commands_engine}
-        channel.send(json.dumps(about).encode())
+        control.send(json.dumps(about).encode())
         signal.alarm(0)
-        while request := channel.recv(MOST_BYTES):
-            signal.alarm(MOST_SECONDS)
-            answer = library.answer(request)
-            signal.alarm(0)
-            channel.send(answer)
+        signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # nobody waits for the processes below
+        while channel := _received(control):
+            library.flush()
+            if not os.fork():
+                control.close()
+                _attend(library, channel)
+                return
+            channel.close()
+
+
+def _received(control: socket.socket) -> socket.socket | None:
+    """Return the socket of the next controller, None when the other end is closed."""
+    _, descriptors, _, _ = socket.recv_fds(control, 1, 1)
+    return socket.socket(fileno=descriptors[0]) if descriptors else None
+
+
+def _attend(library: Library, channel: socket.socket) -> None:
+    """Fork the process that calls the library; send its id first, and at its end its exit code."""
+    signal.signal(signal.SIGCHLD, signal.SIG_DFL)
+    process = os.fork()
+    if not process:
+        _serve(library, channel)
+        return
+    with contextlib.suppress(OSError):  # the other end may be closed
+        channel.send(STARTED.pack(process))
+    _, status = os.waitpid(process, 0)
+    with contextlib.suppress(OSError):
+        channel.send(EXITED.pack(os.waitstatus_to_exitcode(status)))
+    os._exit(0)
+
+
+def _serve(library: Library, channel: socket.socket) -> None:
+    """Make the calls of one controller until the other end is closed."""
+    while request := channel.recv(MOST_BYTES):
+        signal.alarm(MOST_SECONDS)
+        answer = library.answer(request)
+        signal.alarm(0)
+        channel.send(answer)
 
 
 if __name__ == '__main__':
