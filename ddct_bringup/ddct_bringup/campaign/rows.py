@@ -27,7 +27,7 @@ from ddct_plant.scenario.settings import RunSettings
 
 INDEX, CONTROLLER, PATH, SEED = 'index', 'controller', 'path', 'seed'
 """Columns of a row before those of the varied keys."""
-Row = Mapping[str, object]
+Row = Mapping[str, Any]
 """Row of `results.parquet`: values by column."""
 SERIAL, VECTORISED = 'serial', 'vectorised'
 """Values of the column `path`: simulated step by step, or together with other runs."""
