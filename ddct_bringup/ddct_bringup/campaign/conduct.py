@@ -12,8 +12,12 @@ from ddct_bringup.campaign.columns import contains_rows, merge, schema_of
 from ddct_bringup.campaign.executors import Workers, workers_of
 from ddct_bringup.campaign.manifest import MANIFEST, Manifest
 from ddct_bringup.campaign.runs import Campaign
-from ddct_bringup.campaign.shards import ShardJob, timed_shard
-from ddct_bringup.campaign.time_left import TimeLeft, each_controller_first
+from ddct_bringup.campaign.shards import (
+    ShardJob,
+    TimeLeft,
+    each_controller_first,
+    timed_shard,
+)
 from ddct_bringup.run.output_folder import (
     MARKER,
     locked_folders,

@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Boundary of failure on a grid: the first failure along a line from its start outward."""
+"""FailureBoundary of failure on a grid: the first failure along a line from its start outward."""
 
 from dataclasses import dataclass
 
@@ -11,10 +11,10 @@ from ddct_bringup.verdict.state import INVALID
 
 
 @dataclass(frozen=True)
-class Boundary:
-    """Boundary of failure along a line from its start to one end."""
+class FailureBoundary:
+    """FailureBoundary of failure along a line from its start to one end."""
 
-    last_good: float | None
+    last_good_value: float | None
     """
     Last value up to which no run failed and all are valid; None where the start has a failure.
     """
@@ -30,7 +30,9 @@ class Boundary:
     """Number of invalid runs up to `first_failure`, or to the end of the line."""
 
 
-def boundaries(values: np.ndarray, outcomes: np.ndarray, start: float) -> dict[str, Boundary]:
+def boundaries(
+    values: np.ndarray, outcomes: np.ndarray, start: float
+) -> dict[str, FailureBoundary]:
     """
     Return the boundaries `below` and `above` the start of a line.
 
@@ -42,20 +44,24 @@ def boundaries(values: np.ndarray, outcomes: np.ndarray, start: float) -> dict[s
     }
 
 
-def _boundary(values: np.ndarray, outcomes: np.ndarray, distance: np.ndarray) -> Boundary:
+def _boundary(values: np.ndarray, outcomes: np.ndarray, distance: np.ndarray) -> FailureBoundary:
     """Return the boundary along (n,) distances from the start; those behind it are negative."""
     ahead = distance >= 0.0
     failure = _least(distance, ahead & (outcomes == FAILED))
     doubt = _least(distance, ahead & (outcomes == INVALID))
     good = ahead & (distance < min(failure, doubt))
-    last_good = float(values[np.argmax(np.where(good, distance, -1.0))]) if good.any() else None
+    last_good_value = (
+        float(values[np.argmax(np.where(good, distance, -1.0))]) if good.any() else None
+    )
     invalid = int(np.sum(ahead & (distance <= failure) & (outcomes == INVALID)))
     if np.isinf(failure):
-        return Boundary(last_good, None, None, invalid=invalid)
+        return FailureBoundary(last_good_value, None, None, invalid=invalid)
     there = distance == failure
     failed = np.flatnonzero(there & (outcomes == FAILED))
     first = float(values[failed[0]])
-    return Boundary(last_good, first, int(failed[0]), len(failed), int(np.sum(there)), invalid)
+    return FailureBoundary(
+        last_good_value, first, int(failed[0]), len(failed), int(np.sum(there)), invalid
+    )
 
 
 def _least(distance: np.ndarray, chosen: np.ndarray) -> float:

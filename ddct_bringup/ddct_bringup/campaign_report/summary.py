@@ -123,7 +123,7 @@ def _boundary(results: Results, group: Group, key: str) -> Summary:
         'others': {other: results.start_of(other) for other in results.others([key])},
         **{
             name: {
-                'last_good': side.last_good,
+                'last_good': side.last_good_value,
                 'first_failure': side.first_failure,
                 'failed': side.failed,
                 'runs': side.runs,

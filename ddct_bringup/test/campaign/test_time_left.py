@@ -7,8 +7,7 @@ from typing import Any
 
 import pytest
 
-from ddct_bringup.campaign.shards import ShardJob
-from ddct_bringup.campaign.time_left import TimeLeft, each_controller_first
+from ddct_bringup.campaign.shards import ShardJob, TimeLeft, each_controller_first
 
 UNUSED: Any = None
 

@@ -1,12 +1,12 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Boundary of failure on a grid: along one line, from its start to both sides."""
+"""FailureBoundary of failure on a grid: along one line, from its start to both sides."""
 
 import numpy as np
 import pytest
 from made_results import made_results
 
-from ddct_bringup.campaign_report.boundaries import Boundary, boundaries
+from ddct_bringup.campaign_report.boundaries import FailureBoundary, boundaries
 from ddct_bringup.campaign_report.summary import summary_of
 from ddct_bringup.campaign_report.texts import boundary_text, good_text
 from ddct_bringup.verdict.state import ENGAGED, INVALID
@@ -25,34 +25,38 @@ def by_mark(marks):
 
 def test_the_first_failure_is_the_one_next_to_the_last_good_value_and_not_the_last():
     sides = found(by_mark('efeeeeff'))
-    assert sides['below'] == Boundary(last_good=0.8, first_failure=0.7, row=1, failed=1, runs=1)
-    assert sides['above'] == Boundary(last_good=1.1, first_failure=1.2, row=6, failed=1, runs=1)
+    assert sides['below'] == FailureBoundary(
+        last_good_value=0.8, first_failure=0.7, row=1, failed=1, runs=1
+    )
+    assert sides['above'] == FailureBoundary(
+        last_good_value=1.1, first_failure=1.2, row=6, failed=1, runs=1
+    )
 
 
 def test_without_a_failure_all_is_good_to_the_ends_of_the_range():
     sides = found(by_mark('eeeeeeee'))
-    assert (sides['below'].last_good, sides['below'].first_failure) == (0.6, None)
-    assert (sides['above'].last_good, sides['above'].first_failure) == (1.3, None)
+    assert (sides['below'].last_good_value, sides['below'].first_failure) == (0.6, None)
+    assert (sides['above'].last_good_value, sides['above'].first_failure) == (1.3, None)
 
 
 def test_a_start_that_fails_is_the_first_failure_of_both_sides_and_no_value_is_good():
     sides = found(by_mark('eeeefeee'))
-    assert sides['below'] == sides['above'] == Boundary(None, 1.0, 4, 1, 1)
+    assert sides['below'] == sides['above'] == FailureBoundary(None, 1.0, 4, 1, 1)
 
 
 def test_a_run_that_does_not_count_is_no_failure_and_no_good_value():
     above = found(by_mark('eeeeeief'))['above']
-    assert above == Boundary(1.0, 1.3, 7, 1, 1, invalid=1)
-    assert found(by_mark('eeeeeiee'))['above'] == Boundary(1.0, None, None, invalid=1)
+    assert above == FailureBoundary(1.0, 1.3, 7, 1, 1, invalid=1)
+    assert found(by_mark('eeeeeiee'))['above'] == FailureBoundary(1.0, None, None, invalid=1)
 
 
 def test_a_value_with_several_runs_fails_with_one_of_them():
     sides = found(by_mark('eeeif'), 1.0, [1.0, 1.0, 1.0, 1.1, 1.1])
-    assert sides['above'] == Boundary(1.0, 1.1, 4, 1, 2, invalid=1)
+    assert sides['above'] == FailureBoundary(1.0, 1.1, 4, 1, 2, invalid=1)
 
 
 def test_one_run_is_enough():
-    assert found([ENGAGED], values=[1.0])['below'] == Boundary(1.0, None, None)
+    assert found([ENGAGED], values=[1.0])['below'] == FailureBoundary(1.0, None, None)
 
 
 @pytest.mark.parametrize('seed', range(20))
@@ -61,7 +65,7 @@ def test_the_last_good_value_and_the_first_failure_are_never_the_same(seed):
     marks = random.choice(list('eeefi'), size=24)
     values = np.repeat(WEAR, 3)
     for side in found(by_mark(marks), 1.0, values).values():
-        assert side.last_good is None or side.last_good != side.first_failure
+        assert side.last_good_value is None or side.last_good_value != side.first_failure
 
 
 @pytest.mark.parametrize(('good', 'bad'), [(1500.1, 1500.2), (0.1234561, 0.1234562), (0.9, 0.8)])
