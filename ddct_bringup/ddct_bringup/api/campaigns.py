@@ -44,8 +44,7 @@ def campaign(
     Compute a campaign into the folder `out`, as `ddct campaign` does, and return its results.
 
     `spec` is a file, or the content of one as a mapping; files that a mapping names are relative
-    to the working directory. A script calls this below `if __name__ == '__main__':`, as its worker
-    processes import it.
+    to the working directory.
     """
     pandas_module()
     given = spec_of(spec, Path.cwd()) if isinstance(spec, Mapping) else read_spec(spec)
