@@ -13,6 +13,7 @@ from ddct_plant.base.options import key_of
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.lti import StateSpace
 from ddct_plant.scenario.control import ENGINE_SPEED_TARGET
+from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
 
 SUPPORTED_KEYS = frozenset(
@@ -24,6 +25,12 @@ SUPPORTED_KEYS = frozenset(
     }
 )
 """Scenario keys that a batch supports, or that have no effect with a linear controller."""
+_UNSUPPORTED = [
+    (field.name, field.default)
+    for field in dataclasses.fields(Scenario)
+    if key_of(field) not in SUPPORTED_KEYS
+]
+"""Other scenario keys, with their defaults."""
 _TRIAL_STEPS = 60
 _MODEL_TOLERANCE = 1e-11
 """
@@ -49,9 +56,9 @@ def _why_not_plant(settings: RunSettings) -> str:
     if settings.reference_shape == ENGINE_SPEED_TARGET:
         return f'reference.shape is {ENGINE_SPEED_TARGET}'
     scenario = settings.scenario
-    for field in dataclasses.fields(scenario):
-        if key_of(field) not in SUPPORTED_KEYS and getattr(scenario, field.name) != field.default:
-            return f'the scenario gives {field.name}'
+    for name, default in _UNSUPPORTED:
+        if getattr(scenario, name) != default:
+            return f'the scenario gives {name}'
     return ''
 
 

@@ -29,10 +29,11 @@ def arrow_column(kind: pa.DataType, values: Sequence[object]) -> pa.Array:
 
     In a column of strings a list or a group of keys becomes its JSON.
     """
-    present = np.array([value is not None for value in values])
-    nulls = None if present.all() else _bits(present)
+    nulls = None
+    if None in values:
+        nulls = _bits(np.array([value is not None for value in values]))
     if kind in _NUMBERS:
-        filled = [0 if value is None else value for value in values]
+        filled = [0 if value is None else value for value in values] if nulls else values
         buffers = [nulls, pa.py_buffer(np.array(filled, dtype=_NUMBERS[kind]))]
     elif pa.types.is_boolean(kind):
         buffers = [nulls, _bits(np.array([bool(value) for value in values]))]

@@ -82,6 +82,8 @@ class Campaign(RunSet):
 
     def placed(self, key: str, value: Any) -> Any:
         """Return a value; if it names a file, with the folder in front."""
+        if type(value) in (float, int):
+            return value
         if key.endswith(FILE_KEY) and isinstance(value, str):
             return str(self.spec.folder / value)
         if isinstance(value, Mapping) and isinstance(value.get(_CSV), str):

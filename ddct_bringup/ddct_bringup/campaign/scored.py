@@ -4,7 +4,7 @@
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from itertools import chain
 from typing import Any
 
@@ -23,7 +23,6 @@ from ddct_bringup.campaign.rows import (
     scored_headless,
 )
 from ddct_bringup.campaign.run_set import CampaignRun, RefusedRun, RunSet
-from ddct_bringup.run.description import facts_of
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.scores.scoring import run_without_score
 from ddct_bringup.verdict.limits import Limits
@@ -49,6 +48,7 @@ class ScoredCampaignRun:
     varied: Mapping[str, Any]
     """Values by key, as they were given."""
     scores: ScoredRun
+    """Scores; of a run that was computed at once without facts and bag."""
     path: str
     """Whether it was computed `serial` or `vectorised`."""
 
@@ -102,7 +102,7 @@ class Scorer:
             [(run.settings, controller) for run, controller in suited], self.limits
         )
         return {
-            run.index: _with_facts(result, run)
+            run.index: result
             for (run, _), result in zip(suited, results, strict=True)
             if result is not None
         }
@@ -116,13 +116,6 @@ class Scorer:
         if key not in self._shared:
             self._shared[key] = make_controller(spec, run.settings)
         return self._shared[key]
-
-
-def _with_facts(scores: ScoredRun, run: CampaignRun) -> ScoredRun:
-    name = run.controller.name
-    return replace(
-        scores, bag=name, facts=facts_of(run.settings, name, run.settings.scenario.steps)
-    )
 
 
 @contextmanager

@@ -199,6 +199,12 @@ def options_of(group: type) -> Options:
 
 _OPTIONS: dict[type, Options] = {}
 """Options of the dataclasses that were requested before."""
+_ACCEPTED: dict[type, dict[str, object]] = {}
+"""
+Last text or list that was accepted for each option of a dataclass.
+
+Runs of a campaign have the same objects, which need no second check.
+"""
 
 
 @dataclass(frozen=True)
@@ -214,13 +220,18 @@ class OptionGroup:
 
     def __post_init__(self) -> None:
         """Check every option; raise ParameterError that names a bad one."""
+        accepted = _ACCEPTED.setdefault(type(self), {})
         for name, described in options_of(type(self)).items():
             value = getattr(self, name)
+            if value is accepted.get(name, REQUIRED):
+                continue
             low, high = described.ends
             if type(value) is float and low <= value <= high:
                 continue
             if value is not None or described.default is not None:
                 described.checked(f'{self.prefix}{name}', value)
+                if isinstance(value, (str, tuple)):
+                    accepted[name] = value
 
     def require_pairs(self, xs_name: str, ys_name: str) -> None:
         """Raise ParameterError unless the lists called `xs_name` and `ys_name` have one length."""

@@ -2,16 +2,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """Read, change and write scenarios as YAML; every unknown key and bad value is named."""
 
+import dataclasses
 import hashlib
 import importlib.resources
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import Any
 
 from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.base.options import OptionGroup, key_of, options_of
 from ddct_plant.base.timebase import steps_in, time_of_step
 from ddct_plant.files.input_file import SCHEMA_KEY, located, user_text
 from ddct_plant.files.yaml_text import dump_yaml, parse_yaml, parse_yaml_with_lines
@@ -42,6 +45,10 @@ class ScenarioFile:
     """Values of the file by key, nested."""
     lines: Mapping[str, int]
     """Line numbers of the keys and items, by path."""
+    _starts: dict[tuple[str, ...], '_Start'] = dataclasses.field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
+    """Scenarios with numbers that were set before, by the dotted keys of these numbers."""
 
     @classmethod
     def read(cls, name_or_file: str) -> 'ScenarioFile':
@@ -58,21 +65,80 @@ class ScenarioFile:
         self, overrides: Iterable[str] | Mapping[str, Any] = (), clutch: str = LINEAR
     ) -> Scenario:
         """Return the scenario with overrides; arguments and errors as in `load_scenario`."""
-        content = dict(self.content)
-        start_before = content.get('control_start_s')
-        given = (
-            overrides.items()
-            if isinstance(overrides, Mapping)
-            else map(parsed_override, overrides)
-        )
-        set_keys = [leaf for key, value in given for leaf in _put(content, key, value)]
-        with located(f'scenario {self.name}', _in_file(self.lines, set_keys)):
-            content = with_points(content, Path(self.name).parent, set_keys)
-            scenario = scenario_of(content)
-            origins = dict.fromkeys(flat(content), FILE) | dict.fromkeys(set_keys, SET)
-            scenario = with_remarks(consistent(scenario, origins, _number(start_before)))
+        pairs = [
+            *(
+                overrides.items()
+                if isinstance(overrides, Mapping)
+                else map(parsed_override, overrides)
+            )
+        ]
+        keys = tuple(key for key, _ in pairs)
+        numbers = all(type(value) is float for _, value in pairs)
+        start = self._starts.get(keys) if numbers else None
+        if start is None:
+            start = self._start(pairs)
+            if numbers and all(_is_number_of(start.scenario, key) for key in keys):
+                self._starts[keys] = start
+            scenario = start.scenario
+        with located(f'scenario {self.name}', start.lines):
+            if start is self._starts.get(keys):
+                scenario = _with_numbers(start.scenario, pairs)
+            scenario = with_remarks(consistent(scenario, start.origins, self._control_start))
             require_driveline(scenario.driveline, clutch)
             return scenario
+
+    def _start(self, pairs: Sequence[tuple[str, Any]]) -> '_Start':
+        """Return the scenario with values by dotted key, from the content of the file."""
+        content = dict(self.content)
+        set_keys = [leaf for key, value in pairs for leaf in _put(content, key, value)]
+        lines = _in_file(self.lines, set_keys)
+        with located(f'scenario {self.name}', lines):
+            content = with_points(content, Path(self.name).parent, set_keys)
+            scenario = scenario_of(content)
+        origins = dict.fromkeys(flat(content), FILE) | dict.fromkeys(set_keys, SET)
+        return _Start(scenario, origins, lines)
+
+    @cached_property
+    def _control_start(self) -> float | None:
+        """Time in s at which control starts in the file, None if it is missing or wrong."""
+        return _number(self.content.get('control_start_s'))
+
+
+@dataclass(frozen=True)
+class _Start:
+    """A scenario with overrides, before dependent values follow from them."""
+
+    scenario: Scenario
+    origins: Mapping[str, int]
+    """Origin of each given value by dotted key."""
+    lines: Mapping[str, int]
+    """Line numbers of the keys that are in the file, by path."""
+
+
+_SECTIONS = {key_of(field): field.name for field in dataclasses.fields(Scenario)}
+"""Field of a scenario by its key in files."""
+
+
+def _is_number_of(scenario: Scenario, key: str) -> bool:
+    """Return whether a dotted key is that of a number in the scenario or in one of its groups."""
+    section, _, leaf = key.rpartition('.')
+    group = getattr(scenario, _SECTIONS.get(section, ''), None) if section else scenario
+    if not isinstance(group, OptionGroup):
+        return False
+    option = options_of(type(group)).get(leaf)
+    return option is not None and option.kind is float and not option.many
+
+
+def _with_numbers(scenario: Scenario, pairs: Iterable[tuple[str, float]]) -> Scenario:
+    """Return the scenario with other numbers by dotted key; only their groups are built anew."""
+    groups: dict[str, dict[str, float]] = {}
+    for key, value in pairs:
+        section, _, leaf = key.rpartition('.')
+        groups.setdefault(_SECTIONS[section] if section else '', {})[leaf] = value
+    changes: dict[str, Any] = groups.pop('', {})
+    for name, values in groups.items():
+        changes[name] = dataclasses.replace(getattr(scenario, name), **values)
+    return dataclasses.replace(scenario, **changes)
 
 
 def load_scenario(
