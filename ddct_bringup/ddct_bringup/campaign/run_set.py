@@ -130,7 +130,7 @@ class RunSet:
         """Return a value; if it names a file, its path."""
         return value
 
-    def varied(self, cases: range) -> list[dict[str, Any]]:
+    def varied(self, cases: range) -> Sequence[Mapping[str, Any]]:
         """Return the values of some cases by key."""
         shape = [len(values) for values in self.grid.values()]
         points = np.array(cases) // self.samples
