@@ -31,7 +31,7 @@ from ddct_controllers.registry import make_controller, own_controller_names
 from ddct_plant.base.errors import FOREIGN_FAILURES
 from ddct_plant.program.workers import in_processes, worker_count
 
-_LARGEST_PART = {True: 1000, False: 16}
+_LARGEST_PART = {True: 200, False: 16}
 """Largest number of runs that a worker hands over together, at once (True) or step by step."""
 _PARTS_EACH = 8
 """Least number of parts for each worker, so that all end together."""
