@@ -31,7 +31,7 @@ def drawn(over: list[str], controllers: list[str], runs: list[tuple[str, float |
     scored = [
         made_scores(verdict=made_verdict(state), engagement_time_s=value) for state, value in runs
     ]
-    places = sweep.run_set.varied(range(sweep.run_set.cases)) * len(controllers)
+    places = [*sweep.run_set.varied(range(sweep.run_set.cases))] * len(controllers)
     swept = [SweptRun(place, scores) for place, scores in zip(places, scored, strict=True)]
     with chart_style():
         return sweep_figure(sweep, swept, TIME)
