@@ -122,7 +122,7 @@ class RunSet:
         try:
             settings = base.at({key: self.placed(key, given[key]) for key in given})
         except DdctError as error:
-            named = type(error)(f'{_name(index, varied)}: {error}')
+            named = error.at(_name(index, varied))
             return RefusedRun(index, controller, varied, given.get(SEED, 0), named)
         return CampaignRun(index, controller, varied, settings)
 
