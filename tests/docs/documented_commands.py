@@ -30,6 +30,9 @@ NOT_RUN_HERE = {
         'waits for a viewer; tests/live gives it one'
     ),
     'ddct live': 'serves until Ctrl-C; tests/live stops it',
+    'ddct clutch --ros-args -p qos_overrides': (
+        'serves until Ctrl-C; tests/graph/test_qos_overrides.py stops it'
+    ),
     'ddct campaign docs/examples/robustness': (
         'takes minutes; test_robustness_page.py makes some of its runs again'
     ),
