@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 from support.complaints import assert_one_line
-from support.processes import START_S, Program, Programs, processes_left
+from support.processes import START_S, Program, Programs, children_of
 from support.waiting import wait_until
 
 from ddct_bringup.campaign import conduct, executors
@@ -88,7 +88,7 @@ def test_processes_that_die_and_ctrl_c_cost_a_campaign_only_time(
     arguments = (str(spec), '--out', str(out))
     local = programs.start_module('ddct_bringup.programs.campaign', *arguments, '--workers', '1')
     wait_for_shards(out, 1)
-    (worker,) = (pid for pid, command in processes_left().items() if 'spawn_main' in command)
+    (worker,) = children_of(local.process.pid)
     os.kill(worker, signal.SIGKILL)
     assert campaign.main([*arguments, '--resume']) == 1
     assert_one_line(

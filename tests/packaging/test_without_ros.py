@@ -148,7 +148,11 @@ def test_only_nodes_and_what_they_share_need_ros(outcome: Outcome) -> None:
         for name in outcome.refused
         if not name.startswith('ddct_plant.graph.') and not name.endswith('_node')
     ]
-    assert others == ['ddct_bringup.processes.single_process', 'ddct_bringup.programs.live']
+    assert others == [
+        'ddct_bringup.processes.single_process',
+        'ddct_bringup.programs.live',
+        'ddct_bringup.record.recorded_bag',
+    ]
 
 
 def test_the_graph_says_in_one_line_what_is_missing(site: Path, tmp_path: Path) -> None:

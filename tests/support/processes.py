@@ -124,6 +124,17 @@ def processes_left() -> dict[int, str]:
     return left
 
 
+def children_of(parent: int) -> list[int]:
+    """Return the process ids of the processes that this test has started by way of another."""
+    found = []
+    for pid in processes_left():
+        with contextlib.suppress(OSError):
+            status = Path(f'/proc/{pid}/stat').read_text(encoding='utf-8')
+            if int(status.rpartition(')')[2].split()[1]) == parent:
+                found.append(pid)
+    return found
+
+
 def node_of(module: str) -> int:
     """Return the process id of the node of this test that runs `module`, once it is there."""
     found: list[int] = []

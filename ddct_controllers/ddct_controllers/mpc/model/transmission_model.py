@@ -18,7 +18,7 @@ from ddct_plant.models.driveline_model import driveline_matrices
 from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.models.printed import ACTUATOR
 
-_ACTUATOR_SIZE = len(ACTUATOR.to_state_space().a)
+_ACTUATOR_SIZE = len(ACTUATOR.poles)
 TRANSMISSION_STATES = (
     DRIVELINE_STATES
     + Names(tuple(f'actuator_{index}' for index in range(1, _ACTUATOR_SIZE + 1)))
