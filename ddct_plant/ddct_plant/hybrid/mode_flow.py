@@ -17,14 +17,24 @@ from ddct_plant.hybrid.polynomials import (
 
 LONGEST = 2.0
 """Longest piece, in units of 1 / (the balanced norm of a)."""
+CANCELLED = 2.0**-40
+"""Entry of a projection that counts as zero, over its terms."""
 
 
 def _projection(system: FrictionSystem, signs: Signs) -> tuple[np.ndarray, np.ndarray]:
-    """Return the projection P (n, n) to zero slip of the stuck elements, and (h_S g_S)^-1 h_S."""
+    """
+    Return the projection P (n, n) to zero slip of the stuck elements, and (h_S g_S)^-1 h_S.
+
+    Entries of P that are rounding of their terms are zero. Where sticking elements stop a state
+    altogether, its rates are then zero too.
+    """
     stuck = [i for i, sign in enumerate(signs) if sign == 0]
     rows, columns = system.h[stuck], system.g[:, stuck]
     hold = np.linalg.solve(rows @ columns, rows)
-    return np.eye(len(system.a)) - columns @ hold, hold
+    projection = np.eye(len(system.a)) - columns @ hold
+    terms = np.eye(len(system.a)) + np.abs(columns) @ np.abs(hold)
+    projection[np.abs(projection) <= CANCELLED * terms] = 0.0
+    return projection, hold
 
 
 class ModeFlow:

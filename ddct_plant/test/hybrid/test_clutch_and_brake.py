@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""The hybrid integrator on Modelica.Mechanics.Rotational.Examples.Friction."""
+"""Two friction elements: Modelica.Mechanics.Rotational.Examples.Friction, two on one body."""
 
 import numpy as np
 import pytest
@@ -81,3 +81,25 @@ def test_every_event_of_clutch_and_brake_is_within_1e_8_s_of_two_other_integrato
     assert state[0] == pytest.approx(2.2898714711, abs=1e-8)
     assert state[0] == pytest.approx(2.289890998276737, abs=3e-5)
     assert state[1] == pytest.approx(state[0], abs=1e-14)
+
+
+def two_clutches(first: float, second: float) -> FrictionSystem:
+    """Return a damped engine, a sprung shaft and its angle, and clutches of two ratios."""
+    a = np.array([[-0.08, 0.0, 0.0, 0.0], [0.0, -1.2, -400.0, 0.0], [0.0, 1.0, 0.0, 0.0]])
+    a = np.vstack([a, [1.0, 0.0, 0.0, 0.0]])
+    h = np.array([[1.0, -first, 0.0, 0.0], [1.0, -second, 0.0, 0.0]])
+    g = -h.T / np.array([[0.25], [3.5], [1.0], [1.0]])
+    return FrictionSystem(a, np.array([[4.0], [0.0], [0.0], [0.0]]), g, h)
+
+
+@pytest.mark.parametrize('first', [16.0602, 12.3, 7.7])
+@pytest.mark.parametrize('second', [9.3416, 5.90933, 4.1, 3.3])
+def test_two_elements_that_stop_a_damped_body_together_leave_it_without_any_motion(first, second):
+    integrator = HybridIntegrator(two_clutches(first, second), PIECE_S, PIECES, held=[0, 1, 2])
+    state = [20.0, 1.5, 0.0, 0.0]
+    signs = integrator.mode_of(state)
+    for _ in range(100):
+        done = integrator.advance(state, signs, [30.0], [200.0, 200.0], [200.0, 200.0])
+        state, signs = done.state, done.signs
+    assert signs == (0, 0)
+    assert state[:2] == [0.0, 0.0]
