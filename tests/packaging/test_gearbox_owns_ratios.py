@@ -12,7 +12,6 @@ OWNER = 'ddct_plant/ddct_plant/models/gearbox.py'
 KEYS = {
     'ddct_plant/ddct_plant/models/parameters.py': {'total_ratio'},
     'ddct_bringup/ddct_bringup/bag/measured_keys.py': {'total_ratio'},
-    'ddct_plant/ddct_plant/scenario/scenario.py': {'ratios'},
 }
 """Modules that declare a key of files, and what they read of it to make a gear or its range."""
 

@@ -144,9 +144,16 @@ class FrictionClutch:
         parameters: FrictionParameters,
         wear_gain: float = WEAR_GAIN.default,
         heat: HeatParameters | None = None,
+        open_below: float = 0.0,
     ) -> None:
-        """Use the friction and K_usura; start at the temperatures of `heat`, by default 20 °C."""
+        """
+        Use the friction and K_usura; start at the temperatures of `heat`, by default 20 °C.
+
+        The actuator presses above `open_below` in N m only. Its torque decays after a request of
+        zero and does not reach zero: a clutch that has to open in the run needs a value above 0.
+        """
         self._parameters = parameters
+        self._open_below = open_below
         self._wear_gain = WEAR_GAIN.checked('wear_gain', wear_gain)
         self._heat = ClutchHeat(heat or HeatParameters())
         self._step = 0
@@ -186,7 +193,7 @@ class FrictionClutch:
         if p.slip_rad_s:
             gain *= _curve(p.slip_rad_s, p.slip_share, abs(slip_speed))
         kiss = p.kiss_torque_n_m - p.kiss_drift_n_m_k * (temperature_c - AMBIENT_C)
-        least = max(kiss, 0.0)
+        least = max(kiss, self._open_below)
         kinetic = [gain * (torque - kiss) if torque > least else 0.0 for torque in actuator_torque]
         if max(kinetic) > p.most_n_m:
             kinetic = [min(torque, p.most_n_m) for torque in kinetic]

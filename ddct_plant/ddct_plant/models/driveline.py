@@ -119,16 +119,21 @@ def driveline_outputs(
     clutch_phase: float | None = None,
     friction_work: float | None = None,
     phase_events: tuple[PhaseEvent, ...] | None = None,
+    gear_speed: float | None = None,
 ) -> DrivelineOutputs:
     """
     Return the outputs in a state (7,), with the left limits of C_m, C_f and C_load in N m.
 
-    The last three arguments are the fields of `DrivelineOutputs` for a stick-slip clutch. The slip
-    is exactly 0 while the clutch sticks, and the acceleration while the wheels stick.
+    `clutch_phase`, `friction_work` and `phase_events` are the fields of `DrivelineOutputs` for a
+    stick-slip clutch. The slip is exactly 0 while the clutch sticks, and the acceleration while
+    the wheels stick. `gear_speed` is that of the driveshaft's inner end in rad/s; by default the
+    primary shaft turns it.
     """
     engine, shaft, wheel, twist, engine_angle, shaft_angle, wheel_angle = state
     p = parameters
-    twist_speed = p.gear.wheel_speed(shaft) - wheel
+    if gear_speed is None:
+        gear_speed = p.gear.wheel_speed(shaft)
+    twist_speed = gear_speed - wheel
     shaft_torque = p.halfshaft_damping * twist_speed + p.halfshaft_stiffness * twist
     engine_torque, clutch_torque, load_torque = torques
     wheel_accel = 0.0 if wheels_stick else (shaft_torque - load_torque) / p.vehicle_inertia

@@ -50,6 +50,10 @@ class EngagedGear:
         """Return the speed at the wheels w_p/tau in rad/s for w_p in rad/s."""
         return shaft_speed / self.total_ratio
 
+    def shaft_ratio(self, other: 'EngagedGear') -> float:
+        """Return the speed of this gear's primary shaft over that of `other`, both engaged."""
+        return self.total_ratio / other.total_ratio
+
     def wheel_torque(self, shaft_torque: Any) -> Any:
         """Return the torque at the wheels tau C in N m for C in N m at the primary shaft."""
         return self.total_ratio * shaft_torque
@@ -82,6 +86,11 @@ class Gearbox:
     """Ratio of the final drive of each gear without unit."""
     identified: int
     """Number of the gear whose total ratio is IDENTIFIED_RATIO."""
+
+    @property
+    def gears(self) -> int:
+        """Number of forward gears."""
+        return len(self.ratios)
 
     def gear(self, number: int | None) -> EngagedGear:
         """Return a gear by its number from 1 on; None is the identified gear."""

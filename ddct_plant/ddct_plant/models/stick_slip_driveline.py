@@ -10,7 +10,7 @@ import numpy as np
 from ddct_plant.base.timebase import SUBSTEP_S, SUBSTEPS, time_of_step
 from ddct_plant.hybrid.friction_system import FrictionSystem
 from ddct_plant.hybrid.integrator import HybridIntegrator
-from ddct_plant.hybrid.interval_map import Interval
+from ddct_plant.hybrid.interval_map import Event, Interval
 from ddct_plant.models.driveline import (
     LOCKED,
     OPEN,
@@ -34,7 +34,8 @@ CLUTCH, WHEEL = 0, 1
 _HELD = (0, 1, 3)
 """Indices of the inputs held over a period: C_m, C_load and holding torque."""
 _ENGINE_SPEED = STATES_AND_ANGLES['engine_speed']
-_PHASE_NUMBERS = {phase: float(number) for number, phase in enumerate(PHASES)}
+PHASE_NUMBERS = {phase: float(number) for number, phase in enumerate(PHASES)}
+"""Index in PHASES by phase, as signals have it."""
 
 
 class StickSlipDriveline:
@@ -61,7 +62,7 @@ class StickSlipDriveline:
         self.now = Interval(state, signs, [], [0.0, 0.0], friction)
         """Result of the last period: state, mode, events and friction work of both elements."""
         self._clutch_phase = (
-            OPEN if initial.clutch_open else _phase(signs[CLUTCH], initial.clutch_torque)
+            OPEN if initial.clutch_open else phase_of(signs[CLUTCH], initial.clutch_torque)
         )
         self._torques = (initial.engine_torque, initial.load_torque, initial.wheel_torque)
         self._steps = 0
@@ -83,17 +84,9 @@ class StickSlipDriveline:
             (engine_torque, clutch_torque, load_torque + wheel_torque),
             clutch_sticks=now.signs[CLUTCH] == 0,
             wheels_stick=now.signs[WHEEL] == 0,
-            clutch_phase=_PHASE_NUMBERS[self._clutch_phase],
+            clutch_phase=PHASE_NUMBERS[self._clutch_phase],
             friction_work=now.work[CLUTCH],
-            phase_events=self._phase_events() if now.events else (),
-        )
-
-    def _phase_events(self) -> tuple[PhaseEvent, ...]:
-        start_s = time_of_step(self._steps - 1)
-        return tuple(
-            PhaseEvent(start_s + event.time_s, event.kind, event.slip_acceleration)
-            for event in self.now.events
-            if event.element == CLUTCH
+            phase_events=phase_events(now.events, CLUTCH, self._steps - 1) if now.events else (),
         )
 
     def step(
@@ -117,15 +110,26 @@ class StickSlipDriveline:
         now = self.now = self._integrator.advance(
             self.now.state, self.now.signs, (engine_torque, load_torque), kinetic, static
         )
-        self._clutch_phase = _phase(now.signs[CLUTCH], kinetic_torque[-1])
+        self._clutch_phase = phase_of(now.signs[CLUTCH], kinetic_torque[-1])
         self._torques = (engine_torque, load_torque, holding_torque)
         self._steps += 1
 
 
-def _phase(sign: int, capacity: float) -> str:
+def phase_of(sign: int, capacity: float) -> str:
+    """Return the phase of a clutch with the sign of its slip and its capacity in N m."""
     if sign == 0:
         return LOCKED
     return SLIPPING if capacity else OPEN
+
+
+def phase_events(events: Sequence[Event], element: int, step: int) -> tuple[PhaseEvent, ...]:
+    """Return the events of one element in the period of a step, in the order of time."""
+    start_s = time_of_step(step)
+    return tuple(
+        PhaseEvent(start_s + event.time_s, event.kind, event.slip_acceleration)
+        for event in events
+        if event.element == element
+    )
 
 
 def friction_system(parameters: DrivelineParameters) -> FrictionSystem:

@@ -108,7 +108,7 @@ class Scenario(OptionGroup):
         'second gear is assumed for all',
         kind=int,
         at_least=1,
-        at_most=len(C635.ratios),
+        at_most=C635.gears,
     )
     adjusted: tuple[str, ...] = option(
         (),

@@ -57,6 +57,17 @@ def test_a_hot_clutch_carries_more_at_one_actuator_torque_but_opens_at_a_request
     assert found.kinetic == pytest.approx([0.0, 0.0, 50.0 - 12.0 + 0.1 * 200.0])
 
 
+def test_a_hot_clutch_that_opens_in_a_run_drops_the_rest_of_the_actuator_torque():
+    """At 220 °C it would carry 20 N m at any torque above zero, however small."""
+    parameters = FrictionParameters(kiss_drift_n_m_k=0.1)
+    decaying = [1.0, 0.02, 0.01, 1e-9]
+    clutch = FrictionClutch(parameters, open_below=0.01)
+    found = clutch.capacity(decaying, temperature_c=220.0).kinetic
+    assert found == pytest.approx([21.0, 20.02, 0.0, 0.0])
+    found = FrictionClutch(parameters).capacity(decaying, temperature_c=220.0).kinetic
+    assert found == pytest.approx([21.0, 20.02, 20.01, 20.0])
+
+
 @pytest.mark.parametrize('wear_gain', [0.7, 1.3])
 def test_no_request_makes_it_carry_more_than_its_greatest_capacity(wear_gain):
     """Whatever the wear; the static capacity is in proportion."""

@@ -1,0 +1,173 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""The plant of a shift: engine, load, two actuators, two clutches and the driveline."""
+
+from typing import NamedTuple
+
+from ddct_plant.base.timebase import steps_in, time_of_step
+from ddct_plant.models.actuator import Actuator
+from ddct_plant.models.clutch import Capacity, FrictionClutch
+from ddct_plant.scenario.plant import (
+    driveline_sensors,
+    holding_torque,
+    make_engine,
+    make_load,
+    torque_estimate,
+)
+from ddct_plant.scenario.whole_plant import Observation
+from ddct_plant.shift.driveline import OffGoingOutputs, ShiftDriveline, ShiftOutputs
+from ddct_plant.shift_plant.settings import ShiftSettings
+from ddct_plant.signals.signal import SignalValue
+
+OPEN_BELOW = 0.01
+"""Torque in N m of the actuator up to which a clutch of a shift is open."""
+_OF_CLUTCH = (
+    'torque_request',
+    'actuator_torque',
+    'clutch_torque',
+    'clutch_static_torque',
+    'clutch_temperature',
+)
+"""Names of the signals of a clutch and its actuator."""
+_OF_OFF_GOING = tuple(f'off_going_{name}' for name in (*OffGoingOutputs._fields, *_OF_CLUTCH))
+"""Names of the signals of the off-going side."""
+
+
+class ShiftReply(NamedTuple):
+    """The plant's answer to the requests of a step."""
+
+    engine_torque: float
+    """C_m in N m over the period."""
+    load_torque: float
+    """C_load of air and slope in N m over the period."""
+    on_coming: Capacity
+    """Capacities of the on-coming clutch over the period."""
+    off_going: Capacity
+    """Capacities of the off-going clutch over the period."""
+    holding_torque: float
+    """Capacity in N m of rolling resistance and brake over the period."""
+    signals: dict[str, SignalValue]
+    """Signals of the plant at this step, by name; those of the off-going side have a prefix."""
+
+
+class ShiftPlant:
+    """
+    The plant of a shift, stepped by 10 ms.
+
+    In each step a handover reads `outputs` and `demand`, the controller reads what `observe`
+    returns; `reply` takes the requests of both, and `advance` integrates. Two runs with the same
+    requests are the same to the last bit.
+    """
+
+    def __init__(self, settings: ShiftSettings, *, two_input: bool = False) -> None:
+        """Start in the drive before the shift; `two_input`: the controller commands C_m."""
+        run, shift = settings.run, settings.shift
+        self._scenario = scenario = run.scenario
+        self._two_input = two_input
+        start = settings.start()
+        disengagement_s = shift.disengagement_s
+        self.driveline = ShiftDriveline(
+            settings.gears,
+            scenario.vehicle,
+            start,
+            steps_in('shift.preselection_s', shift.preselection_s),
+            None
+            if disengagement_s is None
+            else steps_in('shift.disengagement_s', disengagement_s),
+        )
+        self.first_request = settings.locked_request(start.off_going_torque)
+        """Request of the off-going clutch before t_0 in N m, which keeps it locked."""
+        self._engine, self._load = make_engine(run), make_load(run)
+        self._holding = holding_torque(run)
+        self._sensors, self._estimate = driveline_sensors(run), torque_estimate(run)
+        self._actuator = Actuator(0.0, scenario.actuator)
+        self._off_going_actuator = Actuator(self.first_request, scenario.actuator)
+        self._clutch, self._off_going_clutch = (
+            FrictionClutch(scenario.friction, wear_gain, scenario.heat, OPEN_BELOW)
+            for wear_gain in (run.wear_gain, settings.off_going_wear_gain)
+        )
+
+    def demand(self, step: int) -> float:
+        """Return the driver's demand of C_m in N m at step k."""
+        return self._engine.demand(step)
+
+    def outputs(self) -> ShiftOutputs:
+        """Return the true outputs of both sides at the present step."""
+        return self.driveline.outputs()
+
+    def observe(self, step: int, outputs: ShiftOutputs, torque_cut: float = 0.0) -> Observation:
+        """
+        Return what a controller of the on-coming clutch receives at step k.
+
+        `torque_cut` in N m is taken off the driver's demand, within the engine's authority.
+        """
+        true = outputs.driveline
+        measured = true if self._sensors is None else self._sensors.measure(step, true)
+        demand = self._engine.demand(step) - torque_cut
+        if self._two_input:
+            return Observation(true, measured, demand, None, demand)
+        torque = reported = self._engine.torque(step, demand, true.engine_speed)
+        if self._estimate is not None:
+            reported = self._estimate.measure(step, torque).engine_torque
+        return Observation(true, measured, demand, torque, reported)
+
+    def reply(
+        self,
+        step: int,
+        outputs: ShiftOutputs,
+        observation: Observation,
+        torque_request: float,
+        off_going_request: float,
+        engine_request: float | None = None,
+    ) -> ShiftReply:
+        """Return torques and signals of step k; all requests are in N m."""
+        true, other = outputs.driveline, outputs.off_going
+        engine_torque = observation.delivered
+        if engine_torque is None:
+            engine_torque = self._engine.torque(step, engine_request, true.engine_speed)
+            engine_torque = self._engine.torque(
+                step,
+                observation.demand if engine_request is None else engine_request,
+                true.engine_speed,
+            )
+        load_torque = self._load.torque(true.vehicle_speed, time_of_step(step))
+        holding = self._holding.capacity(time_of_step(step))
+        nodes = self._actuator.update(torque_request)
+        other_nodes = self._off_going_actuator.update(off_going_request)
+        assert true.friction_work is not None
+        clutch = self._clutch.reply(step, nodes, true.slip_speed, true.friction_work)
+        other_clutch = self._off_going_clutch.reply(
+            step, other_nodes, other.slip_speed, other.friction_work
+        )
+        requests_and_torques = torque_request, nodes, *clutch
+        of_off_going = *other, off_going_request, other_nodes, *other_clutch
+        signals: dict[str, SignalValue] = {
+            **true._asdict(),
+            **dict(zip(_OF_CLUTCH, requests_and_torques, strict=True)),
+            **dict(zip(_OF_OFF_GOING, of_off_going, strict=True)),
+            'wheel_friction_work': outputs.wheel_friction_work,
+            'torque_demand': self._engine.demand(step),
+            'engine_torque': engine_torque,
+            'engine_torque_request': engine_request,
+            'load_torque': load_torque,
+            'holding_torque': holding,
+        }
+        if self._sensors is not None and self._estimate is not None:
+            signals |= self._sensors.measure(step, true).signals
+            signals |= self._estimate.measure(step, engine_torque).signals
+        return ShiftReply(engine_torque, load_torque, clutch, other_clutch, holding, signals)
+
+    @property
+    def over(self) -> bool:
+        """Whether the run ends with the present state, because the engine stalls or over-revs."""
+        return bool(self._scenario.end_cause(self.driveline.engine_speed))
+
+    def advance(self, reply: ShiftReply) -> None:
+        """Integrate the driveline over one period with the torques of `reply`."""
+        self.driveline.step(
+            reply.engine_torque,
+            reply.load_torque,
+            reply.on_coming,
+            reply.off_going,
+            reply.holding_torque,
+        )

@@ -1,0 +1,137 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Shifts for tests: five scenarios, and a loop with a handover by ramps and PI control of slip."""
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.models.gearbox import C635
+from ddct_plant.models.static_torque import StaticTorque
+from ddct_plant.scenario.file import ScenarioFile
+from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.shift.parameters import ShiftParameters
+from ddct_plant.shift_plant.plant import ShiftPlant
+from ddct_plant.shift_plant.settings import ShiftSettings
+
+HANDOVER_S, SLOPE = 0.2, 290.0
+"""Length of the ramps in s, and slope of the slip reference in rad/s^2."""
+_RPM = 9.549296585513721
+
+
+def content(gears: tuple[int, int], kmh: float, torque: float, **other: Any) -> dict[str, Any]:
+    """Return a scenario that drives at a speed in km/h, with an engine torque in N m."""
+    wheel_speed = kmh / 3.6 / 0.3211345
+    engine, shaft = (C635.gear(gear).shaft_speed(wheel_speed) for gear in gears)
+    return {
+        'name': 'shift',
+        'duration_s': 2.0,
+        'control_start_s': 0.3,
+        'score_window_s': [0.3, 2.0],
+        'gear': gears[1],
+        'equilibrium': 'full',
+        'initial': {'engine_speed_rad_s': engine, 'shaft_speed_rad_s': shaft},
+        'engine': {'time_s': [0.0], 'torque_n_m': [torque]},
+        'engine_limits': {},
+        'closing': {},
+        **other,
+    }
+
+
+HOT = {
+    'heat': {'plate_c': 200.0, 'facing_c': 200.0, 'housing_c': 80.0},
+    'friction': {'kiss_drift_n_m_k': 0.1},
+}
+SHIFTS = {
+    'upshift': ((1, 2), content((1, 2), 20.0, 100.0)),
+    'upshift_light': ((1, 2), content((1, 2), 20.0, 40.0)),
+    'upshift_full': ((1, 2), content((1, 2), 20.0, 240.0)),
+    'upshift_2_3': ((2, 3), content((2, 3), 40.0, 120.0)),
+    'upshift_hot': ((1, 2), content((1, 2), 20.0, 100.0, **HOT)),
+}
+"""Off-going and on-coming gear, and the scenario, by name."""
+
+
+def shift_settings(name: str, off_going_wear_gain: float = 1.0, **keys: Any) -> ShiftSettings:
+    """Return the settings of a shift by name; `keys` are those of its section."""
+    (off_going_gear, _), scenario = SHIFTS[name]
+    return settings_of(scenario, {'off_going_gear': off_going_gear, **keys}, off_going_wear_gain)
+
+
+def settings_of(
+    scenario: dict[str, Any],
+    shift: dict[str, Any],
+    off_going_wear_gain: float = 1.0,
+    clutch: str = 'stick_slip',
+) -> ShiftSettings:
+    """Return the settings of a shift for the content of a scenario and of its section."""
+    made = ScenarioFile('shift', scenario, {}).scenario(clutch=clutch)
+    run = RunSettings(made, clutch=clutch)
+    return ShiftSettings(run, ShiftParameters(**shift), off_going_wear_gain)
+
+
+class Sample(NamedTuple):
+    """What the loop's law reads at a tick."""
+
+    slip_speed: float
+    engine_speed: float
+    shaft_speed: float
+    engine_torque: float
+    load_torque: float
+
+
+class Law:
+    """Requests of both clutches from samples: ramps, then C_fOL and PI control of the slip."""
+
+    def __init__(self, settings: ShiftSettings, first_request: float) -> None:
+        scenario = settings.run.scenario
+        self._settings, self._first = settings, first_request
+        self._static = StaticTorque(scenario.driveline, 'full')
+        self._start = scenario.control_start_step
+        self._handover = round(HANDOVER_S / PERIOD_S)
+        self._reference: float | None = None
+        self._integral = 0.0
+        self._near = 0
+
+    def requests(self, step: int, sample: Sample) -> tuple[float, float]:
+        """Return the requests of the on-coming and the off-going clutch in N m."""
+        share = min(max(step - self._start, 0) / self._handover, 1.0)
+        open_loop = self._static.torque(
+            sample.engine_torque, sample.load_torque, sample.engine_speed, sample.shaft_speed
+        )
+        feedback = 0.0
+        if share == 1.0:
+            before = sample.slip_speed if self._reference is None else self._reference
+            self._reference = max(before - SLOPE * PERIOD_S, 0.0)
+            error = (self._reference - sample.slip_speed) * _RPM
+            self._integral += error * PERIOD_S
+            feedback = -0.103 * error - 0.0223 * self._integral
+            self._near = self._near + 1 if abs(sample.slip_speed) < 1.0 else 0
+        if self._near > 10:
+            return self._settings.locked_request(open_loop), 0.0
+        return share * open_loop + feedback, (1.0 - share) * self._first
+
+
+def run(settings: ShiftSettings, tick: Callable[[int, ShiftPlant, Any, Any], None]) -> ShiftPlant:
+    """Run a shift and call `tick` with the step, the plant, its outputs and its reply."""
+    plant = ShiftPlant(settings)
+    law = Law(settings, plant.first_request)
+    reply = None
+    for step in range(settings.run.scenario.steps + 1):
+        outputs = plant.outputs()
+        true = outputs.driveline
+        observation = plant.observe(step, outputs)
+        load = true.joint_effort.wheel
+        sample = Sample(
+            true.slip_speed,
+            true.engine_speed,
+            true.shaft_speed,
+            observation.engine_torque,
+            load,
+        )
+        reply = plant.reply(step, outputs, observation, *law.requests(step, sample))
+        tick(step, plant, outputs, reply)
+        if plant.over:
+            break
+        plant.advance(reply)
+    return plant

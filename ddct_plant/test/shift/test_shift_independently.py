@@ -1,0 +1,186 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Whole shifts in closed loop against an integration by another method, with tight tolerances."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from shifts import Law, Sample, run, shift_settings
+
+from ddct_plant.base.timebase import PERIOD_S, SUBSTEP_S, SUBSTEPS
+from ddct_plant.models.actuator import Actuator
+from ddct_plant.models.gearbox import C635
+from ddct_plant.models.load import HoldingTorque, RoadLoad, air_and_slope
+from ddct_plant.shift.driveline import ShiftOutputs
+from ddct_plant.shift_plant.plant import OPEN_BELOW, ShiftPlant, ShiftReply
+from ddct_plant.shift_plant.settings import ShiftSettings
+
+TOLERANCE = 1e-12
+NEAR = 1e-9
+"""Slip in rad/s that counts as zero at an event."""
+
+
+class Independent:
+    """
+    A shift by the Dormand-Prince method of order 8, with the equations at the gear output.
+
+    States: w_m, w_g, w_r, theta_sr. Each clutch slips with a sign, or sticks, and then a torque
+    that keeps its slip's acceleration zero replaces its capacity. The wheels roll forward.
+    """
+
+    def __init__(self, settings: ShiftSettings) -> None:
+        scenario = settings.run.scenario
+        start = settings.start()
+        self.parameters = scenario.driveline
+        self.ratios = np.array(
+            [C635.gear(n).total_ratio for n in (scenario.gear, settings.shift.off_going_gear)]
+        )
+        self.state = np.array(
+            [start.engine_speed, start.wheel_speed, start.wheel_speed, start.twist]
+        )
+        self.signs = [1, 0]
+        self.load = 0.0
+        self.capacities = np.zeros((2, SUBSTEPS + 1))
+
+    def slips(self, state: np.ndarray) -> np.ndarray:
+        return state[0] - self.ratios * state[1]
+
+    def torques(self, time: float, state: np.ndarray, engine: float, load: float) -> np.ndarray:
+        """Return the torques of both clutches at a time in the period."""
+        nodes = SUBSTEP_S * np.arange(SUBSTEPS + 1)
+        limits = [np.interp(time, nodes, each) for each in self.capacities]
+        found = np.array(
+            [sign * limit for sign, limit in zip(self.signs, limits, strict=True)], dtype=float
+        )
+        if 0 not in self.signs:
+            return found
+        stuck = self.signs.index(0)
+        free = self.slope_of(state, found, engine, load)
+        p, ratio = self.parameters, self.ratios[stuck]
+        mobility = 1.0 / p.engine_inertia + ratio**2 / self.gear_inertia
+        found[stuck] = (free[0] - ratio * free[1]) / mobility
+        return found
+
+    @property
+    def gear_inertia(self) -> float:
+        return self.parameters.shaft_inertia * float(self.ratios @ self.ratios)
+
+    def slope_of(
+        self, state: np.ndarray, torques: np.ndarray, engine: float, load: float
+    ) -> np.ndarray:
+        p, squares = self.parameters, float(self.ratios @ self.ratios)
+        speed, gear, wheel, twist = state
+        shaft = p.halfshaft_damping * (gear - wheel) + p.halfshaft_stiffness * twist
+        return np.array(
+            [
+                (engine - p.engine_damping * speed - torques.sum()) / p.engine_inertia,
+                (self.ratios @ torques - shaft - p.shaft_damping * squares * gear)
+                / self.gear_inertia,
+                (shaft - load) / p.vehicle_inertia,
+                gear - wheel,
+            ]
+        )
+
+    def advance(self, engine: float, load: float) -> None:
+        """Integrate 10 ms, piece by piece between the nodes of the capacities."""
+        for piece in range(SUBSTEPS):
+            now, end = piece * SUBSTEP_S, (piece + 1) * SUBSTEP_S
+            while now < end:
+                now = self._to_event(now, end, engine, load)
+
+    def _to_event(self, now: float, end: float, engine: float, load: float) -> float:
+        def slope(time: float, state: np.ndarray) -> np.ndarray:
+            return self.slope_of(state, self.torques(time, state, engine, load), engine, load)
+
+        nodes = SUBSTEP_S * np.arange(SUBSTEPS + 1)
+
+        def guard(i: int) -> Any:
+            def slipping(time: float, state: np.ndarray) -> float:
+                return self.signs[i] * self.slips(state)[i]
+
+            def sticking(time: float, state: np.ndarray) -> float:
+                limit = float(np.interp(time, nodes, self.capacities[i]))
+                return limit - abs(self.torques(time, state, engine, load)[i])
+
+            found: Any = slipping if self.signs[i] else sticking
+            found.terminal, found.direction = True, -1.0
+            return found
+
+        done = solve_ivp(
+            slope,
+            (now, end),
+            self.state,
+            'DOP853',
+            events=[guard(0), guard(1)],
+            rtol=TOLERANCE,
+            atol=TOLERANCE,
+        )
+        assert done.success
+        self.state = done.y[:, -1]
+        if done.status == 1:
+            which = 0 if done.t_events[0].size else 1
+            self._choose(which, float(done.t[-1]), engine, load)
+            return float(done.t[-1])
+        return end
+
+    def _choose(self, which: int, time: float, engine: float, load: float) -> None:
+        """Choose the mode of an element at the end of its present one."""
+        if self.signs[which] == 0:
+            torque = self.torques(time, self.state, engine, load)[which]
+            self.signs[which] = 1 if torque > 0.0 else -1
+            return
+        before = self.signs[which]
+        assert abs(self.slips(self.state)[which]) < NEAR
+        self.signs[which] = 0
+        limit = float(np.interp(time, SUBSTEP_S * np.arange(SUBSTEPS + 1), self.capacities[which]))
+        if abs(self.torques(time, self.state, engine, load)[which]) > limit:
+            self.signs[which] = -before
+
+
+def shift_by_the_other_method(settings: ShiftSettings) -> np.ndarray:
+    """Return the speeds of engine, gear output and wheels, (N + 1, 3), in closed loop."""
+    scenario = settings.run.scenario
+    other = Independent(settings)
+    first = ShiftPlant(settings).first_request
+    law = Law(settings, first)
+    actuators = Actuator(0.0), Actuator(first)
+    road = air_and_slope(scenario.load, scenario.vehicle)
+    holding = HoldingTorque(RoadLoad(scenario.load, scenario.vehicle), scenario.brake)
+    engine = scenario.engine.torque_n_m[0]
+    speeds = [other.state[:3]]
+    resisting = road.torque(other.state[2] * scenario.vehicle.wheel_radius_m) + holding.capacity(0)
+    for step in range(scenario.steps):
+        slip = 0.0 if other.signs[0] == 0 else float(other.slips(other.state)[0])
+        shaft = float(other.ratios[0] * other.state[1])
+        sample = Sample(slip, float(other.state[0]), shaft, engine, resisting)
+        requests = law.requests(step, sample)
+        nodes = [each.update(x) for each, x in zip(actuators, requests, strict=True)]
+        pressed = np.array(nodes)
+        other.capacities = np.where(pressed > OPEN_BELOW, np.minimum(pressed, 350.0), 0.0)
+        vehicle_speed = float(other.state[2]) * scenario.vehicle.wheel_radius_m
+        resisting = road.torque(vehicle_speed) + holding.capacity(step * PERIOD_S)
+        other.advance(engine, resisting)
+        speeds.append(other.state[:3])
+    return np.array(speeds)
+
+
+@pytest.mark.parametrize('name', ['upshift', 'upshift_light', 'upshift_2_3'])
+def test_a_whole_shift_is_within_1e_9_of_another_integration(name):
+    settings = shift_settings(name)
+    found: list[list[float]] = []
+    kinds: list[str] = []
+
+    def tick(step: int, plant: ShiftPlant, outputs: ShiftOutputs, reply: ShiftReply) -> None:
+        speeds = outputs.driveline.joint_speed
+        gear = settings.gears.off_going.wheel_speed(outputs.off_going.shaft_speed)
+        found.append([speeds.engine, gear, speeds.wheel])
+        kinds.extend(event.kind for event in outputs.driveline.phase_events)
+        kinds.extend(f'off {event.kind}' for event in outputs.off_going.phase_events)
+
+    run(settings, tick)
+    expected = shift_by_the_other_method(settings)
+    assert {'lock', 'off release'} <= set(kinds)
+    scale = np.abs(expected).max(axis=0)
+    assert (np.abs(np.array(found) - expected) / scale).max() < 1e-9

@@ -1,0 +1,145 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""The plant of a shift by its settings: signals, wear, heat, stall, torque cut, bad settings."""
+
+from dataclasses import replace
+from typing import Any
+
+import pytest
+from refusals import refused
+from shifts import SHIFTS, content, run, settings_of, shift_settings
+
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.models.driveline import PHASES
+from ddct_plant.shift.driveline import ShiftOutputs
+from ddct_plant.shift_plant.plant import ShiftPlant, ShiftReply
+from ddct_plant.shift_plant.settings import ShiftSettings
+
+
+def rows(settings: ShiftSettings) -> list[dict[str, Any]]:
+    """Return the signals of every step of a shift."""
+    found: list[dict[str, Any]] = []
+
+    def tick(step: int, plant: ShiftPlant, outputs: ShiftOutputs, reply: ShiftReply) -> None:
+        found.append(reply.signals)
+
+    run(settings, tick)
+    return found
+
+
+@pytest.mark.parametrize('name', SHIFTS)
+def test_a_shift_ends_with_the_on_coming_clutch_locked_and_the_off_going_one_open(name):
+    found = rows(shift_settings(name))
+    first, last = found[0], found[-1]
+    assert PHASES[int(first['clutch_phase'])] == 'open'
+    assert PHASES[int(first['off_going_clutch_phase'])] == 'locked'
+    assert PHASES[int(last['clutch_phase'])] == 'locked'
+    assert PHASES[int(last['off_going_clutch_phase'])] == 'open'
+    assert last['off_going_transmitted_torque'] == pytest.approx(0.0, abs=1e-12)
+    assert first['joint_effort'].primary_shaft == 0.0
+    assert first['off_going_transmitted_torque'] > 0.7 * first['engine_torque']
+    assert last['joint_effort'].primary_shaft > 0.8 * last['engine_torque']
+    slip = last['joint_speed'].engine - last['off_going_shaft_speed']
+    assert last['off_going_slip_speed'] == slip
+
+
+def test_each_clutch_has_its_own_wear_and_heat():
+    new, worn = (rows(shift_settings('upshift', gain)) for gain in (1.0, 0.7))
+    step = 35
+    carried = new[step]['off_going_clutch_torque'][5]
+    assert worn[step]['off_going_clutch_torque'][5] == pytest.approx(0.7 * carried)
+    assert worn[step]['clutch_torque'] == new[step]['clutch_torque']
+    settings = shift_settings('upshift')
+    other = ShiftSettings(replace(settings.run, wear_gain=0.7), settings.shift)
+    on_coming_worn = rows(other)
+    assert on_coming_worn[step]['clutch_torque'][5] == pytest.approx(
+        0.7 * new[step]['clutch_torque'][5]
+    )
+    assert on_coming_worn[step]['off_going_clutch_torque'] == new[step]['off_going_clutch_torque']
+    assert new[-1]['clutch_temperature'] > 20.5
+    works = [sum(row[key] for row in new) for key in ('friction_work', 'off_going_friction_work')]
+    warmed = [
+        new[-1][key] - 20.0 for key in ('clutch_temperature', 'off_going_clutch_temperature')
+    ]
+    assert works[0] > 100.0 * works[1]
+    assert warmed[0] > 100.0 * warmed[1]
+
+
+def test_two_runs_with_the_same_requests_have_the_same_bits():
+    settings = shift_settings('upshift_hot', preselection_s=0.1, disengagement_s=1.5)
+    assert rows(settings) == rows(settings)
+
+
+def test_a_tie_up_stalls_an_engine_with_limits():
+    scenario = content((1, 2), 10.0, 20.0, friction={'most_n_m': 2000.0})
+    plant = ShiftPlant(settings_of(scenario, {'off_going_gear': 1}))
+    steps = 0
+    while not plant.over:
+        outputs = plant.outputs()
+        observation = plant.observe(steps, outputs)
+        reply = plant.reply(steps, outputs, observation, 2000.0, 2000.0)
+        plant.advance(reply)
+        steps += 1
+        assert steps < 100
+    assert plant.driveline.engine_speed <= 52.36
+
+
+def test_a_torque_cut_is_taken_off_the_demand():
+    plant = ShiftPlant(shift_settings('upshift'))
+    outputs = plant.outputs()
+    observation = plant.observe(0, outputs, torque_cut=30.0)
+    assert (observation.demand, observation.delivered, observation.engine_torque) == (70.0,) * 3
+    reply = plant.reply(0, outputs, observation, 0.0, plant.first_request)
+    assert (reply.engine_torque, reply.signals['torque_demand']) == (70.0, 100.0)
+
+
+def test_a_controller_that_commands_the_engine_gets_what_it_requests():
+    plant = ShiftPlant(shift_settings('upshift'), two_input=True)
+    outputs = plant.outputs()
+    observation = plant.observe(0, outputs, torque_cut=30.0)
+    assert (observation.delivered, observation.engine_torque) == (None, 70.0)
+    reply = plant.reply(0, outputs, observation, 0.0, plant.first_request, 82.0)
+    assert reply.engine_torque == pytest.approx(82.0, rel=1e-15)
+
+
+def test_the_off_going_clutch_stays_locked_until_the_shift_starts():
+    for row in rows(shift_settings('upshift_full', preselection_s=0.2))[:30]:
+        assert PHASES[int(row['off_going_clutch_phase'])] == 'locked'
+        assert row['friction_work'] == row['off_going_friction_work'] == 0.0
+
+
+@pytest.mark.parametrize(
+    ('key', 'scenario', 'shift'),
+    [
+        ('shift.off_going_gear', {}, {'off_going_gear': 2}),
+        ('shift.off_going_gear', {}, {'off_going_gear': 9}),
+        ('shift.off_going_gear', {'gear': None}, {}),
+        ('shift.preselection_s', {}, {'preselection_s': 0.5}),
+        ('shift.preselection_s', {}, {'preselection_s': 0.123}),
+        ('shift.disengagement_s', {}, {'disengagement_s': 0.2}),
+        ('shift.disengagement_s', {}, {'preselection_s': 0.2, 'disengagement_s': 0.1}),
+        ('initial.engine_speed_rad_s', {'initial': {'engine_speed_rad_s': 250.0}}, {}),
+        ('initial.shaft_speed_rad_s', {'initial': None}, {}),
+        ('initial.clutch_phase', {'initial': {'clutch_phase': 'slipping'}}, {}),
+    ],
+)
+def test_settings_that_do_not_fit_are_refused(key, scenario, shift):
+    content = {**SHIFTS['upshift'][1], **scenario}
+    given = scenario.get('initial', {})
+    standing = {'engine_speed_rad_s': 0.0, 'shaft_speed_rad_s': 0.0}
+    content['initial'] = (
+        standing if given is None else {**SHIFTS['upshift'][1]['initial'], **given}
+    )
+    if content['gear'] is None:
+        del content['gear']
+    with refused(ParameterError, key):
+        settings_of(content, {'off_going_gear': 1, **shift}).start()
+
+
+def test_the_linear_clutch_and_impossible_wear_are_refused():
+    with refused(ParameterError, 'clutch'):
+        settings_of(
+            content((1, 2), 20.0, 100.0, closing=None), {'off_going_gear': 1}, 1.0, 'linear'
+        )
+    with refused(ParameterError, 'off_going_wear_gain'):
+        shift_settings('upshift', 0.0)
