@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Keys of a shift: the off-going gear, and when gears are engaged and disengaged."""
+"""Keys of a shift: off-going gear, engagement of the gears, handover of the torque."""
 
 from dataclasses import dataclass
 
@@ -13,7 +13,7 @@ from ddct_plant.models.gearbox import C635
 @dataclass(frozen=True)
 class ShiftParameters(OptionGroup, prefix='shift.'):
     """
-    Gears of a shift and the events of the gearbox; the on-coming gear is the scenario's `gear`.
+    Gears, events of the gearbox, and handover; the on-coming gear is the scenario's `gear`.
 
     Synchronisers are not modelled: at preselection the free shaft takes the speed of its gear at
     once, without a torque on the driveline.
@@ -53,6 +53,31 @@ class ShiftParameters(OptionGroup, prefix='shift.'):
         at_least=0.0,
         at_most=LONGEST_S,
         whole_periods=True,
+    )
+    handover_s: float = option(
+        0.2,
+        'how long the on-coming clutch takes over the torque: a multiple of 10 ms',
+        's',
+        source=ASSUMED,
+        above=0.0,
+        at_most=10.0,
+        whole_periods=True,
+    )
+    handover_slip_rad_s: float = option(
+        5.0,
+        'slip speed at which the handover `slip` keeps the off-going clutch',
+        'rad/s',
+        source=ASSUMED,
+        above=0.0,
+        at_most=100.0,
+    )
+    torque_cut_n_m: float = option(
+        0.0,
+        "torque that the handover takes off the driver's demand in the inertia phase",
+        'N m',
+        source=ASSUMED,
+        at_least=0.0,
+        at_most=1000.0,
     )
 
     def __post_init__(self) -> None:

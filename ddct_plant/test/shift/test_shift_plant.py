@@ -3,6 +3,8 @@
 """The plant of a shift by its settings: signals, wear, heat, stall, torque cut, bad settings."""
 
 from dataclasses import replace
+from pathlib import Path
+from textwrap import dedent
 from typing import Any
 
 import pytest
@@ -106,6 +108,16 @@ def test_the_off_going_clutch_stays_locked_until_the_shift_starts():
     for row in rows(shift_settings('upshift_full', preselection_s=0.2))[:30]:
         assert PHASES[int(row['off_going_clutch_phase'])] == 'locked'
         assert row['friction_work'] == row['off_going_friction_work'] == 0.0
+
+
+def test_the_example_of_the_page_shifts():
+    page = Path(__file__).resolve().parents[3] / 'docs' / 'develop' / 'gear_shift.md'
+    lines = page.read_text(encoding='utf-8').split('\n| question')[0].splitlines()
+    names: dict[str, Any] = {}
+    exec(dedent('\n'.join(line for line in lines if not line or line[0] == ' ')), names)
+    outputs = names['plant'].outputs()
+    assert PHASES[int(outputs.driveline.clutch_phase)] == 'locked'
+    assert PHASES[int(outputs.off_going.clutch_phase)] == 'open'
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,85 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""What a handover receives and returns in each period, and what all handovers share."""
+
+from typing import NamedTuple, Protocol
+
+from ddct_plant.base.timebase import steps_in, time_of_step
+from ddct_plant.models.load import RoadLoad
+from ddct_plant.models.static_torque import StaticTorque
+from ddct_plant.shift.balance import off_going_torque
+from ddct_plant.shift_plant.settings import ShiftSettings
+
+CUT_FADE_RAD_S = 30.0
+"""Slip speed of the on-coming clutch in rad/s below which a torque cut fades."""
+
+
+class HandoverMeasurement(NamedTuple):
+    """Signals that a handover receives at step k."""
+
+    step: int
+    """Step k."""
+    demand: float
+    """Driver's demand of C_m in N m."""
+    engine_speed: float
+    """Engine speed w_m in rad/s."""
+    on_coming_slip: float
+    """Slip speed of the on-coming clutch in rad/s."""
+    off_going_slip: float
+    """Slip speed of the off-going clutch in rad/s."""
+    vehicle_speed: float
+    """Vehicle speed V_x in m/s."""
+
+
+class HandoverCommand(NamedTuple):
+    """What a handover commands for the coming period."""
+
+    share: float
+    """Share of C_fOL that the on-coming clutch carries, 0 to 1; feedback starts with 1."""
+    off_going_request: float
+    """Torque request of the off-going clutch in N m."""
+    torque_cut: float
+    """Torque in N m that is taken off the driver's demand."""
+
+
+class Handover(Protocol):
+    """A law of the handover, called once per period, in order."""
+
+    def update(self, measurement: HandoverMeasurement) -> HandoverCommand:
+        """Return the command for the period of t_k."""
+
+
+class HandoverModel:
+    """Torques of the rigid car that handovers expect, and the parts of a command they share."""
+
+    def __init__(self, settings: ShiftSettings) -> None:
+        """Use the gears and the car of the settings."""
+        scenario = settings.run.scenario
+        self._settings, self._gears = settings, settings.gears
+        self._static = StaticTorque(scenario.driveline, scenario.equilibrium)
+        self._road = RoadLoad(scenario.load, scenario.vehicle, scenario.slope)
+        self._cut = settings.shift.torque_cut_n_m
+        self.start_step = scenario.control_start_step
+        """Step at which the shift starts."""
+        self.steps = steps_in('shift.handover_s', settings.shift.handover_s)
+        """Number of periods of the handover."""
+
+    def on_coming(self, now: HandoverMeasurement) -> float:
+        """Return C_fOL in N m, which the on-coming clutch carries at the share 1."""
+        load = self._road.torque(now.vehicle_speed, time_of_step(now.step))
+        shaft_speed = now.engine_speed - now.on_coming_slip
+        return self._static.torque(now.demand, load, now.engine_speed, shaft_speed)
+
+    def off_going(self, now: HandoverMeasurement, on_coming_torque: float = 0.0) -> float:
+        """Return the torque in N m that the off-going clutch carries while it is locked."""
+        load = self._road.torque(now.vehicle_speed, time_of_step(now.step))
+        return off_going_torque(self._gears, now.demand, load, now.engine_speed, on_coming_torque)
+
+    def locked(self, now: HandoverMeasurement) -> HandoverCommand:
+        """Return the command before the shift: the off-going clutch is locked with a margin."""
+        return HandoverCommand(0.0, self._settings.locked_request(self.off_going(now)), 0.0)
+
+    def inertia_phase(self, now: HandoverMeasurement) -> HandoverCommand:
+        """Return the command once the off-going clutch is open; a torque cut fades to the lock."""
+        fade = min(max(now.on_coming_slip, 0.0) / CUT_FADE_RAD_S, 1.0)
+        return HandoverCommand(1.0, 0.0, fade * self._cut)

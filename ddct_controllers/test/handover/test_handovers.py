@@ -1,0 +1,161 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""The handovers of a shift: ramps, the torque balance, slip under feedback, and the torque cut."""
+
+from typing import NamedTuple
+
+import pytest
+from refusals import refused
+from shifts import HANDOVER_S, shift_settings
+
+from ddct_controllers.handover.interface import (
+    HandoverCommand,
+    HandoverMeasurement,
+    HandoverModel,
+)
+from ddct_controllers.handover.laws import HANDOVERS, make_handover
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.models.driveline import LOCKED, PHASES
+from ddct_plant.models.static_torque import StaticTorque
+from ddct_plant.shift.driveline import ShiftOutputs
+from ddct_plant.shift_plant.plant import ShiftPlant
+from ddct_plant.shift_plant.settings import ShiftSettings
+
+START, STEPS = 30, round(HANDOVER_S / PERIOD_S)
+COLD = ['upshift', 'upshift_light', 'upshift_full', 'upshift_2_3']
+
+
+class Tick(NamedTuple):
+    """Outputs of a step, and the command in it."""
+
+    outputs: ShiftOutputs
+    command: HandoverCommand
+
+
+def shift(settings: ShiftSettings, name: str) -> list[Tick]:
+    """Run a shift whose on-coming clutch carries C_fOL, and 20 % more in the inertia phase."""
+    plant, law = ShiftPlant(settings), make_handover(name, settings)
+    static = StaticTorque(settings.run.scenario.driveline, 'full')
+    found = []
+    for step in range(130):
+        outputs = plant.outputs()
+        now = outputs.driveline
+        command = law.update(
+            HandoverMeasurement(
+                step,
+                plant.demand(step),
+                now.engine_speed,
+                now.slip_speed,
+                outputs.off_going.slip_speed,
+                now.vehicle_speed,
+            )
+        )
+        observation = plant.observe(step, outputs, command.torque_cut)
+        torque = static.torque(
+            observation.engine_torque, now.joint_effort.wheel, now.engine_speed, now.shaft_speed
+        )
+        request = torque * (command.share if command.share < 1.0 else 1.2)
+        found.append(Tick(outputs, command))
+        plant.advance(plant.reply(step, outputs, observation, request, command.off_going_request))
+    return found
+
+
+def flare(ticks: list[Tick]) -> float:
+    """Return the largest slip in rad/s by which the engine ran ahead of the off-going shaft."""
+    return max(tick.outputs.off_going.slip_speed for tick in ticks)
+
+
+def tie_up_work(ticks: list[Tick]) -> float:
+    """Return the work in J that the off-going clutch took from its shaft."""
+    sides = [tick.outputs.off_going for tick in ticks]
+    return sum(max(-side.transmitted_torque, 0.0) * side.shaft_speed * PERIOD_S for side in sides)
+
+
+@pytest.mark.parametrize('name', HANDOVERS)
+def test_before_the_shift_the_off_going_clutch_stays_locked(name):
+    ticks = shift(shift_settings('upshift'), name)
+    for tick in ticks[: START + 1]:
+        assert tick.command.share == tick.command.torque_cut == 0.0
+        assert PHASES[int(tick.outputs.off_going.clutch_phase)] == LOCKED
+        carried = tick.outputs.off_going.transmitted_torque
+        assert tick.command.off_going_request > 1.4 * carried + 19.0
+    assert ticks[0].command.off_going_request == pytest.approx(
+        ShiftPlant(shift_settings('upshift')).first_request, rel=1e-9
+    )
+
+
+@pytest.mark.parametrize('name', HANDOVERS)
+@pytest.mark.parametrize('scenario', COLD)
+@pytest.mark.parametrize('wear_gain', [0.8, 1.0, 1.2])
+def test_after_the_handover_the_share_is_one_and_the_off_going_clutch_opens(
+    name, scenario, wear_gain
+):
+    ticks = shift(shift_settings(scenario, wear_gain), name)
+    shares = [tick.command.share for tick in ticks]
+    assert shares == sorted(shares)
+    first = shares.index(1.0)
+    assert first >= START + STEPS
+    assert all(tick.command.off_going_request == 0.0 for tick in ticks[first:])
+    assert ticks[-1].outputs.off_going.transmitted_torque == pytest.approx(0.0, abs=1e-6)
+    assert tie_up_work(ticks) < (75.0 if name == 'timed' else 50.0)
+
+
+@pytest.mark.parametrize('scenario', COLD)
+@pytest.mark.parametrize(('name', 'most'), [('timed', 5.0), ('model', 15.0), ('slip', 15.0)])
+def test_the_engine_hardly_runs_ahead_with_a_clutch_as_expected(name, most, scenario):
+    assert flare(shift(shift_settings(scenario), name)) < most
+
+
+def test_the_timed_handover_follows_its_ramps():
+    settings = shift_settings('upshift', handover_s=0.1)
+    ticks = shift(settings, 'timed')[START : START + 11]
+    held = ticks[0].command.off_going_request
+    for step, tick in enumerate(ticks):
+        assert tick.command.share == pytest.approx(step / 10)
+        assert tick.command.off_going_request == pytest.approx(held * (1.0 - step / 10))
+
+
+def test_the_model_handover_requests_a_tenth_more_than_the_clutch_carries():
+    """The actuators delay both requests alike: the torque is that of 40 ms before."""
+    ticks = shift(shift_settings('upshift', handover_s=1.0), 'model')
+    for step in range(START + 30, START + 70):
+        carried = ticks[step + 4].outputs.off_going.transmitted_torque
+        assert ticks[step].command.off_going_request == pytest.approx(1.1 * carried, abs=2.0)
+
+
+def test_the_slip_handover_keeps_the_clutch_at_its_slip_while_it_carries_torque():
+    ticks = shift(shift_settings('upshift', handover_s=0.8, handover_slip_rad_s=5.0), 'slip')
+    slips = [tick.outputs.off_going.slip_speed for tick in ticks[START + 40 : START + 75]]
+    assert max(slips) < 10.0
+    assert min(slips) > 2.0
+
+
+def test_the_torque_cut_acts_in_the_inertia_phase_and_fades_to_the_lock():
+    ticks = shift(shift_settings('upshift', torque_cut_n_m=40.0), 'timed')
+    for tick in ticks:
+        share, slip = tick.command.share, tick.outputs.driveline.slip_speed
+        expected = 40.0 * min(max(slip, 0.0) / 30.0, 1.0) if share == 1.0 else 0.0
+        assert tick.command.torque_cut == pytest.approx(expected)
+    cuts = [tick.command.torque_cut for tick in ticks]
+    assert max(cuts) == 40.0
+    after = ticks[cuts.index(40.0) + 1].outputs.driveline
+    assert after.joint_effort.engine == 60.0
+
+
+def test_a_handover_expects_what_the_locked_clutch_carries():
+    settings = shift_settings('upshift')
+    ticks = shift(settings, 'timed')
+    now = ticks[START].outputs
+    speeds = now.driveline
+    expected = HandoverModel(settings).off_going(
+        HandoverMeasurement(
+            START, 100.0, speeds.engine_speed, speeds.slip_speed, 0.0, speeds.vehicle_speed
+        )
+    )
+    assert now.off_going.transmitted_torque == pytest.approx(expected, abs=0.05)
+
+
+def test_an_unknown_handover_is_refused():
+    with refused(ParameterError, 'handover'):
+        make_handover('quick', shift_settings('upshift'))
