@@ -33,8 +33,8 @@ class Tick(NamedTuple):
     command: HandoverCommand
 
 
-def shift(settings: ShiftSettings, name: str) -> list[Tick]:
-    """Run a shift whose on-coming clutch carries C_fOL, and 20 % more in the inertia phase."""
+def shift(settings: ShiftSettings, name: str, in_inertia_phase: float = 1.2) -> list[Tick]:
+    """Run a shift whose on-coming clutch carries C_fOL, and that times a factor at the end."""
     plant, law = ShiftPlant(settings), make_handover(name, settings)
     static = StaticTorque(settings.run.scenario.driveline, 'full')
     found = []
@@ -55,7 +55,7 @@ def shift(settings: ShiftSettings, name: str) -> list[Tick]:
         torque = static.torque(
             observation.engine_torque, now.joint_effort.wheel, now.engine_speed, now.shaft_speed
         )
-        request = torque * (command.share if command.share < 1.0 else 1.2)
+        request = torque * (command.share if command.share < 1.0 else in_inertia_phase)
         found.append(Tick(outputs, command))
         plant.advance(plant.reply(step, outputs, observation, request, command.off_going_request))
     return found
@@ -132,13 +132,15 @@ def test_the_slip_handover_keeps_the_clutch_at_its_slip_while_it_carries_torque(
 
 
 def test_the_torque_cut_acts_in_the_inertia_phase_and_fades_to_the_lock():
-    ticks = shift(shift_settings('upshift', torque_cut_n_m=40.0), 'timed')
+    ticks = shift(shift_settings('upshift', torque_cut_n_m=40.0), 'timed', 1.9)
     for tick in ticks:
         share, slip = tick.command.share, tick.outputs.driveline.slip_speed
         expected = 40.0 * min(max(slip, 0.0) / 30.0, 1.0) if share == 1.0 else 0.0
         assert tick.command.torque_cut == pytest.approx(expected)
     cuts = [tick.command.torque_cut for tick in ticks]
     assert max(cuts) == 40.0
+    assert any(0.0 < cut < 39.0 for cut in cuts)
+    assert cuts[-1] == pytest.approx(0.0, abs=1e-6)
     after = ticks[cuts.index(40.0) + 1].outputs.driveline
     assert after.joint_effort.engine == 60.0
 
