@@ -40,6 +40,7 @@ def test_the_bounds_are_those_of_the_project() -> None:
         'median of controllers': 1.5,
         'costliest of controllers and scenarios': 3.0,
     }
+    assert _found('headless step of a shift').bound_of('') == 1.6
     assert _found('headless step of PI', 'blocks').bound_of('') == pytest.approx(1 / 3)
     assert _found('campaign on two Dask workers').bound_of('') == pytest.approx(1 / 1.6)
     start_up = _found('start-up of the graph')

@@ -104,6 +104,19 @@ def test_a_controller_that_commands_the_engine_gets_what_it_requests():
     assert reply.engine_torque == pytest.approx(82.0, rel=1e-15)
 
 
+def test_a_controller_reads_the_sensors_where_the_scenario_has_some():
+    sensors = {'engine_speed': {'noise_rad_s': 0.5}}
+    plant = ShiftPlant(
+        settings_of(content((1, 2), 20.0, 100.0, sensors=sensors), {'off_going_gear': 1})
+    )
+    outputs = plant.outputs()
+    observation = plant.observe(0, outputs)
+    assert observation.true == outputs.driveline
+    assert observation.measured.engine_speed != outputs.driveline.engine_speed
+    reply = plant.reply(0, outputs, observation, 0.0, plant.first_request)
+    assert 'sensed_slip_speed' in reply.signals
+
+
 def test_the_off_going_clutch_stays_locked_until_the_shift_starts():
     for row in rows(shift_settings('upshift_full', preselection_s=0.2))[:30]:
         assert PHASES[int(row['off_going_clutch_phase'])] == 'locked'
