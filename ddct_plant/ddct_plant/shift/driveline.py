@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The driveline of a shift, stepped exactly: two clutches, two gears, friction at the wheels."""
 
-from collections.abc import Mapping
 from typing import NamedTuple
 
 from ddct_plant.hybrid.interval_map import Interval
@@ -87,11 +86,11 @@ class ShiftDriveline:
         """
         self._parameters = gears.on_coming
         self._wheel_radius = vehicle.wheel_radius_m
-        self._changes: Mapping[int | None, Engagement] = {
-            preselection_step: both_engaged(gears),
-            disengagement_step: on_coming_engaged(gears),
-        }
-        self._engaged: Engagement = off_going_engaged(gears)
+        both = both_engaged(gears)
+        self._engaged: Engagement = off_going_engaged(gears) if preselection_step else both
+        self._changes: dict[int, Engagement] = {preselection_step: both}
+        if disengagement_step is not None:
+            self._changes[disengagement_step] = on_coming_engaged(gears)
         self._steps = 0
         values = start.values
         slips = [values[_ENGINE] - values[_SHAFT], values[_ENGINE] - values[_OTHER]]
@@ -103,7 +102,6 @@ class ShiftDriveline:
         work of the three elements."""
         self.synchronising_work = 0.0
         """Kinetic energy in J that preselection has given the on-coming shaft."""
-        self._engage()
         self._torques = start.engine_torque, start.load_torque
         self._phases = [OPEN, phase_of(self.now.signs[OFF_GOING], start.off_going_torque)]
 
@@ -174,13 +172,10 @@ class ShiftDriveline:
         self._torques = engine_torque, load_torque
         self._steps += 1
         if self._steps in self._changes:
-            self._engage()
+            self._engage(self._changes[self._steps])
 
-    def _engage(self) -> None:
-        """Engage and disengage gears as due at the present step."""
-        new = self._changes.get(self._steps)
-        if new is None:
-            return
+    def _engage(self, new: Engagement) -> None:
+        """Go over to other engaged gears at the present step."""
         now, before = self.now, self._engaged.to_shift(self.now.state)
         now.state = new.of_shift(before)
         self._engaged = new
