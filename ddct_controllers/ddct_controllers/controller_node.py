@@ -17,7 +17,7 @@ from ddct_plant.base.options import Option
 from ddct_plant.base.timebase import stamp_of_step
 from ddct_plant.graph.follower import FollowerNode, Reply
 from ddct_plant.graph.node import Output
-from ddct_plant.graph.node_reports import timing_pairs
+from ddct_plant.graph.node_reports import controller_info, timing_pairs
 from ddct_plant.graph.settings import declare
 from ddct_plant.graph.spin import run_node
 from ddct_plant.signals.topics import (
@@ -69,7 +69,7 @@ class ControllerNode(FollowerNode):
         self._status = Output(self, CONTROLLER_STATUS)
         self._timing = Output(self, CONTROLLER_TIMING)
         self._update_times_us: list[float] = []
-        self.publish_run_info(info)
+        self.publish_run_info(controller_info(info))
         self.follow(
             self._measured_topics.joint_states,
             self._measured_topics.vehicle_speed,

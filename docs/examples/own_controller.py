@@ -11,12 +11,10 @@ from geometry_msgs.msg import TwistStamped, WrenchStamped
 from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
-from sensor_msgs.msg import JointState
 from trajectory_msgs.msg import JointTrajectory
 
 K_P, K_I, PERIOD_S, RPM = 0.2, 0.6, 0.01, 30.0 / math.pi
 ABOUT = DiagnosticStatus(name='controller', values=[KeyValue(key='controller', value='own_pi')])
-PARTS = ['open_loop', 'closed_loop', 'closing']
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
@@ -30,7 +28,6 @@ class OwnController(Node):
         self.create_subscription(TwistStamped, 'clutch/slip', self.answer, 10)
         self.create_subscription(JointTrajectory, 'clutch/slip_reference', self.answer, 10)
         self.requests = self.create_publisher(WrenchStamped, 'clutch/torque_request', 10)
-        self.parts = self.create_publisher(JointState, 'controller/torque_parts', 10)
         self.statuses = self.create_publisher(DiagnosticArray, 'controller/status', 10)
         self.run_info = self.create_publisher(DiagnosticArray, 'run_info', LATCHED)
         self.run_info.publish(DiagnosticArray(status=[ABOUT]))
@@ -47,8 +44,6 @@ class OwnController(Node):
             self.request.wrench.torque.x = -(K_P * error_rpm + K_I * self.integral)
             self.integral += PERIOD_S * error_rpm
         self.requests.publish(self.request)
-        torques = [0.0, self.request.wrench.torque.x, 0.0]
-        self.parts.publish(JointState(header=slip.header, name=PARTS, effort=torques))
         self.statuses.publish(DiagnosticArray(header=slip.header, status=[ABOUT]))
 
 

@@ -10,13 +10,14 @@ import pytest
 
 from ddct_bringup.bag.reader import Recording, read_bag
 from ddct_bringup.bag.repair import repair_bag
+from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.scores.scored_recording import score_recording
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.base.errors import DdctError
 from ddct_plant.measured.columns import own_columns
 from ddct_plant.measured.log import read_log
-from ddct_plant.signals.topics import TOPICS
+from ddct_plant.signals.topics import TOPICS, TORQUE_PARTS
 
 EARLIER = Path(__file__).parent / 'earlier'
 """Bags of the commit in their custom data: of a run with sensors, and of one in real time."""
@@ -78,3 +79,18 @@ def test_a_cut_earlier_bag_is_repaired_with_its_topics(tmp_path):
     repaired = read_bag(bag).trajectory
     assert repaired.steps > 0
     assert repaired.sensed_joint_held.shape == (repaired.steps + 1, 3)
+
+
+def test_an_earlier_bag_of_a_node_without_texts_of_the_parts_is_read(bags):
+    def without(pairs):
+        return tuple(pair for pair in pairs if not pair[0].endswith('_torque_n_m'))
+
+    sensed = read_bag(EARLIER / 'sensed').trajectory
+    kept = {
+        name: column
+        for name, column in sensed.signals.items()
+        if name not in {signal.name for signal in TORQUE_PARTS.signals}
+    }
+    kept['status'] = tuple(map(without, sensed.status))
+    recording = read_bag(bags.write(Trajectory(kept), clutch='stick_slip'))
+    assert set(recording.trajectory.signals) == set(kept)

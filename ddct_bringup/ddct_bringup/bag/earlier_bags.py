@@ -34,8 +34,9 @@ _CLOSING = 'closing_torque_n_m'
 
 def earlier_values(topic: Topic, messages: Messages) -> Values:
     """
-    Return the values of a topic with `later`, from the messages of an earlier bag.
+    Return the values of a topic with `later`, from the messages of a bag without the topic.
 
+    They are empty where the bag lacks an optional topic and has nothing in its place.
     Raise LookupError, AttributeError or ValueError where a message lacks one.
     """
     return _READERS[topic](messages)
@@ -45,8 +46,10 @@ def _torque_parts(messages: Messages) -> Values:
     values: Values = {}
     for stamp, message in _of(CONTROLLER_STATUS, messages):
         pairs = {pair.key: pair.value for pair in message.status[0].values}
-        parts = [float(pairs[key]) for key in _PARTS]
-        values[stamp] = (*parts, float(pairs.get(_CLOSING, '0')))
+        # Nodes of third parties have never had to publish the parts.
+        if any(key in pairs for key in _PARTS):
+            parts = [float(pairs[key]) for key in _PARTS]
+            values[stamp] = (*parts, float(pairs.get(_CLOSING, '0')))
     return values
 
 

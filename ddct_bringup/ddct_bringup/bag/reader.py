@@ -55,7 +55,10 @@ class Recording:
     realtime: RealtimeFacts = field(default_factory=RealtimeFacts)
     """Counts and safe states published on `/diagnostics`; empty in lock-step."""
     absent: Mapping[str, str] = field(default_factory=dict)
-    """Reason by quantity for quantities that a log of another tool lacks; they are NaN here."""
+    """
+    Reason by quantity for quantities that the recording lacks: NaN in the log of another tool,
+    and no signal of the trajectory where a controller's node leaves out an optional topic.
+    """
     simulated: RunSettings | None = None
     """Settings of a run that was simulated in this process; None of a bag."""
 
@@ -120,10 +123,16 @@ def recording_of(records: BagRecords) -> Recording:
     last = check_ticks(stamps, run)
     columns: dict[str, tuple[Any, ...]] = {}
     missed: dict[str, int] = {}
-    for topic in recorded_topics(replace(run, earlier=False)):
+    absent: dict[str, str] = {}
+    for topic in recorded_topics(replace(run, earlier=False, torque_parts=True)):
         if not topic.signals:
             continue
-        rows, missing = _rows(_values(topic, messages, run), last)
+        values = _values(topic, messages, run)
+        if topic.optional and not values:
+            reason = f'the node {topic.publisher} did not publish {topic.name}'
+            absent |= dict.fromkeys((signal.name for signal in topic.signals), reason)
+            continue
+        rows, missing = _rows(values, last)
         signals = topic.signals_in(run)
         if len(rows[0]) != len(signals):
             raise DdctError(
@@ -143,6 +152,7 @@ def recording_of(records: BagRecords) -> Recording:
         counts={topic: len(each) for topic, each in messages.items()},
         missed=missed,
         realtime=_realtime(messages.get(DIAGNOSTICS.resolved_name, [])),
+        absent=absent,
     )
 
 
@@ -156,16 +166,22 @@ def _realtime(messages: list[tuple[int, Any]]) -> RealtimeFacts:
 
 
 def _values(topic: Topic, messages: Messages, run: RunKind) -> Values:
-    """Return the values of a topic by stamp; raise DdctError for no message, or a bad one."""
+    """
+    Return the values of a topic by stamp.
+
+    They are empty for an optional topic that the run lacks. Raise DdctError for no message on
+    another, or a bad one.
+    """
+    in_run = topic.in_run(run)
     try:
-        if topic.in_run(run):
+        if in_run:
             received = messages.get(topic.resolved_name, ())
             values = {stamp: topic.values(message) for stamp, message in received}
         else:
             values = earlier_values(topic, messages)
     except (LookupError, AttributeError, ValueError) as error:
         raise DdctError(f'{topic.resolved_name}: a message lacks a value ({error})') from error
-    if not values:
+    if not values and (in_run or not topic.optional):
         raise DdctError(f'no message on {topic.resolved_name}')
     return values
 

@@ -13,9 +13,12 @@ from ddct_plant.files.input_file import parse_json
 from ddct_plant.graph.node_names import StatusName
 from ddct_plant.graph.node_reports import SAFE_STATE, TICKS, TickCounts, safe_state_since
 from ddct_plant.signals.signal import RunKind
+from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import (
     ENGINE_REQUEST,
     SENSED_TOPICS,
+    SHIFT_TOPICS,
+    TOPICS,
     TORQUE_PARTS,
 )
 
@@ -76,16 +79,30 @@ class RunFacts(RunConditions):
         """Whether every tick must be complete, as in lock-step."""
         return self.mode == 'lockstep'
 
-    def kind(self, *, two_input: bool, sensed: bool, earlier: bool = False) -> RunKind:
+    def kind(
+        self,
+        *,
+        two_input: bool,
+        sensed: bool,
+        shift: bool = False,
+        torque_parts: bool = True,
+        earlier: bool = False,
+    ) -> RunKind:
         """Return the kind of the run, which decides which topics it has."""
-        return RunKind(self.lockstep, two_input, self.clutch, sensed, earlier)
+        return RunKind(self.lockstep, two_input, self.clutch, sensed, shift, torque_parts, earlier)
 
     def kind_of_bag(self, topics: Container[str]) -> RunKind:
         """Return the kind of run of a bag that has these topics, given by resolved name."""
+
+        def has_any(candidates: Iterable[Topic]) -> bool:
+            return any(topic.resolved_name in topics for topic in candidates)
+
         return self.kind(
-            two_input=ENGINE_REQUEST.resolved_name in topics,
-            sensed=any(topic.resolved_name in topics for topic in SENSED_TOPICS),
-            earlier=TORQUE_PARTS.resolved_name not in topics,
+            two_input=has_any([ENGINE_REQUEST]),
+            sensed=has_any(SENSED_TOPICS),
+            shift=has_any(SHIFT_TOPICS),
+            torque_parts=has_any([TORQUE_PARTS]),
+            earlier=not has_any(topic for topic in TOPICS if topic.later),
         )
 
     def to_custom_data(self) -> dict[str, str]:

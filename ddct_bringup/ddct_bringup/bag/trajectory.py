@@ -12,9 +12,12 @@ import numpy as np
 
 from ddct_plant.base.errors import DdctError
 from ddct_plant.signals.signal import RunKind, Signal, SignalValue
+from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import (
     ENGINE_REQUEST,
     SENSED_SLIP,
+    SHIFT_TOPICS,
+    TORQUE_PARTS,
     all_signals,
     quantities,
     signals_of,
@@ -92,12 +95,25 @@ class Trajectory:
     @property
     def two_input(self) -> bool:
         """Whether the controller commanded the engine too, by `engine_torque_request`."""
-        return all(signal.name in self.signals for signal in ENGINE_REQUEST.signals)
+        return self._has(ENGINE_REQUEST)
 
     @property
     def sensed(self) -> bool:
         """Whether controller and reference read sensors, which have signals of their own."""
-        return all(signal.name in self.signals for signal in SENSED_SLIP.signals)
+        return self._has(SENSED_SLIP)
+
+    @property
+    def shift(self) -> bool:
+        """Whether the run is a gear shift, with the signals of an off-going clutch."""
+        return any(self._has(topic) for topic in SHIFT_TOPICS)
+
+    @property
+    def torque_parts(self) -> bool:
+        """Whether the parts of the torque request are known."""
+        return self._has(TORQUE_PARTS)
+
+    def _has(self, topic: Topic) -> bool:
+        return all(signal.name in self.signals for signal in topic.signals)
 
     @property
     def steps(self) -> int:

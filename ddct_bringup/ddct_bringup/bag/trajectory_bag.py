@@ -37,7 +37,10 @@ def write_trajectory(
     Raise DdctError when the bag cannot be written.
     """
     run = RunFacts.from_custom_data(custom_data).kind(
-        two_input=trajectory.two_input, sensed=trajectory.sensed
+        two_input=trajectory.two_input,
+        sensed=trajectory.sensed,
+        shift=trajectory.shift,
+        torque_parts=trajectory.torque_parts,
     )
     topics = recorded_topics(run)
     with new_bag(folder, name, topics, custom_data) as bag:

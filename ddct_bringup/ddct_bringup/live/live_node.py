@@ -16,7 +16,6 @@ from ddct_plant.base.timebase import START_NS
 from ddct_plant.graph.node import GraphNode
 from ddct_plant.graph.node_names import name_in_graph
 from ddct_plant.graph.qos import LIVE_QOS
-from ddct_plant.signals.signal import RunKind
 from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import (
     CLOCK,
@@ -48,8 +47,8 @@ class LiveNode(GraphNode):
         self._print = print_line
         self._stamp_ns = self._sent_ns = START_NS
         self._run_info: dict[str, bytes] = {}
-        run = RunKind(clutch=self.settings.clutch, sensed=self.settings.sensed)
-        tick_topics = {topic for topic in recorded_topics(run) if topic.every_tick}
+        topics = recorded_topics(self.settings.kind())
+        tick_topics = {topic for topic in topics if topic.every_tick}
         self._not_received = tick_topics - {RECORDER_ACK}
         # Number of views, counted in a thread of the server; those that got time and run_info.
         self._views = self._views_timed = self._views_latched = 0

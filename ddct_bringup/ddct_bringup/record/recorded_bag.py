@@ -4,6 +4,7 @@
 
 import time
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from rclpy.serialization import serialize_message
@@ -15,8 +16,9 @@ from ddct_bringup.record.tick_buffer import Tick
 from ddct_bringup.run.description import custom_data
 from ddct_plant.base.timebase import START_NS, stamp_of_step
 from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.signals.signal import RunKind
 from ddct_plant.signals.topic import Topic
-from ddct_plant.signals.topics import RECORDER_ACK, RUN_INFO
+from ddct_plant.signals.topics import RECORDER_ACK, RUN_INFO, recorded_topics
 
 
 class RecordedBag:
@@ -25,19 +27,20 @@ class RecordedBag:
     def __init__(
         self,
         path: tuple[Path, str],
-        topics: Sequence[Topic],
+        run: RunKind,
         settings: RunSettings,
         nodes: RunInfoCollector,
         acknowledge: Callable[[int], bytes],
     ) -> None:
         """
-        Store folder and name of the bag, and the topics that it has.
+        Store folder and name of the bag, and the kind of run.
 
+        The topics of the bag follow from both the kind and the `run_info` of the nodes.
         `acknowledge` publishes the acknowledgement of a stamp in ns, and returns its bytes.
         """
         self._path = path
-        self._topics = topics
-        self._tick_topics = [topic.name for topic in topics if topic.every_tick]
+        self._run = run
+        self._tick_topics: list[str] = []
         self._settings = settings
         self._nodes = nodes
         self._acknowledge = acknowledge
@@ -71,7 +74,7 @@ class RecordedBag:
 
     def write_unordered(self, topic: Topic, cdr: bytes) -> None:
         """Write a serialised message that belongs to no tick, if the bag has its topic."""
-        if topic not in self._topics:
+        if topic not in recorded_topics(self._run):
             return
         if self._bag is None:
             self._unordered.append((topic.name, stamp_of_cdr(cdr), cdr))
@@ -95,7 +98,9 @@ class RecordedBag:
         if self._nodes.missing():
             return None
         facts = custom_data(self._settings, self._nodes.controller, self._nodes.steps)
-        bag = self._bag = new_bag(*self._path, self._topics, facts)
+        topics = recorded_topics(replace(self._run, torque_parts=bool(self._nodes.torque_parts)))
+        self._tick_topics = [topic.name for topic in topics if topic.every_tick]
+        bag = self._bag = new_bag(*self._path, topics, facts)
         for node, pairs in self._nodes.received().items():
             # A new message: a third party's node may stamp its own with wall-clock time.
             message = RUN_INFO.message(START_NS, pairs.items(), name=node)

@@ -33,6 +33,7 @@ from ddct_plant.signals.topics import (
     JOINT_STATES,
     RECORDER_ACK,
     RUN_INFO,
+    TORQUE_PARTS,
     all_topics,
     recorded_topics,
     tick_names,
@@ -88,10 +89,11 @@ class RecorderNode(GraphNode):
             [topic.name for topic in ticks if topic is not RECORDER_ACK],
             self._same_message,
             wait_for_all=self.settings.lockstep,
+            undecided=frozenset({TORQUE_PARTS.name}),
         )
         self._bag = RecordedBag(
             (self._folder, name or self._folder.name),
-            self._topics,
+            self._run,
             self.settings,
             self._nodes,
             self._acknowledge,
@@ -175,7 +177,9 @@ class RecorderNode(GraphNode):
             self._nodes.receive(name_in_graph(node, self.get_namespace()), pairs)
         except DdctError as error:
             self._on_second_node(error)
-        self._bag.write_ticks([])
+        parts = self._nodes.torque_parts
+        present = [TORQUE_PARTS.name] if parts else []
+        self._bag.write_ticks([] if parts is None else self._buffer.decide(present))
 
     def _on_second_node(self, error: DdctError) -> None:
         """Raise the error; once a real-time run has begun, keep it until the clutch is open."""

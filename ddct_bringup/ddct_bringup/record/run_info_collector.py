@@ -13,7 +13,7 @@ from ddct_bringup.bag.run_facts import (
 )
 from ddct_plant.base.errors import DdctError
 from ddct_plant.graph.node_names import name_in_graph
-from ddct_plant.graph.node_reports import CONTROLLER, STEPS, TWO_INPUT, flag, run_info_pairs
+from ddct_plant.graph.node_reports import CONTROLLER, PARTS, STEPS, TWO_INPUT, flag, run_info_pairs
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.signals.topics import RUN_INFO
 
@@ -80,6 +80,24 @@ class RunInfoCollector:
                 'give a whole number'
             )
         return int(steps)
+
+    @property
+    def torque_parts(self) -> bool | None:
+        """
+        Whether the controller's node publishes the parts of its request; None before its run_info.
+
+        DdctError for a text that is no flag.
+        """
+        pairs = self._received.get(CONTROLLER_NODE)
+        if pairs is None:
+            return None
+        text = pairs.get(PARTS, flag(False))
+        if text not in (flag(True), flag(False)):
+            raise DdctError(
+                f'{RUN_INFO.name} of node {CONTROLLER_NODE} has {PARTS} {text!r}: give true where '
+                'it publishes controller/torque_parts, or leave the key out'
+            )
+        return text == flag(True)
 
     def _value(self, node: str, key: str) -> str:
         pairs = self._received.get(node, {})

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Buffer the messages of each tick until the tick is complete; independent of ROS."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Container, Sequence
 from dataclasses import dataclass, field
 
 from ddct_plant.base.errors import DdctError
@@ -37,6 +37,8 @@ class TickBuffer:
     """Function that returns whether two serialised messages of a topic are equal."""
     wait_for_all: bool = True
     """Whether only complete ticks are returned, as in lock-step."""
+    undecided: frozenset[str] = frozenset()
+    """Those of `topics` that the run may lack; complete ticks have them until `decide`."""
     dropped: int = 0
     """Number of messages that arrived too late; real time only."""
     _next_step: int = 0
@@ -49,10 +51,13 @@ class TickBuffer:
             step = step_of_stamp(stamp_ns)
         except DdctError as error:
             raise DdctError(f'{topic}: {error}') from error
+        if topic not in self.topics:
+            return []
         if step < self._next_step:
             self._check_repeat(step, topic, cdr)
             return []
-        if self.wait_for_all and step > self._next_step + LAG_LIMIT_STEPS:
+        lags = self.wait_for_all and step > self._next_step + LAG_LIMIT_STEPS
+        if lags and not self.undecided:
             raise DdctError(
                 f'{topic}: step {step} came where step {self._next_step} was due: this recorder '
                 'missed a part of the run, start it first or set require_recorder on driveline'
@@ -65,6 +70,22 @@ class TickBuffer:
         if self.wait_for_all and len(tick) < len(self.topics):
             return []
         return self._ready(step - GIVE_UP_AFTER_STEPS)
+
+    def decide(self, present: Container[str]) -> list[tuple[int, Tick]]:
+        """
+        Drop those undecided topics that the run lacks; return the ticks that are complete now.
+
+        `present` has the names of the topics that the run has.
+        """
+        lacking = {topic for topic in self.undecided if topic not in present}
+        self.undecided = frozenset()
+        if not lacking:
+            return []
+        self.topics = [topic for topic in self.topics if topic not in lacking]
+        for tick in self._pending.values():
+            for topic in lacking:
+                tick.pop(topic, None)
+        return self._ready(max(self._pending, default=0) - GIVE_UP_AFTER_STEPS)
 
     def drain(self) -> list[tuple[int, Tick]]:
         """Return the remaining ticks when recording ends; only real time keeps incomplete ones."""

@@ -2,12 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """Complete ticks are found by stamps, and a missing or misplaced message is named."""
 
+from dataclasses import replace
+
 import pytest
 from made_run import made_facts
 
+from ddct_bringup.bag import run_facts
 from ddct_bringup.bag.ticks import check_ticks, complete_ticks, tick_topics
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import stamp_of_step
+from ddct_plant.signals import topics
 from ddct_plant.signals.signal import RunKind
 from ddct_plant.signals.topics import (
     CLOCK,
@@ -22,8 +26,8 @@ LOCKSTEP, REALTIME = RunKind(), RunKind(lockstep=False)
 
 
 def stamps_of(steps=5):
-    topics = tick_topics(LOCKSTEP, replies=True)
-    return {topic: [stamp_of_step(k) for k in range(steps + 1)] for topic in topics}
+    names = tick_topics(LOCKSTEP, replies=True)
+    return {name: [stamp_of_step(k) for k in range(steps + 1)] for name in names}
 
 
 def test_a_complete_recording_is_accepted():
@@ -105,6 +109,25 @@ def test_one_topic_of_sensors_requires_the_others(lacking):
     with pytest.raises(DdctError, match=f'no message on {lacking.resolved_name}'):
         check_ticks(stamps, run)
     assert made_facts().kind_of_bag({'/controller/torque_parts'}) == LOCKSTEP
+
+
+def test_the_parts_of_the_torque_request_are_needed_once_one_was_recorded():
+    without = made_facts().kind_of_bag(stamps_of(5).keys() - {'/controller/torque_parts'})
+    stamps = {**stamps_of(5), '/controller/torque_parts': []}
+    assert check_ticks(stamps, without) == 5
+    with pytest.raises(DdctError, match='no message on /controller/torque_parts'):
+        check_ticks(stamps, LOCKSTEP)
+
+
+def test_topics_of_a_shift_are_needed_in_runs_of_a_shift_only(monkeypatch):
+    off_going = replace(SLIP, name='off_going/clutch/slip', when=topics._shift)
+    monkeypatch.setattr(topics, 'TOPICS', (*topics.TOPICS, off_going))
+    assert off_going not in recorded_topics(LOCKSTEP)
+    assert off_going in recorded_topics(RunKind(shift=True))
+    monkeypatch.setattr(run_facts, 'SHIFT_TOPICS', (off_going,))
+    assert made_facts().kind_of_bag({'/controller/torque_parts'}) == LOCKSTEP
+    names = {'/controller/torque_parts', '/off_going/clutch/slip'}
+    assert made_facts().kind_of_bag(names) == RunKind(shift=True)
 
 
 def test_a_lock_step_recording_holds_no_wall_clock_topic():

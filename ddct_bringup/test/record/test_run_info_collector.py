@@ -6,7 +6,7 @@ import pytest
 
 from ddct_bringup.record.run_info_collector import RunInfoCollector
 from ddct_plant.base.errors import DdctError
-from ddct_plant.graph.node_reports import run_info_pairs
+from ddct_plant.graph.node_reports import controller_info, run_info_pairs
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
@@ -72,3 +72,12 @@ def test_nodes_of_one_name_in_two_namespaces_are_two_nodes():
     assert [pairs['timeout'] for pairs in nodes.received().values()] == ['1', '2']
     assert nodes.has('/off/actuator')
     assert not nodes.has('/other/actuator')
+
+
+def test_the_controller_announces_its_torque_parts():
+    assert collected(load={}).torque_parts is None, 'not known yet'
+    assert collected(controller={'controller': 'mine'}).torque_parts is False
+    assert collected(controller={'torque_parts': 'false'}).torque_parts is False
+    assert collected(controller=controller_info({})).torque_parts is True
+    with pytest.raises(DdctError, match="/controller has torque_parts 'yes'"):
+        _ = collected(controller={'torque_parts': 'yes'}).torque_parts

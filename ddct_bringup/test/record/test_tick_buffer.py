@@ -126,3 +126,51 @@ def test_a_repeated_message_is_dropped_and_a_different_one_is_an_error(realtime,
 def test_a_stamp_off_the_grid_is_an_error_with_its_topic(lockstep):
     with pytest.raises(DdctError, match='a: stamp 1000000001 ns is not on the grid'):
         lockstep.buffer.offer('a', 1_000_000_001, b'')
+
+
+class UndecidedBuffer(Buffer):
+    """Buffer of the topics a, b and c; the run may lack c."""
+
+    def __init__(self, *, lockstep):
+        super().__init__(lockstep=lockstep)
+        self.buffer.topics = ['a', 'b', 'c']
+        self.buffer.undecided = frozenset('c')
+
+    def decide(self, present):
+        return [(step, ''.join(sorted(tick))) for step, tick in self.buffer.decide(present)]
+
+
+@pytest.mark.parametrize('lock', [True, False])
+def test_ticks_wait_for_an_undecided_topic_only_until_the_run_is_known_to_lack_it(lock):
+    buffer = UndecidedBuffer(lockstep=lock)
+    assert buffer.whole(0) == []
+    assert buffer.decide('') == [(0, 'ab')]
+    assert buffer.whole(1) == [(1, 'ab')]
+    assert buffer.offer('c', 2) == [], 'whoever publishes it all the same'
+    assert buffer.whole(2) == [(2, 'ab')]
+
+
+@pytest.mark.parametrize('lock', [True, False])
+def test_an_undecided_topic_that_the_run_has_belongs_to_each_tick(lock):
+    buffer = UndecidedBuffer(lockstep=lock)
+    assert buffer.whole(0) == []
+    assert buffer.decide('c') == []
+    assert buffer.offer('c', 0) == [(0, 'abc')]
+    assert buffer.decide('') == [], 'decided once'
+    assert buffer.whole(1) == []
+
+
+def test_a_topic_that_the_run_lacks_is_in_no_tick_whenever_its_message_came():
+    buffer = UndecidedBuffer(lockstep=True)
+    assert buffer.offer('c', 0) == []
+    assert buffer.offer('a', 0) == []
+    assert buffer.decide('') == []
+    assert buffer.offer('b', 0) == [(0, 'ab')]
+
+
+def test_ticks_without_an_undecided_topic_are_no_sign_of_a_missed_start():
+    buffer = UndecidedBuffer(lockstep=True)
+    last = LAG_LIMIT_STEPS + 5
+    for step in range(last + 1):
+        assert buffer.whole(step) == []
+    assert buffer.decide('') == [(step, 'ab') for step in range(last + 1)]

@@ -23,6 +23,8 @@ Pairs = dict[str, str]
 """Texts by key."""
 CONTROLLER, STEPS, TWO_INPUT = 'controller', 'steps', 'two_input'
 """Keys on `run_info` without which there is no recording, or which the recorder compares."""
+PARTS = 'torque_parts'
+"""Key on `run_info` of `controller`: true where it publishes `controller/torque_parts`."""
 TICKS = ': ticks'
 """Ending, after the driveline's name, of the name of the status with its counts."""
 SAFE_STATE = ': safe state'
@@ -70,6 +72,11 @@ def reference_info(preview_steps: int) -> Pairs:
     return {'preview_steps': str(preview_steps)}
 
 
+def controller_info(controller: Mapping[str, str]) -> Pairs:
+    """Return the own pairs of the controller's node; `controller` are those of its controller."""
+    return {**controller, PARTS: flag(True)}
+
+
 def node_info(
     settings: RunSettings, controller: Mapping[str, str], preview_steps: int, steps: int
 ) -> dict[str, Pairs]:
@@ -85,7 +92,7 @@ def node_info(
         'driveline': driveline_info(steps),
         'actuator': actuator_info(),
         'reference': reference_info(preview_steps),
-        'controller': controller,
+        'controller': controller_info(controller),
         'recorder': {},
     }
     return {node: run_info_pairs(settings, pairs) for node, pairs in own.items()}

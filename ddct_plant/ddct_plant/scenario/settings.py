@@ -73,9 +73,14 @@ class RunSettings(OptionGroup):
         """Whether the owner of time waits for every reply."""
         return self.mode == 'lockstep'
 
+    @property
+    def shift(self) -> bool:
+        """Whether the run is a gear shift with two clutches: none yet, no scenario has one."""
+        return False
+
     def kind(self, *, two_input: bool = False) -> RunKind:
         """Return the kind of the run, which decides its topics; `two_input` of its controller."""
-        return RunKind(self.lockstep, two_input, self.clutch, self.sensed)
+        return RunKind(self.lockstep, two_input, self.clutch, self.sensed, self.shift)
 
     def _require_clutch(self) -> None:
         """Refuse a scenario with keys that the linear clutch would ignore."""

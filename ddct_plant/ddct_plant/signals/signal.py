@@ -23,8 +23,12 @@ class RunKind:
     """Name of the clutch model."""
     sensed: bool = False
     """Whether controller and reference read sensors in place of the truth."""
+    shift: bool = False
+    """Whether the run is a gear shift, with an off-going clutch too."""
+    torque_parts: bool = True
+    """Whether the controller's node publishes the topics with `Topic.optional`."""
     earlier: bool = False
-    """Whether its bag was recorded before the topics with `Topic.later` existed."""
+    """Whether its bag has none of the topics with `Topic.later`."""
 
 
 @dataclass(frozen=True)

@@ -37,6 +37,8 @@ class Topic:
     """Sensors that it carries measurements of; None for a topic of others."""
     later: bool = False
     """Whether earlier bags lack it: their signals of this topic are in other messages."""
+    optional: bool = False
+    """Whether a node in the place of `controller` may leave it out (`RunKind.torque_parts`)."""
 
     @property
     def type(self) -> str:
@@ -60,7 +62,8 @@ class Topic:
 
     def in_run(self, run: RunKind) -> bool:
         """Return whether a run has this topic."""
-        return (self.when is None or self.when(run)) and not (run.earlier and self.later)
+        absent = (self.later and run.earlier) or (self.optional and not run.torque_parts)
+        return not absent and (self.when is None or self.when(run))
 
     def signals_in(self, run: RunKind) -> tuple[Signal, ...]:
         """Return the signals of this topic in a run that has the topic."""

@@ -58,6 +58,10 @@ def _sensed(run: RunKind) -> bool:
     return run.sensed
 
 
+def _shift(run: RunKind) -> bool:
+    return run.shift
+
+
 def _of_joints(
     prefix: str, quantity: str, joints: tuple[str, ...], unit: str, about: str
 ) -> Signal:
@@ -243,6 +247,7 @@ TORQUE_PARTS = Topic(
     ),
     CLUTCH_LINK,
     later=True,
+    optional=True,
 )
 ENGINE_REQUEST = _torque(
     'engine/torque_request',
@@ -323,6 +328,8 @@ wall clock."""
 
 SENSED_TOPICS = tuple(topic for topic in TOPICS if topic.when is _sensed)
 """Topics of the sensors."""
+SHIFT_TOPICS = tuple(topic for topic in TOPICS if topic.when is _shift)
+"""Topics of the off-going clutch and of the handover; none yet."""
 
 
 def sensed_quantities(publisher: str = '') -> tuple[SensedQuantity, ...]:
