@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Nodes that do not belong together: other settings, a second publisher, an earlier graph."""
 
+import re
 from pathlib import Path
 
 import pytest
@@ -45,14 +46,14 @@ def test_two_controllers_on_one_topic_are_detected(graph_of: GraphOf) -> None:
 
 
 def test_two_controllers_of_different_names_are_both_named(graph_of: GraphOf) -> None:
+    """Recorder, actuator and driveline all notice; which of them is first is chance."""
     graph = graph_of(plan('ls8'))
     graph.add_all()
     rename = ['--ros-args', '-r', 'controller:__node:=other']
     graph.add('controller', {'controller': 'pi'}, key='second', cli_args=rename)
-    node, complaint = graph.first_failure()
-    assert node == 'recorder'
-    assert ' carries two different messages for stamp 1' in complaint
-    assert complaint.endswith('; publishers: /controller and /other')
+    _, complaint = graph.first_failure()
+    assert re.search('carries two different messages for stamp 1|two live publishers', complaint)
+    assert '/controller and /other' in complaint
 
 
 def test_a_failed_graph_in_one_process_leaves_nothing_that_the_next_receives(

@@ -21,19 +21,23 @@ def helpers() -> Iterator[Helpers]:
     started: Helpers = []
     yield started
     for helper in started:
-        helper.kill()
-        helper.wait()
+        with helper:
+            helper.kill()
 
 
 def start(helpers: Helpers, mark: str, program: str) -> int:
     """Start a helper in a separate session, like the crash handler."""
     helper = subprocess.Popen(
-        [sys.executable, '-c', program],
+        [sys.executable, '-c', f"print('ready', flush=True)\n{program}"],
         stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
         start_new_session=True,
         env={**os.environ, MARK: mark},
     )
     helpers.append(helper)
+    # Popen returns before the kernel has given the new program its environment.
+    assert helper.stdout is not None
+    assert helper.stdout.readline() == b'ready\n'
     return helper.pid
 
 
