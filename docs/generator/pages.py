@@ -3,7 +3,8 @@
 """
 Read and fill the tables between marks of the pages.
 
-A table is between the lines `<!-- KIND: NAME -->` and `<!-- end -->`, on whichever page.
+A table is between the lines `<!-- KIND: NAME -->` and `<!-- end -->`, on whichever page of the
+docs or of a package.
 """
 
 import re
@@ -24,7 +25,7 @@ def as_markdown(tables: Mapping[str, Table]) -> dict[str, str]:
 def shown_tables(kind: str, docs: Path = DOCS) -> dict[str, str]:
     """Return the text between the marks of a kind in the pages, by name."""
     shown: dict[str, str] = {}
-    for page in _pages(docs):
+    for page in marked_pages(docs):
         for match in _block(kind).finditer(page.read_text(encoding='utf-8')):
             if match[2] in shown:
                 raise DdctError(f'{page}: the table {match[2]} of {kind} stands twice in the docs')
@@ -52,7 +53,7 @@ def fill_pages(kind: str, tables: Mapping[str, Table], docs: Path = DOCS) -> lis
         )
     texts = as_markdown(tables)
     changed = []
-    for page in _pages(docs):
+    for page in marked_pages(docs):
         old = page.read_text(encoding='utf-8')
         new = _block(kind).sub(lambda match: f'{match[1]}{texts[match[2]]}{match[4]}', old)
         if new != old:
@@ -61,8 +62,9 @@ def fill_pages(kind: str, tables: Mapping[str, Table], docs: Path = DOCS) -> lis
     return changed
 
 
-def _pages(docs: Path) -> list[Path]:
-    return sorted(docs.rglob('*.md'))
+def marked_pages(docs: Path = DOCS) -> list[Path]:
+    """Return the pages that may have marks: those of the docs, and the READMEs of packages."""
+    return sorted([*docs.rglob('*.md'), *docs.parent.glob('ddct_*/README.md')])
 
 
 def _block(kind: str) -> re.Pattern[str]:

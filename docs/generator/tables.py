@@ -96,6 +96,14 @@ def _both_loops(controller: FactoredTransferFunction) -> Record:
     }
 
 
+def declared_parameters() -> Mapping[str, Table]:
+    """Return the parameters of the nodes."""
+    # Only here: it needs ROS, which the other tables do without.
+    from generator.parameter_tables import parameter_tables
+
+    return parameter_tables()
+
+
 def plant_tables() -> Mapping[str, Table]:
     """Return the plant of the scenario `thesis`."""
     return paper_tables(plant_on_paper(load_scenario('thesis')))
@@ -138,6 +146,7 @@ def _drawn() -> dict[ThesisFigure, str]:
 
 TABLES: Mapping[str, Callable[[], Mapping[str, Table]]] = {
     'options': lambda: OPTION_TABLES,
+    'parameters': declared_parameters,
     'scores': score_tables,
     'plant': plant_tables,
     'loop-shaping': lambda: thesis_tables(thesis_record()),

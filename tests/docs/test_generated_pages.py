@@ -11,7 +11,7 @@ from generator import results as results_module
 from generator.block_diagrams import drawings
 from generator.launch_table import launch_table
 from generator.option_tables import TABLES as OPTION_TABLES
-from generator.pages import DOCS, as_markdown, fill_pages, shown_tables
+from generator.pages import DOCS, as_markdown, fill_pages, marked_pages, shown_tables
 from generator.results import PAGES as RESULT_PAGES
 from generator.results import fill_results, marked_results, results
 from generator.score_tables import score_tables
@@ -67,7 +67,7 @@ def test_a_table_that_stands_on_two_pages_is_refused(docs: Path) -> None:
 
 
 def test_every_mark_is_of_a_kind_that_one_command_writes() -> None:
-    texts = [page.read_text(encoding='utf-8') for page in DOCS.rglob('*.md')]
+    texts = [page.read_text(encoding='utf-8') for page in marked_pages()]
     marks = [mark for text in texts for mark in re.findall(r'<!-- (.*?) -->', text)]
     kinds = {mark.partition(':')[0] for mark in marks} - {'end'}
     assert kinds == {*COMPUTED, 'result'}

@@ -1,0 +1,58 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Tables of the parameters that nodes declare, for the READMEs of the packages; needs ROS."""
+
+import importlib
+import os
+from unittest.mock import patch
+
+from rclpy.context import Context
+
+from ddct_bringup.processes.graph_nodes import GRAPH_NODES
+from ddct_plant.base.options import options_of
+from ddct_plant.graph.arguments import init_ros
+from ddct_plant.graph.node import GraphNode
+from ddct_plant.program.table import Table
+from ddct_plant.scenario.settings import RunSettings
+
+HEADERS = ('parameter', 'default', 'meaning')
+SHARED = {'scenario', *options_of(RunSettings)}
+"""Names of the parameters that every node has."""
+OF_CONTROLLER = 'gains.'
+"""Prefix of the parameters that differ with the chosen controller."""
+
+
+def parameter_tables() -> dict[str, Table]:
+    """Return the parameters of each node, by its name, without the shared ones."""
+    tables = {}
+    with patch.dict(os.environ, ROS_AUTOMATIC_DISCOVERY_RANGE='OFF'):
+        context = Context()
+        init_ros([], context)
+        try:
+            for spec in GRAPH_NODES:
+                node_class = getattr(importlib.import_module(spec.module), spec.class_name)
+                node: GraphNode = node_class(context=context)
+                if rows := _rows(node):
+                    tables[spec.name] = Table('', HEADERS, rows)
+                node.destroy_node()
+        finally:
+            context.try_shutdown()
+    return tables
+
+
+def _rows(node: GraphNode) -> list[tuple[str, ...]]:
+    rows: list[tuple[str, ...]] = []
+    for parameter in node.get_parameters(node.own_parameters()):
+        if parameter.name not in SHARED and not parameter.name.startswith(OF_CONTROLLER):
+            description = node.describe_parameter(parameter.name).description
+            rows.append((f'`{parameter.name}`', _text(parameter.value), description))
+    return rows
+
+
+def _text(value: object) -> str:
+    """Return a default as it is given behind `-p NAME:=`, a list without its brackets."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, str | int | float):
+        return str(value) or 'empty'
+    return ', '.join(value) if isinstance(value, list) else str(value)
