@@ -33,6 +33,8 @@ MOST_DESCRIPTORS = 250
 """Largest number of descriptors in one request; the kernel's limit is 253."""
 GO = b'g'
 """Byte that the supervisor writes once it has registered a process, which then starts to work."""
+DONE = b'd'
+"""Byte that the warm parent sends when it has forked the processes of a request."""
 _ARGUMENTS_START = 48 - 1 - 2
 _ARGUMENTS_END = 49 - 1 - 2
 """Index of arg_end behind the process name in /proc/self/stat, by man 5 proc."""
@@ -58,41 +60,34 @@ def main() -> int:
 
 
 def _answer(channel: socket.socket, descriptors: list[int], locks: TracingLocks) -> None:
-    """Fork the processes of the request in the first descriptor; send their ids as one line."""
+    """Fork the processes of the request in the first descriptor; send `DONE` when all exist."""
     request: Request = json.loads(os.pread(descriptors[0], os.fstat(descriptors[0]).st_size, 0))
-    reader, writer = os.pipe()
     between = locks.fork()
     if between == 0:
         channel.close()
-        os.close(reader)
-        _fork_all(request, descriptors, writer, locks)
-    os.close(writer)
+        _fork_all(request, descriptors, locks)
     os.waitpid(between, 0)
-    with os.fdopen(reader, 'rb') as pipe:
-        channel.sendall(pipe.readline() or b'\n')
+    channel.sendall(DONE)
 
 
-def _fork_all(
-    request: Request, descriptors: list[int], writer: int, locks: TracingLocks
-) -> NoReturn:
+def _fork_all(request: Request, descriptors: list[int], locks: TracingLocks) -> NoReturn:
     """
-    Fork all processes of a request, write their ids into a pipe, and exit.
+    Fork all processes of a request, write this process's id and theirs into a pipe, and exit.
 
-    The exit makes them orphans, and the kernel gives orphans to the next living ancestor that is a
-    subreaper: the supervisor, not the warm parent.
+    The supervisor has the other end of the pipe, the third descriptor, so that it can wait for
+    them after a failed start too. The exit makes them orphans, and the kernel gives orphans to the
+    next living ancestor that is a subreaper: the supervisor, not the warm parent.
     """
-    pids = []
     try:
+        os.write(descriptors[2], b'%d ' % os.getpid())
         for index, job in enumerate(request['jobs']):
             pid = locks.fork()
             if pid == 0:
-                os.close(writer)
                 _become(job, index, request, descriptors)
-            pids.append(pid)
+            os.write(descriptors[2], b'%d ' % pid)
     except OSError:
         traceback.print_exc()
     finally:
-        os.write(writer, ' '.join(map(str, pids)).encode() + b'\n')
         os._exit(0)
 
 
@@ -116,7 +111,7 @@ def _take_over(
     job: JobText, environment: dict[str, str], index: int, descriptors: list[int]
 ) -> None:
     """Set standard streams, environment and command line of this process to those of the job."""
-    stdin, output, pulse = descriptors[2 + 3 * index :][:3]
+    stdin, output, pulse = descriptors[3 + 3 * index :][:3]
     for source, target in ((stdin, 0), (output, 1), (output, 2)):
         os.dup2(source, target)
     for descriptor in descriptors:

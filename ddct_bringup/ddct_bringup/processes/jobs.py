@@ -59,12 +59,12 @@ class Job:
         }
 
 
-def send_request(channel: socket.socket, jobs: Sequence[Job], go: int) -> None:
+def send_request(channel: socket.socket, jobs: Sequence[Job], go: int, born: int) -> None:
     """
     Send jobs with this process's id and current environment; OSError without a reader.
 
-    The descriptors are those of the text, of the pipe `go` at which the processes wait, and three
-    for each job.
+    The descriptors are those of the text, of the pipe `go` at which the processes wait, of the
+    pipe `born` for their ids, and three for each job.
     """
     request: Request = {
         'supervisor': os.getpid(),
@@ -77,7 +77,7 @@ def send_request(channel: socket.socket, jobs: Sequence[Job], go: int) -> None:
             for job in jobs
             for each in (job.stdin, job.output, job.pulse)
         ]
-        socket.send_fds(channel, [REQUEST_BYTE], [text, go, *streams])
+        socket.send_fds(channel, [REQUEST_BYTE], [text, go, born, *streams])
 
 
 @contextmanager

@@ -30,6 +30,8 @@ _SLICE_S = 0.05
 """Period of the checks of `stopped` during a wait for the warm parent, s."""
 _END_S = 5.0
 """Timeout for the end of the warm parent after its channel is closed, s."""
+_IDS_BYTES = 1 << 16
+"""Capacity of the pipe of process ids in bytes (Linux)."""
 _ROOM = ' ' * 400
 """Unused argument: room for the command lines that forks write over the warm parent's."""
 
@@ -86,49 +88,66 @@ class WarmParent:
 
         `watch(pid)` is called for each process before any of them starts to work. Raise DdctError
         when the warm parent fails, and KeyboardInterrupt when `stopped()` becomes true before its
-        answer. A warm parent that has not answered is ended, and the next call starts another one.
+        answer. Then none of the processes is left, the warm parent is ended, and the next call
+        starts another one.
         """
         if self.process.poll() is not None:  # killed since the last start
             self.close()
             self._launch()
-        reader, writer = os.pipe2(os.O_CLOEXEC)
-        with os.fdopen(writer, 'wb', buffering=0) as go:
+        waiting, go = os.pipe2(os.O_CLOEXEC)
+        ids, born = os.pipe2(os.O_CLOEXEC)
+        pids: list[int] = []
+        with adopting_orphans():
             try:
-                with adopting_orphans():
+                try:
                     with contextlib.suppress(BrokenPipeError, ConnectionResetError):
-                        send_request(self._channel, jobs, reader)
-                    pids = [int(pid) for pid in self._reply(stopped).split()]
+                        send_request(self._channel, jobs, waiting, born)
+                finally:
+                    os.close(waiting)
+                    os.close(born)
+                self._wait_for_forks(stopped)
+                pids += _read_ids(ids)
+                forked = self._forked(pids, jobs)
+                for process in forked:
+                    watch(process.pid)
+                os.write(go, GO * len(forked))
             except BaseException:
                 # Its late answer would be taken for that to the next request.
                 self.close()
+                os.close(go)
+                _reap(pids, ids)
+                os.close(ids)
                 raise
-            finally:
-                os.close(reader)
-            forked = [ForkedProcess(pid, job.module) for pid, job in zip(pids, jobs, strict=False)]
-            if len(forked) < len(jobs):
-                raise DdctError(f'no process for {jobs[len(forked)].module}: {self._last_line()}')
-            for process in forked:
-                watch(process.pid)
-            go.write(GO * len(forked))
+        os.close(go)
+        os.close(ids)
         return forked
 
-    def _reply(self, stopped: Callable[[], bool]) -> bytes:
+    def _wait_for_forks(self, stopped: Callable[[], bool]) -> None:
+        """Wait until the warm parent has forked the processes; raise the errors of `start`."""
         deadline = time.monotonic() + START_S
-        line = b''
-        while not line.endswith(b'\n'):
+        while True:
             if stopped():
                 raise KeyboardInterrupt
             if time.monotonic() > deadline:
                 raise DdctError(f'nodes could not be started within {START_S:g} s')
             if select.select([self._channel], [], [], _SLICE_S)[0]:
                 with contextlib.suppress(ConnectionResetError):
-                    if more := self._channel.recv(1 << 16):
-                        line += more
-                        continue
+                    if self._channel.recv(1):
+                        return
                 with contextlib.suppress(subprocess.TimeoutExpired):
                     self.process.wait(_END_S)
                 raise DdctError(f'nodes cannot be started: {self._last_line()}')
-        return line
+
+    def _forked(self, pids: Sequence[int], jobs: Sequence[Job]) -> list[ForkedProcess]:
+        """
+        Return the processes of the jobs; raise DdctError where one could not be forked.
+
+        The first of `pids` is that of the process which forked the others, and has ended.
+        """
+        forked = [ForkedProcess(pid, job.module) for pid, job in zip(pids[1:], jobs, strict=False)]
+        if len(forked) < len(jobs):
+            raise DdctError(f'no process for {jobs[len(forked)].module}: {self._last_line()}')
+        return forked
 
     def _last_line(self) -> str:
         code = self.process.poll()
@@ -138,6 +157,25 @@ class WarmParent:
         printed = self._printed.fileno()
         text = os.pread(printed, os.fstat(printed).st_size, 0).decode(errors='replace')
         return (text.strip().splitlines() or [f'the warm parent ended with code {code}'])[-1]
+
+
+def _read_ids(ids: int) -> list[int]:
+    """Return the process ids that are in the pipe with this descriptor."""
+    return [int(word) for word in os.read(ids, _IDS_BYTES).split()]
+
+
+def _reap(pids: list[int], ids: int) -> None:
+    """Wait for the processes of a failed start; further ids are in the pipe `ids`."""
+    deadline = time.monotonic() + _END_S
+    # The pipe ends with them: each has its other end, and ends because it is not let go.
+    while select.select([ids], [], [], max(deadline - time.monotonic(), 0.0))[0]:
+        more = _read_ids(ids)
+        if not more:
+            break
+        pids += more
+    for pid in pids:
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            ForkedProcess(pid, 'fork').wait(max(deadline - time.monotonic(), 0.0))
 
 
 _ahead: list[WarmParent] = []

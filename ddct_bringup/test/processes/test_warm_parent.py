@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Forks of the warm parent are like new processes, and none is left behind."""
 
+import contextlib
 import importlib.util
 import json
 import os
@@ -15,7 +16,6 @@ import pytest
 from stub_programs import WITHIN_S, gone, wait_until
 
 from ddct_bringup.processes import warm_parent
-from ddct_bringup.processes.forked_process import ForkedProcess
 from ddct_bringup.processes.jobs import Job
 from ddct_bringup.processes.node_process import Child
 from ddct_bringup.processes.warm_parent import WarmParent
@@ -242,6 +242,38 @@ def test_a_parent_that_hangs_is_not_waited_for_without_end(monkeypatch: pytest.M
     assert parent.process.returncode == -signal.SIGKILL
 
 
+def _children() -> set[int]:
+    """Return the ids of the child processes of this one, zombies included."""
+    found = set()
+    for stat in Path('/proc').glob('[0-9]*/stat'):
+        with contextlib.suppress(OSError):  # it may end during the scan
+            _, parent = stat.read_text().rpartition(')')[2].split()[:2]
+            if int(parent) == os.getpid():
+                found.add(int(stat.parent.name))
+    return found
+
+
+@pytest.mark.parametrize('method', ['_wait_for_forks', '_forked'])
+def test_no_fork_is_left_behind_a_failed_start(
+    monkeypatch: pytest.MonkeyPatch, module: Callable[[str], str], method: str
+) -> None:
+    children = [Child(module('def main(): return 7')) for _ in range(3)]
+    before = _children()
+    original = getattr(WarmParent, method)
+
+    def fail(*arguments: object) -> None:
+        original(*arguments)
+        raise KeyboardInterrupt
+
+    with WarmParent() as parent:
+        with monkeypatch.context() as failing, pytest.raises(KeyboardInterrupt):
+            failing.setattr(WarmParent, method, fail)
+            parent.start([child.job for child in children])
+        assert _children() == before
+        (process, *_) = parent.start([child.job for child in children])
+        assert process.wait(WITHIN_S) == 7
+
+
 def test_the_late_answer_of_a_parent_is_not_taken_for_that_to_the_next_request(
     monkeypatch: pytest.MonkeyPatch, module: Callable[[str], str]
 ) -> None:
@@ -280,7 +312,8 @@ def test_no_fork_begins_before_all_are_registered_for_supervision(
 
     with pytest.raises(OSError, match='of the test'):
         parent.start([Job(name), Job(name)], watch)
-    assert [ForkedProcess(pid, name).wait(WITHIN_S) for pid in known] == [1, 1]
+    assert len(known) == 2
+    assert not any(Path(f'/proc/{pid}').exists() for pid in known), 'ended, and waited for'
     assert not (tmp_path / 'began').exists()
 
 
