@@ -6,7 +6,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 
 from ddct_bringup.processes.node_process import Child
@@ -22,7 +22,7 @@ VIEWER_SUBSCRIBED = 'a viewer shows'
 ALL_TOPICS_RECEIVED = 'every topic of a tick has come'
 """Line that `live` prints when it has received every topic of a tick."""
 
-_RECEIVE_S = 10.0
+RECEIVE_S = 10.0
 """Longest wait, s, of a run with its nodes at t_0 until `live` receives them; then it goes on."""
 _STOP_S = 10.0
 
@@ -32,21 +32,16 @@ class LiveView(Child):
 
     def wait_for_viewer(self) -> None:
         """Wait without a limit until a viewer shows a topic; raise DdctError when `live` ends."""
-        while 'ws://' not in self.output_text():
-            self._wait()
+        self._wait_for('ws://')
         url = self.output_text().split('ws://')[1].split()[0]
         text = f'open ws://{url} in Foxglove: the run begins when a panel shows a topic'
         print(text, file=sys.stderr, flush=True)
-        while VIEWER_SUBSCRIBED not in self.output_text():
-            self._wait()
+        self._wait_for(VIEWER_SUBSCRIBED)
 
-    def wait_until_receiving(self, stopped: Callable[[], bool]) -> None:
-        """Wait a limited time for every topic of t_0; raise KeyboardInterrupt if `stopped()`."""
-        deadline = time.monotonic() + _RECEIVE_S
-        while ALL_TOPICS_RECEIVED not in self.output_text() and time.monotonic() < deadline:
-            if stopped():
-                raise KeyboardInterrupt
-            self._wait()
+    def receives(self) -> bool:
+        """Return whether it has received every topic of t_0; raise DdctError when `live` ended."""
+        self._require_running()
+        return ALL_TOPICS_RECEIVED in self.output_text()
 
     def stop(self) -> None:
         """End the process."""
@@ -58,11 +53,16 @@ class LiveView(Child):
             self.process.wait()
         self.close()
 
-    def _wait(self) -> None:
+    def _wait_for(self, text: str) -> None:
+        """Wait until it has printed a text; raise DdctError when it ends before."""
+        while text not in self.output_text():
+            self._require_running()
+            time.sleep(POLL_S)
+
+    def _require_running(self) -> None:
         if not self.running:
             words = self.last_line() or 'it ended without a word'
             raise DdctError(words.removeprefix('ddct live: '))
-        time.sleep(POLL_S)
 
 
 @contextmanager

@@ -83,14 +83,32 @@ class NodeProcesses:
 
         Raise DdctError when any node fails or hangs.
         """
+        self._watch(lambda: any(not node.running for node in self._nodes), name)
+
+    def wait_until(self, condition: Callable[[], bool], within_s: float) -> None:
+        """
+        Wait until `condition()` is true, at most for `within_s` in s.
+
+        Raise DdctError when any node ends or hangs.
+        """
+        deadline = time.monotonic() + within_s
+        self._watch(lambda: condition() or time.monotonic() > deadline)
+
+    def _watch(self, over: Callable[[], bool], may_end: str = '') -> None:
+        """
+        Check the nodes until `over()` is true.
+
+        Raise DdctError when a node hangs, fails, or ends before the node `may_end`.
+        """
         begun_at = checked_at = time.monotonic()
         while True:
+            done = over()
             ended = [node for node in self._nodes if not node.running]
-            if any(node.name != name or node.code != 0 for node in ended):
+            if any(node.name != may_end or node.code != 0 for node in ended):
                 # The cause is a node that was killed or failed; others may have ended after it.
                 cause = min(ended, key=lambda node: (node.code == 0, node.name == 'driveline'))
                 raise DdctError(f'{cause.exit_summary()}; its log is {cause.log}')
-            if ended:
+            if done:
                 return
             if self._stopped():
                 raise KeyboardInterrupt

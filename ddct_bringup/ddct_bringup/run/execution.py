@@ -16,7 +16,7 @@ from ddct_bringup.bag.reader import Recording
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.bag.trajectory_bag import write_trajectory
 from ddct_bringup.processes.graph_nodes import GRAPH_NODES
-from ddct_bringup.processes.live_process import LiveView
+from ddct_bringup.processes.live_process import RECEIVE_S, LiveView
 from ddct_bringup.processes.node_processes import NodeProcesses
 from ddct_bringup.processes.warm_parent import WarmParent, warm_parent
 from ddct_bringup.run.description import custom_data, facts_of, run_info_of
@@ -158,7 +158,7 @@ def _execute_processes(
         processes.start([node for node in GRAPH_NODES if node.name != 'recorder' or not live])
         if live:
             # Without its recorder the graph stays at t_0 and publishes that tick repeatedly.
-            live.wait_until_receiving(stopped)
+            processes.wait_until(live.receives, RECEIVE_S)
             processes.start([node for node in GRAPH_NODES if node.name == 'recorder'])
         try:
             processes.wait_for('driveline')

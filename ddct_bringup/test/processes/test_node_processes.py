@@ -98,6 +98,35 @@ def test_a_stopped_driveline_is_detected_within_the_stated_time_and_everything_e
     assert [node.process.returncode for node in nodes._nodes] == [0, 0]
 
 
+@pytest.mark.parametrize(
+    ('text', 'words'),
+    [
+        ('', 'node driveline ended with code 0'),
+        (OBEDIENT, 'node driveline was killed by SIGKILL'),
+        (OBEDIENT, 'node driveline has shown no sign of life for 1 s'),
+    ],
+    ids=['ended', 'killed', 'hung'],
+)
+def test_nodes_are_watched_while_something_else_is_waited_for(processes, monkeypatch, text, words):
+    monkeypatch.setattr(node_process, 'ANSWER_TIMEOUT_S', 1.0)
+    nodes = processes(driveline=text or "print('ready', flush=True)\n", load=OBEDIENT)
+    nodes._check(0.0)
+    if text:
+        number = signal.SIGKILL if 'killed' in words else signal.SIGSTOP
+        nodes._nodes[0].process.send_signal(number)
+    with pytest.raises(DdctError, match=f'^{words}'):
+        nodes.wait_until(lambda: False, WITHIN_S)
+    nodes.__exit__()
+
+
+def test_a_wait_ends_with_its_condition_or_its_time(processes):
+    nodes = processes(driveline=OBEDIENT)
+    results = iter([False, False, True])
+    nodes.wait_until(lambda: next(results), WITHIN_S)
+    nodes.wait_until(lambda: False, 0.1)
+    nodes.__exit__()
+
+
 def test_a_node_that_never_begins_is_detected_too(processes, monkeypatch):
     monkeypatch.setattr(node_process, 'START_S', 1.0)
     reason = wait_as_supervisor(
