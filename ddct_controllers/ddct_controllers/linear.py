@@ -19,7 +19,8 @@ from ddct_plant.base.errors import ParameterError, require_choice
 from ddct_plant.base.options import REQUIRED, Option
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.bilinear import from_w_plane
-from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace, discretise_zoh
+from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
+from ddct_plant.linear.sampling import discretise_zoh
 
 HOLD, BILINEAR = 'hold', 'bilinear'
 """

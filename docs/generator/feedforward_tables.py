@@ -20,7 +20,8 @@ from ddct_controllers.design.state_space import frequency_response, poles_rad_s
 from ddct_controllers.interface import Command, Controller, Measurement
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.base.units import rad_s_from_rpm
-from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace, discretise_zoh
+from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
+from ddct_plant.linear.sampling import discretise_zoh
 from ddct_plant.models.driveline_model import engine_to_slip, load_to_slip
 from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.models.static_torque import constant_slip_torque

@@ -33,7 +33,8 @@ from ddct_controllers.workflows.margins_command import margins_table
 from ddct_controllers.workflows.plant_command import paper_tables
 from ddct_controllers.workflows.plant_on_paper import plant_on_paper
 from ddct_plant.base.timebase import PERIOD_S
-from ddct_plant.linear.lti import FactoredTransferFunction, discretise_zoh
+from ddct_plant.linear.lti import FactoredTransferFunction
+from ddct_plant.linear.sampling import discretise_zoh
 from ddct_plant.program.table import Table
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings

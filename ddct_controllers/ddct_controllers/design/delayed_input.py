@@ -6,7 +6,8 @@ import numpy as np
 
 from ddct_controllers.design.state_space import series
 from ddct_plant.base.timebase import PERIOD_S, SUBSTEP_S, SUBSTEPS
-from ddct_plant.linear.lti import StateSpace, discretise_zoh
+from ddct_plant.linear.lti import StateSpace
+from ddct_plant.linear.sampling import discretise_zoh
 
 
 def sampled_behind_delay(system: StateSpace, substeps: int) -> StateSpace:

@@ -9,7 +9,8 @@ import numpy as np
 from ddct_controllers.design.state_space import series
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import PERIOD_S
-from ddct_plant.linear.lti import StateSpace, discretise_zoh
+from ddct_plant.linear.lti import StateSpace
+from ddct_plant.linear.sampling import discretise_zoh
 from ddct_plant.models.driveline_model import TORQUES, driveline_matrices
 from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.models.printed import ACTUATOR

@@ -13,7 +13,8 @@ from ddct_controllers.state_of_art.parts.rigid_transmission import RigidTransmis
 from ddct_plant.base.options import Option
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.base.units import RAD_S_PER_RPM
-from ddct_plant.linear.lti import StateSpace, discretise_zoh
+from ddct_plant.linear.lti import StateSpace
+from ddct_plant.linear.sampling import discretise_zoh
 from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.models.printed import ACTUATOR
 

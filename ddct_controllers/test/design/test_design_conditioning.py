@@ -11,7 +11,8 @@ from ddct_controllers.design.analysis.margins import loop_margins
 from ddct_controllers.design.state_space import frequency_response
 from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_plant.base.timebase import PERIOD_S
-from ddct_plant.linear.lti import FactoredTransferFunction, discretise_zoh
+from ddct_plant.linear.lti import FactoredTransferFunction
+from ddct_plant.linear.sampling import discretise_zoh
 
 OMEGA = np.geomspace(1e-4, 300.0, 200)
 

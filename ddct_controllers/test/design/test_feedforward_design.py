@@ -19,7 +19,8 @@ from ddct_controllers.linear import DiscreteFilter
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.base.units import RAD_S_PER_RPM
-from ddct_plant.linear.lti import StateSpace, discretise_zoh
+from ddct_plant.linear.lti import StateSpace
+from ddct_plant.linear.sampling import discretise_zoh
 from ddct_plant.models.driveline_model import clutch_to_slip, engine_to_slip, load_to_slip
 from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.models.printed import ACTUATOR

@@ -96,7 +96,8 @@ def test_the_predictor_is_exact():
 
 
 def test_on_a_rigid_driveline_the_weights_give_the_double_pole(monkeypatch):
-    from ddct_plant.linear.lti import StateSpace, discretise_zoh
+    from ddct_plant.linear.lti import StateSpace
+    from ddct_plant.linear.sampling import discretise_zoh
 
     slip_gain = RigidTransmission(DRIVELINE).slip_gain
     rigid = StateSpace(np.zeros((1, 1)), np.array([[-slip_gain]]), np.eye(1), np.zeros((1, 1)))

@@ -10,7 +10,7 @@ from generator.tables import h_infinity_tables
 
 from ddct_controllers.design.analysis.worst_corner import PlantCorners, worst_corner
 from ddct_controllers.printed import H_INFINITY_CONTROLLERS
-from ddct_plant.linear.lti import discretise_zoh
+from ddct_plant.linear.sampling import discretise_zoh
 
 pytestmark = pytest.mark.slow
 

@@ -10,7 +10,8 @@ import numpy as np
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import OptionGroup, option
 from ddct_plant.base.timebase import SUBSTEP_S, SUBSTEPS
-from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace, lift_zoh_dense
+from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
+from ddct_plant.linear.sampling import lift_zoh_dense
 from ddct_plant.models.printed import ACTUATOR
 
 

@@ -9,7 +9,8 @@ import numpy as np
 
 from ddct_plant.base.options import ASSUMED, OptionGroup, option
 from ddct_plant.base.timebase import PERIOD_S
-from ddct_plant.linear.lti import StateSpace, discretise_zoh
+from ddct_plant.linear.lti import StateSpace
+from ddct_plant.linear.sampling import discretise_zoh
 
 _capacity = partial(option, unit='J/K', source=ASSUMED, at_least=1.0, at_most=1e7)
 _conductance = partial(option, unit='W/K', source=ASSUMED, at_least=0.0, at_most=1e6)

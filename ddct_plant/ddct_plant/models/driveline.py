@@ -9,7 +9,7 @@ import numpy as np
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import PERIOD_S, SUBSTEPS
-from ddct_plant.linear.lti import hold_inputs, lift_piecewise_linear
+from ddct_plant.linear.sampling import hold_inputs, lift_piecewise_linear
 from ddct_plant.models.driveline_model import (
     STATES,
     STATES_AND_ANGLES,

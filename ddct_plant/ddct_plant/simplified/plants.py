@@ -15,12 +15,8 @@ import numpy as np
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import PERIOD_S, SUBSTEPS
-from ddct_plant.linear.lti import (
-    FactoredTransferFunction,
-    StateSpace,
-    discretise_zoh,
-    lift_piecewise_linear,
-)
+from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
+from ddct_plant.linear.sampling import discretise_zoh, lift_piecewise_linear
 from ddct_plant.models.driveline_model import (
     STATES,
     clutch_to_slip,
@@ -61,6 +57,7 @@ class SlipPhase:
 
 
 SimplifiedPlant = Callable[[DrivelineParameters, SlipPhase], np.ndarray]
+"""Function from the driveline and a slip phase to w_d in rad/s at t_0..t_N, (N + 1,)."""
 
 
 def state_space_slip(parameters: DrivelineParameters, phase: SlipPhase) -> np.ndarray:

@@ -10,13 +10,8 @@ from scipy.integrate import solve_ivp
 from scipy.signal import cont2discrete
 
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.linear.lti import (
-    FactoredTransferFunction,
-    StateSpace,
-    discretise_zoh,
-    lift_piecewise_linear,
-    lift_zoh_dense,
-)
+from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
+from ddct_plant.linear.sampling import discretise_zoh, lift_piecewise_linear, lift_zoh_dense
 from ddct_plant.models.driveline_model import driveline_matrices
 from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.models.printed import ACTUATOR, CLUTCH_TO_SLIP, LOAD_TO_SLIP, PrintedNumber

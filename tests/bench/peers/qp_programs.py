@@ -10,7 +10,7 @@ from ddct_controllers.design.analysis.loops import plant_in_rpm
 from ddct_controllers.mpc.qp.backend import DEFAULT_BACKEND, make_backend
 from ddct_controllers.mpc.qp.problem import QpStructure
 from ddct_plant.base.timebase import PERIOD_S
-from ddct_plant.linear.lti import discretise_zoh
+from ddct_plant.linear.sampling import discretise_zoh
 
 STEPS = 300
 LIMIT = 20_000

@@ -16,7 +16,8 @@ from ddct_controllers.design.analysis.loops import IDENTIFIED_DRIVELINE, Continu
 from ddct_controllers.design.state_space import close_loop, to_s_plane
 from ddct_plant.base.errors import DdctError, ParameterError, require_number
 from ddct_plant.base.units import RPM_PER_RAD_S
-from ddct_plant.linear.lti import StateSpace, discretise_zoh
+from ddct_plant.linear.lti import StateSpace
+from ddct_plant.linear.sampling import discretise_zoh
 from ddct_plant.models.driveline_model import clutch_to_slip, driveline_matrices
 from ddct_plant.models.parameters import DrivelineParameters
 

@@ -27,7 +27,8 @@ from ddct_controllers.design.state_space import factored_form
 from ddct_plant.base.errors import DdctError, ParameterError, require_choice
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.bilinear import from_w_plane, to_w_plane
-from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace, discretise_zoh
+from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
+from ddct_plant.linear.sampling import discretise_zoh
 from ddct_plant.models.parameters import DrivelineParameters
 
 METHODS = ('riccati', 'lmi')

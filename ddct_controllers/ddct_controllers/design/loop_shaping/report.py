@@ -28,7 +28,8 @@ from ddct_controllers.design.loop_shaping.search import LoopShapingDesign
 from ddct_controllers.design.loop_shaping.verification import Contour, contours
 from ddct_controllers.printed import LOOP_SHAPING_CONTROLLERS
 from ddct_plant.base.timebase import PERIOD_S
-from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace, discretise_zoh
+from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
+from ddct_plant.linear.sampling import discretise_zoh
 from ddct_plant.models.parameters import DrivelineParameters
 
 Record = dict[str, Any]

@@ -32,7 +32,8 @@ from ddct_controllers.design.loop_shaping.verification import (
 from ddct_controllers.design.state_space import frequency_response, series
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import PERIOD_S
-from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace, discretise_zoh
+from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
+from ddct_plant.linear.sampling import discretise_zoh
 from ddct_plant.models.parameters import DrivelineParameters
 
 STRUCTURES = ('networks', 'placement')

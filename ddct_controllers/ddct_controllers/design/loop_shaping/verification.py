@@ -18,7 +18,8 @@ from ddct_controllers.design.analysis.loops import (
 from ddct_controllers.design.analysis.margins import LoopMargins, closed_loop_stable, loop_margins
 from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
 from ddct_plant.base.timebase import PERIOD_S
-from ddct_plant.linear.lti import FactoredTransferFunction, discretise_zoh
+from ddct_plant.linear.lti import FactoredTransferFunction
+from ddct_plant.linear.sampling import discretise_zoh
 from ddct_plant.models.parameters import DrivelineParameters
 
 LARGEST_SENSITIVITY_PEAK = 2.0

@@ -11,8 +11,9 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ddct_plant.base.timebase import PERIOD_S
-from ddct_plant.linear.lti import StateSpace, discretise_zoh
+from ddct_plant.linear.lti import StateSpace
 from ddct_plant.linear.names import Names
+from ddct_plant.linear.sampling import discretise_zoh
 from ddct_plant.models.driveline_model import STATES as DRIVELINE_STATES
 from ddct_plant.models.driveline_model import driveline_matrices
 from ddct_plant.models.parameters import DrivelineParameters

@@ -10,7 +10,8 @@ from ddct_controllers.state_of_art.parts.rigid_transmission import RigidTransmis
 from ddct_controllers.state_of_art.parts.speed_loops import Pid
 from ddct_plant.base.timebase import PERIOD_S, SUBSTEPS
 from ddct_plant.linear.cascade import Factor
-from ddct_plant.linear.lti import StateSpace, discretise_zoh
+from ddct_plant.linear.lti import StateSpace
+from ddct_plant.linear.sampling import discretise_zoh
 from ddct_plant.models.actuator import Actuator
 from ddct_plant.models.printed import ACTUATOR
 from ddct_plant.scenario.plant import initial_state

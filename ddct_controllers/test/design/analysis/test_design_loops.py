@@ -24,7 +24,8 @@ from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.base.units import rpm_from_rad_s
-from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace, discretise_zoh
+from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
+from ddct_plant.linear.sampling import discretise_zoh
 from ddct_plant.models.actuator import Actuator, ActuatorParameters
 from ddct_plant.models.clutch import LinearClutch
 from ddct_plant.models.driveline import Driveline

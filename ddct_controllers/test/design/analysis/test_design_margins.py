@@ -23,7 +23,8 @@ from ddct_controllers.design.analysis.margins import (
 from ddct_controllers.design.state_space import frequency_response, scaled, series
 from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_plant.base.timebase import PERIOD_S
-from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace, discretise_zoh
+from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
+from ddct_plant.linear.sampling import discretise_zoh
 
 NAMES = sorted(PRINTED_CONTROLLERS)
 

@@ -14,7 +14,8 @@ from ddct_controllers.design.analysis.loops import ContinuousLoop, continuous_lo
 from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import PERIOD_S
-from ddct_plant.linear.lti import FactoredTransferFunction, discretise_zoh
+from ddct_plant.linear.lti import FactoredTransferFunction
+from ddct_plant.linear.sampling import discretise_zoh
 
 SECOND_ORDER = FactoredTransferFunction(25.0, (), (0.0, 5.0))
 """Loop L that unit feedback closes to w_n = 5 rad/s, zeta = 0.5."""

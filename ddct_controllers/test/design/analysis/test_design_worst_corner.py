@@ -21,7 +21,8 @@ from ddct_controllers.design.analysis.worst_corner import (
 from ddct_controllers.design.state_space import frequency_response, scaled
 from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_plant.base.timebase import PERIOD_S
-from ddct_plant.linear.lti import StateSpace, discretise_zoh
+from ddct_plant.linear.lti import StateSpace
+from ddct_plant.linear.sampling import discretise_zoh
 from ddct_plant.models.actuator import ActuatorParameters
 
 pytestmark = pytest.mark.slow

@@ -22,7 +22,8 @@ from ddct_controllers.design.loop_shaping.specifications import prototype_phase_
 from ddct_controllers.design.state_space import factored_form, pulse_transfer_function
 from ddct_controllers.printed import LOOP_SHAPING_CONTROLLERS, PRINTED_CONTROLLERS
 from ddct_plant.base.timebase import PERIOD_S
-from ddct_plant.linear.lti import FactoredTransferFunction, discretise_zoh
+from ddct_plant.linear.lti import FactoredTransferFunction
+from ddct_plant.linear.sampling import discretise_zoh
 from ddct_plant.models.parameters import DrivelineParameters
 
 DRIVELINE = DrivelineParameters()

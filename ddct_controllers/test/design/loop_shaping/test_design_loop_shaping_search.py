@@ -15,7 +15,8 @@ from ddct_controllers.design.state_space import close_loop
 from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import PERIOD_S
-from ddct_plant.linear.lti import FactoredTransferFunction, discretise_zoh
+from ddct_plant.linear.lti import FactoredTransferFunction
+from ddct_plant.linear.sampling import discretise_zoh
 from ddct_plant.models.parameters import DrivelineParameters
 
 pytestmark = pytest.mark.slow
