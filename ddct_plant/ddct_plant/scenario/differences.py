@@ -45,18 +45,18 @@ def scenario_title(name: str, changes: Sequence[str]) -> str:
     return f'{name}, {count}: {shown}'
 
 
-def values_by_key(scenario: Scenario) -> dict[str, Any]:
+def values_by_key(scenario: Scenario) -> dict[str, object]:
     """Return the values of a scenario by dotted key."""
     return flat(scenario_content(scenario))
 
 
 @cache
-def _packaged_values(name: str) -> dict[str, Any]:
+def _packaged_values(name: str) -> dict[str, object]:
     return values_by_key(load_scenario(name))
 
 
 @cache
-def _unwritten_defaults(name: str) -> dict[str, Any]:
+def _unwritten_defaults(name: str) -> dict[str, object]:
     """Return the defaults of the sections that a packaged scenario has; it may not write them."""
     scenario = load_scenario(name)
     return {

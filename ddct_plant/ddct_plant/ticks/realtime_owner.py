@@ -2,13 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """The owner of time at 100 Hz on a steady clock; does not depend on ROS."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import PERIOD_S, SUBSTEPS, stamp_of_step, time_of_step
 from ddct_plant.fail_safe.request_watch import FailSafe
-from ddct_plant.ticks.tick_owner import TickOwner
+from ddct_plant.ticks.tick_owner import Reply, Rows, TickOwner
 
 RECORDER_PATIENCE_S = 2.0
 """Longest wait in s of a real-time run at t_N for the recorder, which may have missed a reply."""
@@ -33,7 +33,7 @@ class RealtimeOwner(TickOwner):
         self._on_started = on_started
         self.missed_replies = dict.fromkeys(self._plan.torques, 0)
         self.worst_lateness_s = 0.0
-        self._held: dict[str, Any] = {}
+        self._held: dict[str, Reply] = {}
         self._silent_since: dict[str, int] = dict.fromkeys(self._plan.torques, 0)
         self._held_clutch: list[float] = []
         self._clutch = FailSafe(self._plan.fail_safe)
@@ -90,9 +90,11 @@ class RealtimeOwner(TickOwner):
                 self._silent_since[topic] = self.step
                 self._held[topic] = reply
         clutch = self._plan.clutch
-        self._integrate({**self._held, clutch: self._clutch_torques(replies[clutch])})
+        reply = replies[clutch]
+        assert reply is None or isinstance(reply, Sequence)
+        self._integrate({**self._held, clutch: self._clutch_torques(reply)})
 
-    def _clutch_torques(self, reply: list[list[float]] | None) -> list[list[float]]:
+    def _clutch_torques(self, reply: Rows | None) -> Rows:
         """Return the rows of torques in N m of this period: the reply, held values, or a ramp."""
         if reply is not None and not self.safe:
             self._held_clutch = [row[-1] for row in reply]

@@ -3,7 +3,7 @@
 """The owner of time: when the driveline steps, and on which replies. Independent of ROS."""
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -13,6 +13,10 @@ from ddct_plant.fail_safe.request_watch import CLUTCH_TIMEOUT_S, FailSafeSetting
 from ddct_plant.models.driveline import Driveline
 from ddct_plant.models.stick_slip_driveline import StickSlipDriveline
 
+Rows = Sequence[list[float]]
+"""Rows of 11 torques in N m within a period: transmitted, or kinetic and static capacity."""
+Reply = float | Rows | None
+"""Values of a reply: a torque in N m, those of the clutch, or None for an acknowledgement."""
 RESEND_AFTER_S = 0.1
 """Time in s after which an unanswered tick is published again."""
 
@@ -67,7 +71,7 @@ class TickOwner:
         self.late = 0
         """Number of replies to a tick that was already complete."""
         self._awaited: tuple[str, ...] = ()
-        self._replies: dict[str, Any] = {}
+        self._replies: dict[str, Reply] = {}
         """Replies to the present tick that have arrived, by topic."""
         self._driveline = driveline
         self._plan = plan
@@ -82,7 +86,7 @@ class TickOwner:
         """Publish t_0; it is re-sent until every node has answered, so any start order works."""
         self._open(0)
 
-    def offer(self, topic: str, stamp_ns: int, reply: Any) -> None:
+    def offer(self, topic: str, stamp_ns: int, reply: Reply) -> None:
         """Add one reply; the reply that completes the tick makes the driveline step."""
         due = stamp_of_step(self.step)
         if stamp_ns != due or topic not in self._awaited or topic in self._replies:
@@ -131,11 +135,11 @@ class TickOwner:
         self._opened_at = self._sent_at = self._clock()
         self._publish(step)
 
-    def _integrate(self, replies: Mapping[str, Any]) -> None:
+    def _integrate(self, replies: Mapping[str, Reply]) -> None:
         torques: list[Any] = []
         for topic in self._plan.torques:
             reply = replies[topic]
-            torques += reply if topic == self._plan.clutch else (reply,)
+            torques += reply if isinstance(reply, Sequence) else (reply,)
         self._driveline.step(*torques)
         if self._over():
             self.last_step = self.step + 1
