@@ -36,16 +36,18 @@ class ReferenceNode(FollowerNode):
         self._reference = make_reference(self.settings, preview_steps)
         self._output = Output(self, SLIP_REFERENCE)
         self.publish_run_info(reference_info(preview_steps))
-        self._seen = measurement_topics(sensed=self.settings.sensed)
-        shafts = (self._seen.joint_states,) if self._reference.follows_shaft else ()
-        self.follow(self._seen.slip, *shafts)
+        self._measured_topics = measurement_topics(sensed=self.settings.sensed)
+        shafts = (self._measured_topics.joint_states,) if self._reference.follows_shaft else ()
+        self.follow(self._measured_topics.slip, *shafts)
 
     def answer(self, step: int, stamp_ns: int, inputs: dict[str, Any]) -> Reply:
         """Return the reference at t_k and ahead."""
         shaft_speed = math.nan
         if self._reference.follows_shaft:
-            shaft_speed = inputs[self._seen.joint_states.name].primary_shaft
-        speeds, rates = self._reference.update(step, inputs[self._seen.slip.name], shaft_speed)
+            shaft_speed = inputs[self._measured_topics.joint_states.name].primary_shaft
+        speeds, rates = self._reference.update(
+            step, inputs[self._measured_topics.slip.name], shaft_speed
+        )
         return (self._output.fill(stamp_ns, speeds, rates),)
 
 

@@ -18,17 +18,24 @@ Values = Mapping[str, np.ndarray]
 """Samples by quantity name: (N+1,) each, SI units, every 10 ms."""
 
 RATIO_TOLERANCE = 0.01
+"""Largest relative error of a given total ratio."""
 TWIST_RAD = 0.5
 """Largest twist of the driveshaft with its backlash, rad: tolerance of the turned angles."""
 _LEAST_TURNED_RAD = 5.0
+"""Least angle that the wheels must have turned for a check of ratio or radius, rad."""
 RADII_M = (0.15, 0.7)
 """Lowest and highest rolling radius of the wheels of a car or truck, m."""
 ENGINE_INERTIAS = (0.03, 1.5)
 """Lowest and highest inertia J_m of a car's engine with its flywheel, kg m^2."""
 _PER_OTHER_UNIT = {'rpm': 30.0 / np.pi, 'deg/s': 180.0 / np.pi}
+"""Factors from rad/s to other units of speeds."""
 _SAME_FACTOR = 0.02
+"""Largest relative difference of two factors that count as the same."""
 _LOCKED_S, _LOCKED_SPREAD = 0.3, 0.05
+"""Least time in s with proportional speeds, and least change of the speed in it over the largest
+speed, that show a locked clutch and two units."""
 _WINDOW_S = 0.1
+"""Length in s of the windows over which rates and torques are averaged."""
 _SURE, _SURE_OF_SLOPE = 0.9, 10.0
 """Least coefficient of determination, and least slope over its standard deviation, to decide."""
 
@@ -100,13 +107,13 @@ def _require_same_unit(values: Values) -> None:
     engine, shaft = values['engine_speed'], values['shaft_speed']
     for unit, size in _PER_OTHER_UNIT.items():
         for factor in (size, 1.0 / size):
-            there = (shaft != 0.0) & (np.abs(engine - factor * shaft) < 0.01 * np.abs(engine))
-            if np.sum(there) * PERIOD_S > _LOCKED_S and np.ptp(shaft[there]) > (
+            locked = (shaft != 0.0) & (np.abs(engine - factor * shaft) < 0.01 * np.abs(engine))
+            if np.sum(locked) * PERIOD_S > _LOCKED_S and np.ptp(shaft[locked]) > (
                 _LOCKED_SPREAD * np.max(np.abs(shaft))
             ):
                 raise DdctError(
                     f'engine_speed is {factor:.4g} times shaft_speed for '
-                    f'{np.sum(there) * PERIOD_S:.2g} s, the factor of {unit} to rad/s: mend the '
+                    f'{np.sum(locked) * PERIOD_S:.2g} s, the factor of {unit} to rad/s: mend the '
                     'unit of one of them'
                 )
 
@@ -153,11 +160,12 @@ def _require_friction(values: Values) -> None:
         )
 
 
-def _require_in(found: float, bounds: tuple[float, float], text: str, of: str) -> None:
+def _require_in(found: float, bounds: tuple[float, float], text: str, signals: str) -> None:
+    """Raise DdctError, which names the signals, unless a quantity of the car is within bounds."""
     if not bounds[0] <= found <= bounds[1]:
         raise DdctError(
             f'{text.format(found)}, a car has {bounds[0]:g} to {bounds[1]:g}: mend the units or '
-            f'signs of {of}'
+            f'signs of {signals}'
         )
 
 
@@ -183,10 +191,10 @@ def _slopes(rates: np.ndarray, causes: np.ndarray) -> tuple[np.ndarray, np.ndarr
     if len(rates) < 2 * table.shape[1] or np.linalg.matrix_rank(table) < table.shape[1]:
         return unsure
     slopes = np.linalg.lstsq(table, rates, rcond=None)[0]
-    left = np.sum((rates - table @ slopes) ** 2)
+    unexplained = np.sum((rates - table @ slopes) ** 2)
     whole = np.sum((rates - rates.mean()) ** 2)
-    if not whole or left > (1.0 - _SURE) * whole:
+    if not whole or unexplained > (1.0 - _SURE) * whole:
         return unsure
-    variance = left / (len(rates) - table.shape[1])
+    variance = unexplained / (len(rates) - table.shape[1])
     std = np.sqrt(variance * np.diag(np.linalg.inv(table.T @ table)))[:width]
     return slopes[:width], np.abs(slopes[:width]) > _SURE_OF_SLOPE * std

@@ -33,6 +33,7 @@ GRAPH_NODES: Sequence[NodeSpec] = (
 """Nodes in start order; `driveline` owns time and ends the run."""
 
 NODE_NAMES = tuple(node.name for node in GRAPH_NODES)
+"""Names of the nodes, in start order."""
 
 ANSWER_TIMEOUT_S = 20.0
 """Wall time within which a node of a supervised graph must answer, s."""

@@ -16,6 +16,7 @@ import numpy as np
 ROUNDING = 2.0**-50
 """Coefficient that counts as zero, over the largest one."""
 _STEPS = 200
+"""Most steps of Newton's rule; bisection alone needs about 60."""
 
 
 @lru_cache
@@ -85,7 +86,7 @@ def _root(powers: np.ndarray, low: float, high: float) -> float:
         else:
             high = at
         following = at - value / slope if slope else low
-        # First, as a step from an end of the bracket to itself is the end of the search.
+        # Before the check of the bracket: at a root at its end the step is zero.
         if abs(following - at) <= close:
             break
         if not low < following < high:

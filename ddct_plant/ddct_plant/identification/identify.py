@@ -59,14 +59,8 @@ def _run(argv: list[str]) -> int:
         if options.as_printed:
             raise DdctError('--as-printed is about the thesis, --from about a log: give one')
         return identify_log(options)
-    if (
-        options.columns
-        or options.check
-        or options.fix
-        or options.out
-        or options.overrides
-        or options.force
-    ):
+    of_log = ('columns', 'check', 'fix', 'overrides', 'force', 'out')
+    if any(getattr(options, name) for name in of_log):
         raise DdctError(
             '--columns, --check, --fix, --set, --force and --out need a log: give --from LOG'
         )

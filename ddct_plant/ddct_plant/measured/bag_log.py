@@ -28,6 +28,7 @@ _MEASURED = (
     *('engine_speed', 'shaft_speed', 'wheel_speed'),
     *('engine_torque', 'clutch_torque', 'vehicle_accel'),
 )
+"""Quantities that are read: those that a car can measure, without C_load."""
 _Rows = Mapping[int, Any]
 """Values of a signal by stamp in ns."""
 
@@ -79,7 +80,9 @@ def _within_periods(rows: _Rows, last: int) -> dict[int, float]:
 def _signal_rows(bag: Path) -> dict[str, dict[int, Any]]:
     """Return the values of the messages, by signal and by stamp in ns."""
     topics = {topic.resolved_name: topic for topic in _TOPICS}
-    rows: dict[str, dict[int, Any]] = {s.name: {} for topic in _TOPICS for s in topic.signals}
+    rows: dict[str, dict[int, Any]] = {
+        signal.name: {} for topic in _TOPICS for signal in topic.signals
+    }
     with bag.open('rb') as file:
         reader = make_reader(file, decoder_factories=[DecoderFactory()])
         for _, channel, message, decoded in reader.iter_decoded_messages(list(topics)):

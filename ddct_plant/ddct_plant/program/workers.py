@@ -99,10 +99,11 @@ def in_processes(
         return
     with closing(WorkerPool(workers, work)) as pool:
         chunk = chunk or max(1, min(_LARGEST_CHUNK, count // (_CHUNKS_EACH * workers)))
-        yield _taken(pool.executor().map(_at, range(count), chunksize=chunk))
+        yield _or_reason(pool.executor().map(_result, range(count), chunksize=chunk))
 
 
-def _taken(results: Iterator[Result]) -> Iterator[Result]:
+def _or_reason(results: Iterator[Result]) -> Iterator[Result]:
+    """Yield the results; raise DdctError with the reason when a worker was killed."""
     try:
         yield from results
     except BrokenProcessPool as error:
@@ -139,6 +140,7 @@ def one_numeric_thread() -> None:
                 getattr(library, function)(1)
 
 
-def _at(index: int) -> Any:
+def _result(index: int) -> Any:
+    """Return the result of a worker's function; the function is there since the fork."""
     assert _work is not None
     return _work(index)

@@ -21,6 +21,7 @@ from ddct_plant.base.errors import DdctError
 from ddct_plant.files.input_file import read_file
 
 MAGIC = b'\x89MCAP0\r\n'
+"""First and last bytes of an MCAP file."""
 MOST_BYTES = 1_000_000_000
 """Largest size of a bag's file in bytes; an hour's run has a quarter of that."""
 MOST_CHUNK_BYTES = 64_000_000
@@ -39,6 +40,8 @@ _READ_ERRORS = (
 """Exceptions of the MCAP library for damaged bytes; its checksum errors are ValueErrors."""
 
 _FOOTER = struct.Struct('<BQQQI8s')
+"""End of an MCAP file: opcode, length, starts of summary and its offsets, checksum, magic."""
+_FOOTER_OPCODE = 2
 
 
 @dataclass
@@ -158,5 +161,5 @@ def _verify_summary(data: bytes) -> None:
     """Raise ValueError unless the footer's checksum of the summary is correct or absent."""
     opcode, _, start, _, checksum, _ = _FOOTER.unpack(data[-_FOOTER.size :])
     covered = data[start : -len(MAGIC) - 4]
-    if opcode != 2 or (checksum and zlib.crc32(covered) != checksum):
+    if opcode != _FOOTER_OPCODE or (checksum and zlib.crc32(covered) != checksum):
         raise ValueError('the checksum of the summary is wrong')

@@ -50,7 +50,9 @@ def sampling_of(values: Mapping[str, float], *, load_known: bool) -> Sampling:
     )
 
 
-def left_of(values: Mapping[str, float], stretch: Stretch) -> tuple[np.ndarray, np.ndarray]:
+def residuals_by_name(
+    values: Mapping[str, float], stretch: Stretch
+) -> tuple[np.ndarray, np.ndarray]:
     """Return the residuals and nuisances of `residuals_of` for parameters and delays by name."""
     return residuals_of(values, sampling_of(values, load_known=stretch.load_known), stretch)
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy
 
-from ddct_plant.identification.from_log.delays import left_of, sampling_of
+from ddct_plant.identification.from_log.delays import residuals_by_name, sampling_of
 from ddct_plant.identification.from_log.model import NUISANCE, OUTPUTS, responses
 from ddct_plant.identification.from_log.noise import NoiseModel
 from ddct_plant.identification.from_log.stretch import Stretch
@@ -48,14 +48,19 @@ def dependences(
     `noisier` are the stretches with twice its variance, and their additional sum of squares is
     allowed for, twice, as the added noise is half of that in the regressors.
     """
-    taken = np.linalg.qr(jacobian)[0]
+    fitted_basis = np.linalg.qr(jacobian)[0]
     residual = _residual(values, noise, stretches)
     found = []
     for output in range(OUTPUTS):
-        rank, size = _explained(values, noise, stretches, output, residual, taken)
+        rank, size = _explained(values, noise, stretches, output, residual, fitted_basis)
         added = [
             _explained(
-                values, noise, each, output, _residual(values, noise, each) - residual, taken
+                values,
+                noise,
+                each,
+                output,
+                _residual(values, noise, each) - residual,
+                fitted_basis,
             )[1]
             for each in noisier
         ]
@@ -75,7 +80,10 @@ def _residual(
 ) -> np.ndarray:
     """Return the whitened residuals of all stretches, concatenated."""
     return np.concatenate(
-        [_projected(values, noise, e, left_of(values, e)[0][:, :, None])[:, 0] for e in stretches]
+        [
+            _projected(values, noise, each, residuals_by_name(values, each)[0][:, :, None])[:, 0]
+            for each in stretches
+        ]
     )
 
 
@@ -85,16 +93,19 @@ def _explained(
     stretches: Sequence[Stretch],
     output: int,
     residual: np.ndarray,
-    taken: np.ndarray,
+    fitted_basis: np.ndarray,
 ) -> tuple[int, float]:
     """Return the rank of the shifted torques, and the sum of squares that they explain."""
     white = np.vstack(
-        [_projected(values, noise, e, _shifted_torques(values, e, output)) for e in stretches]
+        [
+            _projected(values, noise, each, _shifted_torques(values, each, output))
+            for each in stretches
+        ]
     )
-    white = white - taken @ (taken.T @ white)
+    white = white - fitted_basis @ (fitted_basis.T @ white)
     directions, sizes, _ = np.linalg.svd(white, full_matrices=False)
     kept = directions[:, sizes > max(_RANK * sizes[0], _LEAST)]
-    along = kept.T @ (residual - taken @ (taken.T @ residual))
+    along = kept.T @ (residual - fitted_basis @ (fitted_basis.T @ residual))
     return kept.shape[1], float(along @ along)
 
 

@@ -12,7 +12,7 @@ from ddct_plant.identification.from_log.delays import (
     BEND_OF,
     DELAYED,
     REFERENCE,
-    left_of,
+    residuals_by_name,
     without_ends,
 )
 from ddct_plant.identification.from_log.dependence import Dependence, dependences
@@ -141,7 +141,7 @@ def _result(
     """Return the fit with its deviations in the units of the parameters."""
     values = problem.values(x)
     stretches = without_ends(stretches, values)
-    loads = [left_of(values, each)[1][-1] for each in stretches if not each.load_known]
+    loads = [residuals_by_name(values, each)[1][-1] for each in stretches if not each.load_known]
     lengths = [len(each.time_s) for each in stretches if not each.load_known]
     return LogFit(
         values={name: values[name] for name in PARAMETERS},

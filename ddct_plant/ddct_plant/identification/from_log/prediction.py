@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ddct_plant.identification.from_log.delays import left_of, without_ends
+from ddct_plant.identification.from_log.delays import residuals_by_name, without_ends
 from ddct_plant.identification.from_log.noise import whiteness
 from ddct_plant.identification.from_log.result import SLIP, LogFit
 from ddct_plant.identification.from_log.stretch import Stretch, slip_of
@@ -56,7 +56,7 @@ def predict(fit: LogFit, stretches: Sequence[Stretch]) -> list[Prediction]:
     """
     values = fit.values | fit.delays | fit.bends
     stretches = without_ends(stretches, values)
-    left = [left_of(values, each)[0] for each in stretches]
+    left = [residuals_by_name(values, each)[0] for each in stretches]
     p_values = whiteness([fit.noise.white(each) for each in left])
     measured, residual = (
         np.column_stack([speeds, slip_of(speeds)])

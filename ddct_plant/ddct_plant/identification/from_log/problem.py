@@ -14,7 +14,7 @@ from ddct_plant.identification.from_log.delays import (
     BENDS,
     DELAY_SCALE_S,
     DELAYED,
-    left_of,
+    residuals_by_name,
     sampling_of,
     without_ends,
 )
@@ -108,7 +108,7 @@ class LogProblem:
         for _ in range(_MOST_ROUNDS):
             self._at = self.values(x)
             stretches = self.used(self._whole)
-            left = [left_of(self.values(x), each)[0] for each in stretches]
+            left = [residuals_by_name(self.values(x), each)[0] for each in stretches]
             self.noise = fit_noise(left, len(x) + NUISANCE * len(left))
             before = x
             x, jacobian = self._fitted(x, stretches)

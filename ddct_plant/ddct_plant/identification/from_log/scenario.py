@@ -11,7 +11,7 @@ import numpy as np
 
 from ddct_plant.base.errors import LONGEST_NAME, DdctError
 from ddct_plant.base.timebase import PERIOD_S, time_of_step
-from ddct_plant.identification.from_log.delays import left_of, without_ends
+from ddct_plant.identification.from_log.delays import residuals_by_name, without_ends
 from ddct_plant.identification.from_log.result import NO_DAMPING, LogFit
 from ddct_plant.identification.from_log.stretch import SPEED_COLUMNS, slip_of
 from ddct_plant.identification.from_log.stretches import KnownLoad, stretches_of
@@ -124,7 +124,7 @@ def _initial(base: Scenario, fit: LogFit, log: MeasuredLog, start_s: float) -> I
     """Return the fitted speeds of both plates at the start, equal if the slip is within noise."""
     values = fit.values | fit.delays | fit.bends
     (first, *_) = without_ends(stretches_of(log, load_of(base)), values)
-    left = left_of(values, first)[0]
+    left = residuals_by_name(values, first)[0]
     speeds = first.speeds - left
     at = [
         float(np.interp(start_s + fit.delays[name], first.time_s, speeds[:, SPEED_COLUMNS[name]]))

@@ -24,6 +24,8 @@ _NOISY = 1e-3
 """White noise of a torque over its standard deviation, below which a fit is not affected."""
 _FOR_UNEVEN = 4
 """Grid steps in the median step of the speeds where their steps are not equal."""
+_MEDIAN = 0.6745
+"""Median of the magnitude of a standard normal number."""
 KnownLoad = Callable[[np.ndarray], np.ndarray]
 """Function from wheel speeds in rad/s to the known part of C_load in N m, (n,) each."""
 
@@ -44,11 +46,11 @@ def stretches_of(log: MeasuredLog, known_load: KnownLoad) -> list[Stretch]:
         )
     time_s, speeds = log.time_s[rows], speeds[rows]
     torques = {name: log.samples(name) for name in (*TORQUES, LOAD) if name in log.signals}
-    part = _parts(time_s, [time_s, *(times for times, _ in torques.values())])
+    number_of = _stretch_numbers(time_s, [time_s, *(times for times, _ in torques.values())])
     stretches = [
-        _stretch(log, time_s[part == number], speeds[part == number], known_load)
-        for number in np.unique(part[part >= 0])
-        if np.sum(part == number) >= FEWEST_SAMPLES
+        _stretch(log, time_s[number_of == number], speeds[number_of == number], known_load)
+        for number in np.unique(number_of[number_of >= 0])
+        if np.sum(number_of == number) >= FEWEST_SAMPLES
     ]
     if not stretches:
         raise DdctError(
@@ -83,10 +85,10 @@ def white_noise(values: np.ndarray) -> float:
     """
     if len(values) < FEWEST_SAMPLES:
         return 0.0
-    return float(np.median(np.abs(np.diff(values, 3))) / 0.6745 / np.sqrt(20.0))
+    return float(np.median(np.abs(np.diff(values, 3))) / _MEDIAN / np.sqrt(20.0))
 
 
-def _parts(time_s: np.ndarray, sampled: list[np.ndarray]) -> np.ndarray:
+def _stretch_numbers(time_s: np.ndarray, sampled: list[np.ndarray]) -> np.ndarray:
     """Return the number of the stretch of each time, -1 within a gap of one of the signals."""
     part = np.zeros(len(time_s), dtype=int)
     for times in sampled:
@@ -104,6 +106,7 @@ def _stretch(
     speeds: np.ndarray,
     known_load: KnownLoad,
 ) -> Stretch:
+    """Return a stretch of a log, with the torques on a grid as fine as the finest signal."""
     usual = float(np.median(np.diff(time_s)))
     even = bool(np.all(np.abs(np.diff(time_s) - usual) <= _UNEVEN * usual))
     if even:
