@@ -16,8 +16,8 @@ from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import Option
 from ddct_plant.base.timebase import stamp_of_step
 from ddct_plant.graph.follower import FollowerNode, Reply
-from ddct_plant.graph.node import Output
 from ddct_plant.graph.node_reports import controller_info, timing_pairs
+from ddct_plant.graph.output import Output
 from ddct_plant.graph.settings import declare
 from ddct_plant.graph.spin import run_node
 from ddct_plant.signals.topics import (

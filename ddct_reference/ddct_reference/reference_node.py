@@ -7,8 +7,8 @@ from typing import Any, ClassVar
 
 from ddct_plant.base.options import Option
 from ddct_plant.graph.follower import FollowerNode, Reply
-from ddct_plant.graph.node import Output
 from ddct_plant.graph.node_reports import reference_info
+from ddct_plant.graph.output import Output
 from ddct_plant.graph.settings import declare
 from ddct_plant.graph.spin import run_node
 from ddct_plant.signals.topics import SLIP_REFERENCE, measurement_topics

@@ -102,7 +102,7 @@ def test_the_recorder_waits_for_it_at_every_tick(add: Any, tmp_path: Path) -> No
     from rclpy.node import Node
     from support.in_process_graph import InProcessGraph
 
-    from ddct_plant.graph.node import Output
+    from ddct_plant.graph.output import Output
 
     topic = add(entry())
 

@@ -11,13 +11,8 @@ from typing import Any
 from ddct_bringup.bag.decoding import decoded_messages
 from ddct_bringup.bag.earlier_bags import Messages, Values, earlier_values
 from ddct_bringup.bag.file.records import BagRecords, read_records
-from ddct_bringup.bag.run_facts import (
-    MEASURED,
-    RealtimeFacts,
-    RunFacts,
-    RunInfoOfNodes,
-    add_run_info,
-)
+from ddct_bringup.bag.realtime_facts import RealtimeFacts
+from ddct_bringup.bag.run_facts import MEASURED, RunFacts, RunInfoOfNodes, add_run_info
 from ddct_bringup.bag.ticks import check_ticks
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_plant.base.errors import DdctError

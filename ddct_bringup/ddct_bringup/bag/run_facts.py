@@ -1,17 +1,15 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Facts of a recorded run as text, the nodes' `run_info`, and the counts of a real-time run."""
+"""Facts of a recorded run as text, and the nodes' `run_info`."""
 
 import json
 from collections.abc import Container, Iterable, Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, fields
 from typing import Any
 
 from ddct_plant.base.errors import DdctError, ParameterError, require_name, require_number
 from ddct_plant.base.timebase import steps_in
 from ddct_plant.files.input_file import parse_json
-from ddct_plant.graph.node_names import StatusName
-from ddct_plant.graph.node_reports import SAFE_STATE, TICKS, TickCounts, safe_state_since
 from ddct_plant.signals.signal import RunKind
 from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import (
@@ -139,47 +137,6 @@ def _parsed(name: str, text: str) -> Any:
             f'{name} is {text!r} in the custom data: not a recording of this project'
         ) from error
     return value
-
-
-@dataclass
-class RealtimeCounts:
-    """Counts of a real-time run by the driveline, and the nodes that entered their safe state."""
-
-    missed_steps: int = 0
-    """Number of steps that held the last torque because a reply was missing."""
-    resends: int = 0
-    """Number of ticks that were sent again."""
-    late_messages: int = 0
-    """Number of replies to a tick that was over."""
-    worst_lateness_us: float | None = None
-    """Largest lateness of a step of the driveline, us; None in lock-step."""
-    safe_states: dict[str, int] = field(default_factory=dict)
-    """Stamp in ns at which a node entered its safe state, by full node name."""
-
-
-@dataclass
-class RealtimeFacts(RealtimeCounts):
-    """Last counts and safe states published on `/diagnostics` of a real-time run or of its bag."""
-
-    steps: int = 0
-    """Step of the driveline's last count."""
-
-    def receive(self, name: StatusName, pairs: Mapping[str, str]) -> bool:
-        """Store one status of `/diagnostics`; return whether it is one of this project's."""
-        try:
-            if name.node and name.what == SAFE_STATE:
-                self.safe_states[name.node] = safe_state_since(pairs)
-                return True
-            if name != (DRIVELINE_NODE, TICKS):
-                return False
-            counts = TickCounts.of(pairs)
-        except (KeyError, ValueError):
-            return False
-        self.steps, self.resends = counts.steps, counts.resends
-        self.missed_steps, self.late_messages = counts.missed_steps, counts.late_messages
-        if counts.worst_lateness_us is not None:
-            self.worst_lateness_us = counts.worst_lateness_us
-        return True
 
 
 def add_run_info(received: RunInfoOfNodes, node: str, pairs: Mapping[str, str]) -> None:

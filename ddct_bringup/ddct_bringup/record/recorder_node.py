@@ -11,7 +11,7 @@ from rclpy.serialization import deserialize_message, serialize_message
 
 from ddct_bringup.bag.file.cdr import CdrNormaliser, stamp_of_cdr
 from ddct_bringup.bag.file.message_definitions import load_definition
-from ddct_bringup.bag.run_facts import RealtimeFacts
+from ddct_bringup.bag.realtime_facts import RealtimeFacts
 from ddct_bringup.processes.graph_nodes import NODE_NAMES
 from ddct_bringup.record.recorded_bag import RecordedBag
 from ddct_bringup.record.run_info_collector import RunInfoCollector
@@ -19,9 +19,10 @@ from ddct_bringup.record.tick_buffer import TickBuffer, TwoMessagesError
 from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_plant.base.errors import DdctError, require_name
 from ddct_plant.base.options import Option
-from ddct_plant.graph.node import GraphNode, create_publisher
+from ddct_plant.graph.node import GraphNode
 from ddct_plant.graph.node_names import StatusName, name_in_graph
 from ddct_plant.graph.node_reports import update_times
+from ddct_plant.graph.output import create_publisher
 from ddct_plant.graph.qos import RECORDER_QOS
 from ddct_plant.graph.settings import declare
 from ddct_plant.graph.sole_publishers import publishers_of

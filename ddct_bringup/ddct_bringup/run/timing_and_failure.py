@@ -7,7 +7,8 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
-from ddct_bringup.bag.run_facts import RealtimeCounts, RunFacts
+from ddct_bringup.bag.realtime_facts import RealtimeCounts
+from ddct_bringup.bag.run_facts import RunFacts
 from ddct_plant.base.errors import DdctError, printable, require_number
 from ddct_plant.files.input_file import parse_json, read_text_file
 from ddct_plant.files.output_file import write_json, write_text

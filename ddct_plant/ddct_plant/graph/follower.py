@@ -9,7 +9,8 @@ from typing import Any
 
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import step_of_stamp
-from ddct_plant.graph.node import GraphNode, Output
+from ddct_plant.graph.node import GraphNode
+from ddct_plant.graph.output import Output
 from ddct_plant.graph.sole_publishers import publishers_of
 from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import CLOCK, tick_names

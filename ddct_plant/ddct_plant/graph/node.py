@@ -7,17 +7,15 @@ from typing import Any, ClassVar
 
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
-from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile
 from rclpy.task import Future
 from rclpy.timer import Timer
 
 from ddct_plant.base.errors import DdctError
-from ddct_plant.base.timebase import STEPS_PER_S, stamp_of_step
-from ddct_plant.graph.node_names import StatusName
-from ddct_plant.graph.node_reports import SAFE_STATE, run_info_pairs, safe_state_pairs
+from ddct_plant.base.timebase import stamp_of_step
+from ddct_plant.graph.node_reports import run_info_pairs
+from ddct_plant.graph.output import Output
 from ddct_plant.graph.qos import (
-    LATCHED_QOS,
     LOOP_QOS,
     QOS_OVERRIDES,
     RECORDER_LATCHED_QOS,
@@ -29,7 +27,6 @@ from ddct_plant.graph.settings import declare_settings
 from ddct_plant.signals.message_kind import stamp_ns
 from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import (
-    DIAGNOSTICS,
     RUN_INFO,
 )
 from ddct_plant.ticks.stamp_limit import StampLimit
@@ -39,57 +36,6 @@ STEADY = Clock(clock_type=ClockType.STEADY_TIME)
 
 _FOREIGN = ('use_sim_time', 'start_type_description_service', QOS_OVERRIDES)
 """Prefixes of the parameters that rclpy declares itself."""
-
-
-def create_publisher(node: Node, topic: Topic) -> Publisher:
-    """Return a publisher of a topic; raise ParameterError for an unusable override of its QoS."""
-    qos = LATCHED_QOS if topic.latched else LOOP_QOS
-    with named_override_errors(topic.name):
-        return node.create_publisher(
-            topic.message_class,
-            topic.name,
-            own_copy(qos),
-            qos_overriding_options=overriding_options(qos),
-        )
-
-
-class Output:
-    """Publisher of a topic, with one message that is filled anew for every tick."""
-
-    def __init__(self, node: Node, topic: Topic) -> None:
-        self._publisher = create_publisher(node, topic)
-        self._write = topic.writer()
-        self._message: Any = None
-
-    def fill(self, stamp: int, *values: Any, **options: Any) -> 'Output':
-        """Fill the message with a stamp in ns and the topic's values; return this output."""
-        self._message = self._write(stamp, *values, **options)
-        return self
-
-    def publish(self) -> None:
-        """Publish the message with the values of the last `fill`."""
-        self._publisher.publish(self._message)
-
-
-class SafeStateReport:
-    """Report of a safe state: logged once, published at once and then every second."""
-
-    def __init__(self, node: Node) -> None:
-        """Publish on `/diagnostics` for `node`; in real time only, so lock-step bags have none."""
-        self._node = node
-        self._output = Output(node, DIAGNOSTICS)
-        self._since: int | None = None
-
-    def publish(self, step: int, stamp: int, why: str) -> None:
-        """Publish the report if it is due at this tick; the first call begins the safe state."""
-        if self._since is None:
-            self._since = stamp
-            self._node.get_logger().error(f'safe state from stamp {stamp} ns on: {why}')
-        elif step % STEPS_PER_S:
-            return
-        pairs = safe_state_pairs(self._since, why)
-        name = StatusName(self._node.get_fully_qualified_name(), SAFE_STATE)
-        self._output.fill(stamp, pairs, name=str(name), error=why).publish()
 
 
 class GraphNode(Node):

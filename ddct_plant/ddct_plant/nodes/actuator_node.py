@@ -8,8 +8,8 @@ from ddct_plant.base.errors import DdctError
 from ddct_plant.fail_safe.guarded import GuardedActuator
 from ddct_plant.fail_safe.request_watch import REQUEST_TIMEOUT_S
 from ddct_plant.graph.follower import FollowerNode, Reply
-from ddct_plant.graph.node import Output, SafeStateReport
 from ddct_plant.graph.node_reports import actuator_info
+from ddct_plant.graph.output import Output, SafeStateReport
 from ddct_plant.graph.settings import declare_fail_safe
 from ddct_plant.graph.spin import run_node
 from ddct_plant.scenario.plant import initial_state, make_actuator

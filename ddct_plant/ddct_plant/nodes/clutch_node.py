@@ -5,7 +5,7 @@
 from typing import Any
 
 from ddct_plant.graph.follower import FollowerNode, Reply
-from ddct_plant.graph.node import Output
+from ddct_plant.graph.output import Output
 from ddct_plant.graph.spin import run_node
 from ddct_plant.scenario.plant import linear_clutch, stick_slip_clutch
 from ddct_plant.signals.topics import (

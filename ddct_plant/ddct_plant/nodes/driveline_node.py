@@ -9,9 +9,10 @@ from typing import Any, ClassVar
 from ddct_plant.base.options import Option
 from ddct_plant.base.timebase import LONGEST_S, PERIOD_S, STEPS_PER_S, stamp_of_step, steps_in
 from ddct_plant.fail_safe.request_watch import CLUTCH_TIMEOUT_S
-from ddct_plant.graph.node import GraphNode, Output, SafeStateReport
+from ddct_plant.graph.node import GraphNode
 from ddct_plant.graph.node_names import StatusName
 from ddct_plant.graph.node_reports import TICKS, TickCounts, driveline_info
+from ddct_plant.graph.output import Output, SafeStateReport
 from ddct_plant.graph.settings import declare, declare_fail_safe
 from ddct_plant.graph.sole_publishers import SolePublishers
 from ddct_plant.graph.spin import run_node

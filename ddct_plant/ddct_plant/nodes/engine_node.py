@@ -10,8 +10,8 @@ from ddct_plant.base.timebase import step_of_stamp
 from ddct_plant.fail_safe.guarded import GuardedEngine
 from ddct_plant.fail_safe.request_watch import REQUEST_TIMEOUT_S
 from ddct_plant.graph.follower import FollowerNode, Reply
-from ddct_plant.graph.node import Output, SafeStateReport
 from ddct_plant.graph.node_reports import engine_info
+from ddct_plant.graph.output import Output, SafeStateReport
 from ddct_plant.graph.settings import declare, declare_timeout
 from ddct_plant.graph.spin import run_node
 from ddct_plant.scenario.plant import make_engine, torque_estimate

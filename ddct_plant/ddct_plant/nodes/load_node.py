@@ -6,7 +6,7 @@ from typing import Any
 
 from ddct_plant.base.timebase import time_of_step
 from ddct_plant.graph.follower import FollowerNode, Reply
-from ddct_plant.graph.node import Output
+from ddct_plant.graph.output import Output
 from ddct_plant.graph.spin import run_node
 from ddct_plant.scenario.plant import holding_torque, make_load
 from ddct_plant.signals.topics import HOLDING_TORQUE, LOAD_TORQUE, VEHICLE_SPEED
