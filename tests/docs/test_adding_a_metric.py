@@ -97,15 +97,16 @@ def test_campaigns_sweeps_report_and_pages_have_it(patched: Path) -> None:
         f"""
         import sys
         sys.path.insert(0, {str(ROOT / 'docs')!r})
-        from ddct_bringup.campaign.rows import RunBase, result_row, scored_headless
+        from ddct_bringup.campaign.rows import result_row, scored_headless
         from ddct_bringup.campaign_report.results import QUANTITIES
         from ddct_bringup.programs.sweep import METRICS
         from ddct_bringup.report.definitions import definitions
+        from ddct_bringup.run.run_base import RunBase
         from ddct_bringup.verdict.limits import packaged_limits
         from ddct_plant.scenario.file import ScenarioFile
         from generator.score_tables import score_tables
 
-        settings = RunBase(ScenarioFile.read('thesis'), {{}}, {{}}, ()).at({{}})
+        settings = RunBase(ScenarioFile.read('thesis'), {{}}, {{}}, ()).at()
         row = result_row(scored_headless(settings, 'pi', packaged_limits()), {{}})
         assert row['{KEY}'] == row['criterion.{CRITERION}'] > 1.0
         assert '{KEY}' in [each.key for each in QUANTITIES] and '{KEY}' in METRICS

@@ -17,12 +17,12 @@ import numpy as np
 from ddct_bringup.bag.reader import Recording, read_bag
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.bag.writer import bag_file
-from ddct_bringup.campaign.rows import RunBase
 from ddct_bringup.metrics.metric import Metrics
 from ddct_bringup.processes.warm_parent import WarmParent
 from ddct_bringup.run.execution import execute, parent_for
 from ddct_bringup.run.output_folder import run_folder
 from ddct_bringup.run.plan import RunPlan
+from ddct_bringup.run.run_base import RunBase
 from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_bringup.scores.csv_text import score_row, signal_columns
 from ddct_bringup.scores.document import run_entry, verdict_entry
@@ -252,7 +252,7 @@ def as_runs(runs: Run | Iterable[Run]) -> list[Run]:
 
 def _ready(labels: list[str], *options: Any, **given: Any) -> RunSettings:
     """Return the settings of one run, or of runs, with the controllers called `labels`."""
-    settings = base_from(labels, *options, **given).at({})
+    settings = base_from(labels, *options, **given).at()
     for line in settings.scenario.adjusted:
         warnings.warn(f'scenario {settings.scenario.name}: {line}', stacklevel=3)
     return settings

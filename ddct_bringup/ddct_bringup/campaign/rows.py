@@ -1,17 +1,14 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""One of many runs: its settings from the varied values, its scores without a bag, and its row."""
+"""One of many runs: its scores without a bag, and its row."""
 
-import argparse
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping
 from typing import Any
 
 from ddct_bringup.metrics.catalogue import CRITERIA, FURTHER, TABLE_5_1
 from ddct_bringup.run.description import facts_of
 from ddct_bringup.run.execution import in_memory
 from ddct_bringup.run.headless import run_headless
-from ddct_bringup.run.options import run_settings
 from ddct_bringup.run.plan import require_headless
 from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_bringup.scores.scored_run import ScoredRun
@@ -20,9 +17,6 @@ from ddct_bringup.verdict.limits import Limits
 from ddct_controllers.architecture import make_architecture
 from ddct_controllers.registry import Chosen, controller_label, make_controller
 from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError, ParameterError, printable
-from ddct_plant.base.options import options_of
-from ddct_plant.models.clutch import LINEAR
-from ddct_plant.scenario.file import ScenarioFile, parsed_override
 from ddct_plant.scenario.settings import RunSettings
 
 INDEX, CONTROLLER, PATH, SEED = 'index', 'controller', 'path', 'seed'
@@ -36,43 +30,6 @@ METRIC_COLUMNS = tuple(figure.key for figure in (*TABLE_5_1, *FURTHER))
 CRITERION = 'criterion.'
 """Prefix of the column of a criterion."""
 CRITERION_COLUMNS = tuple(f'{CRITERION}{each.key}' for each in CRITERIA)
-_SETTINGS = options_of(RunSettings)
-
-
-@dataclass(frozen=True)
-class RunBase:
-    """Common settings of runs, before keys are varied."""
-
-    file: ScenarioFile
-    """Scenario of the runs without changes."""
-    changes: Mapping[str, Any]
-    """Values by dotted scenario key, as `--set` gives them."""
-    settings: Mapping[str, Any]
-    """Values of `RunSettings` by name, such as `clutch`."""
-    labels: Sequence[str]
-    """Names of the controllers, since `changes` may contain options of theirs."""
-
-    def at(self, varied: Mapping[str, Any]) -> RunSettings:
-        """
-        Return the settings with values by key: those of `RunSettings`, or dotted scenario keys.
-
-        Dependent values change with them, as with `--set`. Raise DdctError for values that cannot
-        be used.
-        """
-        settings = {**self.settings, **{key: varied[key] for key in varied if key in _SETTINGS}}
-        ours = {key: value for key, value in self.changes.items() if key not in varied}
-        changes = ours | {key: varied[key] for key in varied if key not in _SETTINGS}
-        scenario = self.file.scenario(changes, settings.get('clutch', LINEAR))
-        return run_settings(scenario, self.labels, settings)
-
-
-def base_of(options: argparse.Namespace, labels: Sequence[str]) -> RunBase:
-    """Return the common settings of runs with these controllers from program options."""
-    changes = dict(map(parsed_override, options.overrides))
-    if options.duration is not None:
-        changes['duration_s'] = options.duration
-    settings = {name: getattr(options, name) for name in _SETTINGS}
-    return RunBase(ScenarioFile.read(options.scenario), changes, settings, labels)
 
 
 def require_suitable(controller: Chosen, settings: RunSettings) -> None:

@@ -13,7 +13,8 @@ import numpy as np
 from ddct_bringup.campaign.distributions import Distribution
 from ddct_bringup.campaign.draws import run_seeds, uniforms
 from ddct_bringup.campaign.keys import COMMON, SCENARIO
-from ddct_bringup.campaign.rows import SEED, RunBase, require_suitable
+from ddct_bringup.campaign.rows import SEED, require_suitable
+from ddct_bringup.run.run_base import RunBase
 from ddct_controllers.interface import Controller, ControllerSpec
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.input_file import located

@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from ddct_bringup.campaign.keys import CONTROLLERS, FILE_KEY, SCENARIO
-from ddct_bringup.campaign.rows import RunBase
 from ddct_bringup.campaign.run_set import RunSet
 from ddct_bringup.campaign.spec import MOST_RUNS, CampaignSpec
+from ddct_bringup.run.run_base import RunBase
 from ddct_controllers.from_file.controller_file import is_controller_file
 from ddct_controllers.registry import controller_spec
 from ddct_plant.base.errors import DdctError, ParameterError

@@ -11,9 +11,10 @@ from pathlib import Path
 from ddct_bringup.processes.live_process import DEFAULT_PORT, live_view
 from ddct_bringup.processes.warm_parent import WarmParent
 from ddct_bringup.run.execution import parent_for, print_logs_with_warnings, run_with_progress
-from ddct_bringup.run.options import add_run_options, print_choices, settings_of
+from ddct_bringup.run.options import add_run_options, print_choices
 from ddct_bringup.run.output_folder import StagedFolder, run_folder
 from ddct_bringup.run.plan import RunPlan
+from ddct_bringup.run.run_base import settings_of
 from ddct_bringup.scores.run_table import slow_notes
 from ddct_bringup.scores.scored_recording import ScoredRecording, run_and_score
 from ddct_bringup.scores.validity import realtime_summary

@@ -20,10 +20,10 @@ from ddct_bringup.run.options import (
     controllers_of,
     print_choices,
     print_computed_from,
-    settings_of,
 )
 from ddct_bringup.run.output_folder import StagedFolder, locked_folders, mark_folder
 from ddct_bringup.run.plan import RunPlan
+from ddct_bringup.run.run_base import settings_of
 from ddct_bringup.run.timing_and_failure import note_failure
 from ddct_bringup.scores.comparison_table import print_comparison
 from ddct_bringup.scores.document import scores_document

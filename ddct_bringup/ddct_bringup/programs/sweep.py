@@ -10,7 +10,6 @@ from pathlib import Path
 
 from rich.text import Text
 
-from ddct_bringup.campaign.rows import base_of
 from ddct_bringup.metrics.catalogue import METRICS, TABLE_5_1
 from ddct_bringup.run.options import (
     ALL,
@@ -19,6 +18,7 @@ from ddct_bringup.run.options import (
     controllers_of,
     print_choices,
 )
+from ddct_bringup.run.run_base import base_of
 from ddct_bringup.scores.run_table import table_console
 from ddct_bringup.sweep.axis import axis_of
 from ddct_bringup.sweep.sweep import (

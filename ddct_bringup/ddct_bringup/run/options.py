@@ -4,8 +4,8 @@
 
 import argparse
 import sys
-from collections.abc import Mapping, Sequence
-from typing import Any, TextIO
+from collections.abc import Sequence
+from typing import TextIO
 
 from ddct_controllers.interface import UNSTATED, Controller, ControllerSpec
 from ddct_controllers.registry import (
@@ -13,15 +13,13 @@ from ddct_controllers.registry import (
     controller_label,
     controller_names,
     controller_spec,
-    require_known_controllers,
 )
 from ddct_plant.base.errors import DdctError, ParameterError, printable
 from ddct_plant.base.options import OPTION_HEADERS, Option, option_rows, options_of
 from ddct_plant.models.clutch import CLUTCHES
 from ddct_plant.program.table import Table, print_table
 from ddct_plant.scenario.file import scenario_names
-from ddct_plant.scenario.options import add_option, add_scenario_options, scenario_of
-from ddct_plant.scenario.scenario import Scenario
+from ddct_plant.scenario.options import add_option, add_scenario_options
 from ddct_plant.scenario.settings import ARCHITECTURES, MODES, RunSettings
 
 ALL = 'all'
@@ -95,31 +93,6 @@ def controllers_of(text: str) -> list[str]:
         if labels.count(label) > 1:
             raise ParameterError(f'--controllers names {label} twice: name each once')
     return names
-
-
-def settings_of(options: argparse.Namespace, labels: Sequence[str]) -> RunSettings:
-    """
-    Return the validated settings of one run, or of runs, with the controllers called `labels`.
-
-    Raise ParameterError that names the invalid value.
-    """
-    overrides = list(options.overrides)
-    if options.duration is not None:
-        overrides.append(f'duration_s={options.duration!r}')
-    settings = {name: getattr(options, name) for name in options_of(RunSettings)}
-    return run_settings(scenario_of(options, overrides, options.clutch), labels, settings)
-
-
-def run_settings(
-    scenario: Scenario, labels: Sequence[str], settings: Mapping[str, Any]
-) -> RunSettings:
-    """
-    Return the validated settings of a run of controllers called `labels` in a scenario.
-
-    Raise ParameterError that names the invalid value.
-    """
-    require_known_controllers(scenario, labels)
-    return RunSettings(scenario, **settings)
 
 
 def print_choices() -> None:

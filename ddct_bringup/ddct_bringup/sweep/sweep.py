@@ -10,9 +10,10 @@ from math import prod
 from typing import Any
 
 from ddct_bringup.campaign.keys import SCENARIO
-from ddct_bringup.campaign.rows import RunBase, result_row
+from ddct_bringup.campaign.rows import result_row
 from ddct_bringup.campaign.run_set import RunSet
 from ddct_bringup.campaign.scored import scored_runs
+from ddct_bringup.run.run_base import RunBase
 from ddct_bringup.scores.csv_text import rows_csv
 from ddct_bringup.scores.document import run_entry
 from ddct_bringup.scores.run_table import CONTROLLER, STATE, RunColumn, dash_notes, metric

@@ -6,7 +6,8 @@ import pytest
 from refusals import refused
 
 from ddct_bringup import api
-from ddct_bringup.campaign.rows import RunBase, result_row, scored_headless
+from ddct_bringup.campaign.rows import result_row, scored_headless
+from ddct_bringup.run.run_base import RunBase
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_controllers.from_python import chosen_from
 from ddct_plant.base.errors import ParameterError

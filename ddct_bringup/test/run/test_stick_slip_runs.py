@@ -9,7 +9,8 @@ import pytest
 
 from ddct_bringup import api
 from ddct_bringup.run.headless import run_headless
-from ddct_bringup.run.options import add_run_options, settings_of
+from ddct_bringup.run.options import add_run_options
+from ddct_bringup.run.run_base import settings_of
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.models.load import RoadLoad
 from ddct_plant.models.static_torque import StaticTorque

@@ -9,8 +9,8 @@ import pytest
 from made_scores import made_scores, made_verdict
 from matplotlib.colors import to_hex
 
-from ddct_bringup.campaign.rows import RunBase
 from ddct_bringup.metrics.catalogue import TABLE_5_1
+from ddct_bringup.run.run_base import RunBase
 from ddct_bringup.sweep.axis import axis_of
 from ddct_bringup.sweep.state_map import STATE_COLOURS, edges_of
 from ddct_bringup.sweep.sweep import Sweep, SweptRun

@@ -41,9 +41,14 @@ def scenario_of(
 ) -> Scenario:
     """Return the scenario of --scenario with overrides; print `adjusted` on standard error."""
     scenario = load_scenario(options.scenario, overrides, clutch)
+    print_adjusted(scenario)
+    return scenario
+
+
+def print_adjusted(scenario: Scenario) -> None:
+    """Print the lines on adjusted values of a scenario on standard error."""
     for line in scenario.adjusted:
         print(f'scenario {printable(scenario.name)}: {printable(line)}', file=sys.stderr)
-    return scenario
 
 
 def add_option(parser: argparse.ArgumentParser, name: str, described: Option) -> None:

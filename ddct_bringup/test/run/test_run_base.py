@@ -1,0 +1,50 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Settings of runs from options: one constructor for a run, a comparison, a sweep, a campaign."""
+
+import argparse
+
+import pytest
+from refusals import refused
+
+from ddct_bringup.run.options import add_settings_options
+from ddct_bringup.run.run_base import base_of, settings_of
+from ddct_plant.base.errors import ParameterError
+
+
+def options(*arguments: str) -> argparse.Namespace:
+    parser = argparse.ArgumentParser()
+    add_settings_options(parser)
+    return parser.parse_args(arguments)
+
+
+def test_the_last_of_a_repeated_key_counts_also_after_its_group() -> None:
+    given = options(
+        *(
+            '--set',
+            'controllers.pi.proportional_gain=1.0',
+            '--set',
+            'controllers.pi={integral_gain: 5.0}',
+        ),
+        *('--set', 'controllers.pi.proportional_gain=3.0'),
+    )
+    of_sweep = base_of(given, ['pi']).at({'wear_gain': 0.9})
+    assert of_sweep.scenario.controllers == {
+        'pi': {'integral_gain': 5.0, 'proportional_gain': 3.0}
+    }
+    assert settings_of(given, ['pi']).scenario == of_sweep.scenario
+
+
+def test_the_duration_of_the_option_counts_before_that_of_set() -> None:
+    given = options('--set', 'duration_s=3.0', '--duration', '2.0')
+    assert settings_of(given, ['pi']).scenario.duration_s == 2.0
+
+
+def test_adjusted_values_are_printed_for_a_run(capsys: pytest.CaptureFixture[str]) -> None:
+    settings_of(options('--set', 'vehicle.mass_kg=1.5'), ['pi'])
+    assert 'scenario thesis: ' in capsys.readouterr().err
+
+
+def test_an_option_of_another_controller_is_refused() -> None:
+    with refused(ParameterError, 'controllers.mine'):
+        settings_of(options('--set', 'controllers.mine.gain=3.0'), ['ls8'])
