@@ -22,8 +22,8 @@ from typing import Any
 
 from ddct_bringup.batch import run_batch as batch
 from ddct_bringup.campaign import scored
+from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.columns import schema_of, shard_bytes
-from ddct_bringup.campaign.runs import Campaign
 from ddct_bringup.campaign.scored import Scorer
 from ddct_bringup.campaign.spec import read_spec
 from ddct_bringup.verdict.limits import packaged_limits

@@ -13,8 +13,8 @@ from generator.robustness_map import LETTERS, RECORD, SPECS, StateMap, kept_maps
 from generator.robustness_tables import NOMINAL_DELAY_S, ranges_text, robustness_tables
 from PIL import Image
 
+from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.rows import scored_headless
-from ddct_bringup.campaign.runs import Campaign
 from ddct_bringup.reproduction.values.orders import WORN
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_bringup.verdict.state import ENGAGED, INVALID, NOT_ENGAGED, RUNAWAY

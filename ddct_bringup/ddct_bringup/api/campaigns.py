@@ -7,11 +7,11 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from ddct_bringup.api.single_run import base_from, controllers_from, pandas_module, plain
+from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.columns import INDEX
 from ddct_bringup.campaign.conduct import carry_out
 from ddct_bringup.campaign.manifest import Manifest
 from ddct_bringup.campaign.rows import result_row
-from ddct_bringup.campaign.runs import Campaign
 from ddct_bringup.campaign.spec import read_spec, spec_of
 from ddct_bringup.campaign_report.folder import write_campaign_page
 from ddct_bringup.campaign_report.reading import read_table, results_of

@@ -9,8 +9,8 @@ from itertools import accumulate
 import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.batch.columns import Filters, distinct
 from ddct_bringup.batch.plants import Plants
+from ddct_bringup.batch.stacks import Filters, distinct
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.linear.lti import StateSpace

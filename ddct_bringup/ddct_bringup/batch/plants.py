@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ddct_bringup.batch.columns import distinct, product, stacked
+from ddct_bringup.batch.stacks import distinct, product, stacked
 from ddct_plant.base.timebase import STEPS_PER_S, SUBSTEPS
 from ddct_plant.models.actuator import ActuatorParameters, at_rest, lifted
 from ddct_plant.models.driveline import driveline_outputs, step_matrix

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.batch.columns import stacked
+from ddct_bringup.batch.stacks import stacked
 from ddct_bringup.metrics.engagement import Engagement
 from ddct_bringup.metrics.metric import finite
 from ddct_bringup.metrics.plant import JudgedPlant

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 
+from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.columns import contains_rows, merge, schema_of
 from ddct_bringup.campaign.executors import Workers, workers_of
 from ddct_bringup.campaign.manifest import MANIFEST, Manifest
-from ddct_bringup.campaign.runs import Campaign
 from ddct_bringup.campaign.shards import (
     ShardJob,
     TimeLeft,

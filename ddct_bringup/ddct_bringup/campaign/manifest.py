@@ -11,7 +11,7 @@ from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import Any
 
-from ddct_bringup.campaign.runs import Campaign
+from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.spec import CampaignSpec, spec_of
 from ddct_bringup.run.description import short_commit, source_commit
 from ddct_bringup.verdict.limits import Limits

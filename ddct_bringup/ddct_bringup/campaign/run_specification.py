@@ -13,9 +13,9 @@ from pathlib import Path
 
 import pyarrow.parquet as parquet
 
+from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.conduct import carry_out, require_going_on
 from ddct_bringup.campaign.rows import Row
-from ddct_bringup.campaign.runs import Campaign
 from ddct_bringup.campaign.scored import scored_runs
 from ddct_bringup.campaign.spec import CampaignSpec
 from ddct_bringup.verdict.limits import Limits

@@ -11,9 +11,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.columns import schema_of, shard_bytes
 from ddct_bringup.campaign.manifest import require_code
-from ddct_bringup.campaign.runs import Campaign
 from ddct_bringup.campaign.scored import Scorer
 from ddct_bringup.campaign.spec import CampaignSpec
 from ddct_bringup.verdict.limits import Limits

@@ -13,13 +13,13 @@ from markupsafe import Markup
 from ddct_bringup.campaign.keys import COMMON, SCENARIO
 from ddct_bringup.campaign.manifest import Manifest
 from ddct_bringup.campaign_report import texts
-from ddct_bringup.campaign_report.distributions import distributions_figure
+from ddct_bringup.campaign_report.distributions_figure import distributions_figure
 from ddct_bringup.campaign_report.maps import FAILED_SHARE, campaign_maps
 from ddct_bringup.campaign_report.outcome import FAILED
+from ddct_bringup.campaign_report.printed_summary import MAIN
 from ddct_bringup.campaign_report.reading import read_table, results_of
 from ddct_bringup.campaign_report.results import Results
 from ddct_bringup.campaign_report.summary import Summary, summary_of
-from ddct_bringup.campaign_report.tables import MAIN
 from ddct_bringup.metrics.catalogue import TABLE_5_1
 from ddct_bringup.report.page_parts import (
     MARKER,

@@ -6,11 +6,11 @@ import argparse
 import sys
 from pathlib import Path
 
+from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.conduct import carry_out
-from ddct_bringup.campaign.runs import Campaign
 from ddct_bringup.campaign.spec import read_spec
 from ddct_bringup.campaign_report.folder import PAGE, write_campaign_page
-from ddct_bringup.campaign_report.tables import print_summary
+from ddct_bringup.campaign_report.printed_summary import print_summary
 from ddct_bringup.programs import campaign_folder
 from ddct_bringup.verdict.limits import add_limits_option, load_limits
 from ddct_plant.program.command_line import ProgramParser, run_program, run_subcommands

@@ -22,10 +22,10 @@ from ddct_bringup.campaign.columns import (
 from ddct_bringup.campaign.conduct import RESULTS
 from ddct_bringup.campaign.manifest import Manifest, code_digest
 from ddct_bringup.campaign.rows import SERIAL, result_row
-from ddct_bringup.campaign_report.distributions import require_picture, write_distributions
+from ddct_bringup.campaign_report.distributions_figure import require_picture, write_distributions
 from ddct_bringup.campaign_report.folder import PAGE, SUMMARY, scenario_of, write_campaign_page
+from ddct_bringup.campaign_report.printed_summary import print_summary
 from ddct_bringup.campaign_report.reading import read_table, results_of
-from ddct_bringup.campaign_report.tables import print_summary
 from ddct_bringup.campaign_report.texts import RULES
 from ddct_bringup.run.execution import run_with_progress
 from ddct_bringup.run.options import add_layout_options

@@ -58,7 +58,7 @@ def test_a_worker_writes_and_a_page_reads_rows_without_pandas_or_scipy_stats(
     code = (
         'import sys\nfrom pathlib import Path\n'
         'from ddct_bringup.campaign.conduct import carry_out\n'
-        'from ddct_bringup.campaign.runs import Campaign\n'
+        'from ddct_bringup.campaign.campaign import Campaign\n'
         'from ddct_bringup.campaign.spec import spec_of\n'
         'from ddct_bringup.campaign_report.folder import write_campaign_page\n'
         'from ddct_bringup.verdict.limits import packaged_limits\n'

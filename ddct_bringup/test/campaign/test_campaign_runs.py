@@ -7,13 +7,13 @@ from typing import Any
 
 import pytest
 
+from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.run_set import (
     MOST_CHECKED,
     CampaignRun,
     RefusedRun,
     checked_cases,
 )
-from ddct_bringup.campaign.runs import Campaign
 from ddct_bringup.campaign.spec import spec_of
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.scenario.file import load_scenario

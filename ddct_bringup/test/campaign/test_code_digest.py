@@ -9,9 +9,9 @@ import pytest
 from in_this_process import in_this_process
 
 from ddct_bringup.campaign import manifest
+from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.conduct import carry_out
 from ddct_bringup.campaign.manifest import code_digest, require_code
-from ddct_bringup.campaign.runs import Campaign
 from ddct_bringup.campaign.spec import spec_of
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.base.errors import DdctError

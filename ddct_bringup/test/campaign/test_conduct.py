@@ -14,11 +14,11 @@ import pytest
 from in_this_process import OneByOne, in_this_process
 
 from ddct_bringup.campaign import conduct, run_set, scored, shards
+from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.columns import COMPARED, differences
 from ddct_bringup.campaign.conduct import RESULTS, SHARDS, carry_out
 from ddct_bringup.campaign.manifest import MANIFEST, Manifest, code_digest
 from ddct_bringup.campaign.rows import METRIC_COLUMNS
-from ddct_bringup.campaign.runs import Campaign
 from ddct_bringup.campaign.scored import Scorer
 from ddct_bringup.campaign.spec import spec_of
 from ddct_bringup.run.output_folder import locked_folders

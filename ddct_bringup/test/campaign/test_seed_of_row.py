@@ -10,8 +10,8 @@ import pytest
 from in_this_process import in_this_process
 
 from ddct_bringup import api
+from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.conduct import RESULTS, carry_out
-from ddct_bringup.campaign.runs import Campaign
 from ddct_bringup.campaign.spec import spec_of
 from ddct_bringup.verdict.limits import packaged_limits
 

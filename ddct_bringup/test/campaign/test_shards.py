@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import Any
 
 from ddct_bringup.campaign import scored
+from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.columns import differences
 from ddct_bringup.campaign.rows import VECTORISED
-from ddct_bringup.campaign.runs import Campaign
 from ddct_bringup.campaign.scored import Scorer
 from ddct_bringup.campaign.spec import spec_of
 from ddct_bringup.verdict.limits import packaged_limits

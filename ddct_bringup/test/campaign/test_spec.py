@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from ddct_bringup.campaign.runs import Campaign
+from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.spec import read_spec
 from ddct_plant.base.errors import DdctError
 

@@ -9,7 +9,7 @@ import pytest
 from made_results import made_results
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-from ddct_bringup.campaign_report.distributions import distributions_figure
+from ddct_bringup.campaign_report.distributions_figure import distributions_figure
 from ddct_bringup.verdict.state import ENGAGED, INVALID
 from ddct_controllers.design.drawing.chart_style import chart_style
 

@@ -6,12 +6,12 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
+from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.columns import schema_of, shard_bytes
 from ddct_bringup.campaign.conduct import RESULTS
 from ddct_bringup.campaign.manifest import Manifest
 from ddct_bringup.campaign.rows import METRIC_COLUMNS
 from ddct_bringup.campaign.run_set import CampaignRun
-from ddct_bringup.campaign.runs import Campaign
 from ddct_bringup.campaign.spec import spec_of
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_bringup.verdict.state import ENGAGED, INVALID

@@ -72,7 +72,7 @@ OWN_HELD = ('engine_torque',)
 
 
 @dataclass(frozen=True)
-class Column:
+class LogColumn:
     """Column of a quantity in a CSV log."""
 
     column: str
@@ -89,7 +89,7 @@ class Column:
 class ColumnMap:
     """Column map of a log, with information on its run."""
 
-    columns: Mapping[str, Column]
+    columns: Mapping[str, LogColumn]
     """Columns by quantity."""
     run: Mapping[str, Any]
     """Information on the run for `score`, by key; empty for `identify`."""
@@ -105,7 +105,7 @@ def own_columns(*names: str) -> ColumnMap:
     """Return the column map of quantities in the output of `score --signals-csv`."""
     return ColumnMap(
         {
-            name: Column(each.own_column, each.unit, HELD if name in OWN_HELD else LINEAR)
+            name: LogColumn(each.own_column, each.unit, HELD if name in OWN_HELD else LINEAR)
             for name in names
             for each in [QUANTITIES[name]]
         },
@@ -132,7 +132,7 @@ def _column_map(content: Any) -> ColumnMap:
     return ColumnMap(columns, run)
 
 
-def _column(name: str, content: Any) -> Column:
+def _column(name: str, content: Any) -> LogColumn:
     key = f'columns.{name}'
     if name not in QUANTITIES:
         raise ParameterError(f'unknown {key}: {close_name(name, QUANTITIES, "columns.")}')
@@ -147,7 +147,7 @@ def _column(name: str, content: Any) -> Column:
     for part, value in content.items():
         if part != 'delay_s' and not isinstance(value, str):
             raise ParameterError(f'{key}.{part} is {value!r}: give text')
-    found = Column(**content)
+    found = LogColumn(**content)
     if found.between not in BETWEEN:
         raise ParameterError(f'{key}.between is {found.between!r}: choose from linear, held')
     if name != TIME or found.unit != DATE_TIME:

@@ -20,8 +20,8 @@ from ddct_plant.measured.columns import (
     OWN_HELD,
     QUANTITIES,
     TIME,
-    Column,
     ColumnMap,
+    LogColumn,
 )
 
 MOST_BYTES = 200_000_000
@@ -111,7 +111,7 @@ def _read_csv_log(path: Path, columns: ColumnMap, needed: Sequence[str]) -> Meas
     return MeasuredLog(path, _digest(path), time_s, signals, held)
 
 
-def _unit(column: Column) -> str:
+def _unit(column: LogColumn) -> str:
     """Return the unit of the numbers of a column: s for dates with times."""
     return 's' if column.unit == DATE_TIME else column.unit
 

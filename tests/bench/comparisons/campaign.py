@@ -21,7 +21,7 @@ from bench.skeleton.workspace import Cost, Workspace
 from pyarrow import parquet
 
 from ddct_bringup.batch.run_batch import run_batch
-from ddct_bringup.campaign.runs import Campaign
+from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.spec import read_spec
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_controllers.registry import make_controller
