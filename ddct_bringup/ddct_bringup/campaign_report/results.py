@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Rows of a campaign: varied keys, groups of runs, and the quantities that are evaluated."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import combinations
@@ -14,18 +14,25 @@ from ddct_bringup.campaign.columns import CONTROLLER, INDEX, SEED
 from ddct_bringup.campaign.rows import CRITERION
 from ddct_bringup.campaign_report.outcome import outcomes_of
 from ddct_bringup.metrics.catalogue import CRITERIA, FURTHER, TABLE_5_1
+from ddct_bringup.metrics.metric import Criterion, Metric
 from ddct_plant.program.table import Quantity
 
-_NOT_JUDGED = ('steps',)
-"""Metrics for which more is not worse."""
-QUANTITIES = (
-    *(figure for figure in (*TABLE_5_1, *FURTHER) if figure.key not in _NOT_JUDGED),
-    *(
-        replace(criterion, key=f'{CRITERION}{criterion.key}')
-        for criterion in CRITERIA
-        if not criterion.metric
-    ),
-)
+
+def quantities_of(
+    metrics: Iterable[Metric], criteria: Iterable[Criterion]
+) -> tuple[Quantity, ...]:
+    """Return the quantities of which less is better, by column, those of criteria last."""
+    return (
+        *(metric for metric in metrics if metric.smaller_is_better),
+        *(
+            replace(criterion, key=f'{CRITERION}{criterion.key}')
+            for criterion in criteria
+            if not criterion.metric
+        ),
+    )
+
+
+QUANTITIES = quantities_of((*TABLE_5_1, *FURTHER), CRITERIA)
 """Metrics and further criteria by column; for each a smaller magnitude is better."""
 
 

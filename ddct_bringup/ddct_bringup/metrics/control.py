@@ -49,6 +49,7 @@ QUANTITIES = (
         form='.0f',
         meaning='length of the run in periods of 10 ms',
         value=lambda engagement: engagement.trajectory.steps,
+        smaller_is_better=False,
     ),
     Metric(
         key='update_time_median_us',

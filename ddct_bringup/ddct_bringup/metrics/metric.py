@@ -63,6 +63,8 @@ class Metric(Computed):
     """Name of the criterion of the verdict that has its value; empty for none."""
     column: bool = False
     """Whether the tables of `score` and `compare` have a column of it."""
+    smaller_is_better: bool = True
+    """Whether a smaller magnitude is better. Only then campaigns summarise and compare it."""
     from_timing: bool = False
     """Whether it is computed from `timing.json`; the others are equal in every repetition."""
 

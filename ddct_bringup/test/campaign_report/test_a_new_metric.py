@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A campaign that was finished before a metric was declared stays readable."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import pyarrow.parquet as parquet
@@ -13,6 +14,8 @@ from ddct_bringup.campaign import columns
 from ddct_bringup.campaign.columns import compared_in, differences, read_row
 from ddct_bringup.campaign.conduct import RESULTS
 from ddct_bringup.campaign_report import reading, results
+from ddct_bringup.campaign_report.results import quantities_of
+from ddct_bringup.metrics.catalogue import METRICS
 from ddct_bringup.programs.campaign import main
 from ddct_plant.program.table import Quantity
 
@@ -48,3 +51,10 @@ def test_a_row_without_it_is_compared_with_its_run_made_again(finished: Path) ->
     assert NEW.key not in compared_in(row)
     assert differences(row, {**row, NEW.key: 1.0}) == []
     assert parquet.read_metadata(finished / RESULTS).num_rows == 12
+
+
+def test_a_metric_of_which_less_is_not_better_is_not_summarised() -> None:
+    energy = METRICS['friction_energy_j']
+    kept = quantities_of((energy, METRICS['steps']), ())
+    assert [each.key for each in kept] == [energy.key]
+    assert quantities_of((replace(energy, smaller_is_better=False),), ()) == ()
