@@ -15,7 +15,8 @@ from ddct_bringup.campaign.rows import result_row
 from ddct_bringup.campaign.spec import read_spec, spec_of
 from ddct_bringup.campaign_report.folder import write_campaign_page
 from ddct_bringup.campaign_report.reading import read_table, results_of
-from ddct_bringup.campaign_report.summary import Summary, summary_of
+from ddct_bringup.campaign_report.summary import summary_of
+from ddct_bringup.campaign_report.summary_types import Summary
 from ddct_bringup.sweep.axis import Axis, axis, axis_of
 from ddct_bringup.sweep.sweep import Sweep
 from ddct_bringup.verdict.limits import load_limits

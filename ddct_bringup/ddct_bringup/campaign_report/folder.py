@@ -3,9 +3,8 @@
 """Write the summary and the page of a campaign into its folder."""
 
 from base64 import b64encode
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
 import matplotlib as mpl
 from markupsafe import Markup
@@ -14,12 +13,14 @@ from ddct_bringup.campaign.keys import COMMON, SCENARIO
 from ddct_bringup.campaign.manifest import Manifest
 from ddct_bringup.campaign_report import texts
 from ddct_bringup.campaign_report.distributions_figure import distributions_figure
+from ddct_bringup.campaign_report.map_types import MapScale
 from ddct_bringup.campaign_report.maps import FAILED_SHARE, campaign_maps
 from ddct_bringup.campaign_report.outcome import FAILED
 from ddct_bringup.campaign_report.printed_summary import MAIN
 from ddct_bringup.campaign_report.reading import read_table, results_of
 from ddct_bringup.campaign_report.results import Results
-from ddct_bringup.campaign_report.summary import Summary, summary_of
+from ddct_bringup.campaign_report.summary import summary_of
+from ddct_bringup.campaign_report.summary_types import Summary
 from ddct_bringup.metrics.catalogue import TABLE_5_1
 from ddct_bringup.report.page_parts import (
     MARKER,
@@ -68,7 +69,7 @@ def scenario_of(manifest: Manifest) -> str:
     return 'varied' if SCENARIO in manifest.grid else manifest.spec.get(SCENARIO, THESIS)
 
 
-def facts_of(manifest: Manifest) -> dict[str, Any]:
+def facts_of(manifest: Manifest) -> dict[str, str]:
     """Return the origin of a campaign as text by label."""
     common = {key: manifest.spec[key] for key in COMMON if key in manifest.spec}
     limits = manifest.limits
@@ -122,7 +123,7 @@ def _distributions(results: Results, scenario: str) -> str:
         return b64encode(chart_bytes(figure, 'svg')).decode()
 
 
-def _chosen(quantities: list[dict[str, Any]]) -> int:
+def _chosen(quantities: Sequence[MapScale]) -> int:
     """Return the index of the quantity that the maps show when the page opens."""
     keys = [each['key'] for each in quantities]
     return next((keys.index(key) for key in _SHOWN_FIRST if key in keys), 0)

@@ -4,10 +4,16 @@
 
 from collections.abc import Sequence
 from itertools import combinations
-from typing import Any
 
 import numpy as np
 
+from ddct_bringup.campaign_report.map_types import (
+    CampaignMaps,
+    CellMap,
+    MapPanel,
+    MapScale,
+    PointMap,
+)
 from ddct_bringup.campaign_report.outcome import FAILED, count_outcomes
 from ddct_bringup.campaign_report.results import Results
 from ddct_bringup.report.page_parts import unit_text
@@ -25,7 +31,7 @@ _DIGITS, _PLACE_DIGITS = 4, 9
 """Significant digits of values and of coordinates."""
 
 
-def campaign_maps(results: Results) -> dict[str, Any] | None:
+def campaign_maps(results: Results) -> CampaignMaps | None:
     """
     Return the maps of the page as JSON content; None where no number was varied.
 
@@ -40,9 +46,15 @@ def campaign_maps(results: Results) -> dict[str, Any] | None:
     pairs = [[*pair] for pair in combinations(numbers, 2)][:MOST_MAPS] or [numbers]
     cells = [_cells(results, keys) for keys in pairs if _on_grid(results, keys)]
     repeated = any(max(panel['runs'], default=0) > 1 for each in cells for panel in each['panels'])
-    share = {'key': FAILED_SHARE, 'title': 'share of failed engagements', 'low': 0.0, 'high': 1.0}
+    share: MapScale = {
+        'key': FAILED_SHARE,
+        'title': 'share of failed engagements',
+        'low': 0.0,
+        'high': 1.0,
+    }
     drawn, points = _points(results, [keys for keys in pairs if not _on_grid(results, keys)])
-    maps = {tuple(each['keys']): each for each in [*cells, *points]}
+    drawn_maps: list[CellMap | PointMap] = [*cells, *points]
+    maps = {tuple(each['keys']): each for each in drawn_maps}
     return {
         'quantities': [*([share] if repeated else []), *_scales(results)],
         'groups': [group.label for group in results.groups],
@@ -56,10 +68,10 @@ def _on_grid(results: Results, keys: Sequence[str]) -> bool:
     return all(key in results.grid for key in keys)
 
 
-def _scales(results: Results) -> list[dict[str, Any]]:
+def _scales(results: Results) -> list[MapScale]:
     """Return the ends of each quantity's colour scale: magnitudes of the engaged runs."""
     engaged = results.outcomes == ENGAGED
-    found = []
+    found: list[MapScale] = []
     for figure in results.quantities:
         values = np.abs(results.columns[figure.key][engaged])
         values = values[~np.isnan(values)]
@@ -69,7 +81,7 @@ def _scales(results: Results) -> list[dict[str, Any]]:
     return found
 
 
-def _cells(results: Results, keys: Sequence[str]) -> dict[str, Any]:
+def _cells(results: Results, keys: Sequence[str]) -> CellMap:
     """Return a map over the grid."""
     parts = [
         results.alike(results.others_nominal(group.rows, keys), keys) for group in results.groups
@@ -86,7 +98,7 @@ def _cells(results: Results, keys: Sequence[str]) -> dict[str, Any]:
 
 def _points(
     results: Results, pairs: Sequence[Sequence[str]]
-) -> tuple[list[dict[str, Any]] | None, list[dict[str, Any]]]:
+) -> tuple[list[MapPanel] | None, list[PointMap]]:
     """Return the points of each group in maps of samples, and these maps."""
     if not pairs:
         return None, []
@@ -97,7 +109,7 @@ def _points(
         for keys in pairs
     }
     drawn = [np.unique(np.concatenate(rows)) for rows in zip(*chosen.values(), strict=True)]
-    maps = [
+    maps: list[PointMap] = [
         {
             'keys': list(keys),
             'cells': False,
@@ -132,7 +144,7 @@ def _extent(drawn: int, runs: int) -> str:
 
 def _panel(
     results: Results, parts: Sequence[np.ndarray] | np.ndarray, keys: Sequence[str]
-) -> dict[str, Any]:
+) -> MapPanel:
     """Return the cells or points of one group, column by column."""
     counts = [count_outcomes(results.outcomes[rows]) for rows in parts]
     repeated = any(len(rows) > 1 for rows in parts)

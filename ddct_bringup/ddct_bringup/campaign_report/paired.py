@@ -10,6 +10,7 @@ import scipy
 
 from ddct_bringup.campaign_report.outcome import CONFIDENCE
 from ddct_bringup.campaign_report.spread import quantiles_of
+from ddct_bringup.campaign_report.summary_types import Quantiles
 from ddct_bringup.verdict.state import ENGAGED
 
 METHOD = 'sign test'
@@ -39,7 +40,7 @@ class Difference:
 
     cases: int
     """Number of cases in which both engaged and have a value."""
-    quantiles: dict[str, float | None]
+    quantiles: Quantiles
     """Quantiles P5, P50, P95 of the difference of magnitudes."""
     interval: tuple[float, float] | None
     """Interval of the median for a random sample of cases; None for fewer than six."""

@@ -2,15 +2,21 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tables of a campaign for the terminal."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from typing import TypeVar
 
 from ddct_bringup.campaign_report import texts
-from ddct_bringup.campaign_report.summary import Summary
+from ddct_bringup.campaign_report.summary_types import (
+    GroupSummary,
+    Quantiles,
+    QuantitySummary,
+    Summary,
+)
 from ddct_bringup.metrics.catalogue import METRICS, TABLE_5_1
 from ddct_plant.base.errors import printable
 from ddct_plant.program.table import UNDEFINED, Table, print_tables, text_or_dash
 
-_QUANTILES = ('p5', 'p50', 'p95')
+Entry = TypeVar('Entry')
 MAIN = (*(figure.key for figure in TABLE_5_1), 'peak_jerk_m_s3', 'friction_energy_j')
 """Main metrics, whose differences and distributions are shown."""
 
@@ -40,7 +46,7 @@ def _failed(summary: Summary) -> Table:
             texts.label_of(group),
             texts.share_text(failed['share']),
             texts.interval_text(failed['interval']),
-            *(str(failed[name]) for name in ('runs', 'engaged', 'failed', 'invalid')),
+            *map(str, (failed['runs'], failed['engaged'], failed['failed'], failed['invalid'])),
             texts.states_text(failed) or UNDEFINED,
         )
         for group in summary['groups']
@@ -59,14 +65,14 @@ def _boundaries(summary: Summary) -> Iterator[Table]:
             texts.label_of(group),
             texts.value_text(found['start']),
             *(
-                text(found[side])
-                for side in ('below', 'above')
+                text(side)
+                for side in (found['below'], found['above'])
                 for text in (texts.good_text, texts.boundary_text)
             ),
             ', '.join(f'{key} {texts.value_text(at)}' for key, at in found['others'].items())
             or UNDEFINED,
         )
-        for group, found in _by_place(summary, 'boundaries')
+        for group, found in _by_place(summary, lambda group: group['boundaries'])
     ]
     headers = 'varied', 'controller', 'from', 'below', 'fails at', 'above', 'fails at', 'others at'
     if rows:
@@ -96,18 +102,19 @@ def _attribution(summary: Summary) -> Iterator[Table]:
         yield Table('Which keys drive failure', headers, rows)
 
 
-def _by_place(summary: Summary, name: str) -> Iterator[tuple[Summary, Summary]]:
+def _by_place(
+    summary: Summary, entries_of: Callable[[GroupSummary], Sequence[Entry]]
+) -> Iterator[tuple[GroupSummary, Entry]]:
     """Yield the entries of all groups: the first of each, then the second of each."""
-    for place in range(len(summary['groups'][0][name])):
-        for group in summary['groups']:
-            yield group, group[name][place]
+    for of_place in zip(*map(entries_of, summary['groups']), strict=True):
+        yield from zip(summary['groups'], of_place, strict=True)
 
 
 def _quantities(summary: Summary) -> Table:
     """Return the table of the metrics; the page has the other criteria too."""
     rows = [
         _quantity(texts.label_of(group), found)
-        for group, found in _by_place(summary, 'quantities')
+        for group, found in _by_place(summary, lambda group: group['quantities'])
         if found['name'] in METRICS
     ]
     headers = (
@@ -118,7 +125,11 @@ def _quantities(summary: Summary) -> Table:
     return Table(title, headers, rows, numbers=[False, False, *[True] * 9])
 
 
-def _quantity(label: str, found: Summary) -> Sequence[str]:
+def _quantile_cells(found: Quantiles, form: str) -> Iterator[str]:
+    return (text_or_dash(value, form) for value in (found['p5'], found['p50'], found['p95']))
+
+
+def _quantity(label: str, found: QuantitySummary) -> Sequence[str]:
     figure = METRICS[found['name']]
     worst = found['worst']
     engaged = found['worst_engaged']
@@ -126,7 +137,7 @@ def _quantity(label: str, found: Summary) -> Sequence[str]:
         figure.heading,
         label,
         str(found['with_value']),
-        *(text_or_dash(found[name], figure.form) for name in ('p5', 'p50', 'p95')),
+        *_quantile_cells(found, figure.form),
         text_or_dash(found['cvar_engaged'], figure.form),
         text_or_dash(engaged['value'], figure.form),
         text_or_dash(engaged['index'], 'd'),
@@ -148,7 +159,7 @@ def _differences(summary: Summary) -> Iterator[Table]:
             METRICS[found['name']].heading,
             texts.pair_label(pair),
             str(found['cases']),
-            *(text_or_dash(found[name], METRICS[found['name']].form) for name in _QUANTILES),
+            *_quantile_cells(found, METRICS[found['name']].form),
             UNDEFINED
             if found['interval'] is None
             else ' to '.join(f'{end:{METRICS[found["name"]].form}}' for end in found['interval']),

@@ -6,10 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ddct_bringup.campaign_report.summary_types import Quantiles
 from ddct_bringup.verdict.state import ENGAGED, INVALID
 
-QUANTILES = {'p5': 0.05, 'p50': 0.50, 'p95': 0.95}
-"""Probabilities of the quantiles by name."""
+_PROBABILITIES = (0.05, 0.50, 0.95)
+"""Probabilities of P5, P50 and P95."""
 ONE_IN = 20
 """Inverse of the share of worst runs, 5 %; with fewer engaged runs there is no CVaR."""
 
@@ -22,7 +23,7 @@ class Spread:
     """Number of engaged runs."""
     with_value: int
     """Number of engaged runs that have a value."""
-    quantiles: dict[str, float | None]
+    quantiles: Quantiles
     """
     Quantiles P5, P50 and P95 of the values of engaged runs, with signs; None without a value.
     """
@@ -54,12 +55,12 @@ def spread_of(values: np.ndarray, outcomes: np.ndarray) -> Spread:
     )
 
 
-def quantiles_of(values: np.ndarray) -> dict[str, float | None]:
+def quantiles_of(values: np.ndarray) -> Quantiles:
     """Return P5, P50 and P95 of (n,) values with linear interpolation (Hyndman-Fan 7)."""
     if not len(values):
-        return dict.fromkeys(QUANTILES)
-    found = np.quantile(values, [*QUANTILES.values()])
-    return dict(zip(QUANTILES, found.tolist(), strict=True))
+        return {'p5': None, 'p50': None, 'p95': None}
+    p5, p50, p95 = np.quantile(values, _PROBABILITIES).tolist()
+    return {'p5': p5, 'p50': p50, 'p95': p95}
 
 
 def conditional_value_at_risk(values: np.ndarray) -> float:

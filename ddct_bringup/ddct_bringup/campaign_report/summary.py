@@ -3,15 +3,12 @@
 """Build the summary of a campaign: the content of `summary.json`."""
 
 from collections import Counter
-from collections.abc import Mapping
-from dataclasses import asdict
-from typing import Any
 
 import numpy as np
 
 from ddct_bringup.campaign.columns import CONTROLLER
 from ddct_bringup.campaign_report import attribution, paired
-from ddct_bringup.campaign_report.boundaries import boundaries
+from ddct_bringup.campaign_report.boundaries import FailureBoundary, boundaries
 from ddct_bringup.campaign_report.outcome import (
     CONFIDENCE,
     FAILED,
@@ -21,11 +18,26 @@ from ddct_bringup.campaign_report.outcome import (
 )
 from ddct_bringup.campaign_report.results import Group, Results
 from ddct_bringup.campaign_report.spread import ONE_IN, spread_of
+from ddct_bringup.campaign_report.summary_types import (
+    AttributionSummary,
+    BoundarySide,
+    BoundarySummary,
+    Case,
+    DifferenceSummary,
+    FailedSummary,
+    GroupSummary,
+    PairSummary,
+    PartSummary,
+    QuantitySummary,
+    Reason,
+    RunOfCase,
+    ShareOfRuns,
+    StateSummary,
+    Summary,
+)
 from ddct_bringup.verdict.state import INVALID, STATES
 from ddct_plant.program.table import Quantity
 
-Summary = dict[str, Any]
-"""Content of `summary.json` or a part of it; the page on campaigns describes its keys."""
 SCHEMA_VERSION = 2
 """Schema version of `summary.json`."""
 MOST_REASONS = 5
@@ -45,15 +57,16 @@ def summary_of(results: Results) -> Summary:
         'difference_interval_method': paired.METHOD,
         'tail_share': 1.0 / ONE_IN,
         'other_version': {
-            name: list(value) if isinstance(value, tuple) else value
-            for name, value in asdict(results.other).items()
+            'absent': list(results.other.absent),
+            'unknown': list(results.other.unknown),
+            'no_nominal': results.other.no_nominal,
         },
         'groups': [_group(results, group) for group in results.groups],
         'pairs': [_pair(results, *pair) for pair in results.pairs],
     }
 
 
-def _group(results: Results, group: Group) -> Summary:
+def _group(results: Results, group: Group) -> GroupSummary:
     return {
         'controller': group.names[CONTROLLER],
         'varied': group.varied,
@@ -64,7 +77,7 @@ def _group(results: Results, group: Group) -> Summary:
     }
 
 
-def _failed(results: Results, group: Group) -> Summary:
+def _failed(results: Results, group: Group) -> FailedSummary:
     counts = count_outcomes(results.outcomes[group.rows])
     sample = results.is_sample(group)
     return {
@@ -79,7 +92,9 @@ def _failed(results: Results, group: Group) -> Summary:
     }
 
 
-def _states(results: Results, group: Group, invalid: int, *, sample: bool) -> Summary:
+def _states(
+    results: Results, group: Group, invalid: int, *, sample: bool
+) -> dict[str, StateSummary]:
     """Return the number of valid runs in each state, those of another version last."""
     valid = group.rows[results.outcomes[group.rows] != INVALID]
     found = Counter(results.columns['verdict_state'][valid].tolist())
@@ -93,11 +108,11 @@ def _states(results: Results, group: Group, invalid: int, *, sample: bool) -> Su
     }
 
 
-def _share(share: Share, *, sample: bool) -> Summary:
+def _share(share: Share, *, sample: bool) -> ShareOfRuns:
     return {'share': share.share, 'interval': list(share.interval()) if sample else None}
 
 
-def _reasons(results: Results, group: Group) -> list[Summary]:
+def _reasons(results: Results, group: Group) -> list[Reason]:
     """Return the reasons for invalid runs: each with the number of runs, and the first of them."""
     rows = [row for row in group.rows.tolist() if results.outcomes[row] == INVALID]
     reasons = [str(results.columns['reason'][row]) for row in rows]
@@ -111,7 +126,7 @@ def _reasons(results: Results, group: Group) -> list[Summary]:
     ]
 
 
-def _boundary(results: Results, group: Group, key: str) -> Summary:
+def _boundary(results: Results, group: Group, key: str) -> BoundarySummary:
     """Return the boundaries on a line over one key, the grid's other numbers at their start."""
     rows = results.others_nominal(group.rows, [key])
     start = results.start_of(key)
@@ -121,31 +136,33 @@ def _boundary(results: Results, group: Group, key: str) -> Summary:
         'nominal': results.nominal.get(key),
         'start': start,
         'others': {other: results.start_of(other) for other in results.others([key])},
-        **{
-            name: {
-                'last_good': side.last_good_value,
-                'first_failure': side.first_failure,
-                'failed': side.failed,
-                'runs': side.runs,
-                'invalid': side.invalid,
-                **_run(results, rows, side.row),
-            }
-            for name, side in sides.items()
-        },
+        'below': _side(results, rows, sides['below']),
+        'above': _side(results, rows, sides['above']),
     }
 
 
-def _attribution(results: Results, group: Group) -> Summary:
+def _side(results: Results, rows: np.ndarray, side: FailureBoundary) -> BoundarySide:
+    return {
+        'last_good': side.last_good_value,
+        'first_failure': side.first_failure,
+        'failed': side.failed,
+        'runs': side.runs,
+        'invalid': side.invalid,
+        **_run(results, rows, side.row),
+    }
+
+
+def _attribution(results: Results, group: Group) -> AttributionSummary:
     """Return the keys that drive failure, or why there is no attribution."""
     rows = group.rows[results.outcomes[group.rows] != INVALID]
     failed = results.outcomes[rows] == FAILED
     values = {key: results.columns[key][rows] for key in results.numbers}
     varied = {key: each for key, each in values.items() if len(np.unique(each)) > 1}
-    found: Summary = {'runs': len(rows), 'failed': int(np.sum(failed))}
     why = attribution.too_few(failed)
     effects = [] if why else attribution.effects_of(varied, failed)
     return {
-        **found,
+        'runs': len(rows),
+        'failed': int(np.sum(failed)),
         'too_few': why,
         'keys': [
             {
@@ -154,14 +171,18 @@ def _attribution(results: Results, group: Group) -> Summary:
                 'explained': each.explained,
                 'interval': list(each.interval),
                 'p_value': each.p_value,
-                'worst_part': asdict(each.worst_part),
+                'worst_part': _part(each.worst_part),
             }
             for each in effects
         ],
     }
 
 
-def _quantity(results: Results, group: Group, quantity: Quantity) -> Summary:
+def _part(part: attribution.Part) -> PartSummary:
+    return {'low': part.low, 'high': part.high, 'runs': part.runs, 'failed': part.failed}
+
+
+def _quantity(results: Results, group: Group, quantity: Quantity) -> QuantitySummary:
     """Return the distribution of a quantity over the engaged runs, and its worst cases."""
     values = results.columns[quantity.key][group.rows]
     spread = spread_of(values, results.outcomes[group.rows])
@@ -177,11 +198,12 @@ def _quantity(results: Results, group: Group, quantity: Quantity) -> Summary:
     }
 
 
-def _pair(results: Results, first: Group, second: Group) -> Summary:
+def _pair(results: Results, first: Group, second: Group) -> PairSummary:
     """Return the differences of two controllers, first minus second, case by case."""
     outcomes = results.outcomes[first.rows], results.outcomes[second.rows]
+    joint = paired.joint_outcomes(*outcomes)
     sample = results.is_sample(first)
-    differences = []
+    differences: list[DifferenceSummary] = []
     for quantity in results.quantities:
         column = results.columns[quantity.key]
         found = paired.difference_of(column[first.rows], column[second.rows], outcomes)
@@ -198,20 +220,22 @@ def _pair(results: Results, first: Group, second: Group) -> Summary:
         'first': first.names[CONTROLLER],
         'second': second.names[CONTROLLER],
         'varied': first.varied,
-        **asdict(paired.joint_outcomes(*outcomes)),
+        'cases': joint.cases,
+        'both': joint.both,
+        'first_only': joint.first_only,
+        'second_only': joint.second_only,
+        'neither': joint.neither,
         'no_interval': '' if sample else NO_SAMPLE,
         'differences': differences,
     }
 
 
-def _case(
-    results: Results, rows: np.ndarray, values: np.ndarray, place: int | None
-) -> Mapping[str, Any]:
+def _case(results: Results, rows: np.ndarray, values: np.ndarray, place: int | None) -> Case:
     value = None if place is None else float(values[place])
     return {'value': value, **_run(results, rows, place)}
 
 
-def _run(results: Results, rows: np.ndarray, place: int | None) -> Mapping[str, Any]:
+def _run(results: Results, rows: np.ndarray, place: int | None) -> RunOfCase:
     """Return index and state of a run."""
     if place is None:
         return {'index': None, 'state': None}

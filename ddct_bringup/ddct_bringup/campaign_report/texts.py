@@ -7,7 +7,14 @@ import shlex
 from ddct_bringup.campaign_report.attribution import FEWEST, MOST_PARTS
 from ddct_bringup.campaign_report.outcome import CONFIDENCE, METHOD
 from ddct_bringup.campaign_report.spread import ONE_IN
-from ddct_bringup.campaign_report.summary import Summary
+from ddct_bringup.campaign_report.summary_types import (
+    BoundarySide,
+    FailedSummary,
+    GroupSummary,
+    PairSummary,
+    PartSummary,
+    Summary,
+)
 from ddct_bringup.report.page_parts import value_text
 from ddct_plant.program.table import UNDEFINED
 
@@ -63,7 +70,7 @@ def interval_text(interval: list[float] | None) -> str:
     return f'{lower:.1f} to {upper:.1f} %'
 
 
-def states_text(failed: Summary) -> str:
+def states_text(failed: FailedSummary) -> str:
     """Return the numbers of runs in states other than engaged, with the shares of a sample."""
     return ', '.join(
         f'{found["runs"]} {state_text(state)}'
@@ -73,7 +80,7 @@ def states_text(failed: Summary) -> str:
     )
 
 
-def boundary_text(side: Summary) -> str:
+def boundary_text(side: BoundarySide) -> str:
     """Return the first failure on one side of a line."""
     if side['first_failure'] is None:
         return 'no run on this side' if side['last_good'] is None else 'none in the range'
@@ -82,7 +89,7 @@ def boundary_text(side: Summary) -> str:
     return f'{first} ({state_text(side["state"])}, run {side["index"]}{several})'
 
 
-def good_text(side: Summary) -> str:
+def good_text(side: BoundarySide) -> str:
     """Return the last good value on one side of a line, and the number of invalid runs."""
     invalid = f', {side["invalid"]} invalid on the way' if side['invalid'] else ''
     if side['last_good'] is None:
@@ -114,27 +121,27 @@ def p_text(p_value: float) -> str:
     return '< 0.001' if p_value < 0.001 else f'{p_value:.3f}'
 
 
-def part_text(part: Summary) -> str:
+def part_text(part: PartSummary) -> str:
     """Return the part of a key's range in which failure is most frequent."""
     return f'{part["failed"]} of {part["runs"]} at {range_text(part["low"], part["high"])}'
 
 
-def state_text(state: str) -> str:
-    """Return the name of a state as text."""
-    return state.replace('_', ' ')
+def state_text(state: str | None) -> str:
+    """Return the name of a state as text, empty without one."""
+    return (state or '').replace('_', ' ')
 
 
-def label_of(group: Summary) -> str:
+def label_of(group: GroupSummary) -> str:
     """Return the label of a group of a summary in tables."""
     return ', '.join([group['controller'], *group['varied'].values()])
 
 
-def pair_label(pair: Summary) -> str:
+def pair_label(pair: PairSummary) -> str:
     """Return the label of a pair of controllers in tables."""
     return ', '.join([f'{pair["first"]} less {pair["second"]}', *pair['varied'].values()])
 
 
-def joint_outcomes_text(pair: Summary) -> str:
+def joint_outcomes_text(pair: PairSummary) -> str:
     """Return the number of cases in which both, one or none of two controllers engaged."""
     return (
         f'{pair["both"]} of {pair["cases"]} cases (only {pair["first"]} {pair["first_only"]}, '

@@ -8,6 +8,7 @@ from made_results import made_results
 
 from ddct_bringup.campaign_report.boundaries import FailureBoundary, boundaries
 from ddct_bringup.campaign_report.summary import summary_of
+from ddct_bringup.campaign_report.summary_types import BoundarySide
 from ddct_bringup.campaign_report.texts import boundary_text, good_text
 from ddct_bringup.verdict.state import ENGAGED, INVALID
 
@@ -70,8 +71,15 @@ def test_the_last_good_value_and_the_first_failure_are_never_the_same(seed):
 
 @pytest.mark.parametrize(('good', 'bad'), [(1500.1, 1500.2), (0.1234561, 0.1234562), (0.9, 0.8)])
 def test_their_texts_have_enough_digits_to_differ(good, bad):
-    side = {'last_good': good, 'first_failure': bad, 'runs': 1, 'failed': 1, 'invalid': 0}
-    side |= {'index': 3, 'state': 'stalled'}
+    side: BoundarySide = {
+        'last_good': good,
+        'first_failure': bad,
+        'runs': 1,
+        'failed': 1,
+        'invalid': 0,
+        'index': 3,
+        'state': 'stalled',
+    }
     assert float(boundary_text(side).split()[0]) == bad
     assert good_text(side) == f'good to {good}'
 

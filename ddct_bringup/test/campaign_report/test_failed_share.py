@@ -10,6 +10,7 @@ from scipy.stats import binomtest
 from ddct_bringup.campaign_report import outcome
 from ddct_bringup.campaign_report.outcome import Share, count_outcomes, outcomes_of
 from ddct_bringup.campaign_report.summary import summary_of
+from ddct_bringup.campaign_report.summary_types import StateSummary
 from ddct_bringup.verdict.state import ENGAGED, INVALID, STATES, SUCCESSES
 
 
@@ -103,9 +104,8 @@ def test_a_varied_text_key_makes_separate_groups():
         ('ls8', 'stick_slip'),
     ]
     assert [each['failed']['share'] for each in groups] == [0.0, 1.0, 1.0, 0.0]
-    assert groups[1]['failed']['states'] == {
-        'stalled': {'runs': 1, 'share': 1.0, 'interval': None}
-    }
+    stalled: StateSummary = {'runs': 1, 'share': 1.0, 'interval': None}
+    assert groups[1]['failed']['states'] == {'stalled': stalled}
 
 
 def test_reasons_of_invalid_runs_are_listed_the_most_frequent_first():

@@ -17,7 +17,7 @@ WEAR, MASS, SLOPE = 'wear_gain', 'vehicle.mass_kg', 'load.slope_rad'
 JERK = 'peak_jerk_m_s3'
 
 
-def maps_of(results: Results) -> dict[str, Any]:
+def maps_of(results: Results) -> Any:
     found = campaign_maps(results)
     assert found is not None
     return found
