@@ -39,7 +39,7 @@ torque.
 """
 
 
-def batchable(settings: RunSettings, controller: Controller) -> str:
+def why_not_batchable(settings: RunSettings, controller: Controller) -> str:
     """
     Return in one line why a run cannot be computed in a batch, empty if it can.
 

@@ -54,7 +54,7 @@ def stacked_results(
     by_existence = rows_of(existing(engagement), len(runs))
     results = []
     for index, (run, plant) in enumerate(zip(runs, plants, strict=True)):
-        state = slip_state(one_or_more(trajectory, index), start, limits.rules, plant)
+        state = slip_state(part_of_stack(trajectory, index), start, limits.rules, plant)
         verdict = verdict_of(
             state,
             by_criterion[index],
@@ -72,6 +72,6 @@ def stacked_plants(plants: Sequence[JudgedPlant]) -> Any:
     return JudgedPlant(**vars(stacked(plants)))
 
 
-def one_or_more(stack: Trajectory, index: Any) -> Trajectory:
+def part_of_stack(stack: Trajectory, index: Any) -> Trajectory:
     """Return one run of a stack for an integer index, or a smaller stack."""
     return Trajectory({name: values[index] for name, values in stack.signals.items()})

@@ -19,7 +19,7 @@ import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.batch.loops import reference_kind, simulate_batch
-from ddct_bringup.batch.results import one_or_more, stacked_results
+from ddct_bringup.batch.results import part_of_stack, stacked_results
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.verdict.limits import Limits
 from ddct_controllers.interface import Controller
@@ -42,8 +42,9 @@ _Linear = tuple[RunSettings, StateSpace]
 
 def run_batch(runs: Sequence[Run], limits: Limits) -> list[ScoredRun | None]:
     """
-    Return the result of each run as `stacked_results`, in order; all are `batchable`.
+    Return the result of each run as `stacked_results`, in order.
 
+    The runs are those for which `why_not_batchable` is empty.
     A controller may occur in many runs; each starts with it as it is after a reset. A result is
     None for a run that must be computed step by step: a divergent run or one that cannot be built
     gets its reason there, and a chaotic one gets repeatable metrics.
@@ -80,7 +81,7 @@ def _stack(runs: Sequence[_Linear]) -> Trajectory:
     # numpy sums a single column in another order than many columns, so one run is doubled.
     several = [*runs] * 2 if len(runs) == 1 else runs
     stack = simulate_batch([settings for settings, _ in several], [model for _, model in several])
-    return one_or_more(stack, slice(len(runs)))
+    return part_of_stack(stack, slice(len(runs)))
 
 
 def _alike(settings: RunSettings, model: StateSpace) -> Hashable:
@@ -119,7 +120,7 @@ def _results(runs: Sequence[_Linear], limits: Limits) -> list[ScoredRun | None]:
             return [None]
         half = len(runs) // 2
         return _results(runs[:half], limits) + _results(runs[half:], limits)
-    kept = stack if counts.all() else one_or_more(stack, counts)
+    kept = stack if counts.all() else part_of_stack(stack, counts)
     settings = [run for (run, _), each in zip(runs, counts, strict=True) if each]
     results = iter(stacked_results(settings, kept, limits) if settings else [])
     return [next(results) if each else None for each in counts]

@@ -7,7 +7,7 @@ from typing import Any
 
 from ddct_bringup.metrics.catalogue import CRITERIA, FURTHER, TABLE_5_1
 from ddct_bringup.run.description import facts_of
-from ddct_bringup.run.execution import in_memory
+from ddct_bringup.run.execution import recording_in_memory
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.run.plan import require_headless
 from ddct_bringup.run.timing_and_failure import RunTiming
@@ -25,7 +25,7 @@ Row = Mapping[str, Any]
 """Row of `results.parquet`: values by column."""
 SERIAL, VECTORISED = 'serial', 'vectorised'
 """Values of the column `path`: simulated step by step, or together with other runs."""
-METRIC_COLUMNS = tuple(figure.key for figure in (*TABLE_5_1, *FURTHER))
+METRIC_COLUMNS = tuple(metric.key for metric in (*TABLE_5_1, *FURTHER))
 """Metrics of `scores.json` that are equal in every repetition of a run."""
 CRITERION = 'criterion.'
 """Prefix of the column of a criterion."""
@@ -58,7 +58,9 @@ def scored_headless(settings: RunSettings, controller: Chosen, limits: Limits) -
         reason = printable(f'{type(error).__name__}: {error}')
     else:
         # Without update times, since no wall-clock time is measured.
-        return score_run(in_memory(settings, name, trajectory), name, limits, RunTiming())
+        return score_run(
+            recording_in_memory(settings, name, trajectory), name, limits, RunTiming()
+        )
     return run_without_score(name, facts_of(settings, name, settings.scenario.steps), reason)
 
 

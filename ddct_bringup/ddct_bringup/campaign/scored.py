@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ddct_bringup.batch.batchable import batchable
+from ddct_bringup.batch.batchable import why_not_batchable
 from ddct_bringup.batch.run_batch import run_batch
 from ddct_bringup.campaign.rows import (
     CONTROLLER,
@@ -31,8 +31,8 @@ from ddct_controllers.registry import make_controller, own_controller_names
 from ddct_plant.base.errors import FOREIGN_FAILURES
 from ddct_plant.program.workers import in_processes, worker_count
 
-_LARGEST_PART = {True: 200, False: 16}
-"""Largest number of runs that a worker hands over together, at once (True) or step by step."""
+_LARGEST_PART_AT_ONCE, _LARGEST_PART_STEP_BY_STEP = 200, 16
+"""Largest number of runs that a worker hands over together."""
 _PARTS_EACH = 8
 """Least number of parts for each worker, so that all end together."""
 
@@ -96,7 +96,7 @@ class Scorer:
                 controller = self._controller(run)
             except FOREIGN_FAILURES:
                 continue  # the run step by step gives the reason
-            if not batchable(run.settings, controller):
+            if not why_not_batchable(run.settings, controller):
                 suited.append((run, controller))
         results = run_batch(
             [(run.settings, controller) for run, controller in suited], self.limits
@@ -130,7 +130,8 @@ def scored_runs(
     """
     scorer = Scorer(limits, at_once)
     count = worker_count(workers)
-    size = max(1, min(_LARGEST_PART[at_once], runs.runs // (_PARTS_EACH * count)))
+    largest = _LARGEST_PART_AT_ONCE if at_once else _LARGEST_PART_STEP_BY_STEP
+    size = max(1, min(largest, runs.runs // (_PARTS_EACH * count)))
     parts = -(-runs.runs // size)
 
     def part(number: int) -> list[ScoredCampaignRun]:

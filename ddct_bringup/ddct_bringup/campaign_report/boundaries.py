@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""FailureBoundary of failure on a grid: the first failure along a line from its start outward."""
+"""Boundary of failure on a grid: the first failure along a line from its start outward."""
 
 from dataclasses import dataclass
 
@@ -12,7 +12,7 @@ from ddct_bringup.verdict.state import INVALID
 
 @dataclass(frozen=True)
 class FailureBoundary:
-    """FailureBoundary of failure along a line from its start to one end."""
+    """Boundary of failure along a line, from its start to one end."""
 
     last_good_value: float | None
     """

@@ -72,12 +72,12 @@ def _scales(results: Results) -> list[MapScale]:
     """Return the ends of each quantity's colour scale: magnitudes of the engaged runs."""
     engaged = results.outcomes == ENGAGED
     found: list[MapScale] = []
-    for figure in results.quantities:
-        values = np.abs(results.columns[figure.key][engaged])
+    for quantity in results.quantities:
+        values = np.abs(results.columns[quantity.key][engaged])
         values = values[~np.isnan(values)]
         low, high = (values.min(), values.max()) if values.size else (0.0, 0.0)
-        title = f'{figure.symbol}, {unit_text(figure.unit)}'.removesuffix(', ')
-        found.append({'key': figure.key, 'title': title, 'low': low, 'high': high})
+        title = f'{quantity.symbol}, {unit_text(quantity.unit)}'.removesuffix(', ')
+        found.append({'key': quantity.key, 'title': title, 'low': low, 'high': high})
     return found
 
 
@@ -150,7 +150,7 @@ def _panel(
     repeated = any(len(rows) > 1 for rows in parts)
     marking = [_marking(results, rows) for rows in parts]
     states, index = results.columns['verdict_state'], results.columns['index']
-    worst = {figure.key: _worst(results, figure.key, parts) for figure in results.quantities}
+    worst = {quantity.key: _worst(results, quantity.key, parts) for quantity in results.quantities}
     return {
         'at': [_places(results.columns[key], parts) for key in keys],
         'runs': [len(rows) for rows in parts],

@@ -17,7 +17,7 @@ from ddct_plant.base.errors import printable
 from ddct_plant.program.table import UNDEFINED, Table, print_tables, text_or_dash
 
 Entry = TypeVar('Entry')
-MAIN = (*(figure.key for figure in TABLE_5_1), 'peak_jerk_m_s3', 'friction_energy_j')
+MAIN = (*(metric.key for metric in TABLE_5_1), 'peak_jerk_m_s3', 'friction_energy_j')
 """Main metrics, whose differences and distributions are shown."""
 
 
@@ -130,18 +130,18 @@ def _quantile_cells(found: Quantiles, form: str) -> Iterator[str]:
 
 
 def _quantity(label: str, found: QuantitySummary) -> Sequence[str]:
-    figure = METRICS[found['name']]
+    metric = METRICS[found['name']]
     worst = found['worst']
     engaged = found['worst_engaged']
     return (
-        figure.heading,
+        metric.heading,
         label,
         str(found['with_value']),
-        *_quantile_cells(found, figure.form),
-        text_or_dash(found['cvar_engaged'], figure.form),
-        text_or_dash(engaged['value'], figure.form),
+        *_quantile_cells(found, metric.form),
+        text_or_dash(found['cvar_engaged'], metric.form),
+        text_or_dash(engaged['value'], metric.form),
         text_or_dash(engaged['index'], 'd'),
-        text_or_dash(worst['value'], figure.form),
+        text_or_dash(worst['value'], metric.form),
         UNDEFINED
         if worst['index'] is None
         else f'{worst["index"]} ({texts.state_text(worst["state"])})',

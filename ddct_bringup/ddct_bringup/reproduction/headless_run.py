@@ -10,7 +10,7 @@ import numpy as np
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.metrics.metric import Metrics
 from ddct_bringup.metrics.values import compute_metrics
-from ddct_bringup.run.execution import in_memory
+from ddct_bringup.run.execution import recording_in_memory
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.scores.scoring import score_run
 from ddct_bringup.thesis.table_5_1 import TABLE_METRICS
@@ -53,7 +53,7 @@ class HeadlessRun:
     def verdict(self) -> Verdict:
         """Verdict of the run by the packaged limits."""
         name = str(self.controller)
-        recording = in_memory(self.settings, name, self.trajectory)
+        recording = recording_in_memory(self.settings, name, self.trajectory)
         return score_run(recording, name, packaged_limits(), timing=None).verdict
 
     @property

@@ -179,14 +179,16 @@ def simulate(plan: RunPlan) -> tuple[Recording, RunTiming]:
     timing = RunTiming()
     trajectory = run_headless(plan.settings, controller, timing)
     recording = replace(
-        in_memory(plan.settings, plan.name, trajectory),
+        recording_in_memory(plan.settings, plan.name, trajectory),
         custom_data=custom_data(plan.settings, plan.name, plan.steps),
         run_info=run_info_of(plan.settings, plan.name, controller, plan.steps),
     )
     return recording, timing
 
 
-def in_memory(settings: RunSettings, controller: str, trajectory: Trajectory) -> Recording:
+def recording_in_memory(
+    settings: RunSettings, controller: str, trajectory: Trajectory
+) -> Recording:
     """Return the recording of a headless run with the facts that scoring needs, without a bag."""
     return Recording(
         path=Path(),

@@ -7,7 +7,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from ddct_bringup.batch.batchable import SUPPORTED_KEYS, batchable
+from ddct_bringup.batch.batchable import SUPPORTED_KEYS, why_not_batchable
 from ddct_bringup.batch.run_batch import run_batch
 from ddct_bringup.campaign.rows import scored_headless
 from ddct_bringup.verdict.limits import packaged_limits
@@ -85,7 +85,7 @@ class Limited(PiController):
     ],
 )
 def test_a_controller_is_in_a_batch_if_it_is_linear_throughout(controller, reason):
-    found = batchable(SETTINGS, controller)
+    found = why_not_batchable(SETTINGS, controller)
     assert found.startswith(reason)
     assert bool(found) == bool(reason)
     assert '\n' not in found
@@ -109,7 +109,9 @@ def test_a_controller_is_in_a_batch_if_it_is_linear_throughout(controller, reaso
     ],
 )
 def test_a_plant_is_in_a_batch_if_it_is_linear(changes, settings, reason):
-    assert batchable(RunSettings(load_scenario('thesis', changes), **settings), PI) == reason
+    assert (
+        why_not_batchable(RunSettings(load_scenario('thesis', changes), **settings), PI) == reason
+    )
 
 
 def test_a_run_with_an_unsupported_key_is_not_in_a_batch():

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.batch.results import one_or_more, stacked_plants
+from ddct_bringup.batch.results import part_of_stack, stacked_plants
 from ddct_bringup.metrics.engagement import Engagement
 from ddct_bringup.metrics.metric import finite
 from ddct_bringup.metrics.plant import JudgedPlant
@@ -66,7 +66,7 @@ def test_criteria_are_those_of_each_single_run(stack, window):
     exist = existing(runs)
     undefined = set()
     for run in range(RUNS):
-        alone = judged(one_or_more(stack, run), window, PLANTS[run])
+        alone = judged(part_of_stack(stack, run), window, PLANTS[run])
         single = criteria(alone)
         assert {
             name: np.broadcast_to(each, RUNS)[run] for name, each in exist.items()
@@ -87,10 +87,10 @@ def test_judder_begins_at_half_a_second_of_slipping_in_a_batch_as_in_a_single_ru
     steps = np.arange(SAMPLES)
     slip = np.array([np.where(steps < START + length, 30.0, -1e-9) for length in lengths])
     slip[-1] = np.where((steps >= START + 5) & (steps < START + 125), 30.0, 0.0)
-    signals = one_or_more(stack, slice(len(lengths))).signals
+    signals = part_of_stack(stack, slice(len(lengths))).signals
     trajectory = Trajectory({**signals, 'slip_speed': slip})
     batch = judged(trajectory).judder
-    single = [finite(judged(one_or_more(trajectory, run)).judder) for run in range(len(slip))]
+    single = [finite(judged(part_of_stack(trajectory, run)).judder) for run in range(len(slip))]
     assert [each is not None for each in single] == [length >= 51 for length in lengths[:-1]] + [
         True
     ]

@@ -8,7 +8,7 @@ from collections import Counter
 import numpy as np
 import pytest
 
-from ddct_bringup.batch.batchable import batchable
+from ddct_bringup.batch.batchable import why_not_batchable
 from ddct_bringup.batch.run_batch import run_batch, trajectories
 from ddct_bringup.campaign.rows import scored_headless
 from ddct_bringup.run.headless import run_headless
@@ -109,7 +109,7 @@ def assert_close(values, expected):
 
 
 def test_every_run_can_be_in_a_batch(runs):
-    assert {batchable(*run) for run in runs} == {''}
+    assert {why_not_batchable(*run) for run in runs} == {''}
     assert len({controller.registered_name for _, controller in runs}) >= 14
 
 

@@ -279,7 +279,7 @@ def test_what_is_linear_is_computed_at_once_and_all_else_step_by_step(
     rows = [each.row() for each in scorer.scored(made.planned(0, made.runs))]
     assert [row['path'] for row in rows] == ['serial'] * 4 + ['vectorised'] * 2 + ['serial'] * 2
     assert [row['valid'] for row in rows] == [False] * 4 + [True] * 4
-    monkeypatch.setattr(scored, 'batchable', lambda settings, controller: 'not now')
+    monkeypatch.setattr(scored, 'why_not_batchable', lambda settings, controller: 'not now')
     again = [each.row() for each in scorer.scored(made.planned(0, made.runs))]
     assert {row['path'] for row in again} == {'serial'}
     assert [differences(row, other) for row, other in zip(rows, again, strict=True)] == [[]] * 8

@@ -27,7 +27,7 @@ def test_each_run_has_a_controller_of_its_own_gains(monkeypatch) -> None:
     content = {'controllers': ['pi'], 'grid': {GAIN: [0.05, 0.1, 0.2], 'wear_gain': [0.8, 1.0]}}
     rows = rows_of(**content)
     assert {row['path'] for row in rows} == {VECTORISED}
-    monkeypatch.setattr(scored, 'batchable', lambda settings, controller: 'not now')
+    monkeypatch.setattr(scored, 'why_not_batchable', lambda settings, controller: 'not now')
     alone = rows_of(**content)
     for row, expected in zip(rows, alone, strict=True):
         assert differences(row, {**expected, 'path': VECTORISED}) == []
@@ -39,7 +39,7 @@ def test_each_run_is_scored_over_the_window_that_its_scenario_gives(monkeypatch)
     content = {'controllers': ['ls8'], 'grid': grid}
     rows = rows_of(**content)
     assert {row['path'] for row in rows} == {VECTORISED}
-    monkeypatch.setattr(scored, 'batchable', lambda settings, controller: 'not now')
+    monkeypatch.setattr(scored, 'why_not_batchable', lambda settings, controller: 'not now')
     alone = rows_of(**content)
     for row, expected in zip(rows, alone, strict=True):
         assert differences(row, expected) == []

@@ -53,7 +53,9 @@ def _draw_reference(axes: Axes) -> str:
     to_axes = axes.get_xaxis_transform()
     across: LineStyle = {'color': GREY, 'linewidth': 1.0, 'transform': to_axes}
     draw_over_time(
-        *(axes, 'Slip speed reference, rpm', (0.0, _LAST_S)),
+        axes,
+        'Slip speed reference, rpm',
+        (0.0, _LAST_S),
         {'reference': reference, 'control starts': start},
         {'reference': REFERENCE_LINE, 'control starts': across},
     )
@@ -84,7 +86,9 @@ def _draw_plants(axes: Axes) -> str:
         **plant_slips({**SIMPLIFIED_PLANTS, **printed}),
     }
     draw_over_time(
-        *(axes, 'w_d, rpm', (0.0, run.time_s[-1])),
+        axes,
+        'w_d, rpm',
+        (0.0, run.time_s[-1]),
         {name: (run.time_s, rpm_from_rad_s(slip)) for name, slip in slips.items()},
         {'detailed model': {'color': '#c4c4c4', 'linewidth': 6}},
     )

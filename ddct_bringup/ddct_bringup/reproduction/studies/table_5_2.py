@@ -46,12 +46,12 @@ def table_5_2_in_numbers() -> Study:
 
 
 def rows_of(clutch: str, wear_gain: float) -> list[tuple[str, ...]]:
-    """Return a row per controller."""
+    """Return the rows of the table for a clutch and a wear gain, one for each controller."""
     settings = RunSettings(THESIS_SCENARIO, WORN_ARCHITECTURE, clutch=clutch, wear_gain=wear_gain)
     runs = {name: headless_run(settings, name) for name in SLIP_RATINGS}
     states = {name: run.verdict.state for name, run in runs.items()}
-    figures = rows_of_table_5_2(runs)
-    ranked = [_with_states(row, states) for row in figures]
+    rows = rows_of_table_5_2(runs)
+    ranked = [_with_states(row, states) for row in rows]
     words = [ratings_of(row) for row in ranked]
     printed = judge_table_5_2(wear_gain, ranked) if wear_gain in WORN else {}
     return [
@@ -59,7 +59,7 @@ def rows_of(clutch: str, wear_gain: float) -> list[tuple[str, ...]]:
             clutch,
             f'{wear_gain:g}',
             name,
-            *(f'{row[name]:.3g}' for row in figures),
+            *(f'{row[name]:.3g}' for row in rows),
             states[name],
             *(row[name] for row in words),
             _printed(printed.get(f'5.2 {name} w_d {wear_gain:g}'), SLIP_RATINGS[name]),
@@ -75,8 +75,8 @@ def rows_of(clutch: str, wear_gain: float) -> list[tuple[str, ...]]:
 def _with_states(row: Row, states: Mapping[str, str]) -> Row:
     """Return the values, infinite for a failed run: a small one is no good result there."""
     return {
-        name: figure if states[name] in (*SUCCESSES, NOT_ENGAGED) else math.inf
-        for name, figure in row.items()
+        name: value if states[name] in (*SUCCESSES, NOT_ENGAGED) else math.inf
+        for name, value in row.items()
     }
 
 

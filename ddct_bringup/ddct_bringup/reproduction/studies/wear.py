@@ -39,7 +39,7 @@ _LOAD_STEP = LOAD_STEP_N_M, steps_in('load step', LOAD_STEP_S)
 
 
 def wear() -> Study:
-    """Run the controllers at every wear gain, detailed: Table 5.2 in numbers."""
+    """Run the controllers at every wear gain, in the detailed architecture."""
     return _study(
         'detailed',
         FINER_WEAR_GAINS,
@@ -63,7 +63,7 @@ def _study(architecture: str, wear_gains: tuple[float, ...], remark: str) -> Stu
             Column('w_d at 0.6 s rpm', '.0f', lambda run: run.slip_rpm[run.start]),
             *TABLE_5_1,
             Column('w_d at the end rpm', 'z.2f', lambda run: run.slip_rpm[-1]),
-            Column('largest in last 0.5 s', '.2f', _largest_at_last),
+            Column('largest in last 0.5 s', '.2f', _largest_in_last_part),
             Column('after load step', 'z.2f', _after_load_step),
         ),
         [
@@ -79,7 +79,7 @@ def _study(architecture: str, wear_gains: tuple[float, ...], remark: str) -> Stu
     )
 
 
-def _largest_at_last(run: HeadlessRun) -> float:
+def _largest_in_last_part(run: HeadlessRun) -> float:
     return float(np.abs(run.slip_rpm[-steps_in('last', LAST_S) :]).max())
 
 

@@ -60,7 +60,7 @@ def sigmas(controllers: Sequence[str], architecture: str = 'detailed') -> tuple[
 
 
 def below(one: str, other: str, rows: Iterable[Row]) -> bool:
-    """Return whether one controller has the lower figure in every row."""
+    """Return whether one controller has the lower value in every row."""
     return all(row[one] < row[other] for row in rows)
 
 
