@@ -45,7 +45,8 @@ def test_the_first_row_comes_before_the_last_run_is_computed(
         computed.extend(range(first, last))
         return planned(self, first, last)
 
-    monkeypatch.setattr(scored, '_LARGEST_PART', {True: 2, False: 2})
+    monkeypatch.setattr(scored, '_LARGEST_PART_AT_ONCE', 2)
+    monkeypatch.setattr(scored, '_LARGEST_PART_STEP_BY_STEP', 2)
     rows = run_specification(spec(), packaged_limits(), workers=1)
     monkeypatch.setattr(scored.RunSet, 'require_sound', lambda self: None)
     monkeypatch.setattr(scored.RunSet, 'planned', counted)
