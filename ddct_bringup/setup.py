@@ -19,6 +19,7 @@ PROGRAMS = [
     'report = ddct_bringup.programs.report:main',
     'score = ddct_bringup.programs.score:main',
     'sweep = ddct_bringup.programs.sweep:main',
+    'verify = ddct_bringup.programs.verify:main',
 ]
 DDCT = 'ddct = ddct_bringup.programs.ddct:main'
 WHEEL = not {'bdist_wheel', 'dist_info', 'editable_wheel'}.isdisjoint(sys.argv)

@@ -18,6 +18,7 @@ from ddct_bringup.campaign.shards import (
     each_controller_first,
     timed_shard,
 )
+from ddct_bringup.digests.writing import begin_campaign_digests, finish_campaign_digests
 from ddct_bringup.run.output_folder import (
     MARKER,
     locked_folders,
@@ -58,6 +59,7 @@ def carry_out(
     """
     with locked_folders(out), workers_of(workers, scheduler) as ready:
         manifest = _begin(campaign, limits, out, resume=resume, stopped=stopped)
+        begin_campaign_digests(out, one_machine=scheduler is None)
         schema = schema_of(campaign.spec)
         shards = _shards(campaign, limits, manifest, out)
         missing = {
@@ -70,6 +72,7 @@ def carry_out(
         conduct = _Conduct(ready, progress, stopped, TimeLeft(campaign.cases))
         conduct.compute(missing, done)
         merge([*shards], manifest.shard_size, schema, out / RESULTS, RESUME)
+        finish_campaign_digests(out)
     return out / RESULTS
 
 

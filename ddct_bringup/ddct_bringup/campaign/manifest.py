@@ -2,17 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """`manifest.json`: the inputs of a campaign, used to resume it and to repeat its rows."""
 
-import hashlib
 import json
 from dataclasses import asdict, dataclass, fields
-from functools import cache
-from importlib.resources import files
-from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import Any
 
 from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.spec import CampaignSpec, spec_of
+from ddct_bringup.digests.code import code_digest
 from ddct_bringup.run.description import short_commit, source_commit
 from ddct_bringup.verdict.limits import Limits
 from ddct_plant.base.errors import DdctError, ParameterError
@@ -23,8 +20,6 @@ from ddct_plant.program.command_line import package_version
 MANIFEST = 'manifest.json'
 SCHEMA_VERSION = 1
 """Schema version of the manifest."""
-_PACKAGES = ('ddct_plant', 'ddct_reference', 'ddct_controllers', 'ddct_bringup')
-_SOURCES = ('.py', '.yaml')
 _MOST_RUNS = 2000
 """Largest number of runs in a shard."""
 _LEAST_SHARDS = 50
@@ -101,13 +96,17 @@ class Manifest:
         """Keys drawn at random, also in a manifest of a version with other keys."""
         return _keys((self.spec.get('random') or {}).get('vary'))
 
-    def campaign_spec(self) -> CampaignSpec:
-        """Return the specification of the campaign."""
-        return spec_of(self.spec, Path(self.folder))
+    def campaign_spec(self, folder: Path | None = None) -> CampaignSpec:
+        """Return the specification; its files are in `folder` if they were moved."""
+        return spec_of(self.spec, folder or Path(self.folder))
 
-    def campaign(self, out: Path) -> Campaign:
-        """Return the campaign in `out`; raise DdctError where a file that it names has changed."""
-        campaign = Campaign(self.campaign_spec())
+    def campaign(self, out: Path, folder: Path | None = None) -> Campaign:
+        """
+        Return the campaign in `out`; the files that it names are in `folder` if they were moved.
+
+        Raise DdctError where one of them has changed.
+        """
+        campaign = Campaign(self.campaign_spec(folder))
         if campaign.digest() != self.spec_digest:
             raise DdctError(
                 f'{out}: a scenario, profile or controller file of its specification has changed '
@@ -143,15 +142,6 @@ class Manifest:
         return f'{short_commit(self.commit)} ({self.code_digest[:10]})'
 
 
-@cache
-def code_digest() -> str:
-    """Return a hash of the current sources of the packages: a commit may be dirty."""
-    digest = hashlib.sha256()
-    for package in _PACKAGES:
-        _add(digest, package, files(package))
-    return digest.hexdigest()
-
-
 def _keys(group: Any) -> tuple[str, ...]:
     """Return the keys of an optional part of a specification."""
     return tuple(group or ())
@@ -164,12 +154,3 @@ def require_code(digest: str) -> None:
             'a worker has other sources than the program that started the campaign: install the '
             'same version there'
         )
-
-
-def _add(digest: 'hashlib._Hash', name: str, item: Traversable) -> None:
-    if item.is_dir():
-        for each in sorted(item.iterdir(), key=lambda each: each.name):
-            _add(digest, f'{name}/{each.name}', each)
-    elif name.endswith(_SOURCES):
-        digest.update(name.encode())
-        digest.update(item.read_bytes())

@@ -21,6 +21,7 @@ from ddct_bringup.campaign_report.reading import read_table, results_of
 from ddct_bringup.campaign_report.results import Results
 from ddct_bringup.campaign_report.summary import summary_of
 from ddct_bringup.campaign_report.summary_types import Summary
+from ddct_bringup.digests.writing import keep_digests
 from ddct_bringup.metrics.catalogue import TABLE_5_1
 from ddct_bringup.report.page_parts import (
     MARKER,
@@ -61,6 +62,7 @@ def write_campaign_page(folder: Path) -> Summary:
     with locked_folders(folder):
         write_json(str(folder / SUMMARY), summary)
         write_text(str(folder / PAGE), page)
+        keep_digests([folder / SUMMARY, folder / PAGE])
     return summary
 
 

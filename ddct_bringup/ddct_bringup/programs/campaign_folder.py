@@ -20,13 +20,15 @@ from ddct_bringup.campaign.columns import (
     read_row,
 )
 from ddct_bringup.campaign.conduct import RESULTS
-from ddct_bringup.campaign.manifest import Manifest, code_digest
+from ddct_bringup.campaign.manifest import Manifest
 from ddct_bringup.campaign.rows import SERIAL, result_row
 from ddct_bringup.campaign_report.distributions_figure import require_picture, write_distributions
 from ddct_bringup.campaign_report.folder import PAGE, SUMMARY, scenario_of, write_campaign_page
 from ddct_bringup.campaign_report.printed_summary import print_summary
 from ddct_bringup.campaign_report.reading import read_table, results_of
 from ddct_bringup.campaign_report.texts import RULES
+from ddct_bringup.digests.code import code_digest
+from ddct_bringup.digests.writing import keep_digests
 from ddct_bringup.run.execution import run_with_progress
 from ddct_bringup.run.options import add_layout_options
 from ddct_bringup.run.output_folder import StagedFolder, run_folder
@@ -152,6 +154,8 @@ def _show(options: argparse.Namespace) -> int:
         manifest = Manifest.read(options.folder)
         results = results_of(manifest, read_table(options.folder, manifest))
         write_distributions(results, scenario_of(manifest), Path(options.figure))
+    written = (options.json, options.csv, options.figure)
+    keep_digests(file for file in written if file not in (None, STDOUT))
     if STDOUT not in (options.json, options.csv):
         print_summary(summary, str(options.folder))
         print(options.folder / PAGE)

@@ -7,6 +7,7 @@ import sys
 from functools import partial
 from pathlib import Path
 
+from ddct_bringup.digests.writing import write_run_digests
 from ddct_bringup.processes.warm_parent import WarmParent
 from ddct_bringup.programs.report import REPORT_FILE, require_chart_library, write_report
 from ddct_bringup.report.evidence import FREQUENCY_FILE
@@ -113,6 +114,7 @@ def _run_all(
         raise DdctError(f'no run is valid ({", ".join(failed)}): {folder.left}')
     write_json(str(folder.path / FREQUENCY_FILE), evidence)
     write_report(in_order(runs), str(folder.path / REPORT_FILE), limits)
+    write_run_digests(folder.path, {plan.name: plan for plan in plans})
     folder.commit()
     print_logs_with_warnings(PROGRAM, [folder.final / plan.name for plan in plans])
     print(

@@ -11,6 +11,7 @@ from pathlib import Path
 from rich.console import Console
 
 from ddct_bringup.bag.measured_run import add_columns_option
+from ddct_bringup.digests.writing import keep_digests
 from ddct_bringup.report.evidence import evidence_of
 from ddct_bringup.report.page_parts import MARKER
 from ddct_bringup.report.run_labels import in_order, require_one_scenario
@@ -63,6 +64,7 @@ def _report(argv: list[str]) -> int:
             ]
         )
         write_report(runs, options.out, limits)
+        keep_digests([options.out] if places else [])
     for run in runs:
         if not run.scores.valid:
             complain(PROGRAM, f'{run.scores.bag}: {run.scores.reason}')

@@ -10,6 +10,7 @@ from pathlib import Path
 from ddct_bringup.bag.measured_run import add_columns_option, is_log, read_recording
 from ddct_bringup.bag.reader import Recording
 from ddct_bringup.bag.repair import repair_bag
+from ddct_bringup.digests.writing import keep_digests
 from ddct_bringup.metrics.comfort import VDV_WEIGHTING
 from ddct_bringup.run.output_folder import is_ours, locked_folders
 from ddct_bringup.scores.bags import bag_name, bags_in
@@ -61,11 +62,14 @@ def _score(argv: list[str]) -> int:
     limits = load_limits(options.limits)
     bags = bags_in(options.bags)
     with locked_folders(*_run_folders(options, [bag for bag, _ in bags])):
-        runs = _scored(bags, options, limits)
+        written: list[Path | str] = []
+        runs = _scored(bags, options, limits, written)
         if options.json:
             write_json(options.json, scores_document(runs, limits))
         if options.csv:
             write_text(options.csv, scores_csv(runs))
+        written += [file for file in (options.json, options.csv) if file not in (None, STDOUT)]
+        keep_digests(written)
     table = sys.stderr if STDOUT in (options.json, options.csv) else sys.stdout
     print_runs(runs, (BAG, CONTROLLER, WEAR, *COLUMNS), table)
     return 0 if all(run.valid for run in runs) else 1
@@ -81,8 +85,12 @@ def _run_folders(options: argparse.Namespace, bags: Iterable[Path]) -> list[Path
 
 
 def _scored(
-    bags: Sequence[tuple[Path, Path | None]], options: argparse.Namespace, limits: Limits
+    bags: Sequence[tuple[Path, Path | None]],
+    options: argparse.Namespace,
+    limits: Limits,
+    written: list[Path | str],
 ) -> list[ScoredRun]:
+    """Return the scores of bags; write their signals if wanted, and add the files to `written`."""
     runs = []
     wanted = {ending: each for ending, each in _signal_folders(options).items() if each}
     stems = signal_file_stems(bags) if wanted else {}
@@ -95,6 +103,7 @@ def _scored(
                 complain(PROGRAM, f'{name}: {line}')
             for ending, target in wanted.items():
                 write_signals(target, f'{stems[bag]}.{ending}', recording)
+                written.append(target / f'{stems[bag]}.{ending}')
             runs.append(score_recording(recording, name, limits).scores)
         except DdctError as error:
             unreadable = unreadable_run(bag, error, relative_to=folder)

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from ddct_bringup.bag.measured_run import read_recording
 from ddct_bringup.bag.reader import Recording
+from ddct_bringup.digests.writing import ITSELF, write_run_digests
 from ddct_bringup.run.execution import execute, simulate
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.run.timing_and_failure import RunTiming, failed_run, read_timing
@@ -63,11 +64,12 @@ def run_and_score(
     carry_out: Callable[[RunPlan, Path], None] = execute,
 ) -> ScoredRecording:
     """
-    Execute a plan into the existing `folder`, read the bag there and score it.
+    Execute a plan into the existing `folder`, write its digests, read the bag and score it.
 
     Raise the errors of `carry_out`, which executes, and DdctError for a bag that cannot be read.
     """
     carry_out(plan, folder)
+    write_run_digests(folder, {ITSELF: plan})
     return score_bag(folder, plan.name, limits)
 
 

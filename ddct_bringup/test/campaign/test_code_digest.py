@@ -8,11 +8,12 @@ from pathlib import Path
 import pytest
 from in_this_process import in_this_process
 
-from ddct_bringup.campaign import manifest
 from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.conduct import carry_out
-from ddct_bringup.campaign.manifest import code_digest, require_code
+from ddct_bringup.campaign.manifest import require_code
 from ddct_bringup.campaign.spec import spec_of
+from ddct_bringup.digests import code
+from ddct_bringup.digests.code import code_digest
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.base.errors import DdctError
 
@@ -25,7 +26,7 @@ def sources(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
         (tmp_path / package / 'module.py').write_text('GAIN = 1.0\n', encoding='utf-8')
         (tmp_path / package / 'room' / 'values.yaml').write_text('gain: 1.0\n', encoding='utf-8')
         (tmp_path / package / 'page.css').write_text('p {}\n', encoding='utf-8')
-    monkeypatch.setattr(manifest, 'files', lambda package: tmp_path / package)
+    monkeypatch.setattr(code, 'files', lambda package: tmp_path / package)
     code_digest.cache_clear()
     yield tmp_path
     code_digest.cache_clear()

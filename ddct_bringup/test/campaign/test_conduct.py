@@ -17,10 +17,12 @@ from ddct_bringup.campaign import conduct, run_set, scored, shards
 from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.columns import COMPARED, differences
 from ddct_bringup.campaign.conduct import RESULTS, SHARDS, carry_out
-from ddct_bringup.campaign.manifest import MANIFEST, Manifest, code_digest
+from ddct_bringup.campaign.manifest import MANIFEST, Manifest
 from ddct_bringup.campaign.rows import METRIC_COLUMNS
 from ddct_bringup.campaign.scored import Scorer
 from ddct_bringup.campaign.spec import spec_of
+from ddct_bringup.digests.code import code_digest
+from ddct_bringup.digests.digest_file import DIGESTS
 from ddct_bringup.run.output_folder import locked_folders
 from ddct_bringup.verdict.limits import limits_of_text, packaged_limits
 from ddct_plant.base.errors import DdctError, ParameterError
@@ -87,7 +89,7 @@ def test_the_bytes_are_the_same_each_time(whole: Path, tmp_path: Path, use) -> N
     assert sorted(workers.computed) == list(range(RUNS))
     assert workers.computed[:3] == [0, 4, 1], 'a controller is measured late'
     names = sorted(path.name for path in (tmp_path / 'out').iterdir())
-    assert names == ['.ddct-output', MANIFEST, RESULTS, SHARDS]
+    assert names == ['.ddct-output', DIGESTS, MANIFEST, RESULTS, SHARDS]
 
 
 def test_the_time_left_counts_each_controller_by_its_own_runs(

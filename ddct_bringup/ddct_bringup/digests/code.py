@@ -1,0 +1,29 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Digest of the sources of the packages."""
+
+import hashlib
+from functools import cache
+from importlib.resources import files
+from importlib.resources.abc import Traversable
+
+_PACKAGES = ('ddct_plant', 'ddct_reference', 'ddct_controllers', 'ddct_bringup')
+_SOURCES = ('.py', '.yaml')
+
+
+@cache
+def code_digest() -> str:
+    """Return a hash of the current sources of the packages: a commit may be dirty."""
+    digest = hashlib.sha256()
+    for package in _PACKAGES:
+        _add(digest, package, files(package))
+    return digest.hexdigest()
+
+
+def _add(digest: 'hashlib._Hash', name: str, item: Traversable) -> None:
+    if item.is_dir():
+        for each in sorted(item.iterdir(), key=lambda each: each.name):
+            _add(digest, f'{name}/{each.name}', each)
+    elif name.endswith(_SOURCES):
+        digest.update(name.encode())
+        digest.update(item.read_bytes())

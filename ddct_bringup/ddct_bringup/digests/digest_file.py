@@ -1,0 +1,116 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""`digests.json`: the digests of a folder's files, and what repeating its runs needs."""
+
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, fields, replace
+from pathlib import Path
+from typing import Any
+
+from ddct_bringup.digests.environment import Environment
+from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.files.input_file import parse_json, read_text_file, require_schema_version
+from ddct_plant.files.output_file import write_text
+
+DIGESTS = 'digests.json'
+SCHEMA_VERSION = 1
+"""Schema version of `digests.json`."""
+RUNS, CAMPAIGN = 'runs', 'campaign'
+"""Kinds of folders: one bag or several with their scores, and a campaign."""
+_MOST_BYTES = 50_000_000
+"""Largest size of `digests.json` in bytes; a campaign has a thousandth of that."""
+
+
+@dataclass(frozen=True)
+class RunDigests:
+    """Digests of one run, and where its controller comes from."""
+
+    scenario: str
+    """Digest of the scenario, as on `run_info`."""
+    controller: str | None
+    """
+    Name of the controller, or the path of its file relative to the folder; None where it was an
+    object of a Python program.
+    """
+    controller_files: Mapping[str, str]
+    """SHA-256 of the files that the controller is made of, by their key on `run_info`."""
+
+
+@dataclass(frozen=True)
+class Digests:
+    """Content of `digests.json`."""
+
+    schema_version: int
+    kind: str
+    """Kind of the folder, such as RUNS."""
+    files: Mapping[str, str]
+    """SHA-256 of every file but this one, by its path in the folder."""
+    environment: Environment
+    runs: Mapping[str, RunDigests] = field(default_factory=dict)
+    """Digests of each run of a folder of the kind RUNS, by the name of its bag."""
+
+    def with_files(self, files: Mapping[str, str]) -> 'Digests':
+        """Return the digests with these files, in place of those of the same path."""
+        return replace(self, files=dict(sorted({**self.files, **files}.items())))
+
+    def text(self) -> str:
+        """Return the text of the file; its last key is the SHA-256 of the text without it."""
+        content = asdict(self)
+        return _text(
+            {**content, 'own_digest': hashlib.sha256(_text(content).encode()).hexdigest()}
+        )
+
+    def write(self, folder: Path) -> None:
+        """Write `digests.json` into a folder; raise DdctError when that fails."""
+        write_text(str(folder / DIGESTS), self.text())
+
+
+def read_digests(folder: Path) -> Digests:
+    """
+    Return the digests of a folder.
+
+    Raise DdctError without the file, and for one of which any byte was altered.
+    """
+    path = folder / DIGESTS
+    try:
+        text = read_text_file(path, _MOST_BYTES)
+        content = parse_json(text)
+        require_schema_version(content, SCHEMA_VERSION)
+        digests = _digests_of(content)
+        if digests.text() != text:
+            raise ParameterError('its own digest does not match its content')
+    except FileNotFoundError as error:
+        raise DdctError(f'{folder}: no {DIGESTS} in it') from error
+    except OSError as error:
+        raise DdctError(f'{path}: cannot be read ({error.strerror})') from error
+    except (ParameterError, LookupError, TypeError, AttributeError, ValueError) as error:
+        why = error if isinstance(error, ParameterError) else repr(error)
+        raise DdctError(f'{path}: it is damaged ({why}): put the original back') from error
+    return digests
+
+
+def file_digest(path: Path) -> str:
+    """Return the SHA-256 of a file; raise DdctError when it cannot be read."""
+    try:
+        with path.open('rb') as file:
+            return hashlib.file_digest(file, 'sha256').hexdigest()
+    except OSError as error:
+        raise DdctError(f'{path}: cannot be read ({error.strerror})') from error
+
+
+def _digests_of(content: Mapping[str, Any]) -> Digests:
+    known = {each.name: content[each.name] for each in fields(Digests)}
+    runs = {name: RunDigests(**run) for name, run in known['runs'].items()}
+    for text in (known['kind'], *known['files'], *known['files'].values()):
+        if not isinstance(text, str):
+            raise ParameterError(f'{text!r} is no text')
+    for path in known['files']:
+        if Path(path).is_absolute() or '..' in Path(path).parts:
+            raise ParameterError(f'{path!r} is outside of the folder')
+    return Digests(**{**known, 'environment': Environment(**known['environment']), 'runs': runs})
+
+
+def _text(content: Any) -> str:
+    return json.dumps(content, indent=2, allow_nan=False) + '\n'

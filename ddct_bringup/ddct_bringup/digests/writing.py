@@ -1,0 +1,86 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Write and keep the digests of the folders that programs commit."""
+
+import os
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from pathlib import Path
+
+from ddct_bringup.digests.digest_file import (
+    CAMPAIGN,
+    DIGESTS,
+    RUNS,
+    SCHEMA_VERSION,
+    Digests,
+    RunDigests,
+    file_digest,
+    read_digests,
+)
+from ddct_bringup.digests.environment import this_environment
+from ddct_bringup.digests.files import digests_of_files
+from ddct_bringup.run.output_folder import is_ours
+from ddct_bringup.run.plan import RunPlan
+from ddct_controllers.from_file.controller_file import is_controller_file
+from ddct_controllers.registry import controller_spec
+from ddct_plant.scenario.file import scenario_digest
+
+ITSELF = '.'
+"""Name of the bag of a run's own folder."""
+
+
+def write_run_digests(folder: Path, plans: Mapping[str, RunPlan]) -> None:
+    """
+    Write the digests of a folder of runs, by the names of their bags.
+
+    A folder that gets another name beside this one later has the same digests. Raise DdctError
+    when a file cannot be read or written.
+    """
+    runs = {name: _run_digests(folder, plan) for name, plan in plans.items()}
+    files = digests_of_files(folder)
+    Digests(SCHEMA_VERSION, RUNS, files, this_environment(), runs).write(folder)
+
+
+def begin_campaign_digests(folder: Path, *, one_machine: bool) -> None:
+    """
+    Write the digests of a campaign that begins or is resumed.
+
+    The kind of processor is that of this one only if all rows are computed on `one_machine` and
+    none before on another. Raise DdctError when the file cannot be read or written.
+    """
+    here = this_environment()
+    known = read_digests(folder).environment if (folder / DIGESTS).exists() else None
+    resumed = any(folder.glob('shards/*'))
+    if not one_machine or (resumed and known != here):
+        here = replace(here, processor=None)
+    Digests(SCHEMA_VERSION, CAMPAIGN, digests_of_files(folder), here).write(folder)
+
+
+def finish_campaign_digests(folder: Path) -> None:
+    """Add the files of a finished campaign to its digests; raise DdctError when that fails."""
+    read_digests(folder).with_files(digests_of_files(folder)).write(folder)
+
+
+def keep_digests(paths: Iterable[Path | str]) -> None:
+    """
+    Renew the digests of files that a program has written, in the folders of results around them.
+
+    Files elsewhere have none. Raise DdctError when a file cannot be read or written.
+    """
+    for path in paths:
+        file = Path(os.path.realpath(path))
+        changed = [file]
+        for folder in file.parents:
+            if is_ours(folder) and (folder / DIGESTS).is_file():
+                names = {each.relative_to(folder).as_posix(): each for each in changed}
+                files = {name: file_digest(each) for name, each in names.items()}
+                read_digests(folder).with_files(files).write(folder)
+                changed.append(folder / DIGESTS)
+
+
+def _run_digests(folder: Path, plan: RunPlan) -> RunDigests:
+    spec, chosen = controller_spec(plan.controller), None
+    if isinstance(plan.controller, str):
+        is_file = is_controller_file(plan.controller)
+        chosen = os.path.relpath(plan.controller, folder) if is_file else plan.controller
+    return RunDigests(scenario_digest(plan.settings.scenario), chosen, dict(spec.digests))

@@ -1,0 +1,203 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""
+Compare numbers and texts of a result with those of its repetition: to the last bit, or to a bound.
+
+The bound is for another kind of processor or other versions, where the last bits may differ.
+"""
+
+import json
+import math
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ddct_bringup.bag.trajectory import Trajectory
+
+SAME_BITS, SAME_WITHIN = 'same_bits', 'same_within'
+DIFFERENT, DIGEST_ONLY = 'different', 'digest_only'
+"""States of a repeated run; DIGEST_ONLY of one that cannot be repeated."""
+BOUND = 1e-9
+"""
+Largest difference of two numbers that are the same, relative to the largest magnitude.
+
+That is the larger magnitude of a single number, and the largest in the run of a signal; 1 in its
+unit where it is smaller.
+"""
+_NUMBER = re.compile(r'[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?')
+
+Place = Mapping[str, Any]
+"""Where a value is, such as its signal and step, or its key."""
+
+
+@dataclass(frozen=True)
+class Difference:
+    """One value that differs."""
+
+    place: Place
+    recorded: Any = None
+    repeated: Any = None
+
+    def entry(self) -> Mapping[str, Any]:
+        """Return the difference as JSON."""
+        values = {'recorded': self.recorded, 'repeated': self.repeated}
+        return {**self.place, **{key: _plain(each) for key, each in values.items()}}
+
+
+@dataclass
+class Comparison:
+    """Comparison of one result with its repetition; differences are added in their order."""
+
+    bits: Difference | None = None
+    """First difference at all."""
+    beyond: Difference | None = None
+    """First difference beyond the bound."""
+    largest: float = 0.0
+    """Largest difference, relative as BOUND; infinite for values that are no numbers."""
+
+    def add(self, place: Place, recorded: Any, repeated: Any) -> None:
+        """Compare two values: numbers, texts, or None."""
+        deviation = _deviation(recorded, repeated)
+        if deviation is not None:
+            self._note(deviation, Difference(place, recorded, repeated))
+
+    def add_nested(self, key: str, recorded: Any, repeated: Any) -> None:
+        """Compare two values of JSON, whose place is a dotted key."""
+        if isinstance(recorded, Mapping) and isinstance(repeated, Mapping):
+            for name in (*recorded, *(name for name in repeated if name not in recorded)):
+                path = f'{key}.{name}' if key else name
+                self.add_nested(path, recorded.get(name), repeated.get(name))
+        elif (
+            isinstance(recorded, list)
+            and isinstance(repeated, list)
+            and len(recorded) == len(repeated)
+        ):
+            for number, (ours, theirs) in enumerate(zip(recorded, repeated, strict=True)):
+                self.add_nested(f'{key}[{number}]', ours, theirs)
+        else:
+            self.add({'key': key}, recorded, repeated)
+
+    def add_trajectories(self, recorded: Trajectory, repeated: Trajectory) -> None:
+        """Compare all signals of two runs; the first difference is that of the earliest step."""
+        ours, theirs = recorded.signals, repeated.signals
+        found = [
+            each
+            for name in (*ours, *(name for name in theirs if name not in ours))
+            for each in _signal_differences(name, ours.get(name), theirs.get(name))
+        ]
+        for deviation, difference in sorted(found, key=lambda each: each[1].place['step']):
+            self._note(deviation, difference)
+
+    def state(self, *, same_environment: bool) -> str:
+        """Return the state: with the same code, versions and processor only equal bits count."""
+        if self.bits is None:
+            return SAME_BITS
+        return DIFFERENT if self.beyond or same_environment else SAME_WITHIN
+
+    def first(self, *, same_environment: bool) -> Difference | None:
+        """Return the first difference that makes the state DIFFERENT, None in another state."""
+        if self.state(same_environment=same_environment) != DIFFERENT:
+            return None
+        return self.bits if same_environment else self.beyond
+
+    def _note(self, deviation: float, difference: Difference) -> None:
+        self.largest = max(self.largest, deviation)
+        self.bits = self.bits or difference
+        if deviation > BOUND:
+            self.beyond = self.beyond or difference
+
+
+def _deviation(recorded: Any, repeated: Any) -> float | None:
+    """Return the relative difference of two values, None for equal ones, infinity without one."""
+    if recorded == repeated and isinstance(recorded, bool) == isinstance(repeated, bool):
+        return None
+    if isinstance(recorded, str) and isinstance(repeated, str):
+        return _text_deviation(recorded, repeated)
+    if _is_number(recorded) and _is_number(repeated):
+        if math.isnan(recorded) and math.isnan(repeated):
+            return None
+        return _relative(recorded, repeated)
+    return math.inf
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool)
+
+
+def _relative(recorded: float, repeated: float) -> float:
+    difference = abs(recorded - repeated) / max(1.0, abs(recorded), abs(repeated))
+    return difference if math.isfinite(difference) else math.inf
+
+
+def _text_deviation(recorded: str, repeated: str) -> float:
+    """Return the largest difference of the numbers in two texts of the same words."""
+    if _NUMBER.split(recorded) != _NUMBER.split(repeated):
+        return math.inf
+    pairs = zip(_NUMBER.findall(recorded), _NUMBER.findall(repeated), strict=True)
+    return max((_relative(float(ours), float(theirs)) for ours, theirs in pairs), default=math.inf)
+
+
+def _signal_differences(
+    name: str, recorded: Any, repeated: Any
+) -> Iterator[tuple[float, Difference]]:
+    """Yield the first difference of a signal, the first beyond the bound, and the largest one."""
+    ours, theirs = _form(recorded), _form(repeated)
+    if ours != theirs:
+        yield math.inf, Difference({'signal': name, 'step': 0}, ours, theirs)
+        return
+    steps = min(len(recorded), len(repeated))
+    deviations = _deviations(recorded[:steps], repeated[:steps])
+    places = [*np.flatnonzero(deviations >= 0.0)[:1], *np.flatnonzero(deviations > BOUND)[:1]]
+    for step in (*places, *([deviations.argmax()] if places else [])):
+        values = (recorded[step], repeated[step])
+        yield float(deviations[step]), Difference({'signal': name, 'step': int(step)}, *values)
+    if len(recorded) != len(repeated):
+        yield math.inf, Difference({'signal': name, 'step': steps}, len(recorded), len(repeated))
+
+
+def _form(signal: Any) -> str:
+    """Return the form of a signal: absent, texts, or numbers of a size at each step."""
+    if signal is None:
+        return 'absent'
+    return f'numbers {signal.shape[1:]}' if isinstance(signal, np.ndarray) else 'texts'
+
+
+def _deviations(recorded: Any, repeated: Any) -> np.ndarray:
+    """Return the relative difference at each step, (N+1,); -1 where all bits are equal."""
+    if isinstance(recorded, np.ndarray):
+        return _array_deviations(recorded, repeated)
+    pairs = zip(recorded, repeated, strict=True)
+    return np.array([-1.0 if a == b else _text_deviation(repr(a), repr(b)) for a, b in pairs])
+
+
+def _array_deviations(recorded: np.ndarray, repeated: np.ndarray) -> np.ndarray:
+    """Return the largest relative difference at each step, (N+1,); -1 where all bits are equal."""
+    ours, theirs = (np.ascontiguousarray(each, dtype=float) for each in (recorded, repeated))
+    unequal = ours.view(np.uint64) != theirs.view(np.uint64)
+    with np.errstate(all='ignore'):
+        scale = np.maximum(1.0, np.nanmax(np.abs(ours), axis=0, initial=0.0))
+        relative = np.abs(ours - theirs) / scale
+    relative = np.where(np.isfinite(relative), relative, np.inf)
+    found = np.where(unequal, relative, -1.0)
+    return found.reshape(len(found), -1).max(axis=1, initial=-1.0)
+
+
+def _plain(value: Any) -> Any:
+    """Return a value as JSON can contain it."""
+    if isinstance(value, np.ndarray):
+        return [_plain(each) for each in value.tolist()]
+    if isinstance(value, np.generic):
+        return _plain(value.item())
+    if isinstance(value, float) and not math.isfinite(value):
+        return repr(value)
+    if value is None or isinstance(value, (bool, int, float, str)):
+        return value
+    return [_plain(each) for each in value] if isinstance(value, Sequence) else repr(value)
+
+
+def plain_json(value: Any) -> Any:
+    """Return a value as JSON reads it back: lists for tuples, texts for keys."""
+    return json.loads(json.dumps(value))

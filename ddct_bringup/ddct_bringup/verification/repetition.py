@@ -1,0 +1,65 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Plan the repetition of a recorded run: its settings and its controller, unchanged."""
+
+import os
+from pathlib import Path
+
+from ddct_bringup.bag.reader import Recording
+from ddct_bringup.digests.digest_file import RunDigests
+from ddct_bringup.run.plan import RunPlan
+from ddct_bringup.verification.request import Request
+from ddct_controllers.from_file.controller_file import is_controller_file
+from ddct_controllers.registry import controller_spec
+from ddct_plant.base.errors import DdctError
+
+
+def plan_of(request: Request, recording: Recording, digests: RunDigests) -> RunPlan:
+    """Return the headless plan of a recorded run; raise DdctError where it cannot be made."""
+    settings = recording.settings
+    if settings is None:
+        version = recording.custom_data.get('version', 'unknown')
+        raise DdctError(
+            f'this version cannot build its settings; it was recorded by version {version}: '
+            'verify it with that one'
+        )
+    plan = RunPlan(settings, controller_of(request, digests), 'headless')
+    if plan.name != recording.facts.controller:
+        raise DdctError(
+            f'its controller is {recording.facts.controller}, its digests are of {plan.name}'
+        )
+    return plan
+
+
+def controller_of(request: Request, digests: RunDigests) -> str:
+    """Return the name or the file of a run's controller; raise DdctError unless it is the same."""
+    chosen = digests.controller
+    if chosen is None:
+        raise DdctError(
+            'its controller was an object of a Python program, and cannot be made again: record '
+            'it with a controller file'
+        )
+    if is_controller_file(chosen):
+        chosen = str(_found(request, Path(chosen)))
+    files = dict(controller_spec(chosen).digests)
+    for key, digest in digests.controller_files.items():
+        if files.get(key) != digest:
+            what = 'has changed since' if key in files else 'is gone'
+            raise DdctError(
+                f'controller {chosen}: {key.removesuffix("_sha256")} {what}: put the old one '
+                'back, or name its folder with --files'
+            )
+    return chosen
+
+
+def _found(request: Request, file: Path) -> Path:
+    """Return the path of a controller file; raise DdctError where it is gone."""
+    places = [Path(os.path.normpath(request.folder / file))]
+    if request.files:
+        places.insert(0, request.files / file.name)
+    for place in places:
+        if place.is_file():
+            return place
+    raise DdctError(
+        f'the controller file {places[0]} is gone: put it back, or name its folder with --files'
+    )

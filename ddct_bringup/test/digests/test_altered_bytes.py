@@ -1,0 +1,37 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Any altered byte of any kind of file of a result is found, and the file is named."""
+
+from pathlib import Path
+
+import pytest
+from altered_bytes import kinds_of_files, not_found
+from verified import make_runs, make_small_campaign
+
+COUNT = 60
+
+
+@pytest.fixture(scope='module')
+def results(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
+    """Return a folder of runs and that of a campaign."""
+    place = tmp_path_factory.mktemp('results')
+    return {'runs': make_runs(place / 'runs', 'pi'), 'campaign': make_small_campaign(place)}
+
+
+@pytest.mark.parametrize(
+    ('kind', 'names'),
+    [
+        (
+            'runs',
+            ['.mcap', '.yaml', '.html', 'timing.json', 'scores.json', 'frequency.json'],
+        ),
+        ('campaign', ['.parquet', '.html', 'manifest.json', 'summary.json']),
+    ],
+)
+def test_every_altered_byte_is_found_in_the_file_that_is_named(
+    results: dict[str, Path], kind: str, names: list[str]
+) -> None:
+    files = kinds_of_files(results[kind])
+    assert {*names, 'digests.json', '.ddct-output'} <= files.keys()
+    lost = {name: not_found(results[kind], file, COUNT) for name, file in files.items()}
+    assert lost == dict.fromkeys(files, [])

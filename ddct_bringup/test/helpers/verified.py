@@ -1,0 +1,93 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Results to verify: runs and a campaign, and edits of them together with their digests."""
+
+import json
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from ddct_bringup.digests.digest_file import file_digest, read_digests
+from ddct_bringup.programs import bringup, campaign, compare, verify
+
+SPEC = """\
+controllers: [ls8]
+clutch: stick_slip
+seed: 3
+grid: {wear_gain: [0.8, 1.0], duration_s: [0.7]}
+random:
+  samples: 1
+  vary:
+    vehicle.mass_kg: {distribution: uniform, low: 1000, high: 2000}
+"""
+CONTROLLER = """\
+from ddct_bringup.api import Command, Controller
+
+
+class Mine(Controller):
+    def reset(self):
+        pass
+
+    def update(self, measurement):
+        return Command(-0.1 * measurement.slip_error_rpm)
+"""
+
+
+def make_runs(out: Path, controllers: str = 'pi,mpc3', *options: str) -> Path:
+    """Compare controllers headless for a short time, and return the folder."""
+    given = ['--controllers', controllers, '--duration', '0.8', '--headless', '--out', str(out)]
+    assert compare.main([*given, *options]) == 0
+    return out
+
+
+def make_bag(out: Path, *options: str) -> Path:
+    """Run one controller headless for a short time, and return the folder around its bag."""
+    assert bringup.main(['--duration', '0.8', '--headless', '--out', str(out), *options]) == 0
+    return out
+
+
+def make_small_campaign(place: Path) -> Path:
+    """Carry out a campaign of two rows, and return its folder."""
+    place.mkdir(exist_ok=True)
+    (place / 'spec.yaml').write_text(SPEC, encoding='utf-8')
+    out = place / 'campaign'
+    assert campaign.main([str(place / 'spec.yaml'), '--out', str(out), '--workers', '1']) == 0
+    return out
+
+
+def copied(folder: Path, to: Path) -> Path:
+    """Return a copy of a result."""
+    shutil.copytree(folder, to)
+    return to
+
+
+def edit_with_digest(folder: Path, name: str, content: bytes) -> None:
+    """Replace a file of a result, and its digest too."""
+    (folder / name).write_bytes(content)
+    digests = read_digests(folder)
+    digests.with_files({name: file_digest(folder / name)}).write(folder)
+
+
+def edit_json_with_digest(folder: Path, name: str, edit: Callable[[Any], None]) -> None:
+    """Edit the content of a JSON file of a result, and its digest too."""
+    content = json.loads((folder / name).read_text(encoding='utf-8'))
+    edit(content)
+    edit_with_digest(folder, name, (json.dumps(content, indent=2) + '\n').encode())
+
+
+def verified(
+    folder: Path, capfd: pytest.CaptureFixture[str], *options: str
+) -> tuple[int, dict[str, Any], str]:
+    """Return exit code, JSON and standard error of `verify`."""
+    capfd.readouterr()
+    code = verify.main([str(folder), '--json', '-', *options])
+    printed = capfd.readouterr()
+    return code, json.loads(printed.out) if printed.out else {}, printed.err
+
+
+def states(document: dict[str, Any]) -> dict[str, str]:
+    """Return the states of the runs by name."""
+    return {run['run']: run['state'] for run in document['runs']}

@@ -1,0 +1,152 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""`verify` computes every row of a campaign again."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pyarrow as pa
+import pyarrow.parquet as parquet
+import pytest
+from verified import (
+    copied,
+    edit_json_with_digest,
+    make_small_campaign,
+    states,
+    verified,
+)
+
+from ddct_bringup.campaign.conduct import RESULTS, SHARDS
+from ddct_bringup.digests.digest_file import DIGESTS, read_digests
+from ddct_bringup.digests.files import digests_of_files
+from ddct_bringup.programs import campaign
+
+pytestmark = pytest.mark.slow
+ROWS = 'ls8: rows 0 to 1'
+
+
+@pytest.fixture(scope='module')
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return the folder of a campaign of two rows."""
+    return make_small_campaign(tmp_path_factory.mktemp('whole'))
+
+
+def test_an_untouched_campaign_is_the_same_to_the_last_bit_wherever_it_is(
+    whole: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    code, document, errors = verified(copied(whole, tmp_path / 'there'), capfd, '--workers', '1')
+    assert (code, errors) == (0, '')
+    names = ['manifest.json', ROWS, 'shards', 'summary.json']
+    assert states(document) == dict.fromkeys(names, 'same_bits')
+    assert f'{SHARDS}/00000001.parquet' in [file['path'] for file in document['files']]
+
+
+def test_showing_a_campaign_keeps_its_digests(
+    whole: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    folder = copied(whole, tmp_path / 'there')
+    assert campaign.main(['show', str(folder), '--csv', str(folder / 'rows.csv')]) == 0
+    assert 'rows.csv' in read_digests(folder).files
+    assert verified(folder, capfd, '--workers', '1')[0] == 0
+
+
+def _edit_rows(folder: Path, name: str, edit: Callable[[list[Any]], list[Any]]) -> None:
+    """Edit a column of the results and of the shards, and their digests too."""
+    for file in (folder / RESULTS, *sorted((folder / SHARDS).iterdir())):
+        table = parquet.read_table(file)
+        place = table.column_names.index(name)
+        values = edit(table[name].to_pylist())
+        column = pa.array(values, table.schema.field(place).type)
+        parquet.write_table(table.set_column(place, table.schema.field(place), column), file)
+    read_digests(folder).with_files(digests_of_files(folder)).write(folder)
+
+
+@pytest.mark.parametrize(
+    ('name', 'edit'),
+    [
+        ('slip_final_rpm', lambda values: [value * (1.0 + 1e-15) for value in values]),
+        ('seed', lambda values: [value + 1 for value in values]),
+        ('vehicle.mass_kg', lambda values: [value + 1.0 for value in values]),
+        ('verdict_state', lambda values: ['engaged' for _ in values]),
+        ('valid', lambda values: [False for _ in values]),
+    ],
+)
+def test_a_row_edited_with_its_digest_is_found(
+    whole: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str], name: str, edit: Any
+) -> None:
+    folder = copied(whole, tmp_path / 'there')
+    _edit_rows(folder, name, edit)
+    code, document, errors = verified(folder, capfd, '--workers', '1')
+    assert (code, states(document)[ROWS]) == (1, 'different')
+    (first,) = [run['first_difference'] for run in document['runs'] if run['run'] == ROWS]
+    assert (first['row'], first['signal']) == (0, name)
+    assert f'{ROWS}: row 0, signal {name}: recorded ' in errors
+
+
+@pytest.mark.parametrize('key', ['root_seed', 'runs', 'shard_size'])
+def test_a_manifest_edited_with_its_digest_is_found(
+    whole: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str], key: str
+) -> None:
+    def edit(manifest: Any) -> None:
+        manifest[key] += 1
+
+    folder = copied(whole, tmp_path / 'there')
+    edit_json_with_digest(folder, 'manifest.json', edit)
+    code, document, errors = verified(folder, capfd, '--workers', '1')
+    assert code == 1
+    assert key in errors or document['error']
+
+
+def test_a_seed_of_the_specification_edited_with_its_digest_is_found(
+    whole: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    def edit(manifest: Any) -> None:
+        manifest['root_seed'] = manifest['spec']['seed'] = 4
+
+    folder = copied(whole, tmp_path / 'there')
+    edit_json_with_digest(folder, 'manifest.json', edit)
+    code, _, errors = verified(folder, capfd, '--workers', '1')
+    assert code == 1
+    assert 'has changed since' in errors
+
+
+def test_a_figure_of_the_summary_edited_with_its_digest_is_found(
+    whole: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    def edit(summary: Any) -> None:
+        summary['runs'] = 5
+
+    folder = copied(whole, tmp_path / 'there')
+    edit_json_with_digest(folder, 'summary.json', edit)
+    code, document, _ = verified(folder, capfd, '--workers', '1')
+    assert (code, states(document)['summary.json']) == (1, 'different')
+
+
+def test_an_unfinished_campaign_is_one_line_and_keeps_its_shards(
+    whole: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    folder = copied(whole, tmp_path / 'there')
+    for name in (RESULTS, 'summary.json', 'report.html'):
+        (folder / name).unlink()
+    (folder / DIGESTS).unlink()
+    read_digests(whole).write(folder)
+    code, _, errors = verified(folder, capfd)
+    assert code == 1
+    assert f'{folder}/{RESULTS}: missing' in errors
+    spec = str(whole.parent / 'spec.yaml')
+    arguments = [spec, '--out', str(folder), '--resume', '--workers', '1']
+    assert campaign.main(arguments) == 0
+    assert verified(folder, capfd, '--workers', '1')[0] == 0
+
+
+def test_a_campaign_resumed_on_another_kind_of_processor_has_no_kind(
+    whole: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = copied(whole, tmp_path / 'there')
+    other = {'machine': 'another'}
+    monkeypatch.setattr('ddct_bringup.digests.environment.this_processor', lambda: other)
+    spec = str(whole.parent / 'spec.yaml')
+    arguments = [spec, '--out', str(folder), '--resume', '--workers', '1']
+    assert campaign.main(arguments) == 0
+    assert read_digests(folder).environment.processor is None

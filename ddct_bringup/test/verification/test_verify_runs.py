@@ -1,0 +1,356 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""`verify` repeats the runs of a folder; an edit with its digest is found by the repetition."""
+
+import json
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+from verified import (
+    CONTROLLER,
+    copied,
+    edit_json_with_digest,
+    edit_with_digest,
+    make_bag,
+    make_runs,
+    states,
+    verified,
+)
+
+from ddct_bringup.bag.reader import read_bag
+from ddct_bringup.bag.trajectory_bag import write_trajectory
+from ddct_bringup.digests.digest_file import DIGESTS, read_digests
+from ddct_bringup.digests.files import digests_of_files
+from ddct_bringup.programs import compare, report, score, verify
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture(scope='module')
+def runs(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a folder of two runs of `compare`."""
+    return make_runs(tmp_path_factory.mktemp('verified') / 'runs')
+
+
+def test_an_untouched_folder_is_the_same_to_the_last_bit_wherever_it_is(
+    runs: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    code, document, errors = verified(copied(runs, tmp_path / 'elsewhere'), capfd)
+    assert (code, errors) == (0, '')
+    expected = dict.fromkeys(['mpc3', 'pi', 'scores.json', 'frequency.json'], 'same_bits')
+    assert states(document) == expected
+    assert {file['state'] for file in document['files']} == {'same'}
+    assert (document['same'], document['bound']) == (True, 0.0)
+    assert document['by_digest'] == ['report.html', 'timing.json']
+
+
+def test_a_bag_in_its_own_folder_has_digests_too(
+    runs: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    code, document, _ = verified(copied(runs / 'pi', tmp_path / 'pi'), capfd)
+    assert (code, states(document)) == (0, {'pi': 'same_bits'})
+
+
+def test_the_folder_around_the_runs_of_bringup_is_verified_run_by_run(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    out = make_bag(tmp_path / 'out', '--controller', 'pi')
+    make_bag(out, '--controller', 'ls8')
+    code, document, _ = verified(out, capfd)
+    expected = {f'{out}/ls8: ls8': 'same_bits', f'{out}/pi: pi': 'same_bits'}
+    assert (code, states(document)) == (0, expected)
+    (out / 'pi' / 'timing.json').write_text('{}', encoding='utf-8')
+    code, document, errors = verified(out, capfd)
+    assert code == 1
+    assert f'{out}/pi/timing.json: altered' in errors
+    assert states(document) == {f'{out}/ls8: ls8': 'same_bits'}
+
+
+def test_altered_missing_and_unlisted_files_are_named(
+    runs: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    folder = copied(runs, tmp_path / 'runs')
+    (folder / 'mine.txt').touch()
+    code, document, errors = verified(folder, capfd)
+    assert code == 1
+    assert errors == f'ddct verify: {folder}/mine.txt: unlisted\n'
+    assert set(states(document).values()) == {'same_bits'}
+    (folder / 'scores.json').write_text('{}', encoding='utf-8')
+    (folder / 'pi' / 'pi_0.mcap').unlink()
+    code, document, errors = verified(folder, capfd)
+    assert (code, document['runs']) == (1, [])
+    assert errors.splitlines() == [
+        f'ddct verify: {folder}/mine.txt: unlisted',
+        f'ddct verify: {folder}/pi/pi_0.mcap: missing',
+        f'ddct verify: {folder}/scores.json: altered',
+        f'ddct verify: {folder}: nothing was repeated: put the original files back',
+    ]
+
+
+def _raise_slip(scores: Any) -> None:
+    scores['runs'][0]['metrics']['slip_final_rpm'] += 1e-6
+
+
+def _other_seed(scores: Any) -> None:
+    scores['runs'][1]['seed'] = 4
+
+
+def _other_state(scores: Any) -> None:
+    scores['runs'][1]['verdict']['state'] = 'engaged'
+
+
+def _one_run_less(scores: Any) -> None:
+    del scores['runs'][0]
+
+
+@pytest.mark.parametrize(
+    ('edit', 'key'),
+    [
+        (_raise_slip, 'runs.pi.metrics.slip_final_rpm'),
+        (_other_seed, 'runs.mpc3.seed'),
+        (_other_state, 'runs.mpc3.verdict.state'),
+        (_one_run_less, 'runs.pi'),
+    ],
+)
+def test_a_metric_seed_or_row_of_the_scores_edited_with_its_digest_is_found(
+    runs: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str], edit: Any, key: str
+) -> None:
+    folder = copied(runs, tmp_path / 'runs')
+    edit_json_with_digest(folder, 'scores.json', edit)
+    code, document, errors = verified(folder, capfd)
+    assert code == 1
+    (wrong,) = [run for run in document['runs'] if run['state'] != 'same_bits']
+    assert wrong['run'] == 'scores.json'
+    assert wrong['first_difference']['key'].startswith(key)
+    assert f'{folder}: scores.json: key {key}' in errors
+
+
+def test_a_margin_edited_with_its_digest_is_found(
+    runs: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    def edit(frequency: Any) -> None:
+        frequency['conditions']['delay_s'] += 1e-3
+
+    folder = copied(runs, tmp_path / 'runs')
+    edit_json_with_digest(folder, 'frequency.json', edit)
+    code, document, _ = verified(folder, capfd)
+    assert (code, states(document)['frequency.json']) == (1, 'different')
+
+
+def _rewrite_bag(folder: Path, **custom_data: str) -> None:
+    """Write a bag anew with other custom data, or with another slip at step 60, and its digest."""
+    recording = read_bag(folder)
+    if not custom_data:
+        recording.trajectory.slip_speed[60] += 1e-6
+    data = {**recording.custom_data, **custom_data}
+    recording.path.unlink()
+    (folder / 'metadata.yaml').unlink()
+    write_trajectory(recording.trajectory, folder, 'pi', data, recording.run_info)
+    read_digests(folder).with_files(digests_of_files(folder)).write(folder)
+
+
+@pytest.mark.parametrize(
+    ('changed', 'place'),
+    [
+        ({}, {'signal': 'slip_speed', 'step': 60}),
+        ({'seed': '4'}, {'key': 'run_info./actuator.seed'}),
+        ({'wear_gain': '1.1'}, {'key': 'run_info./actuator.wear_gain'}),
+    ],
+)
+def test_a_signal_or_setting_of_a_bag_edited_with_its_digest_is_found(
+    runs: Path,
+    tmp_path: Path,
+    capfd: pytest.CaptureFixture[str],
+    changed: dict[str, str],
+    place: dict[str, Any],
+) -> None:
+    folder = copied(runs / 'pi', tmp_path / 'pi')
+    _rewrite_bag(folder, **changed)
+    code, document, _ = verified(folder, capfd)
+    (run,) = document['runs']
+    assert (code, run['state']) == (1, 'different')
+    first = run['first_difference']
+    assert place.items() <= first.items()
+    assert first['recorded'] != first['repeated']
+
+
+def test_metadata_edited_with_its_digest_is_found(
+    runs: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    folder = copied(runs / 'pi', tmp_path / 'pi')
+    text = (folder / 'metadata.yaml').read_text(encoding='utf-8')
+    edited = re.sub(r'message_count: 81', 'message_count: 82', text, count=1)
+    assert edited != text
+    edit_with_digest(folder, 'metadata.yaml', edited.encode())
+    code, document, _ = verified(folder, capfd)
+    assert code == 1
+    assert document['runs'][0]['first_difference']['file'] == 'metadata.yaml'
+
+
+def test_other_kernels_of_linear_algebra_are_named_with_the_bound(runs: Path) -> None:
+    if 'kernels of numpy' not in read_digests(runs).environment.processor:
+        pytest.skip('numpy has no OpenBLAS of its own here')
+    path = ':'.join(sys.path)
+    done = subprocess.run(
+        [sys.executable, '-m', verify.__name__, str(runs), '--json', '-'],
+        env={**os.environ, 'OPENBLAS_CORETYPE': 'Prescott', 'PYTHONPATH': path},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (done.returncode, done.stderr) == (0, '')
+    document = json.loads(done.stdout)
+    assert document['bound'] == 1e-9
+    assert any('kernels of numpy' in each for each in document['environment_differences'])
+    assert {states(document)[name] for name in ('pi', 'mpc3')} == {'same_within'}
+    assert all(run['largest_difference'] < 1e-9 for run in document['runs'])
+
+
+def test_a_controller_file_is_found_beside_the_folder_or_by_its_option(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / 'work' / 'mine.py'
+    file.parent.mkdir()
+    file.write_text(CONTROLLER, encoding='utf-8')
+    runs = make_runs(tmp_path / 'work' / 'runs', str(file))
+    assert verified(runs, capfd)[0] == 0
+    (tmp_path / 'work').rename(tmp_path / 'moved')
+    moved = tmp_path / 'moved' / 'runs'
+    assert verified(moved, capfd)[0] == 0
+    elsewhere = copied(moved, tmp_path / 'elsewhere' / 'deep' / 'runs')
+    code, document, errors = verified(elsewhere, capfd)
+    assert (code, states(document)['Mine']) == (1, 'different')
+    assert 'mine.py is gone: put it back, or name its folder with --files' in errors
+    assert verified(elsewhere, capfd, '--files', str(tmp_path / 'moved'))[0] == 0
+    changed = tmp_path / 'moved' / 'mine.py'
+    changed.write_text(CONTROLLER.replace('0.1', '0.2'), encoding='utf-8')
+    code, _, errors = verified(moved, capfd)
+    assert code == 1
+    assert 'has changed since: put the old one back' in errors
+
+
+def test_a_run_that_failed_fails_again_with_the_same_reason(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / 'mine.py'
+    broken = CONTROLLER.replace(
+        'return Command', 'assert measurement.step < 65\n        return Command'
+    )
+    file.write_text(broken, encoding='utf-8')
+    options = ['--controllers', f'{file},pi', '--duration', '0.8', '--headless']
+    assert compare.main([*options, '--out', str(tmp_path / 'runs')]) == 1
+    code, document, _ = verified(tmp_path / 'runs', capfd)
+    assert (code, states(document)['Mine']) == (0, 'same_bits')
+
+    def edit(note: Any) -> None:
+        note['reason'] = 'the disk was full'
+
+    edit_json_with_digest(tmp_path / 'runs', 'Mine/failed_run.json', edit)
+    code, document, _ = verified(tmp_path / 'runs', capfd)
+    assert (code, states(document)['Mine']) == (1, 'different')
+
+
+def test_score_and_report_keep_the_digests_of_what_they_write(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    runs = make_runs(tmp_path / 'runs', 'pi')
+    scores, page = runs / 'scores.json', runs / 'report.html'
+    scores.unlink()
+    assert verified(runs, capfd)[0] == 1
+    assert score.main([str(runs), '--json', str(scores), '--csv', str(runs / 'pi' / 's.csv')]) == 0
+    assert report.main([str(runs), '--out', str(page)]) == 0
+    code, document, errors = verified(runs, capfd)
+    assert (code, errors) == (0, '')
+    assert states(document)['scores.json'] == 'same_bits'
+    assert 'pi/s.csv' in [file['path'] for file in document['files']]
+
+
+def test_scores_by_other_limits_need_these_limits(
+    runs: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    def edit(scores: Any) -> None:
+        scores['limits']['digest'] = '0' * 16
+
+    folder = copied(runs, tmp_path / 'runs')
+    edit_json_with_digest(folder, 'scores.json', edit)
+    code, _, errors = verified(folder, capfd)
+    assert code == 1
+    assert 'give --limits with that file' in errors
+
+
+@pytest.mark.parametrize(
+    ('content', 'words'),
+    [
+        ('', 'it is damaged (not valid JSON'),
+        ('{}', 'it is damaged (KeyError'),
+        ('[]', 'it is damaged'),
+        ('{"schema_version": 2}', 'schema_version'),
+    ],
+)
+def test_damaged_and_newer_digests_are_one_line(
+    runs: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str], content: str, words: str
+) -> None:
+    folder = copied(runs / 'pi', tmp_path / 'pi')
+    (folder / DIGESTS).write_text(content, encoding='utf-8')
+    code, _, errors = verified(folder, capfd)
+    assert (code, errors.count('\n')) == (1, 1)
+    assert f'{folder}/{DIGESTS}: ' in errors
+    assert words in errors
+
+
+def test_folders_without_digests_are_one_line(
+    runs: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    partial = copied(runs / 'pi', tmp_path / 'pi.partial')
+    (partial / DIGESTS).unlink()
+    earlier = copied(partial, tmp_path / 'earlier')
+    for path, words in (
+        (partial, 'an interrupted run left this folder'),
+        (earlier, 'it was recorded before results had digests'),
+        (tmp_path / 'absent', 'no such file or folder'),
+        (earlier / 'metadata.yaml', 'is a file: give the folder'),
+    ):
+        code, _, errors = verified(path, capfd)
+        assert (code, errors.count('\n')) == (1, 1)
+        assert f'{path}' in errors
+        assert words in errors
+    assert (partial / 'pi_0.mcap').is_file()
+
+
+def test_a_folder_of_another_release_is_compared_with_the_bound(
+    runs: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    folder = copied(runs / 'pi', tmp_path / 'pi')
+    text = (folder / DIGESTS).read_text(encoding='utf-8')
+    content = json.loads(text)
+    del content['own_digest']
+    content['environment'] |= {'version': '0.0.1', 'code': 'f' * 64}
+    _write_digests(folder, content)
+    code, document, _ = verified(folder, capfd)
+    assert (code, document['bound']) == (0, 1e-9)
+    assert document['environment_differences'][0].startswith('version 0.0.1, here ')
+    content['kind'] = 'benchmark'
+    _write_digests(folder, content)
+    code, _, errors = verified(folder, capfd)
+    assert code == 1
+    assert "this version cannot verify a folder of the kind 'benchmark'" in errors
+
+
+def _write_digests(folder: Path, content: dict[str, Any]) -> None:
+    """Write digests with this content, and their own digest."""
+    from ddct_bringup.digests.digest_file import _digests_of
+
+    _digests_of(content).write(folder)
+
+
+def test_the_table_names_what_was_compared(runs: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    assert verify.main([str(runs)]) == 0
+    printed = capfd.readouterr().out
+    assert re.search(r'mpc3 +same bits', printed)
+    assert 'every bit was compared' in printed
+    assert 'By their digests alone: report.html, timing.json.' in printed

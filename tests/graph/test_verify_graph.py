@@ -1,0 +1,35 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""`verify` repeats a run of the graph headless; of a run in real time it says that it cannot."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from ddct_bringup.programs import bringup, verify
+
+
+@pytest.mark.parametrize(
+    ('mode', 'state', 'words'),
+    [
+        ('lockstep', 'same_bits', 'every run is the same'),
+        ('realtime', 'digest_only', 'real time: only its digests and scores can be checked'),
+    ],
+)
+def test_a_run_of_the_graph_is_verified_in_its_mode(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str], mode: str, state: str, words: str
+) -> None:
+    out = str(tmp_path / 'runs')
+    # A loaded machine may miss steps in real time, which leaves the run in its partial folder.
+    code = bringup.main(['--duration', '0.8', '--mode', mode, '--out', out])
+    assert code == 0 or mode == 'realtime'
+    capfd.readouterr()
+    assert verify.main([out, '--json', str(tmp_path / 'found.json')]) == 0
+    assert words in capfd.readouterr().out
+    (run,) = json.loads((tmp_path / 'found.json').read_text(encoding='utf-8'))['runs']
+    assert run['state'] == state
+    (bag,) = (tmp_path / 'runs').glob('pi*/*.mcap')
+    bag.write_bytes(bag.read_bytes() + b'\0')
+    assert verify.main([out]) == 1
+    assert f'{bag}: altered' in capfd.readouterr().err
