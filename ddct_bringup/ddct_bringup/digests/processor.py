@@ -13,7 +13,6 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
-import scipy.linalg
 
 KERNELS = (
     'scipy_openblas_get_corename64_',
@@ -22,7 +21,7 @@ KERNELS = (
     'openblas_get_corename',
 )
 """Functions of OpenBLAS that return the name of its kernels, by the builds of its packages."""
-_BUNDLES = {'numpy.libs': np.__name__, 'scipy.libs': scipy.__name__}
+_BUNDLES = {'numpy.libs': 'numpy', 'scipy.libs': 'scipy'}
 """Packages by the folder of the libraries in their wheels."""
 _FOREIGN = '.libs'
 """Ending of the folder of the libraries of another wheel, which no run uses."""
@@ -55,6 +54,9 @@ def _features() -> list[str]:
 
 def _kernels() -> dict[str, str]:
     """Return the names of the kernels that are in use, by package."""
+    # Only here: it loads the OpenBLAS of scipy, which takes some tenths of a second.
+    import scipy.linalg  # noqa: F401
+
     found = {}
     for path in sorted(_loaded_libraries()):
         package = _BUNDLES.get(path.parent.name, SYSTEM)
