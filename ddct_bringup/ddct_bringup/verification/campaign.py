@@ -10,10 +10,10 @@ from pathlib import Path
 import pyarrow as pa
 
 from ddct_bringup.campaign.arrow_columns import arrow_column, read_parquet
+from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.columns import INDEX, schema_of
 from ddct_bringup.campaign.conduct import RESULTS, SHARDS
 from ddct_bringup.campaign.manifest import MANIFEST, Manifest
-from ddct_bringup.campaign.runs import Campaign
 from ddct_bringup.campaign.scored import ScoredCampaignRun, scored_runs
 from ddct_bringup.campaign_report.folder import SUMMARY
 from ddct_bringup.campaign_report.reading import read_table, results_of
