@@ -55,7 +55,17 @@ def test_the_page_of_programs_names_every_program() -> None:
 
 def test_programs_start_without_the_slow_parts_of_scipy() -> None:
     """Scipy is imported when something is computed: --help and errors need not wait for it."""
-    names = ('bringup', 'campaign', 'compare', 'identify', 'live', 'report', 'score', 'sweep')
+    names = (
+        'bringup',
+        'campaign',
+        'compare',
+        'identify',
+        'limit',
+        'live',
+        'report',
+        'score',
+        'sweep',
+    )
     modules = [ddct.programs()[name].module for name in names]
     code = (
         f'import {", ".join(modules)}, sys; print([n for n in sys.modules if n[:6] == "scipy."])'

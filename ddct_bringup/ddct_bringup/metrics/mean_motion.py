@@ -23,7 +23,7 @@ def mean_acceleration(acceleration: np.ndarray) -> np.ndarray | None:
 
 def mean_jerk(acceleration: np.ndarray) -> np.ndarray | None:
     """Return the largest magnitude of the mean jerk over 1 s in m/s^3; None below 1 s."""
-    means = _jerk_means(acceleration)
+    means = jerk_means(acceleration)
     return np.max(np.abs(means), axis=-1) if means.size else None
 
 
@@ -33,10 +33,10 @@ def mean_negative_jerk(acceleration: np.ndarray) -> np.ndarray | None:
 
     None for (..., n) samples in m/s^2 of less than 1 s.
     """
-    means = _jerk_means(acceleration)
+    means = jerk_means(acceleration)
     return np.minimum(np.min(means, axis=-1), 0.0) if means.size else None
 
 
-def _jerk_means(acceleration: np.ndarray) -> np.ndarray:
+def jerk_means(acceleration: np.ndarray) -> np.ndarray:
     """Return the means of the jerk over 1 s in m/s^3; empty for less than 1 s."""
     return acceleration[..., STEPS_PER_S:] - acceleration[..., :-STEPS_PER_S]

@@ -1,0 +1,170 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Certified lower bounds of metrics over all runs of a case."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ddct_bringup.floor.case import Case
+from ddct_bringup.floor.objectives import Peak, RootMeanSquare, Signals
+from ddct_bringup.floor.program import (
+    LINEARISED,
+    RAY,
+    WEAK_DUALITY,
+    Certificate,
+    LinearProgram,
+    require_proof,
+)
+from ddct_bringup.floor.solver import least_squares, solve
+
+_MOST_PEAK = 1e6
+"""Upper bound of a peak in its unit; every run is below."""
+_WINDOWS = 3
+"""Number of stretches whose bounds are computed where a metric is the largest over all."""
+
+
+@dataclass(frozen=True, eq=False)
+class Bound:
+    """Lower bound of a metric over the runs of a case."""
+
+    least: float | None
+    """Proven lower bound in the unit of the metric; None where no run of the case exists."""
+    kind: str
+    """Kind of the proof."""
+    point: np.ndarray | None
+    """Values of the variables, (columns,), the constant 1 first; None where there is no run."""
+    value: float | None
+    """Metric of the program at this point."""
+    certificate: Certificate
+    program: LinearProgram
+
+
+def free_columns(case: Case) -> np.ndarray:
+    """
+    Return the mask of the variables that a solver chooses, (columns - 1,).
+
+    These are the requests, and what engine and capacity leave over. What the load leaves over is
+    small; it stays in the middle of its interval, and the certificate allows for all of the
+    interval.
+    """
+    columns = case.motion.columns
+    free = np.zeros(columns.count - 1, dtype=bool)
+    free[: columns.requests] = True
+    for part in (columns.engine, columns.capacity, columns.nodes):
+        free[part.start - 1 : part.stop - 1] = True
+    return free
+
+
+def bound_of(case: Case, objective: Peak | RootMeanSquare, signals: Signals) -> Bound | None:
+    """
+    Return the bound of a metric whose signals have a row for each variable of `case.motion`.
+
+    None where the metric is undefined. Each bound is checked without the solver.
+    """
+    mapped = objective.of(signals)
+    if mapped is None or not mapped.size:
+        return None
+    rows = np.ascontiguousarray(mapped.T)
+    if isinstance(objective, Peak):
+        return _peak(case, rows)
+    if not objective.sliding:
+        return _mean_square(case, rows, objective, signals)
+    length = len(objective.weights(signals))
+    first, best = 0, None
+    for _ in range(_WINDOWS):
+        found = _mean_square(case, rows[first : first + length], objective, signals)
+        if found.point is None or found.least is None:
+            return found
+        if best is None or best.least is None or found.least > best.least:
+            best = found
+        squares = np.cumsum(np.concatenate([[0.0], (rows @ found.point) ** 2]))
+        strongest = int(np.argmax(squares[length:] - squares[:-length]))
+        if strongest == first:
+            break
+        first = strongest
+    return best
+
+
+def _peak(case: Case, rows: np.ndarray) -> Bound:
+    """Return the bound of the largest magnitude of `rows` (n, columns) times the variables."""
+    limiting, limits = case.inequalities
+    count = case.motion.columns.count
+    both = np.vstack([rows, -rows])
+    program = LinearProgram(
+        cost=np.append(np.zeros(count - 1), 1.0),
+        constant=0.0,
+        rows=np.block(
+            [
+                [both[:, 1:], -np.ones((len(both), 1))],
+                [limiting[:, 1:], np.zeros((len(limiting), 1))],
+            ]
+        ),
+        limits=np.concatenate([-both[:, 0], limits - limiting[:, 0]]),
+        equal_rows=np.hstack([case.equations[:, 1:], np.zeros((len(case.equations), 1))]),
+        equal_values=-case.equations[:, 0],
+        low=np.append(case.motion.columns.low, 0.0),
+        high=np.append(case.motion.columns.high, _MOST_PEAK),
+    )
+    free = np.append(free_columns(case), True)
+    deferred = np.concatenate([np.zeros(len(both), dtype=bool), case.deferred])
+    margin = np.concatenate([np.zeros(len(both)), case.margin])
+    solution = solve(program, ~free, (program.low + program.high) / 2.0, deferred, margin)
+    require_proof(solution.certificate, program)
+    if solution.point is None:
+        return Bound(None, RAY, None, None, solution.certificate, program)
+    point = np.concatenate([[1.0], solution.point[:-1]])
+    value = float(np.max(np.abs(rows @ point)))
+    least = max(solution.certificate.claim, 0.0)
+    return Bound(least, WEAK_DUALITY, point, value, solution.certificate, program)
+
+
+def _mean_square(
+    case: Case, rows: np.ndarray, objective: RootMeanSquare, signals: Signals
+) -> Bound:
+    """
+    Return the bound of the weighted r.m.s. of `rows` (n, columns) times the variables.
+
+    f(z) >= f(z_0) + f'(z_0) (z - z_0) for a convex f. So the proof is that of the linear program
+    with the slope at the solution z_0 as cost.
+    """
+    limiting, limits = case.inequalities
+    columns = case.motion.columns
+    weighted = np.sqrt(objective.weights(signals))[:, np.newaxis] * rows
+    middle = np.concatenate([[1.0], (columns.low + columns.high) / 2.0])
+    free = np.concatenate([[False], free_columns(case)])
+    fixed = middle * ~free
+    solved = least_squares(
+        weighted[:, free],
+        weighted @ fixed,
+        columns.low[free[1:]],
+        columns.high[free[1:]],
+        limiting[:, free],
+        limits - case.margin - limiting @ fixed,
+        case.equations[:, free],
+        -case.equations @ fixed,
+        middle[free],
+    )
+    point = fixed.copy()
+    point[free] = middle[free] if solved is None else solved
+    square = float(np.sum((weighted @ point) ** 2))
+    slope = 2.0 * weighted.T @ (weighted @ point)
+    program = LinearProgram(
+        cost=slope[1:],
+        constant=square - slope[1:] @ point[1:],
+        rows=limiting[:, 1:],
+        limits=limits - limiting[:, 0],
+        equal_rows=case.equations[:, 1:],
+        equal_values=-case.equations[:, 0],
+        low=columns.low,
+        high=columns.high,
+    )
+    solution = solve(program, ~free[1:], middle[1:], case.deferred)
+    require_proof(solution.certificate, program)
+    if solution.point is None:
+        return Bound(None, RAY, None, None, solution.certificate, program)
+    scale = objective.scale(signals)
+    least = scale * float(np.sqrt(max(solution.certificate.claim, 0.0)))
+    return Bound(
+        least, LINEARISED, point, scale * float(np.sqrt(square)), solution.certificate, program
+    )

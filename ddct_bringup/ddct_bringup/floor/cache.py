@@ -1,0 +1,91 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Floors on the disk, by the digest of all that they depend on."""
+
+import dataclasses
+import hashlib
+import json
+import os
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import scipy
+
+from ddct_bringup.floor.case import Case
+from ddct_plant.base.errors import DdctError
+from ddct_plant.files.output_file import write_text
+from ddct_plant.scenario.file import scenario_to_yaml
+
+VARIABLE = 'DDCT_CACHE'
+"""Environment variable with the folder of the cache; empty for none."""
+
+
+def cache_folder() -> Path | None:
+    """Return the folder of the cached floors, None where there is to be none."""
+    given = os.environ.get(VARIABLE)
+    if given is not None:
+        return Path(given) / 'floors' if given else None
+    home = os.environ.get('XDG_CACHE_HOME') or Path.home() / '.cache'
+    return Path(home) / 'ddct' / 'floors'
+
+
+def digest_of(case: Case, metric: str, engagements_a_day: float) -> str:
+    """Return the SHA-256 of the case, the metric, the code of the floors and the solvers."""
+    digest = hashlib.sha256(_code())
+    settings = case.settings
+    texts = (
+        metric,
+        repr(engagements_a_day),
+        scenario_to_yaml(settings.scenario),
+        settings.clutch,
+        repr(settings.wear_gain),
+        repr(case.lock.time_s),
+        repr(case.limited),
+        repr(case.most_request),
+    )
+    for text in texts:
+        digest.update(text.encode() + b'\0')
+    for part in (case.start, case.tube, case.capacity):
+        for each in dataclasses.fields(part):
+            value = getattr(part, each.name)
+            if isinstance(value, np.ndarray):
+                digest.update(np.ascontiguousarray(value, dtype='<f8').tobytes())
+            elif isinstance(value, dict):
+                content = {key: [end.tolist() for end in ends] for key, ends in value.items()}
+                digest.update(json.dumps(content, sort_keys=True).encode())
+            else:
+                digest.update(repr(value).encode())
+    return digest.hexdigest()
+
+
+@cache
+def _code() -> bytes:
+    """Return the digest of the source files of this room, and the version of scipy."""
+    digest = hashlib.sha256(scipy.__version__.encode())
+    for file in sorted(Path(__file__).parent.rglob('*.py')):
+        digest.update(file.read_bytes())
+    return digest.digest()
+
+
+def cached(digest: str) -> dict[str, Any] | None:
+    """Return the values stored under a digest, None where there are none that can be read."""
+    folder = cache_folder()
+    try:
+        content = json.loads((folder / f'{digest}.json').read_text()) if folder else None
+    except (OSError, ValueError):
+        return None
+    return content if isinstance(content, dict) else None
+
+
+def store(digest: str, content: dict[str, Any]) -> None:
+    """Store values under a digest; a folder that cannot be written is no error."""
+    folder = cache_folder()
+    if folder is None:
+        return
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        write_text(str(folder / f'{digest}.json'), json.dumps(content, allow_nan=False))
+    except (OSError, DdctError):
+        return

@@ -1,0 +1,259 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Signals of a run that locks at a given instant, as affine functions of its requests."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ddct_bringup.floor.dynamics import propagators
+from ddct_bringup.floor.dynamics.capacity import CapacityRange
+from ddct_bringup.floor.dynamics.laws import Law
+from ddct_bringup.floor.dynamics.propagators import ENGINE, NODES, SHAFT, TWIST, WHEEL
+from ddct_bringup.floor.dynamics.start import ActuatorModel, Start
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.models.driveline_model import states_and_torques
+from ddct_plant.scenario.settings import RunSettings
+
+
+@dataclass(frozen=True, eq=False)
+class Columns:
+    """
+    Variables of the signals: column 0 is the constant, then requests, then what is left over.
+
+    The requests are those from control start to the last with an effect on the signals. What the
+    laws of load, engine and capacity leave over follows, one column for each period; `low` and
+    `high` are the intervals of all variables but the constant.
+    """
+
+    requests: int
+    load: slice
+    engine: slice
+    capacity: slice
+    nodes: slice
+    low: np.ndarray
+    high: np.ndarray
+
+    @property
+    def count(self) -> int:
+        """Number of columns, the constant included."""
+        return 1 + len(self.low)
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """
+    Signals of the run, each with one column for each variable of `columns`.
+
+    Rows are the steps 0 to N, or those that a field names. The times are in s from control start.
+    """
+
+    start: int
+    """Step of control start."""
+    lock_step: int | None
+    """Step that starts the period of the lock; None for a linear clutch, which does not lock."""
+    sign: float
+    """Sign of the slip at control start: 1 for an engine that is faster than the shaft."""
+    columns: Columns
+    acceleration: np.ndarray
+    """A_x in m/s^2, left limits, (N + 1, columns)."""
+    torsion_speed: np.ndarray
+    """Torsion speed w_sr in rad/s, (N + 1, columns)."""
+    slip: np.ndarray
+    """Slip w_d in rad/s at the steps after control start while the plates slip, (n, columns)."""
+    capacity: np.ndarray
+    """Torque of the clutch in N m, not negative, at all nodes from control start on, (n, 11,
+    columns)."""
+    slip_at_lock: np.ndarray | None
+    """Slip in rad/s at the instant of the lock, (columns,)."""
+    slip_acceleration: np.ndarray | None
+    """dw_d/dt in rad/s^2 just before the lock, (columns,)."""
+    engine_speed: np.ndarray
+    """w_m in rad/s at the steps from control start to N, (n, columns)."""
+    wheel_speed: np.ndarray
+    """w_r in rad/s at the steps from control start to N, (n, columns)."""
+
+
+def motion_of(
+    settings: RunSettings,
+    start: Start,
+    lock_time_s: float | None,
+    engine: Law,
+    load: Law,
+    capacity: CapacityRange,
+    most_request: float,
+) -> Motion:
+    """
+    Return the signals of every run that starts at `start` and locks once, at `lock_time_s`.
+
+    `lock_time_s` counts from control start; None: the clutch is linear, and slips to the end.
+    The requests are between 0 and `most_request` in N m.
+    """
+    return _Builder(settings, start, lock_time_s, engine, load, capacity, most_request).motion()
+
+
+class _Builder:
+    """Steps the state of the driveline, (4, columns), from control start to the end."""
+
+    def __init__(
+        self,
+        settings: RunSettings,
+        start: Start,
+        lock_time_s: float | None,
+        engine: Law,
+        load: Law,
+        capacity: CapacityRange,
+        most_request: float,
+    ) -> None:
+        self._p = settings.scenario.driveline
+        self._wear_gain = settings.wear_gain
+        self._radius = settings.scenario.vehicle.wheel_radius_m
+        self._start, self._engine, self._load, self._capacity = start, engine, load, capacity
+        self._periods = settings.scenario.steps - start.step
+        self._sign = 1.0 if settings.stick_slip is False or start.slip >= 0.0 else -1.0
+        self._actuator = ActuatorModel.of(settings)
+        self._lock = None if lock_time_s is None else divmod_period(lock_time_s)
+        self._slipping_periods = self._periods if self._lock is None else self._lock[0] + 1
+        self.columns = self._columns(most_request)
+
+    def _columns(self, most_request: float) -> Columns:
+        requests = max(self._slipping_periods - self._actuator.delays[-1], 0)
+        low, high = [np.zeros(requests)], [np.full(requests, most_request)]
+        slices, first = [], 1 + requests
+        for law, periods in ((self._load, self._periods), (self._engine, self._periods)):
+            free = bool(np.any(law.high[:periods] > law.low[:periods]))
+            slices.append(slice(first, first + periods if free else first))
+            if free:
+                low.append(law.low[:periods])
+                high.append(law.high[:periods])
+                first += periods
+        held = self._slipping_periods if self._capacity.high > self._capacity.low else 0
+        slices.append(slice(first, first + held))
+        low.append(np.full(held, self._capacity.low))
+        high.append(np.full(held, self._capacity.high))
+        first += held
+        clipped = [k for k in sorted(self._capacity.clipped) if k < self._slipping_periods]
+        self._clipped = {k: first + i * NODES for i, k in enumerate(clipped)}
+        for k in clipped:
+            least, most = self._capacity.clipped[k]
+            low.append(least)
+            high.append(most)
+        slices.append(slice(first, first + len(clipped) * NODES))
+        load, engine, capacity, nodes = slices
+        return Columns(
+            requests, load, engine, capacity, nodes, np.concatenate(low), np.concatenate(high)
+        )
+
+    def motion(self) -> Motion:
+        state = np.zeros((4, self.columns.count))
+        state[:, 0] = self._start.state
+        actuator = np.zeros((len(self._start.actuator), self.columns.count))
+        actuator[:, 0] = self._start.actuator
+        slipping, locked = propagators.slipping(self._p), propagators.locked(self._p)
+        states, loads, capacities = [state], [], []
+        slip_at_lock = slip_acceleration = None
+        for k in range(self._periods):
+            engine = self._torque(self._engine, self.columns.engine, k, state[ENGINE])
+            load = self._torque(self._load, self.columns.load, k, state[WHEEL])
+            loads.append(load)
+            if k < self._slipping_periods:
+                nodes, actuator = self._clutch(k, actuator)
+                capacities.append(nodes)
+                inputs = np.vstack([engine, load, self._sign * nodes])
+            if self._lock is None or k < self._lock[0]:
+                state = slipping[:, :4] @ state + slipping[:, 4:] @ inputs
+            elif k == self._lock[0]:
+                until = propagators.slipping_for(self._p, self._lock[1])
+                state = until[:, :4] @ state + until[:, 4:] @ inputs
+                slip_at_lock = state[ENGINE] - state[SHAFT]
+                slip_acceleration = self._slip_acceleration(state, inputs)
+                after = propagators.locked(self._p, PERIOD_S - self._lock[1])
+                state = (
+                    after[:, :4] @ propagators.joined(self._p) @ state + after[:, 4:] @ inputs[:2]
+                )
+            else:
+                state = locked[:, :4] @ state + locked[:, 4:] @ np.vstack([engine, load])
+            states.append(state)
+        return self._signals(states, loads, capacities, slip_at_lock, slip_acceleration)
+
+    def _torque(self, law: Law, columns: slice, k: int, speed: np.ndarray) -> np.ndarray:
+        """Return C_m or C_load over period k in N m, (columns,)."""
+        torque = law.slope[k] * speed
+        torque[0] += law.offset[k]
+        if columns.stop > columns.start:
+            torque[columns.start + k] += 1.0
+        return torque
+
+    def _clutch(self, k: int, actuator: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the capacity at the nodes of period k in N m, (11, columns), and G_a's state."""
+        in_effect = np.zeros((len(self._actuator.delays), self.columns.count))
+        for row, delay in zip(in_effect, self._actuator.delays, strict=True):
+            if k < delay:
+                row[0] = self._start.request(self._start.step + k - delay)
+            else:
+                row[1 + k - delay] = 1.0
+        values = np.vstack([actuator, in_effect])
+        nodes = self._wear_gain * (self._actuator.nodes @ values)
+        if self.columns.capacity.stop > self.columns.capacity.start:
+            nodes[:, self.columns.capacity.start + k] += 1.0
+        else:
+            nodes[:, 0] += self._capacity.low
+        if k in self._clipped:
+            first = self._clipped[k]
+            nodes[:, first : first + NODES] += np.eye(NODES)
+        return nodes, self._actuator.state_update @ values
+
+    def _slip_acceleration(self, state: np.ndarray, inputs: np.ndarray) -> np.ndarray:
+        assert self._lock is not None
+        a, b = states_and_torques(self._p)
+        weights = propagators.interpolated(self._lock[1])
+        torques = np.vstack([inputs[0], weights @ inputs[2:], inputs[1]])
+        rates = a @ state + b @ torques
+        return rates[ENGINE] - rates[SHAFT]
+
+    def _signals(
+        self,
+        states: list[np.ndarray],
+        loads: list[np.ndarray],
+        capacities: list[np.ndarray],
+        slip_at_lock: np.ndarray | None,
+        slip_acceleration: np.ndarray | None,
+    ) -> Motion:
+        p, start = self._p, self._start.step
+        shape = (start + self._periods + 1, self.columns.count)
+        acceleration, torsion = np.zeros(shape), np.zeros(shape)
+        acceleration[: start + 1, 0] = self._start.accelerations
+        torsion[: start + 1, 0] = self._start.torsion_speeds
+        path = np.array(states)
+        if not np.isfinite(path).all():
+            raise ParameterError(
+                'the driveline grows beyond all numbers: there is no floor for an unstable model'
+            )
+        speed = path[:, SHAFT] / p.total_ratio - path[:, WHEEL]
+        torque = p.halfshaft_damping * speed + p.halfshaft_stiffness * path[:, TWIST]
+        torsion[start + 1 :] = speed[1:]
+        scale = self._radius / p.vehicle_inertia
+        acceleration[start + 1 :] = scale * (torque[1:] - np.array(loads))
+        slipping = self._slipping_periods + (self._lock is None)
+        return Motion(
+            start,
+            None if self._lock is None else start + self._lock[0],
+            self._sign,
+            self.columns,
+            acceleration,
+            torsion,
+            path[1:slipping, ENGINE] - path[1:slipping, SHAFT],
+            np.array(capacities),
+            slip_at_lock,
+            slip_acceleration,
+            path[:, ENGINE],
+            path[:, WHEEL],
+        )
+
+
+def divmod_period(time_s: float) -> tuple[int, float]:
+    """Return the whole periods in a time in s, and the rest in s; a step ends a period."""
+    # A rest below a nanosecond is rounding: the period that ends there is then whole.
+    whole = int(time_s / PERIOD_S - 1e-7)
+    return whole, min(time_s - whole * PERIOD_S, PERIOD_S)

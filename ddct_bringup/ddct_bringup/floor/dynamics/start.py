@@ -1,0 +1,123 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""State of the plant at control start, from the recorded run that leads there."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ddct_bringup.bag.trajectory import Trajectory
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.timebase import PERIOD_S, SUBSTEPS
+from ddct_plant.models.actuator import at_rest, lifted
+from ddct_plant.scenario.plant import initial_state
+from ddct_plant.scenario.settings import RunSettings
+
+_DRIVESHAFT = 3
+"""Index of the driveshaft among the joints."""
+
+
+@dataclass(frozen=True, eq=False)
+class ActuatorModel:
+    """Delay and G_a as matrices over a period."""
+
+    state_update: np.ndarray
+    """Matrix from state and requests in effect to the next state, (n, n + inputs)."""
+    nodes: np.ndarray
+    """Matrix from state and requests in effect to the torque at the nodes, (11, n + inputs)."""
+    delays: tuple[int, ...]
+    """Age in periods of each request in effect, the earlier request first."""
+
+    @classmethod
+    def of(cls, settings: RunSettings) -> 'ActuatorModel':
+        """Return the model of the scenario's actuator."""
+        parameters = settings.scenario.actuator
+        periods, late = divmod(parameters.delay_substeps, SUBSTEPS)
+        delays = (periods + 1, periods) if late else (periods,)
+        return cls(*lifted(parameters.dynamics(), late), delays)
+
+
+@dataclass(frozen=True, eq=False)
+class Start:
+    """Signals up to control start, which are the same for every controller of `detailed`."""
+
+    step: int
+    """Step k of control start."""
+    state: np.ndarray
+    """States w_m, w_p, w_r in rad/s and theta_sr in rad there, (4,)."""
+    actuator: np.ndarray
+    """State of G_a there, (n,)."""
+    requests: np.ndarray
+    """Requests in N m before control start, cut off below zero, (step,)."""
+    before: float
+    """Request in N m before t_0."""
+    accelerations: np.ndarray
+    """A_x in m/s^2 up to control start, (step + 1,)."""
+    torsion_speeds: np.ndarray
+    """Torsion speed w_sr in rad/s up to control start, (step + 1,)."""
+    idle_integral: float
+    """Greatest integral of idle control in N m that the engine can have there."""
+    temperature_c: float
+    """Temperature of the facing in degrees Celsius at control start; 20 for a linear clutch."""
+
+    @property
+    def slip(self) -> float:
+        """Slip speed w_d in rad/s at control start."""
+        return float(self.state[0] - self.state[1])
+
+    def request(self, step: int) -> float:
+        """Return the request of a step before control start in N m; also before t_0."""
+        return float(self.requests[step]) if step >= 0 else self.before
+
+
+def start_of(settings: RunSettings, run: Trajectory) -> Start:
+    """
+    Return the state at control start of a recorded run.
+
+    Raise ParameterError where the run ends before, or its wheels do not turn there.
+    """
+    step = settings.scenario.control_start_step
+    if run.steps <= step:
+        raise ParameterError('the run ends before control start: there is no floor')
+    if settings.stick_slip and run.joint_speed[step, 2] <= 0.0:
+        raise ParameterError(
+            f'scenario {settings.scenario.name}: the wheels do not turn forward at control start, '
+            'and when they break loose depends on the controller: there is no floor'
+        )
+    requests = np.maximum(run.torque_request[:step], 0.0)
+    before = max(initial_state(settings).torque_request, 0.0)
+    state = np.array([*run.joint_speed[step, :3], run.joint_position[step, _DRIVESHAFT]])
+    if run.clutch_phase is not None and run.slip_speed[step] == 0.0:
+        state[0] = state[1]
+    temperature = run.clutch_temperature
+    return Start(
+        step,
+        state,
+        _actuator_state(settings, requests, before),
+        requests,
+        before,
+        np.array(run.vehicle_accel[: step + 1]),
+        np.array(run.joint_speed[: step + 1, _DRIVESHAFT]),
+        _idle_integral(settings, run.joint_speed[:step, 0]),
+        20.0 if temperature is None else float(temperature[step]),
+    )
+
+
+def _idle_integral(settings: RunSettings, engine_speed: np.ndarray) -> float:
+    """Return what idle control can have integrated at speeds in rad/s, (n,), at most, in N m."""
+    limits = settings.scenario.engine_limits
+    if limits is None:
+        return 0.0
+    below = np.maximum(limits.idle_rad_s - engine_speed, 0.0).sum()
+    return min(float(limits.idle_integral_n_m * PERIOD_S * below), limits.idle_most_n_m)
+
+
+def _actuator_state(settings: RunSettings, requests: np.ndarray, before: float) -> np.ndarray:
+    """Return the state of G_a after the requests, (n,)."""
+    model = ActuatorModel.of(settings)
+    state = at_rest(settings.scenario.actuator.dynamics(), before)
+    for step in range(len(requests)):
+        ages = (step - delay for delay in model.delays)
+        in_effect = [requests[age] if age >= 0 else before for age in ages]
+        state = model.state_update @ np.array([*state, *in_effect])
+    return state

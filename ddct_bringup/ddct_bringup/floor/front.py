@@ -1,0 +1,86 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Floors over a grid of lock times, the least lock time under a cap, and controllers beside."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from ddct_bringup.floor.dynamics.start import Start
+from ddct_bringup.floor.floor import Floor, OverFloor, floors_at, floors_of_run, value_of
+from ddct_bringup.floor.lock import lock_of
+from ddct_bringup.floor.objectives import window_of
+from ddct_bringup.run.headless import run_headless
+from ddct_controllers.registry import Chosen, controller_label
+from ddct_plant.scenario.settings import RunSettings
+
+POINTS = 15
+"""Number of lock times of a front."""
+_SHARES = (0.3, 0.95)
+"""First and last lock time as shares of the time from control start to the end of the window."""
+
+
+def usual_lock_times(settings: RunSettings) -> list[float]:
+    """Return lock times in s from control start, multiples of 10 ms, to the score window's end."""
+    span = window_of(settings.scenario)[1] - settings.scenario.control_start_step
+    steps = np.unique(np.round(np.linspace(*_SHARES, POINTS) * span)).astype(int)
+    return [int(step) / 100.0 for step in steps if step > 0]
+
+
+def front(
+    settings: RunSettings, metrics: Sequence[str], lock_times_s: Sequence[float], start: Start
+) -> Iterator[list[Floor]]:
+    """Yield the floors of all metrics for each lock time."""
+    for time_s in lock_times_s:
+        yield floors_at(settings, metrics, time_s, start)
+
+
+def least_lock_time(floors: Sequence[Floor], metric: str, cap: float) -> dict[str, Any]:
+    """
+    Return the least lock time of a front at which a metric can be at most `cap`.
+
+    Each instant is decided for itself, as a longer time need not be easier. `lock_time_s` is the
+    first that a run attains, None without one; `excluded_before_s` the last of the instants before
+    which are all proven impossible.
+    """
+    own = sorted((f for f in floors if f.metric == metric), key=lambda f: f.lock_time_s)
+    attained = [f.lock_time_s for f in own if f.attained is not None and f.attained <= cap]
+    possible = [f.lock_time_s for f in own if f.least is not None and f.least <= cap]
+    return {
+        'metric': metric,
+        'cap': cap,
+        'lock_time_s': attained[0] if attained else None,
+        'excluded_before_s': possible[0] if possible else None,
+    }
+
+
+def controller_rows(
+    settings: RunSettings, controller: Chosen, metrics: Sequence[str], start: Start
+) -> list[dict[str, Any]]:
+    """
+    Return a row for each metric of a controller's run, under the keys of `limit --json`.
+
+    Least and ratio are None where the run does not lock once and stay locked.
+    """
+    run = run_headless(settings, controller)
+    lock = lock_of(run, start.step)
+    over: Mapping[str, OverFloor | None] = floors_of_run(settings, metrics, run, start)
+    rows = []
+    for metric in metrics:
+        found = over[metric]
+        whole = run.steps == settings.scenario.steps
+        value = value_of(settings, metric, run, start.step) if whole else None
+        rows.append(
+            {
+                'controller': controller_label(controller),
+                'metric': metric,
+                'lock_time_s': lock.time_s if lock else None,
+                'value': found.value if found else value,
+                'least': found.floor.least if found else None,
+                'attained': found.floor.attained if found else None,
+                'over_floor': found.over_floor if found else None,
+                'certificate': dict(found.floor.certificate) if found else None,
+            }
+        )
+    return rows

@@ -1,0 +1,58 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""The instant at which a run locks, once and for good."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.verdict.zero_slip import LOCKED, events_of, first_lock
+from ddct_plant.base.timebase import PERIOD_S, time_of_step
+from ddct_plant.base.units import rad_s_from_rpm
+from ddct_plant.models.driveline import LOCK
+
+BAND_RPM, SETTLED_S = 50.0, 0.3
+"""Slip within which a linear clutch counts as locked, and for how long: the rules of verdicts."""
+BAND_RAD_S = rad_s_from_rpm(BAND_RPM)
+
+
+@dataclass(frozen=True)
+class Lock:
+    """Instant of a lock."""
+
+    time_s: float
+    """Time in s from control start."""
+
+    @property
+    def periods(self) -> int:
+        """Number of the period that ends with the lock, or in which it is; at least 1."""
+        return max(math.ceil(self.time_s / PERIOD_S - 1e-7), 1)
+
+
+def lock_of(run: Trajectory, start: int) -> Lock | None:
+    """
+    Return the lock of a run that locks once after step `start` and stays locked, else None.
+
+    Plates that stick lock at the exact instant, and slip one way before. A linear clutch locks
+    with the first sample from which the slip stays within the band to the end.
+    """
+    if run.steps <= start:
+        return None
+    if run.clutch_phase is None:
+        return _settled(run.slip_speed[start:])
+    lock = first_lock(run, start)
+    events = [event for step in (run.phase_events or ())[start + 1 :] for event in step]
+    if lock is None or len(events) != 1 or run.clutch_phase[-1] != LOCKED:
+        return None
+    assert next(events_of(run, LOCK, after=start)) == lock
+    return Lock(lock.time_s - time_of_step(start))
+
+
+def _settled(slip: np.ndarray) -> Lock | None:
+    outside = np.flatnonzero(np.abs(slip) > BAND_RAD_S)
+    first = int(outside[-1]) + 1 if outside.size else 0
+    if first == 0 or (len(slip) - 1 - first) * PERIOD_S < SETTLED_S - 1e-9:
+        return None
+    return Lock(first * PERIOD_S)

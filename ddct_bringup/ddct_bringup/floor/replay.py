@@ -1,0 +1,81 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Requests of a program, replayed through the simulated plant: what a run can attain."""
+
+from typing import Any
+
+import numpy as np
+
+from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.floor.case import Case
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.models.static_torque import StaticTorque
+from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.whole_plant import WholePlant
+
+CLOSING_SHARE = 1.1
+"""Request over C_fOL from the lock on."""
+CLOSING_RAMP = 600.0
+"""How fast the request rises then in N m/s; faster, and the undershoot of G_a opens the clutch."""
+FADE_S = 0.2
+"""Time in s over which the torque that has taken the slip to zero fades out."""
+CLOSED = 500.0
+"""Highest of these requests in N m."""
+
+
+def usual_requests(case: Case) -> np.ndarray:
+    """
+    Return requests in N m from control start to the end, (n,), that nearly lock a rigid car.
+
+    These are C_fOL, and what takes the slip linearly to zero until the lock. Afterwards the
+    request rises, so that the plates stay locked.
+    """
+    scenario = case.settings.scenario
+    p = scenario.driveline
+    static = StaticTorque(p, scenario.equilibrium)
+    tube = case.tube
+    wheel = (tube.wheel_low + tube.wheel_high) / 2.0
+    engine = (tube.engine_low + tube.engine_high) / 2.0
+    load = case.load.offset + case.load.slope * wheel + case.load.middle
+    drive = case.engine.offset + case.engine.slope * engine + case.engine.middle
+    speeds: Any = (drive, load, engine, p.total_ratio * wheel)
+    torque: Any = static.torque(*speeds)
+    rest = p.shaft_inertia + p.vehicle_inertia / p.total_ratio**2
+    joint = p.engine_inertia * rest / (p.engine_inertia + rest)
+    time_s = np.arange(len(torque)) * PERIOD_S
+    lock_s = case.lock.time_s
+    slipping = torque + joint * abs(case.start.slip) / max(lock_s, PERIOD_S)
+    # A linear clutch has no lock, and C_fOL keeps its slip.
+    if case.settings.stick_slip:
+        fading = (slipping - torque) * np.clip(1.0 - (time_s - lock_s) / FADE_S, 0.0, 1.0)
+        closing = CLOSING_SHARE * torque + fading + CLOSING_RAMP * (time_s - lock_s)
+    else:
+        closing = torque
+    requests = np.where(time_s < lock_s, slipping, np.minimum(closing, CLOSED))
+    middle = (case.capacity.low + case.capacity.high) / 2.0
+    return np.asarray(np.maximum(requests - middle, 0.0) / case.settings.wear_gain)
+
+
+def replayed(case: Case, requests: np.ndarray) -> Trajectory:
+    """Return the run of the simulated plant with requests (n,) in N m, the usual ones after."""
+    every, known = usual_requests(case), len(requests)
+    every[:known] = requests
+    if case.settings.stick_slip:
+        after = np.arange(1, len(every) - known + 1)
+        # A step would open the clutch first, as G_a undershoots.
+        begun = every[known - 1] if known else every[0]
+        every[known:] = np.minimum(every[known:], begun + CLOSING_RAMP * PERIOD_S * after)
+    return run_requests(case.settings, np.concatenate([case.start.requests, every]))
+
+
+def run_requests(settings: RunSettings, requests: np.ndarray) -> Trajectory:
+    """Return the run of the simulated plant with the torque requests (n,) in N m of each step."""
+    plant = WholePlant(settings, two_input=False)
+    rows = []
+    for step in range(settings.scenario.steps + 1):
+        observation = plant.observe(step)
+        rows.append(plant.reply(step, observation, float(requests[step]), None))
+        if plant.over or step == settings.scenario.steps:
+            break
+        plant.advance(rows[-1])
+    return Trajectory.of_columns({name: [row[name] for row in rows] for name in rows[0]})

@@ -1,0 +1,185 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Floors contain the runs that they are compared with, and are attained by runs of the plant."""
+
+import numpy as np
+import pytest
+
+from ddct_bringup.floor import floor as floor_module
+from ddct_bringup.floor.case import case_of_run
+from ddct_bringup.floor.floor import (
+    DEMAND,
+    LIMITS,
+    METRICS,
+    OF_STICK_SLIP,
+    control_start,
+    floor_of,
+    floors_of_run,
+    value_of,
+)
+from ddct_bringup.floor.friction_work import least_friction_work
+from ddct_bringup.floor.front import least_lock_time
+from ddct_bringup.floor.lock import lock_of
+from ddct_bringup.floor.program import RAY
+from ddct_bringup.run.execution import in_memory
+from ddct_bringup.run.headless import run_headless
+from ddct_bringup.scores.scoring import score_run
+from ddct_bringup.verdict.limits import packaged_limits
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.scenario.file import ScenarioFile, load_scenario
+from ddct_plant.scenario.settings import RunSettings
+
+pytestmark = pytest.mark.slow
+RUNS = (
+    ('launch', 'stick_slip', 'ls8'),
+    ('launch_hot', 'stick_slip', 'mpc3'),
+    ('launch_gentle', 'stick_slip', 'mpc3'),
+    ('thesis', 'stick_slip', 'hinf1'),
+    ('thesis', 'linear', 'mpc3'),
+)
+"""Runs that stay away from all limits, whose engine is limited, and whose capacity is clipped."""
+
+
+def settings_of(scenario='launch', clutch='stick_slip', **further):
+    return RunSettings(load_scenario(scenario), clutch=clutch, **further)
+
+
+@pytest.mark.parametrize(('scenario', 'clutch', 'controller'), RUNS)
+def test_a_run_is_a_point_of_the_program_that_bounds_it(scenario, clutch, controller):
+    settings = settings_of(scenario, clutch)
+    run = run_headless(settings, controller)
+    start = control_start(settings)
+    case = case_of_run(settings, start, lock_of(run, start.step), run)
+    point = case.point_of(run)
+    assert np.abs(case.motion.acceleration @ point - run.vehicle_accel).max() < 1e-10
+    assert np.abs(case.motion.torsion_speed @ point - run.joint_speed[:, 3]).max() < 1e-10
+    rows, limits = case.inequalities
+    assert np.max(rows @ point - limits) < 1e-8
+    assert np.max(np.abs(case.equations @ point), initial=0.0) < 1e-8
+    assert np.all(case.motion.columns.low - point[1:] <= 1e-9)
+    assert np.all(point[1:] - case.motion.columns.high <= 1e-9)
+
+
+def test_the_cases_of_the_sample_differ_in_what_is_variable():
+    found = {}
+    for scenario, clutch, controller in RUNS[:3]:
+        settings = settings_of(scenario, clutch)
+        run = run_headless(settings, controller)
+        start = control_start(settings)
+        case = case_of_run(settings, start, lock_of(run, start.step), run)
+        found[scenario] = (case.limited, bool(case.capacity.clipped))
+    assert found == {
+        'launch': (False, False),
+        'launch_hot': (True, False),
+        'launch_gentle': (False, True),
+    }
+
+
+@pytest.mark.parametrize(('scenario', 'clutch', 'controller'), RUNS[:2] + RUNS[3:])
+def test_no_metric_of_a_run_is_below_its_floor(scenario, clutch, controller):
+    settings = settings_of(scenario, clutch)
+    run = run_headless(settings, controller)
+    metrics = [name for name in METRICS if clutch == 'stick_slip' or name != OF_STICK_SLIP]
+    for metric, over in floors_of_run(settings, metrics, run).items():
+        assert over.value >= over.floor.least, metric
+
+
+def test_the_values_are_those_of_scores_and_verdict():
+    settings = settings_of()
+    run = run_headless(settings, 'ls8')
+    entry = score_run(in_memory(settings, 'ls8', run), 'ls8', packaged_limits(), None)
+    criteria = {each['name']: each['value'] for each in entry['verdict']['criteria']}
+    start = settings.scenario.control_start_step
+    for metric in set(METRICS) - {'friction_energy'}:
+        expected = criteria[metric] if metric in criteria else entry['metrics'][metric]
+        assert value_of(settings, metric, run, start) == pytest.approx(abs(expected), rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ('scenario', 'clutch', 'time_s', 'gap'),
+    [
+        ('launch', 'stick_slip', 0.8, 2.0),
+        ('launch', 'stick_slip', 0.5, 25.0),
+        ('thesis', 'stick_slip', 0.8, 5.0),
+        ('thesis', 'linear', 0.5, 2.0),
+    ],
+)
+def test_the_least_peak_jerk_is_nearly_attained_by_a_run_that_locks_then(
+    scenario, clutch, time_s, gap
+):
+    """Where the engine is limited the intervals are wide, so the gap is wider."""
+    floor = floor_of(settings_of(scenario, clutch), 'peak_jerk', time_s)
+    assert floor.attained >= floor.least
+    assert 0.0 <= floor.gap <= gap
+    assert floor.replay_residual <= 0.03 * floor.attained
+    assert floor.certificate['covers'] == (LIMITS if gap == 25.0 else DEMAND)
+
+
+@pytest.mark.parametrize('wear_gain', [0.7, 1.3])
+def test_a_worn_clutch_has_the_same_floor_as_its_requests_are_free(wear_gain):
+    """The start differs, as C_fOL is always on, so a floor moves a little."""
+    floor = floor_of(settings_of(wear_gain=wear_gain), 'peak_jerk', 1.1)
+    assert floor.attained >= floor.least > 0.0
+    assert floor.gap < 5.0
+
+
+def test_a_floor_is_computed_once_and_then_read(monkeypatch):
+    first = floor_of(settings_of(), 'peak_acceleration', 0.9)
+    monkeypatch.setattr(floor_module, 'bound_of', None)
+    assert floor_of(settings_of(), 'peak_acceleration', 0.9) == first
+    with pytest.raises(TypeError):
+        floor_of(settings_of(wear_gain=0.99), 'peak_acceleration', 0.9)
+
+
+def test_a_lock_at_once_is_impossible_and_has_its_ray():
+    floor = floor_of(settings_of(), 'peak_jerk', 0.05)
+    assert (floor.least, floor.attained, floor.gap) == (None, None, None)
+    assert floor.certificate['kind'] == RAY
+    assert floor.certificate['proven'] > 0.0
+
+
+def test_a_run_that_slips_again_has_no_floor():
+    settings = settings_of()
+    run = run_headless(settings, 'hinf2')
+    assert floors_of_run(settings, ['peak_jerk'], run) == {'peak_jerk': None}
+
+
+@pytest.mark.parametrize(
+    ('settings', 'words'),
+    [
+        (settings_of('tip_in'), 'do not slip at control start'),
+        (settings_of('launch_hill'), 'wheels do not turn'),
+        (settings_of('thesis', 'linear', architecture='base'), 'choose the architecture detailed'),
+    ],
+)
+def test_a_case_without_floors_is_refused(settings, words):
+    with pytest.raises(ParameterError, match=words):
+        floor_of(settings, 'peak_jerk', 0.5)
+
+
+def test_friction_that_depends_on_the_slip_speed_is_refused():
+    changes = {'friction.slip_rad_s': [0.0, 100.0], 'friction.slip_share': [1.0, 0.9]}
+    scenario = ScenarioFile.read('launch').scenario(changes, 'stick_slip')
+    with pytest.raises(ParameterError, match='slip_rad_s'):
+        floor_of(RunSettings(scenario, clutch='stick_slip'), 'peak_jerk', 0.8)
+
+
+def test_the_least_friction_work_is_the_energy_of_the_slip_and_a_little_more():
+    settings = settings_of()
+    start = control_start(settings)
+    case = floor_module.case_at(settings, start, 1.0)
+    p = settings.scenario.driveline
+    rest = p.shaft_inertia + p.vehicle_inertia / p.total_ratio**2
+    joint = p.engine_inertia * rest / (p.engine_inertia + rest)
+    energy = joint * start.slip**2 / 2.0
+    assert energy < least_friction_work(case) < 1.2 * energy
+
+
+def test_the_least_lock_time_under_a_cap_is_attained_and_earlier_ones_are_excluded():
+    settings = settings_of()
+    start = control_start(settings)
+    times = (0.7, 0.8, 0.9, 1.0)
+    floors = [floor_of(settings, 'peak_jerk', time, start) for time in times]
+    found = least_lock_time(floors, 'peak_jerk', 6.9)
+    assert found['lock_time_s'] == found['excluded_before_s'] == 0.9
+    assert least_lock_time(floors, 'peak_jerk', 1.0)['lock_time_s'] is None

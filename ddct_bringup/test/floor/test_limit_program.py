@@ -1,0 +1,75 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""`limit` prints, writes and draws floors; what cannot be is one line."""
+
+import json
+
+import pytest
+
+from ddct_bringup.programs.limit import main
+
+pytestmark = pytest.mark.slow
+LAUNCH = ['--scenario', 'launch', '--clutch', 'stick_slip', '--metrics', 'peak_jerk']
+
+
+def test_it_prints_writes_and_draws_the_front_with_controllers_beside(tmp_path, capsys):
+    file, figure = tmp_path / 'front.json', tmp_path / 'front.svg'
+    outputs = ['--json', str(file), '--figure', str(figure), '--cap', 'peak_jerk=7.4']
+    more = ['--lock-times', '0.02,0.8,1.1', '--controllers', 'ls8,hinf2']
+    assert main([*LAUNCH, *more, *outputs]) == 0
+    printed = capsys.readouterr()
+    document = json.loads(file.read_text())
+    assert list(document) == ['front', 'controllers', 'least_lock_times']
+    impossible, *possible = document['front']
+    assert (impossible['lock_time_s'], impossible['least']) == (0.02, None)
+    assert impossible['certificate']['kind'] == 'farkas_ray'
+    for point in possible:
+        assert set(point) == {
+            'lock_time_s',
+            'metric',
+            'least',
+            'attained',
+            'gap',
+            'certificate',
+            'replay_residual',
+        }
+        assert point['least'] <= point['attained']
+        assert point['gap'] == pytest.approx(100.0 * (point['attained'] / point['least'] - 1.0))
+    ls8, hinf2 = document['controllers']
+    assert ls8['over_floor'] == pytest.approx(ls8['value'] / ls8['least'])
+    assert ls8['over_floor'] > 2.0
+    assert (hinf2['least'], hinf2['over_floor']) == (None, None)
+    assert hinf2['value'] > 50.0
+    assert document['least_lock_times'][0]['lock_time_s'] == 0.8
+    assert 'ddct limit: lock time 0.02 s: no torque request' in printed.err
+    assert 'ls8' in printed.out
+    assert 'a lock at 0.8 s; impossible before 0.8 s' in printed.out
+    assert '<svg' in figure.read_text()
+
+
+def test_standard_output_is_json_alone(capsys):
+    assert main([*LAUNCH, '--lock-times', '0.9', '--json', '-']) == 0
+    assert json.loads(capsys.readouterr().out)['front'][0]['lock_time_s'] == 0.9
+
+
+@pytest.mark.parametrize(
+    ('arguments', 'words'),
+    [
+        ([*LAUNCH, '--lock-times', '0.02'], 'a Farkas ray'),
+        (['--scenario', 'tip_in', '--clutch', 'stick_slip'], 'do not slip at control start'),
+        (['--architecture', 'base'], 'choose the architecture detailed'),
+        ([*LAUNCH, '--lock-times', '9'], 'when the run ends'),
+        ([*LAUNCH, '--lock-times', 'soon'], 'START:STOP:COUNT'),
+        ([*LAUNCH, '--lock-times', '1:0.5:3'], 'rising'),
+        (['--metrics', 'beauty'], 'beauty'),
+        ([*LAUNCH, '--cap', 'mean_jerk=1'], '--cap mean_jerk=1'),
+        ([*LAUNCH, '--figure', 'front.pdf'], '.png or .svg'),
+        (['--metrics', 'slip_acceleration_at_lock', '--lock-times', '1'], 'not defined'),
+    ],
+)
+def test_what_cannot_be_is_one_line(arguments, words, capsys):
+    assert main(arguments) != 0
+    lines = capsys.readouterr().err.splitlines()
+    assert len(lines) == 1
+    assert lines[0].startswith('ddct limit: ')
+    assert words in lines[0]

@@ -1,0 +1,158 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Bounds of linear programs: closed forms, weak duality, rays, and refused certificates."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import scipy
+
+from ddct_bringup.floor.program import (
+    RAY,
+    WEAK_DUALITY,
+    Certificate,
+    LinearProgram,
+    certified,
+    proven,
+    require_proof,
+)
+from ddct_bringup.floor.solver import solve
+from ddct_plant.base.errors import DdctError
+
+
+def solution_of(program):
+    """Return the solution with all variables free and all rows used."""
+    none = np.zeros(len(program.cost), dtype=bool)
+    return solve(program, none, np.zeros(len(none)), np.zeros(len(program.limits), dtype=bool))
+
+
+def least_peak(rows, offset, equal_rows, equal_values, most):
+    """Return the program of the least peak |rows u + offset| with equations and a box."""
+    count = rows.shape[1]
+    ones = np.ones((len(rows), 1))
+    return LinearProgram(
+        cost=np.append(np.zeros(count), 1.0),
+        constant=0.0,
+        rows=np.block([[rows, -ones], [-rows, -ones]]),
+        limits=np.concatenate([-offset, offset]),
+        equal_rows=np.hstack([equal_rows, np.zeros((len(equal_rows), 1))]),
+        equal_values=equal_values,
+        low=np.append(np.full(count, -most), 0.0),
+        high=np.append(np.full(count, most), 1e3),
+    )
+
+
+def test_a_double_integrator_from_rest_to_rest_needs_four_times_the_way_over_the_time_squared():
+    periods, period_s, way = 40, 0.05, 3.0
+    left = np.arange(periods)[::-1]
+    position = period_s**2 * (left + 0.5)
+    ends = np.vstack([position, np.full(periods, period_s)])
+    program = least_peak(np.eye(periods), np.zeros(periods), ends, np.array([way, 0.0]), 100.0)
+    solution = solution_of(program)
+    closed_form = 4.0 * way / (periods * period_s) ** 2
+    assert solution.certificate.claim == pytest.approx(closed_form, rel=1e-6)
+    assert program.cost @ solution.point == pytest.approx(closed_form, rel=1e-6)
+
+
+def test_a_rigid_clutch_needs_a_constant_torque_to_lock_at_a_time():
+    """J_r dw_d/dt = J_r a - C_f from a slip w_0: C_f = J_r (a + w_0/T) has the least peak."""
+    joint, drive, slip, periods, period_s = 0.2, 30.0, 100.0, 50, 0.01
+    sums = np.full((1, periods), period_s / joint)
+    needed = np.array([slip + drive * periods * period_s])
+    program = least_peak(np.eye(periods), np.zeros(periods), sums, needed, 1000.0)
+    closed_form = joint * (drive + slip / (periods * period_s))
+    assert solution_of(program).certificate.claim == pytest.approx(closed_form, rel=1e-6)
+
+
+def random_program(random):
+    """Return a program whose origin keeps all rows."""
+    variables, rows = random.integers(2, 12), random.integers(1, 20)
+    matrix = random.normal(size=(rows, variables))
+    return LinearProgram(
+        cost=random.normal(size=variables),
+        constant=float(random.normal()),
+        rows=matrix,
+        limits=random.uniform(0.1, 2.0, size=rows),
+        equal_rows=random.normal(size=(1, variables)),
+        equal_values=np.zeros(1),
+        low=-random.uniform(0.5, 3.0, size=variables),
+        high=random.uniform(0.5, 3.0, size=variables),
+    )
+
+
+@pytest.mark.parametrize('seed', range(200))
+def test_any_multipliers_bound_the_optimum_and_those_of_the_solver_attain_it(seed):
+    random = np.random.default_rng(seed)
+    program = random_program(random)
+    optimum = scipy.optimize.linprog(
+        program.cost,
+        program.rows,
+        program.limits,
+        program.equal_rows,
+        program.equal_values,
+        np.column_stack([program.low, program.high]),
+    )
+    assert optimum.status == 0
+    best = optimum.fun + program.constant
+    any_rows = random.exponential(size=len(program.limits))
+    any_equal = random.normal(size=1)
+    assert proven(WEAK_DUALITY, program, any_rows, any_equal) <= best + 1e-9
+    assert solution_of(program).certificate.claim == pytest.approx(best, abs=1e-6)
+
+
+def impossible_program():
+    """Return a program whose two rows exclude each other, x + y <= 1 and x + y >= 1.5."""
+    return LinearProgram(
+        cost=np.array([1.0, 0.0]),
+        constant=0.0,
+        rows=np.array([[1.0, 1.0], [-1.0, -1.0]]),
+        limits=np.array([1.0, -1.5]),
+        equal_rows=np.zeros((0, 2)),
+        equal_values=np.zeros(0),
+        low=np.zeros(2),
+        high=np.full(2, 10.0),
+    )
+
+
+def test_an_infeasible_program_comes_with_its_ray():
+    solution = solution_of(impossible_program())
+    assert solution.point is None
+    assert solution.certificate.kind == RAY
+    assert solution.certificate.claim > 0.0
+    require_proof(solution.certificate, impossible_program())
+
+
+def broken(certificate):
+    """Yield certificates that no longer prove their claim, with words of the error."""
+    yield replace(certificate, claim=certificate.claim + 1e-3), 'claims'
+    yield replace(certificate, claim=np.nan), 'proves nothing'
+    yield replace(certificate, kind='trust'), 'proves nothing'
+    yield replace(certificate, row_multipliers=certificate.row_multipliers[:-1]), 'not one'
+    yield replace(certificate, row_multipliers=certificate.row_multipliers - 1.0), 'below zero'
+    yield replace(certificate, row_multipliers=0.0 * certificate.row_multipliers), 'claims'
+
+
+def test_a_broken_certificate_is_refused():
+    program = random_program(np.random.default_rng(4))
+    certificate = solution_of(program).certificate
+    assert np.any(certificate.row_multipliers > 0.0)
+    require_proof(certificate, program)
+    for wrong, words in broken(certificate):
+        with pytest.raises(DdctError, match=words):
+            require_proof(wrong, program)
+
+
+def test_a_ray_that_excludes_nothing_is_refused():
+    program = random_program(np.random.default_rng(5))
+    rows = np.zeros(len(program.limits))
+    empty = Certificate(RAY, 0.0, rows, np.zeros(1))
+    with pytest.raises(DdctError, match='exclude'):
+        require_proof(empty, program)
+    assert certified(RAY, program, rows, np.zeros(1)).claim == 0.0
+
+
+def test_the_residual_of_a_point_is_its_farthest_violation():
+    program = impossible_program()
+    assert program.residual(np.array([0.5, 0.5])) == pytest.approx(0.5)
+    assert program.residual(np.array([-2.0, 3.2])) == pytest.approx(2.0)

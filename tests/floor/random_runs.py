@@ -1,0 +1,147 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""
+Random runs of all controllers against their floors: no run may lie below.
+
+    python tests/floor/random_runs.py --runs 4000
+
+takes some ten minutes. Each run is a point of the program that bounds it: its residual in all
+constraints and its distance to its floor are checked. The exit code is 1 where one fails.
+"""
+
+import argparse
+import sys
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from ddct_bringup.floor.bound import bound_of
+from ddct_bringup.floor.case import case_of_run
+from ddct_bringup.floor.floor import control_start, engagements_a_day, value_of
+from ddct_bringup.floor.lock import lock_of
+from ddct_bringup.floor.objectives import OBJECTIVES, Signals
+from ddct_bringup.run.headless import run_headless
+from ddct_controllers.interface import Controller
+from ddct_controllers.registry import controller_names, make_controller
+from ddct_plant.base.errors import DdctError
+from ddct_plant.scenario.file import ScenarioFile
+from ddct_plant.scenario.settings import RunSettings
+
+RESIDUAL = 1e-7
+"""Largest residual of a run in a constraint, in rad/s or N m."""
+BELOW = 1e-6
+"""How far a run may lie below its floor, as a share of the floor."""
+SCENARIOS = (
+    ('launch', 'stick_slip'),
+    ('launch_hot', 'stick_slip'),
+    ('launch_gentle', 'stick_slip'),
+    ('thesis', 'stick_slip'),
+    ('thesis', 'linear'),
+)
+QUICK = ('peak_jerk', 'peak_acceleration', 'mean_jerk', 'acceleration_std_m_s2')
+"""Metrics whose bound takes about a tenth of a second; every tenth run has another one."""
+SLOW = tuple(name for name in OBJECTIVES if name not in QUICK)
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """Comparison of one random run with its floor."""
+
+    run: str
+    """Description of the run."""
+    covered: bool
+    """Whether the run has a floor: it locks once and stays locked."""
+    residual: float = 0.0
+    """Largest violation of a constraint by the run."""
+    below: float = 0.0
+    """How far the run is below its floor, as a share of it; not positive for a true floor."""
+
+    @property
+    def wrong(self) -> bool:
+        """Whether the run contradicts its floor."""
+        return self.covered and (self.residual > RESIDUAL or self.below > BELOW)
+
+
+def outcomes(runs: int, seed: int) -> Iterator[Outcome]:
+    """Yield the comparison of random runs; run i depends on seed and i alone."""
+    for index in range(runs):
+        yield outcome(np.random.default_rng((seed, index)), index)
+
+
+def outcome(random: np.random.Generator, index: int) -> Outcome:
+    """Return the comparison of one random run with its floor."""
+    scenario, clutch = SCENARIOS[random.integers(len(SCENARIOS))]
+    names = controller_names()
+    name = names[random.integers(len(names))]
+    changes = {
+        'reference.slope_rad_s2': float(random.uniform(60.0, 250.0)),
+        'load.slope_rad': float(random.uniform(-0.02, 0.04)),
+        'actuator.bandwidth_factor': float(random.uniform(0.7, 1.5)),
+        'actuator.delay_s': float(random.integers(5, 25)) / 1000.0,
+    }
+    wear = float(random.uniform(0.7, 1.3))
+    text = f'{index}: {name} in {scenario} {clutch}, wear gain {wear:.3f}, {changes}'
+    file = ScenarioFile.read(scenario)
+    settings = RunSettings(file.scenario(changes, clutch), clutch=clutch, wear_gain=wear)
+    try:
+        controller = make_controller(name, settings)
+        assert isinstance(controller, Controller)
+        run = run_headless(settings, controller)
+        start = control_start(settings)
+    except DdctError:
+        return Outcome(text, covered=False)
+    lock = lock_of(run, start.step)
+    case = None
+    if lock is not None and run.steps == settings.scenario.steps:
+        case = case_of_run(settings, start, lock, run)
+    if case is None:
+        return Outcome(text, covered=False)
+    point = case.point_of(run)
+    rows, limits = case.inequalities
+    columns = case.motion.columns
+    residual = max(
+        float(np.max(rows @ point - limits, initial=0.0)),
+        float(np.max(np.abs(case.equations @ point), initial=0.0)),
+        float(np.max(columns.low - point[1:], initial=0.0)),
+        float(np.max(point[1:] - columns.high, initial=0.0)),
+    )
+    pool = SLOW if index % 10 == 0 else QUICK
+    metric = pool[random.integers(len(pool))]
+    signals = Signals.of_motion(case.motion, settings.scenario, engagements_a_day())
+    bound = bound_of(case, OBJECTIVES[metric], signals)
+    value = value_of(settings, metric, run, start.step)
+    if bound is None or value is None:
+        return Outcome(f'{text}, {metric}', covered=True, residual=residual)
+    least = np.inf if bound.least is None else bound.least
+    below = (least - value) / max(value, 1e-9)
+    return Outcome(f'{text}, {metric} {value:.6g}, least {least:.6g}', True, residual, below)
+
+
+def main() -> int:
+    """Compare the runs, print what contradicts its floor, and return the exit code."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[1])
+    parser.add_argument('--runs', type=int, default=4000)
+    parser.add_argument('--seed', type=int, default=1)
+    options = parser.parse_args()
+    started = time.monotonic()
+    done: list[Outcome] = []
+    for each in outcomes(options.runs, options.seed):
+        done.append(each)
+        if each.wrong:
+            print(f'WRONG residual {each.residual:.3g}, below by {each.below:.3g}: {each.run}')
+        if len(done) % 100 == 0:
+            print(f'{len(done)} runs, {time.monotonic() - started:.0f} s', file=sys.stderr)
+    covered = [each for each in done if each.covered]
+    wrong = sum(each.wrong for each in done)
+    print(
+        f'{len(done)} runs, {len(covered)} with a floor, {wrong} wrong; largest residual '
+        f'{max((each.residual for each in covered), default=0.0):.2e}, nearest to its floor '
+        f'{0.0 - max((each.below for each in covered), default=0.0):.2e} above it'
+    )
+    return 1 if wrong else 0
+
+
+if __name__ == '__main__':
+    raise SystemExit(main())

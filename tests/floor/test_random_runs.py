@@ -1,0 +1,15 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""A sample of random runs over all controllers lies on the right side of its floors."""
+
+import pytest
+from random_runs import outcomes
+
+RUNS = 40
+
+
+@pytest.mark.slow
+def test_random_runs_satisfy_their_constraints_and_lie_above_their_floors() -> None:
+    done = list(outcomes(RUNS, seed=7))
+    assert [each for each in done if each.wrong] == []
+    assert sum(each.covered for each in done) >= RUNS // 5
