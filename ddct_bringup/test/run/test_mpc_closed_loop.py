@@ -12,7 +12,6 @@ from ddct_bringup.reproduction.headless_run import (
     headless_run,
     thesis_run,
 )
-from ddct_bringup.reproduction.studies.clutch_torque_limit import clutch_torque_limit, limit_at
 from ddct_bringup.reproduction.studies.readings import readings
 from ddct_bringup.reproduction.studies.study import TABLE_5_1, cells
 from ddct_bringup.run.headless import run_headless
@@ -207,47 +206,3 @@ def test_unit_delay_and_signals_decide_and_none_of_the_readings_is_the_print(rea
     assert np.allclose(taken_over, drawn, atol=0.01)
     assert ratio['C_fOL off from 0.6 s, moves from 0'][1] > drawn[1]
     assert ratio['C_fOL on, unknown to it'][1] > 10.0
-
-
-def test_limit_is_a_limit_for_every_run():
-    """Each run has the limit for its own t_a and stray, so it is among the runs that it bounds."""
-    for controller, _, _, *figures_and_limits in clutch_torque_limit().rows:
-        torsion, least_torsion, acceleration, least_acceleration = map(float, figures_and_limits)
-        if 'printed' not in controller:
-            assert torsion > least_torsion
-            assert acceleration > least_acceleration
-
-
-def test_limit_falls_when_the_slip_may_stray_further():
-    limits = [limit_at(0.63, strays).torsion_speed_std_rpm for strays in (1.0, 2.0, 6.0)]
-    assert limits == sorted(limits, reverse=True)
-
-
-def test_limit_agrees_with_another_solver():
-    cvxpy = pytest.importorskip('cvxpy')
-    from ddct_bringup.reproduction.studies.clutch_torque_limit import _predict
-
-    strays = 2.0
-
-    prediction = _predict(thesis_run('pi', 'detailed', 1.0).trajectory, 60, 170)
-    slip_free, slip_rows = prediction['slip']
-    requests = cvxpy.Variable(110)
-    slip = slip_free + slip_rows @ requests
-    for name, ours in (('torsion', 'torsion_speed_std_rpm'), ('acceleration', None)):
-        free, rows = prediction[name]
-        signal = free + rows @ requests
-        deviation = signal - cvxpy.sum(signal) / 111.0
-        limits = [
-            requests >= 0.0,
-            slip[:63] >= 0.0,
-            cvxpy.abs(slip[63:]) <= strays,
-        ]
-        problem = cvxpy.Problem(cvxpy.Minimize(cvxpy.sum_squares(deviation)), limits)
-        problem.solve(solver=cvxpy.CLARABEL)
-        theirs = np.sqrt(problem.value / 111.0)
-        if ours:
-            assert limit_at(0.63, strays).torsion_speed_std_rpm == pytest.approx(
-                rpm_from_rad_s(theirs), rel=1e-3
-            )
-        else:
-            assert limit_at(0.63, strays).acceleration_std_m_s2 == pytest.approx(theirs, rel=1e-3)

@@ -10,7 +10,6 @@ from typing import Any
 
 from ddct_bringup.reproduction.studies import (
     admissible_scenarios,
-    clutch_torque_limit,
     engagements,
     mpc4_readings,
     readings,
@@ -27,7 +26,6 @@ from ddct_plant.program.table import print_table
 
 _ABOUT: Mapping[StudyFunction, str] = {
     admissible_scenarios.admissible_scenarios: 'the scenarios that fit Table 5.1 as well',
-    clutch_torque_limit.clutch_torque_limit: 'the least w_sr and A_x at the t_a of Table 5.1',
     sweeps.engine_authority: 'MPC4 by how far it may move the engine torque',
     mpc4_readings.mpc4_readings: 'MPC4 by reading of Section 4.3',
     sweeps.pedal_positions: '`pedal_mpc` by pedal position',
