@@ -20,7 +20,7 @@ CLEAR_RAD_S = 3.0
 """Slip in rad/s that a run keeps until shortly before its lock, so that it does not lock early."""
 CLOSING_RAD_S2 = 50.0
 """How fast the slip then goes to zero in rad/s^2: less would let the plates part again."""
-LATEST_S = 0.02
+LATEST_S = 0.005
 """How far the lock of a run may be from the instant of the floor in s."""
 _SMOOTH = 1e-2
 """Share of the bound that may be given away for requests near the usual ones."""
@@ -77,7 +77,7 @@ def replays_of(
     whole = case.settings.scenario.steps
     if begin is not None and begin.steps == whole:
         fixed = case.point_of(begin)
-    best, last = None, begin
+    best, last, before = None, begin, math.inf
     for _ in range(_ROUNDS):
         requests = _requests(case, objective, signals, rows, fixed, bound)
         if requests is None:
@@ -100,7 +100,10 @@ def replays_of(
         result = Attained(value, _predicted(objective, signals, predicted), run)
         if best is None or result.value < best.value:
             best = result
-        if abs(result.value - result.predicted) <= _NEAR * abs(result.value):
+        # A further replay helps only while the plant still moves away from the prediction.
+        settled = abs(result.value - before) <= _NEAR * abs(result.value)
+        before = result.value
+        if settled or abs(result.value - result.predicted) <= _NEAR * abs(result.value):
             break
     return Replays(best, last)
 
@@ -168,6 +171,7 @@ def _requests(
             centre,
             case.most_request,
             bound,
+            case.deferred[: len(limits) - 1],
         )
     if objective.sliding:
         rows = _strongest(rows, objective, signals, bound)
@@ -222,6 +226,7 @@ def _near_peak(
     centre: np.ndarray,
     most: float,
     bound: Bound,
+    later: np.ndarray,
 ) -> np.ndarray | None:
     """
     Return requests with the least peak |rows u + offset|, close to `centre`.
@@ -257,7 +262,7 @@ def _near_peak(
         high=np.concatenate([np.full(count, most), [1e6, 1e6]]),
     )
     deferred = np.zeros(len(program.limits), dtype=bool)
-    deferred[2 * len(rows) + 2 * count : -1] = True
+    deferred[2 * len(rows) + 2 * count : -1] = later
     kept = np.zeros(count + 2, dtype=bool)
     point = best_point(program, kept, np.zeros(count + 2), deferred)
     return None if point is None else point[:count]

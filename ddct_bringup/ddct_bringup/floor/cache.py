@@ -31,13 +31,14 @@ def cache_folder() -> Path | None:
     return Path(home) / 'ddct' / 'floors'
 
 
-def digest_of(case: Case, metric: str, engagements_a_day: float) -> str:
+def digest_of(case: Case, metric: str, engagements_a_day: float, attain: bool) -> str:
     """Return the SHA-256 of the case, the metric, the code of the floors and the solvers."""
     digest = hashlib.sha256(_code())
     settings = case.settings
     texts = (
         metric,
         repr(engagements_a_day),
+        repr(attain),
         scenario_to_yaml(settings.scenario),
         settings.clutch,
         repr(settings.wear_gain),

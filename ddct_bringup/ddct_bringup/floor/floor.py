@@ -9,7 +9,7 @@ from functools import cache
 from typing import Any
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.floor.attained import replays_of, signals_of_run
+from ddct_bringup.floor.attained import Replays, replays_of, signals_of_run
 from ddct_bringup.floor.bound import bound_of
 from ddct_bringup.floor.cache import cached, digest_of, store
 from ddct_bringup.floor.case import Case, case_at, case_of_run, gives_demand
@@ -152,13 +152,19 @@ def floors_at(
 
 
 def floors_of_run(
-    settings: RunSettings, metrics: Sequence[str], run: Trajectory, start: Start | None = None
+    settings: RunSettings,
+    metrics: Sequence[str],
+    run: Trajectory,
+    start: Start | None = None,
+    *,
+    attain: bool = True,
 ) -> dict[str, OverFloor | None]:
     """
     Return by metric the value of a run and the least at its own lock instant.
 
-    The program contains the run. None where a metric has no value, and for all metrics of a run
-    that does not lock once and stay locked, commands the engine, or starts otherwise.
+    Without `attain` no run near the least is searched for, which takes half as long. The program
+    contains the run. None where a metric has no value, and for all metrics of a run that does not
+    lock once and stay locked, commands the engine, or starts otherwise.
     """
     none: dict[str, OverFloor | None] = dict.fromkeys(metrics)
     start = control_start(settings) if start is None else start
@@ -170,7 +176,9 @@ def floors_of_run(
         return none
     values = {metric: value_of(settings, metric, run, start.step) for metric in metrics}
     return {
-        metric: None if value is None else OverFloor(value, _found(case, metric).floor)
+        metric: None
+        if value is None
+        else OverFloor(value, _found(case, metric, attain=attain).floor)
         for metric, value in values.items()
     }
 
@@ -207,13 +215,16 @@ class _Found:
     """Last replay; None where there is none, or the floor is from the cache."""
 
 
-def _found(case: Case, metric: str, begin: Trajectory | None = None) -> _Found:
+def _found(
+    case: Case, metric: str, begin: Trajectory | None = None, *, attain: bool = True
+) -> _Found:
     """Return the floor of a case, from the cache where it is there."""
-    digest = digest_of(case, metric, engagements_a_day())
+    digest = digest_of(case, metric, engagements_a_day(), attain)
     known = cached(digest)
     if known is not None:
         return _Found(Floor(**known['floor']), known['limited'])
-    found = _closed_form(case) if metric == FRICTION else _computed(case, metric, begin)
+    closed = metric == FRICTION
+    found = _closed_form(case) if closed else _computed(case, metric, begin, attain)
     store(digest, {'floor': dataclasses.asdict(found.floor), 'limited': found.limited})
     return found
 
@@ -224,7 +235,7 @@ def _closed_form(case: Case) -> _Found:
     return _Found(Floor(FRICTION, case.lock.time_s, least, None, certificate, None), False)
 
 
-def _computed(case: Case, metric: str, begin: Trajectory | None) -> _Found:
+def _computed(case: Case, metric: str, begin: Trajectory | None, attain: bool) -> _Found:
     objective, settings = _objective(metric), case.settings
     signals = Signals.of_motion(case.motion, settings.scenario, engagements_a_day())
     covers = LIMITS if case.limited else DEMAND
@@ -238,18 +249,30 @@ def _computed(case: Case, metric: str, begin: Trajectory | None) -> _Found:
         # Where even a free engine torque does not help, the wide case says so.
         limited = not case.limited and settings.scenario.engine_limits is not None
         return _Found(Floor(metric, case.lock.time_s, None, None, certificate, None), limited)
-    replays = replays_of(case, objective, signals, bound, begin)
-    best, last = replays.best, replays.last
+    replays = Replays(None, None)
+    if attain:
+        replays = replays_of(case, objective, signals, bound, begin)
+    best, last, least = replays.best, replays.last, bound.least
+    if best is not None and least is not None and best.value < least:
+        # This run left the band of speeds: with it in the band the bound is below.
+        return _with_run(case, metric, best.run, begin)
     floor = Floor(
         metric,
         case.lock.time_s,
-        bound.least,
+        least,
         best.value if best else None,
         certificate,
         abs(best.value - best.predicted) if best else None,
     )
     limited = last is not None and not case.limited and not gives_demand(last, case.start.step)
     return _Found(floor, limited, last)
+
+
+def _with_run(case: Case, metric: str, run: Trajectory, begin: Trajectory | None) -> _Found:
+    """Return the floor of a case that contains a run too; unless it does, without replays."""
+    tube = case.tube.with_run(run, case.start.step)
+    wider = dataclasses.replace(case, tube=tube)
+    return _computed(wider, metric, begin, attain=tube is not case.tube)
 
 
 def _objective(metric: str) -> Objective:

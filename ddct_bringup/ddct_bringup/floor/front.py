@@ -17,7 +17,7 @@ from ddct_plant.scenario.settings import RunSettings
 
 POINTS = 15
 """Number of lock times of a front."""
-_SHARES = (0.3, 0.95)
+_SHARES = (0.35, 0.95)
 """First and last lock time as shares of the time from control start to the end of the window."""
 
 

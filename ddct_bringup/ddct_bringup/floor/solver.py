@@ -93,6 +93,8 @@ def _attempt(
     limits = program.limits - program.rows[:, kept] @ values[kept] - margin
     equal_values = program.equal_values - program.equal_rows[:, kept] @ values[kept]
     rows, used = program.rows[:, free], ~deferred
+    # Within its margin a point still keeps the limit itself.
+    tolerance = np.maximum(margin, _EXCEEDED)
     for _ in range(_ROUNDS):
         found = _highs(
             program.cost[free],
@@ -107,7 +109,7 @@ def _attempt(
             raise DdctError(f'HiGHS: {found.message}')
         if found.status == 2:
             break
-        exceeded = (rows @ found.x - limits > _EXCEEDED) & ~used
+        exceeded = (rows @ found.x - limits > tolerance) & ~used
         if not exceeded.any():
             break
         had, used = used, used | exceeded
