@@ -20,15 +20,17 @@ CLEAR_RAD_S = 3.0
 """Slip in rad/s that a run keeps until shortly before its lock, so that it does not lock early."""
 CLOSING_RAD_S2 = 50.0
 """How fast the slip then goes to zero in rad/s^2: less would let the plates part again."""
-LATEST_S = 0.005
+LATEST_S = 0.01
 """How far the lock of a run may be from the instant of the floor in s."""
 _SMOOTH = 1e-2
 """Share of the bound that may be given away for requests near the usual ones."""
 _QUADRATIC = 1e-3
 """Curvature that keeps the requests of a quadratic program near the usual ones."""
-_AT_LOCK, _LEAST_SHARE = 3, 0.9
-"""Number of last requests, which act after the lock too, and their least share of the usual."""
-_ROUNDS = 3
+_AT_LOCK = 3
+"""Number of last requests, which act after the lock too."""
+_LEAST_SHARE, _MORE_SHARE = 0.9, 0.1
+"""Least share of the usual ones that these are, and how much more after each failed replay."""
+_ROUNDS = 6
 """Number of replays, each with the engine, load and kiss point of the one before."""
 _NEAR = 2e-3
 """Difference of prediction and replay, relative, below which no further replay is needed."""
@@ -77,9 +79,9 @@ def replays_of(
     whole = case.settings.scenario.steps
     if begin is not None and begin.steps == whole:
         fixed = case.point_of(begin)
-    best, last, before = None, begin, math.inf
+    best, last, before, failed = None, begin, math.inf, 0
     for _ in range(_ROUNDS):
-        requests = _requests(case, objective, signals, rows, fixed, bound)
+        requests = _requests(case, objective, signals, rows, fixed, bound, failed)
         if requests is None:
             break
         last = run = replayed(case, requests)
@@ -94,8 +96,10 @@ def replays_of(
         locks = abs(late_s) <= LATEST_S or (not case.settings.stick_slip and late_s <= LATEST_S)
         if not case.limited and not gives_demand(run, case.start.step):
             break
-        fixed = case.point_of(run)
+        # The mean, as the next replay would otherwise go as far to the other side.
+        fixed = (fixed + case.point_of(run)) / 2.0
         if not locks or value is None:
+            failed += 1
             continue
         result = Attained(value, _predicted(objective, signals, predicted), run)
         if best is None or result.value < best.value:
@@ -147,18 +151,25 @@ def _requests(
     rows: np.ndarray,
     fixed: np.ndarray,
     bound: Bound,
+    failed: int,
 ) -> np.ndarray | None:
-    """Return requests (n,) in N m that lock cleanly, with a metric near the bound."""
+    """
+    Return requests (n,) in N m that lock cleanly, with a metric near the bound.
+
+    Each replay that has failed makes them keep farther away from zero slip, and closer after it.
+    """
     count = case.motion.columns.requests
     if not case.settings.stick_slip:
         assert bound.point is not None
         return bound.point[1 : 1 + count]
     used = slice(1, 1 + count)
-    limiting, limits = _clean(case)
+    limiting, limits = _clean(case, CLEAR_RAD_S * (1 + failed))
     shift = fixed.copy()
     shift[used] = 0.0
     limits = limits - limiting @ shift
     centre = usual_requests(case)[:count]
+    low = np.zeros(count)
+    low[-_AT_LOCK:] = (_LEAST_SHARE + _MORE_SHARE * failed) * centre[-_AT_LOCK:]
     equations = case.equations
     if isinstance(objective, Peak):
         return _near_peak(
@@ -172,12 +183,11 @@ def _requests(
             case.most_request,
             bound,
             case.deferred[: len(limits) - 1],
+            low,
         )
     if objective.sliding:
         rows = _strongest(rows, objective, signals, bound)
     weighted = np.sqrt(objective.weights(signals))[:, np.newaxis] * rows
-    low = np.zeros(count)
-    low[-_AT_LOCK:] = _LEAST_SHARE * centre[-_AT_LOCK:]
     return least_squares(
         weighted[:, used],
         weighted @ shift,
@@ -202,13 +212,13 @@ def _strongest(
     return rows[first : first + length]
 
 
-def _clean(case: Case) -> tuple[np.ndarray, np.ndarray]:
-    """Return the rows and limits of the case with a slip that stays clear of zero before."""
+def _clean(case: Case, least_slip: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return the rows and limits of the case with a slip of `least_slip` in rad/s before."""
     rows, limits = case.clutch_limits
     motion = case.motion
     count = len(motion.slip)
     left_s = case.lock.time_s - 0.01 * np.arange(1, count + 1)
-    clear = np.minimum(CLEAR_RAD_S, CLOSING_RAD_S2 * left_s)
+    clear = np.minimum(least_slip, CLOSING_RAD_S2 * left_s)
     limits = limits.copy()
     limits[:count] -= np.minimum(clear, 0.5 * abs(case.start.slip))
     assert motion.slip_acceleration is not None
@@ -227,6 +237,7 @@ def _near_peak(
     most: float,
     bound: Bound,
     later: np.ndarray,
+    low: np.ndarray,
 ) -> np.ndarray | None:
     """
     Return requests with the least peak |rows u + offset|, close to `centre`.
@@ -237,8 +248,6 @@ def _near_peak(
     count = rows.shape[1]
     if not count:
         return None
-    low = np.zeros(count)
-    low[-_AT_LOCK:] = _LEAST_SHARE * centre[-_AT_LOCK:]
     distance = np.abs(centre).max() + 1.0
     price = _SMOOTH * max(bound.value or 0.0, 1e-3) / distance
     one, none = np.ones((len(rows), 1)), np.zeros((len(rows), 1))

@@ -61,7 +61,11 @@ def solve(
     """
     found, used = _attempt(program, kept, values, deferred, margin)
     if found.status == 2:
-        return Solution(None, _ray(program))
+        ray = _ray(program)
+        if ray.claim > 0.0 or not (kept.any() or np.any(margin)):
+            return Solution(None, ray)
+        # Only the kept variables or the margin exclude all points, not the program.
+        return solve(program, np.zeros_like(kept), values, deferred)
     multipliers = np.zeros(len(program.limits))
     multipliers[used] = -found.ineqlin.marginals
     point = values.copy()

@@ -156,3 +156,21 @@ def test_the_residual_of_a_point_is_its_farthest_violation():
     program = impossible_program()
     assert program.residual(np.array([0.5, 0.5])) == pytest.approx(0.5)
     assert program.residual(np.array([-2.0, 3.2])) == pytest.approx(2.0)
+
+
+def test_a_kept_variable_that_excludes_all_points_is_let_go():
+    """With x kept at 0 a row x >= 0.5 excludes all; the program itself has points, and no ray."""
+    program = LinearProgram(
+        cost=np.array([1.0, 1.0]),
+        constant=0.0,
+        rows=np.array([[-1.0, 0.0]]),
+        limits=np.array([-0.5]),
+        equal_rows=np.zeros((0, 2)),
+        equal_values=np.zeros(0),
+        low=np.zeros(2),
+        high=np.ones(2),
+    )
+    kept = np.array([True, False])
+    solution = solve(program, kept, np.zeros(2), np.zeros(1, dtype=bool))
+    assert solution.certificate.kind == WEAK_DUALITY
+    assert solution.certificate.claim == pytest.approx(0.5, abs=1e-6)
