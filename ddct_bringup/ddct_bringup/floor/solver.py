@@ -59,6 +59,8 @@ def solve(
     whole program, without margin, in which no variable is kept. Raise
     DdctError where HiGHS finds neither a point nor that there is none.
     """
+    if kept.all():
+        kept = np.zeros_like(kept)
     found, used = _attempt(program, kept, values, deferred, margin)
     if found.status == 2:
         ray = _ray(program)
@@ -186,6 +188,8 @@ def least_squares(
     diagonal of the Hessian. DAQP gets a row only once a point exceeds it. None where there is no
     such z.
     """
+    if not target.any():
+        return centre  # no variable has an effect, or there is none
     hessian = target.T @ target
     added = curvature * np.trace(hessian) / len(hessian)
     # A unit diagonal, which the solver gives the Hessian, makes late requests count as much.

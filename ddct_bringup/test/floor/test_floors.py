@@ -138,6 +138,13 @@ def test_a_lock_at_once_is_impossible_and_has_its_ray():
     assert floor.certificate['proven'] > 0.0
 
 
+@pytest.mark.parametrize('metric', ['peak_jerk', 'acceleration_std_m_s2'])
+def test_a_lock_before_any_request_acts_leaves_nothing_to_choose(metric):
+    floor = floor_of(settings_of(), metric, 0.005)
+    assert (floor.least, floor.attained) == (None, None)
+    assert floor.certificate['kind'] == RAY
+
+
 def test_a_run_that_slips_again_has_no_floor():
     settings = settings_of()
     run = run_headless(settings, 'hinf2')
