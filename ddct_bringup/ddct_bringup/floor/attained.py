@@ -121,7 +121,7 @@ def signals_of_run(signals: Signals, run: Trajectory) -> Signals:
     ]
     return Signals(
         run.vehicle_accel,
-        run.joint_speed[:, 3],
+        run.driveshaft_speed,
         np.array(slopes[:1]) if slopes else None,
         signals.start,
         signals.window,

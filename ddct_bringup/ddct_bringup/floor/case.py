@@ -157,7 +157,7 @@ class Case:
         resisting = run.load_torque[first:]
         if run.holding_torque is not None:
             resisting = resisting + run.holding_torque[first:]
-        engine, _, wheel = run.joint_speed[first:, :3].T
+        engine, wheel = run.engine_speed[first:], run.wheel_speed[first:]
         if columns.load.stop > columns.load.start:
             point[columns.load] = self.load.rest(resisting, wheel)[:-1]
         if columns.engine.stop > columns.engine.start:

@@ -11,12 +11,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ddct_bringup.floor.floor import METRICS, Floor
-from ddct_controllers.design.drawing.chart_style import (
-    GREY,
-    chart_style,
-    controller_style,
-    save_chart,
-)
+from ddct_controllers.design.drawing.chart_style import chart_style, save_chart
+from ddct_controllers.design.drawing.line_styles import BLACK, GREY, LineStyle, controller_style
 
 _WIDTH_IN, _PANEL_IN, _MARGINS_IN = 8.0, 2.6, 1.1
 _LEGEND_COLUMNS = 5
@@ -62,11 +58,11 @@ def _draw(axes: Axes, floors: Sequence[Floor], rows: Sequence[Mapping[str, Any]]
     least = np.array([np.nan if floor.least is None else floor.least for floor in floors])
     attained = np.array([np.nan if f.attained is None else f.attained for f in floors])
     axes.fill_between(times, 0.0, least, color=GREY, alpha=0.25, label='no run can be here')
-    axes.plot(times, least, color='black', linewidth=1.2, label='least, proven')
+    axes.plot(times, least, color=BLACK, linewidth=1.2, label='least, proven')
     axes.plot(
         times,
         attained,
-        color='black',
+        color=BLACK,
         linestyle='none',
         marker='o',
         markersize=4.0,
@@ -80,6 +76,7 @@ def _draw(axes: Axes, floors: Sequence[Floor], rows: Sequence[Mapping[str, Any]]
     )
     axes.set_ylim(0.0, 1.1 * highest if highest > 0.0 else 1.0)
     for row in rows:
-        style = {'marker': 'o', **controller_style(row['controller']), 'linestyle': 'none'}
+        style: LineStyle = {'marker': 'o', **controller_style(row['controller'])}
+        style['linestyle'] = 'none'
         place = min(row['value'], 1.1 * highest)
         axes.plot(row['lock_time_s'], place, label=row['controller'], clip_on=False, **style)

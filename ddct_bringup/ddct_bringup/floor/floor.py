@@ -18,8 +18,8 @@ from ddct_bringup.floor.friction_work import least_friction_work
 from ddct_bringup.floor.lock import lock_of
 from ddct_bringup.floor.objectives import OBJECTIVES, Objective, Signals, window_of
 from ddct_bringup.floor.program import CLOSED_FORM, RAY
+from ddct_bringup.metrics.friction_work import friction_work
 from ddct_bringup.run.headless import run_headless
-from ddct_bringup.verdict.friction_work import friction_work
 from ddct_bringup.verdict.limits import load_limits
 from ddct_plant.base.errors import ParameterError, require_choice
 from ddct_plant.scenario.settings import RunSettings
@@ -189,7 +189,7 @@ def value_of(settings: RunSettings, metric: str, run: Trajectory, start: int) ->
         return float(friction_work(run, start))
     shape = Signals(
         run.vehicle_accel,
-        run.joint_speed[:, 3],
+        run.driveshaft_speed,
         None,
         start,
         window_of(settings.scenario),

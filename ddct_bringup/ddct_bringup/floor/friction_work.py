@@ -18,7 +18,7 @@ def least_friction_work(case: Case) -> float:
     time. A car with a soft driveline may do with less, as energy goes into its twist.
     """
     p = case.settings.scenario.driveline
-    rest = p.shaft_inertia + p.vehicle_inertia / p.total_ratio**2
+    rest = p.shaft_inertia + p.gear.at_shaft(p.vehicle_inertia)
     joint = p.engine_inertia * rest / (p.engine_inertia + rest)
     slip = abs(case.start.slip)
     work = joint * slip**2 / 2.0
@@ -28,7 +28,7 @@ def least_friction_work(case: Case) -> float:
     engine, load = case.engine, case.load
     torque = (engine.offset + engine.slope * case.tube.engine_low + engine.low)[:periods].min()
     resisting = (load.offset + load.slope * case.tube.wheel_low + load.low)[:periods].min()
-    drive = torque / p.engine_inertia + resisting / (p.total_ratio * rest)
+    drive = torque / p.engine_inertia + p.gear.shaft_torque(resisting) / rest
     fastest = case.capacity.most / joint
     time_s = min(case.lock.time_s, slip / fastest)
     area = slip * time_s - fastest * time_s**2 / 2.0

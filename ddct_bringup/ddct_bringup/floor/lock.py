@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.verdict.zero_slip import LOCKED, events_of, first_lock
+from ddct_bringup.metrics.zero_slip import LOCKED, events_of, first_lock
 from ddct_plant.base.timebase import PERIOD_S, time_of_step
 from ddct_plant.base.units import rad_s_from_rpm
 from ddct_plant.models.driveline import LOCK

@@ -12,6 +12,7 @@ from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.models.static_torque import StaticTorque
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.scenario.whole_plant import WholePlant
+from ddct_plant.signals.signal import SignalValue
 
 CLOSING_SHARE = 1.1
 """Request over C_fOL from the lock on."""
@@ -38,9 +39,9 @@ def usual_requests(case: Case) -> np.ndarray:
     engine = (tube.engine_low + tube.engine_high) / 2.0
     load = case.load.offset + case.load.slope * wheel + case.load.middle
     drive = case.engine.offset + case.engine.slope * engine + case.engine.middle
-    speeds: Any = (drive, load, engine, p.total_ratio * wheel)
+    speeds: Any = (drive, load, engine, p.gear.shaft_speed(wheel))
     torque: Any = static.torque(*speeds)
-    rest = p.shaft_inertia + p.vehicle_inertia / p.total_ratio**2
+    rest = p.shaft_inertia + p.gear.at_shaft(p.vehicle_inertia)
     joint = p.engine_inertia * rest / (p.engine_inertia + rest)
     time_s = np.arange(len(torque)) * PERIOD_S
     lock_s = case.lock.time_s
@@ -71,11 +72,13 @@ def replayed(case: Case, requests: np.ndarray) -> Trajectory:
 def run_requests(settings: RunSettings, requests: np.ndarray) -> Trajectory:
     """Return the run of the simulated plant with the torque requests (n,) in N m of each step."""
     plant = WholePlant(settings, two_input=False)
-    rows = []
+    rows: list[dict[str, SignalValue]] = []
     for step in range(settings.scenario.steps + 1):
         observation = plant.observe(step)
-        rows.append(plant.reply(step, observation, float(requests[step]), None))
+        reply = plant.reply(step, observation, float(requests[step]), None)
+        rows.append(reply.signals)
         if plant.over or step == settings.scenario.steps:
             break
-        plant.advance(rows[-1])
-    return Trajectory.of_columns({name: [row[name] for row in rows] for name in rows[0]})
+        plant.advance(reply)
+    names = [name for name, first in rows[0].items() if first is not None]
+    return Trajectory.of_columns({name: [row[name] for row in rows] for name in names})

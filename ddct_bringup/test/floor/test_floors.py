@@ -52,7 +52,7 @@ def test_a_run_is_a_point_of_the_program_that_bounds_it(scenario, clutch, contro
     case = case_of_run(settings, start, lock_of(run, start.step), run)
     point = case.point_of(run)
     assert np.abs(case.motion.acceleration @ point - run.vehicle_accel).max() < 1e-10
-    assert np.abs(case.motion.torsion_speed @ point - run.joint_speed[:, 3]).max() < 1e-10
+    assert np.abs(case.motion.torsion_speed @ point - run.driveshaft_speed).max() < 1e-10
     rows, limits = case.inequalities
     assert np.max(rows @ point - limits) < 1e-8
     assert np.max(np.abs(case.equations @ point), initial=0.0) < 1e-8
@@ -88,10 +88,10 @@ def test_the_values_are_those_of_scores_and_verdict():
     settings = settings_of()
     run = run_headless(settings, 'ls8')
     entry = score_run(in_memory(settings, 'ls8', run), 'ls8', packaged_limits(), None)
-    criteria = {each['name']: each['value'] for each in entry['verdict']['criteria']}
+    criteria = entry.verdict.values
     start = settings.scenario.control_start_step
     for metric in set(METRICS) - {'friction_energy'}:
-        expected = criteria[metric] if metric in criteria else entry['metrics'][metric]
+        expected = criteria[metric] if metric in criteria else entry.metrics[metric]
         assert value_of(settings, metric, run, start) == pytest.approx(abs(expected), rel=1e-12)
 
 
@@ -176,7 +176,7 @@ def test_the_least_friction_work_is_the_energy_of_the_slip_and_a_little_more():
     start = control_start(settings)
     case = floor_module.case_at(settings, start, 1.0)
     p = settings.scenario.driveline
-    rest = p.shaft_inertia + p.vehicle_inertia / p.total_ratio**2
+    rest = p.shaft_inertia + p.gear.at_shaft(p.vehicle_inertia)
     joint = p.engine_inertia * rest / (p.engine_inertia + rest)
     energy = joint * start.slip**2 / 2.0
     assert energy < least_friction_work(case) < 1.2 * energy

@@ -9,7 +9,6 @@ are those of the run of `ls8`. The table has two or three digits.
 
 import numpy as np
 import pytest
-from ddct_bringup.verdict.zero_slip import events_of
 
 from ddct_bringup.floor.bound import bound_of
 from ddct_bringup.floor.case import Case
@@ -19,6 +18,7 @@ from ddct_bringup.floor.dynamics.start import start_of
 from ddct_bringup.floor.dynamics.tube import rigid_tube
 from ddct_bringup.floor.lock import Lock
 from ddct_bringup.floor.objectives import Peak, Signals
+from ddct_bringup.metrics.zero_slip import events_of
 from ddct_bringup.run.headless import run_headless
 from ddct_plant.models.driveline import LOCK
 from ddct_plant.scenario.file import load_scenario

@@ -230,7 +230,7 @@ class _Builder:
             raise ParameterError(
                 'the driveline grows beyond all numbers: there is no floor for an unstable model'
             )
-        speed = path[:, SHAFT] / p.total_ratio - path[:, WHEEL]
+        speed = p.gear.wheel_speed(path[:, SHAFT]) - path[:, WHEEL]
         torque = p.halfshaft_damping * speed + p.halfshaft_stiffness * path[:, TWIST]
         torsion[start + 1 :] = speed[1:]
         scale = self._radius / p.vehicle_inertia

@@ -13,9 +13,6 @@ from ddct_plant.models.actuator import at_rest, lifted
 from ddct_plant.scenario.plant import initial_state
 from ddct_plant.scenario.settings import RunSettings
 
-_DRIVESHAFT = 3
-"""Index of the driveshaft among the joints."""
-
 
 @dataclass(frozen=True, eq=False)
 class ActuatorModel:
@@ -79,14 +76,21 @@ def start_of(settings: RunSettings, run: Trajectory) -> Start:
     step = settings.scenario.control_start_step
     if run.steps <= step:
         raise ParameterError('the run ends before control start: there is no floor')
-    if settings.stick_slip and run.joint_speed[step, 2] <= 0.0:
+    if settings.stick_slip and run.wheel_speed[step] <= 0.0:
         raise ParameterError(
             f'scenario {settings.scenario.name}: the wheels do not turn forward at control start, '
             'and when they break loose depends on the controller: there is no floor'
         )
     requests = np.maximum(run.torque_request[:step], 0.0)
     before = max(initial_state(settings).torque_request, 0.0)
-    state = np.array([*run.joint_speed[step, :3], run.joint_position[step, _DRIVESHAFT]])
+    state = np.array(
+        [
+            run.engine_speed[step],
+            run.primary_shaft_speed[step],
+            run.wheel_speed[step],
+            run.driveshaft_position[step],
+        ]
+    )
     if run.clutch_phase is not None and run.slip_speed[step] == 0.0:
         state[0] = state[1]
     temperature = run.clutch_temperature
@@ -97,8 +101,8 @@ def start_of(settings: RunSettings, run: Trajectory) -> Start:
         requests,
         before,
         np.array(run.vehicle_accel[: step + 1]),
-        np.array(run.joint_speed[: step + 1, _DRIVESHAFT]),
-        _idle_integral(settings, run.joint_speed[:step, 0]),
+        np.array(run.driveshaft_speed[: step + 1]),
+        _idle_integral(settings, run.engine_speed[:step]),
         20.0 if temperature is None else float(temperature[step]),
     )
 

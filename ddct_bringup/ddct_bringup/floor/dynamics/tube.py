@@ -32,7 +32,7 @@ class Tube:
 
     def with_run(self, run: Trajectory, start: int) -> 'Tube':
         """Return the band widened so that it contains a run."""
-        engine, wheel = run.joint_speed[start:, 0], run.joint_speed[start:, 2]
+        engine, wheel = run.engine_speed[start:], run.wheel_speed[start:]
         if self.contains(run, start):
             return self
         return Tube(
@@ -44,7 +44,7 @@ class Tube:
 
     def contains(self, run: Trajectory, start: int) -> bool:
         """Return whether a run of the same length stays in the band."""
-        engine, wheel = run.joint_speed[start:, 0], run.joint_speed[start:, 2]
+        engine, wheel = run.engine_speed[start:], run.wheel_speed[start:]
         return bool(
             np.all((self.engine_low <= engine) & (engine <= self.engine_high))
             and np.all((self.wheel_low <= wheel) & (wheel <= self.wheel_high))
@@ -62,7 +62,7 @@ def rigid_tube(settings: RunSettings, start: Start, lock_time_s: float) -> Tube:
     engine, load = make_engine(settings), make_load(settings)
     holding = holding_torque(settings) if settings.stick_slip else None
     limited = LimitedEngine(scenario.engine_limits) if scenario.engine_limits else None
-    rest = p.shaft_inertia + p.vehicle_inertia / p.total_ratio**2
+    rest = p.shaft_inertia + p.gear.at_shaft(p.vehicle_inertia)
     steps = scenario.steps - start.step + 1
     slip = start.slip * np.maximum(1.0 - np.arange(steps) * PERIOD_S / max(lock_time_s, 1e-9), 0.0)
     momentum = p.engine_inertia * start.state[0] + rest * start.state[1]
@@ -74,12 +74,12 @@ def rigid_tube(settings: RunSettings, start: Start, lock_time_s: float) -> Tube:
         torque = engine.demand(start.step + k)
         if limited:
             torque = limited.deliver(torque, engines[k])
-        speed = shafts[k] / p.total_ratio
+        speed = p.gear.wheel_speed(shafts[k])
         resisting = load.torque(speed * scenario.vehicle.wheel_radius_m, time_s)
         resisting += holding.capacity(time_s) if holding else 0.0
         damping = p.engine_damping * engines[k] + p.shaft_damping * shafts[k]
-        momentum += PERIOD_S * (torque - damping - resisting / p.total_ratio)
-    wheels = shafts / p.total_ratio
+        momentum += PERIOD_S * (torque - damping - p.gear.shaft_torque(resisting))
+    wheels = p.gear.wheel_speed(shafts)
     rigid = (p.engine_inertia * engines + rest * shafts) / (p.engine_inertia + rest)
     above = np.where(slip != 0.0, RACING, ENGINE_MARGIN)
     return Tube(
