@@ -39,6 +39,8 @@ ENTRY_KEYS = [
     'safe_state',
     'before_schema',
     'scenario_changes',
+    'over_floor',
+    'no_floor',
 ]
 
 
@@ -137,6 +139,7 @@ def test_the_verdict_has_state_limits_and_every_criterion(bags, trajectory, caps
     assert (verdict['state'], verdict['limits']) == ('engaged', 'beyond')
     assert [each['name'] for each in verdict['criteria']] == list(CRITERION_UNITS)
     keys = ['value', 'unit', 'limit', 'source', 'convention', 'state']
+    keys += ['least', 'over_floor', 'least_at_any_lock']
     assert all(list(each) == ['name', *keys] for each in verdict['criteria'])
     assert list(verdict['traction']) == keys
 

@@ -11,7 +11,9 @@ from ddct_bringup.metrics.catalogue import METRICS
 from ddct_bringup.scores.document import run_entry
 from ddct_bringup.scores.scoring import run_without_score
 from ddct_bringup.verdict.state import STATES
-from ddct_bringup.verdict.verdict import BEYOND, FAILED, NO_LIMIT, WITHIN
+from ddct_bringup.verdict.verdict import BEYOND, FAILED, NO_LIMIT, UNAVOIDABLE, WITHIN
+
+WORDS = (BEYOND, WITHIN, UNAVOIDABLE, NO_LIMIT, FAILED)
 
 USE = ROOT / 'docs' / 'use'
 
@@ -33,6 +35,6 @@ def test_every_metric_and_every_other_key_of_a_run_is_on_the_page() -> None:
 def test_every_state_and_every_word_on_limits_is_on_the_page() -> None:
     page = USE / 'metrics_and_symbols.md'
     assert named(page, 'States') == list(STATES)
-    assert sorted(named(page, 'Words on limits')) == sorted([BEYOND, WITHIN, NO_LIMIT, FAILED])
+    assert sorted(named(page, 'Words on limits')) == sorted(WORDS)
     readme = (ROOT / 'README.md').read_text(encoding='utf-8')
-    assert all(f'`{word}`' in readme for word in (*STATES, BEYOND, WITHIN, NO_LIMIT, FAILED))
+    assert all(f'`{word}`' in readme for word in (*STATES, *WORDS))

@@ -45,7 +45,7 @@ def test_a_run_ends_with_its_state_and_its_limits(
 ) -> None:
     arguments = ['--controller', 'ls8', '--headless', '--out', str(tmp_path / 'runs')]
     assert bringup.main(arguments) == 0
-    assert 'ddct bringup: state engaged, limits beyond\n' in capfd.readouterr().err
+    assert 'ddct bringup: state engaged, limits unavoidable\n' in capfd.readouterr().err
     arguments += ['--limits', str(tmp_path / 'none.yaml'), '--overwrite']
     assert bringup.main(arguments) == 1
     assert capfd.readouterr().err.startswith('ddct bringup: limits ')

@@ -26,6 +26,7 @@ from ddct_bringup.run.run_base import RunBase
 from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_bringup.scores.csv_text import score_row, signal_columns
 from ddct_bringup.scores.document import run_entry, verdict_entry
+from ddct_bringup.scores.floors import NONE, floor_metrics, scores_with_floors
 from ddct_bringup.scores.scored_recording import (
     ScoredRecording,
     run_and_score,
@@ -125,6 +126,19 @@ class Run:
         """Return the signals as a pandas DataFrame: a row per 10 ms, indexed by `time_s`."""
         return pandas_module().DataFrame(signal_columns(self.trajectory)).set_index('time_s')
 
+    @property
+    def over_floor(self) -> Mapping[str, float | None]:
+        """Metric over the least at the run's own lock time, by name; None where it has none."""
+        return self.scores.over_floor
+
+    def with_floors(self, metrics: Iterable[str] | None, limits: Limits) -> 'Run':
+        """Return the run with the floors of metrics beside its scores; itself for None."""
+        if metrics is None or self.recording.settings is None:
+            return self
+        settings, run = self.recording.settings, self.recording.trajectory
+        scores = scores_with_floors(self.scores, settings, run, tuple(metrics), limits)
+        return replace(self, scores=scores)
+
     def frequency(self) -> Evidence:
         """
         Return the controller's entry of `frequency.json`: margins of its sampled loop.
@@ -146,6 +160,7 @@ def run(
     out: str | Path | None = None,
     overwrite: bool = False,
     limits: str | Path | None = None,
+    floors: str | Iterable[str] = NONE,
     beside: Iterable[str] = (),
     **settings: Any,
 ) -> Run:
@@ -157,13 +172,16 @@ def run(
     options of the controller among them, as {'controllers.NAME.KEY': value}. `settings` are those
     of `RunSettings`: architecture, clutch, wear_gain, mode, seed. Without `headless` the ROS graph
     runs, each node a process. With `out` the bag is kept as `<out>/<name>/`; a run that is not
-    valid, with its `reason`, is kept as `<out>/<name>.partial/`. `beside` names other controllers
+    valid, with its `reason`, is kept as `<out>/<name>.partial/`. `floors` names the metrics that
+    are compared with the least that any controller could have, as --floors does: 'usual', 'all',
+    or names; they take seconds the first time. `beside` names other controllers
     whose options `set` may hold too.
     """
     chosen = chosen_from(controller, name)
     ready = _ready([controller_label(chosen), *beside], scenario, set, duration, **settings)
     plan = RunPlan(ready, chosen, _layout(headless))
-    return _run(plan, out, load_limits(limits), overwrite=overwrite)
+    judged_by, metrics = load_limits(limits), metrics_of_floors(floors)
+    return _run(plan, out, judged_by, overwrite=overwrite).with_floors(metrics, judged_by)
 
 
 def _layout(headless: bool) -> str:
@@ -195,6 +213,7 @@ def compare(
     out: str | Path | None = None,
     overwrite: bool = False,
     limits: str | Path | None = None,
+    floors: str | Iterable[str] = NONE,
     **options: Any,
 ) -> list[Run]:
     """
@@ -210,11 +229,13 @@ def compare(
     chosen = controllers_from(controllers)
     ready = _ready([controller_label(each) for each in chosen], **options)
     layout, judged_by = _layout(headless), load_limits(limits)
+    metrics = metrics_of_floors(floors)
     with parent_for(layout) as parent:
-        return [
+        runs = [
             _run(RunPlan(ready, each, layout), out, judged_by, parent, overwrite=overwrite)
             for each in chosen
         ]
+    return [each.with_floors(metrics, judged_by) for each in runs]
 
 
 def controllers_from(controllers: str | Iterable[Any] | Mapping[str, Any]) -> list[Chosen]:
@@ -234,10 +255,22 @@ def controllers_from(controllers: str | Iterable[Any] | Mapping[str, Any]) -> li
     return chosen
 
 
-def load(bag: str | Path, *, limits: str | Path | None = None) -> Run:
-    """Return the run in a bag, given as its folder or .mcap file, scored with `limits`."""
-    path = Path(bag)
-    return _run_of(score_recording(read_bag(path), path.as_posix(), load_limits(limits)))
+def load(
+    bag: str | Path, *, limits: str | Path | None = None, floors: str | Iterable[str] = NONE
+) -> Run:
+    """
+    Return the run in a bag, given as its folder or .mcap file, scored with `limits`.
+
+    `floors` is that of `run`.
+    """
+    path, judged_by = Path(bag), load_limits(limits)
+    scored = score_recording(read_bag(path), path.as_posix(), judged_by)
+    return _run_of(scored).with_floors(metrics_of_floors(floors), judged_by)
+
+
+def metrics_of_floors(floors: str | Iterable[str]) -> tuple[str, ...] | None:
+    """Return the metrics of the argument `floors`, None for no floors; raise ParameterError."""
+    return floor_metrics(floors if isinstance(floors, str) else ','.join(floors))
 
 
 def table(runs: Run | Iterable[Run]) -> Any:

@@ -10,11 +10,13 @@ import numpy as np
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.floor.bound import Bound
 from ddct_bringup.floor.case import Case, gives_demand
+from ddct_bringup.floor.dynamics.start import driving_acceleration
 from ddct_bringup.floor.lock import lock_of
-from ddct_bringup.floor.objectives import Objective, Peak, RootMeanSquare, Signals
+from ddct_bringup.floor.objectives import Objective, Peak, RootMeanSquare, Signals, window_of
 from ddct_bringup.floor.program import LinearProgram
 from ddct_bringup.floor.replay import replayed, usual_requests
 from ddct_bringup.floor.solver import best_point, least_squares
+from ddct_plant.scenario.scenario import Scenario
 
 CLEAR_RAD_S = 3.0
 """Slip in rad/s that a run keeps until shortly before its lock, so that it does not lock early."""
@@ -89,7 +91,9 @@ def replays_of(
             break
         predicted = fixed.copy()
         predicted[1 : 1 + columns.requests] = requests
-        value = objective.value(signals_of_run(signals, run))
+        value = objective.value(
+            signals_of_run(case.start.step, signals.engagements_a_day, case.settings.scenario, run)
+        )
         lock = lock_of(run, case.start.step)
         late_s = math.inf if lock is None else lock.time_s - case.lock.time_s
         # A linear clutch may be within its band earlier.
@@ -112,20 +116,23 @@ def replays_of(
     return Replays(best, last)
 
 
-def signals_of_run(signals: Signals, run: Trajectory) -> Signals:
-    """Return the signals of a run that are as long as those of `signals`."""
+def signals_of_run(
+    start: int, engagements_a_day: float, scenario: Scenario, run: Trajectory
+) -> Signals:
+    """Return the signals of a run, whose control starts at step `start`."""
     slopes = [
         event.slip_acceleration
-        for events in (run.phase_events or ())[signals.start + 1 :]
+        for events in (run.phase_events or ())[start + 1 :]
         for event in events
     ]
     return Signals(
         run.vehicle_accel,
         run.driveshaft_speed,
+        driving_acceleration(scenario, run.driveshaft_effort),
         np.array(slopes[:1]) if slopes else None,
-        signals.start,
-        signals.window,
-        signals.engagements_a_day,
+        start,
+        window_of(scenario),
+        engagements_a_day,
     )
 
 
@@ -134,6 +141,7 @@ def _predicted(objective: Objective, signals: Signals, point: np.ndarray) -> flo
     rows = Signals(
         point @ signals.acceleration,
         point @ signals.torsion_speed,
+        point @ signals.driving,
         None if signals.slip_acceleration is None else point @ signals.slip_acceleration,
         signals.start,
         signals.window,

@@ -67,7 +67,7 @@ def bound_of(case: Case, objective: Peak | RootMeanSquare, signals: Signals) -> 
         return None
     rows = np.ascontiguousarray(mapped.T)
     if isinstance(objective, Peak):
-        return _peak(case, rows)
+        return _peak(case, rows, objective.one_sided)
     if not objective.sliding:
         return _mean_square(case, rows, objective, signals)
     length = len(objective.weights(signals))
@@ -86,11 +86,11 @@ def bound_of(case: Case, objective: Peak | RootMeanSquare, signals: Signals) -> 
     return best
 
 
-def _peak(case: Case, rows: np.ndarray) -> Bound:
-    """Return the bound of the largest magnitude of `rows` (n, columns) times the variables."""
+def _peak(case: Case, rows: np.ndarray, one_sided: bool) -> Bound:
+    """Return the bound of the largest magnitude, or value, of `rows` (n, columns) times z."""
     limiting, limits = case.inequalities
     count = case.motion.columns.count
-    both = np.vstack([rows, -rows])
+    both = rows if one_sided else np.vstack([rows, -rows])
     program = LinearProgram(
         cost=np.append(np.zeros(count - 1), 1.0),
         constant=0.0,
@@ -114,7 +114,7 @@ def _peak(case: Case, rows: np.ndarray) -> Bound:
     if solution.point is None:
         return Bound(None, RAY, None, None, solution.certificate, program)
     point = np.concatenate([[1.0], solution.point[:-1]])
-    value = float(np.max(np.abs(rows @ point)))
+    value = float(np.max(both @ point))
     least = max(solution.certificate.claim, 0.0)
     return Bound(least, WEAK_DUALITY, point, value, solution.certificate, program)
 

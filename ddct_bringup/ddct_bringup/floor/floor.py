@@ -16,7 +16,7 @@ from ddct_bringup.floor.case import Case, case_at, case_of_run, gives_demand
 from ddct_bringup.floor.dynamics.start import Start, start_of
 from ddct_bringup.floor.friction_work import least_friction_work
 from ddct_bringup.floor.lock import lock_of
-from ddct_bringup.floor.objectives import OBJECTIVES, Objective, Signals, window_of
+from ddct_bringup.floor.objectives import OBJECTIVES, Objective, Signals
 from ddct_bringup.floor.program import CLOSED_FORM, RAY
 from ddct_bringup.metrics.friction_work import friction_work
 from ddct_bringup.run.headless import run_headless
@@ -187,21 +187,20 @@ def value_of(settings: RunSettings, metric: str, run: Trajectory, start: int) ->
     """Return the value of a metric of a run, for friction that of the work after control start."""
     if metric == FRICTION:
         return float(friction_work(run, start))
-    shape = Signals(
-        run.vehicle_accel,
-        run.driveshaft_speed,
-        None,
-        start,
-        window_of(settings.scenario),
-        engagements_a_day(),
-    )
-    return _objective(metric).value(signals_of_run(shape, run))
+    scenario = settings.scenario
+    signals = signals_of_run(start, engagements_a_day(), scenario, run)
+    return _objective(metric).value(signals)
 
 
 @cache
 def engagements_a_day() -> float:
     """Return the number of engagements of a day that the rules of verdicts have."""
     return load_limits(None).rules.engagements_a_day
+
+
+def floor_of_case(case: Case, metric: str) -> Floor:
+    """Return the floor of a metric for the runs of a case, without a run near it."""
+    return _found(case, metric, attain=False).floor
 
 
 @dataclass(frozen=True, eq=False)

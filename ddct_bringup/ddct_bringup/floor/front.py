@@ -7,8 +7,16 @@ from typing import Any
 
 import numpy as np
 
+from ddct_bringup.floor.case import case_at
 from ddct_bringup.floor.dynamics.start import Start
-from ddct_bringup.floor.floor import Floor, OverFloor, floors_at, floors_of_run, value_of
+from ddct_bringup.floor.floor import (
+    Floor,
+    OverFloor,
+    floor_of_case,
+    floors_at,
+    floors_of_run,
+    value_of,
+)
 from ddct_bringup.floor.lock import lock_of
 from ddct_bringup.floor.objectives import window_of
 from ddct_bringup.run.headless import run_headless
@@ -34,6 +42,23 @@ def front(
     """Yield the floors of all metrics for each lock time."""
     for time_s in lock_times_s:
         yield floors_at(settings, metrics, time_s, start)
+
+
+def least_values(
+    settings: RunSettings,
+    metric: str,
+    lock_times_s: Sequence[float],
+    start: Start,
+    *,
+    limited: bool,
+) -> Iterator[Floor]:
+    """
+    Yield the floor for each lock time, without a run near it.
+
+    With `limited` they cover runs in which limits of the engine act, too.
+    """
+    for time_s in lock_times_s:
+        yield floor_of_case(case_at(settings, start, time_s, limited=limited), metric)
 
 
 def least_lock_time(floors: Sequence[Floor], metric: str, cap: float) -> dict[str, Any]:

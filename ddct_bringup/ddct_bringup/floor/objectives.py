@@ -10,6 +10,7 @@ import numpy as np
 from ddct_bringup.floor.dynamics.motion import Motion
 from ddct_bringup.metrics.mean_motion import jerk_means
 from ddct_bringup.metrics.vibration import jerk, strongest_stretch, weighted_acceleration
+from ddct_bringup.verdict.verdict import TRACTION
 from ddct_plant.base.timebase import PERIOD_S, steps_in
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.scenario.scenario import Scenario
@@ -26,6 +27,8 @@ class Signals:
     """A_x in m/s^2, (..., N + 1)."""
     torsion_speed: np.ndarray
     """Torsion speed w_sr in rad/s, (..., N + 1)."""
+    driving: np.ndarray
+    """Driving force at the wheels over the mass of the car in m/s^2, (..., N + 1)."""
     slip_acceleration: np.ndarray | None
     """dw_d/dt in rad/s^2 just before the lock, (..., 1); None without a lock."""
     start: int
@@ -41,6 +44,7 @@ class Signals:
         return cls(
             np.ascontiguousarray(motion.acceleration.T),
             np.ascontiguousarray(motion.torsion_speed.T),
+            np.ascontiguousarray(motion.driving.T),
             None if slope is None else slope[:, np.newaxis],
             motion.start,
             window_of(scenario),
@@ -64,16 +68,20 @@ Rows = Callable[[Signals], np.ndarray | None]
 
 @dataclass(frozen=True)
 class Peak:
-    """A metric that is the largest magnitude of a linear map of the signals."""
+    """A metric that is the largest magnitude, or value, of a linear map of the signals."""
 
     unit: str
     of: Rows
     """Function that returns the mapped signals, (..., n); None where the metric is undefined."""
+    one_sided: bool = False
+    """Whether it is the largest value rather than the largest magnitude."""
 
     def value(self, signals: Signals) -> float | None:
         """Return the metric of a run."""
         mapped = self.of(signals)
-        return None if mapped is None or not mapped.size else float(np.max(np.abs(mapped)))
+        if mapped is None or not mapped.size:
+            return None
+        return float(np.max(mapped if self.one_sided else np.abs(mapped)))
 
 
 @dataclass(frozen=True)
@@ -157,6 +165,7 @@ def _dose_scale(signals: Signals) -> float:
 OBJECTIVES: Mapping[str, Objective] = {
     'peak_jerk': Peak('m/s^3', _jerk),
     'peak_acceleration': Peak('m/s^2', _acceleration),
+    TRACTION: Peak('m/s^2', lambda signals: signals.driving, one_sided=True),
     'mean_jerk': Peak('m/s^3', lambda signals: jerk_means(_acceleration(signals))),
     'acceleration_std_m_s2': RootMeanSquare(
         'm/s^2', lambda signals: _centred(signals.acceleration, signals)

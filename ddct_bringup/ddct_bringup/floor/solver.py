@@ -32,6 +32,8 @@ _ITERATIONS = 20_000
 """Iteration limit of DAQP."""
 _CONDITION = 1e-9
 """Least eigenvalue of a Hessian over its largest."""
+_MORE = 10.0
+"""Factor by which the added curvature grows until a Hessian is solvable."""
 _CURVATURE = 1e-7
 """Share of the mean curvature that is added where requests have no effect on the cost."""
 
@@ -192,8 +194,8 @@ def least_squares(
         return centre  # no variable has an effect, or there is none
     hessian = target.T @ target
     added = curvature * np.trace(hessian) / len(hessian)
-    # A unit diagonal, which the solver gives the Hessian, makes late requests count as much.
-    added = max(added, _CONDITION * np.linalg.eigvalsh(hessian)[-1])
+    added = max(added, _CONDITION * float(np.linalg.eigvalsh(hessian)[-1]))
+    added = _solvable_with(hessian, added)
     hessian += added * np.eye(len(hessian))
     used = np.zeros(len(limits), dtype=bool)
     point = None
@@ -213,3 +215,16 @@ def least_squares(
             break
         used |= exceeded
     return point
+
+
+def _solvable_with(hessian: np.ndarray, added: float) -> float:
+    """Return what the diagonal of a Hessian needs, at least `added`, for the solver to take it."""
+    while True:
+        diagonal = np.diag(hessian) + added
+        # A unit diagonal, which the solver gives the Hessian, makes late requests count as much.
+        scale = 1.0 / np.sqrt(diagonal)
+        scaled = (hessian + added * np.eye(len(hessian))) * scale * scale[:, np.newaxis]
+        eigenvalues = np.linalg.eigvalsh(scaled)
+        if eigenvalues[0] > _CONDITION * eigenvalues[-1]:
+            return added
+        added *= _MORE

@@ -4,6 +4,7 @@
 
 import argparse
 import sys
+from collections.abc import Sequence
 from contextlib import nullcontext
 from functools import partial
 from pathlib import Path
@@ -15,6 +16,7 @@ from ddct_bringup.run.options import add_run_options, print_choices
 from ddct_bringup.run.output_folder import StagedFolder, run_folder
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.run.run_base import settings_of
+from ddct_bringup.scores.floors import add_floors_option, floor_metrics, with_floors
 from ddct_bringup.scores.run_table import slow_notes
 from ddct_bringup.scores.scored_recording import ScoredRecording, run_and_score
 from ddct_bringup.scores.validity import realtime_summary
@@ -55,13 +57,13 @@ def _bringup(argv: list[str]) -> int:
         raise ParameterError('--out is missing: name the folder for the bag')
     # The warm parent imports while the run is planned.
     with parent_for(options.layout) as parent:
-        limits = load_limits(options.limits)
+        limits, metrics = load_limits(options.limits), floor_metrics(options.floors)
         settings = settings_of(options, [controller_label(options.controller)])
         plan = RunPlan(settings, options.controller, options.layout)
         if options.live is not None and plan.layout != 'processes':
             raise ParameterError(f'--live shows a process per node: drop it or --{plan.layout}')
         with run_folder(options.out, plan.name, overwrite=options.overwrite) as folder:
-            _run(plan, folder, options, limits, parent)
+            _run(plan, folder, options, limits, metrics, parent)
     return 0
 
 
@@ -70,6 +72,7 @@ def _run(
     folder: StagedFolder,
     options: argparse.Namespace,
     limits: Limits,
+    metrics: Sequence[str] | None,
     parent: WarmParent | None,
 ) -> None:
     with (
@@ -85,6 +88,7 @@ def _run(
         raise DdctError(f'{folder.path}: not valid: {scores.reason}')
     folder.commit()
     print(folder.final, flush=True)
+    scores = with_floors(run, metrics, limits).scores
     if changes := scores.scenario_changes:
         title = scenario_title(plan.settings.scenario.name, changes)
         print(f'{PROGRAM}: {title}', file=sys.stderr)
@@ -126,6 +130,7 @@ def _parser() -> argparse.ArgumentParser:
         help=f'let Foxglove watch; the run waits for it; PORT is {DEFAULT_PORT} unless given',
     )
     add_limits_option(parser)
+    add_floors_option(parser)
     add_run_options(parser)
     return parser
 

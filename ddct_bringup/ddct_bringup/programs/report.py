@@ -17,6 +17,7 @@ from ddct_bringup.report.page_parts import MARKER
 from ddct_bringup.report.run_labels import in_order, require_one_scenario
 from ddct_bringup.run.output_folder import is_ours, locked_folders
 from ddct_bringup.scores.bags import bags_in
+from ddct_bringup.scores.floors import add_floors_option, floor_metrics, with_floors
 from ddct_bringup.scores.scored_recording import ScoredRecording, score_any_bag
 from ddct_bringup.verdict.limits import Limits, add_limits_option, load_limits
 from ddct_plant.base.errors import DdctError
@@ -52,14 +53,14 @@ def _report(argv: list[str]) -> int:
     options = _parser().parse_args(argv)
     require_chart_library()
     _require_writable(options.out)
-    limits = load_limits(options.limits)
+    limits, metrics = load_limits(options.limits), floor_metrics(options.floors)
     places = [] if options.out == STDOUT else [Path(options.out).parent]
     with locked_folders(*filter(is_ours, places)):
         bags = bags_in(options.runs)
         columns = load_columns(options.columns) if options.columns else None
         runs = in_order(
             [
-                score_any_bag(*bag, limits, columns)
+                with_floors(score_any_bag(*bag, limits, columns), metrics, limits)
                 for bag in with_progress(bags, len(bags), 'reading')
             ]
         )
@@ -133,6 +134,7 @@ def _parser() -> argparse.ArgumentParser:
         help=f"the page, {REPORT_FILE} if not given; '-' is standard output",
     )
     add_limits_option(parser)
+    add_floors_option(parser)
     return parser
 
 

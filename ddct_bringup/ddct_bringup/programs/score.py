@@ -16,6 +16,7 @@ from ddct_bringup.run.output_folder import is_ours, locked_folders
 from ddct_bringup.scores.bags import bag_name, bags_in
 from ddct_bringup.scores.csv_text import scores_csv
 from ddct_bringup.scores.document import scores_document
+from ddct_bringup.scores.floors import add_floors_option, floor_metrics, with_floors
 from ddct_bringup.scores.run_table import BAG, COLUMNS, CONTROLLER, WEAR, print_runs
 from ddct_bringup.scores.scored_recording import score_recording
 from ddct_bringup.scores.scored_run import ScoredRun
@@ -92,6 +93,7 @@ def _scored(
 ) -> list[ScoredRun]:
     """Return the scores of bags; write their signals if wanted, and add the files to `written`."""
     runs = []
+    metrics = floor_metrics(options.floors)
     wanted = {ending: each for ending, each in _signal_folders(options).items() if each}
     stems = signal_file_stems(bags) if wanted else {}
     columns = load_columns(options.columns) if options.columns else None
@@ -104,7 +106,8 @@ def _scored(
             for ending, target in wanted.items():
                 write_signals(target, f'{stems[bag]}.{ending}', recording)
                 written.append(target / f'{stems[bag]}.{ending}')
-            runs.append(score_recording(recording, name, limits).scores)
+            scored = score_recording(recording, name, limits)
+            runs.append(with_floors(scored, metrics, limits).scores)
         except DdctError as error:
             unreadable = unreadable_run(bag, error, relative_to=folder)
             complain(PROGRAM, unreadable.reason)
@@ -141,6 +144,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument('--json', metavar='FILE', help="write scores.json to FILE; '-': stdout")
     add_columns_option(parser)
     add_limits_option(parser)
+    add_floors_option(parser)
     parser.add_argument('--csv', metavar='FILE', help="write a CSV table to FILE; '-': stdout")
     parser.add_argument(
         '--signals-csv',

@@ -68,7 +68,7 @@ _STATES = (
     Definition('stalled, over revved', 'the engine reached this limit, which ended the run.'),
     Definition('invalid', 'the run does not count. Its reason stands at the top of the page.'),
     Definition(
-        'within, beyond, no limit',
+        'within, beyond, unavoidable, no limit',
         'how a value stands to a limit that is published or a convention. Most have none.',
     ),
     Definition('failed', 'the word on limits of a run that neither engaged nor nearly engaged.'),

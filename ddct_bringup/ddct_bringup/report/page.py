@@ -21,6 +21,7 @@ from ddct_bringup.report.charts import (
 )
 from ddct_bringup.report.definitions import definitions
 from ddct_bringup.report.evidence import COMPUTED, LoopEvidence, loop_rows, without_evidence
+from ddct_bringup.report.front_view import front_view
 from ddct_bringup.report.page_parts import MARKER, json_data, page_part, page_template
 from ddct_bringup.report.page_runs import PageRun, chart_runs, page_runs
 from ddct_bringup.report.pareto import pair_key, pareto_view
@@ -82,6 +83,7 @@ def report_page(
         not_judged=NOT_JUDGED,
         limits=limits.origin,
         pareto=pareto,
+        floor_front=front_view(runs),
         front=pareto.fronts[pair_key(*pareto.default)] if pareto else [],
         neutral=NEUTRAL,
         light=Markup(css_colours(LIGHT_COLOURS)),

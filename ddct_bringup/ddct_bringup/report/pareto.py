@@ -121,12 +121,12 @@ def _axis(criterion: Criterion, values: Mapping[int, float]) -> ParetoCriterion:
         places={run: round((value - first) / (last - first), 4) for run, value in values.items()},
         ticks=[
             (f'{tick:g}', round((tick - first) / (last - first), 4))
-            for tick in _round_numbers(first, last)
+            for tick in round_numbers(first, last)
         ],
     )
 
 
-def _round_numbers(first: float, last: float) -> list[float]:
+def round_numbers(first: float, last: float) -> list[float]:
     """Return about five multiples of 1, 2 or 5 times a power of ten between two numbers."""
     raw = (last - first) / _TICKS
     power = 10.0 ** math.floor(math.log10(raw))

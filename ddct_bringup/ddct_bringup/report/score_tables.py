@@ -105,7 +105,9 @@ class VerdictCell:
     value: float | None
     text: str
     state: str
-    """State of the criterion: `within`, `beyond` or `no_limit`."""
+    """State of the criterion: `within`, `beyond`, `unavoidable` or `no_limit`."""
+    floor: str
+    """Least value that stands beside it, with its meaning; empty without one."""
     why_dash: str
     """Reason why there is no value, empty where there is one."""
 
@@ -170,6 +172,14 @@ def _verdict_row(
 
 def _verdict_cell(found: CriterionResult | None, undefined: str) -> VerdictCell:
     if found is None:
-        return VerdictCell(None, value_text(None), NO_LIMIT, NOT_JUDGED)
+        return VerdictCell(None, value_text(None), NO_LIMIT, '', NOT_JUDGED)
     why_dash = undefined if found.value is None else ''
-    return VerdictCell(found.value, value_text(found.value), found.state, why_dash)
+    text = value_text(found.value)
+    return VerdictCell(found.value, text, found.state, _floor_text(found), why_dash)
+
+
+def _floor_text(found: CriterionResult) -> str:
+    """Return the least at any lock time where it exceeds the limit, else at that of the run."""
+    if found.least_at_any_lock is not None:
+        return f'least at all {value_text(found.least_at_any_lock)}'
+    return '' if found.least is None else f'least {value_text(found.least)}'

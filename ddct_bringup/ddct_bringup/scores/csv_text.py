@@ -8,6 +8,7 @@ import numpy as np
 
 from ddct_bringup.bag.reader import Recording
 from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.floor.floor import METRICS as FLOOR_METRICS
 from ddct_bringup.scores.document import FACTS
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_plant.base.errors import printable
@@ -21,6 +22,8 @@ from ddct_plant.signals.topics import (
     all_signals,
 )
 
+OVER_FLOOR = 'over_floor.'
+"""Prefix of the column of a metric over the least that any controller could have."""
 Cell = str | float | int | list[str] | None
 """Value in one column of a row."""
 _OF_JOINTS = (JOINT_STATES, SENSED_JOINT_STATES)
@@ -51,7 +54,13 @@ def score_row(run: ScoredRun) -> dict[str, Cell]:
         **run.metrics,
         'verdict_state': run.verdict.state,
         'verdict_limits': run.verdict.limits,
+        **over_floor_columns(run),
     }
+
+
+def over_floor_columns(run: ScoredRun) -> dict[str, float | None]:
+    """Return the value over the least of every metric that has floors, None where not computed."""
+    return {f'{OVER_FLOOR}{name}': run.over_floor.get(name) for name in FLOOR_METRICS}
 
 
 def signals_csv(recording: Recording) -> str:

@@ -54,6 +54,8 @@ def run_entry(run: ScoredRun) -> Mapping[str, Any]:
         'safe_state': run.safe_state,
         'before_schema': run.before_schema,
         'scenario_changes': None if run.scenario_changes is None else list(run.scenario_changes),
+        'over_floor': dict(run.over_floor),
+        'no_floor': run.no_floor,
     }
     return {**entry, NOT_COMPUTED: dict(run.not_computed)} if run.measured else entry
 
@@ -114,6 +116,8 @@ def _run_of(entry: Mapping[str, Any]) -> ScoredRun:
         safe_state=entry['safe_state'],
         before_schema=entry['before_schema'],
         scenario_changes=None if changes is None else tuple(changes),
+        over_floor=entry.get('over_floor', {}),
+        no_floor=entry.get('no_floor', ''),
         not_computed={**dict.fromkeys(missing, NO_SUCH_METRIC), **entry.get(NOT_COMPUTED, {})},
     )
 

@@ -12,7 +12,7 @@ from ddct_bringup.metrics.catalogue import FURTHER, METRICS, TABLE_5_1
 from ddct_bringup.metrics.metric import NO_TIMING
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.verdict.state import SUCCESSES
-from ddct_bringup.verdict.verdict import BEYOND, NO_LIMIT
+from ddct_bringup.verdict.verdict import BEYOND, NO_LIMIT, UNAVOIDABLE
 from ddct_plant.base.errors import printable
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.program.table import UNDEFINED, Column, Quantity, drawn_by_rich, table_of
@@ -51,6 +51,13 @@ FURTHER_COLUMNS = tuple(
     metric(each) for each in FURTHER if each.column and each.key not in _HEADINGS
 )
 """Columns of all other metrics that are declared to have one."""
+OVER_FLOOR: RunColumn = Column(
+    'jerk\n/least',
+    '.2f',
+    lambda run: run.over_floor.get('peak_jerk'),
+    undefined='peak jerk over the least at the same lock time has no value: the run has no floor',
+)
+"""Column of tables in which a run has its peak jerk over the least that any could have."""
 VALID: RunColumn = Column('valid', '', lambda run: 'yes' if run.valid else 'NO', number=False)
 
 COLUMNS = (
@@ -107,15 +114,18 @@ def print_runs(
     """
     Print one row per run with its verdict, then explanatory notes.
 
-    The notes explain dashes, invalid runs, and criteria beyond their limits. The default title is
-    the scenario with its changes; where the runs have several scenarios each row has its own below
-    it.
+    The notes explain dashes, invalid runs, criteria beyond their limits, and floors. The default
+    title is the scenario with its changes; where the runs have several scenarios each row has its
+    own below it.
     """
     scenarios = {_scenario(run) for run in runs if run.scenario is not None}
     if title is None and len(scenarios) == 1:
         (title,) = scenarios
     if any(run.facts and run.facts.mode == 'realtime' for run in runs):
         columns = [*columns[:-1], *REALTIME_COLUMNS, columns[-1]]
+    if PEAK_JERK in columns and any('peak_jerk' in run.over_floor for run in runs):
+        place = list(columns).index(PEAK_JERK) + 1
+        columns = [*columns[:place], OVER_FLOOR, *columns[place:]]
     console = table_console(stream)
     wide = [*columns[:-1], *VERDICT_COLUMNS, columns[-1]]
     table = drawn_by_rich(table_of(title or '', wide, runs), ruled=True)
@@ -131,7 +141,7 @@ def print_runs(
         scenario = [_scenario(run)] if title is None and run.scenario is not None else []
         for text in [*scenario, *verdict, *run_notes(run)]:
             console.print(Text(printable(f'{run.bag}: {text}'), 'bold'), soft_wrap=True)
-    for text in beyond_notes(runs):
+    for text in [*beyond_notes(runs), *unavoidable_notes(runs), *no_floor_notes(runs)]:
         console.print(Text(printable(text), 'bold'), soft_wrap=True)
 
 
@@ -165,15 +175,43 @@ def run_notes(run: ScoredRun) -> list[str]:
 
 
 def beyond_notes(runs: Sequence[ScoredRun]) -> list[str]:
-    """Return for each exceeded limit its source, and the runs that exceed it with their values."""
+    """
+    Return for each exceeded limit its source, and the runs that exceed it with their values.
+
+    Beside a value is the least that a run with the same lock time can have, where it is known.
+    """
     beyond: dict[str, list[str]] = {}
     for run in runs:
         for each in run.verdict.results:
             if each.state == BEYOND:
                 limit = f'beyond {each.name} {each.limit:g} {each.unit}'
                 found = beyond.setdefault(f'{limit} ({each.source})', [])
-                found.append(f'{run.bag} {each.value:.4g}')
+                least = '' if not each.least else f' (at its lock time at least {each.least:.3g})'
+                found.append(f'{run.bag} {each.value:.4g}{least}')
     return [f'{limit}: {", ".join(found)}' for limit, found in beyond.items()]
+
+
+def unavoidable_notes(runs: Sequence[ScoredRun]) -> list[str]:
+    """Return for each limit that no controller can keep its source, and the runs' values."""
+    found: dict[str, list[str]] = {}
+    for run in runs:
+        for each in run.verdict.results:
+            if each.state == UNAVOIDABLE:
+                limit = (
+                    f'unavoidable {each.name} {each.limit:g} {each.unit} ({each.source}): no '
+                    f'controller of the clutch can have less than {each.least_at_any_lock:.4g}'
+                )
+                found.setdefault(limit, []).append(f'{run.bag} {each.value:.4g}')
+    return [f'{limit}: {", ".join(values)}' for limit, values in found.items()]
+
+
+def no_floor_notes(runs: Sequence[ScoredRun]) -> list[str]:
+    """Return each reason why runs have no floors, with these runs."""
+    found: dict[str, list[str]] = {}
+    for run in runs:
+        if run.no_floor:
+            found.setdefault(run.no_floor, []).append(run.bag)
+    return [f'no floor, as {reason}: {", ".join(names)}' for reason, names in found.items()]
 
 
 def unknown_limits_notes(run: ScoredRun) -> list[str]:

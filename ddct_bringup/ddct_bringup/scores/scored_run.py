@@ -33,6 +33,14 @@ class ScoredRun:
     """Changes of the packaged scenario as KEY=VALUE; None where the scenario is unknown."""
     not_computed: Mapping[str, str] = field(default_factory=dict)
     """Reason by metric or criterion that lacks its value, where the reason is known."""
+    over_floor: Mapping[str, float | None] = field(default_factory=dict)
+    """
+    Value over the least at the run's own lock instant, by the metric's name in `ddct limit`.
+
+    None where it is not defined; only metrics whose floors were requested.
+    """
+    no_floor: str = ''
+    """Reason why the run has no floors though they were requested; empty otherwise."""
 
     @property
     def controller(self) -> str | None:

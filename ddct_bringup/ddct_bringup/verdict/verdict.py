@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Verdict of one run: its state, and each criterion with its limit. There is no overall score."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 from ddct_bringup.metrics.catalogue import CRITERIA
 from ddct_bringup.metrics.plant import JudgedPlant
@@ -11,6 +11,8 @@ from ddct_bringup.verdict.limits import CONVENTION, Limit, Limits
 from ddct_bringup.verdict.state import INVALID, SUCCESSES
 
 WITHIN, BEYOND, NO_LIMIT, FAILED = 'within', 'beyond', 'no_limit', 'failed'
+UNAVOIDABLE = 'unavoidable'
+"""State of a criterion whose limit no controller can keep in the scenario, and of such a run."""
 TRACTION = 'traction'
 """Name of the traction, which is judged next to the criteria."""
 _TRACTION_UNIT = 'm/s^2'
@@ -32,7 +34,17 @@ class CriterionResult:
     convention: bool
     """Whether the limit is a convention rather than published."""
     state: str
-    """WITHIN, BEYOND or NO_LIMIT."""
+    """WITHIN, BEYOND, UNAVOIDABLE or NO_LIMIT."""
+    least: float | None = None
+    """
+    Least value in `unit` that a run with the same lock instant can have.
+
+    None where it was not computed, or the run does not lock once and stay locked.
+    """
+    over_floor: float | None = None
+    """Value over `least`; None without one, and where it is zero."""
+    least_at_any_lock: float | None = None
+    """Least value in `unit` whenever the plates lock; only where it exceeds the limit."""
 
 
 @dataclass(frozen=True)
@@ -42,7 +54,7 @@ class Verdict:
     state: str
     """State at the end of the run, one of `STATES`."""
     limits: str
-    """Comparison of all criteria with their limits: WITHIN, BEYOND, NO_LIMIT or FAILED."""
+    """Comparison of all criteria with limits: WITHIN, BEYOND, UNAVOIDABLE, NO_LIMIT or FAILED."""
     criteria: tuple[CriterionResult, ...]
     """Result of every criterion, in the order of `CRITERIA`; empty of an unreadable run."""
     traction: CriterionResult | None
@@ -57,6 +69,18 @@ class Verdict:
     def values(self) -> dict[str, float | int | None]:
         """Value of every criterion by name, without the traction."""
         return {each.name: each.value for each in self.criteria}
+
+
+@dataclass(frozen=True)
+class CriterionFloor:
+    """Least values of one criterion, in its unit, beside the value of a run."""
+
+    least: float | None
+    """Least at the lock instant of the run; None where it was not computed."""
+    over_floor: float | None
+    """Value of the run over `least`; None where it is not defined."""
+    at_any_lock: float | None
+    """Least whenever the plates lock; None unless it was computed and exceeds the limit."""
 
 
 UNREADABLE = Verdict(INVALID, FAILED, (), None)
@@ -76,7 +100,8 @@ def verdict_of(
     Return the verdict of a run of a scenario from its state and the values of its criteria.
 
     A run that is neither engaged nor nearly engaged has failed, whatever its criteria are.
-    Otherwise it is beyond limits if one criterion exceeds its limit, or if the wheels would spin.
+    Otherwise it is beyond limits if one criterion exceeds its limit, or if the wheels would spin;
+    with floors, unavoidable if that is only because no controller could keep within.
     It is within limits if every criterion with a limit is; a criterion without a value, as in a
     run that ended early, cannot be compared with its limit. No limit applies to a criterion that
     is not defined for the plant: `exists` has this by criterion. `traction` is the result of
@@ -90,15 +115,46 @@ def verdict_of(
         for criterion in CRITERIA
     )
     traction = traction or judged_traction(None, None, limits)
+    return Verdict(state, _overall(state, criteria, traction), criteria, traction)
+
+
+def verdict_with_floors(verdict: Verdict, floors: Mapping[str, CriterionFloor]) -> Verdict:
+    """Return a verdict whose criteria, and traction, have these floors beside them, by name."""
+    criteria = tuple(_with_floor(each, floors.get(each.name)) for each in verdict.criteria)
+    traction = verdict.traction
+    if traction is None:
+        return verdict
+    traction = _with_floor(traction, floors.get(TRACTION))
+    return replace(
+        verdict,
+        limits=_overall(verdict.state, criteria, traction),
+        criteria=criteria,
+        traction=traction,
+    )
+
+
+def _overall(state: str, criteria: Sequence[CriterionResult], traction: CriterionResult) -> str:
+    """Return the comparison of all criteria with their limits."""
     found = {criterion.state for criterion in criteria if criterion.limit is not None}
-    overall = NO_LIMIT
     if state not in SUCCESSES:
-        overall = FAILED
-    elif BEYOND in (*found, traction.state):
-        overall = BEYOND
-    elif found == {WITHIN}:
-        overall = WITHIN
-    return Verdict(state, overall, criteria, traction)
+        return FAILED
+    if BEYOND in (*found, traction.state):
+        return BEYOND
+    if UNAVOIDABLE in (*found, traction.state):
+        return UNAVOIDABLE
+    return WITHIN if found == {WITHIN} else NO_LIMIT
+
+
+def _with_floor(result: CriterionResult, floor: CriterionFloor | None) -> CriterionResult:
+    if floor is None:
+        return result
+    return replace(
+        result,
+        state=_state(result.value, result.limit, floor.at_any_lock),
+        least=floor.least,
+        over_floor=floor.over_floor,
+        least_at_any_lock=floor.at_any_lock,
+    )
 
 
 def judged_traction(
@@ -119,11 +175,24 @@ def criterion_result(
     """
     Return the result of one criterion; the limit applies to the magnitude of its value.
 
-    The state of every criterion, and of the traction, is decided here.
+    The result has no floor yet: `verdict_with_floors` sets it beside.
     """
     if limit is None:
         return CriterionResult(name, value, unit, None, None, False, NO_LIMIT)
-    state = NO_LIMIT
-    if value is not None:
-        state = WITHIN if abs(value) <= limit.value else BEYOND
+    state = _state(value, limit.value)
     return CriterionResult(name, value, unit, limit.value, limit.source, limit.convention, state)
+
+
+def _state(
+    value: float | int | None, limit: float | None, at_any_lock: float | None = None
+) -> str:
+    """
+    Return the state of a criterion, or of the traction, from its value and its limit.
+
+    A value beyond a limit that is below the least at any lock instant is UNAVOIDABLE.
+    """
+    if value is None or limit is None:
+        return NO_LIMIT
+    if abs(value) <= limit:
+        return WITHIN
+    return BEYOND if at_any_lock is None or at_any_lock <= limit else UNAVOIDABLE

@@ -32,6 +32,18 @@ from ddct_plant.scenario.settings import RunSettings
 SHORT_S = 2.0
 
 
+def test_floors_are_beside_a_run_where_they_are_requested():
+    plain = api.run('pi')
+    assert (plain.over_floor, plain.verdict['limits']) == ({}, 'beyond')
+    run = api.run('pi', floors=['peak_acceleration'])
+    assert set(run.over_floor) == {'peak_acceleration', 'weighted_acceleration', 'traction'}
+    assert 1.0 <= run.over_floor['peak_acceleration'] < 1.1
+    assert run.verdict['limits'] == 'unavoidable'
+    assert run.metrics['peak_jerk_m_s3'] == plain.metrics['peak_jerk_m_s3']
+    (row,) = api.table(run).to_dict('records')
+    assert row['over_floor.peak_acceleration'] == run.over_floor['peak_acceleration']
+
+
 class Soft(api.Controller):
     """Controller with one option and a state that a run must reset."""
 
@@ -69,7 +81,7 @@ def test_metrics_and_verdict_are_those_of_the_programs(worn, tmp_path, capsys):
     options = ['--wear-gain', '0.7', '--duration', '3', '--headless', '--out', str(tmp_path)]
     assert bringup(['--controller', 'ls8', *options]) == 0
     capsys.readouterr()
-    assert score([str(tmp_path / 'ls8'), '--json', '-']) == 0
+    assert score([str(tmp_path / 'ls8'), '--floors', 'none', '--json', '-']) == 0
     (entry,) = json.loads(capsys.readouterr().out)['runs']
     timed = {name for name in worn.metrics if name.startswith(('update_time', 'wall_time'))}
     ours, theirs = (

@@ -88,7 +88,7 @@ def test_the_values_are_those_of_scores_and_verdict():
     settings = settings_of()
     run = run_headless(settings, 'ls8')
     entry = score_run(in_memory(settings, 'ls8', run), 'ls8', packaged_limits(), None)
-    criteria = entry.verdict.values
+    criteria = {each.name: each.value for each in entry.verdict.results}
     start = settings.scenario.control_start_step
     for metric in set(METRICS) - {'friction_energy'}:
         expected = criteria[metric] if metric in criteria else entry.metrics[metric]

@@ -372,6 +372,9 @@ limits:
         'source': 'A, 1',
         'convention': False,
         'state': 'beyond',
+        'least': None,
+        'over_floor': None,
+        'least_at_any_lock': None,
     }
     assert (criteria['judder'].source, criteria['judder'].convention) == ('convention: C', True)
     assert (criteria['peak_jerk'].limit, criteria['peak_jerk'].state) == (None, 'no_limit')

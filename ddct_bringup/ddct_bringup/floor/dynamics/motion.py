@@ -10,7 +10,7 @@ from ddct_bringup.floor.dynamics import propagators
 from ddct_bringup.floor.dynamics.capacity import CapacityRange
 from ddct_bringup.floor.dynamics.laws import Law
 from ddct_bringup.floor.dynamics.propagators import ENGINE, NODES, SHAFT, TWIST, WHEEL
-from ddct_bringup.floor.dynamics.start import ActuatorModel, Start
+from ddct_bringup.floor.dynamics.start import ActuatorModel, Start, driving_acceleration
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.models.driveline_model import states_and_torques
@@ -60,6 +60,8 @@ class Motion:
     """A_x in m/s^2, left limits, (N + 1, columns)."""
     torsion_speed: np.ndarray
     """Torsion speed w_sr in rad/s, (N + 1, columns)."""
+    driving: np.ndarray
+    """Driving force over the mass of the car in m/s^2, (N + 1, columns)."""
     slip: np.ndarray
     """Slip w_d in rad/s at the steps after control start while the plates slip, (n, columns)."""
     capacity: np.ndarray
@@ -106,7 +108,7 @@ class _Builder:
         capacity: CapacityRange,
         most_request: float,
     ) -> None:
-        self._p = settings.scenario.driveline
+        self._scenario, self._p = settings.scenario, settings.scenario.driveline
         self._wear_gain = settings.wear_gain
         self._radius = settings.scenario.vehicle.wheel_radius_m
         self._start, self._engine, self._load, self._capacity = start, engine, load, capacity
@@ -222,9 +224,10 @@ class _Builder:
     ) -> Motion:
         p, start = self._p, self._start.step
         shape = (start + self._periods + 1, self.columns.count)
-        acceleration, torsion = np.zeros(shape), np.zeros(shape)
+        acceleration, torsion, driving = np.zeros(shape), np.zeros(shape), np.zeros(shape)
         acceleration[: start + 1, 0] = self._start.accelerations
         torsion[: start + 1, 0] = self._start.torsion_speeds
+        driving[: start + 1, 0] = self._start.driving
         path = np.array(states)
         if not np.isfinite(path).all():
             raise ParameterError(
@@ -235,6 +238,7 @@ class _Builder:
         torsion[start + 1 :] = speed[1:]
         scale = self._radius / p.vehicle_inertia
         acceleration[start + 1 :] = scale * (torque[1:] - np.array(loads))
+        driving[start + 1 :] = driving_acceleration(self._scenario, torque[1:])
         slipping = self._slipping_periods + (self._lock is None)
         return Motion(
             start,
@@ -243,6 +247,7 @@ class _Builder:
             self.columns,
             acceleration,
             torsion,
+            driving,
             path[1:slipping, ENGINE] - path[1:slipping, SHAFT],
             np.array(capacities),
             slip_at_lock,

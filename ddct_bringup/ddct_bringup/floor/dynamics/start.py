@@ -11,6 +11,7 @@ from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import PERIOD_S, SUBSTEPS
 from ddct_plant.models.actuator import at_rest, lifted
 from ddct_plant.scenario.plant import initial_state
+from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
 
 
@@ -52,6 +53,8 @@ class Start:
     """A_x in m/s^2 up to control start, (step + 1,)."""
     torsion_speeds: np.ndarray
     """Torsion speed w_sr in rad/s up to control start, (step + 1,)."""
+    driving: np.ndarray
+    """Driving force over the mass of the car in m/s^2 up to control start, (step + 1,)."""
     idle_integral: float
     """Greatest integral of idle control in N m that the engine can have there."""
     temperature_c: float
@@ -102,9 +105,15 @@ def start_of(settings: RunSettings, run: Trajectory) -> Start:
         before,
         np.array(run.vehicle_accel[: step + 1]),
         np.array(run.driveshaft_speed[: step + 1]),
+        driving_acceleration(settings.scenario, run.driveshaft_effort[: step + 1]),
         _idle_integral(settings, run.engine_speed[:step]),
         20.0 if temperature is None else float(temperature[step]),
     )
+
+
+def driving_acceleration(scenario: Scenario, torque: np.ndarray) -> np.ndarray:
+    """Return the driving force over the mass in m/s^2 for driveshaft torques in N m, (...)."""
+    return torque / (scenario.vehicle.wheel_radius_m * scenario.vehicle.mass_kg)
 
 
 def _idle_integral(settings: RunSettings, engine_speed: np.ndarray) -> float:

@@ -1,0 +1,142 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Floors beside the scores of a run: what the drive demands, apart from what a controller adds."""
+
+import argparse
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.floor.any_lock import least_at_any_lock
+from ddct_bringup.floor.dynamics.start import Start
+from ddct_bringup.floor.floor import (
+    METRICS,
+    OF_STICK_SLIP,
+    OverFloor,
+    control_start,
+    engagements_a_day,
+    floors_of_run,
+)
+from ddct_bringup.scores.scored_recording import ScoredRecording
+from ddct_bringup.scores.scored_run import ScoredRun
+from ddct_bringup.verdict.limits import Limits
+from ddct_bringup.verdict.state import SUCCESSES
+from ddct_bringup.verdict.verdict import (
+    BEYOND,
+    CriterionFloor,
+    CriterionResult,
+    verdict_with_floors,
+)
+from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.base.options import require_known
+from ddct_plant.files.input_file import located
+from ddct_plant.scenario.settings import RunSettings
+
+USUAL, ALL, NONE = 'usual', 'all', 'none'
+_USUAL = ('peak_jerk', 'peak_acceleration')
+"""Metrics whose floors are computed by default, besides criteria that are beyond their limit."""
+_DOSE = 'daily_vibration_dose'
+_NOT_ONCE = 'it does not lock once and stay locked, or it commands the engine'
+
+
+def add_floors_option(parser: argparse.ArgumentParser, default: str = USUAL) -> None:
+    """Add the option --floors to a parser; its value is an argument of `floor_metrics`."""
+    parser.add_argument(
+        '--floors',
+        default=default,
+        metavar='A,B,...|usual|all|none',
+        help='metrics to compare with the least that any controller could do, see '
+        f'docs/use/limit.md; usual: {", ".join(_USUAL)}, and what is beyond a limit; '
+        'default: %(default)s',
+    )
+
+
+def floor_metrics(text: str) -> tuple[str, ...] | None:
+    """
+    Return the metrics in the value of --floors, None for no floors.
+
+    Raise ParameterError for an unknown name.
+    """
+    if text == NONE:
+        return None
+    if text in (USUAL, ALL):
+        return _USUAL if text == USUAL else tuple(METRICS)
+    names = tuple(dict.fromkeys(name.strip() for name in text.split(',') if name.strip()))
+    with located('--floors'):
+        require_known(names, METRICS, 'metric')
+    if not names:
+        raise ParameterError('--floors is empty: name a metric, usual, all or none')
+    return names
+
+
+def with_floors(
+    run: ScoredRecording, metrics: Sequence[str] | None, limits: Limits
+) -> ScoredRecording:
+    """
+    Return a scored recording with the floors of these metrics, and of criteria beyond limits.
+
+    It is unchanged for None, and where the run failed or has no scenario. `limits` judged it.
+    """
+    if metrics is None or run.recording is None or run.settings is None:
+        return run
+    trajectory = run.recording.trajectory
+    return replace(
+        run, scores=scores_with_floors(run.scores, run.settings, trajectory, metrics, limits)
+    )
+
+
+def scores_with_floors(
+    scores: ScoredRun,
+    settings: RunSettings,
+    trajectory: Trajectory,
+    metrics: Sequence[str],
+    limits: Limits,
+) -> ScoredRun:
+    """Return the scores of a run with the floors of metrics and of criteria beyond limits."""
+    if not scores.valid or scores.verdict.state not in SUCCESSES:
+        return scores
+    beyond = {
+        each.name: each
+        for each in scores.verdict.results
+        if each.state == BEYOND and each.name in METRICS
+    }
+    names = [
+        name
+        for name in dict.fromkeys((*metrics, *beyond))
+        if (settings.stick_slip or name != OF_STICK_SLIP)
+        # Only the floor by the packaged rules is computed.
+        and (name != _DOSE or limits.rules.engagements_a_day == engagements_a_day())
+    ]
+    try:
+        start = control_start(settings)
+        found = floors_of_run(settings, names, trajectory, start, attain=False)
+        floors = _criterion_floors(settings, start, found, beyond)
+    except DdctError as error:
+        return replace(scores, over_floor=dict.fromkeys(names), no_floor=str(error))
+    return replace(
+        scores,
+        verdict=verdict_with_floors(scores.verdict, floors),
+        over_floor={name: over.over_floor if over else None for name, over in found.items()},
+        no_floor='' if any(found.values()) else _NOT_ONCE,
+    )
+
+
+def _criterion_floors(
+    settings: RunSettings,
+    start: Start,
+    found: Mapping[str, OverFloor | None],
+    beyond: Mapping[str, CriterionResult],
+) -> dict[str, CriterionFloor]:
+    """Return the floors of criteria by name; those of runs outside of all floors have none."""
+    floors = {}
+    for name, over in found.items():
+        if over is None:
+            continue
+        lowest = None
+        result = beyond.get(name)
+        if result is not None and result.limit is not None:
+            lowest = least_at_any_lock(settings, name, start, result.limit)
+        floors[name] = CriterionFloor(
+            over.floor.least, over.over_floor, lowest.least if lowest else None
+        )
+    return floors
