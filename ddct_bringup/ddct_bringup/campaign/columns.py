@@ -22,6 +22,7 @@ from ddct_bringup.campaign.rows import (
     Row,
 )
 from ddct_bringup.campaign.spec import CampaignSpec
+from ddct_bringup.scores.csv_text import OVER_FLOOR
 from ddct_plant.base.errors import DdctError
 
 SCHEMA_VERSION = 2
@@ -52,6 +53,7 @@ def schema_of(spec: CampaignSpec) -> pa.Schema:
         *((name, pa.float64()) for name in METRIC_COLUMNS),
         *_VERDICT,
         *((name, pa.float64()) for name in CRITERION_COLUMNS),
+        *((f'{OVER_FLOOR}{name}', pa.float64()) for name in spec.floors),
     ]
     return pa.schema(fields, {'schema_version': str(SCHEMA_VERSION)})
 

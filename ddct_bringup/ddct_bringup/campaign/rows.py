@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """One of many runs: its scores without a bag, and its row."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 from ddct_bringup.metrics.catalogue import CRITERIA, FURTHER, TABLE_5_1
@@ -11,6 +12,8 @@ from ddct_bringup.run.execution import recording_in_memory
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.run.plan import require_headless
 from ddct_bringup.run.timing_and_failure import RunTiming
+from ddct_bringup.scores.csv_text import OVER_FLOOR
+from ddct_bringup.scores.floors import scores_over_floors
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.scores.scoring import run_without_score, score_run
 from ddct_bringup.verdict.limits import Limits
@@ -42,10 +45,13 @@ def require_suitable(controller: Chosen, settings: RunSettings) -> None:
         return
 
 
-def scored_headless(settings: RunSettings, controller: Chosen, limits: Limits) -> ScoredRun:
+def scored_headless(
+    settings: RunSettings, controller: Chosen, limits: Limits, floors: Sequence[str] = ()
+) -> ScoredRun:
     """
     Carry out a run headless and return its scores, with the reason if it fails.
 
+    The metrics `floors` are set beside the least that any controller could have.
     It has no wall-clock metrics: a row is equal in every repetition.
     """
     name = controller_label(controller)
@@ -58,10 +64,12 @@ def scored_headless(settings: RunSettings, controller: Chosen, limits: Limits) -
         reason = printable(f'{type(error).__name__}: {error}')
     else:
         # Without update times, since no wall-clock time is measured.
-        return score_run(
-            recording_in_memory(settings, name, trajectory), name, limits, RunTiming()
-        )
-    return run_without_score(name, facts_of(settings, name, settings.scenario.steps), reason)
+        recording = recording_in_memory(settings, name, trajectory)
+        scores = score_run(recording, name, limits, RunTiming())
+        return scores_over_floors(scores, settings, trajectory, floors) if floors else scores
+    facts = facts_of(settings, name, settings.scenario.steps)
+    failed = run_without_score(name, facts, reason)
+    return replace(failed, over_floor=dict.fromkeys(floors))
 
 
 def result_row(run: ScoredRun, varied: Mapping[str, Any], path: str = SERIAL) -> Row:
@@ -77,4 +85,5 @@ def result_row(run: ScoredRun, varied: Mapping[str, Any], path: str = SERIAL) ->
         'verdict_state': run.verdict.state,
         'verdict_limits': run.verdict.limits,
         **{f'{CRITERION}{each.key}': criteria.get(each.key) for each in CRITERIA},
+        **{f'{OVER_FLOOR}{name}': ratio for name, ratio in run.over_floor.items()},
     }

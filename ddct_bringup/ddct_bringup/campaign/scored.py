@@ -4,7 +4,7 @@
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import chain
 from typing import Any
 
@@ -66,6 +66,8 @@ class Scorer:
     limits: Limits
     at_once: bool = True
     """Whether linear runs are computed together, to 1e-9 of the run step by step."""
+    floors: tuple[str, ...] = ()
+    """Metrics that are set beside the least; the runs are then computed step by step."""
     _shared: dict[str, Controller] = field(default_factory=dict)
 
     def scored(self, runs: Iterable[CampaignRun | RefusedRun]) -> list[ScoredCampaignRun]:
@@ -83,15 +85,17 @@ class Scorer:
     def _of(self, run: CampaignRun | RefusedRun, found: ScoredRun | None) -> ScoredCampaignRun:
         name, path, scores = run.controller.name, VECTORISED, found
         if isinstance(run, RefusedRun):
-            path, scores = SERIAL, run_without_score(name, None, str(run.error))
+            failed = run_without_score(name, None, str(run.error))
+            path, scores = SERIAL, replace(failed, over_floor=dict.fromkeys(self.floors))
         elif scores is None:
-            path, scores = SERIAL, scored_headless(run.settings, run.controller, self.limits)
+            path = SERIAL
+            scores = scored_headless(run.settings, run.controller, self.limits, self.floors)
         return ScoredCampaignRun(run.index, name, run.seed, run.varied, scores, path)
 
     def _together(self, runs: Sequence[CampaignRun]) -> dict[int, ScoredRun]:
         """Return the scores of the runs that can be computed at once, by index."""
         suited = []
-        for run in runs if self.at_once else ():
+        for run in runs if self.at_once and not self.floors else ():
             try:
                 controller = self._controller(run)
             except FOREIGN_FAILURES:

@@ -57,7 +57,7 @@ def _prepared(job: ShardJob) -> tuple[Campaign, Scorer]:
     key = f'{job.digest} {job.spec.folder} {job.limits.origin}'
     if key not in _kept:
         _kept.clear()
-        _kept[key] = Campaign(job.spec), Scorer(job.limits)
+        _kept[key] = Campaign(job.spec), Scorer(job.limits, floors=job.spec.floors)
     return _kept[key]
 
 

@@ -10,7 +10,8 @@ from typing import Any
 
 from ddct_bringup.campaign.distributions import Distribution, distribution_of
 from ddct_bringup.campaign.keys import COMMON, CONTROLLERS, SCENARIO, option_of, run_options
-from ddct_plant.base.errors import ParameterError
+from ddct_bringup.floor.floor import METRICS
+from ddct_plant.base.errors import ParameterError, require_choice
 from ddct_plant.base.options import Option, require_known
 from ddct_plant.files.input_file import SCHEMA_KEY, located, require_schema_version, user_text
 from ddct_plant.files.yaml_text import parse_yaml_with_lines
@@ -21,7 +22,8 @@ SCHEMA_VERSION = 1
 MOST_RUNS = 10_000_000
 """Largest number of runs of one campaign."""
 _GRID, _RANDOM, _VARY, _SAMPLES, _SEED = 'grid', 'random', 'vary', 'samples', 'seed'
-_KEYS = (SCHEMA_KEY, CONTROLLERS, *COMMON, _SEED, _GRID, _RANDOM)
+FLOORS = 'floors'
+_KEYS = (SCHEMA_KEY, CONTROLLERS, *COMMON, _SEED, _GRID, _RANDOM, FLOORS)
 _ROOT = Option(0, 'root of all random numbers', at_least=0, at_most=2**31 - 1)
 _NUMBER_OF_SAMPLES = Option(1, 'samples at each point of the grid', at_least=1, at_most=MOST_RUNS)
 
@@ -43,6 +45,8 @@ class CampaignSpec:
     samples: int
     vary: Mapping[str, Distribution]
     """Distributions of the keys that are drawn in each sample, by key."""
+    floors: tuple[str, ...] = ()
+    """Metrics that are set beside the least that any controller could have."""
 
     @property
     def keys(self) -> tuple[str, ...]:
@@ -93,6 +97,7 @@ def spec_of(content: Any, folder: Path) -> CampaignSpec:
         grid=grid,
         samples=samples,
         vary=vary,
+        floors=_floors(content),
     )
     try:
         spec.text()
@@ -113,6 +118,15 @@ def _controllers(content: Mapping[str, Any]) -> tuple[str, ...]:
     if not isinstance(given, list) or not given:
         raise ParameterError(f'{CONTROLLERS}: give a list of names or files, such as [pi, mpc3]')
     return _distinct(CONTROLLERS, [_text(CONTROLLERS, each) for each in given])
+
+
+def _floors(content: Mapping[str, Any]) -> tuple[str, ...]:
+    given = content.get(FLOORS, [])
+    if not isinstance(given, list):
+        raise ParameterError(f'{FLOORS}: give a list of metrics, such as [peak_jerk]')
+    for name in given:
+        require_choice(FLOORS, name, list(METRICS))
+    return _distinct(FLOORS, given)
 
 
 def _common(content: Mapping[str, Any]) -> dict[str, str]:

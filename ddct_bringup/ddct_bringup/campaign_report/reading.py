@@ -14,6 +14,7 @@ from ddct_bringup.campaign.keys import COMMON, SCENARIO, option_of
 from ddct_bringup.campaign.manifest import Manifest
 from ddct_bringup.campaign.spec import CampaignSpec
 from ddct_bringup.campaign_report.results import OtherVersion, Results
+from ddct_bringup.scores.csv_text import OVER_FLOOR
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.files.input_file import SCHEMA_KEY, require_schema_version
 from ddct_plant.models.clutch import LINEAR
@@ -64,7 +65,9 @@ def results_of(manifest: Manifest, table: pa.Table) -> Results:
     columns = {name: numpy_column(table[name]) for name in table.column_names}
     ours = (*REQUIRED, PATH, *COMPARED, *manifest.grid, *manifest.random)
     absent = tuple(name for name in COMPARED if name not in columns)
-    unknown = tuple(name for name in columns if name not in ours)
+    unknown = tuple(
+        name for name in columns if name not in ours and not name.startswith(OVER_FLOOR)
+    )
     nominal: dict[str, float] = {}
     why = ''
     try:

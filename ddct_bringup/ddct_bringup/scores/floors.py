@@ -121,6 +121,26 @@ def scores_with_floors(
     )
 
 
+def scores_over_floors(
+    scores: ScoredRun, settings: RunSettings, trajectory: Trajectory, metrics: Sequence[str]
+) -> ScoredRun:
+    """
+    Return the scores of a run with metrics over their least at the run's own lock time.
+
+    The verdict stays as it is. None for a failed run, and for a metric that it does not have.
+    """
+    ratios: dict[str, float | None] = dict.fromkeys(metrics)
+    names = [name for name in metrics if settings.stick_slip or name != OF_STICK_SLIP]
+    if not scores.valid or scores.verdict.state not in SUCCESSES:
+        return replace(scores, over_floor=ratios)
+    try:
+        found = floors_of_run(settings, names, trajectory, attain=False)
+    except DdctError as error:
+        return replace(scores, over_floor=ratios, no_floor=str(error))
+    ratios.update((name, over.over_floor if over else None) for name, over in found.items())
+    return replace(scores, over_floor=ratios)
+
+
 def _criterion_floors(
     settings: RunSettings,
     start: Start,

@@ -2,11 +2,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """One of many runs is scored and judged as the same run alone; a failed one has its reason."""
 
+from pathlib import Path
+
 import pytest
 from refusals import refused
 
 from ddct_bringup import api
+from ddct_bringup.campaign.campaign import Campaign
+from ddct_bringup.campaign.columns import schema_of, shard_bytes
 from ddct_bringup.campaign.rows import result_row, scored_headless
+from ddct_bringup.campaign.scored import Scorer
+from ddct_bringup.campaign.spec import spec_of
 from ddct_bringup.run.run_base import RunBase
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_controllers.from_python import chosen_from
@@ -46,6 +52,31 @@ def test_what_is_varied_replaces_what_all_runs_change():
 def test_a_value_that_the_scenario_refuses_is_named():
     with refused(ParameterError, key='vehicle.mass_kg'):
         BASE.at({'vehicle.mass_kg': -1.0})
+
+
+def test_a_campaign_with_floors_has_a_column_of_each_and_null_where_there_is_none():
+    content = {
+        'controllers': ['ls8', 'mpc4'],
+        'grid': {'wear_gain': [1.0]},
+        'floors': ['traction'],
+    }
+    spec = spec_of(content, Path())
+    assert schema_of(spec).names[-1] == 'over_floor.traction'
+    plain = spec_of({**content, 'floors': []}, Path())
+    assert not any(name.startswith('over_floor') for name in schema_of(plain).names)
+    planned = list(Campaign(spec).planned(0, 2))
+    rows = [each.row() for each in Scorer(packaged_limits(), floors=spec.floors).scored(planned)]
+    ratios = {row['controller']: row['over_floor.traction'] for row in rows}
+    assert 1.0 <= ratios['ls8'] < 1.1
+    assert ratios['mpc4'] is None
+    assert {row['path'] for row in rows} == {'serial'}
+    assert shard_bytes(schema_of(spec), rows)
+
+
+def test_a_floor_of_an_unknown_metric_is_refused():
+    content = {'controllers': ['ls8'], 'grid': {'wear_gain': [1.0]}, 'floors': ['jerk']}
+    with refused(ParameterError, key='floors'):
+        spec_of(content, Path())
 
 
 def test_a_run_has_the_metrics_and_the_verdict_of_the_same_run_alone():
