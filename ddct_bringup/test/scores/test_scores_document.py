@@ -90,3 +90,16 @@ def test_a_recording_from_before_a_signal_existed_has_no_value_of_its_criterion(
         signals=('clutch_temperature',),
     )
     assert rise.of(engagement) is None
+
+
+def test_scores_from_before_floors_are_read_without_them(tmp_path: Path) -> None:
+    run = replace(RUN, over_floor={'peak_jerk': 2.0, 'mean_jerk': None}, no_floor='why')
+    assert read(tmp_path, content(run))[0].over_floor == run.over_floor
+    document = content(run)
+    for entry in document['runs']:
+        del entry['over_floor'], entry['no_floor']
+        for result in entry['verdict']['criteria']:
+            del result['least'], result['over_floor'], result['least_at_any_lock']
+    (found,) = read(tmp_path, document)
+    assert (found.over_floor, found.no_floor) == ({}, '')
+    assert found.verdict == RUN.verdict
