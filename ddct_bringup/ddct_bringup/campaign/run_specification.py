@@ -45,7 +45,7 @@ def run_specification(
         yield from _rows(results)
         return
     campaign.require_sound()
-    with scored_runs(campaign, limits, workers=workers) as found:
+    with scored_runs(campaign, limits, workers=workers, floors=spec.floors) as found:
         for scored in found:
             require_going_on(stopped)
             yield scored.row()

@@ -124,15 +124,21 @@ class Scorer:
 
 @contextmanager
 def scored_runs(
-    runs: RunSet, limits: Limits, *, workers: int | None = None, at_once: bool = True
+    runs: RunSet,
+    limits: Limits,
+    *,
+    workers: int | None = None,
+    at_once: bool = True,
+    floors: tuple[str, ...] = (),
 ) -> Iterator[Iterator[ScoredCampaignRun]]:
     """
     Yield an iterator over all runs with their scores, in the order of their indices.
 
     They are computed while it is consumed, by `workers` processes, by default one per core; none
-    is kept. Call `RunSet.require_sound` before: here a run that cannot be built has its reason.
+    is kept. `floors` are the metrics that are set beside the least. Call `RunSet.require_sound`
+    before: here a run that cannot be built has its reason.
     """
-    scorer = Scorer(limits, at_once)
+    scorer = Scorer(limits, at_once, floors)
     count = worker_count(workers)
     largest = _LARGEST_PART_AT_ONCE if at_once else _LARGEST_PART_STEP_BY_STEP
     size = max(1, min(largest, runs.runs // (_PARTS_EACH * count)))

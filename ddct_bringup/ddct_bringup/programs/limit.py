@@ -15,9 +15,9 @@ from ddct_bringup.run.options import (
     add_settings_options,
     controllers_of,
     print_choices,
-    settings_of,
 )
 from ddct_bringup.run.plan import require_headless
+from ddct_bringup.run.run_base import settings_of
 from ddct_controllers.registry import controller_label, working_controllers
 from ddct_plant.base.errors import DdctError, ParameterError, require_number
 from ddct_plant.base.options import require_known

@@ -70,7 +70,9 @@ def _verified_rows(request: Request, table: pa.Table, campaign: Campaign) -> Ite
     """Yield the result of the rows of each controller, computed by worker processes."""
     schema = schema_of(campaign.spec)
     progress = Progress('runs', campaign.runs)
-    with scored_runs(campaign, request.limits, workers=request.workers) as found:
+    with scored_runs(
+        campaign, request.limits, workers=request.workers, floors=campaign.spec.floors
+    ) as found:
         for number, label in enumerate(campaign.labels):
             first = number * campaign.cases
             comparison = Comparison()

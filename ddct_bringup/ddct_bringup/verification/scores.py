@@ -13,6 +13,7 @@ from ddct_bringup.digests.writing import ITSELF
 from ddct_bringup.report.evidence import FREQUENCY_FILE
 from ddct_bringup.scores.bags import find_bags
 from ddct_bringup.scores.document import scores_document
+from ddct_bringup.scores.floors import NONE, floor_metrics, with_floors
 from ddct_bringup.scores.scored_recording import score_any_bag
 from ddct_bringup.verification.comparison import Comparison, plain_json
 from ddct_bringup.verification.repetition import controller_of
@@ -39,17 +40,24 @@ def verified_scores(request: Request) -> RunResult:
             f'judged by the limits {json.dumps(limits)}, not by '
             f'{json.dumps(request.limits.origin)}: give --limits with that file',
         )
+    scored = [
+        score_any_bag(bag, request.folder, request.limits) for bag in find_bags(request.folder)
+    ]
+    names = [run.scores.bag for run in scored]
+    try:
+        recorded = _by_bag(stored, names)
+        floors = [
+            floor_metrics(','.join(recorded['runs'].get(name, {}).get('over_floor', ())) or NONE)
+            for name in names
+        ]
+    except (AttributeError, TypeError, DdctError) as error:
+        return RunResult.failed(SCORES, f'not the scores of runs ({error})')
     runs = [
-        score_any_bag(bag, request.folder, request.limits).scores
-        for bag in find_bags(request.folder)
+        with_floors(run, metrics, request.limits).scores
+        for run, metrics in zip(scored, floors, strict=True)
     ]
     computed = plain_json(scores_document(runs, request.limits))
     comparison = Comparison()
-    names = [run.bag for run in runs]
-    try:
-        recorded = _by_bag(stored, names)
-    except (AttributeError, TypeError) as error:
-        return RunResult.failed(SCORES, f'not the scores of runs ({error})')
     comparison.add_nested('', recorded, _by_bag(computed, names))
     return RunResult.of(SCORES, comparison, same_environment=request.same_environment)
 

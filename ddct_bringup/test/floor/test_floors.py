@@ -21,7 +21,7 @@ from ddct_bringup.floor.friction_work import least_friction_work
 from ddct_bringup.floor.front import least_lock_time
 from ddct_bringup.floor.lock import lock_of
 from ddct_bringup.floor.program import RAY
-from ddct_bringup.run.execution import in_memory
+from ddct_bringup.run.execution import recording_in_memory
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.scores.scoring import score_run
 from ddct_bringup.verdict.limits import packaged_limits
@@ -87,7 +87,7 @@ def test_no_metric_of_a_run_is_below_its_floor(scenario, clutch, controller):
 def test_the_values_are_those_of_scores_and_verdict():
     settings = settings_of()
     run = run_headless(settings, 'ls8')
-    entry = score_run(in_memory(settings, 'ls8', run), 'ls8', packaged_limits(), None)
+    entry = score_run(recording_in_memory(settings, 'ls8', run), 'ls8', packaged_limits(), None)
     criteria = {each.name: each.value for each in entry.verdict.results}
     start = settings.scenario.control_start_step
     for metric in set(METRICS) - {'friction_energy'}:
