@@ -3,7 +3,7 @@
 """Floors over a grid of lock times, the least lock time under a cap, and controllers beside."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from typing import TypedDict
 
 import numpy as np
 
@@ -61,7 +61,29 @@ def least_values(
         yield floor_of_case(case_at(settings, start, time_s, limited=limited), metric)
 
 
-def least_lock_time(floors: Sequence[Floor], metric: str, cap: float) -> dict[str, Any]:
+class LeastLockTime(TypedDict):
+    """Least lock time under a cap, under the keys of `limit --json`."""
+
+    metric: str
+    cap: float
+    lock_time_s: float | None
+    excluded_before_s: float | None
+
+
+class ControllerRow(TypedDict):
+    """A metric of a controller's run beside its least, under the keys of `limit --json`."""
+
+    controller: str
+    metric: str
+    lock_time_s: float | None
+    value: float | None
+    least: float | None
+    attained: float | None
+    over_floor: float | None
+    certificate: Mapping[str, object] | None
+
+
+def least_lock_time(floors: Sequence[Floor], metric: str, cap: float) -> LeastLockTime:
     """
     Return the least lock time of a front at which a metric can be at most `cap`.
 
@@ -82,7 +104,7 @@ def least_lock_time(floors: Sequence[Floor], metric: str, cap: float) -> dict[st
 
 def controller_rows(
     settings: RunSettings, controller: Chosen, metrics: Sequence[str], start: Start
-) -> list[dict[str, Any]]:
+) -> list[ControllerRow]:
     """
     Return a row for each metric of a controller's run, under the keys of `limit --json`.
 
@@ -91,7 +113,7 @@ def controller_rows(
     run = run_headless(settings, controller)
     lock = lock_of(run, start.step)
     over: Mapping[str, OverFloor | None] = floors_of_run(settings, metrics, run, start)
-    rows = []
+    rows: list[ControllerRow] = []
     for metric in metrics:
         found = over[metric]
         whole = run.steps == settings.scenario.steps

@@ -9,7 +9,14 @@ from pathlib import Path
 from typing import Any
 
 from ddct_bringup.floor.floor import METRICS, OF_STICK_SLIP, Floor, control_start
-from ddct_bringup.floor.front import controller_rows, front, least_lock_time, usual_lock_times
+from ddct_bringup.floor.front import (
+    ControllerRow,
+    LeastLockTime,
+    controller_rows,
+    front,
+    least_lock_time,
+    usual_lock_times,
+)
 from ddct_bringup.run.options import (
     ALL,
     add_settings_options,
@@ -75,7 +82,7 @@ def _limit(argv: list[str]) -> int:
     points = with_progress(front(settings, metrics, times, start), len(times), 'lock times')
     floors = [floor for point in points for floor in point]
     impossible = _complain_impossible(floors)
-    rows: list[dict[str, Any]] = []
+    rows: list[ControllerRow] = []
     for name in with_progress(names, len(names), 'controllers'):
         rows += controller_rows(settings, name, metrics, start)
     capped = [least_lock_time(floors, metric, cap) for metric, cap in caps]
@@ -93,22 +100,22 @@ def _limit(argv: list[str]) -> int:
 
 def _complain_impossible(floors: Sequence[Floor]) -> int:
     """Print a line for each lock time that no request leads to; return their number."""
-    seen: dict[float, Floor] = {}
+    impossible: dict[float, Floor] = {}
     for floor in floors:
         if floor.least is None:
-            seen.setdefault(floor.lock_time_s, floor)
-    for time_s, floor in seen.items():
+            impossible.setdefault(floor.lock_time_s, floor)
+    for time_s, floor in impossible.items():
         complain(
             PROGRAM,
             f'lock time {time_s:g} s: no torque request locks the plates then: a Farkas ray of '
             f'sum {floor.certificate["proven"]:.3g}, which must be above 0, proves it: give '
             'another time',
         )
-    return len(seen)
+    return len(impossible)
 
 
 def _document(
-    floors: Sequence[Floor], rows: Sequence[dict[str, Any]], capped: Sequence[dict[str, Any]]
+    floors: Sequence[Floor], rows: Sequence[ControllerRow], capped: Sequence[LeastLockTime]
 ) -> dict[str, Any]:
     """Return what `--json` writes."""
     return {
@@ -119,7 +126,7 @@ def _document(
 
 
 def _print(
-    floors: Sequence[Floor], rows: Sequence[dict[str, Any]], capped: Sequence[dict[str, Any]]
+    floors: Sequence[Floor], rows: Sequence[ControllerRow], capped: Sequence[LeastLockTime]
 ) -> None:
     print_table(
         Table(

@@ -3,7 +3,7 @@
 'use strict';
 
 // What every page of ours does. Its colours are the system's until the button chooses light or dark;
-// a window event `colours` tells of each change. Tables sort by the column whose heading is pressed.
+// a window event `colours` follows each change. Tables sort by the column whose heading is pressed.
 
 const colours = (() => {
   const {dataset} = document.documentElement;
@@ -18,7 +18,7 @@ const colours = (() => {
     button.firstElementChild.textContent = chosen;
   }
 
-  function tell() { dispatchEvent(new Event('colours')); }
+  function announceColours() { dispatchEvent(new Event('colours')); }
 
   function stored() {
     try { return localStorage.getItem('report-theme'); } catch { return null; }
@@ -26,10 +26,10 @@ const colours = (() => {
 
   button.addEventListener('click', () => {
     set(themes[(themes.indexOf(theme()) + 1) % themes.length]);
-    tell();
+    announceColours();
     try { localStorage.setItem('report-theme', theme()); } catch { /* a page without storage */ }
   });
-  systemDark.addEventListener('change', tell);
+  systemDark.addEventListener('change', announceColours);
   set(themes.includes(stored()) ? stored() : 'auto');
   return {theme, set, dark: () => theme() === 'dark' || (theme() === 'auto' && systemDark.matches)};
 })();

@@ -3,7 +3,7 @@
 'use strict';
 
 // Beside the pointer stands the value of the nearest curve, with its run, time and unit.
-function tellNearest(views) {
+function showNearest(views) {
   const REACH_PX = 40;
   const tip = document.getElementById('tip');
   const dot = document.getElementById('tip-dot');

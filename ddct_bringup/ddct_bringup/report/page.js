@@ -159,7 +159,7 @@
   addEventListener('colours', paint);
 
   printCharts(views, paint);
-  tellNearest(views);
+  showNearest(views);
   count();
   // The document comes in the colours of the light page.
   if (colours.dark()) paint();

@@ -141,8 +141,8 @@ def _scenario_title(runs: Sequence[ScoredRecording]) -> str:
 
 def _sensors(runs: Sequence[ScoredRecording]) -> str | None:
     """Return the sensor keys of the scenario as text; None where control uses the true signals."""
-    told = (run.settings.scenario.sensors for run in runs if run.settings is not None)
-    sensors = next(told, None)
+    of_runs = (run.settings.scenario.sensors for run in runs if run.settings is not None)
+    sensors = next(of_runs, None)
     return None if sensors is None else sensors.text
 
 

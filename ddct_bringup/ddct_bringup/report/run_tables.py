@@ -37,8 +37,8 @@ def run_origin(run: ScoredRecording) -> RunOrigin:
         (name, '–' if facts is None or name in unknown else str(getattr(facts, name)))
         for name in _CONDITIONS
     )
-    told = {} if run.recording is None else run.recording.run_info.get(CONTROLLER_NODE, {})
-    conditions += (('computed_from', told.get('computed_from', '–')),)
+    run_info = {} if run.recording is None else run.recording.run_info.get(CONTROLLER_NODE, {})
+    conditions += (('computed_from', run_info.get('computed_from', '–')),)
     if run.recording is None or run.measured:
         return RunOrigin(conditions, (), '–', '–')
     nodes = {

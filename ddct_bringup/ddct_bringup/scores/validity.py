@@ -61,8 +61,8 @@ def _why_early(recording: Recording) -> str:
     if recording.facts.lockstep:
         return early
     if recording.realtime.steps >= wanted:
-        return f'{early}: the driveline took them all, but the recorder did not hear the last'
-    return f'{early}: the driveline was last heard to count at step {recording.realtime.steps}'
+        return f'{early}: the driveline took them all, but the recorder did not receive the last'
+    return f'{early}: the driveline last counted at step {recording.realtime.steps}'
 
 
 def missed_steps(recording: Recording) -> int:

@@ -60,7 +60,7 @@ def test_a_whole_run_counts(mode):
 @pytest.mark.parametrize('mode', ['lockstep', 'realtime'])
 def test_a_run_one_step_short_does_not_count(mode):
     reason = why_invalid(recording(facts(steps=200), mode=mode, duration_s=3.01))
-    why = ': the driveline was last heard to count at step 200' if mode == 'realtime' else ''
+    why = ': the driveline last counted at step 200' if mode == 'realtime' else ''
     assert reason == f'ended early: 300 of 301 steps{why}'
 
 
@@ -68,7 +68,7 @@ def test_a_run_whose_last_tick_is_not_recorded_has_that_as_its_reason():
     reason = why_invalid(recording(facts(steps=301), duration_s=3.01))
     assert reason == (
         'ended early: 300 of 301 steps: the driveline took them all, but the recorder did not '
-        'hear the last'
+        'receive the last'
     )
 
 
