@@ -15,6 +15,7 @@ import scipy
 
 from ddct_bringup.floor.case import Case
 from ddct_plant.base.errors import DdctError
+from ddct_plant.files.input_file import parse_json, read_text_file
 from ddct_plant.files.output_file import write_text
 from ddct_plant.scenario.file import scenario_to_yaml
 
@@ -74,8 +75,8 @@ def cached(digest: str) -> dict[str, Any] | None:
     """Return the values stored under a digest, None where there are none that can be read."""
     folder = cache_folder()
     try:
-        content = json.loads((folder / f'{digest}.json').read_text()) if folder else None
-    except (OSError, ValueError):
+        content = parse_json(read_text_file(folder / f'{digest}.json')) if folder else None
+    except (OSError, ValueError, DdctError):
         return None
     return content if isinstance(content, dict) else None
 

@@ -29,6 +29,7 @@ from ddct_bringup.verdict.verdict import (
 )
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.base.options import require_known
+from ddct_plant.base.timebase import steps_in
 from ddct_plant.files.input_file import located
 from ddct_plant.scenario.settings import RunSettings
 
@@ -36,6 +37,12 @@ USUAL, ALL, NONE = 'usual', 'all', 'none'
 _USUAL = ('peak_jerk', 'peak_acceleration')
 """Metrics whose floors are computed by default, besides criteria that are beyond their limit."""
 _DOSE = 'daily_vibration_dose'
+_MOST_PERIODS = 500
+"""
+Largest number of periods after control start whose floors are computed with a score.
+
+The program grows with each period: twice as many take about five times as long.
+"""
 _NOT_ONCE = 'it does not lock once and stay locked, or it commands the engine'
 
 
@@ -107,6 +114,14 @@ def scores_with_floors(
         # Only the floor by the packaged rules is computed.
         and (name != _DOSE or limits.rules.engagements_a_day == engagements_a_day())
     ]
+    control_start_s = settings.scenario.control_start_s
+    periods = settings.scenario.steps - steps_in('control_start_s', control_start_s)
+    if periods > _MOST_PERIODS:
+        reason = (
+            f'{periods} periods after control start: with a score a floor is computed for up to '
+            f'{_MOST_PERIODS}, use ddct limit'
+        )
+        return replace(scores, over_floor=dict.fromkeys(names), no_floor=reason)
     try:
         start = control_start(settings)
         found = floors_of_run(settings, names, trajectory, start, attain=False)

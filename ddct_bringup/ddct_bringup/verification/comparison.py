@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
+from ddct_plant.files.input_file import parse_json
 
 SAME_BITS, SAME_WITHIN = 'same_bits', 'same_within'
 DIFFERENT, DIGEST_ONLY = 'different', 'digest_only'
@@ -200,4 +201,4 @@ def _plain(value: Any) -> Any:
 
 def plain_json(value: Any) -> Any:
     """Return a value as JSON reads it back: lists for tuples, texts for keys."""
-    return json.loads(json.dumps(value))
+    return parse_json(json.dumps(value))

@@ -118,6 +118,14 @@ def test_a_run_outside_of_all_floors_has_none_and_the_reason_in_one_line(
     assert 'unavoidable' not in states(run).values()
 
 
+def test_a_long_run_has_no_floor_beside_its_score_and_the_reason() -> None:
+    long = RunSettings(load_scenario('thesis', {'duration_s': 6.0}))
+    run = scored('pi', long)
+    assert set(run.over_floor.values()) == {None}
+    assert run.no_floor.startswith('540 periods after control start')
+    assert run.no_floor.endswith('use ddct limit')
+
+
 def test_without_floors_nothing_is_computed_nor_said() -> None:
     run = scored('pi', settings_of(), NONE)
     assert (run.over_floor, run.no_floor, run.verdict.limits) == ({}, '', 'beyond')
