@@ -5,6 +5,7 @@
 import math
 
 from ddct_bringup.floor.case import Case
+from ddct_bringup.metrics.plant import JudgedPlant
 
 
 def least_friction_work(case: Case) -> float:
@@ -17,9 +18,8 @@ def least_friction_work(case: Case) -> float:
     the greatest capacity C, w_d - C t/J_r: that gives the second part, with the least a of the
     time. A car with a soft driveline may do with less, as energy goes into its twist.
     """
-    p = case.settings.scenario.driveline
-    rest = p.shaft_inertia + p.gear.at_shaft(p.vehicle_inertia)
-    joint = p.engine_inertia * rest / (p.engine_inertia + rest)
+    plant = JudgedPlant.of(case.settings.scenario)
+    joint = plant.joint_inertia
     slip = abs(case.start.slip)
     work = joint * slip**2 / 2.0
     if math.isinf(case.capacity.most) or case.start.slip <= 0.0:
@@ -28,7 +28,7 @@ def least_friction_work(case: Case) -> float:
     engine, load = case.engine, case.load
     torque = (engine.offset + engine.slope * case.tube.engine_low + engine.low)[:periods].min()
     resisting = (load.offset + load.slope * case.tube.wheel_low + load.low)[:periods].min()
-    drive = torque / p.engine_inertia + p.gear.shaft_torque(resisting) / rest
+    drive = torque / plant.engine_inertia + plant.gear.shaft_torque(resisting) / plant.rest_inertia
     fastest = case.capacity.most / joint
     time_s = min(case.lock.time_s, slip / fastest)
     area = slip * time_s - fastest * time_s**2 / 2.0
