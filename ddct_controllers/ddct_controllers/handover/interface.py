@@ -2,12 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a handover receives and returns in each period, and what all handovers share."""
 
-from typing import NamedTuple, Protocol
+from typing import NamedTuple, Protocol, Self
 
 from ddct_plant.base.timebase import steps_in, time_of_step
 from ddct_plant.models.load import RoadLoad
 from ddct_plant.models.static_torque import StaticTorque
 from ddct_plant.shift.balance import off_going_torque
+from ddct_plant.shift.driveline import ShiftOutputs
 from ddct_plant.shift_plant.settings import ShiftSettings
 
 CUT_FADE_RAD_S = 30.0
@@ -29,6 +30,19 @@ class HandoverMeasurement(NamedTuple):
     """Slip speed of the off-going clutch in rad/s."""
     vehicle_speed: float
     """Vehicle speed V_x in m/s."""
+
+    @classmethod
+    def of_plant(cls, step: int, demand: float, outputs: ShiftOutputs) -> Self:
+        """Return the signals at a step, as the plant has them."""
+        now = outputs.driveline
+        return cls(
+            step,
+            demand,
+            now.engine_speed,
+            now.slip_speed,
+            outputs.off_going.slip_speed,
+            now.vehicle_speed,
+        )
 
 
 class HandoverCommand(NamedTuple):

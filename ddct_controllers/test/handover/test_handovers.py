@@ -41,16 +41,7 @@ def shift(settings: ShiftSettings, name: str, in_inertia_phase: float = 1.2) -> 
     for step in range(130):
         outputs = plant.outputs()
         now = outputs.driveline
-        command = law.update(
-            HandoverMeasurement(
-                step,
-                plant.demand(step),
-                now.engine_speed,
-                now.slip_speed,
-                outputs.off_going.slip_speed,
-                now.vehicle_speed,
-            )
-        )
+        command = law.update(HandoverMeasurement.of_plant(step, plant.demand(step), outputs))
         observation = plant.observe(step, outputs, command.torque_cut)
         torque = static.torque(
             observation.engine_torque, now.joint_effort.wheel, now.engine_speed, now.shaft_speed

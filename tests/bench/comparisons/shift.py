@@ -52,16 +52,8 @@ def shift_step_s(settings: ShiftSettings) -> float:
         for step in range(run.scenario.steps):
             outputs = plant.outputs()
             now = outputs.driveline
-            command = handover.update(
-                HandoverMeasurement(
-                    step,
-                    plant.demand(step),
-                    now.engine_speed,
-                    now.slip_speed,
-                    outputs.off_going.slip_speed,
-                    now.vehicle_speed,
-                )
-            )
+            measured = HandoverMeasurement.of_plant(step, plant.demand(step), outputs)
+            command = handover.update(measured)
             observation = plant.observe(step, outputs, command.torque_cut)
             speeds, rates = reference.update(step, now.slip_speed, now.shaft_speed)
             request = architecture.update(Measurement.of_plant(step, observation, speeds, rates))
