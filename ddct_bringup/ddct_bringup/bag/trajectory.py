@@ -15,8 +15,8 @@ from ddct_plant.signals.signal import RunKind, Signal, SignalValue
 from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import (
     ENGINE_REQUEST,
+    OFF_GOING_SLIP,
     SENSED_SLIP,
-    SHIFT_TOPICS,
     TORQUE_PARTS,
     all_signals,
     quantities,
@@ -105,7 +105,7 @@ class Trajectory:
     @property
     def shift(self) -> bool:
         """Whether the run is a gear shift, with the signals of an off-going clutch."""
-        return any(self._has(topic) for topic in SHIFT_TOPICS)
+        return self._has(OFF_GOING_SLIP)
 
     @property
     def torque_parts(self) -> bool:

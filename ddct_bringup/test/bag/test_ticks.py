@@ -2,20 +2,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """Complete ticks are found by stamps, and a missing or misplaced message is named."""
 
-from dataclasses import replace
-
 import pytest
 from made_run import made_facts
 
-from ddct_bringup.bag import run_facts
 from ddct_bringup.bag.ticks import check_ticks, complete_ticks, tick_topics
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import stamp_of_step
-from ddct_plant.signals import topics
 from ddct_plant.signals.signal import RunKind
 from ddct_plant.signals.topics import (
     CLOCK,
     SENSED_TOPICS,
+    SHIFT_TOPICS,
     SLIP,
     TOPICS,
     recorded_topics,
@@ -119,21 +116,34 @@ def test_the_parts_of_the_torque_request_are_needed_once_one_was_recorded():
         check_ticks(stamps, LOCKSTEP)
 
 
-def test_topics_of_a_shift_are_needed_in_runs_of_a_shift_only(monkeypatch):
-    off_going = replace(SLIP, name='off_going/clutch/slip', when=topics._shift)
-    monkeypatch.setattr(topics, 'TOPICS', (*topics.TOPICS, off_going))
-    assert off_going not in recorded_topics(LOCKSTEP)
-    assert off_going in recorded_topics(RunKind(shift=True))
-    monkeypatch.setattr(run_facts, 'SHIFT_TOPICS', (off_going,))
+def test_topics_of_a_shift_are_needed_in_runs_of_a_shift_only():
+    names = {
+        f'off_going/{name}'
+        for name in (
+            'run_info',
+            'joint_states',
+            'clutch/slip',
+            'clutch/phase',
+            'clutch/torque_request',
+            'actuator/torque',
+            'clutch/torque',
+            'clutch/temperature',
+        )
+    } | {'clutch/handover_share', 'engine/torque_cut'}
+    assert {topic.name for topic in SHIFT_TOPICS} == names
+    others = {topic.name for topic in recorded_topics(RunKind(clutch='stick_slip'))}
+    shift = RunKind(clutch='stick_slip', shift=True)
+    assert {topic.name for topic in recorded_topics(shift)} == others | names
     assert made_facts().kind_of_bag({'/controller/torque_parts'}) == LOCKSTEP
-    names = {'/controller/torque_parts', '/off_going/clutch/slip'}
-    assert made_facts().kind_of_bag(names) == RunKind(shift=True)
+    for name in names:
+        found = made_facts().kind_of_bag({'/controller/torque_parts', f'/{name}'})
+        assert found == RunKind(shift=True)
 
 
 def test_a_lock_step_recording_holds_no_wall_clock_topic():
     names = {topic.name for topic in recorded_topics(RunKind(two_input=True))}
     assert names.isdisjoint({'controller/timing', '/diagnostics'})
-    everything = RunKind(False, True, 'stick_slip', sensed=True)
+    everything = RunKind(False, True, 'stick_slip', sensed=True, shift=True)
     assert {topic.name for topic in recorded_topics(everything)} == {
         topic.name for topic in TOPICS
     }
@@ -159,6 +169,7 @@ def test_every_tick_begins_with_the_clock_and_ends_with_the_acknowledgement():
         'recorder/ack',
     ]
     of_sensors = {'sensors/joint_states', 'sensors/slip', 'sensors/twist', 'sensors/status'}
-    assert tick_names() == {*names[:5], 'clutch/phase', *of_sensors}
+    off_going = {f'off_going/{name}' for name in ('joint_states', 'clutch/slip', 'clutch/phase')}
+    assert tick_names() == {*names[:5], 'clutch/phase', *of_sensors, *off_going}
     assert SLIP.resolved_name == '/clutch/slip'
     assert CLOCK.resolved_name == '/clock'

@@ -11,7 +11,8 @@ from ddct_plant.scenario.file import load_scenario, scenario_names
 from ddct_plant.scenario.settings import ARCHITECTURES, RunSettings
 
 ALL_BUT_DETAILED = [name for name in ARCHITECTURES if name != 'detailed']
-FOR_STICK_SLIP = [name for name in scenario_names() if load_scenario(name).of_stick_slip]
+WITH_ONE_CLUTCH = [name for name in scenario_names() if not load_scenario(name).shift]
+FOR_STICK_SLIP = [name for name in WITH_ONE_CLUTCH if load_scenario(name).of_stick_slip]
 
 
 def run(name, architecture, wear_gain=1.0):

@@ -7,9 +7,11 @@ from typing import NamedTuple, Protocol, Self
 from ddct_plant.base.timebase import steps_in, time_of_step
 from ddct_plant.models.load import RoadLoad
 from ddct_plant.models.static_torque import StaticTorque
+from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.shift_rules import gears_of, shift_of
 from ddct_plant.shift.balance import off_going_torque
 from ddct_plant.shift.driveline import ShiftOutputs
-from ddct_plant.shift_plant.settings import ShiftSettings
+from ddct_plant.shift_plant.start import locked_request
 
 CUT_FADE_RAD_S = 30.0
 """Slip speed of the on-coming clutch in rad/s below which a torque cut fades."""
@@ -66,16 +68,16 @@ class Handover(Protocol):
 class HandoverModel:
     """Torques of the rigid car that handovers expect, and the parts of a command they share."""
 
-    def __init__(self, settings: ShiftSettings) -> None:
+    def __init__(self, settings: RunSettings) -> None:
         """Use the gears and the car of the settings."""
-        scenario = settings.run.scenario
-        self._settings, self._gears = settings, settings.gears
+        self._scenario = scenario = settings.scenario
+        shift, self._gears = shift_of(scenario), gears_of(scenario)
         self._static = StaticTorque(scenario.driveline, scenario.equilibrium)
         self._road = RoadLoad(scenario.load, scenario.vehicle, scenario.slope)
-        self._cut = settings.shift.torque_cut_n_m
+        self._cut = shift.torque_cut_n_m
         self.start_step = scenario.control_start_step
         """Step at which the shift starts."""
-        self.steps = steps_in('shift.handover_s', settings.shift.handover_s)
+        self.steps = steps_in('shift.handover_s', shift.handover_s)
         """Number of periods of the handover."""
 
     def on_coming(self, now: HandoverMeasurement) -> float:
@@ -91,7 +93,7 @@ class HandoverModel:
 
     def locked(self, now: HandoverMeasurement) -> HandoverCommand:
         """Return the command before the shift: the off-going clutch is locked with a margin."""
-        return HandoverCommand(0.0, self._settings.locked_request(self.off_going(now)), 0.0)
+        return HandoverCommand(0.0, locked_request(self._scenario, self.off_going(now)), 0.0)
 
     def inertia_phase(self, now: HandoverMeasurement) -> HandoverCommand:
         """Return the command once the off-going clutch is open; a torque cut fades to the lock."""

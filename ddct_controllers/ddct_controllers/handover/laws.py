@@ -12,7 +12,8 @@ from ddct_controllers.handover.interface import (
 )
 from ddct_plant.base.errors import require_choice
 from ddct_plant.base.timebase import PERIOD_S
-from ddct_plant.shift_plant.settings import ShiftSettings
+from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.shift_rules import shift_of
 
 MARGIN = 1.1
 """Request of the off-going clutch over the torque that it carries, in the handover `model`."""
@@ -36,7 +37,7 @@ class TimedHandover:
     `shift.handover_s`. The actuators delay both alike.
     """
 
-    def __init__(self, settings: ShiftSettings) -> None:
+    def __init__(self, settings: RunSettings) -> None:
         """Start locked."""
         self._model = HandoverModel(settings)
         self._from = 0.0
@@ -64,7 +65,7 @@ class ModelHandover:
     and the balance holds between the clutches.
     """
 
-    def __init__(self, settings: ShiftSettings) -> None:
+    def __init__(self, settings: RunSettings) -> None:
         """Start locked."""
         self._model = HandoverModel(settings)
 
@@ -93,10 +94,10 @@ class SlipHandover:
     forward cannot brake the car. Law and gains are our own.
     """
 
-    def __init__(self, settings: ShiftSettings) -> None:
+    def __init__(self, settings: RunSettings) -> None:
         """Start locked."""
         self._model = HandoverModel(settings)
-        self._target = settings.shift.handover_slip_rad_s
+        self._target = shift_of(settings.scenario).handover_slip_rad_s
         self._integral = 0.0
         self._rising = 0
         self._over = False
@@ -125,7 +126,7 @@ class SlipHandover:
         return carried + PROPORTIONAL * error + self._integral
 
 
-HANDOVERS: Mapping[str, Callable[[ShiftSettings], Handover]] = {
+HANDOVERS: Mapping[str, Callable[[RunSettings], Handover]] = {
     'timed': TimedHandover,
     'slip': SlipHandover,
     'model': ModelHandover,
@@ -133,7 +134,7 @@ HANDOVERS: Mapping[str, Callable[[ShiftSettings], Handover]] = {
 """Handovers by name."""
 
 
-def make_handover(name: str, settings: ShiftSettings) -> Handover:
-    """Return the handover of a name; raise ParameterError for an unknown one."""
-    require_choice('handover', name, tuple(HANDOVERS))
-    return HANDOVERS[name](settings)
+def make_handover(settings: RunSettings) -> Handover:
+    """Return the handover of a run; raise ParameterError for an unknown name."""
+    require_choice('handover', settings.handover, tuple(HANDOVERS))
+    return HANDOVERS[settings.handover](settings)

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The handovers of a shift: ramps, the torque balance, slip under feedback, and the torque cut."""
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import pytest
@@ -18,9 +19,9 @@ from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.models.driveline import LOCKED, PHASES
 from ddct_plant.models.static_torque import StaticTorque
+from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.shift.driveline import ShiftOutputs
 from ddct_plant.shift_plant.plant import ShiftPlant
-from ddct_plant.shift_plant.settings import ShiftSettings
 
 START, STEPS = 30, round(HANDOVER_S / PERIOD_S)
 COLD = ['upshift', 'upshift_light', 'upshift_full', 'upshift_2_3']
@@ -33,10 +34,10 @@ class Tick(NamedTuple):
     command: HandoverCommand
 
 
-def shift(settings: ShiftSettings, name: str, in_inertia_phase: float = 1.2) -> list[Tick]:
+def shift(settings: RunSettings, name: str, in_inertia_phase: float = 1.2) -> list[Tick]:
     """Run a shift whose on-coming clutch carries C_fOL, and that times a factor at the end."""
-    plant, law = ShiftPlant(settings), make_handover(name, settings)
-    static = StaticTorque(settings.run.scenario.driveline, 'full')
+    plant, law = ShiftPlant(settings), make_handover(replace(settings, handover=name))
+    static = StaticTorque(settings.scenario.driveline, 'full')
     found = []
     for step in range(130):
         outputs = plant.outputs()
@@ -151,4 +152,4 @@ def test_a_handover_expects_what_the_locked_clutch_carries():
 
 def test_an_unknown_handover_is_refused():
     with refused(ParameterError, 'handover'):
-        make_handover('quick', shift_settings('upshift'))
+        make_handover(replace(shift_settings('upshift'), handover='quick'))

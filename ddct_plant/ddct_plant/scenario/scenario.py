@@ -29,6 +29,7 @@ from ddct_plant.scenario.control import (
 )
 from ddct_plant.scenario.initial_speeds import InitialSpeeds
 from ddct_plant.sensors.parameters import SensorParameters
+from ddct_plant.shift.parameters import ShiftParameters
 
 
 @dataclass(frozen=True)
@@ -99,6 +100,7 @@ class Scenario(OptionGroup):
     brake: BrakeProfile = section(BrakeProfile(), left_out=True, stick_slip=True)
     engine_limits: EngineLimits | None = None
     closing: ClosingParameters | None = section(None, stick_slip=True)
+    shift: ShiftParameters | None = section(None, stick_slip=True)
     sensors: SensorParameters | None = None
     controllers: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     """Options by controller name; each controller checks its own."""

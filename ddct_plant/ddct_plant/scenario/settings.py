@@ -2,19 +2,22 @@
 # SPDX-License-Identifier: Apache-2.0
 """The settings that every node of one run shares."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.base.options import OptionGroup, option, option_field
+from ddct_plant.base.options import OptionGroup, option, option_field, options_of
 from ddct_plant.models.clutch import CLUTCHES, STICK_SLIP, WEAR_GAIN
 from ddct_plant.scenario.control import ENGINE_SPEED_TARGET, PROFILE
 from ddct_plant.scenario.scenario import Scenario
+from ddct_plant.scenario.shift_rules import require_shift
 from ddct_plant.signals.signal import RunKind
 
 ARCHITECTURES = ('base', 'feedforward', 'feedforward_tanh', 'detailed')
 """Names of the control architectures: those of Section 1.6, and CRF's detailed model (1.4)."""
 MODES = ('lockstep', 'realtime')
 """Modes of a run: lock-step waits for every reply; real time steps at 100 Hz and counts misses."""
+OF_SHIFTS = ('off_going_wear_gain', 'handover')
+"""Settings that only a gear shift has."""
 
 
 @dataclass(frozen=True)
@@ -34,12 +37,21 @@ class RunSettings(OptionGroup):
         at_least=0,
         at_most=2**31 - 1,
     )
+    off_going_wear_gain: float = option_field(
+        replace(WEAR_GAIN, meaning='wear gain of the off-going clutch, in a gear shift only')
+    )
+    handover: str = option(
+        'model',
+        'how the torque goes from the off-going to the on-coming clutch, in a gear shift only: '
+        'timed, slip, model',
+    )
 
     def __post_init__(self) -> None:
         """Check every setting; raise ParameterError that names a bad one and the choices."""
         super().__post_init__()
         self._require_reference()
         self._require_clutch()
+        self._require_shift()
 
     @property
     def detailed(self) -> bool:
@@ -75,8 +87,8 @@ class RunSettings(OptionGroup):
 
     @property
     def shift(self) -> bool:
-        """Whether the run is a gear shift with two clutches: none yet, no scenario has one."""
-        return False
+        """Whether the run is a gear shift with two clutches, as the scenario has one."""
+        return self.scenario.shift is not None
 
     def kind(self, *, two_input: bool = False) -> RunKind:
         """Return the kind of the run, which decides its topics; `two_input` of its controller."""
@@ -91,6 +103,31 @@ class RunSettings(OptionGroup):
                 f'{self.clutch} would ignore: choose the clutch {STICK_SLIP}, or leave that out',
                 key=given[0],
             )
+
+    def _require_shift(self) -> None:
+        """Refuse a shift that cannot be, and settings of a shift in another run."""
+        if not self.shift:
+            self._require_defaults_of_a_shift()
+            return
+        require_shift(self.scenario)
+        if not self.detailed:
+            raise ParameterError(
+                f'scenario {self.scenario.name} is a gear shift, whose on-coming clutch takes '
+                f'over C_fOL, but the architecture {self.architecture} does without it: choose '
+                'the architecture detailed',
+                key='architecture',
+            )
+
+    def _require_defaults_of_a_shift(self) -> None:
+        options = options_of(RunSettings)
+        for name in OF_SHIFTS:
+            value = getattr(self, name)
+            if value != options[name].default:
+                raise ParameterError(
+                    f'{name} is {value}, but scenario {self.scenario.name} is no gear shift: '
+                    'choose one with a section shift, such as upshift, or leave it out',
+                    key=name,
+                )
 
     def _require_reference(self) -> None:
         start_s, end_s = self.scenario.control_start_s, self.scenario.reference.reference_end_s

@@ -14,9 +14,11 @@ from ddct_plant.scenario.plant import (
     make_load,
     torque_estimate,
 )
+from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.shift_rules import gears_of, shift_of
 from ddct_plant.scenario.whole_plant import Observation
 from ddct_plant.shift.driveline import OffGoingOutputs, ShiftDriveline, ShiftOutputs
-from ddct_plant.shift_plant.settings import ShiftSettings
+from ddct_plant.shift_plant.start import locked_request, shift_start
 from ddct_plant.signals.signal import SignalValue
 
 OPEN_BELOW = 0.01
@@ -59,15 +61,14 @@ class ShiftPlant:
     requests are the same to the last bit.
     """
 
-    def __init__(self, settings: ShiftSettings, *, two_input: bool = False) -> None:
+    def __init__(self, settings: RunSettings, *, two_input: bool = False) -> None:
         """Start in the drive before the shift; `two_input`: the controller commands C_m."""
-        run, shift = settings.run, settings.shift
-        self._scenario = scenario = run.scenario
+        self._scenario = scenario = settings.scenario
         self._two_input = two_input
-        start = settings.start()
+        shift, start = shift_of(scenario), shift_start(settings)
         disengagement_s = shift.disengagement_s
         self.driveline = ShiftDriveline(
-            settings.gears,
+            gears_of(scenario),
             scenario.vehicle,
             start,
             steps_in('shift.preselection_s', shift.preselection_s),
@@ -75,16 +76,16 @@ class ShiftPlant:
             if disengagement_s is None
             else steps_in('shift.disengagement_s', disengagement_s),
         )
-        self.first_request = settings.locked_request(start.off_going_torque)
+        self.first_request = locked_request(scenario, start.off_going_torque)
         """Request of the off-going clutch before t_0 in N m, which keeps it locked."""
-        self._engine, self._load = make_engine(run), make_load(run)
-        self._holding = holding_torque(run)
-        self._sensors, self._estimate = driveline_sensors(run), torque_estimate(run)
+        self._engine, self._load = make_engine(settings), make_load(settings)
+        self._holding = holding_torque(settings)
+        self._sensors, self._estimate = driveline_sensors(settings), torque_estimate(settings)
         self._actuator = Actuator(0.0, scenario.actuator)
         self._off_going_actuator = Actuator(self.first_request, scenario.actuator)
         self._clutch, self._off_going_clutch = (
             FrictionClutch(scenario.friction, wear_gain, scenario.heat, OPEN_BELOW)
-            for wear_gain in (run.wear_gain, settings.off_going_wear_gain)
+            for wear_gain in (settings.wear_gain, settings.off_going_wear_gain)
         )
 
     def demand(self, step: int) -> float:
@@ -124,7 +125,6 @@ class ShiftPlant:
         true, other = outputs.driveline, outputs.off_going
         engine_torque = observation.delivered
         if engine_torque is None:
-            engine_torque = self._engine.torque(step, engine_request, true.engine_speed)
             engine_torque = self._engine.torque(
                 step,
                 observation.demand if engine_request is None else engine_request,

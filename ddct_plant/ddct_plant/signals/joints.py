@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Adapters for JointState: values by joint, or torques by name."""
+"""Adapters for JointState: values by joint, of one shaft, or torques by name."""
 
 import math
 from array import array
@@ -61,6 +61,30 @@ class Joints(MessageKind):
                 f'it needs one velocity for each of {names}, in this order'
             )
         return message.velocity
+
+
+@dataclass(frozen=True)
+class OneShaft(MessageKind):
+    """Adapter for a JointState of one shaft: angle in rad, speed in rad/s, torque in N m."""
+
+    name: str
+    """Name of the joint."""
+
+    def _filler(self, message: Any, class_of: ClassOf) -> Callable[..., None]:
+        message.name = [self.name]
+
+        def fill(angle: float, speed: float, torque: float) -> None:
+            message.position = array('d', (angle,))
+            message.velocity = array('d', (speed,))
+            message.effort = array('d', (torque,))
+
+        return fill
+
+    def values(self, message: Any) -> tuple[float, float, float]:
+        """Return angle, speed and torque; raise DdctError for another joint."""
+        if list(message.name) != [self.name]:
+            raise DdctError(f'the joints are {", ".join(message.name)}, not {self.name}')
+        return message.position[0], message.velocity[0], message.effort[0]
 
 
 @dataclass(frozen=True)

@@ -92,6 +92,8 @@ class Scalar(MessageKind):
     """Path of the number in the message, such as 'twist.angular.x'."""
     at_least: float | None = None
     """Lowest value that a node accepts, None for no bound."""
+    at_most: float | None = None
+    """Highest value that a node accepts, None for no bound."""
 
     def _filler(self, message: Any, class_of: ClassOf) -> Callable[..., None]:
         parent, _, field = self.path.rpartition('.')
@@ -111,10 +113,12 @@ class Scalar(MessageKind):
         return (self._get(message),)
 
     def read(self, topic: str, message: Any) -> float:
-        """Return the number; raise DdctError unless finite and high enough."""
+        """Return the number; raise DdctError unless finite and within its bounds."""
         if self.at_least is None:
             return require_finite(topic, self._get(message))
-        return require_number(topic, self._get(message), at_least=self.at_least)
+        return require_number(
+            topic, self._get(message), at_least=self.at_least, at_most=self.at_most
+        )
 
 
 def finite_values(topic: str, values: Sequence[float]) -> list[float]:

@@ -16,7 +16,7 @@ from typing import Any
 from ddct_plant.base.timebase import SUBSTEPS
 from ddct_plant.models.clutch import STICK_SLIP
 from ddct_plant.models.driveline import JointValues, SensedJoints
-from ddct_plant.signals.joints import Joints, NamedTorques
+from ddct_plant.signals.joints import Joints, NamedTorques, OneShaft
 from ddct_plant.signals.message_kind import MessageKind, Scalar
 from ddct_plant.signals.points import PreviewPoints, TorqueRows
 from ddct_plant.signals.sensed import REPEATED, Sensed, SensedQuantity
@@ -132,6 +132,9 @@ _TRAJECTORY = 'trajectory_msgs/msg/JointTrajectory'
 
 
 RUN_INFO = _status('run_info', 'every node', every_tick=False, latched=True)
+OFF_GOING_RUN_INFO = _status(
+    'off_going/run_info', 'every node of off_going', every_tick=False, latched=True, when=_shift
+)
 CLOCK = Topic('/clock', MessageKind('rosgraph_msgs/msg/Clock'), 'driveline')
 JOINT_STATES = Topic(
     'driveline/joint_states',
@@ -144,12 +147,32 @@ JOINT_STATES = Topic(
     ),
     BASE_LINK,
 )
+OFF_GOING_JOINT_STATES = Topic(
+    'off_going/joint_states',
+    OneShaft('sensor_msgs/msg/JointState', 'primary_shaft'),
+    'driveline',
+    (
+        Signal('off_going_shaft_angle', 'rad', 'angle of the off-going primary shaft from 0'),
+        Signal('off_going_shaft_speed', 'rad/s', 'w_p1, speed of the off-going primary shaft'),
+        Signal('off_going_transmitted_torque', 'N m', 'C_1, transmitted by the off-going clutch'),
+    ),
+    BASE_LINK,
+    when=_shift,
+)
 SLIP = Topic(
     'clutch/slip',
     Scalar('geometry_msgs/msg/TwistStamped', 'twist.angular.x'),
     'driveline',
     (Signal('slip_speed', 'rad/s', 'w_d = w_m - w_p'),),
     CLUTCH_LINK,
+)
+OFF_GOING_SLIP = Topic(
+    'off_going/clutch/slip',
+    SLIP.kind,
+    'driveline',
+    (Signal('off_going_slip_speed', 'rad/s', 'w_m - w_p1'),),
+    CLUTCH_LINK,
+    when=_shift,
 )
 CLUTCH_PHASE = Topic(
     'clutch/phase',
@@ -161,6 +184,17 @@ CLUTCH_PHASE = Topic(
         Signal('phase_events', '', 'what happened at slip zero in it: `PhaseEvent`'),
     ),
     when=_stick_slip,
+)
+OFF_GOING_PHASE = Topic(
+    'off_going/clutch/phase',
+    CLUTCH_PHASE.kind,
+    'driveline',
+    (
+        Signal('off_going_clutch_phase', '1', '0 open, 1 slipping, 2 locked'),
+        Signal('off_going_friction_work', 'J', 'exact, of the period that has ended'),
+        Signal('off_going_phase_events', '', 'what happened at slip zero in it: `PhaseEvent`'),
+    ),
+    when=_shift,
 )
 VEHICLE_SPEED = Topic(
     'vehicle/twist',
@@ -200,6 +234,30 @@ SENSED_VEHICLE_SPEED = _sensor('sensors/twist', VEHICLE_SPEED, 'sensed_vehicle_h
 SENSOR_STATUS = _sensor_status('sensors/status', *_sensor_topics('driveline'))
 TORQUE_DEMAND = _torque(
     'engine/torque_demand', 'engine', ENGINE_LINK, 'torque_demand', "the driver's demand at t_k"
+)
+HANDOVER_SHARE = Topic(
+    'clutch/handover_share',
+    Scalar('geometry_msgs/msg/Vector3Stamped', 'vector.x', at_least=0.0, at_most=1.0),
+    'handover',
+    (Signal('handover_share', '1', 'of C_fOL, which the on-coming clutch carries; 1: feedback'),),
+    CLUTCH_LINK,
+    when=_shift,
+)
+OFF_GOING_TORQUE_REQUEST = _torque(
+    'off_going/clutch/torque_request',
+    'handover',
+    CLUTCH_LINK,
+    'off_going_torque_request',
+    'before saturation',
+    when=_shift,
+)
+TORQUE_CUT = Topic(
+    'engine/torque_cut',
+    Scalar('geometry_msgs/msg/WrenchStamped', 'wrench.torque.x', at_least=0.0),
+    'handover',
+    (Signal('torque_cut', 'N m', "taken off the driver's demand"),),
+    ENGINE_LINK,
+    when=_shift,
 )
 ENGINE_TORQUE = _torque(
     'engine/torque', 'engine', ENGINE_LINK, 'engine_torque', 'C_m, held over the period'
@@ -264,6 +322,14 @@ ACTUATOR_TORQUE = Topic(
     (_torque_row('actuator_torque', 'torque of the actuator'),),
     CLUTCH_LINK,
 )
+OFF_GOING_ACTUATOR_TORQUE = Topic(
+    'off_going/actuator/torque',
+    ACTUATOR_TORQUE.kind,
+    'off_going/actuator',
+    (_torque_row('off_going_actuator_torque', 'torque of the off-going actuator'),),
+    CLUTCH_LINK,
+    when=_shift,
+)
 CLUTCH_TORQUE = Topic(
     'clutch/torque',
     TorqueRows(_TRAJECTORY, ('clutch', 'clutch_static')),
@@ -277,6 +343,17 @@ CLUTCH_TORQUE = Topic(
     ),
     CLUTCH_LINK,
 )
+OFF_GOING_CLUTCH_TORQUE = Topic(
+    'off_going/clutch/torque',
+    CLUTCH_TORQUE.kind,
+    'off_going/clutch',
+    (
+        _torque_row('off_going_clutch_torque', 'capacity of the off-going clutch while it slips'),
+        _torque_row('off_going_clutch_static_torque', 'capacity while it sticks'),
+    ),
+    CLUTCH_LINK,
+    when=_shift,
+)
 CLUTCH_TEMPERATURE = Topic(
     'clutch/temperature',
     Scalar('sensor_msgs/msg/Temperature', 'temperature'),
@@ -284,6 +361,14 @@ CLUTCH_TEMPERATURE = Topic(
     (Signal('clutch_temperature', 'degC', 'of the facing, which friction follows'),),
     CLUTCH_LINK,
     when=_stick_slip,
+)
+OFF_GOING_CLUTCH_TEMPERATURE = Topic(
+    'off_going/clutch/temperature',
+    CLUTCH_TEMPERATURE.kind,
+    'off_going/clutch',
+    (Signal('off_going_clutch_temperature', 'degC', 'of the facing of the off-going clutch'),),
+    CLUTCH_LINK,
+    when=_shift,
 )
 RECORDER_ACK = Topic('recorder/ack', MessageKind('std_msgs/msg/Header'), 'recorder')
 CONTROLLER_TIMING = _status(
@@ -329,7 +414,7 @@ wall clock."""
 SENSED_TOPICS = tuple(topic for topic in TOPICS if topic.when is _sensed)
 """Topics of the sensors."""
 SHIFT_TOPICS = tuple(topic for topic in TOPICS if topic.when is _shift)
-"""Topics of the off-going clutch and of the handover; none yet."""
+"""Topics of the off-going clutch and of the handover."""
 
 
 def sensed_quantities(publisher: str = '') -> tuple[SensedQuantity, ...]:

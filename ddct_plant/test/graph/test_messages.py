@@ -33,6 +33,14 @@ VALUES = {
     'clutch/phase': (1.0, 0.5, ()),
 }
 """Values of a topic; one number per signal for the topics that are not listed."""
+
+
+def values_of(topic):
+    """Return values for a topic; those of the off-going side are like those of the other."""
+    name = topic.name.removeprefix('off_going/')
+    return VALUES.get(name, [1.0] * len(topic.signals))
+
+
 SCALARS = [topic for topic in topics.TOPICS if isinstance(topic.kind, Scalar)]
 WITHOUT_FRAME = {'Clock', 'Header', 'DiagnosticArray'}
 """Types whose values have no coordinate frame."""
@@ -40,8 +48,7 @@ WITHOUT_FRAME = {'Clock', 'Header', 'DiagnosticArray'}
 
 @pytest.mark.parametrize('topic', topics.TOPICS, ids=lambda topic: topic.name)
 def test_every_topic_carries_its_stamp(topic):
-    values = VALUES.get(topic.name, [1.0] * len(topic.signals))
-    message = topic.message(STAMP, *values)
+    message = topic.message(STAMP, *values_of(topic))
     assert isinstance(message, topic.message_class)
     assert stamp_ns(message) == STAMP
 
@@ -60,7 +67,7 @@ def test_single_values_come_back_to_the_last_bit(topic):
 @pytest.mark.parametrize('topic', topics.TOPICS, ids=lambda topic: topic.name)
 def test_every_value_with_coordinates_has_a_frame(topic):
     """REP-105 has `base_link`; the others turn with the part that they are named after."""
-    message = topic.message(STAMP, *VALUES.get(topic.name, [1.0] * len(topic.signals)))
+    message = topic.message(STAMP, *values_of(topic))
     frames = {'base_link', 'engine_link', 'clutch_link', 'wheel_link'}
     if topic.type.rpartition('/')[2] in WITHOUT_FRAME:
         assert getattr(getattr(message, 'header', message), 'frame_id', '') == topic.frame == ''
@@ -77,6 +84,21 @@ def test_the_frame_of_a_sensor_is_that_of_the_true_signal():
         (topics.SENSED_ENGINE_TORQUE, topics.ENGINE_TORQUE),
     ):
         assert sensed.frame == true.frame
+
+
+def test_the_off_going_shaft_has_angle_speed_and_torque_and_its_name():
+    topic = topics.OFF_GOING_JOINT_STATES
+    message = topic.message(STAMP, 1.0, 2.0, -3.0)
+    assert topic.values(message) == (1.0, 2.0, -3.0)
+    message.name = ['wheel']
+    with pytest.raises(DdctError, match='primary_shaft'):
+        topic.values(message)
+
+
+def test_a_share_of_the_handover_is_within_zero_and_one():
+    for share in (-0.1, 1.1, math.nan):
+        with refused(DdctError, key='clutch/handover_share'):
+            topics.HANDOVER_SHARE.read(topics.HANDOVER_SHARE.message(STAMP, share))
 
 
 def test_a_lost_sample_is_a_stale_status_of_its_name():

@@ -10,9 +10,8 @@ from ddct_plant.models.gearbox import C635
 from ddct_plant.models.static_torque import StaticTorque
 from ddct_plant.scenario.file import ScenarioFile
 from ddct_plant.scenario.settings import RunSettings
-from ddct_plant.shift.parameters import ShiftParameters
 from ddct_plant.shift_plant.plant import ShiftPlant
-from ddct_plant.shift_plant.settings import ShiftSettings
+from ddct_plant.shift_plant.start import locked_request
 
 HANDOVER_S, SLOPE = 0.2, 290.0
 """Length of the ramps in s, and slope of the slip reference in rad/s^2."""
@@ -52,7 +51,7 @@ SHIFTS = {
 """Off-going and on-coming gear, and the scenario, by name."""
 
 
-def shift_settings(name: str, off_going_wear_gain: float = 1.0, **keys: Any) -> ShiftSettings:
+def shift_settings(name: str, off_going_wear_gain: float = 1.0, **keys: Any) -> RunSettings:
     """Return the settings of a shift by name; `keys` are those of its section."""
     (off_going_gear, _), scenario = SHIFTS[name]
     return settings_of(scenario, {'off_going_gear': off_going_gear, **keys}, off_going_wear_gain)
@@ -63,11 +62,10 @@ def settings_of(
     shift: dict[str, Any],
     off_going_wear_gain: float = 1.0,
     clutch: str = 'stick_slip',
-) -> ShiftSettings:
+) -> RunSettings:
     """Return the settings of a shift for the content of a scenario and of its section."""
-    made = ScenarioFile('shift', scenario, {}).scenario(clutch=clutch)
-    run = RunSettings(made, clutch=clutch)
-    return ShiftSettings(run, ShiftParameters(**shift), off_going_wear_gain)
+    made = ScenarioFile('shift', {**scenario, 'shift': shift}, {}).scenario(clutch=clutch)
+    return RunSettings(made, clutch=clutch, off_going_wear_gain=off_going_wear_gain)
 
 
 class Sample(NamedTuple):
@@ -83,9 +81,9 @@ class Sample(NamedTuple):
 class Law:
     """Requests of both clutches from samples: ramps, then C_fOL and PI control of the slip."""
 
-    def __init__(self, settings: ShiftSettings, first_request: float) -> None:
-        scenario = settings.run.scenario
-        self._settings, self._first = settings, first_request
+    def __init__(self, settings: RunSettings, first_request: float) -> None:
+        scenario = self._scenario = settings.scenario
+        self._first = first_request
         self._static = StaticTorque(scenario.driveline, 'full')
         self._start = scenario.control_start_step
         self._handover = round(HANDOVER_S / PERIOD_S)
@@ -108,16 +106,16 @@ class Law:
             feedback = -0.103 * error - 0.0223 * self._integral
             self._near = self._near + 1 if abs(sample.slip_speed) < 1.0 else 0
         if self._near > 10:
-            return self._settings.locked_request(open_loop), 0.0
+            return locked_request(self._scenario, open_loop), 0.0
         return share * open_loop + feedback, (1.0 - share) * self._first
 
 
-def run(settings: ShiftSettings, tick: Callable[[int, ShiftPlant, Any, Any], None]) -> ShiftPlant:
+def run(settings: RunSettings, tick: Callable[[int, ShiftPlant, Any, Any], None]) -> ShiftPlant:
     """Run a shift and call `tick` with the step, the plant, its outputs and its reply."""
     plant = ShiftPlant(settings)
     law = Law(settings, plant.first_request)
     reply = None
-    for step in range(settings.run.scenario.steps + 1):
+    for step in range(settings.scenario.steps + 1):
         outputs = plant.outputs()
         true = outputs.driveline
         observation = plant.observe(step, outputs)

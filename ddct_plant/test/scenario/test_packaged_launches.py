@@ -21,7 +21,7 @@ def test_they_are_packaged_and_consistent():
         assert load_scenario(name).adjusted == ()
 
 
-@pytest.mark.parametrize('name', NAMES)
+@pytest.mark.parametrize('name', [*NAMES, 'upshift'])
 def test_each_value_or_the_section_it_is_in_has_a_comment(name):
     packaged = importlib.resources.files('ddct_plant.scenario') / 'packaged'
     explained: dict[int, bool] = {}
@@ -68,8 +68,9 @@ def test_a_launch_starts_at_rest_with_an_open_clutch_and_a_balanced_shaft(name):
     assert start.wheel_torque == pytest.approx(-start.load_torque), 'the brake holds the slope'
 
 
-def test_launches_close_the_clutch_after_lock_up_and_nothing_else_does():
-    closing = {name for name in scenario_names() if load_scenario(name).closing}
+def test_launches_and_shifts_close_the_clutch_after_lock_up_and_nothing_else_does():
+    scenarios = map(load_scenario, scenario_names())
+    closing = {each.name for each in scenarios if each.closing and not each.shift}
     assert closing == {name for name in NAMES if name != 'tip_in'}
     assert load_scenario('launch', ['closing=null']).closing is None
 

@@ -108,7 +108,7 @@ class Ledger:
 @pytest.mark.parametrize('name', SHIFTS)
 def test_the_engine_work_is_stored_or_lost_in_friction_dampers_and_load(name, keys):
     settings = shift_settings(name, **keys)
-    ledger = Ledger(settings.run.scenario.driveline)
+    ledger = Ledger(settings.scenario.driveline)
     stored: list[float] = []
     last: list[Any] = []
 
@@ -122,7 +122,7 @@ def test_the_engine_work_is_stored_or_lost_in_friction_dampers_and_load(name, ke
         stored.append(ledger.stored(outputs))
 
     plant = run(settings, tick)
-    assert len(stored) == settings.run.scenario.steps + 1
+    assert len(stored) == settings.scenario.steps + 1
     gained = stored[-1] - stored[0] - plant.driveline.synchronising_work
     lost = [*ledger.friction, ledger.dampers, ledger.load]
     terms = [ledger.engine, gained, *lost]

@@ -11,11 +11,12 @@ from shifts import Law, Sample, run, shift_settings
 
 from ddct_plant.base.timebase import PERIOD_S, SUBSTEP_S, SUBSTEPS
 from ddct_plant.models.actuator import Actuator
-from ddct_plant.models.gearbox import C635
 from ddct_plant.models.load import HoldingTorque, RoadLoad, air_and_slope
+from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.shift_rules import gears_of
 from ddct_plant.shift.driveline import ShiftOutputs
 from ddct_plant.shift_plant.plant import OPEN_BELOW, ShiftPlant, ShiftReply
-from ddct_plant.shift_plant.settings import ShiftSettings
+from ddct_plant.shift_plant.start import shift_start
 
 TOLERANCE = 1e-12
 NEAR = 1e-9
@@ -30,13 +31,12 @@ class Independent:
     that keeps its slip's acceleration zero replaces its capacity. The wheels roll forward.
     """
 
-    def __init__(self, settings: ShiftSettings) -> None:
-        scenario = settings.run.scenario
-        start = settings.start()
+    def __init__(self, settings: RunSettings) -> None:
+        scenario = settings.scenario
+        start = shift_start(settings)
         self.parameters = scenario.driveline
-        self.ratios = np.array(
-            [C635.gear(n).total_ratio for n in (scenario.gear, settings.shift.off_going_gear)]
-        )
+        gears = scenario.driveline.gear, gears_of(scenario).off_going
+        self.ratios = np.array([gear.total_ratio for gear in gears])
         self.state = np.array(
             [start.engine_speed, start.wheel_speed, start.wheel_speed, start.twist]
         )
@@ -139,9 +139,9 @@ class Independent:
             self.signs[which] = -before
 
 
-def shift_by_the_other_method(settings: ShiftSettings) -> np.ndarray:
+def shift_by_the_other_method(settings: RunSettings) -> np.ndarray:
     """Return the speeds of engine, gear output and wheels, (N + 1, 3), in closed loop."""
-    scenario = settings.run.scenario
+    scenario = settings.scenario
     other = Independent(settings)
     first = ShiftPlant(settings).first_request
     law = Law(settings, first)
@@ -174,7 +174,7 @@ def test_a_whole_shift_is_within_1e_9_of_another_integration(name):
 
     def tick(step: int, plant: ShiftPlant, outputs: ShiftOutputs, reply: ShiftReply) -> None:
         speeds = outputs.driveline.joint_speed
-        gear = settings.gears.off_going.wheel_speed(outputs.off_going.shaft_speed)
+        gear = gears_of(settings.scenario).off_going.wheel_speed(outputs.off_going.shaft_speed)
         found.append([speeds.engine, gear, speeds.wheel])
         kinds.extend(event.kind for event in outputs.driveline.phase_events)
         kinds.extend(f'off {event.kind}' for event in outputs.off_going.phase_events)

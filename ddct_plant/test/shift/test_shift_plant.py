@@ -13,12 +13,13 @@ from shifts import SHIFTS, content, run, settings_of, shift_settings
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.models.driveline import PHASES
+from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.shift.driveline import ShiftOutputs
 from ddct_plant.shift_plant.plant import ShiftPlant, ShiftReply
-from ddct_plant.shift_plant.settings import ShiftSettings
+from ddct_plant.shift_plant.start import shift_start
 
 
-def rows(settings: ShiftSettings) -> list[dict[str, Any]]:
+def rows(settings: RunSettings) -> list[dict[str, Any]]:
     """Return the signals of every step of a shift."""
     found: list[dict[str, Any]] = []
 
@@ -52,8 +53,7 @@ def test_each_clutch_has_its_own_wear_and_heat():
     assert worn[step]['off_going_clutch_torque'][5] == pytest.approx(0.7 * carried)
     assert worn[step]['clutch_torque'] == new[step]['clutch_torque']
     settings = shift_settings('upshift')
-    other = ShiftSettings(replace(settings.run, wear_gain=0.7), settings.shift)
-    on_coming_worn = rows(other)
+    on_coming_worn = rows(replace(settings, wear_gain=0.7))
     assert on_coming_worn[step]['clutch_torque'][5] == pytest.approx(
         0.7 * new[step]['clutch_torque'][5]
     )
@@ -102,6 +102,15 @@ def test_a_controller_that_commands_the_engine_gets_what_it_requests():
     assert (observation.delivered, observation.engine_torque) == (None, 70.0)
     reply = plant.reply(0, outputs, observation, 0.0, plant.first_request, 82.0)
     assert reply.engine_torque == pytest.approx(82.0, rel=1e-15)
+
+
+def test_an_engine_with_a_rate_gets_one_request_a_step():
+    slow = content((1, 2), 20.0, 100.0, engine_authority={'slew_n_m_s': 500.0})
+    plant = ShiftPlant(settings_of(slow, {'off_going_gear': 1}), two_input=True)
+    outputs = plant.outputs()
+    observation = plant.observe(0, outputs)
+    reply = plant.reply(0, outputs, observation, 0.0, plant.first_request, 60.0)
+    assert reply.engine_torque == 95.0
 
 
 def test_a_controller_reads_the_sensors_where_the_scenario_has_some():
@@ -158,11 +167,11 @@ def test_settings_that_do_not_fit_are_refused(key, scenario, shift):
     if content['gear'] is None:
         del content['gear']
     with refused(ParameterError, key):
-        settings_of(content, {'off_going_gear': 1, **shift}).start()
+        shift_start(settings_of(content, {'off_going_gear': 1, **shift}))
 
 
 def test_the_linear_clutch_and_impossible_wear_are_refused():
-    with refused(ParameterError, 'clutch'):
+    with refused(ParameterError, 'shift'):
         settings_of(
             content((1, 2), 20.0, 100.0, closing=None), {'off_going_gear': 1}, 1.0, 'linear'
         )

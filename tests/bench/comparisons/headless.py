@@ -23,7 +23,9 @@ from ddct_plant.scenario.settings import RunSettings
 
 MEDIAN, WORST = 'median of controllers', 'costliest of controllers and scenarios'
 """Quantities of sticking plates beside the linear clutch."""
-SCENARIOS = [name for name in scenario_names() if name != 'thesis']
+SCENARIOS = [
+    name for name in scenario_names() if name != 'thesis' and not load_scenario(name).shift
+]
 
 
 def step_s(controller: str, scenario: str = 'thesis', clutch: str = LINEAR) -> float:

@@ -17,39 +17,26 @@ from ddct_controllers.registry import make_controller
 from ddct_plant.models.clutch import STICK_SLIP
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
-from ddct_plant.shift.parameters import ShiftParameters
 from ddct_plant.shift_plant.plant import ShiftPlant
-from ddct_plant.shift_plant.settings import ShiftSettings
 from ddct_reference.factory import make_reference
 
 
-def shift_settings() -> ShiftSettings:
-    """Return an upshift from first to second gear at 20 km/h with 100 N m and engine limits."""
-    scenario = load_scenario(
-        'launch',
-        {
-            'gear': 2,
-            'duration_s': 2.0,
-            'initial': {'engine_speed_rad_s': 277.838, 'shaft_speed_rad_s': 161.608},
-            'engine': {'time_s': [0.0], 'torque_n_m': [100.0]},
-        },
-        clutch=STICK_SLIP,
-    )
-    run = RunSettings(scenario, clutch=STICK_SLIP)
-    return ShiftSettings(run, ShiftParameters(off_going_gear=1))
+def shift_settings() -> RunSettings:
+    """Return the upshift from first to second gear at 20 km/h with 100 N m."""
+    scenario = load_scenario('upshift', clutch=STICK_SLIP)
+    return RunSettings(scenario, clutch=STICK_SLIP, handover='timed')
 
 
-def shift_step_s(settings: ShiftSettings) -> float:
+def shift_step_s(settings: RunSettings) -> float:
     """Return the processor time per step in s of a shift under PI, without its set-up."""
     elapsed, steps = 0.0, 0
     while elapsed < LEAST_S:
-        run = settings.run
-        plant, handover = ShiftPlant(settings), make_handover('timed', settings)
-        controller = make_controller('pi', run)
-        reference = make_reference(run, controller.preview_steps)
-        architecture = make_architecture(run, controller)
+        plant, handover = ShiftPlant(settings), make_handover(settings)
+        controller = make_controller('pi', settings)
+        reference = make_reference(settings, controller.preview_steps)
+        architecture = make_architecture(settings, controller)
         started = time.thread_time()
-        for step in range(run.scenario.steps):
+        for step in range(settings.scenario.steps):
             outputs = plant.outputs()
             now = outputs.driveline
             measured = HandoverMeasurement.of_plant(step, plant.demand(step), outputs)
@@ -61,7 +48,7 @@ def shift_step_s(settings: ShiftSettings) -> float:
             reply = plant.reply(step, outputs, observation, on_coming, command.off_going_request)
             plant.advance(reply)
         elapsed += time.thread_time() - started
-        steps += run.scenario.steps
+        steps += settings.scenario.steps
     return elapsed / steps
 
 

@@ -159,7 +159,8 @@ def _functions() -> dict[str, StudyFunction]:
     """Return the studies by name: the stick-slip clutch everywhere, the linear one in `thesis`."""
     thesis = THESIS_SCENARIO.name
     pairs = [(thesis, clutch) for clutch in CLUTCHES]
-    pairs += [(name, STICK_SLIP) for name in scenario_names() if name != thesis]
+    others = [name for name in scenario_names() if name != thesis]
+    pairs += [(name, STICK_SLIP) for name in others if not load_scenario(name).shift]
     return {
         f'engagements_{scenario}' + (f'_{clutch}' if scenario == thesis else ''): partial(
             _engagements, scenario, clutch

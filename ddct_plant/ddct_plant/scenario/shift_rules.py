@@ -1,0 +1,77 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Rules for a scenario with a gear shift: gears, events of the gearbox and speeds that agree."""
+
+import math
+
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.models.driveline import OPEN
+from ddct_plant.models.gearbox import AGREE, C635
+from ddct_plant.scenario.scenario import Scenario
+from ddct_plant.shift.gear_pair import GearPair
+from ddct_plant.shift.parameters import ShiftParameters
+
+
+def shift_of(scenario: Scenario) -> ShiftParameters:
+    """Return the keys of the shift; raise ParameterError for a scenario without one."""
+    if scenario.shift is None:
+        raise ParameterError(
+            f'scenario {scenario.name} has no section shift: give one, with shift.off_going_gear',
+            key='shift',
+        )
+    return scenario.shift
+
+
+def gears_of(scenario: Scenario) -> GearPair:
+    """Return both gears of the shift; raise ParameterError for a scenario without one."""
+    return GearPair(scenario.driveline, C635.gear(shift_of(scenario).off_going_gear))
+
+
+def require_shift(scenario: Scenario) -> None:
+    """Raise ParameterError that names the first value with which the scenario cannot shift."""
+    shift = shift_of(scenario)
+    _require_gears(scenario.gear, shift)
+    _require_times(scenario.control_start_s, shift)
+    _require_start(scenario, shift)
+
+
+def _require_gears(on_coming: int | None, shift: ShiftParameters) -> None:
+    if on_coming is None or on_coming == shift.off_going_gear:
+        raise ParameterError(
+            f'shift.off_going_gear is {shift.off_going_gear}, and gear, the on-coming one, is '
+            f'{on_coming or "none"}: give two gears of the C635',
+            key='shift.off_going_gear',
+        )
+
+
+def _require_times(start_s: float, shift: ShiftParameters) -> None:
+    if shift.preselection_s > start_s:
+        raise ParameterError(
+            f'shift.preselection_s is {shift.preselection_s:g} s: it must not be after '
+            f'control_start_s, {start_s:g} s, when the shift starts',
+            key='shift.preselection_s',
+        )
+    if shift.disengagement_s is not None and shift.disengagement_s <= start_s:
+        raise ParameterError(
+            f'shift.disengagement_s is {shift.disengagement_s:g} s: it must be after '
+            f'control_start_s, {start_s:g} s, when the shift starts',
+            key='shift.disengagement_s',
+        )
+
+
+def _require_start(scenario: Scenario, shift: ShiftParameters) -> None:
+    initial, gears = scenario.initial, gears_of(scenario)
+    if initial.clutch_phase not in (None, OPEN):
+        raise ParameterError(
+            f'initial.clutch_phase is {initial.clutch_phase!r}: before a shift the on-coming '
+            f'clutch is {OPEN!r}',
+            key='initial.clutch_phase',
+        )
+    given, speed = initial.engine_speed_rad_s, gears.ratio * initial.shaft_speed_rad_s
+    if not math.isclose(given, speed, rel_tol=AGREE):
+        raise ParameterError(
+            f'initial.engine_speed_rad_s is {given:g}: before a shift the off-going clutch is '
+            f'locked, so give the speed of its shaft in gear {shift.off_going_gear}, '
+            f'{speed:.6g} rad/s',
+            key='initial.engine_speed_rad_s',
+        )
