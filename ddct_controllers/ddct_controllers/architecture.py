@@ -77,11 +77,16 @@ class Architecture:
         self._closing = closing
         self._last_request = self._engine_deviation = 0.0
 
-    def update(self, measurement: Measurement) -> TorqueRequest:
-        """Return the request for the period that starts at the measurement's step."""
+    def update(self, measurement: Measurement, share: float = 1.0) -> TorqueRequest:
+        """
+        Return the request for the period that starts at the measurement's step.
+
+        `share` is that of the open loop that the on-coming clutch of a shift carries; below 1
+        feedback is off.
+        """
         load_torque = self._load.torque(measurement.vehicle_speed, time_of_step(measurement.step))
-        open_loop = self._open_loop(measurement, load_torque)
-        on = measurement.step >= self._start_step
+        open_loop = share * self._open_loop(measurement, load_torque)
+        on = measurement.step >= self._start_step and share == 1.0
         closing: Status = ()
         added = 0.0
         if self._closing:
@@ -196,15 +201,16 @@ def make_architecture(settings: RunSettings, controller: Controller) -> Architec
     """
     Build the run's architecture around `controller`.
 
-    In `detailed` feedback starts at the scenario's `control_start_s`, in the others at t = 0.
+    In `detailed` feedback starts at the scenario's `control_start_s`, in a shift with the share 1
+    of its handover, in the other architectures at t = 0.
     """
     scenario = settings.scenario
-    static = StaticTorque(scenario.driveline, scenario.equilibrium)
+    static = StaticTorque(scenario.controlled_driveline, scenario.equilibrium)
     return Architecture(
         _make_open_loop(settings, static),
         RoadLoad(scenario.load, scenario.vehicle, scenario.slope),
         controller,
-        scenario.control_start_step if settings.detailed else 0,
+        scenario.control_start_step if settings.detailed and not settings.shift else 0,
         ClosingStage(scenario.closing, static) if scenario.closing else None,
     )
 

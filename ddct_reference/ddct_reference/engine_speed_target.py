@@ -38,27 +38,26 @@ class EngineSpeedTarget(SlipReference):
         preview_steps: int = 0,
     ) -> None:
         """Take the target speed over time, the slope in rad/s^2, and the number of steps ahead."""
+        super().__init__(control_start_step, preview_steps)
         self._target = target
         self._slope = slope
-        self._start_step = control_start_step
-        self._preview_steps = preview_steps
         self._shaft: deque[tuple[int, float]] = deque(maxlen=SHAFT_RATE_STEPS + 1)
         self._wanted: tuple[int, float] | None = None
         self._side = 0.0
         """Sign of the slip at control start; 0 once the reference is zero for good."""
 
-    def update(
-        self, step: int, slip_speed: float, shaft_speed: float = math.nan
+    def _ahead(
+        self, step: int, slip_speed: float, shaft_speed: float
     ) -> tuple[list[float], list[float]]:
         """Return the reference and its rate at steps k, k + 1, ..., k + P; w_p is needed."""
         self._shaft.append((step, shaft_speed))
-        if step <= self._start_step or self._wanted is None:
+        if step <= self.start_step or self._wanted is None:
             self._wanted = (step, slip_speed + shaft_speed)
             self._side = math.copysign(1.0, slip_speed) if slip_speed else 0.0
         else:
             self._wanted = self._led_to(step, *self._wanted)
-        speeds = self._ahead(step, slip_speed, shaft_speed)
-        if step >= self._start_step and not speeds[0]:
+        speeds = self._speeds(step, slip_speed, shaft_speed)
+        if step >= self.start_step and not speeds[0]:
             self._side = 0.0
         rates = [(b - a) / PERIOD_S for a, b in zip(speeds, speeds[1:], strict=False)]
         return speeds[:-1], rates
@@ -69,18 +68,18 @@ class EngineSpeedTarget(SlipReference):
         change = self._target.at(time_of_step(step)) - speed
         return step, speed + min(max(change, -most), most)
 
-    def _ahead(self, step: int, slip_speed: float, shaft_speed: float) -> list[float]:
+    def _speeds(self, step: int, slip_speed: float, shaft_speed: float) -> list[float]:
         """Return s at steps k, ..., k + P + 1."""
         assert self._wanted is not None
         (first, first_speed), (last, last_speed) = self._shaft[0], self._shaft[-1]
         shaft_change = (last_speed - first_speed) / (last - first) if last > first else 0.0
-        held = max(self._start_step - step, 0)
+        held = min(max(self.start_step - step, 0), self.preview_steps + 2)
         speeds = [slip_speed] * held
         wanted, side = (step + held, self._wanted[1]), self._side
-        for ahead in range(max(self._preview_steps + 2 - held, 0)):
+        for ahead in range(max(self.preview_steps + 2 - held, 0)):
             if ahead:
                 wanted = self._led_to(step + held + ahead, *wanted)
             speed = wanted[1] - (shaft_speed + shaft_change * ahead)
             side = side if side * speed > 0.0 else 0.0
             speeds.append(speed if side else 0.0)
-        return speeds[: self._preview_steps + 2]
+        return speeds[: self.preview_steps + 2]

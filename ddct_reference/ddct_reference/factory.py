@@ -15,7 +15,7 @@ from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.scenario.whole_plant import WholePlant
 from ddct_reference.descent import CrfRamp, Descent, ProfileDescent, TimedDescent
 from ddct_reference.engine_speed_target import EngineSpeedTarget
-from ddct_reference.slip_reference import DescendingReference, SlipReference
+from ddct_reference.slip_reference import NEVER, DescendingReference, SlipReference
 
 
 def make_reference(settings: RunSettings, preview_steps: int = 0) -> SlipReference:
@@ -23,20 +23,20 @@ def make_reference(settings: RunSettings, preview_steps: int = 0) -> SlipReferen
     Build the reference of a run, with a preview of `preview_steps` periods.
 
     `detailed` follows the slip speed until control starts, and starts from the one measured then.
+    In a shift control starts with the first period whose share of C_fOL is 1.
     The other architectures have a stored function of time, that of the nominal detailed run.
     """
     scenario = settings.scenario
+    start_step = NEVER if settings.shift else scenario.control_start_step
     if settings.reference_shape == ENGINE_SPEED_TARGET:
         return EngineSpeedTarget(
             scenario.engine_speed_reference,
             scenario.reference.slope_rad_s2,
-            scenario.control_start_step,
+            start_step,
             preview_steps,
         )
     stored = [] if settings.detailed else nominal_slip(scenario)
-    return DescendingReference(
-        make_descent(settings), scenario.control_start_step, preview_steps, stored
-    )
+    return DescendingReference(make_descent(settings), start_step, preview_steps, stored)
 
 
 def make_descent(settings: RunSettings) -> Descent:

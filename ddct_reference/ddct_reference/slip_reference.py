@@ -3,29 +3,56 @@
 """Slip-speed references with preview; that of most runs follows w_d, or stored values, first."""
 
 import math
+import sys
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_reference.descent import Descent
 
+NEVER = sys.maxsize
+"""Start step of a reference that does not start until the share of a handover is 1."""
+
 
 class SlipReference(ABC):
-    """Slip speed that the controller shall follow, step by step, with its preview."""
+    """
+    Slip speed that the controller shall follow, step by step, with its preview.
+
+    It starts at a given step; in a gear shift with the first period in which the on-coming clutch
+    carries the whole of C_fOL.
+    """
 
     follows_shaft = False
     """Whether `update` needs the shaft's speed."""
 
-    @abstractmethod
+    def __init__(self, start_step: int, preview_steps: int) -> None:
+        """Take the step of the start, and the number of steps ahead."""
+        self.start_step = start_step
+        """Step at which the reference starts towards zero; NEVER while a handover goes on."""
+        self.preview_steps = preview_steps
+        """Number P of steps ahead."""
+
     def update(
-        self, step: int, slip_speed: float, shaft_speed: float = math.nan
+        self, step: int, slip_speed: float, shaft_speed: float = math.nan, share: float = 1.0
     ) -> tuple[list[float], list[float]]:
         """
         Return the reference in rad/s and its rate in rad/s^2 at steps k, k + 1, ..., k + P.
 
         `slip_speed` is w_d in rad/s at step k, `shaft_speed` w_p, which only a reference that
-        `follows_shaft` uses. The rate is that of the coming period.
+        `follows_shaft` uses. The rate is that of the coming period. `share` is that of C_fOL on
+        the on-coming clutch of a shift: below 1 the reference equals w_d.
         """
+        if share < 1.0:
+            self.start_step = NEVER
+        elif self.start_step == NEVER:
+            self.start_step = step
+        return self._ahead(step, slip_speed, shaft_speed)
+
+    @abstractmethod
+    def _ahead(
+        self, step: int, slip_speed: float, shaft_speed: float
+    ) -> tuple[list[float], list[float]]:
+        """Return the reference and its rate at steps k, k + 1, ..., k + P."""
 
 
 class DescendingReference(SlipReference):
@@ -48,27 +75,26 @@ class DescendingReference(SlipReference):
         stored: Sequence[float] = (),
     ) -> None:
         """Take the number of preview steps; `stored` is in rad/s at steps 0 to control start."""
+        super().__init__(control_start_step, preview_steps)
         self._descent = descent
-        self._start_step = control_start_step
-        self._preview_steps = preview_steps
         self._stored = stored
         self._start_value = stored[-1] if stored else math.nan
         """Value in rad/s at control start, or the present one before it."""
 
-    def update(
-        self, step: int, slip_speed: float, shaft_speed: float = math.nan
+    def _ahead(
+        self, step: int, slip_speed: float, shaft_speed: float
     ) -> tuple[list[float], list[float]]:
         """Return the reference and its rate at steps k, k + 1, ..., k + P."""
-        follows = step <= self._start_step or math.isnan(self._start_value)
+        follows = step <= self.start_step or math.isnan(self._start_value)
         if follows and not self._stored:
             self._start_value = slip_speed
-        points = [self._point(step + ahead) for ahead in range(self._preview_steps + 1)]
+        points = [self._point(step + ahead) for ahead in range(self.preview_steps + 1)]
         speeds, rates = zip(*points, strict=True)
         return list(speeds), list(rates)
 
     def _point(self, step: int) -> tuple[float, float]:
-        if step >= self._start_step:
-            time_s = (step - self._start_step) * PERIOD_S
+        if step >= self.start_step:
+            time_s = (step - self.start_step) * PERIOD_S
             return self._descent.at(self._start_value, time_s)
         if not self._stored:
             return self._start_value, 0.0

@@ -140,3 +140,26 @@ def test_the_stored_reference_does_not_depend_on_the_wear_of_the_run():
     )
     assert new == worn
     assert max(new) > 10.0
+
+
+@pytest.mark.parametrize('shape', ['ramp', 'engine_speed_target'])
+@pytest.mark.parametrize('preview_steps', [0, 3])
+def test_in_a_shift_it_follows_the_slip_until_the_share_is_one_and_again_below_it(
+    shape, preview_steps
+):
+    changes = {
+        'reference.shape': shape,
+        'reference.slope_rad_s2': 100.0,
+        'engine_speed_reference.time_s': [0.0],
+        'engine_speed_reference.speed_rad_s': [100.0],
+    }
+    scenario = load_scenario('upshift', changes, clutch='stick_slip')
+    reference = make_reference(RunSettings(scenario, clutch='stick_slip'), preview_steps)
+    for step, slip in enumerate([50.0, 51.0, 52.0]):
+        speeds, rates = reference.update(step, slip, 150.0, 0.25 * step)
+        assert speeds == [slip] * (preview_steps + 1)
+        assert rates == [0.0] * (preview_steps + 1)
+    first, _ = reference.update(3, 52.5, 150.0)
+    second, _ = reference.update(4, 99.0, 150.0)
+    assert (first[0], second[0]) == pytest.approx((52.5, 51.5))
+    assert reference.update(5, 60.0, 150.0, 0.9)[0][0] == 60.0

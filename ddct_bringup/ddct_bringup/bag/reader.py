@@ -27,6 +27,7 @@ from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import (
     DIAGNOSTICS,
     JOINT_STATES,
+    OFF_GOING_RUN_INFO,
     RUN_INFO,
     recorded_topics,
 )
@@ -71,6 +72,7 @@ class Recording:
                 facts.wear_gain,
                 facts.mode,
                 facts.seed,
+                **facts.of_shift,
             )
         except (DdctError, TypeError, ValueError):
             return None
@@ -143,7 +145,7 @@ def recording_of(records: BagRecords) -> Recording:
         trajectory=Trajectory.of_columns(columns),
         facts=facts,
         custom_data=records.custom_data,
-        run_info=_run_info(messages.get(RUN_INFO.resolved_name, [])),
+        run_info=_run_info(messages),
         counts={topic: len(each) for topic, each in messages.items()},
         missed=missed,
         realtime=_realtime(messages.get(DIAGNOSTICS.resolved_name, [])),
@@ -197,9 +199,10 @@ def _rows(values: Values, last: int) -> tuple[list[tuple[Any, ...]], int]:
     return rows, missing
 
 
-def _run_info(messages: list[tuple[int, Any]]) -> RunInfoOfNodes:
+def _run_info(messages: Messages) -> RunInfoOfNodes:
     received: RunInfoOfNodes = {}
-    for _, message in messages:
-        node, pairs = RUN_INFO.read(message)
-        add_run_info(received, name_in_graph(node), pairs)
+    for topic in (RUN_INFO, OFF_GOING_RUN_INFO):
+        for _, message in messages.get(topic.resolved_name, ()):
+            node, pairs = topic.read(message)
+            add_run_info(received, name_in_graph(node), pairs)
     return received

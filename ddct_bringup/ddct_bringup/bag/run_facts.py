@@ -14,6 +14,8 @@ from ddct_plant.signals.signal import RunKind
 from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import (
     ENGINE_REQUEST,
+    OFF_GOING_RUN_INFO,
+    RUN_INFO,
     SENSED_TOPICS,
     SHIFT_TOPICS,
     TOPICS,
@@ -22,6 +24,9 @@ from ddct_plant.signals.topics import (
 
 _NAMES = ('controller', 'architecture', 'scenario', 'clutch', 'mode')
 """Facts that are plain names, used in tables, labels and file names."""
+
+_OF_SHIFTS = ('off_going_wear_gain', 'handover')
+"""Facts that only a shift has."""
 
 _LARGEST = 2.0**31
 """Upper bound of any number, in its unit; the largest seed is one less."""
@@ -34,6 +39,8 @@ RunInfoOfNodes = dict[str, Mapping[str, str]]
 
 CONTROLLER_NODE = '/controller'
 DRIVELINE_NODE = '/driveline'
+_OFF_GOING = '/off_going/'
+"""Beginning of the full names of the nodes of a shift's off-going side."""
 
 
 @dataclass(frozen=True)
@@ -66,6 +73,23 @@ class RunFacts(RunConditions):
     """Scenario time of the first and last scored sample, s."""
     duration_s: float
     """Planned duration of the run, s."""
+    off_going_wear_gain: float | None = None
+    """Wear gain of the off-going clutch of a shift; None in other runs."""
+    handover: str | None = None
+    """Name of the handover of a shift; None in other runs."""
+
+    def __post_init__(self) -> None:
+        """Raise ParameterError for a name that a bag could not store or return unchanged."""
+        super().__post_init__()
+        if self.handover is not None:
+            require_name('handover', self.handover)
+
+    @property
+    def of_shift(self) -> dict[str, Any]:
+        """Settings of a shift by name; none of another run."""
+        if self.handover is None:
+            return {}
+        return {'off_going_wear_gain': self.off_going_wear_gain, 'handover': self.handover}
 
     @property
     def steps(self) -> int:
@@ -109,6 +133,7 @@ class RunFacts(RunConditions):
             each.name: value if isinstance(value, str) else json.dumps(value)
             for each in fields(self)
             for value in [getattr(self, each.name)]
+            if value is not None
         }
 
     @classmethod
@@ -117,9 +142,11 @@ class RunFacts(RunConditions):
         values: dict[str, Any] = {}
         for name in (each.name for each in fields(cls)):
             if name not in custom_data:
+                if name in _OF_SHIFTS:
+                    continue
                 raise DdctError(f'no {name} in the custom data: not a recording of this project')
             text = custom_data[name]
-            values[name] = text if name in _NAMES else _parsed(name, text)
+            values[name] = text if name in (*_NAMES, 'handover') else _parsed(name, text)
         return cls(**{**values, 'seed': int(values['seed'])})
 
 
@@ -154,6 +181,11 @@ def add_run_info(received: RunInfoOfNodes, node: str, pairs: Mapping[str, str]) 
         f'{pairs.get(key, "missing")}: two nodes had this name, record the run again with one of '
         'them, or in another ROS_DOMAIN_ID'
     )
+
+
+def run_info_topic(node: str) -> Topic:
+    """Return the topic on which the `run_info` of a node is recorded, given its full name."""
+    return OFF_GOING_RUN_INFO if node.startswith(_OFF_GOING) else RUN_INFO
 
 
 def run_info_order(nodes: Iterable[str]) -> list[str]:

@@ -14,7 +14,7 @@ from typing import Any
 from mcap_ros2._dynamic import generate_dynamic, serialize_dynamic
 
 from ddct_bringup.bag.file.message_definitions import load_definition
-from ddct_bringup.bag.run_facts import RunFacts, run_info_order
+from ddct_bringup.bag.run_facts import RunFacts, run_info_order, run_info_topic
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.bag.writer import new_bag
 from ddct_plant.base.timebase import START_NS, stamp_of_step
@@ -47,7 +47,7 @@ def write_trajectory(
         write_info, serialise_info = RUN_INFO.writer(plain_class), serialiser(RUN_INFO.type)
         for node in run_info_order(run_info):
             message = write_info(START_NS, run_info[node].items(), name=node)
-            bag.write(RUN_INFO.name, START_NS, serialise_info(message))
+            bag.write(run_info_topic(node).name, START_NS, serialise_info(message))
         writers = [
             (topic, topic.writer(plain_class), serialiser(topic.type), topic.signals_in(run))
             for topic in topics

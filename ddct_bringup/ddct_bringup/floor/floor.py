@@ -107,6 +107,11 @@ def control_start(settings: RunSettings) -> Start:
             f'architecture {settings.architecture}: feedback is on from t = 0, so the state at '
             'control start depends on the controller: choose the architecture detailed'
         )
+    if settings.shift:
+        raise ParameterError(
+            f'scenario {settings.scenario.name} is a gear shift: a floor is of an engagement '
+            'with one clutch, and none of a shift is computed'
+        )
     run = run_headless(settings, _DRIVER)
     start = start_of(settings, run)
     if start.slip == 0.0:

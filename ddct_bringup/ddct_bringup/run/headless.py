@@ -10,14 +10,18 @@ The result equals that of the graph, in any process layout, to the last bit.
 """
 
 import time
+from typing import Any, Protocol, TypeVar
 
 from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.run.shift_loop import ShiftLoop
 from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_controllers.architecture import make_architecture
 from ddct_controllers.interface import Controller, Measurement
 from ddct_controllers.registry import Chosen, make_controller
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.scenario.whole_plant import PlantReply, WholePlant
+from ddct_plant.shift_plant.plant import ShiftPlant, ShiftReply
+from ddct_plant.signals.signal import RunKind
 from ddct_reference.factory import make_reference
 
 
@@ -57,6 +61,26 @@ class ClosedLoop:
         self.plant.advance(reply)
 
 
+Reply = TypeVar('Reply', PlantReply, ShiftReply)
+
+
+class Loop(Protocol[Reply]):
+    """A closed loop that `run_loop` steps: that of one clutch, or of a shift."""
+
+    kind: RunKind
+    update_time_us: float
+
+    @property
+    def plant(self) -> WholePlant | ShiftPlant:
+        """Plant of the run, which knows when the engine ends it."""
+
+    def reply(self, step: int) -> Reply:
+        """Return torques and every signal of step k; advance all but the plant."""
+
+    def advance(self, reply: Reply) -> None:
+        """Integrate the driveline over the period that `reply` answered."""
+
+
 def run_headless(
     settings: RunSettings, controller: Chosen | Controller, timing: RunTiming | None = None
 ) -> Trajectory:
@@ -69,10 +93,15 @@ def run_headless(
     """
     if not isinstance(controller, Controller):
         controller = make_controller(controller, settings)
-    return run_loop(ClosedLoop(settings, controller), settings.scenario.steps, timing)
+    return run_loop(closed_loop(settings, controller), settings.scenario.steps, timing)
 
 
-def run_loop(loop: ClosedLoop, steps: int, timing: RunTiming | None = None) -> Trajectory:
+def closed_loop(settings: RunSettings, controller: Controller) -> Loop[Any]:
+    """Return the loop of a run: that of one clutch, or of a shift."""
+    return ShiftLoop(settings, controller) if settings.shift else ClosedLoop(settings, controller)
+
+
+def run_loop(loop: Loop[Reply], steps: int, timing: RunTiming | None = None) -> Trajectory:
     """
     Simulate a loop from t_0 to t_`steps`, return every signal and fill `timing` if given.
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from ddct_bringup.processes.graph_nodes import ANSWER_TIMEOUT_S
 from ddct_controllers.architecture import make_architecture
+from ddct_controllers.handover.laws import make_handover
 from ddct_controllers.registry import Chosen, controller_label, make_controller
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.files.yaml_text import dump_yaml
@@ -28,6 +29,8 @@ class RunPlan:
     def __post_init__(self) -> None:
         """Raise DdctError for a plan that would fail in the graph."""
         make_architecture(self.settings, make_controller(self.controller, self.settings))
+        if self.settings.shift:
+            self._require_shift()
         if self.layout == 'headless':
             require_headless(self.settings)
         else:
@@ -38,6 +41,14 @@ class RunPlan:
                 )
             require_ros()
             require_domain()
+
+    def _require_shift(self) -> None:
+        make_handover(self.settings)
+        if self.layout != 'headless':
+            raise ParameterError(
+                f'scenario {self.settings.scenario.name} is a gear shift, which has no graph yet: '
+                'give --headless'
+            )
 
     @property
     def name(self) -> str:

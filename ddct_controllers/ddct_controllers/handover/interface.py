@@ -9,8 +9,8 @@ from ddct_plant.models.load import RoadLoad
 from ddct_plant.models.static_torque import StaticTorque
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.scenario.shift_rules import gears_of, shift_of
+from ddct_plant.sensors.sensed import MeasuredSpeeds
 from ddct_plant.shift.balance import off_going_torque
-from ddct_plant.shift.driveline import ShiftOutputs
 from ddct_plant.shift_plant.start import locked_request
 
 CUT_FADE_RAD_S = 30.0
@@ -34,16 +34,17 @@ class HandoverMeasurement(NamedTuple):
     """Vehicle speed V_x in m/s."""
 
     @classmethod
-    def of_plant(cls, step: int, demand: float, outputs: ShiftOutputs) -> Self:
-        """Return the signals at a step, as the plant has them."""
-        now = outputs.driveline
+    def of_speeds(
+        cls, step: int, demand: float, speeds: MeasuredSpeeds, off_going_slip: float
+    ) -> Self:
+        """Return the signals at a step: demand in N m, speeds, off-going slip in rad/s."""
         return cls(
             step,
             demand,
-            now.engine_speed,
-            now.slip_speed,
-            outputs.off_going.slip_speed,
-            now.vehicle_speed,
+            speeds.engine_speed,
+            speeds.slip_speed,
+            off_going_slip,
+            speeds.vehicle_speed,
         )
 
 

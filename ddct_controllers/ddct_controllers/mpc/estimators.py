@@ -19,15 +19,14 @@ from ddct_controllers.mpc.model.disturbances import offset_free_model
 from ddct_controllers.mpc.model.transmission_model import TransmissionModel, transmission_model
 from ddct_controllers.mpc.program.settings import MOST
 from ddct_plant.base.options import REQUIRED, OptionGroup, option
-from ddct_plant.scenario.plant import initial_state
+from ddct_plant.scenario.plant import initial_request
 from ddct_plant.scenario.settings import RunSettings
 
 
 def run_start(settings: RunSettings) -> AtRest:
     """Return the start of a run for an observer: actuator at rest, load balanced."""
-    return AtRest(
-        settings.scenario.driveline.halfshaft_stiffness, initial_state(settings).torque_request
-    )
+    stiffness = settings.scenario.driveline.halfshaft_stiffness
+    return AtRest(stiffness, initial_request(settings))
 
 
 def make_observer(
@@ -82,7 +81,8 @@ class ObserverInputs(OptionGroup):
         where it is the only measured signal.
         """
         if model is None:
-            model = transmission_model(run.scenario.driveline, delay=self.delay_in_model)
+            driveline = run.scenario.controlled_driveline
+            model = transmission_model(driveline, delay=self.delay_in_model)
         known = model if self.load_known else model.without_load()
         if self.measured == 'slip':
             return known, Observer(known, unit_noise_gain(known, noise_rpm), start=None)
@@ -109,7 +109,7 @@ class DisturbanceObserver(OptionGroup):
     def parts(self, run: RunSettings) -> tuple[TransmissionModel, Observer]:
         """Return the model with both errors as its states, and its filter."""
         noise = NoiseLevels(drift=(self.clutch_drift_n_m, self.load_drift_n_m))
-        model = offset_free_model(run.scenario.driveline)
+        model = offset_free_model(run.scenario.controlled_driveline)
         return model, make_observer(run, model, noise)
 
 
@@ -119,5 +119,5 @@ class WearEstimate(WearNoise):
 
     def parts(self, run: RunSettings) -> tuple[TransmissionModel, WearObserver]:
         """Return the model with the errors of C_f and C_load, and its filter."""
-        model = offset_free_model(run.scenario.driveline)
+        model = offset_free_model(run.scenario.controlled_driveline)
         return model, WearObserver(model, NoiseLevels(), self, run_start(run))

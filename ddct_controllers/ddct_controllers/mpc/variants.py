@@ -39,7 +39,7 @@ def predictive(
 
     def make(context: ControllerContext) -> MpcController[Any]:
         values, run = context.gains, context.settings
-        chosen = with_values(cost, values).settings(run.scenario.driveline)
+        chosen = with_values(cost, values).settings(run.scenario.controlled_driveline)
         model, observer = with_values(estimate, values).parts(run)
         authority = run.scenario.engine_authority if commands_engine else None
         return MpcController(model, observer, with_options(chosen, values), authority)

@@ -146,7 +146,9 @@ def _filter_gain(plant: StateSpace, driveline: DrivelineParameters) -> np.ndarra
 
 
 def _make(context: ControllerContext) -> LinearController:
-    return LinearController(lqi_model(context.settings.scenario.driveline, **context.gains))
+    return LinearController(
+        lqi_model(context.settings.scenario.controlled_driveline, **context.gains)
+    )
 
 
 SPEC = ControllerSpec(NAME, _make, OPTIONS)

@@ -67,7 +67,7 @@ class PedalMpc(Controller):
         """Condense the programs; raise ParameterError for a bad option."""
         settings = context.settings
         model, self._observer = DisturbanceObserver().parts(settings)
-        self._start_step = settings.scenario.control_start_step
+        self._control_start = None if settings.shift else settings.scenario.control_start_step
         self._longest = round(engagement_time_s(context) / PERIOD_S)
         self._shortest = self._longest // SHORTEST_SHARE
         self._programs = engagement_programs(model, self._shortest, self._longest)
@@ -78,6 +78,7 @@ class PedalMpc(Controller):
         """Clear the estimate, the last request and every warm start."""
         self._observer.reset()
         self._request: float | None = None
+        self._start_step = self._control_start
         self._fallbacks = 0
         for program in self._programs.values():
             program.solver.reset()
@@ -119,6 +120,8 @@ class PedalMpc(Controller):
 
     def _horizon_and_slip(self, measurement: Measurement) -> tuple[int, float]:
         """Return t_r in periods and the desired slip at its end in rad/s."""
+        if self._start_step is None:  # a shift, in which feedback starts with the handover's end
+            self._start_step = measurement.step
         since_start = measurement.step - self._start_step
         if since_start < 0:
             return self._shortest, measurement.slip_reference[0]

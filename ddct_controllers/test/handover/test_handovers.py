@@ -42,7 +42,8 @@ def shift(settings: RunSettings, name: str, in_inertia_phase: float = 1.2) -> li
     for step in range(130):
         outputs = plant.outputs()
         now = outputs.driveline
-        command = law.update(HandoverMeasurement.of_plant(step, plant.demand(step), outputs))
+        measured = plant.measured(step, outputs)
+        command = law.update(HandoverMeasurement.of_speeds(step, plant.demand(step), *measured))
         observation = plant.observe(step, outputs, command.torque_cut)
         torque = static.torque(
             observation.engine_torque, now.joint_effort.wheel, now.engine_speed, now.shaft_speed

@@ -25,6 +25,10 @@ CONTROLLER, STEPS, TWO_INPUT = 'controller', 'steps', 'two_input'
 """Keys on `run_info` without which there is no recording, or which the recorder compares."""
 PARTS = 'torque_parts'
 """Key on `run_info` of `controller`: true where it publishes `controller/torque_parts`."""
+ROLE = 'role'
+"""Key on `run_info` of the nodes of a shift's off-going side."""
+ON_COMING, OFF_GOING = ROLES = ('on_coming', 'off_going')
+"""Clutches of a shift, values of ROLE."""
 TICKS = ': ticks'
 """Ending, after the driveline's name, of the name of the status with its counts."""
 SAFE_STATE = ': safe state'
@@ -45,8 +49,14 @@ def run_info_pairs(settings: RunSettings, own: Mapping[str, str] | None = None) 
         'wear_gain': repr(settings.wear_gain),
         'mode': settings.mode,
         'seed': str(settings.seed),
+        **(_of_shift(settings) if settings.shift else {}),
         **(own or {}),
     }
+
+
+def _of_shift(settings: RunSettings) -> Pairs:
+    wear_gain = repr(settings.off_going_wear_gain)
+    return {'off_going_wear_gain': wear_gain, 'handover': settings.handover}
 
 
 def engine_info(two_input: bool, request_timeout_s: float = REQUEST_TIMEOUT_S) -> Pairs:
@@ -95,6 +105,12 @@ def node_info(
         'controller': controller_info(controller),
         'recorder': {},
     }
+    if settings.shift:
+        own |= {
+            'handover': {},
+            'off_going/actuator': {ROLE: OFF_GOING, **actuator_info()},
+            'off_going/clutch': {ROLE: OFF_GOING},
+        }
     return {node: run_info_pairs(settings, pairs) for node, pairs in own.items()}
 
 

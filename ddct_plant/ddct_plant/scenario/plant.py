@@ -138,9 +138,19 @@ def torque_estimate(settings: RunSettings) -> TorqueEstimate | None:
     return TorqueEstimate(sensors, settings.seed) if sensors else None
 
 
+def initial_request(settings: RunSettings) -> float:
+    """
+    Return the request in N m of the clutch before the run; in a shift that of the on-coming one.
+
+    It is C_fOL in `detailed`, and where the scenario starts with a clutch that is locked or
+    slipping. It is zero for an open clutch, as is the on-coming one of a shift.
+    """
+    return 0.0 if settings.shift else initial_state(settings).torque_request
+
+
 def initial_state(settings: RunSettings) -> InitialState:
     """
-    Return the state at t_0 of a run with these settings.
+    Return the state at t_0 of a run with these settings that is no shift.
 
     Before the run the request is C_fOL in `detailed`, and where the scenario starts with a clutch
     that is locked or slipping.

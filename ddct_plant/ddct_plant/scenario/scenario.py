@@ -29,6 +29,7 @@ from ddct_plant.scenario.control import (
 )
 from ddct_plant.scenario.initial_speeds import InitialSpeeds
 from ddct_plant.sensors.parameters import SensorParameters
+from ddct_plant.shift.gear_pair import GearPair
 from ddct_plant.shift.parameters import ShiftParameters
 
 
@@ -144,6 +145,13 @@ class Scenario(OptionGroup):
     def driveline(self) -> DrivelineParameters:
         """Driveline in the engaged gear, for models; raise ParameterError for a bad value."""
         return self.given_driveline.engaged(C635.gear(self.gear), self.vehicle.inertia)
+
+    @cached_property
+    def controlled_driveline(self) -> DrivelineParameters:
+        """Driveline behind the controlled clutch; in a shift it turns the off-going shaft too."""
+        if self.shift is None:
+            return self.driveline
+        return GearPair(self.driveline, C635.gear(self.shift.off_going_gear)).both_engaged
 
     @property
     def steps(self) -> int:

@@ -17,6 +17,7 @@ from ddct_plant.scenario.plant import (
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.scenario.shift_rules import gears_of, shift_of
 from ddct_plant.scenario.whole_plant import Observation
+from ddct_plant.sensors.sensed import MeasuredSpeeds
 from ddct_plant.shift.driveline import OffGoingOutputs, ShiftDriveline, ShiftOutputs
 from ddct_plant.shift_plant.start import locked_request, shift_start
 from ddct_plant.signals.signal import SignalValue
@@ -65,10 +66,11 @@ class ShiftPlant:
         """Start in the drive before the shift; `two_input`: the controller commands C_m."""
         self._scenario = scenario = settings.scenario
         self._two_input = two_input
-        shift, start = shift_of(scenario), shift_start(settings)
+        shift, gears, start = shift_of(scenario), gears_of(scenario), shift_start(settings)
+        self._ratio = gears.ratio
         disengagement_s = shift.disengagement_s
         self.driveline = ShiftDriveline(
-            gears_of(scenario),
+            gears,
             scenario.vehicle,
             start,
             steps_in('shift.preselection_s', shift.preselection_s),
@@ -96,6 +98,19 @@ class ShiftPlant:
         """Return the true outputs of both sides at the present step."""
         return self.driveline.outputs()
 
+    def measured(self, step: int, outputs: ShiftOutputs) -> tuple[MeasuredSpeeds, float]:
+        """
+        Return what a handover reads at step k: speeds, and the slip in rad/s of its clutch.
+
+        No sensor is at the off-going shaft: in a run with sensors its speed is that of the
+        on-coming shaft times the ratio of the gears, which both are engaged in a handover.
+        """
+        true = outputs.driveline
+        if self._sensors is None:
+            return true, outputs.off_going.slip_speed
+        speeds = self._sensors.measure(step, true)
+        return speeds, speeds.engine_speed - self._ratio * speeds.shaft_speed
+
     def observe(self, step: int, outputs: ShiftOutputs, torque_cut: float = 0.0) -> Observation:
         """
         Return what a controller of the on-coming clutch receives at step k.
@@ -103,7 +118,7 @@ class ShiftPlant:
         `torque_cut` in N m is taken off the driver's demand, within the engine's authority.
         """
         true = outputs.driveline
-        measured = true if self._sensors is None else self._sensors.measure(step, true)
+        measured, _ = self.measured(step, outputs)
         demand = self._engine.demand(step) - torque_cut
         if self._two_input:
             return Observation(true, measured, demand, None, demand)

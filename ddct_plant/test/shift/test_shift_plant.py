@@ -134,7 +134,8 @@ def test_the_off_going_clutch_stays_locked_until_the_shift_starts():
 
 def test_the_example_of_the_page_shifts():
     page = Path(__file__).resolve().parents[3] / 'docs' / 'develop' / 'gear_shift.md'
-    lines = page.read_text(encoding='utf-8').split('\n| question')[0].splitlines()
+    text = page.read_text(encoding='utf-8').split('\n| question')[0]
+    lines = text.partition('In Python:\n')[2].splitlines()
     names: dict[str, Any] = {}
     exec(dedent('\n'.join(line for line in lines if not line or line[0] == ' ')), names)
     outputs = names['plant'].outputs()

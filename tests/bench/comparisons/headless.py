@@ -15,7 +15,7 @@ from typing import Any
 from bench.peers.numpy_loop import LEAST_S, NAME, numpy_loop_s
 from bench.skeleton.comparison import Bench, Sides, comparison, extra
 
-from ddct_bringup.run.headless import ClosedLoop, run_headless, run_loop
+from ddct_bringup.run.headless import closed_loop, run_headless, run_loop
 from ddct_controllers.registry import controller_names, make_controller
 from ddct_plant.models.clutch import LINEAR, STICK_SLIP
 from ddct_plant.scenario.file import load_scenario, scenario_names
@@ -37,7 +37,7 @@ def step_s(controller: str, scenario: str = 'thesis', clutch: str = LINEAR) -> f
     settings = RunSettings(load_scenario(scenario, clutch=clutch), clutch=clutch)
     elapsed, steps = 0.0, 0
     while elapsed < LEAST_S:
-        loop = ClosedLoop(settings, make_controller(controller, settings))
+        loop = closed_loop(settings, make_controller(controller, settings))
         started = time.thread_time()
         trajectory = run_loop(loop, settings.scenario.steps)
         elapsed += time.thread_time() - started

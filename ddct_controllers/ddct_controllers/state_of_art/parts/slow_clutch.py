@@ -14,7 +14,7 @@ from ddct_plant.linear.lti import StateSpace
 from ddct_plant.linear.sampling import discretise_zoh
 from ddct_plant.models.actuator import Actuator
 from ddct_plant.models.printed import ACTUATOR
-from ddct_plant.scenario.plant import initial_state
+from ddct_plant.scenario.plant import initial_request
 
 
 def _time_constant_s(factor: Factor) -> float:
@@ -42,9 +42,9 @@ class SlowClutch:
 
     def __init__(self, context: ControllerContext, bandwidth_rad_s: float) -> None:
         """Start as the run does, with the bandwidth of the loop of `pid` in rad/s."""
-        self._initial_request = initial_state(context.settings).torque_request
+        self._initial_request = initial_request(context.settings)
         scenario = context.settings.scenario
-        transmission = self.transmission = RigidTransmission(scenario.driveline)
+        transmission = self.transmission = RigidTransmission(scenario.controlled_driveline)
         """Rigid transmission that plan and request are computed for."""
         self.plan = SpeedPlan(transmission, scenario.engine_speed_reference)
         """Plan of the engine speed."""

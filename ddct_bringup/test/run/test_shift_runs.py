@@ -1,0 +1,132 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Headless runs of a gear shift: what starts when, every controller, the bag, campaigns."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from refusals import refused
+
+from ddct_bringup.bag.reader import read_bag
+from ddct_bringup.batch.batchable import why_not_batchable
+from ddct_bringup.campaign.rows import scored_headless
+from ddct_bringup.floor.floor import control_start
+from ddct_bringup.run.execution import execute, simulate
+from ddct_bringup.run.headless import run_headless
+from ddct_bringup.run.plan import RunPlan
+from ddct_bringup.verdict.limits import packaged_limits
+from ddct_controllers.handover.laws import HANDOVERS
+from ddct_controllers.registry import make_controller, own_controller_names
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.models.driveline import LOCKED, PHASES
+from ddct_plant.models.load import RoadLoad
+from ddct_plant.models.static_torque import StaticTorque
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.shift_rules import gears_of
+
+
+def settings(*overrides, **values):
+    scenario = load_scenario('upshift', overrides, clutch='stick_slip')
+    return RunSettings(scenario, clutch='stick_slip', **values)
+
+
+def feedback(run):
+    """Return whether feedback is on, (N+1,)."""
+    return np.array([dict(status)['feedback'] == 'on' for status in run.status])
+
+
+@pytest.mark.parametrize('handover', HANDOVERS)
+def test_feedback_and_reference_start_with_the_first_period_whose_share_is_one(handover):
+    shift = settings(handover=handover)
+    run = run_headless(shift, 'pi')
+    start = shift.scenario.control_start_step
+    first = int(np.argmax(run.handover_share == 1.0))
+    assert start < first < start + 40
+    assert not run.handover_share[:start].any()
+    locked = int(np.argmax(run.clutch_phase == PHASES.index(LOCKED)))
+    assert not feedback(run)[:first].any()
+    assert feedback(run)[first:locked].all()
+    assert not run.closed_loop_torque[:first].any()
+    reference = run.at_tick('slip_reference')
+    np.testing.assert_array_equal(reference[: first + 1], run.slip_speed[: first + 1])
+    slope = shift.scenario.reference.slope_rad_s2
+    np.testing.assert_allclose(np.diff(reference[first : first + 10]), -0.01 * slope)
+
+
+def test_until_then_the_on_coming_clutch_gets_its_share_of_c_fol_from_zero_on():
+    shift = settings(handover='timed')
+    run = run_headless(shift, 'pi')
+    scenario = shift.scenario
+    static = StaticTorque(gears_of(scenario).both_engaged, 'full')
+    road = RoadLoad(scenario.load, scenario.vehicle)
+    assert run.torque_request[0] == 0.0 == run.actuator_torque[:30].max()
+    for step in (10, 35, 45):
+        load = road.torque(run.vehicle_speed[step])
+        speeds = run.engine_speed[step], run.primary_shaft_speed[step]
+        whole = static.torque(run.engine_torque[step], load, *speeds)
+        expected = run.handover_share[step] * whole
+        assert run.torque_request[step] == pytest.approx(expected, rel=1e-12)
+
+
+@pytest.mark.parametrize('controller', own_controller_names())
+def test_every_controller_shifts(controller):
+    run = run_headless(settings(), controller)
+    assert run.clutch_phase[-1] == PHASES.index(LOCKED)
+    assert abs(run.off_going_transmitted_torque[-1]) < 1e-9
+
+
+def test_a_shift_with_exact_sensors_is_the_same_and_its_handover_needs_no_further_one():
+    run, sensed = (
+        run_headless(settings(*more, handover='slip'), 'ls8') for more in ((), ('sensors={}',))
+    )
+    np.testing.assert_allclose(sensed.slip_speed, run.slip_speed, atol=1e-6)
+
+
+def test_a_torque_cut_reaches_the_engine_and_its_estimate_for_the_controller():
+    run = run_headless(settings('shift.torque_cut_n_m=30'), 'pi')
+    np.testing.assert_allclose(run.engine_torque, run.torque_demand - run.torque_cut)
+    assert run.torque_cut.max() == 30.0
+
+
+def test_the_bag_of_a_shift_has_every_signal_setting_and_node(tmp_path: Path) -> None:
+    shift = settings('shift.torque_cut_n_m=20', off_going_wear_gain=0.9, handover='slip')
+    plan = RunPlan(shift, 'pi', 'headless')
+    execute(plan, tmp_path)
+    recording, (expected, _) = read_bag(tmp_path), simulate(plan)
+    assert recording.trajectory.sha256() == expected.trajectory.sha256()
+    assert recording.settings == shift
+    assert recording.run_info == expected.run_info
+    off_going = {name: pairs for name, pairs in recording.run_info.items() if 'off' in name}
+    assert list(off_going) == ['/off_going/actuator', '/off_going/clutch']
+    assert all(pairs['role'] == 'off_going' for pairs in off_going.values())
+    for pairs in recording.run_info.values():
+        assert (pairs['handover'], pairs['off_going_wear_gain']) == ('slip', '0.9')
+    counts = recording.counts
+    assert counts['/off_going/run_info'] == 2
+    assert counts['/clutch/handover_share'] == counts['/clutch/slip'] == 201
+
+
+def test_a_shift_is_simulated_step_by_step_in_a_campaign():
+    shift = settings()
+    assert why_not_batchable(shift, make_controller('pi', shift))
+    row = scored_headless(shift, 'pi', packaged_limits())
+    assert row.valid
+
+
+def test_an_unknown_handover_and_a_floor_are_refused():
+    with refused(ParameterError, 'handover'):
+        RunPlan(settings(handover='quick'), 'pi', 'headless')
+    with pytest.raises(ParameterError, match='gear shift'):
+        control_start(settings())
+    with pytest.raises(ParameterError, match='--headless'):
+        RunPlan(settings(), 'pi')
+
+
+def test_the_wear_of_either_clutch_changes_its_own_torque_alone():
+    new = run_headless(settings(handover='timed'), 'pi')
+    worn = run_headless(settings(handover='timed', off_going_wear_gain=0.8), 'pi')
+    np.testing.assert_array_equal(worn.clutch_torque[:40], new.clutch_torque[:40])
+    ratio = worn.off_going_clutch_torque[:40] / new.off_going_clutch_torque[:40]
+    np.testing.assert_allclose(ratio, 0.8)
