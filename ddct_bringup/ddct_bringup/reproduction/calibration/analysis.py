@@ -15,11 +15,11 @@ from ddct_bringup.reproduction.calibration.parameters import (
     PI_ONLY,
     RANGE,
     ROWS,
-    Record,
     Values,
     residual_rows,
 )
 from ddct_bringup.reproduction.calibration.problem import Fit, Problem, fit, row_values
+from ddct_bringup.reproduction.calibration.record_types import AssumptionEntry, LeftOutEntry
 from ddct_bringup.reproduction.calibration.search import STARTS, Progress
 from ddct_plant.scenario.scenario import Scenario
 
@@ -101,14 +101,14 @@ def identifiability(optimum: Fit) -> Identifiability:
     )
 
 
-def leave_one_row_out(optimum: Fit, progress: Progress) -> list[Record]:
+def leave_one_row_out(optimum: Fit, progress: Progress) -> list[LeftOutEntry]:
     """
     Fit each two rows, with the window of the fit to all three; return predictions of the third.
 
     Only the row of the PI depends on its gains: where it is left out they are fitted to the row
     itself, which is marked as `gains_from_row`.
     """
-    results = []
+    results: list[LeftOutEntry] = []
     for row in ROWS:
         progress(f'without the row of {row}')
         problem = dataclasses.replace(
@@ -165,9 +165,9 @@ def changed_assumptions() -> dict[str, Scenario]:
     }
 
 
-def vary_assumptions(optimum: Fit, progress: Progress) -> list[Record]:
+def vary_assumptions(optimum: Fit, progress: Progress) -> list[AssumptionEntry]:
     """Return the refit with each of the changed assumptions."""
-    fits = []
+    fits: list[AssumptionEntry] = []
     for change, base in changed_assumptions().items():
         progress(change)
         refit = fit(dataclasses.replace(optimum.problem, base=base), optimum.values)

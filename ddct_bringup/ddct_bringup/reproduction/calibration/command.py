@@ -4,12 +4,13 @@
 
 import argparse
 import os
+from collections.abc import Iterable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 from ddct_bringup.reproduction.calibration.ensemble import find_members, members_in, write_members
-from ddct_bringup.reproduction.calibration.parameters import Record, outside_tolerance
+from ddct_bringup.reproduction.calibration.parameters import outside_tolerance
 from ddct_bringup.reproduction.calibration.predicted_values import predict
 from ddct_bringup.reproduction.calibration.record import (
     RETURN_TOLERANCE,
@@ -18,11 +19,16 @@ from ddct_bringup.reproduction.calibration.record import (
     scenario_text,
 )
 from ddct_bringup.reproduction.calibration.record_tables import all_tables, check_tables
+from ddct_bringup.reproduction.calibration.record_types import (
+    CalibrationRecord,
+    CheckRecord,
+    ResidualEntry,
+)
 from ddct_bringup.thesis.predictions import FILE as PREDICTIONS_FILE
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.output_file import STDOUT, require_place, write_json, write_text
 from ddct_plant.program.command_line import complain
-from ddct_plant.program.table import print_tables
+from ddct_plant.program.table import Table, print_tables
 from ddct_plant.scenario.file import load_scenario
 
 _DESCRIPTION = """\
@@ -85,19 +91,26 @@ def run(options: argparse.Namespace) -> int:
     require_place('--json', options.json)
     require_place('--write', options.write)
     if options.quick:
-        record = check_frozen(load_scenario('thesis'), _progress)
-        tables = check_tables(record)
-    else:
-        record = calibrate(_progress)
-        tables = list(all_tables(record).values())
+        check = check_frozen(load_scenario('thesis'), _progress)
+        _show_and_write(options, check, check_tables(check))
+        _require_within_tolerance(check['residuals'])
+        _require_optimum(check['moved'])
+        return 0
+    record = calibrate(_progress)
+    _show_and_write(options, record, all_tables(record).values())
+    _require_within_tolerance(record['residuals'])
+    if options.write:
+        write_text(options.write, scenario_text(record))
+    return 0
+
+
+def _show_and_write(
+    options: argparse.Namespace, record: CalibrationRecord | CheckRecord, tables: Iterable[Table]
+) -> None:
     if STDOUT not in (options.json, options.write):
         print_tables(tables)
     if options.json:
         write_json(options.json, record)
-    _require_success(record)
-    if options.write:
-        write_text(options.write, scenario_text(record))
-    return 0
 
 
 def _make_ensemble(folder: Path, *, search: bool) -> None:
@@ -112,15 +125,17 @@ def _make_ensemble(folder: Path, *, search: bool) -> None:
     _progress(f'{len(members)} admissible scenarios and {PREDICTIONS_FILE} are in {folder}')
 
 
-def _require_success(record: Record) -> None:
-    """Raise DdctError unless all values are within tolerance and, for a check, optimal."""
-    outside = outside_tolerance(record['residuals'])
+def _require_within_tolerance(residuals: Sequence[ResidualEntry]) -> None:
+    outside = outside_tolerance(residuals)
     if outside:
         raise DdctError(f'no scenario fits: {", ".join(outside)} is outside the tolerance')
-    if 'moved' in record:
-        name, share = max(record['moved'].items(), key=lambda item: abs(item[1]))
-        if abs(share) > RETURN_TOLERANCE:
-            raise DdctError(
-                f'scenario thesis is not the optimum: a refit moves {name} by '
-                f'{100.0 * share:+.1f} % of its range; run it again without --quick'
-            )
+
+
+def _require_optimum(moved: Mapping[str, float]) -> None:
+    """Raise DdctError where a refit changes a parameter by more than `RETURN_TOLERANCE`."""
+    name, share = max(moved.items(), key=lambda item: abs(item[1]))
+    if abs(share) > RETURN_TOLERANCE:
+        raise DdctError(
+            f'scenario thesis is not the optimum: a refit moves {name} by '
+            f'{100.0 * share:+.1f} % of its range; run it again without --quick'
+        )

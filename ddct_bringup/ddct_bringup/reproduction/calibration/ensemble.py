@@ -28,7 +28,6 @@ from ddct_bringup.reproduction.calibration.parameters import (
     PARAMETERS,
     RANGE,
     ROWS,
-    Record,
     Values,
     outside_tolerance,
     pi_growth_rate,
@@ -37,6 +36,7 @@ from ddct_bringup.reproduction.calibration.parameters import (
 )
 from ddct_bringup.reproduction.calibration.problem import Problem
 from ddct_bringup.reproduction.calibration.record import annotated_yaml
+from ddct_bringup.reproduction.calibration.record_types import ResidualEntry
 from ddct_bringup.reproduction.calibration.search import WINDOW_ENDS_S, Progress, centre, rim
 from ddct_bringup.reproduction.headless_run import headless_run
 from ddct_bringup.thesis.predictions import folder_of_members
@@ -93,7 +93,7 @@ def why_not_admissible(scenario: Scenario) -> list[str]:
     return against + outside_tolerance(residual_rows(whole))
 
 
-def fitted_rows(scenario: Scenario) -> list[Record]:
+def fitted_rows(scenario: Scenario) -> list[ResidualEntry]:
     """Return the nine values of the whole run, as in the record of the calibration."""
     values = _row_values(scenario).items()
     return residual_rows({row: _defined(found) for row, found in values})

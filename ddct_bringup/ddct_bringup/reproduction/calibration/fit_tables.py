@@ -4,7 +4,13 @@
 
 from collections.abc import Sequence
 
-from ddct_bringup.reproduction.calibration.parameters import NAMES, Record
+from ddct_bringup.reproduction.calibration.parameters import NAMES
+from ddct_bringup.reproduction.calibration.record_types import (
+    CalibrationRecord,
+    FitEntry,
+    OptimumEntry,
+    ResidualEntry,
+)
 from ddct_bringup.thesis.table_5_1 import ROW_OF
 from ddct_plant.program.table import Table
 
@@ -17,16 +23,16 @@ VALUE_HEADERS = ('C_m start', 'C_m end', 'rise end', 'slope', 'K_p', 'K_i')
 """Headers of the fitted parameters, in the order of NAMES."""
 
 
-def residual_table(record: Record) -> Table:
+def residual_table(residuals: Sequence[ResidualEntry]) -> Table:
     """Return the nine fit residuals of the frozen scenario."""
     return Table(
         'Fit residuals of the frozen scenario (not reproductions: these numbers were fitted)',
         ('row', 'figure', 'printed', 'fitted', 'residual, %', 'tolerance, %'),
-        [value_cells(entry) for entry in record['residuals']],
+        [value_cells(entry) for entry in residuals],
     )
 
 
-def parameter_table(record: Record) -> Table:
+def parameter_table(record: CalibrationRecord) -> Table:
     """Return the fitted parameters with their bounds and standard deviations."""
     rows = [
         (
@@ -63,7 +69,7 @@ def parameter_table(record: Record) -> Table:
     )
 
 
-def torque_table(record: Record) -> Table:
+def torque_table(record: CalibrationRecord) -> Table:
     """Return torque levels and slopes at the optimum with their standard errors."""
     return Table(
         'Engine torque and reference, with standard errors',
@@ -80,7 +86,7 @@ def torque_table(record: Record) -> Table:
     )
 
 
-def optima_table(title: str, optima: Sequence[Record]) -> Table:
+def optima_table(title: str, optima: Sequence[OptimumEntry]) -> Table:
     """Return local optima, one a row."""
     return Table(
         title,
@@ -97,7 +103,7 @@ def optima_table(title: str, optima: Sequence[Record]) -> Table:
     )
 
 
-def fit_table(record: Record) -> Table:
+def fit_table(record: CalibrationRecord) -> Table:
     """Return the table of the overall quality of the fit."""
     objective, analysis = record['objective'], record['identifiability']
     weakest = [
@@ -127,7 +133,7 @@ def fit_table(record: Record) -> Table:
     )
 
 
-def value_cells(entry: Record) -> tuple[str, ...]:
+def value_cells(entry: ResidualEntry) -> tuple[str, ...]:
     """Return a printed value, the computed one, the deviation and its tolerance."""
     return (
         ROW_OF[entry['row']].label,
@@ -139,7 +145,7 @@ def value_cells(entry: Record) -> tuple[str, ...]:
     )
 
 
-def fit_cells(one: Record) -> tuple[str, ...]:
+def fit_cells(one: FitEntry) -> tuple[str, ...]:
     """Return the quality of a fit, and its values in the order of VALUE_HEADERS."""
     forms = ('{:.1f}', '{:.1f}', '{:.3f}', '{:.1f}', '{:.3f}', '{:.4f}')
     return (

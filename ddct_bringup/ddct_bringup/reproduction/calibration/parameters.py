@@ -4,10 +4,10 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
+from ddct_bringup.reproduction.calibration.record_types import ResidualEntry
 from ddct_bringup.thesis.table_5_1 import CALIBRATED, TABLE_METRICS, THESIS_TABLE, TOLERANCES
 from ddct_controllers.design.analysis.loops import sampled_plant
 from ddct_plant.base.errors import DdctError, ParameterError
@@ -16,8 +16,6 @@ from ddct_plant.models.engine import TorqueProfile
 from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.scenario.scenario import Scenario
 
-Record = dict[str, Any]
-"""Plain JSON content."""
 Values = Sequence[float] | np.ndarray
 """Values of the parameters, (6,), in the order of PARAMETERS."""
 TARGETS = {row.controller: row.printed_values() for row in THESIS_TABLE if row.use == CALIBRATED}
@@ -130,7 +128,7 @@ def require_stable_pi(values: Values) -> None:
         )
 
 
-def residual_rows(figures: Mapping[str, Mapping[str, float]]) -> list[Record]:
+def residual_rows(figures: Mapping[str, Mapping[str, float]]) -> list[ResidualEntry]:
     """Return one entry per value of each row: printed, computed, deviation and tolerance."""
     return [
         {
@@ -146,7 +144,7 @@ def residual_rows(figures: Mapping[str, Mapping[str, float]]) -> list[Record]:
     ]
 
 
-def outside_tolerance(rows: Sequence[Record]) -> list[str]:
+def outside_tolerance(rows: Sequence[ResidualEntry]) -> list[str]:
     """Return the entries outside their tolerance as text."""
     return [
         f'{entry["row"]} {entry["figure"]} {100.0 * entry["deviation"]:+.1f} %'
@@ -155,6 +153,6 @@ def outside_tolerance(rows: Sequence[Record]) -> list[str]:
     ]
 
 
-def largest_residual(rows: Sequence[Record]) -> float:
-    """Return the largest deviation of such rows in tolerances."""
+def largest_residual(rows: Sequence[ResidualEntry]) -> float:
+    """Return the largest deviation among the entries, in tolerances."""
     return max(abs(row['deviation']) / row['tolerance'] for row in rows)

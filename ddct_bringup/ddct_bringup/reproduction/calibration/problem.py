@@ -24,11 +24,11 @@ from ddct_bringup.reproduction.calibration.parameters import (
     PI_ONLY,
     RANGE,
     ROWS,
-    Record,
     Values,
     pi_growth_rate,
     residual_rows,
 )
+from ddct_bringup.reproduction.calibration.record_types import FitEntry
 from ddct_bringup.reproduction.headless_run import headless_run
 from ddct_bringup.thesis.table_5_1 import TABLE_METRICS
 from ddct_plant.base.errors import DdctError
@@ -129,7 +129,7 @@ class Fit:
         proportional, integral = self.values[4:]
         return 'P' if proportional >= integral else 'I'
 
-    def as_record(self) -> Record:
+    def as_record(self) -> FitEntry:
         """Return the entry of the fit in the record of a calibration."""
         return {
             'objective': self.objective,

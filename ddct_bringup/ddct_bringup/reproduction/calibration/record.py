@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""The whole calibration: its result as plain JSON content, and the scenario file made from it."""
+"""The whole calibration: its record, and the scenario file made from it."""
 
 from collections.abc import Sequence
 
@@ -19,13 +19,19 @@ from ddct_bringup.reproduction.calibration.parameters import (
     NAMES,
     PARAMETERS,
     RANGE,
-    Record,
     require_stable_pi,
     residual_rows,
     rounded,
     values_of,
 )
 from ddct_bringup.reproduction.calibration.problem import Fit, Problem, fit
+from ddct_bringup.reproduction.calibration.record_types import (
+    CalibrationRecord,
+    CheckRecord,
+    DerivedEntry,
+    OptimumEntry,
+    ParameterEntry,
+)
 from ddct_bringup.reproduction.calibration.search import Progress, lowest_stable, search
 from ddct_bringup.thesis.table_5_1 import TOLERANCES
 from ddct_plant.scenario.scenario import Scenario
@@ -42,7 +48,7 @@ _SCENARIO_HEAD = (
 )
 
 
-def calibrate(progress: Progress) -> Record:
+def calibrate(progress: Progress) -> CalibrationRecord:
     """Run the whole calibration and return its record; raise DdctError without a stable PI."""
     windows, starts = search(progress)
     optimum = lowest_stable(starts)
@@ -77,7 +83,7 @@ def calibrate(progress: Progress) -> Record:
     }
 
 
-def check_frozen(scenario: Scenario, progress: Progress) -> Record:
+def check_frozen(scenario: Scenario, progress: Progress) -> CheckRecord:
     """
     Return the residuals of a calibrated scenario, and its changes by a local refit.
 
@@ -101,7 +107,7 @@ def check_frozen(scenario: Scenario, progress: Progress) -> Record:
 
 def _parameters(
     values: Sequence[float], frozen: Sequence[float], analysis: Identifiability
-) -> list[Record]:
+) -> list[ParameterEntry]:
     shares = (np.array(values) - LOWER) / RANGE
     near = np.minimum(shares, 1.0 - shares) < 1e-3
     return [
@@ -122,7 +128,7 @@ def _parameters(
     ]
 
 
-def _torque_and_slopes(values: Sequence[float], analysis: Identifiability) -> list[Record]:
+def _torque_and_slopes(values: Sequence[float], analysis: Identifiability) -> list[DerivedEntry]:
     """Return levels, rise and slopes that the fit implies, with their standard errors."""
     start, end, rise_end, slope = values[:4]
     rate = (end - start) / rise_end
@@ -134,18 +140,22 @@ def _torque_and_slopes(values: Sequence[float], analysis: Identifiability) -> li
         ('slope of C_m', 'N m/s', rate, (*np.divide((-1.0, 1.0, -rate), rise_end), 0.0, *none)),
         ('slope of the reference', 'rad/s^2', slope, (0.0, 0.0, 0.0, 1.0, *none)),
     )
-    return [
-        {
-            'quantity': quantity,
-            'unit': unit,
-            'value': value,
-            **dict(zip(('std', 'std_given_start'), analysis.std_of(gradient), strict=True)),
-        }
-        for quantity, unit, value, gradient in quantities
-    ]
+    entries: list[DerivedEntry] = []
+    for quantity, unit, value, gradient in quantities:
+        std, given_start = analysis.std_of(gradient)
+        entries.append(
+            {
+                'quantity': quantity,
+                'unit': unit,
+                'value': value,
+                'std': std,
+                'std_given_start': given_start,
+            }
+        )
+    return entries
 
 
-def _optimum(one: Fit) -> Record:
+def _optimum(one: Fit) -> OptimumEntry:
     return {
         'window_end_s': one.problem.window_end_s,
         'pi_kind': one.pi_kind,
@@ -155,7 +165,7 @@ def _optimum(one: Fit) -> Record:
     }
 
 
-def scenario_text(record: Record) -> str:
+def scenario_text(record: CalibrationRecord) -> str:
     """Return the calibrated scenario as YAML, with comments on the source of each value."""
     values = [entry['frozen'] for entry in record['parameters']]
     return annotated_yaml(Problem(record['score_window_s'][1]).scenario(values), _SCENARIO_HEAD)

@@ -14,17 +14,17 @@ from ddct_bringup.reproduction.calibration.fit_tables import (
     torque_table,
     value_cells,
 )
-from ddct_bringup.reproduction.calibration.parameters import Record
+from ddct_bringup.reproduction.calibration.record_types import CalibrationRecord, CheckRecord
 from ddct_plant.program.table import Table
 
 
-def all_tables(record: Record) -> dict[str, Table]:
+def all_tables(record: CalibrationRecord) -> dict[str, Table]:
     """Return every table of a whole calibration by name, in reading order."""
     end = number(record['score_window_s'][1])
     return {
         'parameters': parameter_table(record),
         'torque_and_slopes': torque_table(record),
-        'residuals': residual_table(record),
+        'residuals': residual_table(record['residuals']),
         'windows': optima_table('Optima by end of the score window', record['windows']),
         'starts': optima_table(f'Optima from every start, window to {end} s', record['starts']),
         'fit': fit_table(record),
@@ -35,17 +35,17 @@ def all_tables(record: Record) -> dict[str, Table]:
     }
 
 
-def check_tables(record: Record) -> list[Table]:
+def check_tables(record: CheckRecord) -> list[Table]:
     """Return the tables of a check of the frozen scenario."""
     moves = Table(
         'Local refit from the frozen scenario',
         ('parameter', 'move, % of its range'),
         [(name, signed(100.0 * share, 2)) for name, share in record['moved'].items()],
     )
-    return [residual_table(record), moves]
+    return [residual_table(record['residuals']), moves]
 
 
-def direction_table(record: Record) -> Table:
+def direction_table(record: CalibrationRecord) -> Table:
     """Return the singular values of the Jacobian with their directions."""
     analysis = record['identifiability']
     return Table(
@@ -60,7 +60,7 @@ def direction_table(record: Record) -> Table:
     )
 
 
-def correlation_table(record: Record) -> Table:
+def correlation_table(record: CalibrationRecord) -> Table:
     """Return the correlations of the parameters for a fixed C_m start."""
     return Table(
         'Correlation of the parameters, C_m start held',
@@ -76,7 +76,7 @@ def correlation_table(record: Record) -> Table:
     )
 
 
-def left_out_table(record: Record) -> Table:
+def left_out_table(record: CalibrationRecord) -> Table:
     """Return the predictions of the third row by fits to two rows."""
     return Table(
         'One row left out',
@@ -92,7 +92,7 @@ def left_out_table(record: Record) -> Table:
     )
 
 
-def assumption_table(record: Record) -> Table:
+def assumption_table(record: CalibrationRecord) -> Table:
     """Return the fits with other assumptions."""
     return Table(
         'Fits with other assumptions',
