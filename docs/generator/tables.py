@@ -16,8 +16,8 @@ from ddct_controllers.design.analysis.loops import continuous_loop, sampled_loop
 from ddct_controllers.design.analysis.worst_corner import PlantCorners
 from ddct_controllers.design.drawing.chart_style import chart_style
 from ddct_controllers.design.h_infinity.recipes import PRINTED_WEIGHTS, THESIS_SPECIFICATIONS
+from ddct_controllers.design.h_infinity.record_types import LoopsEntry
 from ddct_controllers.design.h_infinity.report import (
-    Record,
     design_record,
     loop_record,
     uncertainty_record,
@@ -85,15 +85,14 @@ def h_infinity_tables() -> Mapping[str, Table]:
     return design_tables(records, uncertainty_record()) | {'printed': loop_table(printed)}
 
 
-def _both_loops(controller: FactoredTransferFunction) -> Record:
+def _both_loops(controller: FactoredTransferFunction) -> LoopsEntry:
     """Return both loops of a printed controller, judged by the weights that the thesis prints."""
     sampled = sampled_loop(discretise_zoh(controller.to_state_space(), PERIOD_S))
     return {
-        name: loop_record(loop, PRINTED_WEIGHTS, THESIS_SPECIFICATIONS)
-        for name, loop in (
-            ('continuous_loop', continuous_loop(controller)),
-            ('sampled_loop', sampled),
-        )
+        'continuous_loop': loop_record(
+            continuous_loop(controller), PRINTED_WEIGHTS, THESIS_SPECIFICATIONS
+        ),
+        'sampled_loop': loop_record(sampled, PRINTED_WEIGHTS, THESIS_SPECIFICATIONS),
     }
 
 

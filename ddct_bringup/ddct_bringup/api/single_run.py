@@ -42,7 +42,8 @@ from ddct_controllers.registry import (
     controller_names,
     working_controllers,
 )
-from ddct_controllers.workflows.evidence import Evidence, frequency_evidence
+from ddct_controllers.workflows.evidence import frequency_evidence
+from ddct_controllers.workflows.evidence_types import ControllerEntry
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.base.options import options_of, require_known
 from ddct_plant.scenario.file import ScenarioFile
@@ -139,7 +140,7 @@ class Run:
         scores = scores_with_floors(self.scores, settings, run, tuple(metrics), limits)
         return replace(self, scores=scores)
 
-    def frequency(self) -> Evidence:
+    def frequency(self) -> ControllerEntry:
         """
         Return the controller's entry of `frequency.json`: margins of its sampled loop.
 

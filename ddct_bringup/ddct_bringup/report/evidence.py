@@ -9,12 +9,13 @@ It is read from the file that `compare` writes next to the bags, or computed.
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeGuard, cast
 
 from ddct_bringup.report.page_parts import number_text
 from ddct_bringup.scores.scored_recording import ScoredRecording
 from ddct_controllers.design.analysis.margins import LOOP_QUANTITIES
-from ddct_controllers.workflows.evidence import Evidence, actuator_conditions, frequency_evidence
+from ddct_controllers.workflows.evidence import actuator_conditions, frequency_evidence
+from ddct_controllers.workflows.evidence_types import ControllerEntry, LinearEntry, PointEntry
 from ddct_plant.base.errors import DdctError, ParameterError, require_number
 from ddct_plant.files.input_file import parse_json, read_text_file
 from ddct_plant.models.actuator import ActuatorParameters
@@ -32,15 +33,15 @@ class LoopEvidence:
 
     controller: str
     wear_gain: float
-    entry: Evidence | None
+    entry: ControllerEntry | None
     """Entry of `frequency_evidence`; None where there is none."""
     remark: str = ''
     """Reason why there is no entry, or `COMPUTED`."""
 
     @property
-    def point(self) -> Evidence | None:
+    def point(self) -> PointEntry | None:
         """Values of the loop at this wear gain."""
-        points = (self.entry or {}).get('wear') or ()
+        points = (self.entry and self.entry['wear']) or ()
         return next((point for point in points if point['wear_gain'] == self.wear_gain), None)
 
 
@@ -86,7 +87,7 @@ def _stored(run: ScoredRecording, controller: str, wear_gain: float) -> LoopEvid
     return LoopEvidence(controller, wear_gain, entry) if _is_whole(entry, wear_gain) else None
 
 
-def _has_actuator_of(run: ScoredRecording, conditions: Evidence) -> bool:
+def _has_actuator_of(run: ScoredRecording, conditions: Mapping[str, object]) -> bool:
     """Return whether a file has the run's actuator; older ones have the printed one."""
     if run.settings is None:
         return True
@@ -95,16 +96,16 @@ def _has_actuator_of(run: ScoredRecording, conditions: Evidence) -> bool:
     return found == actuator_conditions(run.settings.scenario.actuator)
 
 
-def _is_whole(entry: Any, wear_gain: float) -> bool:
+def _is_whole(entry: Any, wear_gain: float) -> TypeGuard[ControllerEntry]:
     """Return whether an entry of a file has all values that the page shows."""
     try:
         if entry['linear'] is not True:
             return entry['linear'] is False and not entry['wear']
         point = next(each for each in entry['wear'] if each['wear_gain'] == wear_gain)
-        interval = entry['stable_wear_gain'] or {}
+        interval = entry['stable_wear_gain']
         for value in (
-            *(point[figure.key] for figure in LOOP_QUANTITIES),
-            *(interval.get(end) for end in ('lowest', 'highest')),
+            *(point[quantity.key] for quantity in LOOP_QUANTITIES),
+            *((interval['lowest'], interval['highest']) if interval else ()),
             entry['corners']['sensitivity_peak'],
         ):
             if value is not None:
@@ -161,7 +162,7 @@ def loop_rows(evidence: Sequence[LoopEvidence]) -> list[LoopRow]:
     return [
         _row(each, each.entry, each.point)
         for each in evidence
-        if each.entry is not None and each.point is not None
+        if each.entry is not None and each.entry['linear'] is True and each.point is not None
     ]
 
 
@@ -177,16 +178,18 @@ def without_evidence(evidence: Sequence[LoopEvidence]) -> dict[str, list[str]]:
     return reasons
 
 
-def _row(evidence: LoopEvidence, entry: Evidence, point: Evidence) -> LoopRow:
-    interval = entry['stable_wear_gain'] or {}
+def _row(evidence: LoopEvidence, entry: LinearEntry, point: PointEntry) -> LoopRow:
+    interval = entry['stable_wear_gain']
+    ends = (interval['lowest'], interval['highest']) if interval else (None, None)
+    values = cast(Mapping[str, float | None], point)
     return LoopRow(
         loop=evidence,
         stable=point['stable'],
         cells=tuple(
-            (point[each.key], number_text(point[each.key], each.form)) for each in LOOP_QUANTITIES
+            (values[each.key], number_text(values[each.key], each.form))
+            for each in LOOP_QUANTITIES
         ),
-        stable_wear=f'{number_text(interval.get("lowest"), ".2f")} to '
-        f'{number_text(interval.get("highest"), ".2f")}',
+        stable_wear=' to '.join(number_text(end, '.2f') for end in ends),
         corner_peak=number_text(entry['corners']['sensitivity_peak'], '.2f'),
         corners_unstable=str(entry['corners']['unstable']),
     )

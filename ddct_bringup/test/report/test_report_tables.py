@@ -5,6 +5,7 @@
 import dataclasses
 import re
 from pathlib import Path
+from typing import Any
 
 import pytest
 from made_run import made_facts, made_run, times
@@ -106,7 +107,7 @@ def test_a_run_without_update_times_has_none():
 
 def test_evidence_is_shown_at_the_wear_gain_of_the_run():
     figures = {column.key: 1.0 for column in LOOP_QUANTITIES}
-    entry = {
+    entry: Any = {
         'linear': True,
         'wear': [
             {'wear_gain': 0.7, 'stable': True, **figures},
@@ -122,10 +123,11 @@ def test_evidence_is_shown_at_the_wear_gain_of_the_run():
 
 
 def test_controllers_without_evidence_are_named_with_the_reason():
+    not_linear: Any = {'linear': False, 'wear': None}
     evidence = [
-        LoopEvidence('mpc3', 0.7, {'linear': False, 'wear': None}),
-        LoopEvidence('mpc3', 1.0, {'linear': False, 'wear': None}),
-        LoopEvidence('mpc4', 1.0, {'linear': False, 'wear': None}),
+        LoopEvidence('mpc3', 0.7, not_linear),
+        LoopEvidence('mpc3', 1.0, not_linear),
+        LoopEvidence('mpc4', 1.0, not_linear),
         LoopEvidence('mine', 1.0, None, 'unknown controller'),
     ]
     assert loop_rows(evidence) == []

@@ -1,9 +1,8 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Robustness of the sampled loops of controllers, as values for JSON."""
+"""Robustness of the sampled loops of controllers: frequency-domain evidence for JSON."""
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
@@ -19,6 +18,14 @@ from ddct_controllers.design.analysis.worst_corner import (
 from ddct_controllers.interface import Controller
 from ddct_controllers.places import place_of_method
 from ddct_controllers.registry import Chosen, controller_label, make_controller
+from ddct_controllers.workflows.evidence_types import (
+    ActuatorConditions,
+    ControllerEntry,
+    CornersEntry,
+    FrequencyEvidence,
+    PointEntry,
+    WearInterval,
+)
 from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.lti import StateSpace
@@ -27,11 +34,8 @@ from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.scenario.file import scenario_digest
 from ddct_plant.scenario.settings import RunSettings
 
-Evidence = dict[str, Any]
-"""Plain values by name; a margin is None where nothing limits it, or the loop is unstable."""
 
-
-def frequency_evidence(controllers: Sequence[Chosen], settings: RunSettings) -> Evidence:
+def frequency_evidence(controllers: Sequence[Chosen], settings: RunSettings) -> FrequencyEvidence:
     """
     Return `conditions` and one entry per controller, in their order.
 
@@ -56,18 +60,26 @@ def frequency_evidence(controllers: Sequence[Chosen], settings: RunSettings) -> 
     }
 
 
-def actuator_conditions(actuator: ActuatorParameters) -> Evidence:
+def actuator_conditions(actuator: ActuatorParameters) -> ActuatorConditions:
     """Return the entries of `conditions` that describe the actuator."""
     return {'delay_s': actuator.delay_s, 'bandwidth_factor': actuator.bandwidth_factor}
 
 
-def _controller_evidence(chosen: Chosen, settings: RunSettings, corners: PlantCorners) -> Evidence:
+def _controller_evidence(
+    chosen: Chosen, settings: RunSettings, corners: PlantCorners
+) -> ControllerEntry:
     name = controller_label(chosen)
     controller = make_controller(chosen, settings)
     model = _linear_model(name, controller)
-    entry: Evidence = {'controller': name, 'linear': model is not None}
     if model is None:
-        return entry | dict.fromkeys(('nominal', 'stable_wear_gain', 'wear', 'corners'))
+        return {
+            'controller': name,
+            'linear': False,
+            'nominal': None,
+            'stable_wear_gain': None,
+            'wear': None,
+            'corners': None,
+        }
     scenario = settings.scenario
     try:
         wear = {
@@ -77,7 +89,9 @@ def _controller_evidence(chosen: Chosen, settings: RunSettings, corners: PlantCo
         worst = _corner_evidence(model, corners)
     except (DdctError, np.linalg.LinAlgError) as error:
         raise _unusable(name, controller, error) from error
-    return entry | {
+    return {
+        'controller': name,
+        'linear': True,
         'nominal': wear[1.0],
         'stable_wear_gain': _stable_wear_gain(wear[1.0]),
         'wear': list(wear.values()),
@@ -115,20 +129,20 @@ def loop_evidence(
     driveline: DrivelineParameters,
     wear_gain: float,
     actuator: ActuatorParameters,
-) -> Evidence:
+) -> PointEntry:
     """Return margins and driveline mode of the sampled loop at one wear gain."""
     loop = sampled_loop(controller, driveline, wear_gain, actuator)
     mode = driveline_mode(loop, driveline)
     return {
         'wear_gain': wear_gain,
-        **loop_margins(loop).plain(),
+        **loop_margins(loop).entry(),
         'driveline_mode_hz': mode.frequency_hz if mode else None,
         'driveline_mode_damping': mode.damping if mode else None,
         'driveline_mode_torsion_rpm': mode.torsion_amplitude_rpm if mode else None,
     }
 
 
-def _corner_evidence(controller: StateSpace, corners: PlantCorners) -> Evidence:
+def _corner_evidence(controller: StateSpace, corners: PlantCorners) -> CornersEntry:
     found = worst_corner(controller, corners)
     driveline = corners.parameters[found.index]
     worst = loop_evidence(controller, driveline, found.wear_gain, corners.actuator)
@@ -143,7 +157,7 @@ def _corner_evidence(controller: StateSpace, corners: PlantCorners) -> Evidence:
     }
 
 
-def _stable_wear_gain(nominal: Evidence) -> Evidence | None:
+def _stable_wear_gain(nominal: PointEntry) -> WearInterval | None:
     """Return the wear gains between which the loop is stable: its gain margins, both ways."""
     if not nominal['stable']:
         return None

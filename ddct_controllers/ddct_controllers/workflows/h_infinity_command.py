@@ -103,10 +103,10 @@ def run(options: argparse.Namespace) -> int:
     record = design_record(name, options.weights, specifications, design, PlantCorners())
     missing = shortfalls(record)
     tables = design_tables([record], uncertainty)
-    show(options, tables.values(), record | {'uncertainty': uncertainty, 'lacks': missing})
+    show(options, tables.values(), {**record, 'uncertainty': uncertainty, 'lacks': missing})
     if missing:
         _report_shortfall(options, name, '; '.join(missing))
-    origin = provenance(options.weights, specifications, design) | {'lacks': missing}
+    origin = {**provenance(options.weights, specifications, design), 'lacks': missing}
     discretisation = BILINEAR if weights.sampled else HOLD
     designed = DesignedController(name, design.cleaned, origin, discretisation)
     write_design(options, designed, specifications)

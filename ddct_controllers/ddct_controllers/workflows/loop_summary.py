@@ -50,7 +50,7 @@ def _stability(model: StateSpace, settings: RunSettings) -> str:
             f'UNSTABLE: {where} has {outside} {count} on or outside the unit circle{hint} '
             '(the run goes on)'
         )
-    margins = loop_margins(loop).plain()
+    margins = loop_margins(loop).entry()
     texts = (f'{words} {quantity.cell(margins)} {quantity.unit}' for words, quantity in _MARGINS)
     return f'{where} is stable: {", ".join(texts)}'
 

@@ -12,7 +12,12 @@ from ddct_controllers.registry import (
     require_known_controllers,
     working_controllers,
 )
-from ddct_controllers.workflows.evidence import Evidence, frequency_evidence
+from ddct_controllers.workflows.evidence import frequency_evidence
+from ddct_controllers.workflows.evidence_types import (
+    FrequencyEvidence,
+    LinearEntry,
+    linear_entries,
+)
 from ddct_plant.base.errors import DdctError
 from ddct_plant.program.command_line import complain, show_and_write
 from ddct_plant.program.table import Table, print_table, text_or_dash
@@ -58,7 +63,7 @@ def run(options: argparse.Namespace) -> int:
     report = partial(complain, 'ddct design')
     names = working_controllers(settings, report) if every else [options.controller]
     evidence = frequency_evidence(names, settings)
-    if not any(entry['linear'] for entry in evidence['controllers']):
+    if not linear_entries(evidence):
         raise DdctError(
             f'{options.controller} is not linear: it has no frequency response; '
             'choose a controller that has a linear_model, or all'
@@ -67,14 +72,14 @@ def run(options: argparse.Namespace) -> int:
     return 0
 
 
-def _show(evidence: Evidence, settings: RunSettings) -> None:
+def _show(evidence: FrequencyEvidence, settings: RunSettings) -> None:
     print_table(margins_table(evidence, settings))
     others = [entry['controller'] for entry in evidence['controllers'] if not entry['linear']]
     if others:
         print(f'Not linear, without a frequency response: {", ".join(others)}')
 
 
-def margins_table(evidence: Evidence, settings: RunSettings) -> Table:
+def margins_table(evidence: FrequencyEvidence, settings: RunSettings) -> Table:
     """Return a row of quantities for each linear controller of `frequency_evidence`."""
     scenario = settings.scenario
     changed = scenario_title(scenario.name, changed_values(scenario))
@@ -83,19 +88,18 @@ def margins_table(evidence: Evidence, settings: RunSettings) -> Table:
         *(quantity.heading for quantity in LOOP_QUANTITY_OF.values()),
         *('wear below', 'corner M_s', f'unstable of {evidence["conditions"]["corners"]}'),
     )
-    rows = [
-        _row(entry, settings.wear_gain) for entry in evidence['controllers'] if entry['linear']
-    ]
+    rows = [_row(entry, settings.wear_gain) for entry in linear_entries(evidence)]
     return Table(f'Sampled loop, wear gain {settings.wear_gain:g}, {changed}', headers, rows)
 
 
-def _row(entry: Evidence, wear_gain: float) -> list[str]:
+def _row(entry: LinearEntry, wear_gain: float) -> list[str]:
     point = next(point for point in entry['wear'] if point['wear_gain'] == wear_gain)
+    interval = entry['stable_wear_gain']
     return [
         entry['controller'],
         'yes' if point['stable'] else 'no',
         *(quantity.cell(point) for quantity in LOOP_QUANTITY_OF.values()),
-        text_or_dash((entry['stable_wear_gain'] or {}).get('highest'), '.2f'),
+        text_or_dash(interval and interval['highest'], '.2f'),
         LOOP_QUANTITY_OF['sensitivity_peak'].cell(entry['corners']),
         str(entry['corners']['unstable']),
     ]

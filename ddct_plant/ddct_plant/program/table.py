@@ -44,7 +44,7 @@ class Quantity:
         """Symbol and unit, as the heading of a column."""
         return self.symbol if self.unit == PURE else f'{self.symbol} {self.unit}'
 
-    def cell(self, values: Mapping[str, float | None]) -> str:
+    def cell(self, values: Mapping[str, object]) -> str:
         """Return the text of this quantity's value, from values by key."""
         return text_or_dash(values[self.key], self.form)
 
@@ -100,7 +100,7 @@ def table_of(title: str, columns: Sequence[Column[Row]], rows: Iterable[Row]) ->
     )
 
 
-def text_or_dash(value: Any, form: str) -> str:
+def text_or_dash(value: object, form: str) -> str:
     """Return a value in a format, or a dash for None: an undefined value or no limit."""
     return UNDEFINED if value is None else format(value, form)
 

@@ -7,7 +7,8 @@ The margins are ours: python-control finds those of a sampled loop by polynomial
 """
 
 import math
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
+from typing import TypedDict
 
 import numpy as np
 
@@ -69,6 +70,21 @@ DESIGN_QUANTITY_OF = LOOP_QUANTITY_OF | {
 """Quantities of a loop by their keys, with peaks as precise as a design's specifications."""
 
 
+class MarginEntry(TypedDict):
+    """Margins of a loop for JSON, which has no infinity: None where nothing limits one."""
+
+    stable: bool
+    gain_margin_db: float | None
+    gain_reduction_margin_db: float | None
+    phase_margin_deg: float | None
+    delay_margin_s: float | None
+    disk_margin: float | None
+    sensitivity_peak: float | None
+    complementary_peak: float | None
+    crossover_rad_s: float | None
+    bandwidth_rad_s: float | None
+
+
 @dataclass(frozen=True)
 class LoopMargins:
     """
@@ -94,9 +110,25 @@ class LoopMargins:
     bandwidth_rad_s: float | None = None
     """Bandwidth in rad/s; 0 when |T| is below 1/sqrt(2) at rest."""
 
-    def plain(self) -> dict[str, bool | float | None]:
-        """Return all by name for JSON, which has no infinity: None where nothing limits one."""
-        return {name: None if x == math.inf else x for name, x in asdict(self).items()}
+    def entry(self) -> MarginEntry:
+        """Return the entry for JSON."""
+        return {
+            'stable': self.stable,
+            'gain_margin_db': _limited(self.gain_margin_db),
+            'gain_reduction_margin_db': _limited(self.gain_reduction_margin_db),
+            'phase_margin_deg': _limited(self.phase_margin_deg),
+            'delay_margin_s': _limited(self.delay_margin_s),
+            'disk_margin': _limited(self.disk_margin),
+            'sensitivity_peak': _limited(self.sensitivity_peak),
+            'complementary_peak': _limited(self.complementary_peak),
+            'crossover_rad_s': _limited(self.crossover_rad_s),
+            'bandwidth_rad_s': _limited(self.bandwidth_rad_s),
+        }
+
+
+def _limited(margin: float | None) -> float | None:
+    """Return a margin, or None for one that nothing limits."""
+    return None if margin == math.inf else margin
 
 
 def loop_margins(loop: ContinuousLoop | StateSpace) -> LoopMargins:

@@ -1,9 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Results of `design h-infinity` as plain values."""
-
-import dataclasses
-from typing import Any
+"""Results of `design h-infinity` as a record for JSON and tables."""
 
 from ddct_controllers.design.analysis.closed_loop import rise_time_and_overshoot
 from ddct_controllers.design.analysis.loops import (
@@ -19,8 +16,15 @@ from ddct_controllers.design.analysis.worst_corner import (
     PlantCorners,
     worst_corner,
 )
+from ddct_controllers.design.function_entry import function_entry
 from ddct_controllers.design.h_infinity.design import HinfDesign
 from ddct_controllers.design.h_infinity.recipes import HinfWeights
+from ddct_controllers.design.h_infinity.record_types import (
+    DesignRecord,
+    LoopEntry,
+    Provenance,
+    UncertaintyRecord,
+)
 from ddct_controllers.design.h_infinity.uncertainty import (
     OMEGA,
     PRINTED_W_U,
@@ -34,7 +38,6 @@ from ddct_controllers.design.loop_shaping.specifications import TimeSpecificatio
 from ddct_controllers.design.state_space import factored_form
 from ddct_plant.linear.lti import StateSpace
 
-Record = dict[str, Any]
 _STEP_RISE_TIMES = 20.0
 """Length of the step responses in specified rise times."""
 
@@ -45,7 +48,7 @@ def design_record(
     specifications: TimeSpecifications,
     design: HinfDesign,
     corners: PlantCorners,
-) -> Record:
+) -> DesignRecord:
     """Return a design and its verified quantities, at `corners` over wear and parameters too."""
     found = design.synthesis
     worst = worst_corner(design.sampled, corners)
@@ -58,9 +61,9 @@ def design_record(
             'lower_bound': found.lower_bound,
             'gamma': found.gamma,
         },
-        'raw_controller': dataclasses.asdict(design.raw),
-        'controller': dataclasses.asdict(design.cleaned),
-        'pulse_transfer_function': dataclasses.asdict(factored_form(design.sampled)),
+        'raw_controller': function_entry(design.raw),
+        'controller': function_entry(design.cleaned),
+        'pulse_transfer_function': function_entry(factored_form(design.sampled)),
         'corners': {
             'corners': len(corners.plants),
             'unstable': worst.unstable_corners,
@@ -71,9 +74,11 @@ def design_record(
     }
 
 
-def shortfalls(record: Record) -> list[str]:
+def shortfalls(record: DesignRecord) -> list[str]:
     """Return the specifications that a design with its corners does not meet, empty if none."""
     specified, loop, corners = record['specifications'], record['sampled_loop'], record['corners']
+    if not loop['stable']:
+        return ['its sampled loop is unstable']
     found = []
     if loop['rise_time_s'] is None or loop['rise_time_s'] > specified['rise_time_s']:
         reached = 'never' if loop['rise_time_s'] is None else f'in {loop["rise_time_s"]:.3g} s'
@@ -92,7 +97,7 @@ def shortfalls(record: Record) -> list[str]:
     return found
 
 
-def provenance(recipe: str, specifications: TimeSpecifications, design: HinfDesign) -> Record:
+def provenance(recipe: str, specifications: TimeSpecifications, design: HinfDesign) -> Provenance:
     """Return the provenance of a design for the controller's file."""
     weights = design.weights
     w_s, w_t, effort = weights.sensitivity, weights.complementary, weights.effort
@@ -119,7 +124,7 @@ def provenance(recipe: str, specifications: TimeSpecifications, design: HinfDesi
             'back_off': weights.back_off,
         },
         'gamma': design.synthesis.gamma,
-        'cleaning': [dataclasses.asdict(step) for step in design.cleaning],
+        'cleaning': [{'rule': step.rule, 'removed': step.removed} for step in design.cleaning],
         'continuous_loop': None
         if weights.sampled
         else loop_record(continuous_loop(design.cleaned), weights, specifications),
@@ -129,7 +134,7 @@ def provenance(recipe: str, specifications: TimeSpecifications, design: HinfDesi
 
 def loop_record(
     loop: ContinuousLoop | StateSpace, weights: HinfWeights, specifications: TimeSpecifications
-) -> Record:
+) -> LoopEntry:
     """Return weighted norms, step response and margins of a loop; only `stable` if unstable."""
     if not closed_loop_stable(loop):
         return {'stable': False}
@@ -138,25 +143,30 @@ def loop_record(
         loop, _STEP_RISE_TIMES * specifications.rise_time_s
     )
     return {
-        **loop_margins(loop).plain(),
+        **loop_margins(loop).entry(),
         'rise_time_s': rise_time,
         'overshoot': exceeds,
         'meets_specifications': rise_time is not None
         and rise_time <= specifications.rise_time_s
         and exceeds <= specifications.overshoot,
-        'norms': dataclasses.asdict(norms),
+        'norms': {
+            'sensitivity': norms.sensitivity,
+            'complementary': norms.complementary,
+            'uncertainty': norms.uncertainty,
+            'stack': norms.stack,
+        },
     }
 
 
-def uncertainty_record() -> Record:
+def uncertainty_record() -> UncertaintyRecord:
     """Return the fitted and the printed W_u, and the shortfall of the printed one."""
     error = relative_error(plant_in_rpm(), wear_family(), OMEGA)
     largest = float(error.max())
     printed = abs(PRINTED_W_U.frequency_response(OMEGA))
     return {
         'largest_error': largest,
-        'fitted': dataclasses.asdict(fit_first_order(OMEGA, error)),
-        'printed': dataclasses.asdict(PRINTED_W_U),
+        'fitted': function_entry(fit_first_order(OMEGA, error)),
+        'printed': function_entry(PRINTED_W_U),
         'printed_falls_short_by': float((1.0 - printed / error).max()),
         'printed_falls_short_above_rad_s': shortfall_from_rad_s(PRINTED_W_U, largest),
     }

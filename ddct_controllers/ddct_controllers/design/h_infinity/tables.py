@@ -5,7 +5,13 @@
 from collections.abc import Mapping, Sequence
 
 from ddct_controllers.design.analysis.margins import DESIGN_QUANTITY_OF
-from ddct_controllers.design.h_infinity.report import Record
+from ddct_controllers.design.h_infinity.record_types import (
+    DesignRecord,
+    LoopEntry,
+    LoopsEntry,
+    SpecificationEntry,
+    UncertaintyRecord,
+)
 from ddct_controllers.design.state_space import factors_text
 from ddct_plant.program.table import Table, text_or_dash
 
@@ -21,8 +27,21 @@ _LOOP_HEADERS = (
     *(quantity.heading for quantity in _LOOP_QUANTITIES),
 )
 
+_WEIGHTS = (
+    ('K', 'low_frequency_gain', '.4g'),
+    ('w_1 rad/s', 'sensitivity_corner_rad_s', '.3f'),
+    ('epsilon rad/s', 'offset_rad_s', '.4f'),
+    ('w_2 rad/s', 'bandwidth_rad_s', '.4g'),
+    ('zeta of W_t', 'complementary_damping', '.4g'),
+    ('effort N m/rpm', 'effort_n_m_per_rpm', '.4g'),
+    ('from rad/s', 'effort_corner_rad_s', '.4g'),
+)
+"""Heading, key of `WeightEntry` and format of each number of the weights."""
 
-def design_tables(records: Sequence[Record], uncertainty: Record) -> dict[str, Table]:
+
+def design_tables(
+    records: Sequence[DesignRecord], uncertainty: UncertaintyRecord
+) -> dict[str, Table]:
     """Return the tables of designs for one specification, by their names on the page."""
     return {
         'specifications': _specification_table(records[0]['specifications']),
@@ -44,7 +63,7 @@ def design_tables(records: Sequence[Record], uncertainty: Record) -> dict[str, T
     }
 
 
-def loop_table(loops: Mapping[str, Record]) -> Table:
+def loop_table(loops: Mapping[str, LoopsEntry]) -> Table:
     """Return norms, step response and margins of the loops of named controllers."""
     return Table(
         'Loops: norms by the weights, step response and whether it meets both, margins',
@@ -61,7 +80,7 @@ def loop_table(loops: Mapping[str, Record]) -> Table:
     )
 
 
-def _specification_table(wanted: Record) -> Table:
+def _specification_table(wanted: SpecificationEntry) -> Table:
     return Table(
         'Specifications, translated by the second-order prototype',
         ('t_r s', 's^ %', 'zeta', 'S_p', 'T_p', 'w_n rad/s'),
@@ -78,24 +97,15 @@ def _specification_table(wanted: Record) -> Table:
     )
 
 
-def _weight_table(records: Sequence[Record]) -> Table:
-    columns = (
-        ('K', 'low_frequency_gain', '.4g'),
-        ('w_1 rad/s', 'sensitivity_corner_rad_s', '.3f'),
-        ('epsilon rad/s', 'offset_rad_s', '.4f'),
-        ('w_2 rad/s', 'bandwidth_rad_s', '.4g'),
-        ('zeta of W_t', 'complementary_damping', '.4g'),
-        ('effort N m/rpm', 'effort_n_m_per_rpm', '.4g'),
-        ('from rad/s', 'effort_corner_rad_s', '.4g'),
-    )
+def _weight_table(records: Sequence[DesignRecord]) -> Table:
     return Table(
         'Weights',
-        ('controller', 'recipe', *(heading for heading, _, _ in columns), 'hold, delay in plant'),
+        ('controller', 'recipe', *(heading for heading, _, _ in _WEIGHTS), 'hold, delay in plant'),
         [
             (
                 record['name'],
                 record['weights']['recipe'],
-                *(text_or_dash(record['weights'][key], form) for _, key, form in columns),
+                *_weight_cells(record['weights']),
                 'yes' if record['weights']['hold_and_delay_in_plant'] else 'no',
             )
             for record in records
@@ -103,7 +113,11 @@ def _weight_table(records: Sequence[Record]) -> Table:
     )
 
 
-def _uncertainty_table(found: Record) -> Table:
+def _weight_cells(weights: Mapping[str, object]) -> list[str]:
+    return [text_or_dash(weights[key], form) for _, key, form in _WEIGHTS]
+
+
+def _uncertainty_table(found: UncertaintyRecord) -> Table:
     above = found['printed_falls_short_above_rad_s']
     short = f'by {100.0 * found["printed_falls_short_by"]:.2f} % above {above:.3g} rad/s'
     return Table(
@@ -122,7 +136,7 @@ def _uncertainty_table(found: Record) -> Table:
     )
 
 
-def _synthesis_table(records: Sequence[Record]) -> Table:
+def _synthesis_table(records: Sequence[DesignRecord]) -> Table:
     return Table(
         'Synthesis: norms of the closed loop with the weights',
         ('controller', 'method', 'optimum', 'lower bound', 'taken'),
@@ -139,7 +153,7 @@ def _synthesis_table(records: Sequence[Record]) -> Table:
     )
 
 
-def _controller_table(records: Sequence[Record]) -> Table:
+def _controller_table(records: Sequence[DesignRecord]) -> Table:
     return Table(
         'Controllers in N m/rpm; the sampled design is discretised by the bilinear transform',
         ('controller', 'form', 'gain', 'numerator', 'denominator'),
@@ -147,21 +161,21 @@ def _controller_table(records: Sequence[Record]) -> Table:
             (
                 record['name'],
                 f'G_c({variable})',
-                f'{record[key]["gain"]:.4g}',
-                factors_text(record[key]['numerator'], variable, digits),
-                factors_text(record[key]['denominator'], variable, digits),
+                f'{function["gain"]:.4g}',
+                factors_text(function['numerator'], variable, digits),
+                factors_text(function['denominator'], variable, digits),
             )
             for record in records
             # With 4 digits in z a slow pole would read as an integrator.
-            for variable, digits, key in (
-                ('s', 4, 'controller'),
-                ('z', 5, 'pulse_transfer_function'),
+            for variable, digits, function in (
+                ('s', 4, record['controller']),
+                ('z', 5, record['pulse_transfer_function']),
             )
         ],
     )
 
 
-def _corner_table(records: Sequence[Record]) -> Table:
+def _corner_table(records: Sequence[DesignRecord]) -> Table:
     return Table(
         'Worst of wear 0.7 to 1.3 and all driveline parameters +-20 %, sampled loop',
         ('controller', 'corners', 'unstable', 'M_s', 'K_usura', 'at'),
@@ -179,7 +193,7 @@ def _corner_table(records: Sequence[Record]) -> Table:
     )
 
 
-def _loop_cells(loop: Record) -> tuple[str, ...]:
+def _loop_cells(loop: LoopEntry) -> tuple[str, ...]:
     if not loop['stable']:
         return ('unstable', *[''] * (len(_LOOP_HEADERS) - 3))
     norms = loop['norms']

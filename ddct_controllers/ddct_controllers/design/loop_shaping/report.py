@@ -1,9 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Results of `design loop-shaping` as plain values."""
-
-import dataclasses
-from typing import Any
+"""Results of `design loop-shaping` as records for JSON and tables."""
 
 from ddct_controllers.design.analysis.closed_loop import rise_time_and_overshoot
 from ddct_controllers.design.analysis.loops import (
@@ -15,6 +12,7 @@ from ddct_controllers.design.analysis.loops import (
     sampled_loop,
 )
 from ddct_controllers.design.analysis.margins import loop_margins, unstable_poles
+from ddct_controllers.design.function_entry import function_entry
 from ddct_controllers.design.loop_shaping.design import (
     NETWORK_SPECIFICATIONS,
     PLACEMENT_CROSSOVER_RAD_S,
@@ -24,6 +22,14 @@ from ddct_controllers.design.loop_shaping.design import (
     placement,
     with_crossover,
 )
+from ddct_controllers.design.loop_shaping.record_types import (
+    ContourEntry,
+    DesignRecord,
+    LoopEntry,
+    PlacementEntry,
+    Provenance,
+    ThesisRecord,
+)
 from ddct_controllers.design.loop_shaping.search import LoopShapingDesign
 from ddct_controllers.design.loop_shaping.verification import Contour, contours
 from ddct_controllers.printed import LOOP_SHAPING_CONTROLLERS
@@ -32,43 +38,41 @@ from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
 from ddct_plant.linear.sampling import discretise_zoh
 from ddct_plant.models.parameters import DrivelineParameters
 
-Record = dict[str, Any]
 G_C1, G_C2 = LOOP_SHAPING_CONTROLLERS['ls2'], LOOP_SHAPING_CONTROLLERS['ls7']
 """Controllers of equations (2.1) and (2.2)."""
 _STEP_DURATION_S = 6.0
 
 
-def thesis_record() -> Record:
+def thesis_record() -> ThesisRecord:
     """Return the steps to G_c1 and to G_c2, and both loops in three versions."""
     return {
         'network_steps': [
-            {'step': step, **_loop_record(continuous_loop(controller))}
+            {'step': step, **_loop_entry(continuous_loop(controller))}
             for step, controller in network_steps().items()
         ],
         'placement': [
-            {'version': version, **_placement_record(controller)}
-            for version, controller in _placements().items()
+            _placement_entry(version, controller) for version, controller in _placements().items()
         ],
         'loops': [
-            {'controller': name, 'loop': label, **_loop_record(loop)}
+            {'controller': name, 'loop': label, **_loop_entry(loop)}
             for name, controller in (('G_c1', G_C1), ('G_c2', G_C2))
             for label, loop in _versions(controller).items()
         ],
     }
 
 
-def design_record(name: str, design: LoopShapingDesign) -> Record:
+def design_record(name: str, design: LoopShapingDesign) -> DesignRecord:
     """Return a design and its verified quantities."""
     found = design.verification
     return {
         'name': name,
-        'controller': dataclasses.asdict(design.controller),
+        'controller': function_entry(design.controller),
         **provenance(design),
-        'contours': [_contour_record(contour) for contour in found.contours],
+        'contours': [_contour_entry(contour) for contour in found.contours],
     }
 
 
-def provenance(design: LoopShapingDesign) -> Record:
+def provenance(design: LoopShapingDesign) -> Provenance:
     """Return the provenance of a design for the controller's file."""
     found = design.verification
     specifications = found.specifications
@@ -86,7 +90,7 @@ def provenance(design: LoopShapingDesign) -> Record:
         'sampled_loop': {
             'rise_time_s': found.rise_time_s,
             'overshoot': found.overshoot,
-            **found.margins.plain(),
+            **found.margins.entry(),
             'stable_with_wear_gain': {
                 str(gain): stable
                 for gain, stable in zip(WEAR_RANGE, found.stable_when_worn, strict=True)
@@ -106,12 +110,13 @@ def _placements() -> dict[str, FactoredTransferFunction]:
     }
 
 
-def _placement_record(controller: FactoredTransferFunction) -> Record:
+def _placement_entry(version: str, controller: FactoredTransferFunction) -> PlacementEntry:
     loop = continuous_loop(controller)
     rise_time_s, overshoot = rise_time_and_overshoot(loop, _STEP_DURATION_S)
     margins = loop_margins(loop)
     return {
-        **dataclasses.asdict(controller),
+        'version': version,
+        **function_entry(controller),
         'crossover_rad_s': margins.crossover_rad_s,
         'complementary_peak': margins.complementary_peak,
         'rise_time_s': rise_time_s,
@@ -128,14 +133,21 @@ def _versions(controller: FactoredTransferFunction) -> dict[str, ContinuousLoop 
     }
 
 
-def _loop_record(loop: ContinuousLoop | StateSpace) -> Record:
+def _loop_entry(loop: ContinuousLoop | StateSpace) -> LoopEntry:
     found = contours(LoopCurve(loop), NETWORK_SPECIFICATIONS)
     return {
         'unstable_poles': unstable_poles(loop),
-        **loop_margins(loop).plain(),
-        'contours': [_contour_record(contour) for contour in found],
+        **loop_margins(loop).entry(),
+        'contours': [_contour_entry(contour) for contour in found],
     }
 
 
-def _contour_record(contour: Contour) -> Record:
-    return dataclasses.asdict(contour) | {'respected': contour.respected}
+def _contour_entry(contour: Contour) -> ContourEntry:
+    return {
+        'name': contour.name,
+        'level': contour.level,
+        'peak': contour.peak,
+        'peak_rad_s': contour.peak_rad_s,
+        'inside_rad_s': contour.inside_rad_s,
+        'respected': contour.respected,
+    }

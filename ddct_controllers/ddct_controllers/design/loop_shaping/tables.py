@@ -5,7 +5,13 @@
 from collections.abc import Sequence
 
 from ddct_controllers.design.analysis.margins import DESIGN_QUANTITY_OF
-from ddct_controllers.design.loop_shaping.report import Record
+from ddct_controllers.design.loop_shaping.record_types import (
+    ContourEntry,
+    DesignRecord,
+    LoopEntry,
+    PlacementEntry,
+    ThesisRecord,
+)
 from ddct_controllers.design.loop_shaping.specifications import (
     TimeSpecifications,
     rise_time_crossover_product,
@@ -31,7 +37,7 @@ _TRANSLATED = (
 )
 
 
-def thesis_tables(record: Record) -> dict[str, Table]:
+def thesis_tables(record: ThesisRecord) -> dict[str, Table]:
     """Return the tables of `thesis_record` by their names in docs/controllers/loop_shaping.md."""
     return {
         'specifications': _specification_table(),
@@ -49,16 +55,17 @@ def thesis_tables(record: Record) -> dict[str, Table]:
     }
 
 
-def design_tables(record: Record) -> tuple[Table, Table]:
+def design_tables(record: DesignRecord) -> tuple[Table, Table]:
     """Return the tables of `design_record`: specified and reached quantities, and G_c(s)."""
     wanted, found = record['specifications'], record['sampled_loop']
+    overshoot = None if found['overshoot'] is None else 100.0 * found['overshoot']
     peaks = {contour['name']: contour for contour in record['contours']}
     quantities = Table(
         f'{record["name"]}: {record["structure"]}, {record["integrators"]} integrator(s)',
         ('quantity', 'specified', 'sampled loop', 'unit'),
         [
             _row('rise time', wanted['rise_time_s'], found['rise_time_s'], 's'),
-            _row('overshoot', 100.0 * wanted['overshoot'], 100.0 * found['overshoot'], '%'),
+            _row('overshoot', 100.0 * wanted['overshoot'], overshoot, '%'),
             _row(_peak_name(peaks['S']), wanted['sensitivity_peak'], peaks['S']['peak'], '1'),
             _row(_peak_name(peaks['T']), wanted['complementary_peak'], peaks['T']['peak'], '1'),
             _row('crossover', wanted['crossover_rad_s'], found['crossover_rad_s'], 'rad/s'),
@@ -101,7 +108,7 @@ def _specification_table() -> Table:
     )
 
 
-def _placement_table(placements: Sequence[Record]) -> Table:
+def _placement_table(placements: Sequence[PlacementEntry]) -> Table:
     lines = {
         'gain N m/rpm': [f'{one["gain"]:.6f}' for one in placements],
         'zero rad/s': [f'{one["numerator"][0]:.4f}' for one in placements],
@@ -119,7 +126,7 @@ def _placement_table(placements: Sequence[Record]) -> Table:
     )
 
 
-def _peak_name(contour: Record) -> str:
+def _peak_name(contour: ContourEntry) -> str:
     return f'max |{contour["name"]}|' + ('' if contour['respected'] else ', crosses its curve')
 
 
@@ -127,7 +134,7 @@ def _row(name: str, specified: float | None, found: float | None, unit: str) -> 
     return (name, text_or_dash(specified, '.3g'), text_or_dash(found, '.3g'), unit)
 
 
-def _loop_cells(row: Record) -> tuple[str, ...]:
+def _loop_cells(row: LoopEntry) -> tuple[str, ...]:
     kept_out = {contour['name']: contour['respected'] for contour in row['contours']}
     return (
         str(row['unstable_poles']),

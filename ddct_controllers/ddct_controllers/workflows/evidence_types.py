@@ -1,0 +1,109 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Frequency-domain evidence, `frequency.json`: one type for each object of the JSON."""
+
+from collections.abc import Mapping, Sequence
+from typing import Literal, TypedDict
+
+from ddct_controllers.design.analysis.margins import MarginEntry
+
+
+class ActuatorConditions(TypedDict):
+    """Actuator of the loops."""
+
+    delay_s: float
+    bandwidth_factor: float
+
+
+class EvidenceConditions(ActuatorConditions):
+    """Conditions that all loops of the evidence share."""
+
+    scenario: str
+    """Name of the scenario."""
+    scenario_digest: str
+    period_s: float
+    """Sampling period in s."""
+    wear_gain_range: Sequence[float]
+    """Lowest and highest wear gain of the corners."""
+    corners: int
+    """Number of corners of the driveline."""
+    corner_spread: float
+    """Relative change of each parameter at a corner."""
+    corner_parameters: Sequence[str]
+    """Names of the parameters that differ between corners."""
+
+
+class PointEntry(MarginEntry):
+    """Sampled loop at one wear gain: its margins, and the mode of the driveline."""
+
+    wear_gain: float
+    driveline_mode_hz: float | None
+    """Frequency in Hz; None, as the other two, for a loop without an oscillating pole."""
+    driveline_mode_damping: float | None
+    driveline_mode_torsion_rpm: float | None
+
+
+class WorstCornerEntry(PointEntry):
+    """Sampled loop at the worst corner."""
+
+    factors: Mapping[str, float]
+    """Multiples of the nominal parameters, by name."""
+
+
+class CornersEntry(TypedDict):
+    """Sampled loops at all corners of the driveline, over wear."""
+
+    unstable: int
+    """Number of corners that are unstable at some wear gain."""
+    sensitivity_peak: float | None
+    """Largest peak M_s; None where a corner is unstable."""
+    least_driveline_mode_damping: float | None
+    worst: WorstCornerEntry
+
+
+class WearInterval(TypedDict):
+    """Wear gains between which the loop is stable."""
+
+    lowest: float
+    highest: float | None
+    """Highest wear gain; None where nothing limits it."""
+
+
+class LinearEntry(TypedDict):
+    """Evidence of one linear controller."""
+
+    controller: str
+    linear: Literal[True]
+    nominal: PointEntry
+    """Loop of a new clutch."""
+    stable_wear_gain: WearInterval | None
+    """Interval of wear gains; None where the loop of a new clutch is unstable."""
+    wear: list[PointEntry]
+    """Loops by rising wear gain."""
+    corners: CornersEntry
+
+
+class NotLinearEntry(TypedDict):
+    """Entry of a controller that is not linear, which has no evidence."""
+
+    controller: str
+    linear: Literal[False]
+    nominal: None
+    stable_wear_gain: None
+    wear: None
+    corners: None
+
+
+ControllerEntry = LinearEntry | NotLinearEntry
+
+
+class FrequencyEvidence(TypedDict):
+    """Evidence of several controllers, in their order."""
+
+    conditions: EvidenceConditions
+    controllers: list[ControllerEntry]
+
+
+def linear_entries(evidence: FrequencyEvidence) -> list[LinearEntry]:
+    """Return the entries of the linear controllers."""
+    return [entry for entry in evidence['controllers'] if entry['linear'] is True]
