@@ -4,7 +4,6 @@
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -27,16 +26,16 @@ from ddct_controllers.design.drawing.chart_style import (
     headed,
     save_chart,
 )
-from ddct_controllers.design.drawing.line_styles import GREY, controller_style
+from ddct_controllers.design.drawing.line_styles import GREY, LineStyle, controller_style
 from ddct_controllers.registry import controller_label
 from ddct_plant.program.table import Quantity
 
 _WIDTH_IN, _PANEL_IN, _LANE_IN = 8.0, 2.3, 0.32
 _MAP_IN, _ACROSS = 3.0, 3
 _LEGEND_COLUMNS = 6
-_MARK = {'linestyle': 'none', 'markersize': 7.0, 'markeredgewidth': 1.8, 'zorder': 5}
-_CROSS: dict[str, Any] = {**_MARK, 'marker': 'x'}
-_RING: dict[str, Any] = {**_MARK, 'marker': 'o', 'markerfacecolor': 'none'}
+_MARK: LineStyle = {'linestyle': 'none', 'markersize': 7.0, 'markeredgewidth': 1.8, 'zorder': 5}
+_CROSS: LineStyle = {**_MARK, 'marker': 'x'}
+_RING: LineStyle = {**_MARK, 'marker': 'o', 'markerfacecolor': 'none'}
 _MARKS_OF_RUNS = ((_CROSS, 'other than engaged'), (_RING, 'engaged, no value'))
 _MARGIN = 0.08
 """Margin above and below the values shown, as a share of their range."""
@@ -82,9 +81,15 @@ def sweep_figure(sweep: Sweep, runs: Sequence[SweptRun], metrics: Sequence[Quant
     drawing.legend(*lines, ncols=_LEGEND_COLUMNS, loc='outside upper center')
     _draw_lanes(panels[-1], places, names, states)
     label_values(sweep.axes[0], panels[-1].xaxis)
-    marks = [Line2D([], [], color=GREY, label=meaning, **mark) for mark, meaning in _MARKS_OF_RUNS]
+    marks = [_legend_mark(mark, meaning) for mark, meaning in _MARKS_OF_RUNS]
     state_legend(drawing, {*states.flat}, marks)
     return drawing
+
+
+def _legend_mark(mark: LineStyle, meaning: str) -> Line2D:
+    line = Line2D([], [], color=GREY, label=meaning)
+    line.set(**mark)
+    return line
 
 
 def _draw_metric(

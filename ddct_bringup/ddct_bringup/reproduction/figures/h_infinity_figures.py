@@ -3,7 +3,6 @@
 """Figures 3.3 and 3.5 to 3.9: the uncertainty, S_n and T_n with their bounds, and G_c's loop."""
 
 from functools import cache, partial
-from typing import Any
 
 import numpy as np
 import scipy
@@ -21,7 +20,7 @@ from ddct_controllers.design.analysis.loops import (
     plant_in_rpm,
 )
 from ddct_controllers.design.drawing.charts import draw_bound
-from ddct_controllers.design.drawing.line_styles import BLACK, BOUND_LINE, SKY
+from ddct_controllers.design.drawing.line_styles import BLACK, BOUND_LINE, SKY, LineStyle
 from ddct_controllers.design.h_infinity.recipes import PRINTED_WEIGHTS, THESIS_SPECIFICATIONS
 from ddct_controllers.design.h_infinity.uncertainty import (
     PRINTED_W_U,
@@ -35,7 +34,7 @@ from ddct_plant.linear.lti import FactoredTransferFunction
 
 _G_C = H_INFINITY_CONTROLLERS['hinf1']
 _W_S, _W_T = PRINTED_WEIGHTS.sensitivity, PRINTED_WEIGHTS.complementary
-_ERROR_LINES: tuple[dict[str, Any], ...] = (
+_ERROR_LINES: tuple[LineStyle, ...] = (
     {'color': SKY, 'linestyle': '-', 'linewidth': 4.0},
     {'color': BLACK, 'linestyle': ':'},
 )

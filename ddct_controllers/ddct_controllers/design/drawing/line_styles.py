@@ -32,6 +32,8 @@ class LineStyle(TypedDict, total=False):
     markevery: tuple[float, float] | None
     """First mark and distance of marks, as shares of the chart's diagonal; None for each point."""
     markerfacecolor: str
+    markeredgewidth: float
+    """Width of the edge of a mark in points."""
     zorder: float
     """Order of drawing; a larger one is in front."""
     transform: Transform
