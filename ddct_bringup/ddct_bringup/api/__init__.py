@@ -12,7 +12,8 @@ subclass `ParameterError`. Nothing is printed; scenario values that were adjuste
 
 from ddct_bringup.api.campaigns import CampaignResults, campaign, read_campaign, sweep
 from ddct_bringup.api.figures import figure
-from ddct_bringup.api.single_run import Run, compare, load, run, table
+from ddct_bringup.api.result import Run, table
+from ddct_bringup.api.run_and_load import compare, load, run
 from ddct_bringup.scores.document import read_scores
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_controllers.interface import Command, Controller, ControllerContext, Measurement

@@ -6,7 +6,8 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from ddct_bringup.api.single_run import base_from, controllers_from, pandas_module, plain
+from ddct_bringup.api.arguments import base_from, controllers_from, plain
+from ddct_bringup.api.result import pandas_module
 from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.columns import INDEX
 from ddct_bringup.campaign.conduct import carry_out

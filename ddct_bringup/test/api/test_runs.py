@@ -17,7 +17,7 @@ import pytest
 from refusals import refused
 
 from ddct_bringup import api
-from ddct_bringup.api import single_run
+from ddct_bringup.api import run_and_load
 from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.bag.trajectory_bag import write_trajectory
 from ddct_bringup.programs.bringup import main as bringup
@@ -188,8 +188,8 @@ def test_the_nodes_of_all_compared_controllers_are_forked_by_one_warm_parent(mon
         parents.append(parent)
         execute(replace(plan, layout='headless'), folder)
 
-    execute = single_run.execute
-    monkeypatch.setattr(single_run, 'execute', without_nodes)
+    execute = run_and_load.execute
+    monkeypatch.setattr(run_and_load, 'execute', without_nodes)
     compared = api.compare('pi,ls8', duration=SHORT_S, headless=False)
     assert [each.controller for each in compared] == ['pi', 'ls8']
     first, second = parents
@@ -305,7 +305,7 @@ def test_a_run_that_is_not_valid_leaves_a_good_result_as_it_is(tmp_path, monkeyp
         info = {'load': {'version': '0.1.0'}}
         write_trajectory(run_headless(settings, 'ls8'), folder, plan.name, data, info)
 
-    monkeypatch.setattr(single_run, 'execute', half)
+    monkeypatch.setattr(run_and_load, 'execute', half)
     bad = api.run('ls8', duration=SHORT_S, out=tmp_path, overwrite=True)
     assert not bad.valid
     assert 'ended early' in bad.reason

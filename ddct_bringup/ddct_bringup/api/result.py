@@ -1,0 +1,141 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""A run as scripts and notebooks get it: its signals, metrics and verdict."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from ddct_bringup.bag.reader import Recording
+from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.metrics.metric import Metrics
+from ddct_bringup.run.timing_and_failure import RunTiming
+from ddct_bringup.scores.csv_text import score_row, signal_columns
+from ddct_bringup.scores.document import run_entry, verdict_entry
+from ddct_bringup.scores.floors import scores_with_floors
+from ddct_bringup.scores.scored_run import ScoredRun
+from ddct_bringup.verdict.limits import Limits
+from ddct_controllers.registry import (
+    Chosen,
+)
+from ddct_controllers.workflows.evidence import frequency_evidence
+from ddct_controllers.workflows.evidence_types import ControllerEntry
+from ddct_plant.base.errors import DdctError
+from ddct_plant.scenario.settings import RunSettings
+
+
+@dataclass(frozen=True, repr=False)
+class Run:
+    """One run: simulated, recorded from the graph, or loaded from a bag."""
+
+    recording: Recording
+    scores: ScoredRun
+    """Facts, metrics and verdict of the run."""
+    timing: RunTiming | None
+    """Wall-clock times and counts; None of a bag without `timing.json`."""
+    chosen: Chosen
+    """Controller, as the registry accepts it."""
+
+    def __repr__(self) -> str:
+        """Return one line on the run, which a notebook prints after a cell that ends with it."""
+        facts = self.recording.facts
+        counts = 'valid' if self.valid else f'not valid: {self.reason}'
+        verdict = self.scores.verdict
+        return (
+            f'<Run of {self.controller}: {facts.scenario}, {facts.duration_s:g} s, wear gain '
+            f'{facts.wear_gain:g}, {verdict.state}, limits {verdict.limits}, '
+            f'{counts}>'
+        )
+
+    @property
+    def controller(self) -> str:
+        """Name of the controller."""
+        return self.recording.facts.controller
+
+    @property
+    def path(self) -> Path | None:
+        """Path of the MCAP file; None of a run that was not kept."""
+        return self.recording.path if self.recording.path.is_file() else None
+
+    @property
+    def settings(self) -> RunSettings:
+        """Settings of the run; DdctError for a bag whose scenario this version cannot build."""
+        if self.recording.settings is None:
+            raise DdctError(f'{self.scores.bag}: its scenario cannot be built by this version')
+        return self.recording.settings
+
+    @property
+    def trajectory(self) -> Trajectory:
+        """Trajectory of the run: every signal as an array, all SI."""
+        return self.recording.trajectory
+
+    @property
+    def entry(self) -> Mapping[str, Any]:
+        """Entry of the run in `scores.json`."""
+        return run_entry(self.scores)
+
+    @property
+    def metrics(self) -> Metrics:
+        """Metrics of `scores.json` by name; None for an undefined one."""
+        return self.scores.metrics
+
+    @property
+    def verdict(self) -> Mapping[str, Any]:
+        """Verdict with `state`, `limits` and `criteria`, as in docs/use/verdict.md."""
+        return verdict_entry(self.scores.verdict)
+
+    @property
+    def valid(self) -> bool:
+        """Whether the run is valid: recorded as planned, and finite."""
+        return self.scores.valid
+
+    @property
+    def reason(self) -> str:
+        """Reason of a run that is not valid; empty for a valid one."""
+        return self.scores.reason
+
+    def dataframe(self) -> Any:
+        """Return the signals as a pandas DataFrame: a row per 10 ms, indexed by `time_s`."""
+        return pandas_module().DataFrame(signal_columns(self.trajectory)).set_index('time_s')
+
+    @property
+    def over_floor(self) -> Mapping[str, float | None]:
+        """Metric over the least at the run's own lock time, by name; None where it has none."""
+        return self.scores.over_floor
+
+    def with_floors(self, metrics: Iterable[str] | None, limits: Limits) -> 'Run':
+        """Return the run with the floors of metrics beside its scores; itself for None."""
+        if metrics is None or self.recording.settings is None:
+            return self
+        settings, run = self.recording.settings, self.recording.trajectory
+        scores = scores_with_floors(self.scores, settings, run, tuple(metrics), limits)
+        return replace(self, scores=scores)
+
+    def frequency(self) -> ControllerEntry:
+        """
+        Return the controller's entry of `frequency.json`: margins of its sampled loop.
+
+        Its `linear` is false, and the rest None, for a controller without a frequency response.
+        Raise DdctError where the controller of a loaded run cannot be found here.
+        """
+        return frequency_evidence([self.chosen], self.settings)['controllers'][0]
+
+
+def table(runs: Run | Iterable[Run]) -> Any:
+    """Return a pandas DataFrame with a row per run: its facts, metrics and verdict."""
+    return pandas_module().DataFrame([score_row(each.scores) for each in as_runs(runs)])
+
+
+def as_runs(runs: Run | Iterable[Run]) -> list[Run]:
+    """Return a list of runs, also of a single run."""
+    return [runs] if isinstance(runs, Run) else list(runs)
+
+
+def pandas_module() -> Any:
+    """Return pandas, which is an extra; raise DdctError without it."""
+    try:
+        import pandas
+    except ImportError as error:
+        raise DdctError(f'a DataFrame needs pandas ({error}): pip install pandas') from error
+    return pandas

@@ -1,0 +1,168 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Run controllers in the closed loop from Python, or load bags."""
+
+import tempfile
+import threading
+import warnings
+from collections.abc import Iterable, Mapping
+from contextlib import nullcontext
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from ddct_bringup.api.arguments import controllers_from, metrics_of_floors, ready_settings
+from ddct_bringup.api.result import Run
+from ddct_bringup.bag.reader import read_bag
+from ddct_bringup.bag.writer import bag_file
+from ddct_bringup.processes.warm_parent import WarmParent
+from ddct_bringup.run.execution import execute, parent_for
+from ddct_bringup.run.output_folder import run_folder
+from ddct_bringup.run.plan import RunPlan
+from ddct_bringup.scores.floors import NONE
+from ddct_bringup.scores.scored_recording import (
+    ScoredRecording,
+    run_and_score,
+    score_recording,
+    simulate_and_score,
+)
+from ddct_bringup.verdict.limits import Limits, load_limits
+from ddct_controllers.from_python import chosen_from
+from ddct_controllers.registry import (
+    Chosen,
+    controller_label,
+    controller_names,
+    working_controllers,
+)
+
+_ONE_GRAPH = threading.Lock()
+"""Lock of the one graph of this process: its ROS domain is in the environment of all threads."""
+
+
+def run(
+    controller: Any = 'pi',
+    *,
+    name: str = '',
+    scenario: str | Path = 'thesis',
+    set: Mapping[str, Any] | None = None,
+    duration: float | None = None,
+    headless: bool = True,
+    out: str | Path | None = None,
+    overwrite: bool = False,
+    limits: str | Path | None = None,
+    floors: str | Iterable[str] = NONE,
+    beside: Iterable[str] = (),
+    **settings: Any,
+) -> Run:
+    """
+    Run one controller in the closed loop and judge the run.
+
+    `controller` and `name` are the arguments of `chosen_from`: a name, a file, a class, a factory,
+    an object, a linear system. `set` changes scenario keys, as {'load.slope_rad': 0.05}, the
+    options of the controller among them, as {'controllers.NAME.KEY': value}. `settings` are those
+    of `RunSettings`: architecture, clutch, wear_gain, mode, seed. Without `headless` the ROS graph
+    runs, each node a process. With `out` the bag is kept as `<out>/<name>/`; a run that is not
+    valid, with its `reason`, is kept as `<out>/<name>.partial/`. `floors` names the metrics that
+    are compared with the least that any controller could have, as --floors does: 'usual', 'all',
+    or names; they take seconds the first time. `beside` names other controllers
+    whose options `set` may hold too.
+    """
+    chosen = chosen_from(controller, name)
+    ready = ready_settings(
+        [controller_label(chosen), *beside], scenario, set, duration, **settings
+    )
+    plan = RunPlan(ready, chosen, _layout(headless))
+    judged_by, metrics = load_limits(limits), metrics_of_floors(floors)
+    return _run(plan, out, judged_by, overwrite=overwrite).with_floors(metrics, judged_by)
+
+
+def _layout(headless: bool) -> str:
+    return 'headless' if headless else 'processes'
+
+
+def _run(
+    plan: RunPlan,
+    out: str | Path | None,
+    limits: Limits,
+    parent: WarmParent | None = None,
+    *,
+    overwrite: bool,
+) -> Run:
+    """Return the judged run of a plan; `parent` forks its nodes, None starts one for this run."""
+    if out is not None:
+        return _kept(plan, Path(out), limits, parent, overwrite=overwrite)
+    if plan.layout == 'headless':
+        return _run_of(simulate_and_score(plan, limits), plan.controller)
+    with tempfile.TemporaryDirectory(prefix='ddct-') as folder:
+        scored = run_and_score(plan, Path(folder), limits, partial(_execute, parent=parent))
+        return _run_of(scored, plan.controller)
+
+
+def compare(
+    controllers: Iterable[Any] | Mapping[str, Any],
+    *,
+    headless: bool = True,
+    out: str | Path | None = None,
+    overwrite: bool = False,
+    limits: str | Path | None = None,
+    floors: str | Iterable[str] = NONE,
+    **options: Any,
+) -> list[Run]:
+    """
+    Return a run of each controller, all with the same options of `run`.
+
+    The keys of a mapping name its controllers. Text is parsed like the option of `ddct compare`:
+    'pi,ls8', or 'all', which leaves out a third party's controller that cannot be built, with a
+    warning.
+    """
+    if controllers == 'all':
+        warn = partial(warnings.warn, stacklevel=3)
+        controllers = working_controllers(ready_settings(controller_names(), **options), warn)
+    chosen = controllers_from(controllers)
+    ready = ready_settings([controller_label(each) for each in chosen], **options)
+    layout, judged_by = _layout(headless), load_limits(limits)
+    metrics = metrics_of_floors(floors)
+    with parent_for(layout) as parent:
+        runs = [
+            _run(RunPlan(ready, each, layout), out, judged_by, parent, overwrite=overwrite)
+            for each in chosen
+        ]
+    return [each.with_floors(metrics, judged_by) for each in runs]
+
+
+def load(
+    bag: str | Path, *, limits: str | Path | None = None, floors: str | Iterable[str] = NONE
+) -> Run:
+    """
+    Return the run in a bag, given as its folder or .mcap file, scored with `limits`.
+
+    `floors` is that of `run`.
+    """
+    path, judged_by = Path(bag), load_limits(limits)
+    scored = score_recording(read_bag(path), path.as_posix(), judged_by)
+    return _run_of(scored).with_floors(metrics_of_floors(floors), judged_by)
+
+
+def _kept(
+    plan: RunPlan, out: Path, limits: Limits, parent: WarmParent | None, *, overwrite: bool
+) -> Run:
+    with run_folder(out, plan.name, overwrite=overwrite) as folder:
+        scored = run_and_score(plan, folder.path, limits, partial(_execute, parent=parent))
+        kept = _run_of(scored, plan.controller)
+        if not kept.valid:
+            return kept
+        folder.commit()
+    path = bag_file(folder.final, plan.name)
+    return replace(kept, recording=replace(kept.recording, path=path))
+
+
+def _execute(plan: RunPlan, folder: Path, parent: WarmParent | None) -> None:
+    with nullcontext() if plan.layout == 'headless' else _ONE_GRAPH:
+        execute(plan, folder, parent=parent)
+
+
+def _run_of(scored: ScoredRecording, chosen: Chosen = '') -> Run:
+    assert scored.recording is not None, 'only a readable bag is scored here'
+    recording = scored.recording
+    return Run(recording, scored.scores, scored.timing, chosen or recording.facts.controller)
