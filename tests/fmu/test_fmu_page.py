@@ -13,8 +13,8 @@ from support.documented import ROOT, blocks
 from support.fmu import write_fmu
 
 from ddct_bringup.programs import compare
-from ddct_controllers.from_file.fmu import AHEAD, SCALARS
-from ddct_controllers.from_file.fmu_unit import CLUTCH, ENGINE
+from ddct_controllers.from_file.fmu.fmu_controller import CLUTCH, ENGINE
+from ddct_controllers.from_file.fmu.variables import AHEAD, SCALARS
 from ddct_controllers.from_file.kinds import load_spec
 
 PAGE = 'docs/controllers/fmu_controller.md'

@@ -13,7 +13,7 @@ from ddct_controllers.from_file.controller_file import (
     mapping,
     read_controller_file,
 )
-from ddct_controllers.from_file.fmu import fmu_spec
+from ddct_controllers.from_file.fmu.keys import fmu_spec
 from ddct_controllers.from_file.python_file import SUFFIX, python_spec
 from ddct_controllers.from_file.transfer_functions import BESIDE_LINEAR, LINEAR
 from ddct_controllers.interface import Controller, ControllerSpec

@@ -8,8 +8,9 @@ from typing import Any
 
 import pytest
 
-from ddct_controllers.from_file import fmu
-from ddct_controllers.from_file.fmu_unit import FmuInput
+from ddct_controllers.from_file.fmu import keys
+from ddct_controllers.from_file.fmu.fmu_controller import FmuInput
+from ddct_controllers.from_file.fmu.variables import AHEAD, SCALARS
 from ddct_controllers.interface import Measurement
 from ddct_controllers.registry import make_controller
 from ddct_plant.base.units import rpm_from_rad_s
@@ -64,13 +65,13 @@ def inputs_in_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
         known = {f'x{i}': variable(f'x{i}', 'input') for i in range(len(names))}
         known['u'] = variable('u', 'output')
         unit = SimpleNamespace(path=tmp_path / 'mine.fmu', variables=known)
-        monkeypatch.setattr(fmu, 'Fmu', lambda path: unit)
+        monkeypatch.setattr(keys, 'Fmu', lambda path: unit)
 
         def controller(file: object, unit: object, inputs: list[FmuInput], *_: object) -> Any:
             found_inputs.extend(inputs)
             return SimpleNamespace()
 
-        monkeypatch.setattr(fmu, 'FmuController', controller)
+        monkeypatch.setattr(keys, 'FmuController', controller)
         (tmp_path / 'mine.fmu').write_bytes(b'PK')
         mapped = ', '.join(f"x{i}: '{name}'" for i, name in enumerate(names))
         file = tmp_path / 'mine.yaml'
@@ -85,7 +86,7 @@ def inputs_in_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
 
 
 def test_the_names_above_are_all_the_names() -> None:
-    assert {name.partition('[')[0] for name in SIGNALS} == {*fmu.SCALARS, *fmu.AHEAD}
+    assert {name.partition('[')[0] for name in SIGNALS} == {*SCALARS, *AHEAD}
 
 
 def test_each_input_receives_the_signal_of_its_name(inputs_in_file: Any) -> None:

@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""The keys of a controller file for an FMU, as Simulink and Modelica tools export them."""
+"""Variables of an FMU for the sections of a controller file: inputs, outputs and parameters."""
 
 import re
 from collections.abc import Mapping
@@ -8,19 +8,12 @@ from dataclasses import replace
 from operator import attrgetter
 from typing import Any
 
-from ddct_controllers.from_file.controller_file import ControllerFile, mapping
-from ddct_controllers.from_file.fmu_unit import CLUTCH, ENGINE, Fmu, FmuController, FmuInput
-from ddct_controllers.interface import (
-    UNSTATED,
-    Controller,
-    ControllerContext,
-    ControllerSpec,
-    Measurement,
-)
+from ddct_controllers.from_file.fmu.fmu_controller import CLUTCH, ENGINE, FmuInput
+from ddct_controllers.from_file.fmu.unit import Fmu
+from ddct_controllers.interface import Measurement
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import REQUIRED, Option, close_name
 
-KIND = 'fmu'
 SCALARS = {
     'slip_error_rpm': 'slip_error_rpm',
     'slip_speed_rad_s': 'slip_speed',
@@ -63,45 +56,7 @@ _KINDS: Mapping[str, type] = {
 """Python type of a start value by type of variable; inputs and outputs have that of a float."""
 
 
-def fmu_spec(file: ControllerFile) -> ControllerSpec[Controller]:
-    """Return the controller behind `fmu`; its options are the start values in `parameters`."""
-    keys = mapping(
-        KIND, file.keys(KIND)[KIND], ('file', 'inputs', 'outputs'), optional=('parameters',)
-    )
-    path = file.named_file(KIND, keys['file'], 'an FMU')
-    try:
-        fmu = Fmu(path)
-    except ParameterError as error:
-        raise ParameterError(f'fmu.file: {error}', key='fmu.file') from error
-    inputs = [
-        _fmu_input(_variable(fmu, 'inputs', name, 'input'), ours)
-        for name, ours in mapping('fmu.inputs', keys['inputs']).items()
-    ]
-    outputs = _outputs(fmu, mapping('fmu.outputs', keys['outputs']))
-    given = mapping('fmu.parameters', keys.get('parameters') or {})
-    started = [_variable(fmu, 'parameters', name) for name in given]
-    options = {
-        re.sub(r'\W+', '_', variable.name).strip('_'): _option(variable, given[variable.name])
-        for variable in started
-    }
-    if len(options) < len(started):
-        raise ParameterError(
-            'fmu.parameters: two names differ only in their dots and brackets: keep one',
-            key='fmu.parameters',
-        )
-    _require_all_inputs(fmu, {each.variable.name for each in inputs} | set(given))
-
-    def make(context: ControllerContext) -> Controller:
-        starts = [
-            (variable, context.gains[name])
-            for variable, name in zip(started, options, strict=True)
-        ]
-        return FmuController(file, fmu, inputs, outputs, starts)
-
-    return ControllerSpec(file.name, make, options, UNSTATED)
-
-
-def _variable(fmu: Fmu, section: str, name: str, causality: str = '') -> Any:
+def fmu_variable(fmu: Fmu, section: str, name: str, causality: str = '') -> Any:
     """Return the variable that a section names; raise ParameterError for one of another kind."""
     key = f'fmu.{section}.{name}'
     variable = fmu.variables.get(name)
@@ -127,7 +82,8 @@ def _variable(fmu: Fmu, section: str, name: str, causality: str = '') -> Any:
     return variable
 
 
-def _fmu_input(variable: Any, ours: object) -> FmuInput:
+def fmu_input(variable: Any, ours: object) -> FmuInput:
+    """Return the input that gets the signal `ours`; ParameterError for none or another unit."""
     key = f'fmu.inputs.{variable.name}'
     name, ahead = str(ours), 0
     if found := re.fullmatch(r'(\w+)\[(\d{1,3})\]', name):
@@ -145,12 +101,12 @@ def _fmu_input(variable: Any, ours: object) -> FmuInput:
     return FmuInput(variable, read, ahead)
 
 
-def _outputs(fmu: Fmu, section: Mapping[str, object]) -> Mapping[str, object]:
+def fmu_outputs(fmu: Fmu, section: Mapping[str, object]) -> Mapping[str, object]:
     """Return the output variables of the FMU by CLUTCH and ENGINE, the latter where it has one."""
     outputs: dict[str, object] = {}
     for name, ours in section.items():
         key = f'fmu.outputs.{name}'
-        variable = _variable(fmu, 'outputs', name, 'output')
+        variable = fmu_variable(fmu, 'outputs', name, 'output')
         if ours not in (CLUTCH, ENGINE) or ours in outputs:
             raise ParameterError(
                 f'{key} is {ours!r}: give {CLUTCH} or {ENGINE}, each once', key=key
@@ -175,7 +131,7 @@ def _require_unit(key: str, variable: Any, ours: str) -> None:
         )
 
 
-def _option(variable: Any, value: object) -> Option:
+def start_value(variable: Any, value: object) -> Option:
     """Return an option with the start value as default; ParameterError for a wrong type."""
     key = f'fmu.parameters.{variable.name}'
     settable = variable.initial in ('exact', 'approx') and variable.variability != 'constant'
@@ -197,7 +153,7 @@ def _option(variable: Any, value: object) -> Option:
     return replace(option, default=option.checked(key, value))
 
 
-def _require_all_inputs(fmu: Fmu, given: set[str]) -> None:
+def require_all_inputs(fmu: Fmu, given: set[str]) -> None:
     """Raise ParameterError for an input without a signal, but for types that can have none."""
     inputs = [each for each in fmu.variables.values() if each.causality == 'input']
     for variable in inputs:

@@ -1,79 +1,24 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""
-A functional mock-up unit (FMU) for co-simulation, FMI 2.0 or 3.0: its file, and as a controller.
-
-FMPy, an optional extra, reads the file and calls the binary in it; nothing else imports it.
-"""
+"""An FMU as a controller: loaded, stepped and removed."""
 
 import contextlib
 import weakref
-import zipfile
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
 from ddct_controllers.from_file.controller_file import ControllerFile
+from ddct_controllers.from_file.fmu.unit import Fmu, one_line
 from ddct_controllers.interface import Command, Controller, Measurement
-from ddct_plant.base.errors import DdctError, ParameterError, require_finite
+from ddct_plant.base.errors import DdctError, require_finite
 from ddct_plant.base.timebase import PERIOD_S, time_of_step
 
 CLUTCH, ENGINE = 'clutch_torque_n_m', 'engine_torque_n_m'
 """Quantities that an output may be: torque requests of clutch and engine."""
 _FATAL = 4
 """Status after which no function of an FMU may be called, not even to free it."""
-
-
-class Fmu:
-    """Description of the FMU in a file, checked to suit this machine and our period."""
-
-    def __init__(self, path: Path) -> None:
-        """Read the file; raise ParameterError, or DdctError without FMPy, with what to do."""
-        self.path = path
-        self.fmpy = _fmpy()
-        try:
-            self.description = self.fmpy.read_model_description(path, validate=False)
-            with zipfile.ZipFile(path) as file:
-                names = file.namelist()
-        except Exception as error:
-            raise ParameterError(f'{path} is no FMU ({_line(error)}): export it again') from error
-        version = self.description.fmiVersion
-        if not version.startswith(('2.', '3.')) or self.description.coSimulation is None:
-            raise ParameterError(
-                f'{path} is not for co-simulation by FMI 2.0 or 3.0 (FMI {version}): export it so'
-            )
-        self.is_fmi2 = version.startswith('2.')
-        self.variables: Mapping[str, Any] = {v.name: v for v in self.description.modelVariables}
-        """FMPy's `ModelVariable` by name."""
-        self._require_binary(names)
-        self._require_period()
-
-    def _require_binary(self, names: Sequence[str]) -> None:
-        platform = self.fmpy.platform if self.is_fmi2 else self.fmpy.platform_tuple
-        identifier = self.description.coSimulation.modelIdentifier
-        if f'binaries/{platform}/{identifier}{self.fmpy.sharedLibraryExtension}' in names:
-            return
-        parts = [name.split('/') for name in names]
-        there = sorted({part[1] for part in parts if part[0] == 'binaries' and len(part) > 2})
-        raise ParameterError(
-            f'{self.path} has no binary for {platform}, but for {", ".join(there) or "none"}: '
-            'export it for this platform, or compile the sources in it with `fmpy compile`'
-        )
-
-    def _require_period(self) -> None:
-        """Raise ParameterError when the FMU has a fixed step that does not divide our period."""
-        unit, experiment = self.description.coSimulation, self.description.defaultExperiment
-        stated = unit.fixedInternalStepSize or (experiment and experiment.stepSize)
-        if unit.canHandleVariableCommunicationStepSize or not stated:
-            return
-        step = float(stated)
-        if step > 1.5 * PERIOD_S or abs(PERIOD_S / step - round(PERIOD_S / step)) > 1e-6:
-            raise ParameterError(
-                f'{self.path} has a fixed step of {step:g} s: export it with {PERIOD_S} s, or a '
-                'step that goes into it'
-            )
 
 
 @dataclass(frozen=True)
@@ -194,7 +139,7 @@ class FmuController(Controller):
                 self._instance.component = None
             message = f': {self._messages[-1]}' if self._messages else ''
             raise DdctError(
-                f'fmu.file: {self._fmu.path} failed {when} ({_line(error)}{message}): mend the '
+                f'fmu.file: {self._fmu.path} failed {when} ({one_line(error)}{message}): mend the '
                 'FMU',
                 key='fmu.file',
             ) from error
@@ -209,22 +154,6 @@ def _log_callback(messages: list[str]) -> Callable[..., None]:
     """Return the FMU's log callback; the text comes last in FMI 2.0 and 3.0."""
 
     def log(*message: Any) -> None:
-        messages.append(_line(message[-1].decode('utf-8', 'replace')))
+        messages.append(one_line(message[-1].decode('utf-8', 'replace')))
 
     return log
-
-
-def _line(text: object) -> str:
-    """Return the text on one line, without a full stop."""
-    return ' '.join(str(text).split()).rstrip('.')
-
-
-def _fmpy() -> Any:
-    try:
-        import fmpy
-    except ImportError as error:
-        raise DdctError(
-            'fmu: FMPy is not installed: `make fmu`, or `python -m pip install fmpy` where numpy '
-            'is 2.1 or newer'
-        ) from error
-    return fmpy
