@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from ddct_bringup.metrics.catalogue import CRITERIA, FURTHER, METRICS, TABLE_5_1
 from ddct_bringup.report.chart_signals import ChartSignal
 from ddct_bringup.report.page_parts import unit_text
-from ddct_controllers.design.analysis.margins import LOOP_QUANTITIES
+from ddct_controllers.design.analysis.loop_quantities import LOOP_QUANTITIES
 from ddct_plant.program.table import Quantity
 
 

@@ -13,7 +13,7 @@ from typing import Any, TypeGuard, cast
 
 from ddct_bringup.report.page_parts import number_text
 from ddct_bringup.scores.scored_recording import ScoredRecording
-from ddct_controllers.design.analysis.margins import LOOP_QUANTITIES
+from ddct_controllers.design.analysis.loop_quantities import LOOP_QUANTITIES
 from ddct_controllers.workflows.evidence import actuator_conditions, frequency_evidence
 from ddct_controllers.workflows.evidence_types import ControllerEntry, LinearEntry, PointEntry
 from ddct_plant.base.errors import DdctError, ParameterError, require_number

@@ -13,12 +13,7 @@ from markupsafe import Markup
 from ddct_bringup.bag.reader import Recording
 from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.metrics.catalogue import FURTHER, TABLE_5_1
-from ddct_bringup.report.charts import (
-    NEUTRAL,
-    chart_document,
-    charted_signals,
-    has_reference,
-)
+from ddct_bringup.report.charts import NEUTRAL, chart_document, charted_signals, has_reference
 from ddct_bringup.report.definitions import definitions
 from ddct_bringup.report.evidence import COMPUTED, LoopEvidence, loop_rows, without_evidence
 from ddct_bringup.report.front_view import front_view
@@ -27,25 +22,14 @@ from ddct_bringup.report.page_runs import PageRun, chart_runs, page_runs
 from ddct_bringup.report.pareto import pair_key, pareto_view
 from ddct_bringup.report.phase_lanes import LANES, OPACITY
 from ddct_bringup.report.run_labels import common_conditions
-from ddct_bringup.report.run_tables import (
-    TICKS,
-    time_place,
-)
-from ddct_bringup.report.score_tables import (
-    NOT_JUDGED,
-    metric_cells,
-    verdict_rows,
-)
+from ddct_bringup.report.run_tables import TICKS, time_place
+from ddct_bringup.report.score_tables import NOT_JUDGED, metric_cells, verdict_rows
 from ddct_bringup.run.description import short_commit
 from ddct_bringup.scores.scored_recording import ScoredRecording
 from ddct_bringup.thesis.table_5_1 import PREDICTION_TOLERANCE
 from ddct_bringup.verdict.limits import Limits
-from ddct_controllers.design.analysis.margins import LOOP_QUANTITIES
-from ddct_controllers.design.drawing.line_looks import (
-    DARK_COLOURS,
-    LIGHT_COLOURS,
-    css_colours,
-)
+from ddct_controllers.design.analysis.loop_quantities import LOOP_QUANTITIES
+from ddct_controllers.design.drawing.line_looks import DARK_COLOURS, LIGHT_COLOURS, css_colours
 from ddct_plant.program.command_line import package_version
 from ddct_plant.scenario.differences import scenario_title
 

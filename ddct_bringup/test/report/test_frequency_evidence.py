@@ -11,8 +11,8 @@ import pytest
 from ddct_bringup.programs import compare
 from ddct_bringup.report.evidence import FREQUENCY_FILE
 from ddct_bringup.run.headless import run_headless
-from ddct_controllers.design.analysis.closed_loop import step_response
 from ddct_controllers.design.analysis.loops import sampled_loop
+from ddct_controllers.design.analysis.step_response import step_response
 from ddct_controllers.interface import Command, Controller, Measurement
 from ddct_controllers.registry import controller_names, make_controller
 from ddct_controllers.workflows.evidence import frequency_evidence

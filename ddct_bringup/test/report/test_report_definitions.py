@@ -9,7 +9,7 @@ from ddct_bringup.report.chart_signals import CHART_SIGNALS, CLUTCH_SIGNALS, SEN
 from ddct_bringup.report.definitions import definitions
 from ddct_bringup.report.page_parts import unit_text
 from ddct_bringup.verdict.state import STATES
-from ddct_controllers.design.analysis.margins import LOOP_QUANTITIES
+from ddct_controllers.design.analysis.loop_quantities import LOOP_QUANTITIES
 
 SIGNALS = (*CHART_SIGNALS, *CLUTCH_SIGNALS, *SENSOR_SIGNALS)
 GROUPS = definitions(SIGNALS, thesis=True)

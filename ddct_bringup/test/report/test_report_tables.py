@@ -18,7 +18,7 @@ from ddct_bringup.report.run_tables import TICKS, time_place, update_times
 from ddct_bringup.report.score_tables import comparable_rows, metric_cells
 from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_bringup.scores.scored_recording import ScoredRecording
-from ddct_controllers.design.analysis.margins import LOOP_QUANTITIES
+from ddct_controllers.design.analysis.loop_quantities import LOOP_QUANTITIES
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 

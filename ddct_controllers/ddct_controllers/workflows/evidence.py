@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ddct_controllers.design.analysis.closed_loop import driveline_mode
+from ddct_controllers.design.analysis.driveline_mode import driveline_mode
 from ddct_controllers.design.analysis.loops import sampled_loop
 from ddct_controllers.design.analysis.margins import loop_margins
 from ddct_controllers.design.analysis.worst_corner import (

@@ -4,8 +4,9 @@
 
 from dataclasses import replace
 
+from ddct_controllers.design.analysis.loop_quantities import LOOP_QUANTITY_OF
 from ddct_controllers.design.analysis.loops import sampled_loop
-from ddct_controllers.design.analysis.margins import LOOP_QUANTITY_OF, loop_margins, unstable_poles
+from ddct_controllers.design.analysis.margins import loop_margins, unstable_poles
 from ddct_controllers.design.state_space import factored_form, factors_text, scaled
 from ddct_controllers.linear import BILINEAR, LinearController
 from ddct_controllers.registry import controller_label, make_controller

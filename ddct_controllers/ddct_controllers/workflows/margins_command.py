@@ -6,7 +6,7 @@ import argparse
 from functools import partial
 from typing import Any
 
-from ddct_controllers.design.analysis.margins import LOOP_QUANTITY_OF
+from ddct_controllers.design.analysis.loop_quantities import LOOP_QUANTITY_OF
 from ddct_controllers.registry import (
     controller_label,
     require_known_controllers,

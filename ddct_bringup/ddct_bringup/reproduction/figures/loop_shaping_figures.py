@@ -17,8 +17,8 @@ from ddct_bringup.reproduction.figures.thesis_figure import (
     nichols_figure,
     step_figure,
 )
-from ddct_controllers.design.analysis.closed_loop import nyquist_count
 from ddct_controllers.design.analysis.loops import continuous_loop
+from ddct_controllers.design.analysis.nyquist import nyquist_count
 from ddct_controllers.design.drawing.charts import decibel
 from ddct_controllers.design.drawing.line_styles import BLACK, BLUE, SKY, VERMILLION, line_styles
 from ddct_controllers.design.loop_shaping.design import (

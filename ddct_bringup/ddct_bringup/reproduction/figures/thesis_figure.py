@@ -9,9 +9,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ddct_controllers.design.analysis.closed_loop import overshoot, rise_time_s, step_response
-from ddct_controllers.design.analysis.loops import LoopCurve, continuous_loop
+from ddct_controllers.design.analysis.loop_curve import LoopCurve
+from ddct_controllers.design.analysis.loops import continuous_loop
 from ddct_controllers.design.analysis.margins import loop_margins
+from ddct_controllers.design.analysis.step_response import overshoot, rise_time_s, step_response
 from ddct_controllers.design.drawing.chart_style import new_chart
 from ddct_controllers.design.drawing.charts import (
     draw_nichols,

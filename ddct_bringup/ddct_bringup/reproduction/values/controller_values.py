@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from ddct_bringup.reproduction.numbers.thesis_number import Value
-from ddct_controllers.design.analysis.closed_loop import rise_time_and_overshoot
 from ddct_controllers.design.analysis.loops import continuous_loop
+from ddct_controllers.design.analysis.step_response import rise_time_and_overshoot
 from ddct_controllers.design.h_infinity.cleaning import rate_of
 from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
 from ddct_controllers.design.state_space import pulse_transfer_function

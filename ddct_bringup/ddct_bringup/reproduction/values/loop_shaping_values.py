@@ -15,8 +15,9 @@ from ddct_bringup.reproduction.values.controller_values import (
     sampled_values,
     step_values,
 )
-from ddct_controllers.design.analysis.closed_loop import nyquist_count
-from ddct_controllers.design.analysis.loops import LoopCurve, continuous_loop, plant_in_rpm
+from ddct_controllers.design.analysis.loop_curve import LoopCurve
+from ddct_controllers.design.analysis.loops import continuous_loop, plant_in_rpm
+from ddct_controllers.design.analysis.nyquist import nyquist_count
 from ddct_controllers.design.loop_shaping.design import (
     NETWORK_SPECIFICATIONS,
     PLACEMENT_CROSSOVER_RAD_S,

@@ -18,8 +18,9 @@ from ddct_bringup.reproduction.figures.h_infinity_figures import H_INFINITY_FIGU
 from ddct_bringup.reproduction.figures.loop_shaping_figures import LOOP_SHAPING_FIGURES
 from ddct_bringup.reproduction.figures.thesis_figure import ThesisFigure
 from ddct_bringup.reproduction.headless_run import thesis_run
-from ddct_controllers.design.analysis.closed_loop import step_response
-from ddct_controllers.design.analysis.loops import LoopCurve, continuous_loop
+from ddct_controllers.design.analysis.loop_curve import LoopCurve
+from ddct_controllers.design.analysis.loops import continuous_loop
+from ddct_controllers.design.analysis.step_response import step_response
 from ddct_controllers.design.drawing.chart_style import typeset
 from ddct_controllers.design.drawing.nichols import nichols_curve
 from ddct_controllers.design.loop_shaping.specifications import rise_time_crossover_product

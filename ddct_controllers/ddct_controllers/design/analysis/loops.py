@@ -1,17 +1,13 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""The loop opened at the slip error, L = G_c G_a P_2 30/pi K_usura, and its Nyquist curve."""
+"""The loop opened at the slip error, L = G_c G_a P_2 30/pi K_usura: continuous or sampled."""
 
-import math
-from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
-import scipy
 
 from ddct_controllers.design.delayed_input import sampled_behind_delay
-from ddct_controllers.design.state_space import close_loop, frequency_response, poles_rad_s, series
+from ddct_controllers.design.state_space import series
 from ddct_plant.base.errors import ParameterError, require_number
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.base.units import RPM_PER_RAD_S
@@ -26,20 +22,6 @@ PRINTED_ACTUATOR = ActuatorParameters()
 """Actuator with 10 ms delay and G_a(s): for designs of the thesis and ours, not for runs."""
 WEAR_RANGE = (0.7, 1.3)
 """Ends of the range of K_usura, without unit: inequality (3.2), Table 5.2."""
-Measure = Callable[[np.ndarray], np.ndarray]
-"""Real function of L(j omega), elementwise."""
-_GRID_POINTS = 1500
-_SLOWEST_RAD_S = 1e-5
-_FASTEST_RAD_S = 1e5
-"""
-Ends of the grid of a continuous loop in rad/s.
-
-A sampled one ends at half its sampling rate.
-"""
-_DISTANCES = np.geomspace(1e-4, 0.1, 12)
-"""Distances of further grid points from every pole's frequency, relative, on both sides."""
-_NEAR_THE_PEAK = 0.95
-"""Share of the highest value on the grid from which a local maximum is refined too."""
 
 
 @dataclass(frozen=True)
@@ -123,88 +105,3 @@ def sampled_loop(
         kind = f'sampled at {controller.period_s} s' if controller.period_s else 'continuous'
         raise ParameterError(f'controller is {kind}: discretise it at {PERIOD_S} s')
     return series(controller, sampled_plant(parameters, wear_gain, actuator))
-
-
-class LoopCurve:
-    """L(j omega) or L(exp(j omega T)) on a grid that is dense around the poles of L and of T."""
-
-    def __init__(self, loop: ContinuousLoop | StateSpace) -> None:
-        """Evaluate the loop on its grid, which contains the poles of T without a dead time."""
-        if isinstance(loop, ContinuousLoop):
-            system = loop.transfer_function.to_state_space()
-            self._response = loop.response
-        else:
-            system = loop
-            self._response = partial(frequency_response, loop)
-        self._sampled = system.period_s is not None
-        last = math.pi / system.period_s if system.period_s else _FASTEST_RAD_S
-        poles = poles_rad_s(system)
-        self._integrates = bool(np.min(np.abs(poles), initial=math.inf) < _SLOWEST_RAD_S)
-        self.omega = _grid(np.concatenate([poles, poles_rad_s(close_loop(system))]), last)
-        """Frequencies in rad/s, rising, (n,)."""
-        self.values = self._response(self.omega)
-        """Values of L at these frequencies, (n,) complex."""
-
-    def at(self, omega: float) -> complex:
-        """Return L at one frequency in rad/s."""
-        return complex(self._response(np.array([omega]))[0])
-
-    def crossings(self, measure: Measure) -> list[float]:
-        """Return the frequencies in rad/s, rising, at which `measure` of L changes its sign."""
-        signs = measure(self.values) > 0.0
-        brackets = np.flatnonzero(signs[1:] != signs[:-1])
-
-        def measured(omega: float) -> float:
-            return self._measured(measure, omega)
-
-        return [
-            float(scipy.optimize.brentq(measured, *self.omega[i : i + 2], rtol=1e-12))
-            for i in brackets
-        ]
-
-    def peak(self, measure: Measure) -> tuple[float, float]:
-        """Return the maximum of `measure` of L over frequency, and its frequency in rad/s."""
-        measured = measure(self.values)
-        best = int(np.argmax(measured))
-        highest, where = float(measured[best]), float(self.omega[best])
-        inner = measured[1:-1]
-        local = (inner >= measured[:-2]) & (inner >= measured[2:])
-        for i in np.flatnonzero(local & (inner >= _NEAR_THE_PEAK * highest)):
-            found = scipy.optimize.minimize_scalar(
-                lambda x: -self._measured(measure, x),
-                bounds=(self.omega[i], self.omega[i + 2]),
-                method='bounded',
-                options={'xatol': 1e-7 * self.omega[i]},
-            )
-            if -found.fun > highest:
-                highest, where = -float(found.fun), float(found.x)
-        return highest, where
-
-    def critical_gains(self) -> list[float]:
-        """Return every factor that puts L through -1: -1/L where L is real and negative."""
-        crossings = self.crossings(lambda values: values.imag / np.abs(values))
-        # L is real at rest and at half the sampling rate too, without a change of sign.
-        at_rest = () if self._integrates else (0.0,)
-        at_half_rate = self.omega[-1:] if self._sampled else ()
-        values = [self.at(omega) for omega in (*crossings, *at_rest, *at_half_rate)]
-        return [-1.0 / value.real for value in values if value.real < 0.0]
-
-    def _measured(self, measure: Measure, omega: float) -> float:
-        return float(measure(np.array([self.at(omega)]))[0])
-
-
-def sensitivity(values: np.ndarray) -> np.ndarray:
-    """Return |S| = 1/|1 + L| of values of L, elementwise."""
-    return 1.0 / np.abs(1.0 + values)
-
-
-def complementary(values: np.ndarray) -> np.ndarray:
-    """Return |T| = |L/(1 + L)| of values of L, elementwise."""
-    return np.abs(values / (1.0 + values))
-
-
-def _grid(poles: np.ndarray, last: float) -> np.ndarray:
-    near = np.concatenate([1.0 + _DISTANCES, 1.0 / (1.0 + _DISTANCES)])
-    around = np.outer(np.abs(poles[np.isfinite(poles)]), near).ravel()
-    inside = around[(around > _SLOWEST_RAD_S) & (around < last)]
-    return np.unique(np.concatenate([np.geomspace(_SLOWEST_RAD_S, last, _GRID_POINTS), inside]))

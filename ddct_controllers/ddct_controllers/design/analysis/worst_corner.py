@@ -7,16 +7,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ddct_controllers.design.analysis.closed_loop import (
+from ddct_controllers.design.analysis.driveline_mode import (
     damping,
     locked_driveline_zero,
     nearest_mode,
 )
+from ddct_controllers.design.analysis.loop_curve import LoopCurve
 from ddct_controllers.design.analysis.loops import (
     IDENTIFIED_DRIVELINE,
     PRINTED_ACTUATOR,
     WEAR_RANGE,
-    LoopCurve,
     sampled_plant,
 )
 from ddct_controllers.design.state_space import (

@@ -9,13 +9,9 @@ from pathlib import Path
 import numpy as np
 from matplotlib.axes import Axes
 
-from ddct_controllers.design.analysis.closed_loop import overshoot, rise_time_s, step_response
-from ddct_controllers.design.analysis.loops import (
-    ContinuousLoop,
-    LoopCurve,
-    continuous_loop,
-    sampled_loop,
-)
+from ddct_controllers.design.analysis.loop_curve import LoopCurve
+from ddct_controllers.design.analysis.loops import ContinuousLoop, continuous_loop, sampled_loop
+from ddct_controllers.design.analysis.step_response import overshoot, rise_time_s, step_response
 from ddct_controllers.design.drawing.chart_style import chart_style, new_chart, save_figure
 from ddct_controllers.design.drawing.line_looks import DASHES
 from ddct_controllers.design.drawing.line_styles import (

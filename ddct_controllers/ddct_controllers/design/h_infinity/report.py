@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Results of `design h-infinity` as a record for JSON and tables."""
 
-from ddct_controllers.design.analysis.closed_loop import rise_time_and_overshoot
 from ddct_controllers.design.analysis.loops import (
     ContinuousLoop,
     continuous_loop,
@@ -10,6 +9,7 @@ from ddct_controllers.design.analysis.loops import (
     sampled_loop,
 )
 from ddct_controllers.design.analysis.margins import closed_loop_stable, loop_margins
+from ddct_controllers.design.analysis.step_response import rise_time_and_overshoot
 from ddct_controllers.design.analysis.worst_corner import (
     PARAMETER_SPREAD,
     WEAR_GAINS,

@@ -4,7 +4,7 @@
 
 from collections.abc import Mapping, Sequence
 
-from ddct_controllers.design.analysis.margins import DESIGN_QUANTITY_OF
+from ddct_controllers.design.analysis.loop_quantities import DESIGN_QUANTITY_OF
 from ddct_controllers.design.h_infinity.record_types import (
     DesignRecord,
     LoopEntry,

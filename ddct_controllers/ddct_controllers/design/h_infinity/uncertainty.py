@@ -13,11 +13,11 @@ from dataclasses import dataclass
 import numpy as np
 import scipy
 
+from ddct_controllers.design.analysis.loop_curve import LoopCurve
 from ddct_controllers.design.analysis.loops import (
     IDENTIFIED_DRIVELINE,
     WEAR_RANGE,
     ContinuousLoop,
-    LoopCurve,
     plant_in_rpm,
 )
 from ddct_controllers.design.h_infinity.weights import ComplementaryWeight, SensitivityWeight

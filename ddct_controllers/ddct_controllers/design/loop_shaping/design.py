@@ -9,8 +9,8 @@ G_c1 is made of networks, G_c2 by placing poles and zeros.
 import numpy as np
 import scipy
 
-from ddct_controllers.design.analysis.closed_loop import overshoot, step_response
 from ddct_controllers.design.analysis.loops import continuous_loop, plant_in_rpm
+from ddct_controllers.design.analysis.step_response import overshoot, step_response
 from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
 from ddct_plant.base.errors import ParameterError, require_number
 from ddct_plant.linear.lti import FactoredTransferFunction

@@ -2,16 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """Results of `design loop-shaping` as records for JSON and tables."""
 
-from ddct_controllers.design.analysis.closed_loop import rise_time_and_overshoot
+from ddct_controllers.design.analysis.loop_curve import LoopCurve
 from ddct_controllers.design.analysis.loops import (
     WEAR_RANGE,
     ContinuousLoop,
-    LoopCurve,
     continuous_loop,
     plant_in_rpm,
     sampled_loop,
 )
 from ddct_controllers.design.analysis.margins import loop_margins, unstable_poles
+from ddct_controllers.design.analysis.step_response import rise_time_and_overshoot
 from ddct_controllers.design.function_entry import function_entry
 from ddct_controllers.design.loop_shaping.design import (
     NETWORK_SPECIFICATIONS,

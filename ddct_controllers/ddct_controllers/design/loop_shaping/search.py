@@ -3,37 +3,17 @@
 """From specifications to a loop-shaping controller that is verified in the sampled loop."""
 
 import math
-from bisect import bisect
-from collections.abc import Iterator
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache
 
-import numpy as np
-
-from ddct_controllers.design.analysis.closed_loop import rise_time_and_overshoot
-from ddct_controllers.design.analysis.loops import plant_in_rpm, sampled_plant
-from ddct_controllers.design.analysis.margins import closed_loop_stable
-from ddct_controllers.design.loop_shaping.design import (
-    integrators,
-    lead_network,
-    placement,
-    stabilising_sign,
-    with_crossover,
-)
+from ddct_controllers.design.loop_shaping.candidates import Candidates
 from ddct_controllers.design.loop_shaping.specifications import (
     TimeSpecifications,
     require_reachable,
 )
-from ddct_controllers.design.loop_shaping.verification import (
-    LARGEST_SENSITIVITY_PEAK,
-    Verification,
-    verify,
-)
-from ddct_controllers.design.state_space import frequency_response, series
+from ddct_controllers.design.loop_shaping.verification import Verification, verify
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.base.timebase import PERIOD_S
-from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
-from ddct_plant.linear.sampling import discretise_zoh
+from ddct_plant.linear.lti import FactoredTransferFunction
 from ddct_plant.models.parameters import DrivelineParameters
 
 STRUCTURES = ('networks', 'placement')
@@ -42,23 +22,6 @@ Names of the structures: integrators with lead networks, as G_c1 begins, or plac
 
 The latter has placed poles and zeros, as G_c2.
 """
-
-_LEAD_POLE_RATIO = 10.0
-"""Pole of a lead network over the crossover; it costs 6 degrees of the lead."""
-_ZERO_RATIOS = np.geomspace(0.002, 0.5, 64)
-"""Zeros over the crossover, from the least overshoot to the quickest recovery."""
-_CROSSOVERS_RAD_S = np.geomspace(0.05, 50.0, 150)
-"""
-Candidate crossovers in rad/s, 5 % apart.
-
-They are the same for all specifications, so that one search reaches the results of another.
-"""
-_FIRST_CROSSOVER = 0.7
-"""Start of the search, as a share of the crossover of the prototype."""
-_SEARCH_TIME = 15.0
-"""Length of a step response of the search over 1/w_c: past the highest overshoot."""
-_OMEGA = np.geomspace(1e-2, math.pi / PERIOD_S, 200)
-"""Frequencies in rad/s at which the search evaluates S and T."""
 
 
 @dataclass(frozen=True)
@@ -87,127 +50,41 @@ def design_loop_shaping(
     ParameterError with the specifications that can be reached.
     """
     require_reachable(specifications)
-    search = _Search(specifications, integrator_count, parameters)
+    candidates = Candidates(specifications, integrator_count, parameters)
+    rejections: tuple[str, ...] = ()
     for within_contours in (True, False):
         for structure in structures:
-            for controller in search.candidates(structure, within_contours):
+            for controller in candidates.fast_enough(structure, within_contours):
                 found = verify(controller, specifications, parameters)
                 if not found.rejections and found.respects_contours >= within_contours:
                     return LoopShapingDesign(structure, integrator_count, controller, found)
-                search.rejections = found.rejections
-    raise search.failure(structures)
+                rejections = found.rejections
+    raise _failure(specifications, integrator_count, candidates.fastest_s(structures), rejections)
 
 
-class _Search:
-    """Candidates for one set of specifications."""
+def _failure(
+    specifications: TimeSpecifications,
+    integrator_count: int,
+    fastest_s: float,
+    rejections: Sequence[str],
+) -> ParameterError:
+    """
+    Return the error with the reachable specifications and the remedy.
 
-    def __init__(
-        self, specifications: TimeSpecifications, count: int, parameters: DrivelineParameters
-    ) -> None:
-        self._specifications = specifications
-        self._count = count
-        self._parameters = parameters
-        self._plant = plant_in_rpm(parameters)
-        self._sign = float(stabilising_sign(self._plant, count))
-        self._sampled_plant = sampled_plant(parameters)
-        self._plant_response = frequency_response(self._sampled_plant, _OMEGA)
-        first_rad_s = _FIRST_CROSSOVER * specifications.crossover_rad_s
-        self._first = int(np.searchsorted(_CROSSOVERS_RAD_S, first_rad_s))
-        self._fastest_s = math.inf
-        self.rejections: tuple[str, ...] = ()
-        """Reasons why the last candidate was refused."""
-
-    def candidates(
-        self, structure: str, within_contours: bool
-    ) -> Iterator[FactoredTransferFunction]:
-        """Yield controllers, fast enough and with little enough overshoot, by crossover."""
-        for crossover in _CROSSOVERS_RAD_S[self._first :]:
-            found = self._quickest(structure, float(crossover), within_contours)
-            if found is None:
-                return
-            controller, rise_time_s = found
-            self._fastest_s = min(self._fastest_s, rise_time_s)
-            if rise_time_s <= self._specifications.rise_time_s:
-                yield controller
-
-    def failure(self, structures: tuple[str, ...]) -> ParameterError:
-        """Return the error with the reachable specifications and the remedy."""
-        limit_s = self._specifications.rise_time_s
-        goal = (
-            f'no loop-shaping controller found with {self._count} integrator(s), rise time '
-            f'{limit_s:g} s and overshoot {100.0 * self._specifications.overshoot:g} % in the '
-            'sampled loop'
-        )
-        if self._fastest_s <= limit_s:
-            return ParameterError(
-                f'{goal} (last candidate: {"; ".join(self.rejections)}): allow a longer rise time'
-            )
-        fastest_s = min(self._fastest_s, *(self._slower_s(structure) for structure in structures))
-        if math.isinf(fastest_s):
-            return ParameterError(f'{goal}, nor a slower one: allow more overshoot')
-        fastest_s = math.ceil(1000.0 * fastest_s) / 1000.0
+    `fastest_s` is the shortest rise time in s of all candidates, inf without one; `rejections` are
+    the reasons against the last candidate that was fast enough.
+    """
+    limit_s = specifications.rise_time_s
+    goal = (
+        f'no loop-shaping controller found with {integrator_count} integrator(s), rise time '
+        f'{limit_s:g} s and overshoot {100.0 * specifications.overshoot:g} % in the '
+        'sampled loop'
+    )
+    if fastest_s <= limit_s:
         return ParameterError(
-            f'{goal}: the fastest has {fastest_s:g} s: allow that or more overshoot'
+            f'{goal} (last candidate: {"; ".join(rejections)}): allow a longer rise time'
         )
-
-    def _slower_s(self, structure: str) -> float:
-        """Return the rise time with the highest crossover below those that were tried, or inf."""
-        for crossover in _CROSSOVERS_RAD_S[: self._first][::-1]:
-            found = self._quickest(structure, float(crossover), within_contours=False)
-            if found is not None and math.isfinite(found[1]):
-                return found[1]
-        return math.inf
-
-    def _quickest(
-        self, structure: str, crossover: float, within_contours: bool
-    ) -> tuple[FactoredTransferFunction, float] | None:
-        """Return the controller with the largest allowed zeros, and its rise time in s."""
-
-        @cache
-        def found(index: int) -> tuple[FactoredTransferFunction, float] | None:
-            return self._allowed(structure, crossover, _ZERO_RATIOS[index], within_contours)
-
-        def refused(index: int) -> bool:
-            return found(index) is None
-
-        if refused(0) or not self._count:
-            return found(0)
-        # False sorts before True: this is the first of the rising ratios that is refused.
-        first_refused = bisect(range(len(_ZERO_RATIOS)), False, lo=1, key=refused)
-        return found(first_refused - 1)
-
-    def _allowed(
-        self, structure: str, crossover: float, ratio: float, within_contours: bool
-    ) -> tuple[FactoredTransferFunction, float] | None:
-        """Return controller and rise time (inf for none) if the overshoot is allowed."""
-        controller = self._controller(structure, crossover, float(ratio))
-        sampled = discretise_zoh(controller.to_state_space(), PERIOD_S)
-        loop = series(sampled, self._sampled_plant)
-        if not closed_loop_stable(loop) or not self._within_bounds(sampled, within_contours):
-            return None
-        rise_time_s, highest = rise_time_and_overshoot(loop, _SEARCH_TIME / crossover)
-        if highest > self._specifications.overshoot:
-            return None
-        return controller, math.inf if rise_time_s is None else rise_time_s
-
-    def _within_bounds(self, sampled: StateSpace, within_contours: bool) -> bool:
-        """Return whether |S| is low enough, and |S| and |T| below S_p and T_p if required."""
-        values = frequency_response(sampled, _OMEGA) * self._plant_response
-        sensitivity = np.abs(1.0 / (1.0 + values))
-        if not within_contours:
-            return bool(np.max(sensitivity) <= LARGEST_SENSITIVITY_PEAK)
-        s_p = min(self._specifications.sensitivity_peak, LARGEST_SENSITIVITY_PEAK)
-        t_p = self._specifications.complementary_peak
-        complementary = sensitivity * np.abs(values)
-        return bool(np.max(sensitivity) <= s_p and np.max(complementary) <= t_p)
-
-    def _controller(
-        self, structure: str, crossover: float, ratio: float
-    ) -> FactoredTransferFunction:
-        if structure == 'placement':
-            return placement(crossover, ratio * crossover, self._parameters, self._count)
-        lead = lead_network(ratio * crossover, _LEAD_POLE_RATIO / ratio)
-        shape = integrators(self._sign, self._count)
-        for _ in range(self._count):
-            shape = shape * lead
-        return with_crossover(shape, self._plant, crossover)
+    if math.isinf(fastest_s):
+        return ParameterError(f'{goal}, nor a slower one: allow more overshoot')
+    fastest_s = math.ceil(1000.0 * fastest_s) / 1000.0
+    return ParameterError(f'{goal}: the fastest has {fastest_s:g} s: allow that or more overshoot')

@@ -6,16 +6,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ddct_controllers.design.analysis.closed_loop import rise_time_and_overshoot
-from ddct_controllers.design.analysis.loops import (
-    WEAR_RANGE,
+from ddct_controllers.design.analysis.loop_curve import (
     LoopCurve,
     Measure,
     complementary,
-    sampled_loop,
     sensitivity,
 )
+from ddct_controllers.design.analysis.loops import WEAR_RANGE, sampled_loop
 from ddct_controllers.design.analysis.margins import LoopMargins, closed_loop_stable, loop_margins
+from ddct_controllers.design.analysis.step_response import rise_time_and_overshoot
 from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.lti import FactoredTransferFunction

@@ -5,7 +5,7 @@
 import numpy as np
 import pytest
 
-from ddct_controllers.design.analysis.closed_loop import (
+from ddct_controllers.design.analysis.driveline_mode import (
     driveline_mode,
     locked_driveline_zero,
     nearest_mode,

@@ -8,12 +8,8 @@ import control
 import numpy as np
 import pytest
 
-from ddct_controllers.design.analysis.loops import (
-    ContinuousLoop,
-    LoopCurve,
-    continuous_loop,
-    sampled_loop,
-)
+from ddct_controllers.design.analysis.loop_curve import LoopCurve
+from ddct_controllers.design.analysis.loops import ContinuousLoop, continuous_loop, sampled_loop
 from ddct_controllers.design.analysis.margins import (
     LoopMargins,
     closed_loop_stable,

@@ -12,19 +12,16 @@ import pytest
 from refusals import refused
 from scipy.optimize import minimize_scalar
 
-from ddct_controllers.design.analysis.closed_loop import overshoot, rise_time_s, step_response
 from ddct_controllers.design.analysis.loops import continuous_loop, sampled_loop
 from ddct_controllers.design.analysis.margins import loop_margins
+from ddct_controllers.design.analysis.step_response import overshoot, rise_time_s, step_response
 from ddct_controllers.design.h_infinity.recipes import PRINTED_WEIGHTS, make_weights
 from ddct_controllers.design.h_infinity.uncertainty import PRINTED_W_U, weighted_norms
 from ddct_controllers.design.state_space import factored_form
 from ddct_controllers.linear import LinearController
 from ddct_controllers.printed import H_INFINITY_CONTROLLERS
 from ddct_controllers.registry import controller_names, make_controller
-from ddct_controllers.synthesised import (
-    SYNTHESISED,
-    synthesised_design,
-)
+from ddct_controllers.synthesised import SYNTHESISED, synthesised_design
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.linear.lti import FactoredTransferFunction
 from ddct_plant.scenario.file import load_scenario

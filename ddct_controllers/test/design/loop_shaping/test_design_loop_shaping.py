@@ -7,9 +7,9 @@ import math
 import numpy as np
 import pytest
 
-from ddct_controllers.design.analysis.closed_loop import overshoot, rise_time_s, step_response
 from ddct_controllers.design.analysis.loops import continuous_loop, sampled_loop
 from ddct_controllers.design.analysis.margins import LoopMargins, loop_margins, unstable_poles
+from ddct_controllers.design.analysis.step_response import overshoot, rise_time_s, step_response
 from ddct_controllers.design.loop_shaping.design import (
     NETWORK_SPECIFICATIONS,
     lag_network,

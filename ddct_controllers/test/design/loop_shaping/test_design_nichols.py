@@ -7,7 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from ddct_controllers.design.analysis.loops import LoopCurve, continuous_loop
+from ddct_controllers.design.analysis.loop_curve import LoopCurve
+from ddct_controllers.design.analysis.loops import continuous_loop
 from ddct_controllers.design.drawing.nichols import (
     NicholsCurve,
     constant_m_curve,

@@ -5,9 +5,9 @@
 import pytest
 from nyquist_contour import unstable_by_contour
 
-from ddct_controllers.design.analysis.closed_loop import NyquistCount, nyquist_count
 from ddct_controllers.design.analysis.loops import ContinuousLoop, continuous_loop, plant_in_rpm
 from ddct_controllers.design.analysis.margins import unstable_poles
+from ddct_controllers.design.analysis.nyquist import NyquistCount, nyquist_count
 from ddct_controllers.design.loop_shaping.design import (
     integrators,
     network_steps,

@@ -9,9 +9,9 @@ import pytest
 from refusals import refused
 from scipy.optimize import brentq
 
-from ddct_controllers.design.analysis.closed_loop import overshoot, rise_time_s, step_response
 from ddct_controllers.design.analysis.loops import ContinuousLoop
 from ddct_controllers.design.analysis.margins import loop_margins
+from ddct_controllers.design.analysis.step_response import overshoot, rise_time_s, step_response
 from ddct_controllers.design.loop_shaping.specifications import (
     TimeSpecifications,
     highest_crossover_rad_s,
