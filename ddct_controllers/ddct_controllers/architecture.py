@@ -3,15 +3,15 @@
 """Control architectures of the thesis: the torque request as open loop plus feedback."""
 
 from collections.abc import Callable
-from numbers import Real
 from typing import NamedTuple
 
 import numpy as np
 
 from ddct_controllers.closing import ClosingStage
+from ddct_controllers.command_check import checked_command
 from ddct_controllers.interface import Command, Controller, Measurement, Status
-from ddct_controllers.places import place_of_failure, place_of_method
-from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError, ForeignError, require_finite
+from ddct_controllers.places import place_of_failure
+from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError, ForeignError
 from ddct_plant.base.timebase import time_of_step
 from ddct_plant.models.load import RoadLoad
 from ddct_plant.models.static_torque import StaticTorque
@@ -119,7 +119,8 @@ class Architecture:
         """Return the controller's command; raise DdctError that names it for any error."""
         try:
             if on:
-                return self._checked(self._controller.update(measurement), measurement.step)
+                command = self._controller.update(measurement)
+                return checked_command(self._controller, self._name, command, measurement.step)
             self._controller.hold(measurement)
             return self._feedback_off(measurement)
         except DdctError:
@@ -144,57 +145,6 @@ class Architecture:
         if self._closing and self._closing.closed:
             engine += self._closing.engine_share * self._engine_deviation
         return Command(0.0, engine_torque=engine)
-
-    def _checked(self, command: object, step: int) -> Command:
-        """Return the command with plain floats; raise DdctError for an unusable one."""
-        try:
-            return self._plain(command, step)
-        except DdctError as error:
-            place = place_of_method(self._controller, 'update')
-            raise DdctError(f'{error}, in {place}', key=error.key) from error
-
-    def _plain(self, command: object, step: int) -> Command:
-        if not isinstance(command, Command):
-            raise DdctError(
-                f'{self._name}: its answer at step {step} is of type {type(command).__name__}: '
-                'return a ddct_controllers.interface.Command'
-            )
-        if not _is_status(command.status):
-            raise DdctError(
-                f'{self._name}: its status at step {step} is {command.status!r}: give a tuple of '
-                "pairs of printable text, (('key', 'value'),)",
-                key='status',
-            )
-        clutch = _torque(f'{self._name}: its torque at step {step}', command.clutch_torque)
-        engine = command.engine_torque
-        if self._controller.commands_engine:
-            engine = _torque(f'{self._name}: its engine torque at step {step}', engine)
-        elif engine is not None:
-            raise DdctError(
-                f'{self._name}: it gave an engine torque at step {step}: set its commands_engine',
-                key='commands_engine',
-            )
-        given = command.clutch_torque, command.engine_torque
-        plain = type(command) is Command and clutch is given[0] and engine is given[1]
-        return command if plain else Command(clutch, command.status, engine)
-
-
-def _is_status(status: object) -> bool:
-    """Return whether `status` can be published as `controller/status` and printed."""
-    return type(status) is tuple and all(
-        type(pair) is tuple
-        and len(pair) == 2
-        and all(type(text) is str and text.isprintable() for text in pair)
-        for pair in status
-    )
-
-
-def _torque(source: str, torque: object) -> float:
-    if type(torque) is not float:
-        if not isinstance(torque, Real):
-            raise DdctError(f'{source} is {torque!r}: give a number in N m', key=source)
-        torque = float(torque)
-    return require_finite(source, torque)
 
 
 def make_architecture(settings: RunSettings, controller: Controller) -> Architecture:

@@ -3,101 +3,17 @@
 """The interface of controllers: one small class that never reads a clock and does not use ROS."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Any, ClassVar, Generic, TypeVar
 
+from ddct_controllers.measurement import Measurement
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import REQUIRED, Options
-from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.graph.node_reports import CONTROLLER, TWO_INPUT, flag
 from ddct_plant.linear.lti import StateSpace
 from ddct_plant.scenario.settings import RunSettings
-from ddct_plant.scenario.whole_plant import Observation
-
-
-@dataclass(frozen=True, slots=True)
-class Measurement:
-    """
-    All signals that a controller receives at step k, in SI units.
-
-    The transmitted torque C_f, the load C_load and the driveshaft twist are not measured in a car
-    and are not here.
-    """
-
-    step: int
-    """Step k; scenario time is k x 10 ms."""
-    engine_speed: float
-    """Engine speed w_m in rad/s."""
-    shaft_speed: float
-    """Primary shaft speed w_p in rad/s."""
-    wheel_speed: float
-    """Wheel speed w_r in rad/s."""
-    vehicle_speed: float
-    """Vehicle speed V_x in m/s."""
-    engine_torque: float
-    """Engine torque C_m in N m over the coming period; the driver's demand if C_m is commanded."""
-    slip_reference: Sequence[float]
-    """
-    Slip references in rad/s, (P + 1,).
-
-    Entry i is i x 10 ms ahead, P the controller's `preview_steps`.
-    """
-    slip_reference_rate: Sequence[float]
-    """Rates of the slip reference in rad/s^2, (P + 1,), at the same times."""
-    load_torque: float = 0.0
-    """Load torque C_load in N m, which the architecture computes from V_x and the slope."""
-    open_loop_torque: float = 0.0
-    """Torque in N m that the architecture adds to the controller's clutch torque."""
-
-    @classmethod
-    def of_plant(
-        cls,
-        step: int,
-        observation: Observation,
-        slip_reference: Sequence[float],
-        slip_reference_rate: Sequence[float],
-    ) -> 'Measurement':
-        """Return the measured signals of a plant at step k, with the reference of that step."""
-        measured = observation.measured
-        return cls(
-            step=step,
-            engine_speed=measured.engine_speed,
-            shaft_speed=measured.shaft_speed,
-            wheel_speed=measured.wheel_speed,
-            vehicle_speed=measured.vehicle_speed,
-            engine_torque=observation.engine_torque,
-            slip_reference=slip_reference,
-            slip_reference_rate=slip_reference_rate,
-        )
-
-    @property
-    def slip_speed(self) -> float:
-        """Slip speed w_d = w_m - w_p in rad/s."""
-        return self.engine_speed - self.shaft_speed
-
-    @property
-    def slip_error_rpm(self) -> float:
-        """Slip reference less slip speed in rpm, the input of the thesis's controllers."""
-        return rpm_from_rad_s(self.slip_reference[0] - self.slip_speed)
-
-    def within(self, load_torque: float, open_loop_torque: float) -> 'Measurement':
-        """Return the measurement completed with the architecture's two torques, in N m."""
-        # dataclasses.replace takes three times as long, at every step of every controller.
-        return Measurement(
-            self.step,
-            self.engine_speed,
-            self.shaft_speed,
-            self.wheel_speed,
-            self.vehicle_speed,
-            self.engine_torque,
-            tuple(self.slip_reference),  # a copy: a controller may not change the record
-            tuple(self.slip_reference_rate),
-            load_torque,
-            open_loop_torque,
-        )
-
 
 SCENARIO, THESIS, UNSTATED = 'scenario', 'thesis', 'not stated'
 """Source of a controller's parameters: values of `ControllerSpec.computed_from`."""

@@ -11,13 +11,10 @@ from ddct_bringup.reproduction.headless_run import headless_run
 from ddct_bringup.reproduction.studies.changed_loops import NoisySpeeds, slip_after_load_step
 from ddct_bringup.reproduction.studies.study import FINER_WEAR_GAINS
 from ddct_bringup.reproduction.studies.sweeps import torsion_weight
-from ddct_bringup.reproduction.studies.wear import (
-    LOAD_STEP_N_M,
-    wear_estimate,
-)
+from ddct_bringup.reproduction.studies.wear import LOAD_STEP_N_M, wear_estimate
 from ddct_bringup.run.headless import ClosedLoop, run_headless, run_loop
 from ddct_controllers.mpc.estimate.observer import NoiseLevels
-from ddct_controllers.mpc.estimate.wear_observer import HIGHEST_GAIN, LOWEST_GAIN
+from ddct_controllers.mpc.estimate.wear_state import HIGHEST_GAIN, LOWEST_GAIN
 from ddct_controllers.mpc.model.transmission_model import transmission_model
 from ddct_controllers.registry import make_controller
 from ddct_plant.base.units import rpm_from_rad_s

@@ -8,7 +8,7 @@ from typing import Generic, TypeVar
 import numpy as np
 
 from ddct_controllers.interface import Command, Controller, Measurement
-from ddct_controllers.measured import measured_speeds
+from ddct_controllers.measurement import measured_speeds
 from ddct_controllers.mpc.estimate.observer import Observer
 from ddct_controllers.mpc.estimate.wear_observer import WearObserver
 from ddct_controllers.mpc.inputs import CLUTCH, ENGINE, ClutchInput, CommandedEngine, KnownEngine

@@ -13,7 +13,7 @@ from ddct_controllers.interface import (
     ControllerSpec,
     Measurement,
 )
-from ddct_controllers.measured import measured_speeds
+from ddct_controllers.measurement import measured_speeds
 from ddct_controllers.mpc.estimators import DisturbanceObserver
 from ddct_controllers.mpc.model.transmission_model import (
     ENGINE_TORQUE,

@@ -9,7 +9,7 @@ from ddct_controllers.interface import (
     ControllerSpec,
     Measurement,
 )
-from ddct_controllers.measured import measured_speeds
+from ddct_controllers.measurement import measured_speeds
 from ddct_controllers.state_of_art.parts.slow_clutch import SlowClutch
 from ddct_controllers.state_of_art.parts.speed_loops import ClutchTorqueEstimator, EngineShare
 from ddct_plant.base.options import Option

@@ -14,9 +14,18 @@ from ddct_controllers.mpc.estimate.observer import (
     NoiseLevels,
     torque_noise,
 )
+from ddct_controllers.mpc.estimate.wear_state import (
+    CLUTCH_ERROR,
+    FILTER_STATES,
+    GAIN,
+    HIGHEST_GAIN,
+    LOAD_ERROR,
+    LOWEST_GAIN,
+    SIZE,
+    within_bounds,
+)
 from ddct_controllers.mpc.model.transmission_model import (
     DRIVELINE,
-    DRIVELINE_STATES,
     ENGINE_TORQUE,
     LOAD_TORQUE,
     MEASURED,
@@ -26,15 +35,8 @@ from ddct_controllers.mpc.model.transmission_model import (
 )
 from ddct_controllers.mpc.program.settings import MOST
 from ddct_plant.base.options import OptionGroup, option
-from ddct_plant.linear.names import Names
 
-FILTER_STATES = DRIVELINE_STATES + Names(('wear_gain', 'clutch_error', 'load_error'))
-"""States of the filter: the driveline's, K_usura, and the errors of C_f and C_load in N m."""
-GAIN, CLUTCH_ERROR, LOAD_ERROR = FILTER_STATES.places('wear_gain', 'clutch_error', 'load_error')
-SIZE = len(FILTER_STATES)
 _ENGINE_SPEED = FILTER_STATES['engine_speed']
-LOWEST_GAIN, HIGHEST_GAIN = 0.5, 1.5
-"""Bounds of the estimate of K_usura; a clutch is assumed to reach 0.7 to 1.3."""
 LEAST_TORQUE_N_M = 5.0
 """Actuator torque in N m below which K_usura does not drift: C_f may be wrong by as much."""
 MOST_TORQUE_N_M = MOST
@@ -203,21 +205,3 @@ class WearObserver:
         kept[:, :MEASURED] -= gain
         self._covariance = kept @ covariance @ kept.T + gain @ self._measurement_noise @ gain.T
         self._state = within_bounds(self._state, self._covariance)
-
-
-def within_bounds(state: np.ndarray, covariance: np.ndarray) -> np.ndarray:
-    """
-    Return the likeliest state (SIZE,) whose K_usura is within the bounds.
-
-    What K_usura gives up goes to the states that `covariance` (SIZE, SIZE) ties to it, the error
-    of C_f above all: the projection of Simon and Chia (IEEE Trans. Aerospace and Electronic
-    Systems 38, 2002) with W = P^-1.
-    """
-    gain = state[GAIN]
-    bound = min(max(gain, LOWEST_GAIN), HIGHEST_GAIN)
-    if bound == gain:
-        return state
-    state = state + covariance[:, GAIN] / covariance[GAIN, GAIN] * (bound - gain)
-    # Exactly, whatever is rounded.
-    state[GAIN] = bound
-    return state

@@ -7,14 +7,16 @@ import pytest
 
 from ddct_controllers.mpc.estimate.observer import AtRest, NoiseLevels
 from ddct_controllers.mpc.estimate.wear_observer import (
-    GAIN,
-    HIGHEST_GAIN,
     LEAST_TORQUE_N_M,
-    LOWEST_GAIN,
     MOST_TORQUE_N_M,
-    SIZE,
     WearNoise,
     WearObserver,
+)
+from ddct_controllers.mpc.estimate.wear_state import (
+    GAIN,
+    HIGHEST_GAIN,
+    LOWEST_GAIN,
+    SIZE,
     within_bounds,
 )
 from ddct_controllers.mpc.model.disturbances import offset_free_model

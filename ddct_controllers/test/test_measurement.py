@@ -9,7 +9,7 @@ import pytest
 from refusals import refused
 
 from ddct_controllers.interface import Measurement
-from ddct_controllers.measured import MOST, measured_speeds
+from ddct_controllers.measurement import MOST, measured_speeds
 from ddct_controllers.mpc.variants import PREDICTIVE
 from ddct_controllers.registry import make_controller
 from ddct_plant.base.errors import DdctError
