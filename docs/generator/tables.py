@@ -9,8 +9,9 @@ from ddct_bringup.reproduction.calibration.record_tables import all_tables
 from ddct_bringup.reproduction.figures.command import NOT_DRAWN, collect_figures
 from ddct_bringup.reproduction.figures.thesis_figure import ThesisFigure
 from ddct_bringup.reproduction.numbers.command import SOURCES, compute
-from ddct_bringup.reproduction.numbers.gate import judge, thesis_numbers
+from ddct_bringup.reproduction.numbers.gate import judge
 from ddct_bringup.reproduction.numbers.gate_tables import page_tables
+from ddct_bringup.reproduction.numbers.number_files import thesis_numbers
 from ddct_bringup.reproduction.studies.command import STUDIES
 from ddct_controllers.design.analysis.loops import continuous_loop, sampled_loop
 from ddct_controllers.design.analysis.worst_corner import PlantCorners

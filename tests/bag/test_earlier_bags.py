@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ddct_bringup.bag.reader import Recording, read_bag
+from ddct_bringup.bag.reader import read_bag
+from ddct_bringup.bag.recording import Recording
 from ddct_bringup.bag.repair import repair_bag
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.run.headless import run_headless

@@ -12,7 +12,8 @@ from support.in_process_graph import GraphOf
 from support.patient_clock import PatientClock, realtime_owner
 from support.runs import expected, plan, record
 
-from ddct_bringup.bag.reader import Recording, read_bag
+from ddct_bringup.bag.reader import read_bag
+from ddct_bringup.bag.recording import Recording
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.scores.scored_recording import score_recording
 from ddct_bringup.scores.validity import MISS_TOLERANCE

@@ -4,7 +4,8 @@
 
 from pathlib import Path
 
-from ddct_bringup.bag.reader import Recording, read_bag
+from ddct_bringup.bag.reader import read_bag
+from ddct_bringup.bag.recording import Recording
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.run.execution import execute
 from ddct_bringup.run.headless import run_headless

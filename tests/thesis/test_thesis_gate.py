@@ -17,8 +17,9 @@ from generator.results import marked_results
 from ddct_bringup.programs import reproduce
 from ddct_bringup.reproduction.numbers import command
 from ddct_bringup.reproduction.numbers.command import SOURCES, compute
-from ddct_bringup.reproduction.numbers.gate import GateRow, judge, thesis_numbers
+from ddct_bringup.reproduction.numbers.gate import GateRow, judge
 from ddct_bringup.reproduction.numbers.gate_tables import count_facts, page_tables
+from ddct_bringup.reproduction.numbers.number_files import thesis_numbers
 from ddct_bringup.reproduction.numbers.thesis_number import VERDICTS, is_number
 from ddct_bringup.thesis.table_5_1 import THESIS_TABLE
 from ddct_controllers.mpc.costs import TABLE_4_1, TwoInputCost

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from ddct_bringup.bag.reader import Recording
+from ddct_bringup.bag.recording import Recording
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.metrics.metric import Metrics
 from ddct_bringup.run.timing_and_failure import RunTiming
@@ -16,9 +16,7 @@ from ddct_bringup.scores.document import run_entry, verdict_entry
 from ddct_bringup.scores.floors import scores_with_floors
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.verdict.limits import Limits
-from ddct_controllers.registry import (
-    Chosen,
-)
+from ddct_controllers.registry import Chosen
 from ddct_controllers.workflows.evidence import frequency_evidence
 from ddct_controllers.workflows.evidence_types import ControllerEntry
 from ddct_plant.base.errors import DdctError

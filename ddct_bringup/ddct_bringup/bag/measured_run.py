@@ -11,7 +11,8 @@ import numpy as np
 
 from ddct_bringup.bag.measured_checks import require_no_contradiction
 from ddct_bringup.bag.measured_keys import MeasuredRun
-from ddct_bringup.bag.reader import Recording, read_bag
+from ddct_bringup.bag.reader import read_bag
+from ddct_bringup.bag.recording import Recording
 from ddct_bringup.bag.run_facts import MEASURED, RunFacts
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_plant.base.errors import DdctError

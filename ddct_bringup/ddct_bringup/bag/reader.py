@@ -2,9 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Read a recorded bag into a trajectory, its facts and counts, without ROS."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
-from functools import cached_property
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -12,16 +10,14 @@ from ddct_bringup.bag.decoding import decoded_messages
 from ddct_bringup.bag.earlier_bags import Messages, Values, earlier_values
 from ddct_bringup.bag.file.records import BagRecords, read_records
 from ddct_bringup.bag.realtime_facts import RealtimeFacts
-from ddct_bringup.bag.run_facts import MEASURED, RunFacts, RunInfoOfNodes, add_run_info
+from ddct_bringup.bag.recording import Recording
+from ddct_bringup.bag.run_facts import RunFacts, RunInfoOfNodes, add_run_info
 from ddct_bringup.bag.ticks import check_ticks
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import stamp_of_step
-from ddct_plant.files.input_file import SCHEMA_KEY, located, mcap_of
-from ddct_plant.files.yaml_text import parse_yaml
+from ddct_plant.files.input_file import located, mcap_of
 from ddct_plant.graph.node_names import StatusName, name_in_graph
-from ddct_plant.scenario.content import scenario_from_mapping
-from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.signals.signal import RunKind
 from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import (
@@ -31,69 +27,6 @@ from ddct_plant.signals.topics import (
     RUN_INFO,
     recorded_topics,
 )
-
-
-@dataclass(frozen=True)
-class Recording:
-    """Contents of a complete bag: signals, facts of the run, run_info and message counts."""
-
-    path: Path
-    """Path of the MCAP file."""
-    trajectory: Trajectory
-    facts: RunFacts
-    custom_data: dict[str, str] = field(default_factory=dict)
-    run_info: RunInfoOfNodes = field(default_factory=dict)
-    """Parameters and version of each node, by full node name."""
-    counts: dict[str, int] = field(default_factory=dict)
-    """Number of messages by resolved topic name."""
-    missed: dict[str, int] = field(default_factory=dict)
-    """Number of stamps without a reply, by reply topic; real time only."""
-    realtime: RealtimeFacts = field(default_factory=RealtimeFacts)
-    """Counts and safe states published on `/diagnostics`; empty in lock-step."""
-    absent: Mapping[str, str] = field(default_factory=dict)
-    """
-    Reason by quantity for quantities that the recording lacks: NaN in the log of another tool,
-    and no signal of the trajectory where a controller's node leaves out an optional topic.
-    """
-    simulated: RunSettings | None = None
-    """Settings of a run that was simulated in this process; None of a bag."""
-
-    @cached_property
-    def settings(self) -> RunSettings | None:
-        """Settings of the run; None where the bag lacks them or this version cannot build them."""
-        if self.simulated is not None:
-            return self.simulated
-        facts = self.facts
-        try:
-            return RunSettings(
-                scenario_from_mapping(self._scenario),
-                facts.architecture,
-                facts.clutch,
-                facts.wear_gain,
-                facts.mode,
-                facts.seed,
-                **facts.of_shift,
-            )
-        except (DdctError, TypeError, ValueError):
-            return None
-
-    @property
-    def measured(self) -> bool:
-        """Whether this is the log of another tool, without the files beside a bag."""
-        return self.facts.mode == MEASURED
-
-    @property
-    def before_schema(self) -> bool:
-        """Whether the recorded scenario is older than the version numbers of scenarios."""
-        return not isinstance(self._scenario, dict) or SCHEMA_KEY not in self._scenario
-
-    @cached_property
-    def _scenario(self) -> Any:
-        """Content of the recorded scenario; None without a readable one."""
-        try:
-            return parse_yaml(self.custom_data.get('scenario_yaml', ''))
-        except DdctError:
-            return None
 
 
 def read_bag(path: Path) -> Recording:

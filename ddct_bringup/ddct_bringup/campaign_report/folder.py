@@ -15,10 +15,10 @@ from ddct_bringup.campaign_report import texts
 from ddct_bringup.campaign_report.distributions_figure import distributions_figure
 from ddct_bringup.campaign_report.map_types import MapScale
 from ddct_bringup.campaign_report.maps import FAILED_SHARE, campaign_maps
-from ddct_bringup.campaign_report.outcome import FAILED
 from ddct_bringup.campaign_report.printed_summary import MAIN
 from ddct_bringup.campaign_report.reading import read_table, results_of
 from ddct_bringup.campaign_report.results import Results
+from ddct_bringup.campaign_report.statistics.outcome import FAILED
 from ddct_bringup.campaign_report.summary import summary_of
 from ddct_bringup.campaign_report.summary_types import Summary
 from ddct_bringup.digests.writing import keep_digests

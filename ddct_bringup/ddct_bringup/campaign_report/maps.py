@@ -14,8 +14,8 @@ from ddct_bringup.campaign_report.map_types import (
     MapScale,
     PointMap,
 )
-from ddct_bringup.campaign_report.outcome import FAILED, count_outcomes
 from ddct_bringup.campaign_report.results import Results
+from ddct_bringup.campaign_report.statistics.outcome import FAILED, count_outcomes
 from ddct_bringup.report.page_parts import unit_text
 from ddct_bringup.verdict.state import ENGAGED, INVALID, SUCCESSES
 

@@ -1,9 +1,9 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Rows of a campaign: varied keys, groups of runs, and the quantities that are evaluated."""
+"""Rows of a campaign: varied keys, groups of runs, and the nominal case."""
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
 from typing import Any
@@ -11,29 +11,9 @@ from typing import Any
 import numpy as np
 
 from ddct_bringup.campaign.columns import CONTROLLER, INDEX, SEED
-from ddct_bringup.campaign.rows import CRITERION
-from ddct_bringup.campaign_report.outcome import outcomes_of
-from ddct_bringup.metrics.catalogue import CRITERIA, FURTHER, TABLE_5_1
-from ddct_bringup.metrics.metric import Criterion, Metric
+from ddct_bringup.campaign_report.evaluated import QUANTITIES
+from ddct_bringup.campaign_report.statistics.outcome import outcomes_of
 from ddct_plant.program.table import Quantity
-
-
-def quantities_of(
-    metrics: Iterable[Metric], criteria: Iterable[Criterion]
-) -> tuple[Quantity, ...]:
-    """Return the quantities of which less is better, by column, those of criteria last."""
-    return (
-        *(metric for metric in metrics if metric.smaller_is_better),
-        *(
-            replace(criterion, key=f'{CRITERION}{criterion.key}')
-            for criterion in criteria
-            if not criterion.metric
-        ),
-    )
-
-
-QUANTITIES = quantities_of((*TABLE_5_1, *FURTHER), CRITERIA)
-"""Metrics and further criteria by column; for each a smaller magnitude is better."""
 
 
 @dataclass(frozen=True)

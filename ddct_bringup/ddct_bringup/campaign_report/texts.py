@@ -4,9 +4,9 @@
 
 import shlex
 
-from ddct_bringup.campaign_report.attribution import FEWEST, MOST_PARTS
-from ddct_bringup.campaign_report.outcome import CONFIDENCE, METHOD
-from ddct_bringup.campaign_report.spread import ONE_IN
+from ddct_bringup.campaign_report.statistics.attribution import FEWEST, MOST_PARTS
+from ddct_bringup.campaign_report.statistics.outcome import CONFIDENCE, METHOD
+from ddct_bringup.campaign_report.statistics.spread import ONE_IN
 from ddct_bringup.campaign_report.summary_types import (
     BoundarySide,
     FailedSummary,

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from ddct_bringup.bag.measured_run import add_columns_option, is_log, read_recording
-from ddct_bringup.bag.reader import Recording
+from ddct_bringup.bag.recording import Recording
 from ddct_bringup.bag.repair import repair_bag
 from ddct_bringup.digests.writing import keep_digests
 from ddct_bringup.metrics.comfort import VDV_WEIGHTING

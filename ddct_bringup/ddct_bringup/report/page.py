@@ -10,7 +10,7 @@ import bokeh
 from bokeh.resources import Resources
 from markupsafe import Markup
 
-from ddct_bringup.bag.reader import Recording
+from ddct_bringup.bag.recording import Recording
 from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.metrics.catalogue import FURTHER, TABLE_5_1
 from ddct_bringup.report.charts import NEUTRAL, chart_document, charted_signals, has_reference

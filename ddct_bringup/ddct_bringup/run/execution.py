@@ -12,7 +12,7 @@ from pathlib import Path
 
 from rich.console import Console
 
-from ddct_bringup.bag.reader import Recording
+from ddct_bringup.bag.recording import Recording
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.bag.trajectory_bag import write_trajectory
 from ddct_bringup.processes.graph_nodes import GRAPH_NODES

@@ -8,7 +8,7 @@ from functools import cached_property
 from pathlib import Path
 
 from ddct_bringup.bag.measured_run import read_recording
-from ddct_bringup.bag.reader import Recording
+from ddct_bringup.bag.recording import Recording
 from ddct_bringup.digests.writing import ITSELF, write_run_digests
 from ddct_bringup.run.execution import execute, simulate
 from ddct_bringup.run.plan import RunPlan

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from ddct_bringup.bag.file.records import salvage_records
-from ddct_bringup.bag.reader import Recording
+from ddct_bringup.bag.recording import Recording
 from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.metrics.catalogue import METRICS, NEEDED_BY

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from scipy.io import savemat
 
-from ddct_bringup.bag.reader import Recording
+from ddct_bringup.bag.recording import Recording
 from ddct_bringup.scores.bags import bag_name
 from ddct_bringup.scores.csv_text import signal_columns, signals_csv
 from ddct_plant.base.errors import DdctError

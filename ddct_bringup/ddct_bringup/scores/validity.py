@@ -6,15 +6,10 @@ import math
 
 import numpy as np
 
-from ddct_bringup.bag.reader import Recording
+from ddct_bringup.bag.recording import Recording
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_plant.base.timebase import START_NS, time_of_step
-from ddct_plant.signals.topics import (
-    CLUTCH_TORQUE,
-    ENGINE_TORQUE,
-    HOLDING_TORQUE,
-    LOAD_TORQUE,
-)
+from ddct_plant.signals.topics import CLUTCH_TORQUE, ENGINE_TORQUE, HOLDING_TORQUE, LOAD_TORQUE
 
 MISS_TOLERANCE = 0.01
 """

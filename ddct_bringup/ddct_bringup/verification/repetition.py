@@ -5,7 +5,7 @@
 import os
 from pathlib import Path
 
-from ddct_bringup.bag.reader import Recording
+from ddct_bringup.bag.recording import Recording
 from ddct_bringup.digests.digest_file import RunDigests
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.verification.request import Request

@@ -8,7 +8,8 @@ from collections.abc import Iterator
 from dataclasses import asdict, replace
 from pathlib import Path
 
-from ddct_bringup.bag.reader import Recording, read_bag
+from ddct_bringup.bag.reader import read_bag
+from ddct_bringup.bag.recording import Recording
 from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.bag.trajectory_bag import write_trajectory

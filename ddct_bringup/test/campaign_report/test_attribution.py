@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from made_results import made_results
 
-from ddct_bringup.campaign_report import attribution as attribution_module
-from ddct_bringup.campaign_report.attribution import FEWEST, effects_of, too_few
+from ddct_bringup.campaign_report.statistics import attribution as attribution_module
+from ddct_bringup.campaign_report.statistics.attribution import FEWEST, effects_of, too_few
 from ddct_bringup.campaign_report.summary import summary_of
 from ddct_bringup.verdict.state import ENGAGED, INVALID
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from made_results import made_results
 
-from ddct_bringup.campaign_report.boundaries import FailureBoundary, boundaries
+from ddct_bringup.campaign_report.statistics.boundaries import FailureBoundary, boundaries
 from ddct_bringup.campaign_report.summary import summary_of
 from ddct_bringup.campaign_report.summary_types import BoundarySide
 from ddct_bringup.campaign_report.texts import boundary_text, good_text

@@ -7,8 +7,8 @@ import pytest
 from made_results import made_results
 from scipy.stats import binomtest
 
-from ddct_bringup.campaign_report import outcome
-from ddct_bringup.campaign_report.outcome import Share, count_outcomes, outcomes_of
+from ddct_bringup.campaign_report.statistics import outcome
+from ddct_bringup.campaign_report.statistics.outcome import Share, count_outcomes, outcomes_of
 from ddct_bringup.campaign_report.summary import summary_of
 from ddct_bringup.campaign_report.summary_types import StateSummary
 from ddct_bringup.verdict.state import ENGAGED, INVALID, STATES, SUCCESSES

@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 from made_results import made_results
 
-from ddct_bringup.campaign_report import maps, outcome
+from ddct_bringup.campaign_report import maps
 from ddct_bringup.campaign_report.maps import MOST_POINTS, campaign_maps
 from ddct_bringup.campaign_report.results import Results
+from ddct_bringup.campaign_report.statistics import outcome
 from ddct_bringup.verdict.state import ENGAGED, INVALID
 
 WEAR, MASS, SLOPE = 'wear_gain', 'vehicle.mass_kg', 'load.slope_rad'

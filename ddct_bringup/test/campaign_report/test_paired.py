@@ -7,7 +7,7 @@ import pytest
 from made_results import made_results
 from scipy.stats import quantile_test
 
-from ddct_bringup.campaign_report.paired import difference_of, median_interval
+from ddct_bringup.campaign_report.statistics.paired import difference_of, median_interval
 from ddct_bringup.campaign_report.summary import summary_of
 from ddct_bringup.verdict.state import ENGAGED
 

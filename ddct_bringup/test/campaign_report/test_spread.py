@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from made_results import made_results
 
-from ddct_bringup.campaign_report.spread import conditional_value_at_risk, spread_of
+from ddct_bringup.campaign_report.statistics.spread import conditional_value_at_risk, spread_of
 from ddct_bringup.campaign_report.summary import summary_of
 from ddct_bringup.verdict.state import ENGAGED, INVALID
 

@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 from made_run import made_facts
 
-from ddct_bringup.bag.reader import Recording
 from ddct_bringup.bag.realtime_facts import RealtimeFacts
+from ddct_bringup.bag.recording import Recording
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.report.page import report_page
 from ddct_bringup.report.page_parts import symbols

@@ -11,7 +11,7 @@ import pytest
 from made_run import made_facts, made_run, times
 from made_scores import made_scores
 
-from ddct_bringup.bag.reader import Recording
+from ddct_bringup.bag.recording import Recording
 from ddct_bringup.metrics.catalogue import TABLE_5_1
 from ddct_bringup.report.evidence import NOT_LINEAR, LoopEvidence, loop_rows, without_evidence
 from ddct_bringup.report.run_tables import TICKS, time_place, update_times

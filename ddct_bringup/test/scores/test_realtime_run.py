@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 from made_run import made_facts
 
-from ddct_bringup.bag.reader import Recording
 from ddct_bringup.bag.realtime_facts import RealtimeFacts
+from ddct_bringup.bag.recording import Recording
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_bringup.scores.scored_recording import score_recording

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from made_run import made_facts
 
-from ddct_bringup.bag.reader import Recording
 from ddct_bringup.bag.realtime_facts import RealtimeFacts
+from ddct_bringup.bag.recording import Recording
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.scores.scored_recording import score_recording

@@ -23,7 +23,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ddct_bringup.campaign_report.outcome import CONFIDENCE
+from ddct_bringup.campaign_report.statistics.outcome import CONFIDENCE
 
 METHOD = 'main effect of each key, permutation test with Holm correction, bootstrap interval'
 FEWEST = 5

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ddct_bringup.campaign_report.outcome import FAILED
+from ddct_bringup.campaign_report.statistics.outcome import FAILED
 from ddct_bringup.verdict.state import INVALID
 
 

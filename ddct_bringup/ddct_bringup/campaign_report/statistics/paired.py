@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 import scipy
 
-from ddct_bringup.campaign_report.outcome import CONFIDENCE
-from ddct_bringup.campaign_report.spread import quantiles_of
+from ddct_bringup.campaign_report.statistics.outcome import CONFIDENCE
+from ddct_bringup.campaign_report.statistics.spread import quantiles_of
 from ddct_bringup.campaign_report.summary_types import Quantiles
 from ddct_bringup.verdict.state import ENGAGED
 

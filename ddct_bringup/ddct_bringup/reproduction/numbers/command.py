@@ -7,11 +7,9 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from typing import Any
 
-from ddct_bringup.reproduction.numbers.gate import GateRow, judge, thesis_numbers
-from ddct_bringup.reproduction.numbers.gate_tables import (
-    chapter_tables,
-    page_tables,
-)
+from ddct_bringup.reproduction.numbers.gate import GateRow, judge
+from ddct_bringup.reproduction.numbers.gate_tables import chapter_tables, page_tables
+from ddct_bringup.reproduction.numbers.number_files import thesis_numbers
 from ddct_bringup.reproduction.numbers.thesis_number import Value
 from ddct_bringup.reproduction.values.closed_loop_values import closed_loop_values
 from ddct_bringup.reproduction.values.controller_values import predictive_values

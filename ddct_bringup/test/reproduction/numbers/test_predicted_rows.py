@@ -8,7 +8,7 @@ import io
 import pytest
 from made_scores import made_scores
 
-from ddct_bringup.reproduction.numbers.gate import thesis_numbers
+from ddct_bringup.reproduction.numbers.number_files import thesis_numbers
 from ddct_bringup.scores.comparison_table import print_comparison
 from ddct_bringup.thesis import predictions
 from ddct_bringup.thesis.predictions import Prediction, Predictions

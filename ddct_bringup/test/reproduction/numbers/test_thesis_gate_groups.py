@@ -4,8 +4,9 @@
 
 import pytest
 
-from ddct_bringup.reproduction.numbers.gate import judge, parse_numbers
+from ddct_bringup.reproduction.numbers.gate import judge
 from ddct_bringup.reproduction.numbers.gate_tables import count_facts, facts_table
+from ddct_bringup.reproduction.numbers.number_files import parse_numbers
 from ddct_bringup.reproduction.values.controller_values import coefficients, in_the_form_of
 from ddct_bringup.reproduction.values.h_infinity_values import RAW_CONTROLLER, h_infinity_values
 from ddct_bringup.reproduction.values.loop_shaping_values import loop_shaping_values

@@ -7,8 +7,9 @@ import dataclasses
 import pytest
 
 from ddct_bringup.reproduction.numbers.command import compute
-from ddct_bringup.reproduction.numbers.gate import judge, parse_numbers
+from ddct_bringup.reproduction.numbers.gate import judge
 from ddct_bringup.reproduction.numbers.gate_tables import computed_text, page_tables
+from ddct_bringup.reproduction.numbers.number_files import parse_numbers
 from ddct_bringup.reproduction.numbers.thesis_number import Finding, ThesisNumber, Tolerance
 from ddct_plant.base.errors import ParameterError
 
