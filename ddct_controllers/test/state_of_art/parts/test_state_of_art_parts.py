@@ -9,10 +9,10 @@ import pytest
 
 from ddct_controllers.interface import ControllerContext, Measurement
 from ddct_controllers.mpc.model.transmission_model import REQUEST, SLIP_SPEED, transmission_model
+from ddct_controllers.state_of_art.parts.engagement_program import MOVES, engagement_programs
 from ddct_controllers.state_of_art.parts.rigid_transmission import RigidTransmission, SpeedPlan
 from ddct_controllers.state_of_art.parts.slow_clutch import ACTUATION_LAG_S, SlowClutch
 from ddct_controllers.state_of_art.parts.speed_loops import ClutchTorqueEstimator, EngineShare, Pid
-from ddct_controllers.state_of_art.pedal_mpc import MOVES, engagement_programs
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.models.engine import EngineAuthority
 from ddct_plant.models.printed import ACTUATOR
