@@ -81,11 +81,11 @@ def _plain(name: str, source: str, controller: object) -> Controller:
     return controller
 
 
-def _require(usable: bool, name: str, found: str, wanted: str) -> None:
+def _require(usable: bool, name: str, found: str, usable_form: str) -> None:
     """Raise DdctError with the value found in the controller `name`, unless it is usable."""
     if not usable:
         raise DdctError(
-            f'its {found}: give {wanted}', key=found.split()[0], place=f'controller {name!r}'
+            f'its {found}: give {usable_form}', key=found.split()[0], place=f'controller {name!r}'
         )
 
 

@@ -5,7 +5,7 @@
 import dataclasses
 from collections.abc import Sequence
 
-from ddct_bringup.bag.measured_keys import MeasuredRun
+from ddct_bringup.bag.measured_keys import MeasuredKeys
 from ddct_controllers.mpc.costs import BASIS
 from ddct_controllers.mpc.program.settings import program_options
 from ddct_controllers.registry import controller_spec
@@ -69,7 +69,7 @@ _OF_EVERY_MPC = tuple(program_options(BASIS.settings()))
 TABLES = {
     'scenario': _scenario(),
     'run': _without_source(RunSettings),
-    'measured_run': _without_source(MeasuredRun, MeasuredRun.prefix),
+    'measured_run': _without_source(MeasuredKeys, MeasuredKeys.prefix),
     'pi': _controllers('pi'),
     'mpc': _controllers('mpc1', 'mpc2', 'mpc3', 'mpc_preview'),
     'mpc4': _controllers('mpc4', 'mpc4_wear', without=_OF_EVERY_MPC[3:]),

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from ddct_bringup.metrics.catalogue import CRITERIA
-from ddct_bringup.reproduction.headless_run import thesis_run
+from ddct_bringup.reproduction.study_run import thesis_run
 from ddct_bringup.thesis.table_5_1 import ROW_OF, TABLE_METRICS
 from ddct_bringup.verdict.state import ENGAGED, INVALID, NOT_ENGAGED
 from ddct_controllers.registry import own_controller_names

@@ -17,14 +17,14 @@ from ddct_controllers.design.analysis.loops import continuous_loop, sampled_loop
 from ddct_controllers.design.analysis.worst_corner import PlantCorners
 from ddct_controllers.design.drawing.chart_style import chart_style
 from ddct_controllers.design.h_infinity.recipes import PRINTED_WEIGHTS, THESIS_SPECIFICATIONS
-from ddct_controllers.design.h_infinity.record_types import LoopsEntry
-from ddct_controllers.design.h_infinity.report import (
+from ddct_controllers.design.h_infinity.record import (
     design_record,
     loop_record,
     uncertainty_record,
 )
+from ddct_controllers.design.h_infinity.record_types import LoopsEntry
 from ddct_controllers.design.h_infinity.tables import design_tables, loop_table
-from ddct_controllers.design.loop_shaping.report import thesis_record
+from ddct_controllers.design.loop_shaping.record import thesis_record
 from ddct_controllers.design.loop_shaping.tables import thesis_tables
 from ddct_controllers.printed import H_INFINITY_CONTROLLERS
 from ddct_controllers.registry import controller_names

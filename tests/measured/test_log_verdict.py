@@ -11,7 +11,7 @@ from support.logs import drag, identify
 from support.other_car import COLUMNS, TRUE, drive, late_log
 
 from ddct_plant.identification.from_log.fit import fit_log
-from ddct_plant.identification.from_log.prediction import Prediction, predict
+from ddct_plant.identification.from_log.prediction import SpeedPrediction, predict
 from ddct_plant.identification.from_log.result import LogFit
 from ddct_plant.identification.from_log.stretches import stretches_of
 from ddct_plant.identification.from_log.verdict import doubts, reasons_against
@@ -98,7 +98,7 @@ def test_force_needs_a_log(capsys: pytest.CaptureFixture[str]) -> None:
 
 def judged(
     signals: dict[str, np.ndarray], times: np.ndarray, known: dict[str, float] | None = None
-) -> tuple[LogFit, list[Prediction], list[str]]:
+) -> tuple[LogFit, list[SpeedPrediction], list[str]]:
     log = MeasuredLog(Path('a.csv'), '', times, signals)
     parting = times[0] + 0.7 * (times[-1] - times[0])
     first, rest = log.part(times[0], parting), log.part(parting, times[-1])

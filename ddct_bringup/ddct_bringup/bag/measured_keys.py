@@ -11,7 +11,7 @@ from ddct_plant.models.gearbox import EngagedGear
 
 
 @dataclass(frozen=True)
-class MeasuredRun(OptionGroup, prefix='run.'):
+class MeasuredKeys(OptionGroup, prefix='run.'):
     """Keys under `run` of a column map, with their defaults and ranges."""
 
     controller: str = option(MEASURED, 'name of the controller in tables', kind=str)

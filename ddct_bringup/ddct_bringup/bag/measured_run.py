@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ddct_bringup.bag.measured_checks import require_no_contradiction
-from ddct_bringup.bag.measured_keys import MeasuredRun
+from ddct_bringup.bag.measured_keys import MeasuredKeys
 from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.bag.recording import Recording
 from ddct_bringup.bag.run_facts import MEASURED, RunFacts
@@ -72,8 +72,8 @@ def read_measured_run(path: Path, columns: ColumnMap) -> Recording:
     0.1 s, or contradicts the values under `run` or the units and signs of the column map.
     """
     log = read_log(path, columns, NEEDED)
-    require_known(columns.run, options_of(MeasuredRun), prefix='run.')
-    run = MeasuredRun(**columns.run)
+    require_known(columns.run, options_of(MeasuredKeys), prefix='run.')
+    run = MeasuredKeys(**columns.run)
     start_s = log.time_s[0] if run.start_s is None else run.start_s
     steps = int(np.floor((log.time_s[-1] - start_s) / PERIOD_S + 1e-6))
     if start_s < log.time_s[0] - 1e-6 or steps < 1:
@@ -107,7 +107,7 @@ def read_measured_run(path: Path, columns: ColumnMap) -> Recording:
     )
 
 
-def _facts(run: MeasuredRun, steps: int) -> RunFacts:
+def _facts(run: MeasuredKeys, steps: int) -> RunFacts:
     duration_s = time_of_step(steps)
     first_s, last_s = run.score_window_s or (run.control_start_s, duration_s)
     return RunFacts(
@@ -128,8 +128,8 @@ def _on_grid(log: MeasuredLog, name: str, grid_s: np.ndarray) -> np.ndarray:
     times, values = log.samples(name)
     if not times.size:
         raise DdctError(f'{log.path}: {name} has no value in any row: leave it out of the columns')
-    wanted = (times >= grid_s[0] - _LONGEST_GAP_S) & (times <= grid_s[-1] + _LONGEST_GAP_S)
-    edges = np.concatenate([[grid_s[0]], times[wanted], [grid_s[-1]]])
+    near = (times >= grid_s[0] - _LONGEST_GAP_S) & (times <= grid_s[-1] + _LONGEST_GAP_S)
+    edges = np.concatenate([[grid_s[0]], times[near], [grid_s[-1]]])
     longest = int(np.argmax(np.diff(edges)))
     if edges[longest + 1] - edges[longest] > _LONGEST_GAP_S:
         raise DdctError(

@@ -14,11 +14,11 @@ from ddct_bringup.campaign_report.summary_types import (
     AttributionSummary,
     BoundarySide,
     BoundarySummary,
-    Case,
     FailedSummary,
     PartSummary,
     Reason,
-    RunOfCase,
+    RunOfValue,
+    RunValue,
     ShareOfRuns,
     StateSummary,
 )
@@ -135,13 +135,13 @@ def _part(part: attribution.Part) -> PartSummary:
     return {'low': part.low, 'high': part.high, 'runs': part.runs, 'failed': part.failed}
 
 
-def case_of(results: Results, rows: np.ndarray, values: np.ndarray, place: int | None) -> Case:
+def case_of(results: Results, rows: np.ndarray, values: np.ndarray, place: int | None) -> RunValue:
     """Return the value, index and state of the run at a place among `rows`, None for none."""
     value = None if place is None else float(values[place])
     return {'value': value, **_run(results, rows, place)}
 
 
-def _run(results: Results, rows: np.ndarray, place: int | None) -> RunOfCase:
+def _run(results: Results, rows: np.ndarray, place: int | None) -> RunOfValue:
     """Return index and state of a run."""
     if place is None:
         return {'index': None, 'state': None}

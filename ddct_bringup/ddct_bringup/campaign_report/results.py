@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from ddct_bringup.campaign.columns import CONTROLLER, INDEX, SEED
-from ddct_bringup.campaign_report.evaluated import QUANTITIES
+from ddct_bringup.campaign_report.evaluated_quantities import QUANTITIES
 from ddct_bringup.campaign_report.statistics.outcome import outcomes_of
 from ddct_plant.program.table import Quantity
 

@@ -47,20 +47,20 @@ class FailedSummary(ShareOfRuns):
     reasons: list[Reason]
 
 
-class RunOfCase(TypedDict):
+class RunOfValue(TypedDict):
     """Index and state of a run; null without one."""
 
     index: int | None
     state: str | None
 
 
-class Case(RunOfCase):
+class RunValue(RunOfValue):
     """Value of a quantity in one run."""
 
     value: float | None
 
 
-class BoundarySide(RunOfCase):
+class BoundarySide(RunOfValue):
     """Boundary of failure on one side of a line, as in `FailureBoundary`, and its first run."""
 
     last_good: float | None
@@ -120,8 +120,8 @@ class QuantitySummary(Quantiles):
     engaged: int
     with_value: int
     cvar_engaged: float | None
-    worst_engaged: Case
-    worst: Case
+    worst_engaged: RunValue
+    worst: RunValue
 
 
 class GroupSummary(TypedDict):

@@ -14,7 +14,7 @@ from ddct_bringup.campaign import columns
 from ddct_bringup.campaign.columns import compared_in, differences, read_row
 from ddct_bringup.campaign.conduct import RESULTS
 from ddct_bringup.campaign_report import reading, results
-from ddct_bringup.campaign_report.evaluated import quantities_of
+from ddct_bringup.campaign_report.evaluated_quantities import quantities_of
 from ddct_bringup.metrics.catalogue import METRICS
 from ddct_bringup.programs.campaign import main
 from ddct_plant.program.table import Quantity

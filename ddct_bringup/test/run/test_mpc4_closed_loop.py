@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from ddct_bringup.reproduction.headless_run import HeadlessRun, StaticControllerAlone, thesis_run
 from ddct_bringup.reproduction.studies.changed_loops import (
     LoopWithoutActuator,
     closed_loop,
@@ -20,6 +19,7 @@ from ddct_bringup.reproduction.studies.study import (
     close_time_s,
     deviation_range,
 )
+from ddct_bringup.reproduction.study_run import StaticControllerAlone, StudyRun, thesis_run
 from ddct_bringup.run.headless import ClosedLoop, run_headless, run_loop
 from ddct_controllers.mpc.controller import MpcController
 from ddct_controllers.mpc.costs import TwoInputCost
@@ -43,7 +43,7 @@ def run(controller, *changes, wear_gain=1.0, architecture='detailed'):
 
 
 def metrics(trajectory):
-    return HeadlessRun(SETTINGS, 'mpc4', trajectory).metrics
+    return StudyRun(SETTINGS, 'mpc4', trajectory).metrics
 
 
 @pytest.mark.parametrize('name', BOTH)

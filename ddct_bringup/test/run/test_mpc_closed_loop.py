@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 import scipy.linalg
 
-from ddct_bringup.reproduction.headless_run import (
-    THESIS_SCENARIO,
-    HeadlessRun,
-    headless_run,
-    thesis_run,
-)
 from ddct_bringup.reproduction.studies.readings import readings
 from ddct_bringup.reproduction.studies.study import TABLE_5_1, cells
+from ddct_bringup.reproduction.study_run import (
+    THESIS_SCENARIO,
+    StudyRun,
+    study_run,
+    thesis_run,
+)
 from ddct_bringup.run.headless import run_headless
 from ddct_controllers.interface import Command, Controller, ControllerContext
 from ddct_controllers.mpc.costs import TABLE_4_1
@@ -120,7 +120,7 @@ def test_as_drawn_mpc3_is_what_a_simulation_of_its_own_gives():
     peer = run_headless(SETTINGS, AsDrawn(prediction_steps=22, control_steps=4))
     ours = thesis_run('mpc3', 'detailed', 1.0).trajectory
     np.testing.assert_allclose(ours.torque_request, peer.torque_request, atol=1e-6)
-    figures_of_peer = HeadlessRun(SETTINGS, 'as drawn', peer).metrics
+    figures_of_peer = StudyRun(SETTINGS, 'as drawn', peer).metrics
     assert figures_of_peer['engagement_time_s'] == pytest.approx(0.580, abs=5e-4)
     assert figures_of_peer['torsion_speed_std_rpm'] == pytest.approx(1.788, abs=5e-4)
     assert figures_of_peer['acceleration_std_m_s2'] == pytest.approx(0.2885, abs=5e-5)
@@ -184,7 +184,7 @@ def test_limits_of_the_request_hold_in_the_loop():
 def test_the_first_reading_is_the_one_in_the_registry(readings_table):
     for name in TABLE_4_1:
         row = next(row for row in readings_table.rows if row[0] == name)
-        assert row[2:5] == cells(TABLE_5_1, headless_run(SETTINGS, name))
+        assert row[2:5] == cells(TABLE_5_1, study_run(SETTINGS, name))
 
 
 def test_unit_delay_and_signals_decide_and_none_of_the_readings_is_the_print(readings_table):

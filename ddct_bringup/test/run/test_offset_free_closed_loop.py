@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ddct_bringup.reproduction.headless_run import headless_run
 from ddct_bringup.reproduction.studies.changed_loops import NoisySpeeds, slip_after_load_step
 from ddct_bringup.reproduction.studies.study import FINER_WEAR_GAINS
 from ddct_bringup.reproduction.studies.sweeps import torsion_weight
 from ddct_bringup.reproduction.studies.wear import LOAD_STEP_N_M, wear_estimate
+from ddct_bringup.reproduction.study_run import study_run
 from ddct_bringup.run.headless import ClosedLoop, run_headless, run_loop
 from ddct_controllers.mpc.estimate.observer import NoiseLevels
 from ddct_controllers.mpc.estimate.wear_state import HIGHEST_GAIN, LOWEST_GAIN
@@ -40,7 +40,7 @@ def settings(wear_gain=1.0, scenario=SCENARIO, architecture='detailed', **option
 @pytest.mark.parametrize('wear_gain', FINER_WEAR_GAINS)
 @pytest.mark.parametrize('name', OWN)
 def test_the_slip_ends_within_1_rpm_of_zero(name, wear_gain):
-    assert abs(headless_run(settings(wear_gain), name).metrics['slip_final_rpm']) <= 1.0
+    assert abs(study_run(settings(wear_gain), name).metrics['slip_final_rpm']) <= 1.0
 
 
 @pytest.mark.parametrize('wear_gain', [0.7, 1.3])
@@ -60,24 +60,24 @@ def test_a_load_step_that_is_not_known_leaves_no_slip(name, wear_gain):
 
 @pytest.mark.parametrize(('name', 'least_rpm'), [('mpc3', 20.0), ('mpc_preview', 50.0)])
 def test_the_others_keep_an_error_of_each(name, least_rpm):
-    assert abs(headless_run(settings(0.85), name).metrics['slip_final_rpm']) > 100.0
+    assert abs(study_run(settings(0.85), name).metrics['slip_final_rpm']) > 100.0
     run = settings()
     slip = slip_after_load_step(run, make_controller(name, run), LOAD_STEP_N_M, 150)
     assert abs(rpm_from_rad_s(slip[-1])) > least_rpm
 
 
 def test_with_a_new_clutch_they_engage_as_fast_as_mpc_preview():
-    fastest = headless_run(settings(), 'mpc_preview').metrics['engagement_time_s']
+    fastest = study_run(settings(), 'mpc_preview').metrics['engagement_time_s']
     for name in ('mpc_offset_free', 'mpc_wear'):
-        assert headless_run(settings(), name).metrics['engagement_time_s'] == pytest.approx(
+        assert study_run(settings(), name).metrics['engagement_time_s'] == pytest.approx(
             fastest, abs=1e-5
         )
 
 
 @pytest.mark.parametrize('wear_gain', FINER_WEAR_GAINS)
 def test_weighting_w_sr_lowers_it_at_every_wear(wear_gain):
-    damped = headless_run(settings(wear_gain), 'mpc_torsion').metrics['torsion_speed_std_rpm']
-    free = headless_run(settings(wear_gain), 'mpc_offset_free').metrics['torsion_speed_std_rpm']
+    damped = study_run(settings(wear_gain), 'mpc_torsion').metrics['torsion_speed_std_rpm']
+    free = study_run(settings(wear_gain), 'mpc_offset_free').metrics['torsion_speed_std_rpm']
     assert damped < 0.9 * free
 
 

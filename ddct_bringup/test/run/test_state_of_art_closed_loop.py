@@ -8,9 +8,9 @@ from functools import cache
 import numpy as np
 import pytest
 
-from ddct_bringup.reproduction.headless_run import headless_run
 from ddct_bringup.reproduction.studies import sweeps as studies
 from ddct_bringup.reproduction.studies.study import close_time_s
+from ddct_bringup.reproduction.study_run import study_run
 from ddct_bringup.run.headless import run_headless
 from ddct_controllers.interface import ControllerContext
 from ddct_controllers.state_of_art.controllers import STATE_OF_ART
@@ -140,7 +140,7 @@ def test_the_pedal_sets_when_the_slip_is_over(pedal):
 
 def test_a_faster_engagement_shakes_the_driveline_more():
     torsion = [
-        headless_run(
+        study_run(
             RunSettings(load_scenario('thesis', [f'pedal_position={pedal}'])), 'pedal_mpc'
         ).metrics['torsion_speed_std_rpm']
         for pedal in (0.0, 0.5, 1.0)

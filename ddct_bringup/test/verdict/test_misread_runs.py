@@ -6,7 +6,7 @@ from functools import cache
 
 import pytest
 
-from ddct_bringup.reproduction.headless_run import headless_run
+from ddct_bringup.reproduction.study_run import study_run
 from ddct_plant.models.clutch import STICK_SLIP
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
@@ -17,7 +17,7 @@ GENTLE = ('engine.torque_n_m=[5, 30]', 'duration_s=4', 'reference.slope_rad_s2=5
 @cache
 def verdict(controller, scenario='thesis', wear_gain=1.0, clutch=STICK_SLIP, changes=()):
     settings = RunSettings(load_scenario(scenario, changes), clutch=clutch, wear_gain=wear_gain)
-    return headless_run(settings, controller).verdict
+    return study_run(settings, controller).verdict
 
 
 def criterion(found, name):

@@ -186,7 +186,7 @@ def step_response(
     missing = np.abs(1.0 - response)
     half = len(missing) // 2
     grows = missing[half:].max() > GROWTH * missing[:half].max()
-    wanted = [measurement.slip_reference[0] for _, measurement in plain.measurements]
-    error = np.array(plain.slip) - wanted
+    reference = [measurement.slip_reference[0] for _, measurement in plain.measurements]
+    error = np.array(plain.slip) - reference
     runs_away = np.abs(error[probe + half :]).max() > abs(plain.slip[start])
     return StepResponse(float(response[round(1.0 / PERIOD_S)]), bool(grows or runs_away))

@@ -118,8 +118,8 @@ class MpcController(Controller, Generic[Estimator]):
         others = (0.0,) * (self._inputs - 1)
         targets = (measurement.open_loop_torque, *others)
         # The program of this period.
-        wanted = references(self.settings, ahead).ravel()
-        f = program.gradient @ np.concatenate((known, targets, wanted))
+        reference_values = references(self.settings, ahead).ravel()
+        f = program.gradient @ np.concatenate((known, targets, reference_values))
         shift = program.shift @ np.concatenate((known, (jump, *others)))
         lower, upper = engine.bounds(clutch.bounds(level - jump, gain), measurement, gain)
         solution = self._solver.solve(f, lower - shift, upper - shift)

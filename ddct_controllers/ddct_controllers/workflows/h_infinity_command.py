@@ -12,7 +12,7 @@ from ddct_controllers.design.h_infinity.recipes import (
     THESIS_SPECIFICATIONS,
     make_weights,
 )
-from ddct_controllers.design.h_infinity.report import (
+from ddct_controllers.design.h_infinity.record import (
     design_record,
     provenance,
     shortfalls,

@@ -8,7 +8,7 @@ from typing import Any
 
 from ddct_controllers.design.analysis.loops import IDENTIFIED_DRIVELINE, plant_in_rpm
 from ddct_controllers.design.loop_shaping.design import required_integrators
-from ddct_controllers.design.loop_shaping.report import (
+from ddct_controllers.design.loop_shaping.record import (
     design_record,
     provenance,
     thesis_record,
@@ -67,13 +67,13 @@ def add_parser(subparsers: Any) -> None:
 def run(options: argparse.Namespace) -> int:
     """Print the tables, write the files, and return the exit code."""
     if options.rise_time is None and options.overshoot is None:
-        _thesis(options)
+        _show_thesis(options)
     else:
-        _design(options)
+        _design_controller(options)
     return 0
 
 
-def _thesis(options: argparse.Namespace) -> None:
+def _show_thesis(options: argparse.Namespace) -> None:
     for name in _NEEDS_SPECIFICATIONS:
         if getattr(options, name) is not None:
             raise ParameterError(f'--{name} needs specifications: add --rise-time and --overshoot')
@@ -81,7 +81,7 @@ def _thesis(options: argparse.Namespace) -> None:
     show(options, thesis_tables(record).values(), record)
 
 
-def _design(options: argparse.Namespace) -> None:
+def _design_controller(options: argparse.Namespace) -> None:
     if options.rise_time is None or options.overshoot is None:
         missing = '--rise-time' if options.rise_time is None else '--overshoot'
         raise ParameterError(

@@ -8,7 +8,7 @@ import pytest
 import yaml
 from generator.pages import as_markdown, shown_tables
 
-from ddct_controllers.design.loop_shaping.report import thesis_record
+from ddct_controllers.design.loop_shaping.record import thesis_record
 from ddct_controllers.design.loop_shaping.tables import thesis_tables
 from ddct_controllers.from_file.designed import load_designed
 from ddct_controllers.printed import PRINTED_CONTROLLERS

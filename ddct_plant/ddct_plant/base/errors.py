@@ -90,26 +90,24 @@ def require_number(
     """
     # The check of the abstract class is slow, and most numbers are floats.
     if type(value) is not float and (isinstance(value, bool) or not isinstance(value, Real)):
-        raise ParameterError(f'{name} is {value!r}: give a number{_wanted_in(unit)}', key=name)
+        raise ParameterError(f'{name} is {value!r}: give a number{_in_unit(unit)}', key=name)
     try:
         number = float(value)
     except OverflowError:
         number = math.inf
     if not math.isfinite(number):
-        raise ParameterError(
-            f'{name} is {number}: give a finite number{_wanted_in(unit)}', key=name
-        )
+        raise ParameterError(f'{name} is {number}: give a finite number{_in_unit(unit)}', key=name)
     if above is not None and number <= above:
         raise ParameterError(
-            f'{name} is {number:g}{_in(unit)}: it must be above {above:g}', key=name
+            f'{name} is {number:g}{_unit_suffix(unit)}: it must be above {above:g}', key=name
         )
     if at_least is not None and number < at_least:
         raise ParameterError(
-            f'{name} is {number:g}{_in(unit)}: it must be at least {at_least:g}', key=name
+            f'{name} is {number:g}{_unit_suffix(unit)}: it must be at least {at_least:g}', key=name
         )
     if at_most is not None and number > at_most:
         raise ParameterError(
-            f'{name} is {number:g}{_in(unit)}: it must be at most {at_most:g}', key=name
+            f'{name} is {number:g}{_unit_suffix(unit)}: it must be at most {at_most:g}', key=name
         )
     return number
 
@@ -148,9 +146,9 @@ def require_finite(source: str, value: float) -> float:
     return value
 
 
-def _in(unit: str) -> str:
+def _unit_suffix(unit: str) -> str:
     return f' {unit}' if unit else ''
 
 
-def _wanted_in(unit: str) -> str:
+def _in_unit(unit: str) -> str:
     return f' in {unit}' if unit else ''

@@ -14,7 +14,11 @@ from ddct_plant.identification.coefficients import (
 )
 from ddct_plant.identification.fit import identify_driveline
 from ddct_plant.identification.from_log.command import add_log_options, identify_log
-from ddct_plant.identification.report import content_of, parameters_of, print_identification
+from ddct_plant.identification.identification_report import (
+    content_of,
+    parameters_of,
+    print_identification,
+)
 from ddct_plant.models.printed import CLUTCH_TO_SLIP_AS_PRINTED
 from ddct_plant.program.command_line import ProgramParser, run_program, show_and_write
 

@@ -30,7 +30,7 @@ def part(start_s: float, samples: int, load_n_m: float, random: np.random.Genera
         np.zeros((samples, 3)),
         time_s,
         table,
-        bends=np.zeros((samples, 3)),
+        second_differences=np.zeros((samples, 3)),
         held=(False, False, False),
         load_known=False,
         known_s=(float(time_s[0]), float(time_s[-1])),

@@ -35,7 +35,7 @@ def joint_outcomes(first: np.ndarray, second: np.ndarray) -> JointOutcomes:
 
 
 @dataclass(frozen=True)
-class Difference:
+class PairedDifference:
     """Difference of two controllers in one quantity, first minus second."""
 
     cases: int
@@ -48,7 +48,7 @@ class Difference:
 
 def difference_of(
     first: np.ndarray, second: np.ndarray, outcomes: tuple[np.ndarray, np.ndarray]
-) -> Difference:
+) -> PairedDifference:
     """
     Return the difference of magnitudes over the cases in which both engaged and have a value.
 
@@ -58,7 +58,9 @@ def difference_of(
     both = (outcomes[0] == ENGAGED) & (outcomes[1] == ENGAGED)
     differences = (np.abs(first) - np.abs(second))[both]
     differences = differences[~np.isnan(differences)]
-    return Difference(len(differences), quantiles_of(differences), median_interval(differences))
+    return PairedDifference(
+        len(differences), quantiles_of(differences), median_interval(differences)
+    )
 
 
 def median_interval(values: np.ndarray) -> tuple[float, float] | None:

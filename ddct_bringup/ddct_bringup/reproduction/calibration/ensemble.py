@@ -38,7 +38,7 @@ from ddct_bringup.reproduction.calibration.problem import Problem
 from ddct_bringup.reproduction.calibration.record import annotated_yaml
 from ddct_bringup.reproduction.calibration.record_types import ResidualEntry
 from ddct_bringup.reproduction.calibration.search import WINDOW_ENDS_S, Progress, centre, rim
-from ddct_bringup.reproduction.headless_run import headless_run
+from ddct_bringup.reproduction.study_run import study_run
 from ddct_bringup.thesis.predictions import folder_of_members
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.output_file import write_text
@@ -101,7 +101,7 @@ def fitted_rows(scenario: Scenario) -> list[ResidualEntry]:
 
 def _row_values(scenario: Scenario) -> dict[str, dict[str, float | None]]:
     """Return the values of the fitted rows by name; None where one is undefined."""
-    return {row: headless_run(RunSettings(scenario), row).table_values for row in ROWS}
+    return {row: study_run(RunSettings(scenario), row).table_values for row in ROWS}
 
 
 def _defined(values: Mapping[str, float | None]) -> dict[str, float]:

@@ -10,7 +10,7 @@ qualitative rating of Table 5.2 the prediction is hit or miss, with the numbers 
 from collections.abc import Iterable
 
 from ddct_bringup.reproduction.calibration.search import Progress
-from ddct_bringup.reproduction.headless_run import StaticControllerAlone, headless_run
+from ddct_bringup.reproduction.study_run import StaticControllerAlone, study_run
 from ddct_bringup.reproduction.values.orders import (
     SLIP_RATINGS,
     WORN,
@@ -57,8 +57,8 @@ def predicted_values(scenario: Scenario) -> dict[str, Value]:
 
 def _table_5_1(scenario: Scenario) -> dict[str, Value]:
     settings = RunSettings(scenario)
-    runs = {row.controller: headless_run(settings, row.controller) for row in PREDICTED_ROWS}
-    runs[OPEN_LOOP] = headless_run(settings, StaticControllerAlone())
+    runs = {row.controller: study_run(settings, row.controller) for row in PREDICTED_ROWS}
+    runs[OPEN_LOOP] = study_run(settings, StaticControllerAlone())
     return {
         f'5.1 {name} {figure}': value
         for name, run in runs.items()
@@ -68,7 +68,7 @@ def _table_5_1(scenario: Scenario) -> dict[str, Value]:
 
 def _table_5_2(scenario: Scenario, wear_gain: float) -> dict[str, Value]:
     settings = RunSettings(scenario, WORN_ARCHITECTURE, wear_gain=wear_gain)
-    runs = {name: headless_run(settings, name) for name in SLIP_RATINGS}
+    runs = {name: study_run(settings, name) for name in SLIP_RATINGS}
     rows = rows_of_table_5_2(runs)
     found: dict[str, Value] = {
         name: 'hit' if finding.holds else 'miss'

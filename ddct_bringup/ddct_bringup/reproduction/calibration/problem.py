@@ -29,7 +29,7 @@ from ddct_bringup.reproduction.calibration.parameters import (
     residual_rows,
 )
 from ddct_bringup.reproduction.calibration.record_types import FitEntry
-from ddct_bringup.reproduction.headless_run import headless_run
+from ddct_bringup.reproduction.study_run import study_run
 from ddct_bringup.thesis.table_5_1 import TABLE_METRICS
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.units import rad_s_from_rpm
@@ -148,7 +148,7 @@ def row_values(scenario: Scenario, controller: str) -> dict[str, float]:
     """
     _, end = scenario.score_window_s
     shortened = dataclasses.replace(scenario, duration_s=end)
-    run = headless_run(RunSettings(shortened), controller)
+    run = study_run(RunSettings(shortened), controller)
     figures, final_rpm = run.table_values, run.metrics['slip_final_rpm']
     if figures['engagement_time_s'] is None and final_rpm is not None:
         left = abs(rad_s_from_rpm(final_rpm)) / scenario.reference.slope_rad_s2

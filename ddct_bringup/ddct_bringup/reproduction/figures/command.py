@@ -73,8 +73,8 @@ def run(options: argparse.Namespace) -> int:
     figures = collect_figures(_own(options.controllers))
     not_drawn = NOT_DRAWN
     if options.only:
-        wanted = _wanted(options.only, {figure.number for figure in figures})
-        figures = [figure for figure in figures if figure.number in wanted]
+        chosen = _chosen(options.only, {figure.number for figure in figures})
+        figures = [figure for figure in figures if figure.number in chosen]
         not_drawn = {}
     folder = Path(options.out)
     files = [
@@ -116,13 +116,13 @@ def _own(controllers: str | None) -> list[str]:
     return chosen
 
 
-def _wanted(only: str, numbers: set[str]) -> set[str]:
-    wanted = {number.strip() for number in only.split(',')}
-    for number in sorted(wanted - numbers):
+def _chosen(only: str, numbers: set[str]) -> set[str]:
+    chosen = {number.strip() for number in only.split(',')}
+    for number in sorted(chosen - numbers):
         if number in NOT_DRAWN:
             raise ParameterError(f'figure {number} is not drawn: {NOT_DRAWN[number]}')
         raise ParameterError(f'--only: the thesis has no figure {number!r}; write 2.10,3.5')
-    return wanted
+    return chosen
 
 
 def _make_room(folder: Path, files: list[Path], overwrite: bool) -> None:

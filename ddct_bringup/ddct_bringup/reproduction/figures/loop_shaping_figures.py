@@ -47,12 +47,12 @@ def _draw_rise_time_crossover(axes: Axes) -> str:
     damping = np.linspace(0.1, 0.95, 341)
     product = np.array([rise_time_crossover_product(value) for value in damping])
     axes.plot(damping, product, color=BLUE, label='second-order prototype')
-    wanted = NETWORK_SPECIFICATIONS.damping
-    computed = rise_time_crossover_product(wanted)
+    specified = NETWORK_SPECIFICATIONS.damping
+    computed = rise_time_crossover_product(specified)
     printed_at = float(np.interp(_PRINTED_PRODUCT, product, damping))
-    axes.plot(wanted, computed, 'o', color=BLUE, label=f'ζ = {wanted:.2f}: {computed:.2f}')
+    axes.plot(specified, computed, 'o', color=BLUE, label=f'ζ = {specified:.2f}: {computed:.2f}')
     axes.plot(
-        *(wanted, _PRINTED_PRODUCT, 'x'),
+        *(specified, _PRINTED_PRODUCT, 'x'),
         color=VERMILLION,
         markersize=9,
         markeredgewidth=2,
@@ -61,7 +61,7 @@ def _draw_rise_time_crossover(axes: Axes) -> str:
     axes.set(xlabel='Damping ratio ζ', ylabel='t_r ω_c, rad', xlim=(0.1, 0.95))
     axes.legend(loc='upper left')
     return (
-        f'At the ζ = {wanted:.2f} of the specifications the curve gives {computed:.2f}; the '
+        f'At the ζ = {specified:.2f} of the specifications the curve gives {computed:.2f}; the '
         f'{_PRINTED_PRODUCT:.2f} that the thesis reads off belongs to ζ = {printed_at:.2f}.'
     )
 

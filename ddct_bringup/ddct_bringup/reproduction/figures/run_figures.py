@@ -9,9 +9,9 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.reproduction.figures.run_groups import RUN_GROUPS, RunGroup
+from ddct_bringup.reproduction.figures.figure_groups import FIGURE_GROUPS, FigureGroup
 from ddct_bringup.reproduction.figures.thesis_figure import ThesisFigure, draw_over_time
-from ddct_bringup.reproduction.headless_run import HeadlessRun, thesis_run
+from ddct_bringup.reproduction.study_run import StudyRun, thesis_run
 from ddct_bringup.thesis.table_5_1 import CALIBRATED, PREDICTED, thesis_row
 from ddct_controllers.design.drawing.line_styles import REFERENCE_LINE, LineStyle, controller_style
 from ddct_controllers.registry import controller_label
@@ -54,13 +54,13 @@ def thesis_label(controller: str) -> str:
     return controller.replace('hinf', 'H∞').upper()
 
 
-def _legend(chosen: str, wear_gain: float, group: RunGroup) -> str:
+def _legend(chosen: str, wear_gain: float, group: FigureGroup) -> str:
     name = thesis_label(chosen) if chosen in group.controllers else controller_label(chosen)
     return name + (f' (K_usura = {wear_gain:g})' if len(group.wear_gains) > 1 else '')
 
 
-def _draw(axes: Axes, group: RunGroup, quantity: str, own: Sequence[str]) -> str:
-    runs: dict[str, HeadlessRun] = {}
+def _draw(axes: Axes, group: FigureGroup, quantity: str, own: Sequence[str]) -> str:
+    runs: dict[str, StudyRun] = {}
     styles: dict[str, LineStyle] = {'reference': REFERENCE_LINE}
     for chosen in (*group.controllers, *own):
         for repeat, wear in enumerate(group.wear_gains):
@@ -78,7 +78,7 @@ def _draw(axes: Axes, group: RunGroup, quantity: str, own: Sequence[str]) -> str
     )
 
 
-def _scores(group: RunGroup, runs: dict[str, HeadlessRun], quantity: str) -> str:
+def _scores(group: FigureGroup, runs: dict[str, StudyRun], quantity: str) -> str:
     """Return the score of the quantity for each run as text."""
     beside = {
         thesis_label(name): thesis_run(name, group.architecture, 1.0) for name in group.compared
@@ -92,7 +92,7 @@ def _scores(group: RunGroup, runs: dict[str, HeadlessRun], quantity: str) -> str
     return '; '.join(parts)
 
 
-def _texts(runs: dict[str, HeadlessRun], metric: str, form: str) -> str:
+def _texts(runs: dict[str, StudyRun], metric: str, form: str) -> str:
     values = {name: run.metrics[metric] for name, run in runs.items()}
     return ', '.join(
         f'{name} {"none" if value is None else format(value, form)}'
@@ -100,7 +100,7 @@ def _texts(runs: dict[str, HeadlessRun], metric: str, form: str) -> str:
     )
 
 
-def _table_5_1(group: RunGroup, quantity: str) -> str:
+def _table_5_1(group: FigureGroup, quantity: str) -> str:
     """Return the values of Table 5.1 for these runs in the detailed architecture as text."""
     metric = _SCORES[quantity][0][1]
     rows = [thesis_row(name) for name in group.controllers if group.architecture == 'detailed']
@@ -135,6 +135,6 @@ def run_figures(own: Sequence[str] = ()) -> list[ThesisFigure]:
                 own=[chosen for chosen in own if chosen not in group.controllers],
             ),
         )
-        for group in RUN_GROUPS
+        for group in FIGURE_GROUPS
         for quantity, number in zip(_LABELS, group.numbers, strict=False)
     ]

@@ -8,10 +8,10 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from ddct_bringup.reproduction.figures.thesis_figure import ThesisFigure, draw_over_time
-from ddct_bringup.reproduction.headless_run import (
+from ddct_bringup.reproduction.study_run import (
     THESIS_SCENARIO,
-    HeadlessRun,
-    headless_run,
+    StudyRun,
+    study_run,
     thesis_run,
 )
 from ddct_bringup.reproduction.values.plant_values import (
@@ -33,17 +33,17 @@ _END_TIMES_S = (1.2, 1.6, 2.0)
 _PRINTED_PLANT = 'LTI, coefficients as printed'
 
 
-def _reference_rpm(run: HeadlessRun) -> tuple[np.ndarray, np.ndarray]:
+def _reference_rpm(run: StudyRun) -> tuple[np.ndarray, np.ndarray]:
     """Return time in s, up to _LAST_S, and the slip reference of a run in rpm."""
     reference = rpm_from_rad_s(run.trajectory.at_tick('slip_reference'))
     return run.trajectory.time_s[:_SHOWN], reference[:_SHOWN]
 
 
-def _tanh_run(end_s: float) -> HeadlessRun:
+def _tanh_run(end_s: float) -> StudyRun:
     """Return a run with the tanh reference that ends at `end_s` seconds."""
     reference = dataclasses.replace(THESIS_SCENARIO.reference, reference_end_s=end_s)
     scenario = dataclasses.replace(THESIS_SCENARIO, reference=reference)
-    return headless_run(RunSettings(scenario, 'feedforward_tanh'), 'pi')
+    return study_run(RunSettings(scenario, 'feedforward_tanh'), 'pi')
 
 
 def _draw_reference(axes: Axes) -> str:

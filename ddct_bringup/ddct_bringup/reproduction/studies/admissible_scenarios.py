@@ -9,14 +9,14 @@ from ddct_bringup.reproduction.calibration.ensemble import fitted_rows, members
 from ddct_bringup.reproduction.calibration.parameters import largest_residual, values_of
 from ddct_bringup.reproduction.calibration.predicted_values import OPEN_LOOP
 from ddct_bringup.reproduction.calibration.problem import Problem, fit
-from ddct_bringup.reproduction.headless_run import (
-    THESIS_SCENARIO,
-    HeadlessRun,
-    StaticControllerAlone,
-    headless_run,
-)
 from ddct_bringup.reproduction.studies.readings import READINGS
 from ddct_bringup.reproduction.studies.study import TABLE_5_1, Study, cells
+from ddct_bringup.reproduction.study_run import (
+    THESIS_SCENARIO,
+    StaticControllerAlone,
+    StudyRun,
+    study_run,
+)
 from ddct_bringup.reproduction.values.orders import OSCILLATION_RATINGS, SLIP_RATINGS, WORN
 from ddct_bringup.thesis.predictions import Prediction, kept_predictions
 from ddct_bringup.thesis.table_5_1 import (
@@ -181,15 +181,15 @@ def _window_row(label: str, scenario: Scenario) -> tuple[str, ...]:
         label,
         f'{max(abs(row["deviation"]) for row in fitted):.1%}'.rstrip('%'),
         f'{largest_residual(fitted):.2f}',
-        _cell(headless_run(settings, 'mpc3')),
+        _cell(study_run(settings, 'mpc3')),
         _cell(_PER_RAD_S.run(TABLE_4_1['mpc3'], scenario)),
         _cell(_MORE_KNOWN.run(TABLE_4_1['mpc3'], scenario)),
-        _cell(headless_run(settings, 'mpc4')),
-        cells(TABLE_5_1, headless_run(settings, StaticControllerAlone()))[1],
+        _cell(study_run(settings, 'mpc4')),
+        cells(TABLE_5_1, study_run(settings, StaticControllerAlone()))[1],
     )
 
 
-def _cell(run: HeadlessRun) -> str:
+def _cell(run: StudyRun) -> str:
     return ' / '.join(cells(TABLE_5_1, run))
 
 

@@ -11,7 +11,6 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ddct_bringup.reproduction.headless_run import THESIS_SCENARIO, HeadlessRun, headless_run
 from ddct_bringup.reproduction.studies.study import (
     WEAR_GAINS,
     Study,
@@ -21,6 +20,7 @@ from ddct_bringup.reproduction.studies.study import (
     friction_kj,
     headers,
 )
+from ddct_bringup.reproduction.study_run import THESIS_SCENARIO, StudyRun, study_run
 from ddct_bringup.verdict.state import SUCCESSES
 from ddct_controllers.design.drawing.line_styles import BLACK, BLUE, GREY, VERMILLION
 from ddct_controllers.registry import own_controller_names
@@ -56,12 +56,12 @@ class Slip:
     """Slip speed w_d in rpm, (N+1,)."""
 
 
-def criterion(run: HeadlessRun, name: str) -> float | int | None:
+def criterion(run: StudyRun, name: str) -> float | int | None:
     """Return the value of a criterion of a run."""
     return run.verdict.values[name]
 
 
-def _together(run: HeadlessRun) -> float | None:
+def _together(run: StudyRun) -> float | None:
     """Return the time to lock in s; t_a for a clutch that never locks."""
     name = 'time_to_lock' if run.settings.stick_slip else 'engagement_time'
     return criterion(run, name)
@@ -81,7 +81,7 @@ def engagement(case: Case) -> tuple[tuple[str, ...], Slip]:
     """Run one case; return its row and its slip, small enough to send between processes."""
     scenario, clutch, wear_gain, controller = case
     settings = RunSettings(load_scenario(scenario), clutch=clutch, wear_gain=wear_gain)
-    run = headless_run(settings, controller)
+    run = study_run(settings, controller)
     label = f'{wear_gain:g}'
     row = (label, controller, *cells(COLUMNS, run))
     return row, Slip(controller, label, run.verdict.state, run.start, run.slip_rpm)

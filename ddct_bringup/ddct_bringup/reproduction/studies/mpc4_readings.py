@@ -8,14 +8,6 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.reproduction.headless_run import (
-    THESIS_SCENARIO,
-    THESIS_SETTINGS,
-    HeadlessRun,
-    StaticControllerAlone,
-    headless_run,
-    thesis_run,
-)
 from ddct_bringup.reproduction.studies.changed_loops import (
     LoopWithMeasuredState,
     LoopWithoutActuator,
@@ -30,6 +22,14 @@ from ddct_bringup.reproduction.studies.study import (
     Study,
     cells,
     headers,
+)
+from ddct_bringup.reproduction.study_run import (
+    THESIS_SCENARIO,
+    THESIS_SETTINGS,
+    StaticControllerAlone,
+    StudyRun,
+    study_run,
+    thesis_run,
 )
 from ddct_bringup.run.headless import ClosedLoop, run_loop
 from ddct_bringup.thesis.table_5_1 import ROW_OF
@@ -54,7 +54,7 @@ Model = Callable[[DrivelineParameters, float], TransmissionModel]
 
 
 @dataclass(frozen=True)
-class Reading:
+class Mpc4Reading:
     """Settings and models of MPC4 under one reading, and the plant."""
 
     settings: MpcSettings
@@ -102,23 +102,25 @@ _SQUARED = TwoInputCost(0.05, STIFFER_PULL).settings()
 _MIXED = TwoInputCost(rad_s_from_rpm(math.sqrt(0.05)), STIFFER_PULL).settings()
 _NOWHERE = model_without_actuator, model_without_actuator
 """Models without an actuator, for the controller and for the plant."""
-READINGS: Mapping[str, Reading] = {
-    "x'Qx, reference along its tangent": Reading(_SETTINGS),
-    "x'Qx, coming reference": Reading(replace(_SETTINGS, preview=True)),
-    "x'Qx, reference held": Reading(replace(_SETTINGS, along_tangent=False)),
-    'state measured': Reading(_SETTINGS, observer=MeasuredState),
-    'weights squared': Reading(_SQUARED),
-    'weights squared, coming reference': Reading(replace(_SQUARED, preview=True)),
-    'weights squared, reference held': Reading(replace(_SQUARED, along_tangent=False)),
-    'w_d in rpm, dw_d/dt in rad/s^2': Reading(_MIXED),
-    'no delay in its model': Reading(_SETTINGS, _no_delay),
-    'no actuator in its model': Reading(_SETTINGS, model_without_actuator),
-    'no actuator in its model, state measured': Reading(
+READINGS: Mapping[str, Mpc4Reading] = {
+    "x'Qx, reference along its tangent": Mpc4Reading(_SETTINGS),
+    "x'Qx, coming reference": Mpc4Reading(replace(_SETTINGS, preview=True)),
+    "x'Qx, reference held": Mpc4Reading(replace(_SETTINGS, along_tangent=False)),
+    'state measured': Mpc4Reading(_SETTINGS, observer=MeasuredState),
+    'weights squared': Mpc4Reading(_SQUARED),
+    'weights squared, coming reference': Mpc4Reading(replace(_SQUARED, preview=True)),
+    'weights squared, reference held': Mpc4Reading(replace(_SQUARED, along_tangent=False)),
+    'w_d in rpm, dw_d/dt in rad/s^2': Mpc4Reading(_MIXED),
+    'no delay in its model': Mpc4Reading(_SETTINGS, _no_delay),
+    'no actuator in its model': Mpc4Reading(_SETTINGS, model_without_actuator),
+    'no actuator in its model, state measured': Mpc4Reading(
         _SETTINGS, model_without_actuator, observer=MeasuredState
     ),
-    'no actuator at all': Reading(_SETTINGS, *_NOWHERE),
-    'no actuator at all, coming reference': Reading(replace(_SETTINGS, preview=True), *_NOWHERE),
-    'no actuator at all, weights squared': Reading(_SQUARED, *_NOWHERE),
+    'no actuator at all': Mpc4Reading(_SETTINGS, *_NOWHERE),
+    'no actuator at all, coming reference': Mpc4Reading(
+        replace(_SETTINGS, preview=True), *_NOWHERE
+    ),
+    'no actuator at all, weights squared': Mpc4Reading(_SQUARED, *_NOWHERE),
 }
 """Readings by name; the first is that of the registry."""
 
@@ -128,12 +130,12 @@ def mpc4_readings() -> Study:
     rows = [
         (
             name,
-            *cells(TWO_INPUTS, HeadlessRun(THESIS_SETTINGS, 'mpc4', reading.run())),
+            *cells(TWO_INPUTS, StudyRun(THESIS_SETTINGS, 'mpc4', reading.run())),
             *(f'{reading.growth(gain):.3f}' for gain in WEAR_GAINS),
         )
         for name, reading in READINGS.items()
     ]
-    alone = cells(TWO_INPUTS, headless_run(THESIS_SETTINGS, StaticControllerAlone()))
+    alone = cells(TWO_INPUTS, study_run(THESIS_SETTINGS, StaticControllerAlone()))
     time, torsion, acceleration = ROW_OF['mpc4'].cells()
     none = ('-',) * len(WEAR_GAINS)
     return Study(
@@ -162,7 +164,7 @@ def torque_level() -> Study:
         observer = make_observer(THESIS_SETTINGS, model)
         settings = TwoInputCost(demand_weight=pull).settings()
         mpc4 = MpcController(model, observer, settings, EngineAuthority())
-        run = headless_run(THESIS_SETTINGS, mpc4)
+        run = study_run(THESIS_SETTINGS, mpc4)
         left = run.trajectory.engine_torque[-1] - run.trajectory.torque_demand[-1]
         rows.append(
             (

@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from ddct_bringup.metrics.catalogue import METRICS
-from ddct_bringup.reproduction.headless_run import THESIS_SCENARIO, HeadlessRun, headless_run
 from ddct_bringup.reproduction.studies.changed_loops import model_without_actuator
 from ddct_bringup.reproduction.studies.study import (
     TABLE_5_1,
@@ -17,6 +16,7 @@ from ddct_bringup.reproduction.studies.study import (
     headers,
     metric_column,
 )
+from ddct_bringup.reproduction.study_run import THESIS_SCENARIO, StudyRun, study_run
 from ddct_bringup.thesis.table_5_1 import ROW_OF
 from ddct_controllers.interface import Command, Controller, Measurement
 from ddct_controllers.mpc.controller import MpcController
@@ -46,12 +46,12 @@ class Reading:
     """Function that wraps the controller to change C_fOL."""
     architecture: str = 'detailed'
 
-    def run(self, row: TableRow, scenario: Scenario = THESIS_SCENARIO) -> HeadlessRun:
+    def run(self, row: TableRow, scenario: Scenario = THESIS_SCENARIO) -> StudyRun:
         """Return the run of a row in a scenario with the thesis's driveline."""
         run = RunSettings(scenario, self.architecture)
         settings = self.change(row.settings())
         parts = self.knowledge.parts(run, self.model, noise_rpm=self.noise_rpm)
-        return headless_run(run, self.beside(MpcController(*parts, settings)))
+        return study_run(run, self.beside(MpcController(*parts, settings)))
 
 
 def readings() -> Study:

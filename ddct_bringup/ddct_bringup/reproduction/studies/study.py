@@ -10,7 +10,7 @@ import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.metrics.catalogue import METRICS
-from ddct_bringup.reproduction.headless_run import HeadlessRun
+from ddct_bringup.reproduction.study_run import StudyRun
 from ddct_bringup.thesis.table_5_1 import FORMS
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.base.units import rpm_from_rad_s
@@ -41,7 +41,7 @@ class Study(Table):
 
 
 StudyFunction = Callable[[], Study]
-StudyColumn = Column[HeadlessRun]
+StudyColumn = Column[StudyRun]
 
 
 def headers(columns: Sequence[StudyColumn]) -> tuple[str, ...]:
@@ -49,7 +49,7 @@ def headers(columns: Sequence[StudyColumn]) -> tuple[str, ...]:
     return tuple(column.heading for column in columns)
 
 
-def cells(columns: Sequence[StudyColumn], run: HeadlessRun) -> tuple[str, ...]:
+def cells(columns: Sequence[StudyColumn], run: StudyRun) -> tuple[str, ...]:
     """Return the cells of a run in the columns."""
     return tuple(column.text(run) for column in columns)
 
@@ -58,7 +58,7 @@ def run_study(
     title: str,
     keys: Sequence[str],
     columns: Sequence[StudyColumn],
-    cases: Iterable[tuple[tuple[str, ...], HeadlessRun]],
+    cases: Iterable[tuple[tuple[str, ...], StudyRun]],
     remarks: tuple[str, ...] = (),
 ) -> Study:
     """Return the table with a row per case: its cells below the keys, then the columns."""
@@ -79,7 +79,7 @@ def deviation_range(trajectory: Trajectory) -> str:
     return f'{deviation.min():.0f} to {deviation.max():.0f}' if deviation.any() else '0'
 
 
-def friction_kj(run: HeadlessRun) -> float | None:
+def friction_kj(run: StudyRun) -> float | None:
     """Return the friction work of the clutch in kJ."""
     energy = run.metrics['friction_energy_j']
     return None if energy is None else energy / 1000.0

@@ -7,12 +7,6 @@ from dataclasses import replace
 import numpy as np
 
 from ddct_bringup.metrics.catalogue import METRICS
-from ddct_bringup.reproduction.headless_run import (
-    THESIS_SCENARIO,
-    HeadlessRun,
-    headless_run,
-    thesis_run,
-)
 from ddct_bringup.reproduction.studies.study import (
     CLOSE_RPM,
     TABLE_5_1,
@@ -23,6 +17,12 @@ from ddct_bringup.reproduction.studies.study import (
     friction_kj,
     metric_column,
     run_study,
+)
+from ddct_bringup.reproduction.study_run import (
+    THESIS_SCENARIO,
+    StudyRun,
+    study_run,
+    thesis_run,
 )
 from ddct_controllers.interface import ControllerContext
 from ddct_controllers.mpc.costs import BASIS, default_torsion_weight
@@ -84,12 +84,12 @@ def torsion_weight() -> Study:
     )
 
 
-def _torsion_case(factor: float) -> tuple[tuple[str, str], HeadlessRun]:
+def _torsion_case(factor: float) -> tuple[tuple[str, str], StudyRun]:
     weight = factor * BASIS.output_weight
     options = {**THESIS_SCENARIO.controllers, 'mpc_torsion': {'torsion_weight': weight}}
     settings = RunSettings(replace(THESIS_SCENARIO, controllers=options))
     label = f'{weight:.2f}' + (' (default)' if factor == DEFAULT_FACTOR else '')
-    return (label, f'{factor:.3g}'), headless_run(settings, 'mpc_torsion')
+    return (label, f'{factor:.3g}'), study_run(settings, 'mpc_torsion')
 
 
 def state_of_art() -> Study:
@@ -116,7 +116,7 @@ def state_of_art() -> Study:
     )
 
 
-def _largest_deviation(run: HeadlessRun) -> float:
+def _largest_deviation(run: StudyRun) -> float:
     return float(np.abs(run.trajectory.engine_torque - run.trajectory.torque_demand).max())
 
 
@@ -133,7 +133,7 @@ def pedal_positions() -> Study:
         [
             (
                 (position, f'{engagement_time_s(ControllerContext(settings, {})):.2f}'),
-                headless_run(settings, 'pedal_mpc'),
+                study_run(settings, 'pedal_mpc'),
             )
             for position, settings in every.items()
         ],
@@ -157,7 +157,7 @@ def engine_authority() -> Study:
             metric_column(METRICS['peak_jerk_m_s3'], '.1f'),
             Column('friction kJ', '.2f', friction_kj),
         ),
-        [((name, case), headless_run(settings[case], name)) for name, case in cases],
+        [((name, case), study_run(settings[case], name)) for name, case in cases],
     )
 
 

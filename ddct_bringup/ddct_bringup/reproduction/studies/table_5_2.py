@@ -5,9 +5,9 @@
 import math
 from collections.abc import Mapping
 
-from ddct_bringup.reproduction.headless_run import THESIS_SCENARIO, headless_run
 from ddct_bringup.reproduction.numbers.thesis_number import Finding
 from ddct_bringup.reproduction.studies.study import FINER_WEAR_GAINS, Study
+from ddct_bringup.reproduction.study_run import THESIS_SCENARIO, study_run
 from ddct_bringup.reproduction.values.orders import (
     OSCILLATION_RATINGS,
     SLIP_RATINGS,
@@ -48,7 +48,7 @@ def table_5_2_in_numbers() -> Study:
 def rows_of(clutch: str, wear_gain: float) -> list[tuple[str, ...]]:
     """Return the rows of the table for a clutch and a wear gain, one for each controller."""
     settings = RunSettings(THESIS_SCENARIO, WORN_ARCHITECTURE, clutch=clutch, wear_gain=wear_gain)
-    runs = {name: headless_run(settings, name) for name in SLIP_RATINGS}
+    runs = {name: study_run(settings, name) for name in SLIP_RATINGS}
     states = {name: run.verdict.state for name, run in runs.items()}
     rows = rows_of_table_5_2(runs)
     ranked = [_with_states(row, states) for row in rows]

@@ -4,7 +4,6 @@
 
 import numpy as np
 
-from ddct_bringup.reproduction.headless_run import THESIS_SCENARIO, HeadlessRun, thesis_run
 from ddct_bringup.reproduction.studies.changed_loops import NoisySpeeds, slip_after_load_step
 from ddct_bringup.reproduction.studies.study import (
     FINER_WEAR_GAINS,
@@ -12,6 +11,7 @@ from ddct_bringup.reproduction.studies.study import (
     Study,
     run_study,
 )
+from ddct_bringup.reproduction.study_run import THESIS_SCENARIO, StudyRun, thesis_run
 from ddct_controllers.interface import ControllerContext
 from ddct_controllers.mpc.estimate.observer import NoiseLevels
 from ddct_controllers.mpc.variants import PREDICTIVE
@@ -79,11 +79,11 @@ def _study(architecture: str, wear_gains: tuple[float, ...], remark: str) -> Stu
     )
 
 
-def _largest_in_last_part(run: HeadlessRun) -> float:
+def _largest_in_last_part(run: StudyRun) -> float:
     return float(np.abs(run.slip_rpm[-steps_in('last', LAST_S) :]).max())
 
 
-def _after_load_step(run: HeadlessRun) -> float:
+def _after_load_step(run: StudyRun) -> float:
     controller = make_controller(str(run.controller), run.settings)
     return rpm_from_rad_s(slip_after_load_step(run.settings, controller, *_LOAD_STEP)[-1])
 

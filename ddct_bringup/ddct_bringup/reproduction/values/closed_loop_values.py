@@ -7,8 +7,8 @@ The claims are the thesis's qualitative statements on its architectures and cont
 of each is in its entry of the gate's files: a strict order, or one by a factor.
 """
 
-from ddct_bringup.reproduction.headless_run import thesis_run
 from ddct_bringup.reproduction.numbers.thesis_number import Finding, Value
+from ddct_bringup.reproduction.study_run import thesis_run
 from ddct_bringup.reproduction.values.orders import (
     CLEARLY,
     SLIP_RATINGS,
@@ -69,7 +69,7 @@ def closed_loop_values() -> dict[str, Value | None]:
 
 def _tanh_no_better(controllers: tuple[str, ...]) -> Finding:
     tanh, ramp = (sigmas(controllers, name) for name in ('feedforward_tanh', 'feedforward'))
-    return each_lower(tanh, ramp, wanted=False)
+    return each_lower(tanh, ramp, expected=False)
 
 
 def _faster_oscillates() -> Finding:

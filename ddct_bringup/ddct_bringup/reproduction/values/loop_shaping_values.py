@@ -120,14 +120,14 @@ def _networks() -> dict[str, Value | None]:
     """Return the phase that -1/s lacks at w_c, and the effect of the networks on G_c1."""
     g_c1 = LOOP_SHAPING_CONTROLLERS['ls2']
     response = continuous_loop(integrators(-1.0, 1)).response(np.array([_CROSSOVER_RAD_S]))[0]
-    wanted = prototype_phase_margin(NETWORK_SPECIFICATIONS.damping)
+    specified = prototype_phase_margin(NETWORK_SPECIFICATIONS.damping)
     s_peak, t_peak = contours(LoopCurve(continuous_loop(g_c1)), NETWORK_SPECIFICATIONS)
     (lead_zero,) = numbers_of(g_c1.numerator[1])
     lead = lead_network(1.0, _LEAD_RATIO).frequency_response(np.ones(1))[0]
     made = in_the_form_of(g_c1, list(network_steps().values())[-1])
     put_in = {'G_c1.zero 2', 'G_c1.zero 3', 'G_c1.pole 1', 'G_c1.pole 4'}
     return {
-        'missing phase': math.degrees(wanted - float(np.angle(-response))),
+        'missing phase': math.degrees(specified - float(np.angle(-response))),
         'lead phase': math.degrees(float(np.angle(lead))),
         # w_c = 8 rad/s divided by the printed zero of the leads
         'lead zero': f'w_c / {_CROSSOVER_RAD_S / lead_zero:g}',

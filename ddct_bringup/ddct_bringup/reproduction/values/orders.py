@@ -12,8 +12,8 @@ smallest.
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
-from ddct_bringup.reproduction.headless_run import HeadlessRun, thesis_run
 from ddct_bringup.reproduction.numbers.thesis_number import Finding
+from ddct_bringup.reproduction.study_run import StudyRun, thesis_run
 from ddct_bringup.thesis.table_5_1 import TABLE_METRICS
 from ddct_plant.base.timebase import steps_in
 
@@ -45,7 +45,7 @@ def metric(name: str, controllers: Iterable[str], architecture: str = 'detailed'
     return _metric_of(name, {each: thesis_run(each, architecture, 1.0) for each in controllers})
 
 
-def _metric_of(name: str, runs: Mapping[str, HeadlessRun]) -> Row:
+def _metric_of(name: str, runs: Mapping[str, StudyRun]) -> Row:
     found = {controller: run.metrics[name] for controller, run in runs.items()}
     return {
         controller: math.inf if value is None else float(value)
@@ -76,7 +76,7 @@ def is_extreme(
     return True
 
 
-def each_lower(ours: Sequence[Row], others: Sequence[Row], *, wanted: bool = True) -> Finding:
+def each_lower(ours: Sequence[Row], others: Sequence[Row], *, expected: bool = True) -> Finding:
     """Return whether each controller, or none, is lower in all rows of `ours` than of `others`."""
     names = list(ours[0])
     lower = [
@@ -86,7 +86,7 @@ def each_lower(ours: Sequence[Row], others: Sequence[Row], *, wanted: bool = Tru
     ]
     which = ' in both' if len(ours) > 1 else ''
     return Finding(
-        len(lower) == (len(names) if wanted else 0), f'{len(lower)} of {len(names)} lower{which}'
+        len(lower) == (len(names) if expected else 0), f'{len(lower)} of {len(names)} lower{which}'
     )
 
 
@@ -104,7 +104,7 @@ def sigma_text(rows: Sequence[Row], names: Iterable[str]) -> str:
     return f'w_sr {text("rpm", twist)}; A_x {text("m/s^2", acceleration)}'
 
 
-def rows_of_table_5_2(runs: Mapping[str, HeadlessRun]) -> list[Row]:
+def rows_of_table_5_2(runs: Mapping[str, StudyRun]) -> list[Row]:
     """Return |w_d| at the window's end in rad/s, std w_sr in rpm and std A_x in m/s^2."""
     slips = {}
     for name, run in runs.items():

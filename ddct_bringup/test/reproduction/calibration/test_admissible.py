@@ -63,13 +63,13 @@ def test_slip_that_does_not_reach_zero_is_not_admissible():
 
 def test_no_predictive_controller_is_run(monkeypatch):
     run: list[str] = []
-    real = ensemble.headless_run
+    real = ensemble.study_run
 
     def noted(settings, name):
         run.append(name)
         return real(settings, name)
 
-    monkeypatch.setattr(ensemble, 'headless_run', noted)
+    monkeypatch.setattr(ensemble, 'study_run', noted)
     why_not_admissible(SCENARIO)
     assert set(run) == set(ROWS)
 

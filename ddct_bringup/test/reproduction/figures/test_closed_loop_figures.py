@@ -18,7 +18,7 @@ from ddct_bringup.reproduction.figures.command import (
     collect_figures,
 )
 from ddct_bringup.reproduction.figures.thesis_figure import figure_order
-from ddct_bringup.reproduction.headless_run import THESIS_SCENARIO, thesis_run
+from ddct_bringup.reproduction.study_run import THESIS_SCENARIO, thesis_run
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.thesis.table_5_1 import thesis_row
 from ddct_plant.base.units import rpm_from_rad_s

@@ -17,7 +17,7 @@ from ddct_bringup.reproduction.figures.gallery import gallery_page
 from ddct_bringup.reproduction.figures.h_infinity_figures import H_INFINITY_FIGURES
 from ddct_bringup.reproduction.figures.loop_shaping_figures import LOOP_SHAPING_FIGURES
 from ddct_bringup.reproduction.figures.thesis_figure import ThesisFigure
-from ddct_bringup.reproduction.headless_run import thesis_run
+from ddct_bringup.reproduction.study_run import thesis_run
 from ddct_controllers.design.analysis.loop_curve import LoopCurve
 from ddct_controllers.design.analysis.loops import continuous_loop
 from ddct_controllers.design.analysis.step_response import step_response

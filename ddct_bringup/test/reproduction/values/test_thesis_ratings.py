@@ -93,8 +93,8 @@ def test_each_lower_counts_those_that_are_lower_in_every_row():
     assert each_lower([lower], [ROW]).holds
     mixed = each_lower([lower, ROW], [ROW, ROW])
     assert not mixed.holds and mixed.evidence == '0 of 3 lower in both'
-    assert each_lower([lower, ROW], [ROW, ROW], wanted=False).holds
-    assert not each_lower([lower], [ROW], wanted=False).holds
+    assert each_lower([lower, ROW], [ROW, ROW], expected=False).holds
+    assert not each_lower([lower], [ROW], expected=False).holds
 
 
 def test_standard_deviations_are_shown_with_their_units():

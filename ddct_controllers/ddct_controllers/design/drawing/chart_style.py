@@ -28,7 +28,7 @@ _LETTERS_IN = 10.0
 """Number of letters of a title per inch of width."""
 _MOST_NAMED = 8
 ENDINGS = ('.png', '.svg', '.csv')
-Column = tuple[str, np.ndarray]
+CsvColumn = tuple[str, np.ndarray]
 """Column of a CSV file: its heading with the unit, and its values, (n,)."""
 _STYLE: dict[Any, Any] = {
     'figure.figsize': (8.0, 5.0),
@@ -126,7 +126,7 @@ def save_figure(figure: Figure, folder: Path, name: str) -> None:
     save_chart(figure, drawing)
 
 
-def figure_data(figure: Figure) -> list[Column]:
+def figure_data(figure: Figure) -> list[CsvColumn]:
     """
     Return the labelled lines of a figure as columns.
 
@@ -136,7 +136,7 @@ def figure_data(figure: Figure) -> list[Column]:
     whole panel, such as a reference of 1, have no data.
     """
     panels = figure.axes
-    columns: dict[tuple[str, bytes], Column] = {}
+    columns: dict[tuple[str, bytes], CsvColumn] = {}
     for axes in panels:
         before = f'{axes.get_title()}: ' if len(panels) > 1 and axes.get_title() else ''
         for heading, values in _panel_data(axes):
@@ -144,7 +144,7 @@ def figure_data(figure: Figure) -> list[Column]:
     return list(columns.values())
 
 
-def _panel_data(axes: Axes) -> Iterator[Column]:
+def _panel_data(axes: Axes) -> Iterator[CsvColumn]:
     groups: dict[bytes, list[Line2D]] = {}
     for line in axes.get_lines():
         labelled = not str(line.get_label()).startswith('_')

@@ -80,18 +80,18 @@ def loop_table(loops: Mapping[str, LoopsEntry]) -> Table:
     )
 
 
-def _specification_table(wanted: SpecificationEntry) -> Table:
+def _specification_table(specified: SpecificationEntry) -> Table:
     return Table(
         'Specifications, translated by the second-order prototype',
         ('t_r s', 's^ %', 'zeta', 'S_p', 'T_p', 'w_n rad/s'),
         [
             (
-                f'{wanted["rise_time_s"]:g}',
-                f'{100.0 * wanted["overshoot"]:g}',
-                f'{wanted["damping"]:.4f}',
-                f'{wanted["sensitivity_peak"]:.3f}',
-                f'{wanted["complementary_peak"]:.3f}',
-                f'{wanted["natural_frequency_rad_s"]:.2f}',
+                f'{specified["rise_time_s"]:g}',
+                f'{100.0 * specified["overshoot"]:g}',
+                f'{specified["damping"]:.4f}',
+                f'{specified["sensitivity_peak"]:.3f}',
+                f'{specified["complementary_peak"]:.3f}',
+                f'{specified["natural_frequency_rad_s"]:.2f}',
             )
         ],
     )

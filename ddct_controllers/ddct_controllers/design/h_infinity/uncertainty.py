@@ -80,8 +80,8 @@ def fit_first_order(omega: np.ndarray, error: np.ndarray) -> FactoredTransferFun
 
 def _least_excess(omega: np.ndarray, error: np.ndarray, pole: float) -> tuple[float, float, float]:
     """Return t^2, p_1 and p_0."""
-    wanted = error**2 * (omega**2 + pole**2)
-    shape = np.column_stack([omega**2, np.full_like(omega, pole**2)]) / wanted[:, None]
+    target = error**2 * (omega**2 + pole**2)
+    shape = np.column_stack([omega**2, np.full_like(omega, pole**2)]) / target[:, None]
     none = np.zeros((len(omega), 1))
     found = scipy.optimize.linprog(
         [0.0, 0.0, 1.0],

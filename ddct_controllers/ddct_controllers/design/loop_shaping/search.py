@@ -11,7 +11,7 @@ from ddct_controllers.design.loop_shaping.specifications import (
     TimeSpecifications,
     require_reachable,
 )
-from ddct_controllers.design.loop_shaping.verification import Verification, verify
+from ddct_controllers.design.loop_shaping.verification import LoopVerification, verify
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.linear.lti import FactoredTransferFunction
 from ddct_plant.models.parameters import DrivelineParameters
@@ -33,7 +33,7 @@ class LoopShapingDesign:
     integrators: int
     """Number mu of integrators."""
     controller: FactoredTransferFunction
-    verification: Verification
+    verification: LoopVerification
 
 
 def design_loop_shaping(

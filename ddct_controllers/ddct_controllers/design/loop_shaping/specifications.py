@@ -138,13 +138,13 @@ def highest_crossover_rad_s(damping: float) -> float:
 
 def require_reachable(specifications: TimeSpecifications) -> None:
     """Raise ParameterError with the bound when the required crossover is above it."""
-    damping, wanted = specifications.damping, specifications.crossover_rad_s
+    damping, crossover = specifications.damping, specifications.crossover_rad_s
     bound = highest_crossover_rad_s(damping)
-    if wanted > bound:
+    if crossover > bound:
         slowest = rise_time_crossover_product(damping) / bound
         raise ParameterError(
             f'rise time {specifications.rise_time_s:g} s with overshoot '
-            f'{100.0 * specifications.overshoot:g} % asks for a crossover of {wanted:.3g} rad/s, '
-            f"but the actuator's delay, hold and right-half-plane zeros allow {bound:.3g} rad/s: "
-            f'allow a rise time of {slowest:.2g} s or more overshoot'
+            f'{100.0 * specifications.overshoot:g} % asks for a crossover of {crossover:.3g} '
+            f"rad/s, but the actuator's delay, hold and right-half-plane zeros allow {bound:.3g} "
+            f'rad/s: allow a rise time of {slowest:.2g} s or more overshoot'
         )

@@ -57,18 +57,18 @@ def thesis_tables(record: ThesisRecord) -> dict[str, Table]:
 
 def design_tables(record: DesignRecord) -> tuple[Table, Table]:
     """Return the tables of `design_record`: specified and reached quantities, and G_c(s)."""
-    wanted, found = record['specifications'], record['sampled_loop']
+    specified, found = record['specifications'], record['sampled_loop']
     overshoot = None if found['overshoot'] is None else 100.0 * found['overshoot']
     peaks = {contour['name']: contour for contour in record['contours']}
     quantities = Table(
         f'{record["name"]}: {record["structure"]}, {record["integrators"]} integrator(s)',
         ('quantity', 'specified', 'sampled loop', 'unit'),
         [
-            _row('rise time', wanted['rise_time_s'], found['rise_time_s'], 's'),
-            _row('overshoot', 100.0 * wanted['overshoot'], overshoot, '%'),
-            _row(_peak_name(peaks['S']), wanted['sensitivity_peak'], peaks['S']['peak'], '1'),
-            _row(_peak_name(peaks['T']), wanted['complementary_peak'], peaks['T']['peak'], '1'),
-            _row('crossover', wanted['crossover_rad_s'], found['crossover_rad_s'], 'rad/s'),
+            _row('rise time', specified['rise_time_s'], found['rise_time_s'], 's'),
+            _row('overshoot', 100.0 * specified['overshoot'], overshoot, '%'),
+            _row(_peak_name(peaks['S']), specified['sensitivity_peak'], peaks['S']['peak'], '1'),
+            _row(_peak_name(peaks['T']), specified['complementary_peak'], peaks['T']['peak'], '1'),
+            _row('crossover', specified['crossover_rad_s'], found['crossover_rad_s'], 'rad/s'),
             _row('phase margin', None, found['phase_margin_deg'], 'deg'),
             _row('gain margin', None, found['gain_margin_db'], 'dB'),
             _row('delay margin', None, found['delay_margin_s'], 's'),
@@ -94,16 +94,16 @@ def _specification_table() -> Table:
         [
             (
                 section,
-                f'{wanted.rise_time_s:g}',
-                f'{100.0 * wanted.overshoot:g}',
-                f'{wanted.damping:.4f}',
-                f'{wanted.sensitivity_peak:.3f}',
-                f'{wanted.complementary_peak:.3f}',
-                f'{rise_time_crossover_product(wanted.damping):.3f}',
-                f'{wanted.crossover_rad_s:.2f}',
-                f'{wanted.natural_frequency_rad_s:.2f}',
+                f'{specified.rise_time_s:g}',
+                f'{100.0 * specified.overshoot:g}',
+                f'{specified.damping:.4f}',
+                f'{specified.sensitivity_peak:.3f}',
+                f'{specified.complementary_peak:.3f}',
+                f'{rise_time_crossover_product(specified.damping):.3f}',
+                f'{specified.crossover_rad_s:.2f}',
+                f'{specified.natural_frequency_rad_s:.2f}',
             )
-            for section, wanted in _TRANSLATED
+            for section, specified in _TRANSLATED
         ],
     )
 

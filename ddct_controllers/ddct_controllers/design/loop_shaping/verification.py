@@ -23,7 +23,7 @@ from ddct_plant.models.parameters import DrivelineParameters
 
 LARGEST_SENSITIVITY_PEAK = 2.0
 """Bound on M_s, whatever the overshoot: at least 30 degrees and 6 dB of margin."""
-_LOOK_AHEAD = 40.0
+_RESPONSE_LENGTH = 40.0
 """Length of the step response in specified rise times."""
 
 
@@ -53,7 +53,7 @@ class Contour:
 
 
 @dataclass(frozen=True)
-class Verification:
+class LoopVerification:
     """Quantities of the sampled loop with hold and delay, beside the specifications."""
 
     specifications: TimeSpecifications
@@ -74,20 +74,20 @@ class Verification:
         """Reasons to refuse the controller; empty for a good one."""
         if not self.margins.stable:
             return ('the closed loop is unstable',)
-        found = []
+        reasons = []
         limit_s, limit = self.specifications.rise_time_s, self.specifications.overshoot
         if self.rise_time_s is None or self.rise_time_s > limit_s:
             reached = 'never' if self.rise_time_s is None else f'{self.rise_time_s:.3f} s'
-            found.append(f'rise time {reached}, above {limit_s:g} s')
+            reasons.append(f'rise time {reached}, above {limit_s:g} s')
         if self.overshoot is None or self.overshoot > limit:
-            found.append(f'overshoot above {100.0 * limit:g} %')
+            reasons.append(f'overshoot above {100.0 * limit:g} %')
         peak = self.margins.sensitivity_peak
         if peak is None or peak > LARGEST_SENSITIVITY_PEAK:
-            found.append(f'sensitivity peak M_s above {LARGEST_SENSITIVITY_PEAK:g}')
+            reasons.append(f'sensitivity peak M_s above {LARGEST_SENSITIVITY_PEAK:g}')
         for wear_gain, stable in zip(WEAR_RANGE, self.stable_when_worn, strict=True):
             if not stable:
-                found.append(f'unstable with wear gain {wear_gain:g}')
-        return tuple(found)
+                reasons.append(f'unstable with wear gain {wear_gain:g}')
+        return tuple(reasons)
 
     @property
     def respects_contours(self) -> bool:
@@ -99,20 +99,24 @@ def verify(
     controller: FactoredTransferFunction,
     specifications: TimeSpecifications,
     parameters: DrivelineParameters,
-) -> Verification:
+) -> LoopVerification:
     """Return the quantities of the sampled loop with the controller, discretised as in the run."""
     sampled = discretise_zoh(controller.to_state_space(), PERIOD_S)
     loop = sampled_loop(sampled, parameters)
     margins = loop_margins(loop)
-    worn = tuple(
+    stable_when_worn = tuple(
         closed_loop_stable(sampled_loop(sampled, parameters, wear_gain))
         for wear_gain in WEAR_RANGE
     )
     if not margins.stable:
-        return Verification(specifications, margins, None, None, (), worn)
-    reached_s, highest = rise_time_and_overshoot(loop, _LOOK_AHEAD * specifications.rise_time_s)
+        return LoopVerification(specifications, margins, None, None, (), stable_when_worn)
+    rise_s, overshoot = rise_time_and_overshoot(
+        loop, _RESPONSE_LENGTH * specifications.rise_time_s
+    )
     at_contours = contours(LoopCurve(loop), specifications)
-    return Verification(specifications, margins, reached_s, highest, at_contours, worn)
+    return LoopVerification(
+        specifications, margins, rise_s, overshoot, at_contours, stable_when_worn
+    )
 
 
 def contours(curve: LoopCurve, specifications: TimeSpecifications) -> tuple[Contour, Contour]:

@@ -23,7 +23,7 @@ INPUT_NAMES = ('the clutch torque request', 'C_m')
 
 
 @dataclass(frozen=True, eq=False)
-class Prediction:
+class HorizonPrediction:
     """
     Outputs over the horizon, y_i, i = 1..p, stacked period by period, p outputs long.
 
@@ -42,9 +42,9 @@ class CondensedProgram:
     """
     The program whose solution z are the moves; its data at each step are linear in v.
 
-    With v as in `Prediction`: f = gradient @ (v, the inputs' targets, the outputs' references
-    period by period), and the bounds are `lower` and `upper` less shift @ (v, jump), where jump is
-    the change of the inputs before the first move, caused by the open loop.
+    With v as in `HorizonPrediction`: f = gradient @ (v, the inputs' targets, the outputs'
+    references period by period), and the bounds are `lower` and `upper` less shift @ (v, jump),
+    where jump is the change of the inputs before the first move, caused by the open loop.
     """
 
     structure: QpStructure
@@ -82,7 +82,7 @@ def condense(model: TransmissionModel, settings: MpcSettings) -> CondensedProgra
     )
 
 
-def predict(model: TransmissionModel, settings: MpcSettings) -> Prediction:
+def predict(model: TransmissionModel, settings: MpcSettings) -> HorizonPrediction:
     """Return the weighted outputs over the horizon as a linear map of moves, state and inputs."""
     inputs = len(settings.inputs)
     decided = list(DECIDED[:inputs])
@@ -99,7 +99,7 @@ def predict(model: TransmissionModel, settings: MpcSettings) -> Prediction:
         free.append(np.hstack([c @ states, responses[-1][:, decided + known]]))
     steps = np.array([response[:, decided] for response in responses])
     feedthrough = d[:, decided]
-    return Prediction(_moves(steps, feedthrough, settings.control_steps), np.vstack(free))
+    return HorizonPrediction(_moves(steps, feedthrough, settings.control_steps), np.vstack(free))
 
 
 def _moves(steps: np.ndarray, feedthrough: np.ndarray, control_steps: int) -> np.ndarray:
@@ -117,11 +117,13 @@ def _moves(steps: np.ndarray, feedthrough: np.ndarray, control_steps: int) -> np
     return moves.reshape(horizon * outputs, control_steps * inputs)
 
 
-def _require_effect(settings: MpcSettings, prediction: Prediction, weighted: np.ndarray) -> None:
+def _require_effect(
+    settings: MpcSettings, prediction: HorizonPrediction, weighted: np.ndarray
+) -> None:
     """Raise ParameterError when no move can change one of the outputs that are `weighted`."""
-    felt = prediction.from_moves[weighted, : len(settings.inputs)].any(axis=0)
-    if weighted.any() and not felt.all():
-        name = INPUT_NAMES[int(np.argmin(felt))]
+    effective = prediction.from_moves[weighted, : len(settings.inputs)].any(axis=0)
+    if weighted.any() and not effective.all():
+        name = INPUT_NAMES[int(np.argmin(effective))]
         raise ParameterError(
             f'MPC: prediction_steps is {settings.prediction_steps}: within them no weighted '
             f'output feels a move of {name}: choose more',
@@ -143,7 +145,10 @@ def _require_weighted_moves(settings: MpcSettings, hessian: np.ndarray) -> None:
 
 
 def _cost(
-    model: TransmissionModel, settings: MpcSettings, prediction: Prediction, weights: np.ndarray
+    model: TransmissionModel,
+    settings: MpcSettings,
+    prediction: HorizonPrediction,
+    weights: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return H and the gradient matrix; levels = levels before + cumulated moves."""
     moves, inputs = settings.control_steps, len(settings.inputs)
@@ -184,7 +189,7 @@ def _input_rows(model: TransmissionModel, settings: MpcSettings) -> _Rows:
     )
 
 
-def _output_rows(settings: MpcSettings, prediction: Prediction) -> _Rows:
+def _output_rows(settings: MpcSettings, prediction: HorizonPrediction) -> _Rows:
     """Return rows for the outputs, period by period."""
     limits = [(terms.lowest, terms.highest) for terms in settings.outputs]
     lower, upper = np.tile(np.array(limits).T, settings.prediction_steps)

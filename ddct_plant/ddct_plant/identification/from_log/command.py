@@ -11,8 +11,8 @@ from rich.console import Console
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.output_file import require_place, write_text
 from ddct_plant.identification.from_log.fit import fit_log
+from ddct_plant.identification.from_log.log_fit_report import LogFitReport, content_of, print_fit
 from ddct_plant.identification.from_log.prediction import predict
-from ddct_plant.identification.from_log.report import LogFitReport, content_of, print_fit
 from ddct_plant.identification.from_log.result import PARAMETERS
 from ddct_plant.identification.from_log.scenario import load_of, name_of, replay_of
 from ddct_plant.identification.from_log.stretch import TORQUES

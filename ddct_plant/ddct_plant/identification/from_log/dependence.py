@@ -52,7 +52,7 @@ def dependences(
     residual = _residual(values, noise, stretches)
     found = []
     for output in range(OUTPUTS):
-        rank, size = _explained(values, noise, stretches, output, residual, fitted_basis)
+        rank, explained = _explained(values, noise, stretches, output, residual, fitted_basis)
         added = [
             _explained(
                 values,
@@ -66,11 +66,11 @@ def dependences(
         ]
         expected = 2.0 * float(np.mean(added)) if added else 0.0
         p_value = float(
-            scipy.stats.ncx2.sf(size, rank, expected)
+            scipy.stats.ncx2.sf(explained, rank, expected)
             if expected
-            else scipy.stats.chi2.sf(size, rank)
+            else scipy.stats.chi2.sf(explained, rank)
         )
-        excess = max(size - rank - expected, 0.0) / (len(residual) / OUTPUTS)
+        excess = max(explained - rank - expected, 0.0) / (len(residual) / OUTPUTS)
         found.append(Dependence(p_value, float(noise.factor[output, output] * np.sqrt(excess))))
     return found
 
@@ -124,8 +124,8 @@ def _shifted_torques(values: Mapping[str, float], stretch: Stretch, output: int)
     """Return C_m and C_f at the lags about each sample, (n, 3, q), in the column of one speed."""
     shifts = sampling_of(values, load_known=stretch.load_known).shifts[output]
     step = float(np.median(np.diff(stretch.time_s)))
-    found = np.zeros((len(stretch.time_s), OUTPUTS, 2 * len(_LAGS)))
-    found[:, output] = np.column_stack(
+    columns = np.zeros((len(stretch.time_s), OUTPUTS, 2 * len(_LAGS)))
+    columns[:, output] = np.column_stack(
         [
             np.interp(
                 stretch.time_s + shifts[torque] - lag * step,
@@ -136,4 +136,4 @@ def _shifted_torques(values: Mapping[str, float], stretch: Stretch, output: int)
             for lag in _LAGS
         ]
     )
-    return found
+    return columns

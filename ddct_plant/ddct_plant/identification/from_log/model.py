@@ -42,7 +42,7 @@ class Sampling:
     """Delays of w_m, w_p, w_r in s."""
     torques: tuple[float, ...] = (0.0,) * 3
     """Delays of C_m, C_f, C_load in s."""
-    bends: tuple[float, ...] = (0.0,) * 3
+    second_differences: tuple[float, ...] = (0.0,) * 3
     """Bends of C_m, C_f, C_load: shares of the second difference missed by linear
     interpolation."""
 
@@ -82,7 +82,7 @@ def responses(
                 _under_one(pole, since[:, None] - lags, free) * shape * load
             )
         for torque in _present(driven):
-            run = _Run(pole, stretch, torque, sampling.bends[torque])
+            run = _ModeResponse(pole, stretch, torque, sampling.second_differences[torque])
             for output in _present(shape):
                 at = run.at(places[shifts[output][torque]])
                 forced[:, output] += np.real(shape[output] * driven[torque] * at)
@@ -144,14 +144,14 @@ class _Place:
         return cls(before, float(rest[0]) if np.ptp(rest) < 1e-7 * step else rest, step)
 
 
-class _Run:
+class _ModeResponse:
     """Response of one mode to one torque, from rest at the first point of the grid."""
 
     def __init__(self, pole: complex, stretch: Stretch, torque: int, bend: float) -> None:
         self._pole, self._held = pole, stretch.held[torque]
         self._torque = stretch.torques[:, torque]
         if bend:
-            self._torque = self._torque + bend * stretch.bends[:, torque]
+            self._torque = self._torque + bend * stretch.second_differences[:, torque]
         step = float(stretch.grid_s[1] - stretch.grid_s[0])
         decay, first, second = _weights(pole * step, step)
         later = self._torque[:-1] if self._held else self._torque[1:]

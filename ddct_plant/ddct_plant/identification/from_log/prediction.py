@@ -22,7 +22,7 @@ _STILL = 1e-9
 
 
 @dataclass(frozen=True)
-class Prediction:
+class SpeedPrediction:
     """Quality of the prediction of one speed of the held-out data."""
 
     signal: str
@@ -47,7 +47,7 @@ class Prediction:
         return min(self.whiteness_p, self.torque_p) >= WHITE_FROM
 
 
-def predict(fit: LogFit, stretches: Sequence[Stretch]) -> list[Prediction]:
+def predict(fit: LogFit, stretches: Sequence[Stretch]) -> list[SpeedPrediction]:
     """
     Return the prediction of w_m, w_p, w_r and of the slip w_m - w_p.
 
@@ -71,7 +71,7 @@ def predict(fit: LogFit, stretches: Sequence[Stretch]) -> list[Prediction]:
         noise = white_noise(residual[:, index])
         tested = name in SPEEDS
         found.append(
-            Prediction(
+            SpeedPrediction(
                 signal=name,
                 rms_rad_s=rms,
                 nrmse=rms / spread if spread else None,

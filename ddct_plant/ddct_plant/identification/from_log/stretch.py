@@ -31,7 +31,7 @@ class Stretch:
     torques: np.ndarray
     """Torques C_m, C_f and the known part of C_load in N m on the grid, (m, 3), by
     TORQUE_COLUMNS."""
-    bends: np.ndarray
+    second_differences: np.ndarray
     """Second differences of the torques in N m over a step of their own rows, (m, 3); 0 if
     held."""
     held: tuple[bool, ...]

@@ -121,20 +121,20 @@ def _stretch(
     grid_s = time_s[0] + step * np.arange(-before, after + 1)
     known, wheel_speed = LOAD in log.signals, speeds[:, SPEED_COLUMNS['wheel_speed']]
     load = log.at(LOAD, grid_s) if known else known_load(np.interp(grid_s, time_s, wheel_speed))
-    bends = [_bend(log, name, grid_s) for name in TORQUES]
+    second_differences = [_second_difference(log, name, grid_s) for name in TORQUES]
     return Stretch(
         time_s=time_s,
         speeds=speeds,
         grid_s=grid_s,
         torques=np.column_stack([*(log.at(name, grid_s) for name in TORQUES), load]),
-        bends=np.column_stack([*bends, np.zeros(len(grid_s))]),
+        second_differences=np.column_stack([*second_differences, np.zeros(len(grid_s))]),
         held=tuple(name in log.held for name in (*TORQUES, LOAD)),
         load_known=known,
         known_s=(float(time_s[0]), float(time_s[-1])),
     )
 
 
-def _bend(log: MeasuredLog, name: str, grid_s: np.ndarray) -> np.ndarray:
+def _second_difference(log: MeasuredLog, name: str, grid_s: np.ndarray) -> np.ndarray:
     """Return the second difference in N m of a torque over a step of its rows, 0 if it is held."""
     if name in log.held:
         return np.zeros(len(grid_s))

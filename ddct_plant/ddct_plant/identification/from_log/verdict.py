@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from ddct_plant.identification.from_log.prediction import Prediction
+from ddct_plant.identification.from_log.prediction import SpeedPrediction
 from ddct_plant.identification.from_log.problem import DAMPINGS
 from ddct_plant.identification.from_log.result import NO_DAMPING, LogFit
 from ddct_plant.identification.from_log.stretch import TORQUES, Stretch
@@ -44,7 +44,7 @@ _FOLLOWS = 0.5
 
 
 def reasons_against(
-    fit: LogFit, predictions: Sequence[Prediction], stretches: Sequence[Stretch]
+    fit: LogFit, predictions: Sequence[SpeedPrediction], stretches: Sequence[Stretch]
 ) -> list[str]:
     """Return the reasons to refuse a fit to `stretches`, as sentences; none to accept it."""
     return [
@@ -89,7 +89,7 @@ def _impulse(stretch: Stretch) -> np.ndarray:
     return np.interp(stretch.time_s, stretch.grid_s, np.cumsum(excess) * step)
 
 
-def _error_reasons(predictions: Sequence[Prediction]) -> Iterator[str]:
+def _error_reasons(predictions: Sequence[SpeedPrediction]) -> Iterator[str]:
     for each in predictions:
         if each.error > MOST_ERROR:
             yield (
@@ -130,7 +130,7 @@ def _residual_reasons(fit: LogFit) -> Iterator[str]:
             )
 
 
-def doubts(fit: LogFit, predictions: Sequence[Prediction]) -> list[str]:
+def doubts(fit: LogFit, predictions: Sequence[SpeedPrediction]) -> list[str]:
     """Return notes on the limits of a fit, as sentences."""
     return [*_undetermined(fit), *_coloured(fit, predictions), *_zeroed(fit), *_leading(fit)]
 
@@ -148,7 +148,7 @@ def _named(name: str) -> str:
     return f'the delay of {name}' if name in (*SPEEDS, *TORQUES, 'load_torque') else name
 
 
-def _coloured(fit: LogFit, predictions: Sequence[Prediction]) -> Iterator[str]:
+def _coloured(fit: LogFit, predictions: Sequence[SpeedPrediction]) -> Iterator[str]:
     coloured = [each.signal for each in predictions if each.white is False]
     if coloured:
         yield (

@@ -101,7 +101,7 @@ class GeneralisedPlant:
         return StateSpace(a, b, c, self.d11 + self.d12 @ u_of_w)
 
 
-def _require_all_moved(a: np.ndarray, b: np.ndarray, wanted: str, what: str) -> None:
+def _require_all_moved(a: np.ndarray, b: np.ndarray, property_name: str, what: str) -> None:
     """Check [a - lambda, b] has full rank for every eigenvalue on or right of the axis."""
     for eigenvalue in np.linalg.eigvals(a):
         if eigenvalue.real < 0.0:
@@ -112,9 +112,9 @@ def _require_all_moved(a: np.ndarray, b: np.ndarray, wanted: str, what: str) -> 
         sizes = np.linalg.svd(scaled, compute_uv=False)
         if sizes[-1] <= _RANK * sizes[0]:
             raise DdctError(
-                f'generalised plant is not {wanted}: its mode at {eigenvalue:.4g} rad/s is not '
-                f'{what}: take unstable poles out of the weights and cancelled ones out of the '
-                'plant'
+                f'generalised plant is not {property_name}: its mode at {eigenvalue:.4g} rad/s '
+                f'is not {what}: take unstable poles out of the weights and cancelled ones out of '
+                'the plant'
             )
 
 

@@ -26,7 +26,7 @@ THESIS_SETTINGS = RunSettings(THESIS_SCENARIO)
 
 
 @dataclass(frozen=True, eq=False)
-class HeadlessRun:
+class StudyRun:
     """One run; its scores are computed on first access."""
 
     settings: RunSettings
@@ -67,17 +67,15 @@ class HeadlessRun:
         return self.settings.scenario.control_start_step
 
 
-def headless_run(settings: RunSettings, controller: str | Controller) -> HeadlessRun:
+def study_run(settings: RunSettings, controller: str | Controller) -> StudyRun:
     """Run a controller headless."""
-    return HeadlessRun(settings, controller, run_headless(settings, controller))
+    return StudyRun(settings, controller, run_headless(settings, controller))
 
 
 @cache
-def thesis_run(controller: str, architecture: str, wear_gain: float) -> HeadlessRun:
+def thesis_run(controller: str, architecture: str, wear_gain: float) -> StudyRun:
     """Return the run of a controller of the registry in the thesis's scenario."""
-    return headless_run(
-        RunSettings(THESIS_SCENARIO, architecture, wear_gain=wear_gain), controller
-    )
+    return study_run(RunSettings(THESIS_SCENARIO, architecture, wear_gain=wear_gain), controller)
 
 
 class StaticControllerAlone(Controller):

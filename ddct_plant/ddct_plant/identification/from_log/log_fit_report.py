@@ -8,7 +8,7 @@ from typing import Any
 
 from ddct_plant.identification.coefficients import SYMBOLS_AND_UNITS
 from ddct_plant.identification.from_log.delays import REFERENCE
-from ddct_plant.identification.from_log.prediction import Prediction
+from ddct_plant.identification.from_log.prediction import SpeedPrediction
 from ddct_plant.identification.from_log.result import PARAMETERS, LogFit
 from ddct_plant.identification.from_log.stretch import LOAD
 from ddct_plant.identification.from_log.verdict import doubts
@@ -58,7 +58,7 @@ class LogFitReport:
     """A fit to a log, its prediction of held-out data, and the reasons to refuse it."""
 
     fit: LogFit
-    predictions: Sequence[Prediction]
+    predictions: Sequence[SpeedPrediction]
     """Prediction of each speed and of the slip."""
     reasons: Sequence[str]
     """Reasons to refuse the fit, as sentences; none to accept it."""
