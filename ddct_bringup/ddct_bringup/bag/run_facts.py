@@ -5,7 +5,7 @@
 import json
 from collections.abc import Container, Iterable, Mapping
 from dataclasses import dataclass, fields
-from typing import Any
+from typing import Any, TypedDict
 
 from ddct_plant.base.errors import DdctError, ParameterError, require_name, require_number
 from ddct_plant.base.timebase import steps_in
@@ -63,6 +63,13 @@ class RunConditions:
             require_name(name, getattr(self, name))
 
 
+class ShiftOptions(TypedDict, total=False):
+    """Fields of `RunSettings` that only a shift sets; empty for another run."""
+
+    off_going_wear_gain: float
+    handover: str
+
+
 @dataclass(frozen=True)
 class RunFacts(RunConditions):
     """Facts of a run that scoring needs."""
@@ -85,9 +92,9 @@ class RunFacts(RunConditions):
             require_name('handover', self.handover)
 
     @property
-    def of_shift(self) -> dict[str, Any]:
+    def of_shift(self) -> ShiftOptions:
         """Settings of a shift by name; none of another run."""
-        if self.handover is None:
+        if self.handover is None or self.off_going_wear_gain is None:
             return {}
         return {'off_going_wear_gain': self.off_going_wear_gain, 'handover': self.handover}
 

@@ -48,7 +48,7 @@ class RunBase:
 
 def base_of(options: argparse.Namespace, labels: Sequence[str]) -> RunBase:
     """Return the common settings of runs with these controllers from program options."""
-    changes: dict[str, Any] = {}
+    changes: dict[str, object] = {}
     for key, value in map(parsed_override, options.overrides):
         changes.pop(key, None)  # the last of a repeated key counts, in its place
         changes[key] = value

@@ -11,6 +11,7 @@ from ddct_plant.models.driveline import DrivelineOutputs
 from ddct_plant.sensors.parameters import SensorParameters, SpeedSensor
 from ddct_plant.sensors.sensor import Sample, Sensor, ShaftSensor
 from ddct_plant.signals.sensed import SensedQuantity
+from ddct_plant.signals.signal import SignalValue
 from ddct_plant.signals.topics import quantities, sensed_quantities, sensed_signals
 
 
@@ -86,7 +87,7 @@ class _Model:
         else:
             self._sensor = Sensor(options, quantity.sensor, seed)
 
-    def take(self, true: Mapping[str, Any]) -> Sample:
+    def take(self, true: Mapping[str, SignalValue]) -> Sample:
         """Return the measurement at the next step, for the true signals of that step."""
         if self._shaft is None:
             return self._sensor.take(self._true(true))
@@ -131,7 +132,7 @@ class Sensors(ABC, Generic[Truth, Measured]):
     def _take(self, truth: Truth) -> Measured:
         """Return the measurement of the next step."""
 
-    def _samples(self, true: Mapping[str, Any]) -> dict[str, float]:
+    def _samples(self, true: Mapping[str, SignalValue]) -> dict[str, float]:
         """Return measurements and flags of the next step by quantity, for the true signals."""
         values: dict[str, float] = {}
         for model in self._models:

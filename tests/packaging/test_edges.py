@@ -1,0 +1,96 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Mappings of values of any type stand only at the edges: elsewhere data have types."""
+
+import ast
+from collections.abc import Iterator
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+PACKAGES = ('ddct_plant', 'ddct_reference', 'ddct_controllers', 'ddct_bringup')
+MAPPINGS = {'dict', 'Mapping', 'MutableMapping'}
+FILES = {
+    'ddct_bringup/bag/file/message_definitions.py': 'definitions of message types, YAML',
+    'ddct_bringup/bag/file/metadata.py': 'metadata.yaml of a bag',
+    'ddct_bringup/bag/file/records.py': 'metadata in an MCAP file',
+    'ddct_bringup/bag/run_facts.py': 'custom data of a bag',
+    'ddct_bringup/bag/writer.py': 'metadata of a bag',
+    'ddct_bringup/campaign/columns.py': 'rows of results.parquet',
+    'ddct_bringup/campaign/manifest.py': 'manifest.json',
+    'ddct_bringup/campaign/rows.py': 'rows of results.parquet',
+    'ddct_bringup/campaign/spec.py': 'specification of a campaign, YAML',
+    'ddct_bringup/digests/digest_file.py': 'digests.json',
+    'ddct_bringup/floor/cache.py': 'cache of floors, JSON',
+    'ddct_bringup/floor/figure.py': 'rows of limit --json',
+    'ddct_bringup/floor/floor.py': 'limit --json',
+    'ddct_bringup/programs/campaign_folder.py': 'a row of results.parquet',
+    'ddct_bringup/programs/limit.py': 'limit --json',
+    'ddct_bringup/programs/verify.py': 'verify --json',
+    'ddct_bringup/report/evidence.py': 'frequency.json',
+    'ddct_bringup/reproduction/numbers/number_files.py': 'claims of the thesis, YAML',
+    'ddct_bringup/scores/document.py': 'scores.json',
+    'ddct_bringup/sweep/sweep.py': 'sweep --json',
+    'ddct_bringup/verdict/limits.py': 'limits, YAML',
+    'ddct_bringup/verification/comparison.py': 'any JSON, compared with its repetition',
+    'ddct_bringup/verification/folder.py': 'verify --json',
+    'ddct_bringup/verification/result.py': 'verify --json',
+    'ddct_bringup/verification/scores.py': 'scores.json',
+    'ddct_controllers/from_file/controller_file.py': 'controller file, YAML',
+    'ddct_controllers/from_file/designed.py': 'provenance in a controller file, YAML',
+    'ddct_controllers/from_file/fmu/fmu_controller.py': 'variables of an FMU, objects of FMPy',
+    'ddct_controllers/from_file/fmu/unit.py': 'variables of an FMU, objects of FMPy',
+    'ddct_controllers/from_file/transfer_functions.py': 'controller file, YAML',
+    'ddct_controllers/workflows/design_output.py': 'records as JSON; arguments of argparse',
+    'ddct_plant/files/input_file.py': 'any JSON',
+    'ddct_plant/identification/from_log/log_fit_report.py': 'identify --log --json',
+    'ddct_plant/identification/identification_report.py': 'identify --json',
+    'ddct_plant/measured/columns.py': 'column map, YAML',
+    'ddct_plant/scenario/content.py': 'scenario, YAML',
+    'ddct_plant/scenario/csv_profiles.py': 'profiles of a scenario, YAML and CSV',
+    'ddct_plant/scenario/file.py': 'scenario, YAML',
+}
+"""Modules that read or write files, with what they read or write."""
+VALUES_BY_KEY = {
+    'ddct_bringup/campaign/distributions.py',
+    'ddct_bringup/campaign/run_set.py',
+    'ddct_bringup/campaign/scored.py',
+    'ddct_bringup/run/run_base.py',
+    'ddct_controllers/interface.py',
+    'ddct_controllers/mpc/program/settings.py',
+    'ddct_controllers/registry.py',
+    'ddct_plant/base/options.py',
+    'ddct_plant/scenario/scenario.py',
+}
+"""Modules that hand users' values on by their option's key, until an `Option` has checked them."""
+CALLERS = {
+    'ddct_bringup/api/arguments.py': 'arguments of Python programs',
+    'ddct_bringup/api/campaigns.py': 'arguments of Python programs',
+    'ddct_bringup/api/result.py': 'scores.json, given to Python programs',
+    'ddct_bringup/api/run_and_load.py': 'arguments of Python programs',
+    'ddct_bringup/bag/trajectory.py': 'signals: arrays of numbers, or tuples of texts and events',
+    'ddct_bringup/processes/single_process.py': 'parameters of ROS nodes',
+}
+"""Modules at the other edges, with what passes there."""
+EDGES = {*FILES, *VALUES_BY_KEY, *CALLERS}
+
+
+def open_mappings(package: str) -> Iterator[str]:
+    """Yield the modules, within their package, that name a mapping from text to Any."""
+    for file in sorted((ROOT / package / package).rglob('*.py')):
+        if file.name.endswith('_node.py') or 'graph' in file.parts:
+            continue
+        for node in ast.walk(ast.parse(file.read_text(encoding='utf-8'))):
+            if (
+                isinstance(node, ast.Subscript)
+                and isinstance(node.value, ast.Name)
+                and node.value.id in MAPPINGS
+                and ast.unparse(node.slice) == '(str, Any)'
+            ):
+                yield file.relative_to(ROOT / package).as_posix()
+                break
+
+
+def test_mappings_of_any_type_stand_at_the_listed_edges_alone() -> None:
+    """Give data of any other module a dataclass or TypedDict, or list the file that it reads."""
+    found = {name for each in PACKAGES for name in open_mappings(each)}
+    assert (sorted(found - EDGES), sorted(EDGES - found)) == ([], [])
