@@ -11,6 +11,7 @@ from ddct_controllers.closing import ClosingStage
 from ddct_controllers.command_check import checked_command
 from ddct_controllers.interface import Command, Controller, Measurement, Status
 from ddct_controllers.places import place_of_failure
+from ddct_controllers.torque_phase import TorquePhase
 from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError, ForeignError
 from ddct_plant.base.timebase import time_of_step
 from ddct_plant.models.load import RoadLoad
@@ -67,14 +68,20 @@ class Architecture:
         controller: Controller,
         feedback_start_step: int,
         closing: ClosingStage | None = None,
+        torque_phase: TorquePhase | None = None,
     ) -> None:
-        """Take `controller` as the feedback from step `feedback_start_step` on."""
+        """
+        Take `controller` as the feedback from step `feedback_start_step` on.
+
+        A shift has a `torque_phase`, in which the share of the open loop is below 1.
+        """
         self._open_loop = open_loop
         self._load = load
         self._controller = controller
         self._name = f'controller {controller.registered_name or type(controller).__name__!r}'
         self._start_step = feedback_start_step
         self._closing = closing
+        self._torque_phase = torque_phase
         self._last_request = self._engine_deviation = 0.0
 
     def update(self, measurement: Measurement, share: float = 1.0) -> TorqueRequest:
@@ -97,7 +104,7 @@ class Architecture:
             on = on and not self._closing.closed
             closing = self._closing.status
         measurement = measurement.within(load_torque, open_loop)
-        command = self._command(measurement, on)
+        command = self._command(measurement, on) if share == 1.0 else self._handover(measurement)
         torque = self._last_request = open_loop + command.clutch_torque
         if on and command.engine_torque is not None:
             self._engine_deviation = command.engine_torque - measurement.engine_torque
@@ -137,6 +144,12 @@ class Architecture:
                 f'{error}, in {place}): mend the controller'
             ) from error
 
+    def _handover(self, measurement: Measurement) -> Command:
+        """Return the command of a period in which the off-going clutch carries torque."""
+        assert self._torque_phase is not None
+        self._command(self._torque_phase.measured(measurement), on=False)
+        return self._feedback_off(measurement)
+
     def _feedback_off(self, measurement: Measurement) -> Command:
         """Return no clutch torque; C_m is the driver's demand, or returns to it."""
         if not self._controller.commands_engine:
@@ -162,6 +175,7 @@ def make_architecture(settings: RunSettings, controller: Controller) -> Architec
         controller,
         scenario.control_start_step if settings.detailed and not settings.shift else 0,
         ClosingStage(scenario.closing, static) if scenario.closing else None,
+        TorquePhase(settings) if settings.shift else None,
     )
 
 

@@ -12,6 +12,7 @@ from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.batch.batchable import why_not_batchable
 from ddct_bringup.campaign.rows import scored_headless
 from ddct_bringup.floor.floor import control_start
+from ddct_bringup.metrics.vibration import jerk
 from ddct_bringup.run.execution import execute, simulate
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.run.plan import RunPlan
@@ -39,7 +40,7 @@ def feedback(run):
 
 @pytest.mark.parametrize('handover', HANDOVERS)
 def test_feedback_and_reference_start_with_the_first_period_whose_share_is_one(handover):
-    shift = settings(handover=handover)
+    shift = settings('reference.shape=ramp', handover=handover)
     run = run_headless(shift, 'pi')
     start = shift.scenario.control_start_step
     first = int(np.argmax(run.handover_share == 1.0))
@@ -75,6 +76,28 @@ def test_every_controller_shifts(controller):
     run = run_headless(settings(), controller)
     assert run.clutch_phase[-1] == PHASES.index(LOCKED)
     assert abs(run.off_going_transmitted_torque[-1]) < 1e-9
+
+
+def test_an_observer_does_not_take_the_torque_of_the_off_going_clutch_for_wear():
+    """Without `TorquePhase` its estimate is at its lower bound, 0.5, when feedback starts."""
+    run = run_headless(settings(), 'mpc_wear')
+    first = int(np.argmax(run.handover_share == 1.0))
+    estimates = [
+        float(dict(run.status[step])['wear_gain_estimate']) for step in (first, first + 30)
+    ]
+    assert 0.75 < estimates[0] < 1.05
+    assert estimates[1] == pytest.approx(1.0, abs=0.01)
+
+
+def test_a_packaged_pair_shifts_fast_without_jerk_flare_or_tie_up():
+    """The least peak jerk of a launch that locks the same slip in 0.42 s is 9.7 m/s^3."""
+    run = run_headless(settings(), 'torque_estimator')
+    start, locked = 30, int(np.argmax(run.clutch_phase == PHASES.index(LOCKED)))
+    assert 0.01 * (locked - start) < 0.7
+    assert run.off_going_slip_speed[start:locked].max() < 5.0
+    braking = np.maximum(-run.off_going_transmitted_torque, 0.0)
+    assert 0.01 * (braking * run.off_going_shaft_speed).sum() < 50.0
+    assert np.abs(jerk(run.vehicle_accel)[start:]).max() < 1.5 * 9.7
 
 
 def test_a_shift_with_exact_sensors_is_the_same_and_its_handover_needs_no_further_one():

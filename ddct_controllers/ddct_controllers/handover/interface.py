@@ -73,7 +73,7 @@ class HandoverModel:
         """Use the gears and the car of the settings."""
         self._scenario = scenario = settings.scenario
         shift, self._gears = shift_of(scenario), gears_of(scenario)
-        self._static = StaticTorque(scenario.driveline, scenario.equilibrium)
+        self._static = StaticTorque(scenario.controlled_driveline, scenario.equilibrium)
         self._road = RoadLoad(scenario.load, scenario.vehicle, scenario.slope)
         self._cut = shift.torque_cut_n_m
         self.start_step = scenario.control_start_step

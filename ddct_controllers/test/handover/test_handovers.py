@@ -14,7 +14,7 @@ from ddct_controllers.handover.interface import (
     HandoverMeasurement,
     HandoverModel,
 )
-from ddct_controllers.handover.laws import HANDOVERS, make_handover
+from ddct_controllers.handover.laws import HANDOVERS, MARGIN, make_handover
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.models.driveline import LOCKED, PHASES
@@ -37,7 +37,7 @@ class Tick(NamedTuple):
 def shift(settings: RunSettings, name: str, in_inertia_phase: float = 1.2) -> list[Tick]:
     """Run a shift whose on-coming clutch carries C_fOL, and that times a factor at the end."""
     plant, law = ShiftPlant(settings), make_handover(replace(settings, handover=name))
-    static = StaticTorque(settings.scenario.driveline, 'full')
+    static = StaticTorque(settings.scenario.controlled_driveline, 'full')
     found = []
     for step in range(130):
         outputs = plant.outputs()
@@ -95,7 +95,7 @@ def test_after_the_handover_the_share_is_one_and_the_off_going_clutch_opens(
 
 
 @pytest.mark.parametrize('scenario', COLD)
-@pytest.mark.parametrize(('name', 'most'), [('timed', 5.0), ('model', 15.0), ('slip', 15.0)])
+@pytest.mark.parametrize(('name', 'most'), [('timed', 5.0), ('model', 5.0), ('slip', 15.0)])
 def test_the_engine_hardly_runs_ahead_with_a_clutch_as_expected(name, most, scenario):
     assert flare(shift(shift_settings(scenario), name)) < most
 
@@ -109,12 +109,21 @@ def test_the_timed_handover_follows_its_ramps():
         assert tick.command.off_going_request == pytest.approx(held * (1.0 - step / 10))
 
 
-def test_the_model_handover_requests_a_tenth_more_than_the_clutch_carries():
+def test_hot_clutches_tie_up_where_no_slip_is_sought_and_hardly_where_it_is():
+    """Both carry 18 N m more than requested, which only the slip can show."""
+    hot = shift_settings('upshift_hot')
+    assert min(tie_up_work(shift(hot, name)) for name in ('timed', 'model')) > 100.0
+    sought = shift(hot, 'slip')
+    assert tie_up_work(sought) < 5.0
+    assert flare(sought) < 5.0
+
+
+def test_the_model_handover_requests_more_than_the_clutch_carries_by_its_margin():
     """The actuators delay both requests alike: the torque is that of 40 ms before."""
     ticks = shift(shift_settings('upshift', handover_s=1.0), 'model')
     for step in range(START + 30, START + 70):
         carried = ticks[step + 4].outputs.off_going.transmitted_torque
-        assert ticks[step].command.off_going_request == pytest.approx(1.1 * carried, abs=2.0)
+        assert ticks[step].command.off_going_request == pytest.approx(MARGIN * carried, abs=4.0)
 
 
 def test_the_slip_handover_keeps_the_clutch_at_its_slip_while_it_carries_torque():

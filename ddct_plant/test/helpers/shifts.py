@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Shifts for tests: five scenarios, and a loop with a handover by ramps and PI control of slip."""
+"""Shifts for tests: the packaged ones, and a loop with a handover by ramps and PI of the slip."""
 
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.models.gearbox import C635
 from ddct_plant.models.static_torque import StaticTorque
-from ddct_plant.scenario.file import ScenarioFile
+from ddct_plant.scenario.file import ScenarioFile, load_scenario
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.shift_plant.plant import ShiftPlant
 from ddct_plant.shift_plant.start import locked_request
@@ -37,24 +37,22 @@ def content(gears: tuple[int, int], kmh: float, torque: float, **other: Any) -> 
     }
 
 
-HOT = {
-    'heat': {'plate_c': 200.0, 'facing_c': 200.0, 'housing_c': 80.0},
-    'friction': {'kiss_drift_n_m_k': 0.1},
-}
-SHIFTS = {
-    'upshift': ((1, 2), content((1, 2), 20.0, 100.0)),
-    'upshift_light': ((1, 2), content((1, 2), 20.0, 40.0)),
-    'upshift_full': ((1, 2), content((1, 2), 20.0, 240.0)),
-    'upshift_2_3': ((2, 3), content((2, 3), 40.0, 120.0)),
-    'upshift_hot': ((1, 2), content((1, 2), 20.0, 100.0, **HOT)),
-}
-"""Off-going and on-coming gear, and the scenario, by name."""
+SHIFTS = ('upshift', 'upshift_light', 'upshift_full', 'upshift_2_3', 'upshift_hot')
+"""Names of the packaged shifts."""
 
 
-def shift_settings(name: str, off_going_wear_gain: float = 1.0, **keys: Any) -> RunSettings:
-    """Return the settings of a shift by name; `keys` are those of its section."""
-    (off_going_gear, _), scenario = SHIFTS[name]
-    return settings_of(scenario, {'off_going_gear': off_going_gear, **keys}, off_going_wear_gain)
+def shift_settings(
+    name: str, off_going_wear_gain: float = 1.0, handover: str = 'model', **keys: Any
+) -> RunSettings:
+    """Return the settings of a packaged shift; `keys` are those of its section."""
+    changes = {f'shift.{key}': value for key, value in keys.items()}
+    scenario = load_scenario(name, changes, clutch='stick_slip')
+    return RunSettings(
+        scenario,
+        clutch='stick_slip',
+        off_going_wear_gain=off_going_wear_gain,
+        handover=handover,
+    )
 
 
 def settings_of(

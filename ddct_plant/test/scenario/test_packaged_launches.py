@@ -6,6 +6,7 @@ import importlib.resources
 
 import pytest
 from refusals import refused
+from shifts import SHIFTS
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.scenario.file import load_scenario, scenario_names
@@ -21,7 +22,7 @@ def test_they_are_packaged_and_consistent():
         assert load_scenario(name).adjusted == ()
 
 
-@pytest.mark.parametrize('name', [*NAMES, 'upshift'])
+@pytest.mark.parametrize('name', [*NAMES, *SHIFTS])
 def test_each_value_or_the_section_it_is_in_has_a_comment(name):
     packaged = importlib.resources.files('ddct_plant.scenario') / 'packaged'
     explained: dict[int, bool] = {}

@@ -4,6 +4,7 @@
 
 import pytest
 from refusals import refused
+from shifts import SHIFTS
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.files.yaml_text import parse_yaml
@@ -18,10 +19,11 @@ def settings(*overrides, **values):
     return RunSettings(scenario, **{'clutch': 'stick_slip', **values})
 
 
-def test_the_packaged_upshift_is_a_shift_and_a_launch_is_none():
-    upshift = settings()
-    assert upshift.scenario.adjusted == ()
-    assert upshift.kind() == RunKind(clutch='stick_slip', shift=True)
+def test_the_packaged_upshifts_are_shifts_and_a_launch_is_none():
+    for name in SHIFTS:
+        upshift = RunSettings(load_scenario(name), clutch='stick_slip')
+        assert upshift.scenario.adjusted == ()
+        assert upshift.kind() == RunKind(clutch='stick_slip', shift=True)
     assert not RunSettings(load_scenario('launch'), clutch='stick_slip').kind().shift
 
 

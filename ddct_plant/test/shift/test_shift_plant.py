@@ -159,16 +159,15 @@ def test_the_example_of_the_page_shifts():
     ],
 )
 def test_settings_that_do_not_fit_are_refused(key, scenario, shift):
-    content = {**SHIFTS['upshift'][1], **scenario}
+    good = content((1, 2), 20.0, 100.0)
+    bad = {**good, **scenario}
     given = scenario.get('initial', {})
     standing = {'engine_speed_rad_s': 0.0, 'shaft_speed_rad_s': 0.0}
-    content['initial'] = (
-        standing if given is None else {**SHIFTS['upshift'][1]['initial'], **given}
-    )
-    if content['gear'] is None:
-        del content['gear']
+    bad['initial'] = standing if given is None else {**good['initial'], **given}
+    if bad['gear'] is None:
+        del bad['gear']
     with refused(ParameterError, key):
-        shift_start(settings_of(content, {'off_going_gear': 1, **shift}))
+        shift_start(settings_of(bad, {'off_going_gear': 1, **shift}))
 
 
 def test_the_linear_clutch_and_impossible_wear_are_refused():

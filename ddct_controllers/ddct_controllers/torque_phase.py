@@ -1,0 +1,45 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""What observers read in the torque phase of a shift, in which another clutch carries torque."""
+
+from dataclasses import replace
+
+from ddct_controllers.interface import Measurement
+from ddct_plant.base.timebase import SUBSTEPS
+from ddct_plant.models.actuator import Actuator
+from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.shift_rules import gears_of
+from ddct_plant.shift.balance import off_going_torque
+
+
+class TorquePhase:
+    """
+    Measurements in which the off-going clutch is part of the engine and of the load.
+
+    A controller's model has the on-coming clutch alone. The torque C_1 of the other one takes as
+    much from the engine and gives tau_i C_1 to the wheels. So the model explains the speeds with
+    C_m - C_1 and C_load - tau_i C_1, and its observer does not take C_1 for wear or another error.
+    C_1 is that of the rigid driveline with a locked off-going clutch, and C_2 in it that of an
+    actuator as printed.
+    """
+
+    def __init__(self, settings: RunSettings) -> None:
+        """Start with the on-coming actuator at rest on a request of zero."""
+        self._gears = gears_of(settings.scenario)
+        self._actuator = Actuator(0.0)
+
+    def measured(self, measurement: Measurement) -> Measurement:
+        """Return the measurement of a period; called once in each period of the torque phase."""
+        nodes = self._actuator.update(max(measurement.open_loop_torque, 0.0))
+        carried = off_going_torque(
+            self._gears,
+            measurement.engine_torque,
+            measurement.load_torque,
+            measurement.engine_speed,
+            sum(nodes[:-1]) / SUBSTEPS,
+        )
+        return replace(
+            measurement,
+            engine_torque=measurement.engine_torque - carried,
+            load_torque=measurement.load_torque - self._gears.off_going.wheel_torque(carried),
+        )
