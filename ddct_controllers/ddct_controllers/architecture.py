@@ -9,9 +9,9 @@ import numpy as np
 
 from ddct_controllers.closing import ClosingStage
 from ddct_controllers.command_check import checked_command
+from ddct_controllers.handover.torque_phase import TorquePhase
 from ddct_controllers.interface import Command, Controller, Measurement, Status
 from ddct_controllers.places import place_of_failure
-from ddct_controllers.torque_phase import TorquePhase
 from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError, ForeignError
 from ddct_plant.base.timebase import time_of_step
 from ddct_plant.models.load import RoadLoad
