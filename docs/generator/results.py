@@ -1,11 +1,12 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
 """
-Results that stand in the sentences of the pages, by the names of their marks.
+Results in the sentences of the pages: computed ones by name, and repeated cells of tables.
 
 A result is between `<!-- result: NAME -->` and `<!-- end -->`, on README or a page of docs, and
 may be there several times. Results follow from tables that the pages show and from runs of the
-thesis's scenario, so `make docs KINDS=results` comes after the other kinds.
+thesis's scenario, so `make docs KINDS=results` comes after the other kinds. It writes the cells
+of `cells.py` too.
 """
 
 import re
@@ -20,6 +21,7 @@ from ddct_bringup.thesis.table_5_1 import ROW_OF, TABLE_METRICS
 from ddct_bringup.verdict.state import ENGAGED, INVALID, NOT_ENGAGED
 from ddct_controllers.registry import own_controller_names
 from ddct_plant.base.errors import DdctError
+from generator.cells import fill_cells
 from generator.pages import DOCS, rows_of, shown_tables
 from generator.robustness_map import kept_maps
 
@@ -39,9 +41,9 @@ def marked_results(page: Path) -> list[tuple[str, str]]:
 
 def fill_results(computed: Mapping[str, str]) -> list[Path]:
     """
-    Write the results into all pages and return those that have changed.
+    Write the results and repeated cells into all pages and return those that have changed.
 
-    Raise DdctError for a name that nothing computes.
+    Raise DdctError for a name that nothing computes, and for a cell that no table has.
     """
     names = {name for page in PAGES for name, _ in marked_results(page)}
     if unknown := sorted(names - set(computed)):
@@ -52,6 +54,7 @@ def fill_results(computed: Mapping[str, str]) -> list[Path]:
         new = _MARKED.sub(lambda match: f'{match[1]}{computed[match[2]]}{match[4]}', old)
         if new != old:
             page.write_text(new, encoding='utf-8')
+        if fill_cells(page) or new != old:
             changed.append(page)
     return changed
 
