@@ -59,7 +59,7 @@ def test_ls7_sampled_is_the_printed_z_form():
 
 
 @pytest.mark.parametrize('name', sorted(PRINTED_CONTROLLERS))
-def test_reset_forgets_the_past(name):
+def test_reset_removes_every_effect_of_earlier_errors(name):
     controller = LinearController(PRINTED_CONTROLLERS[name])
     fresh = response(controller, [1.0, 2.0, 3.0])
     controller.reset()

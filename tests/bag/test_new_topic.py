@@ -133,7 +133,7 @@ def test_a_bag_that_lacks_it_is_refused(add: Any, bags: Any, trajectory: Traject
         read_bag(bag)
 
 
-def test_only_runs_that_meet_its_condition_have_it(
+def test_only_runs_that_fulfil_its_condition_have_it(
     add: Any, bags: Any, trajectory: Trajectory, make_trajectory: Any
 ) -> None:
     topic = add(entry(when=_stick_slip))

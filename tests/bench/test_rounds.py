@@ -74,7 +74,7 @@ def test_each_quantity_has_its_own_ratio_and_bound() -> None:
     ]
 
 
-def test_a_bound_does_not_apply_where_the_reference_says_so() -> None:
+def test_a_bound_does_not_apply_beside_a_reference_that_excludes_it() -> None:
     (result,) = _measured(Sides(lambda: 9.0, lambda: 1.0, bounded=False), at_most=1.5)
     assert (result.bound, result.outcome) == (None, '')
 

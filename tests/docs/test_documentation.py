@@ -18,7 +18,7 @@ WITHIN_S = 240.0
 CLICKS = 3
 
 
-def test_commands_say_where_their_program_is():
+def test_commands_in_shell_blocks_begin_with_ddct_or_a_path():
     """A bare program name works in no shell, and would slip through the tests of commands."""
     names = {'bringup', 'compare', 'score', 'report', 'live', 'reproduce', 'design', 'identify'}
     bare = [

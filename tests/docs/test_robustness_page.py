@@ -31,7 +31,7 @@ def maps() -> dict[str, StateMap]:
 
 
 @pytest.mark.parametrize('name', SPECS)
-def test_runs_of_the_map_end_as_it_says(name: str, maps: dict[str, StateMap]) -> None:
+def test_runs_of_the_map_end_in_the_state_of_the_map(name: str, maps: dict[str, StateMap]) -> None:
     found = maps[name]
     campaign = Campaign(found.spec)
     kept = found.states.ravel().tolist()
@@ -46,7 +46,7 @@ def test_the_tables_are_those_of_the_maps(maps: dict[str, StateMap]) -> None:
     assert shown_tables('robustness') == as_markdown(robustness_tables(maps)), AGAIN
 
 
-def test_each_figure_is_drawn_from_its_map_and_stands_on_the_page(
+def test_each_figure_is_drawn_from_its_map_and_is_on_the_page(
     maps: dict[str, StateMap],
 ) -> None:
     for picture, (name, _) in pictures(maps).items():
@@ -91,7 +91,7 @@ def test_only_mpc4_on_the_linear_plant_has_runs_that_diverge(maps: dict[str, Sta
     assert places == {(mpc4, linear)}
 
 
-def test_ranges_are_told_by_their_ends_and_gaps_part_them() -> None:
+def test_ranges_are_written_by_their_ends_and_gaps_part_them() -> None:
     gains = (0.7, 0.8, 0.9, 1.0, 1.1)
     assert ranges_text(gains, [NOT_ENGAGED, ENGAGED, ENGAGED, ENGAGED, RUNAWAY]) == '0.8 to 1'
     assert ranges_text(gains, [ENGAGED, RUNAWAY, ENGAGED, ENGAGED, ENGAGED]) == '0.7, 0.9 to 1.1'

@@ -54,7 +54,7 @@ def test_a_node_that_never_starts_leaves_its_topic_missing(
     assert complaint.startswith(f'{words} for stamp 1000000000 ns (step 0) within 1 s: ')
 
 
-def test_a_node_that_falls_silent_ends_the_run_at_its_step(graph_of: GraphOf) -> None:
+def test_a_node_that_stops_publishing_ends_the_run_at_its_step(graph_of: GraphOf) -> None:
     graph = _graph(graph_of(plan()))
     graph.add_all()
     graph.spin_until(lambda: _step(graph) >= 20, 'step 20')

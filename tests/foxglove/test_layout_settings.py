@@ -50,7 +50,7 @@ def _unknown(config: dict[str, Any], settings: type) -> list[str]:
 
 
 @pytest.mark.parametrize('panel', read_layout()['configById'])
-def test_foxglove_knows_every_setting(layouts: Any, panel: str) -> None:
+def test_every_setting_is_one_of_foxglove(layouts: Any, panel: str) -> None:
     config = read_layout()['configById'][panel]
     kind = panel.split('!')[0]
     assert _unknown(config, getattr(layouts, f'{kind}Config')) == []

@@ -51,7 +51,7 @@ def run_mutants(
 
 
 @pytest.mark.slow
-def test_a_defect_that_lives_is_reported_and_one_that_is_caught_is_told(repository: Path) -> None:
+def test_defects_that_are_caught_and_that_are_not_are_reported_as_such(repository: Path) -> None:
     caught, lives = entry('it multiplies', 'a + b', 'a * b'), entry('-b', 'a + b', 'a - b')
     ended = run_mutants(repository, caught, lives)
     file = 'ddct_sums/ddct_sums/sums.py'

@@ -19,5 +19,5 @@ def test_every_path_is_there() -> None:
 
 
 @pytest.mark.parametrize('thing', ['topic', 'controller', 'scenario', 'number of the thesis'])
-def test_it_tells_where_to_add(thing: str) -> None:
+def test_the_page_has_a_row_for_each_thing_to_add(thing: str) -> None:
     assert re.search(rf'^\| an? {thing} \|', PAGE, re.MULTILINE)

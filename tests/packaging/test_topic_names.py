@@ -63,7 +63,7 @@ def test_the_page_has_a_row_for_each_topic_in_the_order_of_the_table() -> None:
 
 
 @pytest.mark.parametrize('topic', TOPICS, ids=lambda topic: topic.name)
-def test_the_row_of_a_topic_says_what_the_table_says(topic: Topic) -> None:
+def test_the_row_of_a_topic_agrees_with_the_table(topic: Topic) -> None:
     kind, publisher, content = rows()[topic.name]
     assert kind == topic.type.replace('/msg/', '/')
     assert publisher == topic.publisher

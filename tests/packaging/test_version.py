@@ -55,13 +55,13 @@ def test_the_newest_version_of_the_changelog_is_this_one() -> None:
 
 
 @pytest.mark.parametrize('module', PROGRAMS)
-def test_every_program_tells_the_version(module: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_every_program_prints_the_version(module: str, capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as end:
         importlib.import_module(module).main(['--version'])
     assert end.value.code == 0
     assert capsys.readouterr().out.strip() == version_of('ddct_plant')
 
 
-def test_nodes_tell_the_version_on_run_info() -> None:
+def test_nodes_publish_the_version_on_run_info() -> None:
     pairs = dict(run_info_pairs(RunSettings(load_scenario('thesis'))))
     assert pairs['version'] == version_of('ddct_plant')

@@ -71,17 +71,17 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
     for name in required({each for package in PACKAGES for each in declared_to_pip(package)[0]}):
         distribution = importlib.metadata.distribution(name)
         if distribution.files is None:
-            pytest.skip(f'{name} does not tell its files: it was not installed by pip')
+            pytest.skip(f'{name} has no list of files: it was not installed by pip')
         for top in {file.parts[0] for file in distribution.files} - {'..', '__pycache__'}:
             link = folder / top
             if not link.exists():
                 link.symlink_to(str(distribution.locate_file(top)))
     for package in PACKAGES:
         (folder / package).symlink_to(ROOT / package / package)
-        record_of_it = folder / f'{package}-{package_version()}.dist-info'
-        record_of_it.mkdir()
+        metadata = folder / f'{package}-{package_version()}.dist-info'
+        metadata.mkdir()
         text = f'Metadata-Version: 2.1\nName: {package}\nVersion: {package_version()}\n'
-        (record_of_it / 'METADATA').write_text(text, encoding='utf-8')
+        (metadata / 'METADATA').write_text(text, encoding='utf-8')
     return folder
 
 
@@ -105,13 +105,13 @@ def python(site: Path, place: Path, *arguments: str) -> 'subprocess.CompletedPro
 
 @dataclass(frozen=True)
 class Outcome:
-    """What ALL has left."""
+    """Results of a run of ALL: its folder, exit codes and failed imports."""
 
     place: Path
     codes: dict[str, int]
     """Exit codes by program."""
     refused: dict[str, str]
-    """By module that cannot be imported the one that it lacks."""
+    """Missing module, by the module of ours that needs it."""
 
 
 @pytest.fixture(scope='module')
@@ -155,7 +155,9 @@ def test_only_nodes_and_what_they_share_need_ros(outcome: Outcome) -> None:
     ]
 
 
-def test_the_graph_says_in_one_line_what_is_missing(site: Path, tmp_path: Path) -> None:
+def test_a_graph_without_ros_ends_with_one_line_that_names_rclpy(
+    site: Path, tmp_path: Path
+) -> None:
     done = python(site, tmp_path, '-m', 'ddct_bringup.programs.bringup', '--out', 'runs')
     assert done.returncode == 1
     assert done.stdout == ''

@@ -46,7 +46,7 @@ def _run_graph(programs: Programs, commands: dict[str, list[str]], folder: Path)
 
 
 @pytest.mark.parametrize(('package', 'program'), PROGRAMS, ids=[name for _, name in PROGRAMS])
-def test_every_program_is_installed_where_ros2_run_looks(package: str, program: str) -> None:
+def test_every_program_is_installed_in_the_folder_of_ros2_run(package: str, program: str) -> None:
     assert Path(installed(package, program)).is_file()
 
 

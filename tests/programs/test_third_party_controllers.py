@@ -154,7 +154,7 @@ def test_a_controller_that_cannot_be_built_is_named(name: str, words: list[str])
         ('leaving', 'failed at step 60 (SystemExit: 3, in '),
     ],
 )
-def test_a_controller_with_a_bad_answer_ends_the_run_with_one_line(
+def test_a_command_that_cannot_be_used_ends_the_run_with_one_line(
     capfd: pytest.CaptureFixture[str], tmp_path: Path, layout: str, name: str, words: str
 ) -> None:
     out = tmp_path / 'runs'

@@ -64,28 +64,28 @@ def test_the_page_draws_every_chart_without_error_or_request(
     page: Path, width: int, scheme: str
 ) -> None:
     overflow = 'document.documentElement.scrollWidth - innerWidth'
-    seen = visit(page, width=width, scheme=scheme, scripts=[COUNT_PAINTED, overflow])
-    assert seen.errors == []
-    assert {request.partition(':')[0] for request in seen.requests} <= {'file', 'data', 'blob'}
-    painted, wider = seen.values
+    visited = visit(page, width=width, scheme=scheme, scripts=[COUNT_PAINTED, overflow])
+    assert visited.errors == []
+    assert {request.partition(':')[0] for request in visited.requests} <= {'file', 'data', 'blob'}
+    painted, wider = visited.values
     assert len(painted) == CHARTS
     assert min(painted) > 20
     assert wider <= 0
 
 
-def test_a_phone_shows_all_without_scrolling_sideways_but_in_tables(five: Path) -> None:
+def test_on_a_phone_only_tables_scroll_sideways(five: Path) -> None:
     page_px = 'document.scrollingElement.scrollWidth'
     open_all = "document.querySelectorAll('details').forEach((each) => { each.open = true; })"
     chips = """[...document.querySelectorAll('.chip')].map((chip) => {
       const {left, right} = chip.getBoundingClientRect();
       return left >= 0 && right <= 390 && chip.scrollWidth <= chip.clientWidth;
     })"""
-    seen = visit(five, width=PHONE_PX, scripts=[page_px, OUTSIDE, chips, open_all, page_px])
-    assert seen.values[0] <= PHONE_PX
-    assert seen.values[1] == []
-    assert seen.values[2] == [True] * 5
-    assert seen.values[4] <= PHONE_PX
-    assert seen.errors == []
+    visited = visit(five, width=PHONE_PX, scripts=[page_px, OUTSIDE, chips, open_all, page_px])
+    assert visited.values[0] <= PHONE_PX
+    assert visited.values[1] == []
+    assert visited.values[2] == [True] * 5
+    assert visited.values[4] <= PHONE_PX
+    assert visited.errors == []
 
 
 def test_a_print_of_five_runs_has_four_pages_at_most_with_the_definitions(five: Path) -> None:
@@ -96,16 +96,16 @@ def test_a_print_of_five_runs_has_four_pages_at_most_with_the_definitions(five: 
           each === true || (each !== false && shown(each)));
     })"""
     closed = "document.querySelector('.paper-too').open"
-    seen = visit(five, scripts=[listen, PRINT, 'window.onPaper', closed])
-    pages = re.findall(rb'/Type\s*/Page\b', seen.values[1])
+    visited = visit(five, scripts=[listen, PRINT, 'window.onPaper', closed])
+    pages = re.findall(rb'/Type\s*/Page\b', visited.values[1])
     assert 2 <= len(pages) <= MOST_PAGES
     assert (
-        b'595' in re.findall(rb'/MediaBox \[([^\]]*)', seen.values[1])[0]
-        or b'594' in seen.values[1]
+        b'595' in re.findall(rb'/MediaBox \[([^\]]*)', visited.values[1])[0]
+        or b'594' in visited.values[1]
     )
-    assert len(seen.values[2]) > 50
-    assert all(seen.values[2])
-    assert seen.values[3] is False
+    assert len(visited.values[2]) > 50
+    assert all(visited.values[2])
+    assert visited.values[3] is False
 
 
 POINT = """((name, share) => {
@@ -131,18 +131,18 @@ def test_the_pointer_shows_the_nearest_curve_with_value_and_unit(page: Path, wid
     near, far = POINT.replace('OFF', '0'), POINT.replace('OFF', '-150')
     scroll = "dispatchEvent(new Event('scroll'))"
     hidden = "document.getElementById('tip').hidden"
-    seen = visit(page, width=width, scripts=[near, scroll, hidden, far])
-    away, text, time, value = seen.values[0]
+    visited = visit(page, width=width, scripts=[near, scroll, hidden, far])
+    away, text, time, value = visited.values[0]
     assert not away
-    name, told, when = text.split('\n')
+    name, shown, when = text.split('\n')
     assert (name, when) == ('ls8', f'at {time:.2f} s')
-    assert told.startswith('w_sr = ')
-    assert told.endswith(' rpm')
-    number = float(told.split()[2].replace('−', '-'))
+    assert shown.startswith('w_sr = ')
+    assert shown.endswith(' rpm')
+    number = float(shown.split()[2].replace('−', '-'))
     assert number == pytest.approx(value, rel=1e-3)
-    assert seen.values[2] is True
-    assert seen.values[3][0] is True
-    assert seen.errors == []
+    assert visited.values[2] is True
+    assert visited.values[3][0] is True
+    assert visited.errors == []
 
 
 def test_a_run_is_switched_off_in_all_charts(page: Path) -> None:
@@ -159,12 +159,12 @@ def test_a_run_is_switched_off_in_all_charts(page: Path) -> None:
     everything = "document.querySelector('[data-show=all]').click()"
     scripts = [heights, SHOWN_LINES, click, SHOWN_LINES, count, none, SHOWN_LINES]
     scripts += [everything, SHOWN_LINES, heights]
-    seen = visit(page, scripts=scripts)
-    assert (seen.values[1], seen.values[3], seen.values[6]) == (3 * CHARTS, 2 * CHARTS, 0)
-    assert seen.values[4] == '2 of 3 runs shown'
-    assert seen.values[8] == 3 * CHARTS
-    assert seen.values[9] == seen.values[0]
-    assert seen.errors == []
+    visited = visit(page, scripts=scripts)
+    assert (visited.values[1], visited.values[3], visited.values[6]) == (3 * CHARTS, 2 * CHARTS, 0)
+    assert visited.values[4] == '2 of 3 runs shown'
+    assert visited.values[8] == 3 * CHARTS
+    assert visited.values[9] == visited.values[0]
+    assert visited.errors == []
 
 
 def test_the_time_axis_is_one_for_all_charts(page: Path) -> None:
@@ -172,9 +172,9 @@ def test_the_time_axis_is_one_for_all_charts(page: Path) -> None:
     whole = "document.querySelectorAll('[data-range]')[0].click()"
     ranges = """Bokeh.documents[0].roots().map((chart) =>
       [chart.x_range.start, chart.x_range.end])"""
-    seen = visit(page, scripts=[ranges, window, ranges, whole, ranges])
-    assert seen.values[0] == seen.values[4] == [[0.0, 3.0]] * CHARTS
-    assert seen.values[2] == [[0.6, 1.7]] * CHARTS
+    visited = visit(page, scripts=[ranges, window, ranges, whole, ranges])
+    assert visited.values[0] == visited.values[4] == [[0.0, 3.0]] * CHARTS
+    assert visited.values[2] == [[0.6, 1.7]] * CHARTS
 
 
 def test_the_switch_and_the_system_choose_the_colours(page: Path) -> None:
@@ -192,10 +192,10 @@ def test_a_table_sorts_by_a_pressed_heading(page: Path) -> None:
     press = "document.querySelectorAll('.summary .sort')[1].click()"
     order = """[...document.querySelectorAll('.summary tbody th .run')].map((run) =>
       run.textContent.trim())"""
-    seen = visit(page, scripts=[order, press, order, press, order])
-    assert seen.values[0] == ['pi', 'ls8', 'hinf1']
-    assert seen.values[2] == ['ls8', 'hinf1', 'pi']
-    assert seen.values[4] == ['pi', 'hinf1', 'ls8']
+    visited = visit(page, scripts=[order, press, order, press, order])
+    assert visited.values[0] == ['pi', 'ls8', 'hinf1']
+    assert visited.values[2] == ['ls8', 'hinf1', 'pi']
+    assert visited.values[4] == ['pi', 'hinf1', 'ls8']
 
 
 def test_the_two_criteria_of_the_pareto_view_are_chosen(page: Path) -> None:
@@ -207,8 +207,8 @@ def test_the_two_criteria_of_the_pareto_view_are_chosen(page: Path) -> None:
       select.value = name;
       select.dispatchEvent(new Event('change'));
     })"""
-    seen = visit(page, scripts=[points, titles, choose, points, titles])
-    before, titles_before, _, after, titles_after = seen.values
+    visited = visit(page, scripts=[points, titles, choose, points, titles])
+    before, titles_before, _, after, titles_after = visited.values
     assert titles_after == titles_before[::-1]
     assert len(before) == 3
     assert any(best for *_, best, _ in before)
@@ -218,7 +218,7 @@ def test_the_two_criteria_of_the_pareto_view_are_chosen(page: Path) -> None:
             float(left[:-1]),
         ]
         assert turned[2:] == [best, ', '.join(reversed(title.split(', ')))]
-    assert seen.errors == []
+    assert visited.errors == []
 
 
 def test_labels_of_the_pareto_view_cover_neither_each_other_nor_a_dot(page: Path) -> None:
@@ -235,10 +235,10 @@ def test_labels_of_the_pareto_view_cover_neither_each_other_nor_a_dot(page: Path
         && one.left < other.right && one.right > other.left
         && one.top < other.bottom - 0.1 && one.bottom > other.top + 0.1)).length;
     })()"""
-    seen = visit(page, scripts=[covered, crowd, covered, plain, covered])
-    assert [seen.values[0], seen.values[2]] == [0, 0]
-    assert seen.values[4] > 0
-    assert seen.errors == []
+    visited = visit(page, scripts=[covered, crowd, covered, plain, covered])
+    assert [visited.values[0], visited.values[2]] == [0, 0]
+    assert visited.values[4] > 0
+    assert visited.errors == []
 
 
 def test_labels_of_the_pareto_view_stay_within_it_where_they_have_room(page: Path) -> None:
@@ -256,9 +256,9 @@ def test_labels_of_the_pareto_view_stay_within_it_where_they_have_room(page: Pat
         return box.top < top - 0.1 || box.bottom > bottom + 0.1;
       });
     })()"""
-    seen = visit(page, scripts=[stack, outside])
-    assert seen.values[1] == [False] * 3
-    assert seen.errors == []
+    visited = visit(page, scripts=[stack, outside])
+    assert visited.values[1] == [False] * 3
+    assert visited.errors == []
 
 
 def test_paper_gets_light_charts_even_from_a_dark_page(page: Path) -> None:
@@ -278,11 +278,11 @@ def test_paper_gets_light_charts_even_from_a_dark_page(page: Path) -> None:
     light = f'window.light = {json.dumps(lines)}'
     after = """[document.querySelectorAll('.paper canvas').length,
       document.documentElement.dataset.theme ?? 'auto']"""
-    seen = visit(page, scheme='dark', scripts=[light, listen, PRINT, 'window.onPaper', after])
-    printed, charts, after_print = seen.values[2:]
+    visited = visit(page, scheme='dark', scripts=[light, listen, PRINT, 'window.onPaper', after])
+    printed, charts, after_print = visited.values[2:]
     assert printed.startswith(b'%PDF')
     assert len(charts) == CHARTS
     assert min(inked for inked, _ in charts) > 1000
     assert [light for _, light in charts][:4] == [True] * 4
     assert after_print == [0, 'auto']
-    assert seen.errors == []
+    assert visited.errors == []

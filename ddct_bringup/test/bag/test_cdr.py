@@ -111,7 +111,7 @@ def test_exactly_the_bytes_without_a_value_are_ignored(case):
         assert ignored == decodes_to(decode, bytes(spoiled), message), place
 
 
-def test_the_remembered_layout_gives_the_same_as_a_fresh_one(case):
+def test_a_stored_layout_gives_the_same_as_a_new_one(case):
     definition, clean, decode = case
     used = CdrNormaliser(definition)
     used.normalise(clean)

@@ -33,7 +33,7 @@ def finished(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return made
 
 
-def test_it_is_shown_and_says_which_metric_it_lacks(
+def test_it_is_shown_and_names_the_metric_that_it_lacks(
     finished: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     before = (finished / RESULTS).read_bytes()

@@ -34,7 +34,7 @@ def attribution(values, failed, **invalid):
     return summary_of(results)['groups'][0]['attribution']
 
 
-def test_failures_that_wear_alone_causes_are_blamed_on_wear_and_on_no_other_key():
+def test_failures_that_wear_alone_causes_are_attributed_to_wear_and_to_no_other_key():
     values = drawn(1)
     found = attribution(values, values['wear_gain'] < 0.1)
     first, *others = found['keys']
@@ -87,7 +87,7 @@ def test_two_keys_that_both_drive_failure_are_both_found():
 
 
 @pytest.mark.slow
-def test_of_failures_that_no_key_causes_few_campaigns_blame_one(monkeypatch):
+def test_few_campaigns_attribute_failures_that_no_key_causes_to_a_key(monkeypatch):
     # The intervals, which take most of the time, are drawn after all p-values and not compared.
     monkeypatch.setattr(attribution_module, '_RESAMPLES', 1)
     wrong = 0

@@ -123,7 +123,7 @@ def test_a_worn_clutch_has_the_same_floor_as_its_requests_are_free(wear_gain):
     assert floor.gap < 5.0
 
 
-def test_a_floor_is_computed_once_and_then_read(monkeypatch):
+def test_a_floor_is_computed_once_and_then_read_from_the_cache(monkeypatch):
     first = floor_of(settings_of(), 'peak_acceleration', 0.9)
     monkeypatch.setattr(floor_module, 'bound_of', None)
     assert floor_of(settings_of(), 'peak_acceleration', 0.9) == first

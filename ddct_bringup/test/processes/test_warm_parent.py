@@ -274,7 +274,7 @@ def test_no_fork_is_left_behind_a_failed_start(
         assert process.wait(WITHIN_S) == 7
 
 
-def test_the_late_answer_of_a_parent_is_not_taken_for_that_to_the_next_request(
+def test_a_late_reply_of_the_parent_is_not_taken_for_the_reply_to_the_next_request(
     monkeypatch: pytest.MonkeyPatch, module: Callable[[str], str]
 ) -> None:
     child = Child(module('def main(): return 7'))

@@ -20,7 +20,7 @@ def collected(**extras: dict[str, str]) -> RunInfoCollector:
     return nodes
 
 
-def test_silent_nodes_are_those_expected_and_not_collected():
+def test_missing_nodes_are_the_expected_ones_without_run_info():
     assert collected(load={}).missing() == ['/controller', '/driveline']
     assert collected(driveline={}, controller={}).missing() == []
 

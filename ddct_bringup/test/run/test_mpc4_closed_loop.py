@@ -95,7 +95,7 @@ def test_without_the_pull_the_slip_error_decays_at_the_rate_of_the_weights(weigh
         ('engine_authority.lag_s=0.2', 2.0),
     ],
 )
-def test_the_advantage_goes_as_the_authority_shrinks(change, least):
+def test_the_advantage_shrinks_with_the_authority_of_the_engine(change, least):
     limited, free = metrics(run('mpc4', change)), metrics(run('mpc4'))
     assert limited['torsion_speed_std_rpm'] > least * free['torsion_speed_std_rpm']
 
@@ -121,7 +121,7 @@ def test_the_engine_delivers_the_requested_torque_as_the_controller_expects(name
         assert dict(status)['qp_status'] == 'solved'
 
 
-def test_mpc4_does_not_survive_a_worn_clutch_and_its_level_is_why():
+def test_mpc4_runs_away_with_a_worn_clutch_as_its_torque_level_grows():
     assert abs(rpm_from_rad_s(run('mpc4', wear_gain=0.95).slip_speed[-1])) > 100.0
     mpc4: Any = make_controller('mpc4', SETTINGS)
     new, worn = (transmission_model(SETTINGS.scenario.driveline, gain) for gain in (1.0, 0.95))

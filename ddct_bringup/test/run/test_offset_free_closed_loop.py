@@ -52,7 +52,7 @@ def test_it_stays_there(name, wear_gain):
 
 @pytest.mark.parametrize('wear_gain', [0.7, 1.0, 1.3])
 @pytest.mark.parametrize('name', OWN)
-def test_a_load_step_that_is_not_known_leaves_no_slip(name, wear_gain):
+def test_an_unknown_load_step_leaves_no_slip(name, wear_gain):
     run = settings(wear_gain)
     slip = slip_after_load_step(run, make_controller(name, run), LOAD_STEP_N_M, 150)
     assert abs(rpm_from_rad_s(slip[-1])) <= 1.0
@@ -98,7 +98,7 @@ def test_the_wear_is_known_when_control_starts(wear_gain):
     assert float(status['wear_gain_estimate']) == pytest.approx(wear_gain, abs=1e-3)
 
 
-def test_it_stays_known_with_noise_and_a_load_step():
+def test_the_estimate_of_wear_stays_right_with_noise_and_a_load_step():
     table = wear_estimate()
     figures = np.array([[float(cell) for cell in row] for row in table.rows])
     known_from_s, _, largest_error, slip_final_rpm = figures[:, 2:].T

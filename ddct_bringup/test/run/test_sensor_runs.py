@@ -18,7 +18,7 @@ SHORT = ['duration_s=1.0', 'score_window_s=[0.6, 1.0]']
 NOISY = 'sensors={engine_speed: {noise_rad_s: 0.5}, engine_torque: {noise_n_m: 2}}'
 
 
-class Listener(Controller):
+class MeasurementLog(Controller):
     """Controller that requests no clutch torque and stores its measurements."""
 
     def __init__(self, *, commands_engine: bool) -> None:
@@ -45,9 +45,9 @@ def biased(quantity: str, unit: str) -> str:
     return f'sensors.{quantity}.bias_{unit}=7'
 
 
-def listen(*changes: str, commands_engine: bool = False) -> tuple[Listener, Trajectory]:
-    listener = Listener(commands_engine=commands_engine)
-    return listener, run_headless(settings(*changes), listener)
+def logged_run(*changes: str, commands_engine: bool = False) -> tuple[MeasurementLog, Trajectory]:
+    log = MeasurementLog(commands_engine=commands_engine)
+    return log, run_headless(settings(*changes), log)
 
 
 ALL_BIASED = (
@@ -60,21 +60,23 @@ ALL_BIASED = (
 
 
 def test_controller_and_reference_receive_the_sensor_values():
-    listener, run = listen(*ALL_BIASED)
-    for step, each in enumerate(listener.measurements):
+    log, run = logged_run(*ALL_BIASED)
+    for step, each in enumerate(log.measurements):
         speeds = [each.engine_speed, each.shaft_speed, each.wheel_speed]
         assert speeds == run.sensed_joint_speed[step].tolist()
         assert each.vehicle_speed == run.sensed_vehicle_speed[step] == run.vehicle_speed[step] + 7
         assert each.engine_torque == run.sensed_engine_torque[step] == run.engine_torque[step] + 7
         assert each.slip_speed == run.sensed_slip_speed[step]
     np.testing.assert_allclose(run.sensed_slip_speed, run.slip_speed + 4.0, atol=1e-9)
-    held = run.slip_reference[:60, 0]  # detailed: until control start it is the measured slip
-    assert np.array_equal(held, run.sensed_slip_speed[:60])
+    until_start = run.slip_reference[
+        :60, 0
+    ]  # detailed: until control start it is the measured slip
+    assert np.array_equal(until_start, run.sensed_slip_speed[:60])
 
 
 def test_a_controller_that_commands_the_engine_receives_the_demand_itself():
-    listener, run = listen(*ALL_BIASED, commands_engine=True)
-    demands = [each.engine_torque for each in listener.measurements]
+    log, run = logged_run(*ALL_BIASED, commands_engine=True)
+    demands = [each.engine_torque for each in log.measurements]
     assert demands == run.torque_demand.tolist()
     assert np.array_equal(run.sensed_engine_torque, run.engine_torque + 7.0)
     assert not np.array_equal(run.engine_torque, run.torque_demand)
@@ -97,9 +99,9 @@ def test_the_plant_integrates_the_true_torque_and_the_scores_are_of_true_signals
     # A loop that reads no sensor at all: base, and a controller that requests no torque.
     run = run_headless(
         settings('sensors.engine_torque.bias_n_m=50', architecture='base'),
-        Listener(commands_engine=False),
+        MeasurementLog(commands_engine=False),
     )
-    without = run_headless(settings(architecture='base'), Listener(commands_engine=False))
+    without = run_headless(settings(architecture='base'), MeasurementLog(commands_engine=False))
     for name in ('joint_speed', 'slip_speed', 'vehicle_accel', 'engine_torque'):
         assert np.array_equal(run.signals[name], without.signals[name]), name
 

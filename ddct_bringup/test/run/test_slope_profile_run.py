@@ -10,7 +10,7 @@ from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
 
-def test_the_open_loop_answers_the_load_of_now():
+def test_the_open_loop_uses_the_load_at_the_present_instant():
     changes = ['slope={time_s: [0.0, 2.0], slope_rad: [0.0, 0.2]}', 'duration_s=1.0']
     scenario = load_scenario('thesis', [*changes, 'score_window_s=[0.6, 1.0]'])
     run = run_headless(RunSettings(scenario), 'pi')

@@ -27,7 +27,7 @@ def test_what_the_recorder_wrote_is_read_back(tmp_path):
     assert read_timing(tmp_path) == timing
 
 
-def test_a_file_of_before_these_were_known_is_read(tmp_path):
+def test_a_file_from_before_these_quantities_is_read(tmp_path):
     old = {'update_times_us': [], 'missed_steps': 1, 'resends': 0, 'late_messages': 0}
     states = {'safe_states': {'actuator': 1870000000}}  # names had no slash
     text = json.dumps({**old, **states, 'wall_time_s': 1.0, 'steps': 100})

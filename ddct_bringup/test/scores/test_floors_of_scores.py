@@ -126,7 +126,7 @@ def test_a_long_run_has_no_floor_beside_its_score_and_the_reason() -> None:
     assert run.no_floor.endswith('use ddct limit')
 
 
-def test_without_floors_nothing_is_computed_nor_said() -> None:
+def test_without_floors_nothing_is_computed_or_printed() -> None:
     run = scored('pi', settings_of(), NONE)
     assert (run.over_floor, run.no_floor, run.verdict.limits) == ({}, '', 'beyond')
 
@@ -164,7 +164,7 @@ def printed(*runs: ScoredRun) -> str:
     return stream.getvalue()
 
 
-def test_the_table_has_the_ratio_and_says_what_no_controller_can_keep() -> None:
+def test_the_table_has_the_ratio_and_names_the_limits_that_no_controller_can_keep() -> None:
     unavoidable = made_result(
         'weighted_acceleration',
         0.97,

@@ -124,7 +124,7 @@ def test_for_constant_torques_the_clutch_gets_the_static_torque():
 
 
 @pytest.mark.parametrize('driveline', [DRIVELINE, WITHOUT_DRAGS, *CORNERS])
-def test_it_is_stable_and_forgets_within_a_second(driveline):
+def test_it_is_stable_and_its_modes_decay_within_a_second(driveline):
     poles = np.linalg.eigvals(design_feedforward(driveline).a)
     assert np.abs(poles).max() ** 100 < 0.01
 

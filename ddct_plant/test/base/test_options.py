@@ -110,7 +110,7 @@ def test_a_checked_value_is_of_the_options_kind(described, value, taken):
     assert type(checked) is type(taken)
 
 
-def test_the_rows_say_all_that_is_described():
+def test_the_rows_have_all_that_is_declared():
     assert option_rows(options_of(Tyre), Tyre.prefix) == [
         ('tyre.make', '', 'required', 'here, there', 'who made it', ''),
         ('tyre.pressure_bar', 'bar', '2.2', 'above 0, at most 9', 'cold', 'assumed'),

@@ -24,7 +24,7 @@ RED = '\x1b[31mred\x1b[0m'
         (Exception('why'), 'why'),
     ],
 )
-def test_what_a_terminal_would_obey_is_an_escape(text, shown):
+def test_characters_that_control_a_terminal_are_escaped(text, shown):
     assert printable(text) == shown
     assert printable(shown) == shown
 

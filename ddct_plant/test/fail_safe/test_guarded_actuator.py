@@ -44,7 +44,7 @@ def test_the_clutch_opens_one_step_after_the_timeout_at_the_stated_rate():
     assert actuator.watch.stopped
 
 
-def test_it_obeys_no_request_after_its_safe_state():
+def test_it_ignores_requests_after_its_safe_state():
     actuator = guarded()
     actuator.request(0, 200.0)
     assert actuator.tick(6) is not None
@@ -72,7 +72,7 @@ def test_a_ramp_after_a_pause_of_any_length_ends_at_zero_at_once():
     assert actuator.tick(214_748_364_700)[-1] == pytest.approx(0.0, abs=1e-9)
 
 
-def test_a_slow_ramp_after_a_long_pause_is_as_far_as_time_says():
+def test_a_slow_ramp_after_a_long_pause_has_moved_by_rate_times_time():
     actuator = GuardedActuator(Actuator(200.0), 200.0, FailSafeSettings(0.05, 1.0))
     actuator.request(0, 200.0)
     actuator.tick(6)
@@ -87,7 +87,7 @@ def test_a_tick_that_comes_again_gets_the_same_torque_and_an_older_one_none():
     assert actuator.tick(6) is None
 
 
-def test_a_late_request_is_not_obeyed():
+def test_a_late_request_is_ignored():
     actuator = guarded()
     actuator.request(4, 200.0)
     assert actuator.request(4, 300.0) is None

@@ -60,7 +60,7 @@ def test_the_demand_takes_over_one_step_after_the_timeout_and_no_request_counts_
     assert [engine.tick(step) for step in (7, 7, 8, 9, 6)] == [310.0, 310.0, 308.0, 308.0, None]
 
 
-def test_until_the_first_request_the_demand_holds():
+def test_until_the_first_request_the_demand_is_delivered():
     engine = guarded(EngineAuthority(slew_n_m_s=500.0))
     assert engine.tick(5) is None
     assert engine.tick(6) == DEMAND
@@ -69,7 +69,7 @@ def test_until_the_first_request_the_demand_holds():
     assert engine.request(7, 320.0) == DEMAND + 5.0
 
 
-def test_a_pause_of_any_length_is_made_up_for_at_once():
+def test_one_tick_after_a_pause_of_any_length_gives_the_torque_of_its_last_step():
     engine = guarded()
     engine.request(0, 400.0)
     assert engine.tick(214_748_364_700) == pytest.approx(bare([400.0] * 1000 + [DEMAND])[-1])

@@ -82,6 +82,6 @@ def test_a_date_that_could_mean_two_things_is_refused_with_its_place(tmp_path, c
     assert complaint in str(error.value)
 
 
-def test_a_date_where_a_number_should_be_says_which_unit_takes_it(tmp_path):
+def test_the_error_on_a_date_in_place_of_a_number_names_the_unit_for_dates(tmp_path):
     with pytest.raises(ParameterError, match='is a date and time: in the column map .* iso8601'):
         read(tmp_path / 'a.csv', 't;v\n2026-05-01T10:00:00;1\n', ['t'])

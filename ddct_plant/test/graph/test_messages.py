@@ -159,7 +159,7 @@ def test_the_parts_of_the_request_are_numbers_by_name():
         (topics.LOAD_TORQUE, lambda message: message.wrench.torque.x),
     ],
 )
-def test_single_values_stand_in_the_field_that_the_interfaces_page_names(topic, field):
+def test_single_values_are_in_the_field_of_the_interfaces_page(topic, field):
     assert field(topic.message(STAMP, 0.1)) == 0.1
 
 

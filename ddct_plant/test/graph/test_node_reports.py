@@ -44,7 +44,7 @@ def test_counts_are_read_as_they_were_written(lateness_us: float | None) -> None
     assert TickCounts.of(dict(counts.pairs())) == counts
 
 
-def test_missing_replies_stand_between_the_counts_and_the_lateness() -> None:
+def test_missing_replies_come_between_the_counts_and_the_lateness() -> None:
     counts = TickCounts(300, 1, 2, 3, 249.6, {'load/torque': 4})
     assert counts.pairs() == [
         ('steps', '300'),

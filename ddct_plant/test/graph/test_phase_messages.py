@@ -37,7 +37,7 @@ def test_phase_work_and_events_come_back_to_the_last_bit():
         assert CLUTCH_PHASE.read(message) == values[1]
 
 
-def test_the_phase_stands_in_words_and_each_event_before_its_slip_acceleration():
+def test_the_phase_is_a_word_and_each_event_comes_before_its_slip_acceleration():
     message = CLUTCH_PHASE.message(STAMP, 1.0, 0.25, LOCKS)
     pairs = [(pair.key, pair.value) for pair in message.status[0].values]
     assert pairs == [
@@ -109,7 +109,7 @@ def test_a_negative_holding_torque_is_refused():
         HOLDING_TORQUE.read(HOLDING_TORQUE.message(STAMP, -1.0))
 
 
-def test_the_temperature_stands_in_its_field():
+def test_the_temperature_is_in_its_field():
     assert CLUTCH_TEMPERATURE.message(LATER, 123.25).temperature == 123.25
 
 

@@ -31,7 +31,7 @@ def test_names_give_indices_and_slices_and_can_be_joined() -> None:
     assert np.arange(3)[names.column('twist')].tolist() == [1]
 
 
-def test_an_unknown_name_or_one_that_stands_twice_is_refused() -> None:
+def test_an_unknown_or_repeated_name_is_refused() -> None:
     with pytest.raises(ParameterError, match='there is no torque: choose from speed, twist'):
         Names(('speed', 'twist'))['torque']
     with pytest.raises(ParameterError, match='the name speed stands twice'):

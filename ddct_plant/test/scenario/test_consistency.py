@@ -187,7 +187,7 @@ def test_a_window_that_begins_before_control_is_kept_and_named():
         ('driveline.total_ratio=16.06', 'score_window_s=[0.2, 1.7]'),
     ],
 )
-def test_a_moved_scenario_survives_its_file_to_the_last_bit(tmp_path, overrides):
+def test_a_changed_scenario_is_the_same_after_writing_and_reading(tmp_path, overrides):
     moved = changed(*overrides)
     path = tmp_path / 'again.yaml'
     path.write_text(scenario_to_yaml(moved))

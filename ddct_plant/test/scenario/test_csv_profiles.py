@@ -153,7 +153,7 @@ def test_a_file_that_is_set_without_its_description_is_refused_with_the_missing_
         load_scenario('thesis', ['engine.csv=pedal.csv'])
 
 
-def test_a_file_with_too_many_rows_is_refused_and_the_most_survive_their_yaml(folder):
+def test_one_row_too_many_is_refused_and_the_most_are_the_same_after_writing_and_reading(folder):
     rows = [f'{k / 100!r},x,{100.0 + math.sin(k)!r}\n' for k in range(MOST_ROWS + 1)]
     file = folder / 'data' / 'pedal.csv'
     file.write_text('t,other,torque\n' + ''.join(rows[:-1]))

@@ -21,7 +21,7 @@ def test_the_thesis_scenario_gives_none_and_half_a_pedal():
     assert scenario.pedal_position == 0.5
 
 
-def test_both_survive_their_yaml(tmp_path):
+def test_both_are_the_same_after_writing_and_reading(tmp_path):
     changes = [
         'engine_speed_reference.time_s=[0.6, 1.2]',
         'engine_speed_reference.speed_rad_s=[250, 240.5]',

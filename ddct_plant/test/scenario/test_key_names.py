@@ -27,7 +27,7 @@ OF_THE_THESIS = {
 
 
 @pytest.mark.parametrize(('symbol', 'key'), OF_THE_THESIS.items())
-def test_a_symbol_of_the_thesis_is_answered_with_our_key(symbol, key):
+def test_the_error_on_a_symbol_of_the_thesis_names_our_key(symbol, key):
     assert key_hint(symbol, KEYS) == f'did you mean {key}?'
 
 
@@ -40,7 +40,7 @@ def test_a_symbol_of_the_thesis_is_answered_with_our_key(symbol, key):
         ('clutch_phase', 'initial.clutch_phase'),
     ],
 )
-def test_a_name_nearly_right_or_without_its_section_is_answered_with_the_key(wrong, key):
+def test_the_error_on_a_name_nearly_right_or_without_its_section_names_the_key(wrong, key):
     assert key_hint(wrong, KEYS) == f'did you mean {key}?'
 
 
@@ -70,6 +70,6 @@ def test_in_a_section_its_own_keys_come_first_and_symbols_count_too():
             load_scenario('thesis', [f'{wrong}=0.7'])
 
 
-def test_a_name_unlike_any_key_of_its_section_is_answered_with_the_keys_of_the_section():
+def test_the_error_on_a_name_unlike_any_key_lists_the_keys_of_the_section():
     with refused(ParameterError, key='closing.zebra'):
         load_scenario('launch', ['closing.zebra=0.7'])

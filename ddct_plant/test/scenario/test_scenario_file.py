@@ -42,7 +42,7 @@ def test_every_packaged_scenario_loads():
         assert load_scenario(name).name == name
 
 
-def test_a_scenario_survives_its_yaml_to_the_last_bit(scenario_file):
+def test_a_scenario_is_the_same_to_the_last_bit_after_writing_and_reading(scenario_file):
     scenario = load_scenario('thesis', ['load.slope_rad=0.1'])
     again = load_scenario(scenario_file(scenario_to_yaml(scenario)))
     assert again == scenario
@@ -64,7 +64,7 @@ def test_a_scenario_may_have_a_schema_version_and_a_written_one_does(scenario_fi
         ('true', 'a whole number'),
     ],
 )
-def test_a_schema_version_that_is_not_known_is_refused(scenario_file, version, advice):
+def test_an_unknown_schema_version_is_refused(scenario_file, version, advice):
     with refused(DdctError, key='schema_version', place='mine.yaml: line 1') as caught:
         load_scenario(scenario_file(f'schema_version: {version}\n{MINIMAL}'))
     assert advice in str(caught.value)

@@ -36,7 +36,7 @@ def scenario_file(tmp_path):
     return write
 
 
-def test_sections_survive_their_yaml_and_change_the_digest(scenario_file):
+def test_sections_are_the_same_after_writing_and_reading_and_change_the_digest(scenario_file):
     scenario = load_scenario(scenario_file(BASE + SECTIONS))
     assert scenario.friction.slip_share == (1.0, 0.9)
     assert (scenario.heat.facing_c, scenario.heat.housing_c) == (200.0, 20.0)

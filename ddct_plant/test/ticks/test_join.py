@@ -57,7 +57,7 @@ def test_a_gap_is_passed_over_where_gaps_are_allowed():
     assert join.take() == (3, {'a': 'a3'})
 
 
-def test_inputs_that_were_passed_over_are_forgotten():
+def test_inputs_of_skipped_steps_are_removed():
     join = StampJoin(['a', 'b'], allow_gaps=True)
     offer(join, 'a', 0)
     offer(join, 'a', 1)

@@ -77,7 +77,7 @@ def contrast(colour, page):
 @pytest.mark.parametrize(
     ('colours', 'page'), [(LIGHT_COLOURS, '#ffffff'), (DARK_COLOURS, '#15181c')]
 )
-def test_every_colour_stands_out_from_its_page(colours, page):
+def test_every_colour_has_enough_contrast_with_its_page(colours, page):
     assert min(contrast(colour, page) for colour in colours) >= 3.0
 
 

@@ -109,7 +109,7 @@ def test_the_fitted_w_u_of_a_constant_error_is_that_constant():
     assert np.abs(weight.frequency_response(OMEGA)) == pytest.approx(0.3, rel=1e-6)
 
 
-def test_a_first_order_error_is_fitted_by_itself():
+def test_a_first_order_error_is_its_own_fit():
     """0.2 (1 + s/2)/(1 + s/50), whose pole is not on the grid of the fit, agrees within 1 %."""
     error = np.abs(FactoredTransferFunction(5.0, (2.0,), (50.0,)).frequency_response(OMEGA))
     found = np.abs(fit_first_order(OMEGA, error).frequency_response(OMEGA))
