@@ -44,14 +44,17 @@ def chosen_from(controller: Any, name: str = '') -> Chosen:
         source = getattr(controller, '__name__', type(controller).__name__)
         return factory_spec(_free(name or source), controller, source)
     raise ParameterError(
-        f'{controller!r} is no controller: give a name, a file, a Controller or its class'
+        f'{controller!r} is no controller: give a name, a file, a Controller or its class',
+        key=repr(controller),
     )
 
 
 def _free(name: str) -> str:
     require_name('controller name', name)
     if name in controller_names():
-        raise ParameterError(f'the name {name!r} is taken by another controller: give name=...')
+        raise ParameterError(
+            f'the name {name!r} is taken by another controller: give name=...', key=name
+        )
     return name
 
 

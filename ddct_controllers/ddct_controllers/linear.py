@@ -62,7 +62,8 @@ def sampled(controller: LinearSystem, discretisation: str | None = None) -> Stat
     if controller.period_s not in periods or controller.d.shape != (1, 1):
         raise ParameterError(
             f'linear controller: a state space must have one input, one output and a period '
-            f'of {PERIOD_S} s'
+            f'of {PERIOD_S} s',
+            key='state space',
         )
     if controller.period_s is not None:
         return controller
@@ -188,7 +189,9 @@ class PiController(Controller):
     def set_gain(self, name: str, value: float) -> None:
         """Change K_p or K_i from the next update on; the integral of the error is kept."""
         if name not in PI_OPTIONS:
-            raise ParameterError(f'pi has no gain {name!r}: it has {", ".join(PI_OPTIONS)}')
+            raise ParameterError(
+                f'pi has no gain {name!r}: it has {", ".join(PI_OPTIONS)}', key=name
+            )
         self._gains[name] = PI_OPTIONS[name].checked(f'controllers.pi.{name}', value)
 
 

@@ -23,10 +23,14 @@ def controller_from(lti: Any, discretisation: str | None = None) -> LinearContro
     if given is None:
         raise ParameterError(
             f'{_name(lti)} is no linear system: give a TransferFunction, ZerosPolesGain or '
-            'StateSpace of scipy.signal or python-control'
+            'StateSpace of scipy.signal or python-control',
+            key=_name(lti),
         )
     if discretisation and isinstance(given, StateSpace) and given.period_s:
-        raise ParameterError(f'{_name(lti)}: it is sampled: drop discretisation={discretisation}')
+        raise ParameterError(
+            f'{_name(lti)}: it is sampled: drop discretisation={discretisation}',
+            key='discretisation',
+        )
     return LinearController(given, discretisation or HOLD)
 
 
@@ -52,12 +56,13 @@ def linear_system(lti: Any) -> LinearSystem | None:
         return form
     if lti.dt is True:
         raise ParameterError(
-            f'{_name(lti)}: dt is True, it does not say its period: give dt={PERIOD_S:g}'
+            f'{_name(lti)}: dt is True, it does not say its period: give dt={PERIOD_S:g}', key='dt'
         )
     if abs(lti.dt - PERIOD_S) > 1e-9 * PERIOD_S:
         raise ParameterError(
             f'{_name(lti)}: dt is {lti.dt}, the loop has a period of {PERIOD_S:g} s: sample it at '
-            'that, or give it continuous'
+            'that, or give it continuous',
+            key='dt',
         )
     return in_z(form)
 
@@ -82,7 +87,7 @@ def _coefficients(lti: Any, side: Any) -> np.ndarray:
     except ValueError:  # polynomials of different lengths
         table = np.zeros((2, 2))
     if table.size != table.shape[-1]:
-        raise ParameterError(f'{_name(lti)}: give one input and one output')
+        raise ParameterError(f'{_name(lti)}: give one input and one output', key='output')
     return table.ravel()
 
 

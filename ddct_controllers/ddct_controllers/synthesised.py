@@ -29,7 +29,8 @@ def synthesised_design(name: str, driveline: DrivelineParameters = IDENTIFIED) -
             raise
         raise DdctError(
             f"controller {name!r} cannot be computed for the scenario's driveline: {error}; "
-            'or choose another controller'
+            'or choose another controller',
+            key=name,
         ) from error
 
 

@@ -7,6 +7,7 @@ import sys
 import control
 import numpy as np
 import pytest
+from refusals import refused
 from scipy import signal
 
 from ddct_controllers.design.state_space import frequency_response
@@ -44,28 +45,28 @@ def test_a_continuous_one_may_be_sampled_by_the_bilinear_rule():
 
 
 @pytest.mark.parametrize(
-    ('lti', 'discretisation', 'complaint'),
+    ('lti', 'discretisation', 'key'),
     [
         (
             signal.TransferFunction(NUM, DEN, dt=0.02),
             None,
-            'dt is 0.02, the loop has a period of 0.01 s',
+            'dt',
         ),
-        (signal.TransferFunction(NUM, DEN, dt=True), None, 'dt is True'),
-        (control.tf(NUM, DEN, True), None, 'dt is True'),
-        (SAMPLED, 'hold', 'drop discretisation=hold'),
-        (CONTINUOUS, 'zoh', "unknown discretisation 'zoh'"),
-        (control.tf([[[1], [2]]], [[[1, 1], [1, 2]]]), None, 'one input and one output'),
-        (control.tf([[[1], [2]]], [[[1, 1], [1]]]), None, 'one input and one output'),
-        (control.tf([1, 2, 3], [1, 2]), None, 'only a proper one'),
-        (control.ss([[0]], [[1, 2]], [[1]], [[0, 0]]), None, 'one input, one output'),
-        (signal.ZerosPolesGain([], [1j], 1.0), None, 'not in conjugate pairs'),
-        (control.tf([np.nan], [1]), None, 'finite'),
-        ([1.0], None, 'builtins.list is no linear system'),
+        (signal.TransferFunction(NUM, DEN, dt=True), None, 'dt'),
+        (control.tf(NUM, DEN, True), None, 'dt'),
+        (SAMPLED, 'hold', 'discretisation'),
+        (CONTINUOUS, 'zoh', 'discretisation'),
+        (control.tf([[[1], [2]]], [[[1, 1], [1, 2]]]), None, 'output'),
+        (control.tf([[[1], [2]]], [[[1, 1], [1]]]), None, 'output'),
+        (control.tf([1, 2, 3], [1, 2]), None, 'zeros'),
+        (control.ss([[0]], [[1, 2]], [[1]], [[0, 0]]), None, 'state space'),
+        (signal.ZerosPolesGain([], [1j], 1.0), None, 'poles'),
+        (control.tf([np.nan], [1]), None, 'transfer function: gain'),
+        ([1.0], None, 'builtins.list'),
     ],
 )
-def test_a_system_that_cannot_run_is_named(lti, discretisation, complaint):
-    with pytest.raises(ParameterError, match=complaint):
+def test_a_system_that_cannot_run_is_named(lti, discretisation, key):
+    with refused(ParameterError, key):
         controller_from(lti, discretisation)
 
 

@@ -54,8 +54,9 @@ def test_no_number_is_refused_and_leaves_no_trace(name, way, field):
 @pytest.mark.parametrize('value', [math.inf, -math.inf, 1.1 * MOST, -1.1 * MOST])
 @pytest.mark.parametrize('field', [*SCALARS, *REFERENCES])
 def test_beyond_the_largest_size_is_refused(field, value):
-    with pytest.raises(DdctError, match=field):
+    with pytest.raises(DdctError) as caught:
         measured_speeds(spoilt(measurement(3, 4), field, value))
+    assert caught.value.key.partition('[')[0] == field
 
 
 def test_the_period_ahead_is_named():

@@ -72,14 +72,13 @@ def test_every_name_builds_a_controller():
 
 
 def test_an_unknown_name_lists_the_known_ones():
-    with pytest.raises(ParameterError, match="unknown controller 'ls99': choose from pi, "):
+    with refused(ParameterError, 'ls99'):
         make_controller('ls99', SETTINGS)
 
 
 @pytest.mark.parametrize('name', ['mine.fmu', 'build/libmine.so', '/dev/fd/63'])
 def test_a_file_of_another_kind_leads_to_those_that_are_needed(name):
-    words = f'{name} is no controller file: give a Python file or a YAML file; '
-    with pytest.raises(ParameterError, match=words):
+    with refused(ParameterError, name):
         make_controller(name, SETTINGS)
 
 
@@ -102,17 +101,17 @@ def test_a_third_party_cannot_replace_one_of_ours(add_entry_point):
 
 
 @pytest.mark.parametrize(
-    ('value', 'complaint'),
+    ('value', 'key'),
     [
-        ('no_such_module:make', 'cannot be loaded'),
-        (f'{__name__}:no_such_function', 'cannot be loaded'),
-        (f'{__name__}:make_nothing', 'returned NoneType, not a'),
-        (f'{__name__}:leave', r'leave failed \(SystemExit: 3\)'),
+        ('no_such_module:make', 'no_such_module:make'),
+        (f'{__name__}:no_such_function', 'test_registry:no_such_function'),
+        (f'{__name__}:make_nothing', 'test_registry:make_nothing'),
+        (f'{__name__}:leave', 'test_registry:leave'),
     ],
 )
-def test_a_broken_entry_point_is_named(add_entry_point, value, complaint):
+def test_a_broken_entry_point_is_named(add_entry_point, value, key):
     add_entry_point('third', value)
-    with pytest.raises(DdctError, match=complaint):
+    with refused(DdctError, key, place="controller 'third'"):
         make_controller('third', SETTINGS)
 
 
@@ -140,17 +139,17 @@ def test_a_declaration_of_the_wrong_type_names_the_controller(
 
 
 @pytest.mark.parametrize(
-    ('method', 'answer', 'complaint'),
+    ('method', 'answer', 'key'),
     [
-        ('gains', {'gain': 'high'}, r'its gains\(\) is .*: give numbers by name'),
-        ('gains', None, r'its gains\(\) is None'),
-        ('info', {'version': 2}, r'its info\(\) is .*: give text by name'),
-        ('gains', KeyError('gain'), r"make_third failed \(KeyError: 'gain'\)"),
-        ('info', SystemExit(3), r'make_third failed \(SystemExit: 3\)'),
+        ('gains', {'gain': 'high'}, 'gains()'),
+        ('gains', None, 'gains()'),
+        ('info', {'version': 2}, 'info()'),
+        ('gains', KeyError('gain'), 'test_registry:make_third'),
+        ('info', SystemExit(3), 'test_registry:make_third'),
     ],
 )
 def test_declarations_of_a_controller_are_checked_when_it_is_made(
-    add_entry_point, monkeypatch, method, answer, complaint
+    add_entry_point, monkeypatch, method, answer, key
 ):
     def answers(*_):
         if isinstance(answer, BaseException):
@@ -159,7 +158,7 @@ def test_declarations_of_a_controller_are_checked_when_it_is_made(
 
     monkeypatch.setattr(Third, method, answers)
     add_entry_point('third', f'{__name__}:make_third')
-    with pytest.raises(DdctError, match=f"controller 'third': .*{complaint}"):
+    with refused(DdctError, key, place="controller 'third'"):
         make_controller('third', SETTINGS)
 
 

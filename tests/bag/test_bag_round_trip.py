@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 import pytest
+from refusals import refused
 
 from ddct_bringup.bag.file.records import read_records
 from ddct_bringup.bag.reader import mcap_of, read_bag
@@ -132,15 +133,13 @@ def test_a_topic_the_bag_was_opened_without_is_refused(tmp_path):
 
 def test_bytes_that_are_no_message_of_the_topic_are_refused(tmp_path):
     bag = new_bag(tmp_path, 'x', recorded_topics(RunKind()), {})
-    with pytest.raises(DdctError, match=r'clutch/slip at stamp 1000000000 ns: .*cut short'):
+    with refused(DdctError, 'clutch/slip'):
         bag.write('clutch/slip', START_NS, b'\x00\x01\x00\x00' + bytes(8))
 
 
 def test_an_unknown_message_type_is_an_error_that_names_where_to_define_it(tmp_path):
     topic = Topic('x', MessageKind('no_such_msgs/msg/Thing'), 'nobody')
-    with pytest.raises(
-        DdctError, match='messages.yaml does not define no_such_msgs/msg/Thing: add it there'
-    ):
+    with refused(DdctError, 'no_such_msgs/msg/Thing'):
         new_bag(tmp_path, 'x', [topic], {})
 
 
@@ -149,7 +148,7 @@ def test_an_exception_leaves_the_bag_unfinished(tmp_path):
     with pytest.raises(KeyError), new_bag(tmp_path, 'x', recorded_topics(RunKind()), {}):
         empty.pop('no such key')
     assert not (tmp_path / 'metadata.yaml').exists()
-    with pytest.raises(DdctError, match='unfinished'):
+    with refused(DdctError, place='x_0.mcap'):
         read_bag(tmp_path)
 
 

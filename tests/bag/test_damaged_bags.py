@@ -7,6 +7,7 @@ import random
 import pytest
 import yaml
 from mcap.writer import Writer
+from refusals import refused
 
 from ddct_bringup.bag.reader import mcap_of, read_bag
 from ddct_plant.base.errors import DdctError
@@ -36,7 +37,7 @@ def test_a_cut_bag_is_reported_as_unfinished_and_repair_is_suggested(bags, traje
     whole = file.read_bytes()
     for length in range(8, len(whole), 997):
         file.write_bytes(whole[:length])
-        with pytest.raises(DdctError, match=r'pi_0.mcap: .*unfinished.*ddct score --repair'):
+        with refused(DdctError, place='pi_0.mcap'):
             read_bag(file)
 
 
@@ -49,7 +50,7 @@ def test_every_flipped_bit_is_detected(bags, trajectory):
         damaged = bytearray(whole)
         damaged[place] ^= 1 << rng.randrange(8)
         file.write_bytes(damaged)
-        with pytest.raises(DdctError, match='damaged|unfinished|not an MCAP'):
+        with refused(DdctError, place='pi_0.mcap'):
             read_bag(file)
 
 
@@ -61,7 +62,7 @@ def test_a_foreign_bag_is_reported_as_foreign(tmp_path):
         schema = writer.register_schema('std_msgs/msg/Header', 'ros2msg', b'string frame_id')
         writer.register_channel('/chatter', 'cdr', schema)
         writer.finish()
-    with pytest.raises(DdctError, match='foreign.mcap: no topic /driveline/joint_states'):
+    with refused(DdctError, '/driveline/joint_states', place='foreign.mcap'):
         read_bag(file)
 
 
@@ -94,7 +95,7 @@ def test_a_foreign_type_on_our_topic_is_an_error(
 
 def test_a_bag_without_the_facts_of_the_run_is_reported_as_foreign(bags, trajectory):
     bag = bags.rewrite(bags.write(trajectory), 'bare', score_window_s='')
-    with pytest.raises(DdctError, match='score_window_s is .* not a recording of this project'):
+    with refused(DdctError, 'score_window_s', place='bare_0.mcap'):
         read_bag(bag)
 
 
@@ -106,13 +107,13 @@ def without(topic, step):
 
 def test_a_missing_message_is_named(bags, trajectory):
     bag = bags.rewrite(bags.write(trajectory), 'gap', without('/load/torque', 17))
-    with pytest.raises(DdctError, match='gap_0.mcap: /load/torque has no message at step 17 '):
+    with refused(DdctError, '/load/torque', place='gap_0.mcap'):
         read_bag(bag)
 
 
 def test_a_missing_acknowledgement_is_named(bags, trajectory):
     bag = bags.rewrite(bags.write(trajectory), 'gap', without('/recorder/ack', 60))
-    with pytest.raises(DdctError, match='/recorder/ack has no message at step 60 '):
+    with refused(DdctError, '/recorder/ack', place='gap_0.mcap'):
         read_bag(bag)
 
 
@@ -120,7 +121,7 @@ def test_a_doubled_message_is_named(bags, trajectory):
     bag = bags.rewrite(
         bags.write(trajectory), 'double', lambda messages: [*messages, messages[-1]]
     )
-    with pytest.raises(DdctError, match='/recorder/ack has 2 messages at step 60 '):
+    with refused(DdctError, '/recorder/ack', place='double_0.mcap'):
         read_bag(bag)
 
 
@@ -130,7 +131,7 @@ def test_a_message_under_another_stamp_is_an_error(bags, trajectory):
         return [*messages[:-1], (topic, stamp_of_step(61), data)]
 
     bag = bags.rewrite(bags.write(trajectory), 'shifted', swap)
-    with pytest.raises(DdctError, match='/recorder/ack at 1610000000 ns carries the stamp 16000'):
+    with refused(DdctError, '/recorder/ack', place='shifted_0.mcap'):
         read_bag(bag)
 
 
@@ -154,7 +155,7 @@ def test_real_time_bags_must_have_every_state(bags, trajectory):
     bag = bags.rewrite(
         bags.write(trajectory), 'rt', without('/driveline/joint_states', 9), mode='realtime'
     )
-    with pytest.raises(DdctError, match='/driveline/joint_states has no message at step 9 '):
+    with refused(DdctError, '/driveline/joint_states', place='rt_0.mcap'):
         read_bag(bag)
 
 
@@ -165,7 +166,7 @@ def test_a_reply_that_never_came_is_an_error_in_real_time_too(bags, trajectory):
         lambda messages: [message for message in messages if message[0] != '/clutch/torque'],
         mode='realtime',
     )
-    with pytest.raises(DdctError, match='no message on /clutch/torque'):
+    with refused(DdctError, '/clutch/torque', place='rt_0.mcap'):
         read_bag(bag)
 
 
@@ -183,9 +184,7 @@ def _with_second_run_info(old, new):
 
 def test_two_different_run_info_of_one_node_are_refused_by_name(bags, trajectory):
     bag = bags.rewrite(bags.write(trajectory), 'two', _with_second_run_info(b'1.0', b'2.0'))
-    with pytest.raises(
-        DdctError, match='run_info of node /load came twice, with version 1.0 and 2.0'
-    ):
+    with refused(DdctError, 'version', place='two_0.mcap'):
         read_bag(bag)
 
 

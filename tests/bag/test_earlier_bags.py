@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from refusals import refused
 
 from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.bag.recording import Recording
@@ -74,7 +75,7 @@ def test_a_cut_earlier_bag_is_repaired_with_its_topics(tmp_path):
     bag = shutil.copytree(EARLIER / 'sensed', tmp_path / 'bag')
     (mcap,) = bag.glob('*.mcap')
     mcap.write_bytes(mcap.read_bytes()[:-20_000])
-    with pytest.raises(DdctError, match='unfinished'):
+    with refused(DdctError, place='pi_0.mcap'):
         read_bag(bag)
     repair_bag(bag)
     repaired = read_bag(bag).trajectory

@@ -3,6 +3,7 @@
 """Controllers that can be exported, and folders into which they can."""
 
 import pytest
+from refusals import refused
 from support.exported_mpc import NOT_IN_C, compile_c, run_settings
 
 from ddct_controllers.mpc.export.export_controller import export_controller
@@ -13,7 +14,7 @@ from ddct_plant.base.errors import DdctError, ParameterError
 @pytest.mark.parametrize('name', ['pi', 'hinf1', *sorted(NOT_IN_C)])
 def test_a_controller_that_does_other_things_is_refused(tmp_path, name):
     settings = run_settings()
-    with pytest.raises(ParameterError, match=f'^{name} cannot be exported: '):
+    with refused(ParameterError, name):
         export_controller(make_controller(name, settings), name, settings, tmp_path / 'c')
     assert not (tmp_path / 'c').exists()
 

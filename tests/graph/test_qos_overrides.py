@@ -5,6 +5,7 @@
 from typing import Any
 
 import pytest
+from refusals import refused
 from support.in_process_graph import GraphOf
 from support.runs import bag_bytes, plan
 
@@ -45,7 +46,7 @@ def test_each_endpoint_of_a_node_declares_its_depth(graph_of: GraphOf) -> None:
 @pytest.mark.parametrize('endpoint', [PUBLISHER, SUBSCRIPTION])
 def test_no_other_policy_can_be_overridden(graph_of: GraphOf, endpoint: str, policy: str) -> None:
     node = graph_of(plan()).add('clutch', {f'{endpoint}.{policy}': 'best_effort'})
-    with pytest.raises(ParameterError, match=rf'{endpoint}\.{policy}: node clutch has no such'):
+    with refused(ParameterError, f'{endpoint}.{policy}'):
         require_declared(node)
 
 
@@ -55,13 +56,13 @@ def test_a_smaller_depth_or_none_is_refused(
     graph_of: GraphOf, endpoint: str, depth: object
 ) -> None:
     topic = endpoint.split('.')[1].removeprefix('/')
-    with pytest.raises(ParameterError, match=f'qos_overrides of {topic}: .*at least the default'):
+    with refused(ParameterError, topic):
         graph_of(plan()).add('clutch', {f'{endpoint}.depth': depth})
 
 
 def test_an_override_for_a_topic_of_another_node_is_refused(graph_of: GraphOf) -> None:
     node = graph_of(plan()).add('clutch', {'qos_overrides./load/torque.publisher.depth': 20})
-    with pytest.raises(ParameterError, match='with the full name of a topic of this node'):
+    with refused(ParameterError, 'qos_overrides./load/torque.publisher.depth'):
         require_declared(node)
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from refusals import refused
 from support.other_car import LASTS_S, TRUE, drive
 
 from ddct_bringup.bag.measured_checks import require_no_contradiction
@@ -114,13 +115,13 @@ def test_what_the_bench_simulates_contradicts_nothing(
     values |= {'vehicle_speed': run.vehicle_speed, 'vehicle_accel': run.vehicle_accel}
     gear = settings.scenario.driveline.gear
     require_no_contradiction(gear, values)
-    with pytest.raises(DdctError, match=r'run\.total_ratio is'):
+    with refused(DdctError, 'run.total_ratio'):
         require_no_contradiction(EngagedGear(gear.shaft_speed(1.1)), values)
     del values['engine_torque']
-    with pytest.raises(DdctError, match='clutch_torque has the sign of a clutch that gives power'):
+    with refused(DdctError, 'clutch_torque'):
         require_no_contradiction(gear, times('clutch_torque', -1.0)(values))
     if controller == 'ls8':
-        with pytest.raises(DdctError, match='the factor of rpm to rad/s: mend the unit of one'):
+        with refused(DdctError, 'engine_speed'):
             require_no_contradiction(None, times('engine_speed', PER_RPM)(values))
 
 

@@ -34,7 +34,7 @@ def controllers_from(controllers: str | Iterable[Any] | Mapping[str, Any]) -> li
     else:
         chosen = [chosen_from(each) for each in controllers]
     if not chosen:
-        raise ParameterError('controllers is empty: name at least one')
+        raise ParameterError('controllers is empty: name at least one', key='controllers')
     return chosen
 
 
@@ -61,7 +61,7 @@ def base_from(
     """Return the common base of runs with the controllers called `labels`."""
     if not isinstance(set, Mapping | None):
         raise ParameterError(
-            f"set is {set!r}: give keys and values, as {{'load.slope_rad': 0.05}}"
+            f"set is {set!r}: give keys and values, as {{'load.slope_rad': 0.05}}", key='set'
         )
     changes = dict(set or {}) if duration is None else {**(set or {}), 'duration_s': duration}
     require_known(sorted(given), options_of(RunSettings), 'option')

@@ -27,7 +27,7 @@ def decoded_messages(records: BagRecords) -> dict[str, list[tuple[int, Any]]]:
         except Exception as error:  # the decoder has no common base of its errors
             raise DdctError(f'{topic} at {log_time} ns cannot be decoded ({error})') from error
         if stamp != log_time:
-            raise DdctError(f'{topic} at {log_time} ns carries the stamp {stamp} ns')
+            raise DdctError(f'{topic} at {log_time} ns carries the stamp {stamp} ns', key=topic)
         messages[topic].append((stamp, message))
     return dict(messages)
 
@@ -46,6 +46,9 @@ def _decoders(records: BagRecords) -> dict[str, Callable[[bytes], Any]]:
         except Exception as error:  # the decoder has no common base of its errors
             raise DdctError(f'{channel.topic}: unusable message definition ({error})') from error
         if schema is None or schema.name != type_name or decoder is None:
-            raise DdctError(f'{channel.topic} does not carry CDR messages of type {type_name}')
+            raise DdctError(
+                f'{channel.topic} does not carry CDR messages of type {type_name}',
+                key=channel.topic,
+            )
         decoders[channel.topic] = decoder
     return decoders

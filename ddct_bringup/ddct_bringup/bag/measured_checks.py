@@ -67,7 +67,8 @@ def _require_ratio(given: EngagedGear, values: Values) -> None:
         raise DdctError(
             f'run.total_ratio is {given}, but in the log shaft_speed over wheel_speed is '
             f'{found:.4g}, give or take {100.0 * tolerance:.1f} %: give the ratio of the engaged '
-            f'gear, or mend {_suspects("shaft_speed", "wheel_speed", factor)}'
+            f'gear, or mend {_suspects("shaft_speed", "wheel_speed", factor)}',
+            key='run.total_ratio',
         )
 
 
@@ -114,7 +115,8 @@ def _require_same_unit(values: Values) -> None:
                 raise DdctError(
                     f'engine_speed is {factor:.4g} times shaft_speed for '
                     f'{np.sum(locked) * PERIOD_S:.2g} s, the factor of {unit} to rad/s: mend the '
-                    'unit of one of them'
+                    'unit of one of them',
+                    key='engine_speed',
                 )
 
 
@@ -156,7 +158,8 @@ def _require_friction(values: Values) -> None:
         raise DdctError(
             'clutch_torque has the sign of a clutch that gives power: '
             f'{-100.0 * np.sum(np.minimum(power, 0.0)) / whole:.0f} % of C_f (w_m - w_p) is below '
-            'zero: turn its sign, positive is towards the wheels, or mend the speeds'
+            'zero: turn its sign, positive is towards the wheels, or mend the speeds',
+            key='clutch_torque',
         )
 
 

@@ -45,7 +45,10 @@ def read_bag(path: Path) -> Recording:
 def recording_of(records: BagRecords) -> Recording:
     """Decode the records of a bag; raise the errors of `read_bag`, without the file's name."""
     if JOINT_STATES.resolved_name not in records.topics:
-        raise DdctError(f'no topic {JOINT_STATES.resolved_name}: not a recording of this project')
+        raise DdctError(
+            f'no topic {JOINT_STATES.resolved_name}: not a recording of this project',
+            key=JOINT_STATES.resolved_name,
+        )
     facts = RunFacts.from_custom_data(records.custom_data)
     messages = decoded_messages(records)
     stamps = {topic: [stamp for stamp, _ in each] for topic, each in messages.items()}
@@ -112,7 +115,7 @@ def _values(topic: Topic, messages: Messages, run: RunKind) -> Values:
     except (LookupError, AttributeError, ValueError) as error:
         raise DdctError(f'{topic.resolved_name}: a message lacks a value ({error})') from error
     if not values and (in_run or not topic.optional):
-        raise DdctError(f'no message on {topic.resolved_name}')
+        raise DdctError(f'no message on {topic.resolved_name}', key=topic.resolved_name)
     return values
 
 

@@ -151,7 +151,9 @@ class RunFacts(RunConditions):
             if name not in custom_data:
                 if name in _OF_SHIFTS:
                     continue
-                raise DdctError(f'no {name} in the custom data: not a recording of this project')
+                raise DdctError(
+                    f'no {name} in the custom data: not a recording of this project', key=name
+                )
             text = custom_data[name]
             values[name] = text if name in (*_NAMES, 'handover') else _parsed(name, text)
         return cls(**{**values, 'seed': int(values['seed'])})
@@ -168,7 +170,7 @@ def _parsed(name: str, text: str) -> Any:
             require_number(name, number, at_least=-_LARGEST, at_most=_LARGEST)
     except (ParameterError, TypeError, ValueError) as error:
         raise DdctError(
-            f'{name} is {text!r} in the custom data: not a recording of this project'
+            f'{name} is {text!r} in the custom data: not a recording of this project', key=name
         ) from error
     return value
 
@@ -186,7 +188,8 @@ def add_run_info(received: RunInfoOfNodes, node: str, pairs: Mapping[str, str]) 
     raise DdctError(
         f'run_info of node {node} came twice, with {key} {before.get(key, "missing")} and '
         f'{pairs.get(key, "missing")}: two nodes had this name, record the run again with one of '
-        'them, or in another ROS_DOMAIN_ID'
+        'them, or in another ROS_DOMAIN_ID',
+        key=key,
     )
 
 

@@ -42,19 +42,21 @@ def check_ticks(stamps: Stamps, run: RunKind) -> int:
     """
     joint_states = JOINT_STATES.resolved_name
     if not stamps.get(joint_states):
-        raise DdctError(f'no message on {joint_states}: not a recording of this project')
+        raise DdctError(
+            f'no message on {joint_states}: not a recording of this project', key=joint_states
+        )
     for topic in tick_topics(run, replies=True):
         _check_single(topic, stamps.get(topic, ()))
     last = step_of_stamp(max(stamps[joint_states]))
     for topic in tick_topics(run, replies=run.lockstep):
         found = set(stamps.get(topic, ()))
         if not found:
-            raise DdctError(f'no message on {topic}')
+            raise DdctError(f'no message on {topic}', key=topic)
         for step in range(last + 1):
             if stamp_of_step(step) not in found:
-                raise DdctError(f'{topic} has no message at {_place(step)}')
+                raise DdctError(f'{topic} has no message at {_place(step)}', key=topic)
         if max(found) > stamp_of_step(last):
-            raise DdctError(f'{topic} goes on after the last tick at {_place(last)}')
+            raise DdctError(f'{topic} goes on after the last tick at {_place(last)}', key=topic)
     return last
 
 
@@ -63,9 +65,9 @@ def _check_single(topic: str, stamps: Sequence[int]) -> None:
         try:
             step = step_of_stamp(stamp)
         except DdctError as error:
-            raise DdctError(f'{topic}: {error}') from error
+            raise DdctError(f'{topic}: {error}', key=topic) from error
         if count > 1:
-            raise DdctError(f'{topic} has {count} messages at {_place(step)}')
+            raise DdctError(f'{topic} has {count} messages at {_place(step)}', key=topic)
 
 
 def _place(step: int) -> str:

@@ -63,7 +63,9 @@ class Trajectory:
         """
         names = [signal.name for signal in signals_of(kind)]
         if lacking := [name for name in names if rows[0].get(name) is None]:
-            raise DdctError(f'nothing computes {", ".join(lacking)}, which this run has')
+            raise DdctError(
+                f'nothing computes {", ".join(lacking)}, which this run has', key=lacking[0]
+            )
         return cls.of_columns({name: [row[name] for row in rows] for name in names})
 
     def __getattr__(self, name: str) -> Any:

@@ -86,7 +86,7 @@ class BagWriter:
             self._file = path.open('xb')
         except FileExistsError as error:
             raise DdctError(
-                f'{path}: already there: choose another output folder, or delete it'
+                'already there: choose another output folder, or delete it', place=path
             ) from error
         except OSError as error:
             raise self._cannot_write(error) from error
@@ -110,11 +110,13 @@ class BagWriter:
         try:
             index = self._index[topic]
         except KeyError:
-            raise DdctError(f'{self.path}: the bag was opened without a topic {topic}') from None
+            raise DdctError(
+                f'the bag was opened without a topic {topic}', place=self.path
+            ) from None
         try:
             data = self._channels[index].normalise(cdr)
         except DdctError as error:
-            raise DdctError(f'{topic} at stamp {stamp_ns} ns: {error}') from error
+            raise DdctError(f'{topic} at stamp {stamp_ns} ns: {error}', key=topic) from error
         if self._file.closed:
             raise DdctError(f'{self.path}: the recording is already closed')
         self._first_ns = min(self._first_ns or stamp_ns, stamp_ns)

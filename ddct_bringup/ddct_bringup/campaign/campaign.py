@@ -33,7 +33,9 @@ class Campaign(RunSet):
         labels = [each.name for each in controllers]
         for label in labels:
             if labels.count(label) > 1:
-                raise ParameterError(f'{CONTROLLERS}: two are called {label}: rename one')
+                raise ParameterError(
+                    f'{CONTROLLERS}: two are called {label}: rename one', key=CONTROLLERS
+                )
         varied = SCENARIO in spec.keys
         scenarios = spec.values_of(SCENARIO) if varied else (spec.common[SCENARIO],)
         super().__init__(
@@ -46,7 +48,7 @@ class Campaign(RunSet):
             root=spec.root,
         )
         if self.runs > MOST_RUNS:
-            raise ParameterError(f'{self.runs} runs: give at most {MOST_RUNS}')
+            raise ParameterError(f'{self.runs} runs: give at most {MOST_RUNS}', key='runs')
 
     def chosen(self, index: int) -> str:
         """Return the name of a run's controller, or the path of its file."""
@@ -59,7 +61,7 @@ class Campaign(RunSet):
             try:
                 digest.update(hashlib.sha256(path.read_bytes()).digest())
             except OSError as error:
-                raise DdctError(f'{path}: cannot be read ({error.strerror})') from error
+                raise DdctError(f'cannot be read ({error.strerror})', place=path) from error
         for controller in self.controllers:
             digest.update(repr(sorted(controller.digests.items())).encode())
         return digest.hexdigest()

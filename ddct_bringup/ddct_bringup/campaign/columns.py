@@ -99,7 +99,7 @@ def merge(
     except (OSError, pa.ArrowException) as error:
         partial.unlink(missing_ok=True)
         why = getattr(error, 'strerror', None) or error
-        raise DdctError(f'{target}: cannot be written ({why}); {advice}') from error
+        raise DdctError(f'cannot be written ({why}); {advice}', place=target) from error
 
 
 def read_row(results: Path, index: int) -> dict[str, Any]:

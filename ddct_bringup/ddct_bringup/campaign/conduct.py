@@ -86,14 +86,15 @@ def _begin(
         known = Manifest.read(out)
         if not resume:
             raise DdctError(
-                f'{out} holds a campaign: go on with --resume, or choose another --out'
+                f'{out} holds a campaign: go on with --resume, or choose another --out',
+                key='--resume',
             )
         known.require_same(manifest, out)
         return known
     if resume:
-        raise DdctError(f'{out}: there is nothing to go on with: leave --resume out')
+        raise DdctError('there is nothing to go on with: leave --resume out', place=out)
     if out.is_dir() and {each.name for each in out.iterdir()} - {MARKER, SHARDS}:
-        raise DdctError(f'{out} holds other results: choose another --out')
+        raise DdctError(f'{out} holds other results: choose another --out', key='--out')
     campaign.require_sound()
     require_going_on(stopped)
     mark_folder(out)

@@ -129,11 +129,13 @@ def distribution_of(where: str, content: Any, option: Option | None) -> Distribu
     """
     if not isinstance(content, Mapping):
         raise ParameterError(
-            f'{where} is {content!r}: give {{{KIND}: uniform, {LOW}: ..., {HIGH}: ...}}'
+            f'{where} is {content!r}: give {{{KIND}: uniform, {LOW}: ..., {HIGH}: ...}}', key=where
         )
     kind = content.get(KIND)
     if not isinstance(kind, str):
-        raise ParameterError(f'{where}.{KIND} is missing: choose from {", ".join(_NAMES)}')
+        raise ParameterError(
+            f'{where}.{KIND} is missing: choose from {", ".join(_NAMES)}', key=f'{where}.{KIND}'
+        )
     require_choice(f'{where}.{KIND}', kind, _NAMES)
     if kind == CHOICE:
         return _choice(where, content, option)
@@ -156,7 +158,10 @@ def _numbers(where: str, content: Mapping[str, Any], kind: Kind) -> dict[str, fl
     _require_known(where, content, known)
     missing = [name for name in kind.required if name not in content]
     if missing:
-        raise ParameterError(f'{where}.{missing[0]} is missing: {content[KIND]} needs it')
+        raise ParameterError(
+            f'{where}.{missing[0]} is missing: {content[KIND]} needs it',
+            key=f'{where}.{missing[0]}',
+        )
     return {
         name: require_number(
             f'{where}.{name}',
@@ -171,7 +176,9 @@ def _numbers(where: str, content: Mapping[str, Any], kind: Kind) -> dict[str, fl
 def _require_known(where: str, content: Mapping[str, Any], known: Sequence[str]) -> None:
     for name in content:
         if name not in (KIND, *known):
-            raise ParameterError(f'unknown key {where}.{name}: {close_name(name, known)}')
+            raise ParameterError(
+                f'unknown key {where}.{name}: {close_name(name, known)}', key=f'{where}.{name}'
+            )
 
 
 def _require_order(where: str, distribution: Distribution) -> None:
@@ -179,11 +186,14 @@ def _require_order(where: str, distribution: Distribution) -> None:
     low, high = distribution.ends
     mode = distribution.numbers.get('mode', low)
     if not low < high or not low <= mode <= high:
-        raise ParameterError(f'{where}: {LOW}, mode and {HIGH} must be in this order: mend them')
+        raise ParameterError(
+            f'{where}: {LOW}, mode and {HIGH} must be in this order: mend them', key=where
+        )
     value = distribution.value(0.5)
     if not (math.isfinite(value) and distribution.value(0.25) < distribution.value(0.75)):
         raise ParameterError(
-            f'{where}: nothing of the distribution is between {low:g} and {high:g}: give others'
+            f'{where}: nothing of the distribution is between {low:g} and {high:g}: give others',
+            key=where,
         )
 
 
@@ -195,7 +205,8 @@ def _require_steps(where: str, numbers: Numbers) -> None:
             if abs(parts - round(parts)) > 1e-6:
                 raise ParameterError(
                     f'{where}.{name} is {numbers[name]:g}: give a multiple of the {STEP}, '
-                    f'{numbers[STEP]:g}'
+                    f'{numbers[STEP]:g}',
+                    key=f'{where}.{name}',
                 )
 
 
@@ -204,15 +215,18 @@ def _require_within(where: str, distribution: Distribution, option: Option) -> N
     key = where.rpartition('vary.')[2]
     if option.many or option.choices or option.kind not in (float, int):
         raise ParameterError(
-            f'{where}: {key} takes no number: use {{{KIND}: {CHOICE}, values: [...]}}'
+            f'{where}: {key} takes no number: use {{{KIND}: {CHOICE}, values: [...]}}', key=where
         )
     if option.kind is int and not distribution.whole:
-        raise ParameterError(f'{where}.{STEP}: {key} takes whole numbers: give {STEP}: 1')
+        raise ParameterError(
+            f'{where}.{STEP}: {key} takes whole numbers: give {STEP}: 1', key=f'{where}.{STEP}'
+        )
     if option.whole_periods:
         parts = distribution.numbers.get(STEP, 0.0) / PERIOD_S
         if not parts or abs(parts - round(parts)) > 1e-6:
             raise ParameterError(
-                f'{where}.{STEP}: {key} takes multiples of 10 ms: give {STEP}: {PERIOD_S}'
+                f'{where}.{STEP}: {key} takes multiples of 10 ms: give {STEP}: {PERIOD_S}',
+                key=f'{where}.{STEP}',
             )
     low, high = distribution.ends
     bounds = (
@@ -226,7 +240,8 @@ def _require_within(where: str, distribution: Distribution, option: Option) -> N
         elif bound is not None:
             raise ParameterError(
                 f'{where}.{name} is missing: {key} must be {option.range_text}, and '
-                f'{distribution.kind} has no bound there'
+                f'{distribution.kind} has no bound there',
+                key=f'{where}.{name}',
             )
 
 
@@ -234,13 +249,19 @@ def _choice(where: str, content: Mapping[str, Any], option: Option | None) -> Di
     _require_known(where, content, ('values', 'weights'))
     values = content.get('values')
     if not isinstance(values, list) or not values:
-        raise ParameterError(f'{where}.values: give a list, [...], that is not empty')
+        raise ParameterError(
+            f'{where}.values: give a list, [...], that is not empty', key=f'{where}.values'
+        )
     weights = content.get('weights', [1.0] * len(values))
     if not isinstance(weights, list) or len(weights) != len(values):
-        raise ParameterError(f'{where}.weights: give a number for each of the values')
+        raise ParameterError(
+            f'{where}.weights: give a number for each of the values', key=f'{where}.weights'
+        )
     parts = [require_number(f'{where}.weights', each, at_least=0.0) for each in weights]
     if not sum(parts):
-        raise ParameterError(f'{where}.weights are all zero: give one above zero')
+        raise ParameterError(
+            f'{where}.weights are all zero: give one above zero', key=f'{where}.weights'
+        )
     if option:
         for value in values:
             option.checked(f'{where}.values', value)

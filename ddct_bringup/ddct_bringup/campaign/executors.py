@@ -32,7 +32,8 @@ class DaskWorkers:
         except FOREIGN_FAILURES as error:  # also where another kind of server answers
             raise DdctError(
                 f'--scheduler {address}: no scheduler answers there ({error}): start one, or '
-                'leave the option out'
+                'leave the option out',
+                key='--scheduler',
             ) from error
         self._address = address
         self._lost_since: float | None = None

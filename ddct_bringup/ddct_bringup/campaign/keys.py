@@ -45,7 +45,7 @@ def option_of(where: str, key: str) -> Option | None:
         return FACTOR_OPTION
     if key == SCENARIO or key in sections() or key.removesuffix(FILE_KEY) in sections():
         return None
-    raise ParameterError(f'{where}: unknown key {key}: {key_hint(key, known)}')
+    raise ParameterError(f'{where}: unknown key {key}: {key_hint(key, known)}', key=key)
 
 
 @cache

@@ -77,10 +77,10 @@ class Manifest:
             return cls(**{field.name: content[field.name] for field in fields(cls)})
         except FileNotFoundError as error:
             raise DdctError(
-                f'{out}: no {MANIFEST} in it: give the folder of a campaign'
+                f'no {MANIFEST} in it: give the folder of a campaign', place=out
             ) from error
         except (OSError, ParameterError, LookupError, TypeError, AttributeError) as error:
-            raise DdctError(f'{path}: cannot be read ({error})') from error
+            raise DdctError(f'cannot be read ({error})', place=path) from error
 
     def write(self, out: Path) -> None:
         """Write the manifest to a campaign's folder; raise DdctError when that fails."""
@@ -125,7 +125,8 @@ class Manifest:
             if ours != theirs:
                 raise DdctError(
                     f'{out} holds a campaign of another {what}, {ours}, not {theirs}: go on with '
-                    'that one, or choose another --out'
+                    'that one, or choose another --out',
+                    key=what,
                 )
 
     def require_limits(self, limits: Limits, out: Path) -> None:

@@ -108,7 +108,7 @@ def spec_of(content: Any, folder: Path) -> CampaignSpec:
 
 def _mapping(what: str, content: Any, known: tuple[str, ...], prefix: str = '') -> dict[str, Any]:
     if not isinstance(content, Mapping):
-        raise ParameterError(f'{what} is {content!r}: give keys and values')
+        raise ParameterError(f'{what} is {content!r}: give keys and values', key=what)
     require_known(content, known, prefix=prefix)
     return dict(content)
 
@@ -116,14 +116,16 @@ def _mapping(what: str, content: Any, known: tuple[str, ...], prefix: str = '') 
 def _controllers(content: Mapping[str, Any]) -> tuple[str, ...]:
     given = content.get(CONTROLLERS)
     if not isinstance(given, list) or not given:
-        raise ParameterError(f'{CONTROLLERS}: give a list of names or files, such as [pi, mpc3]')
+        raise ParameterError(
+            f'{CONTROLLERS}: give a list of names or files, such as [pi, mpc3]', key=CONTROLLERS
+        )
     return _distinct(CONTROLLERS, [_text(CONTROLLERS, each) for each in given])
 
 
 def _floors(content: Mapping[str, Any]) -> tuple[str, ...]:
     given = content.get(FLOORS, [])
     if not isinstance(given, list):
-        raise ParameterError(f'{FLOORS}: give a list of metrics, such as [peak_jerk]')
+        raise ParameterError(f'{FLOORS}: give a list of metrics, such as [peak_jerk]', key=FLOORS)
     for name in given:
         require_choice(FLOORS, name, list(METRICS))
     return _distinct(FLOORS, given)
@@ -139,7 +141,7 @@ def _common(content: Mapping[str, Any]) -> dict[str, str]:
 
 def _text(key: str, value: Any) -> str:
     if not isinstance(value, str) or not value:
-        raise ParameterError(f'{key} is {value!r}: give text')
+        raise ParameterError(f'{key} is {value!r}: give text', key=key)
     return value
 
 
@@ -152,7 +154,9 @@ def _grid(content: Mapping[str, Any]) -> dict[str, tuple[Any, ...]]:
         where = f'{_GRID}.{key}'
         option = option_of(where, key)
         if not isinstance(values, list) or not values:
-            raise ParameterError(f'{where} is {values!r}: give a list of values, not empty')
+            raise ParameterError(
+                f'{where} is {values!r}: give a list of values, not empty', key=where
+            )
         for value in values:
             if option:
                 option.checked(where, value)
@@ -163,10 +167,14 @@ def _grid(content: Mapping[str, Any]) -> dict[str, tuple[Any, ...]]:
 def _not_empty(where: str, content: Any) -> Mapping[str, Any]:
     if not isinstance(content, Mapping) or not content:
         said = f'is {content!r}' if content else 'is empty'
-        raise ParameterError(f'{where} {said}: give keys and what they are, or leave it out')
+        raise ParameterError(
+            f'{where} {said}: give keys and what they are, or leave it out', key=where
+        )
     for key in content:
         if not isinstance(key, str):
-            raise ParameterError(f'{where} has the key {key!r}: give names, such as wear_gain')
+            raise ParameterError(
+                f'{where} has the key {key!r}: give names, such as wear_gain', key=where
+            )
     return content
 
 
@@ -176,7 +184,7 @@ def _random(content: Mapping[str, Any]) -> tuple[int, dict[str, Distribution]]:
     given = _mapping(_RANDOM, content[_RANDOM], (_SAMPLES, _VARY), f'{_RANDOM}.')
     where = f'{_RANDOM}.{_SAMPLES}'
     if _SAMPLES not in given:
-        raise ParameterError(f'{where} is missing: say how many samples to draw')
+        raise ParameterError(f'{where} is missing: say how many samples to draw', key=where)
     samples = int(_NUMBER_OF_SAMPLES.checked(where, given[_SAMPLES]))
     vary = {}
     for key, described in _not_empty(f'{_RANDOM}.{_VARY}', given.get(_VARY)).items():
@@ -189,14 +197,14 @@ def _require_apart(content: Mapping[str, Any], keys: tuple[str, ...]) -> None:
     """Raise ParameterError for a key that is given twice, or inside another."""
     for place, key in enumerate(keys):
         if key in content:
-            raise ParameterError(f'{key} is given for all runs and varied: give it once')
+            raise ParameterError(f'{key} is given for all runs and varied: give it once', key=key)
         for other in keys[:place]:
             if key == other or key.startswith(f'{other}.') or other.startswith(f'{key}.'):
-                raise ParameterError(f'{key} varies beside {other}: give one of them')
+                raise ParameterError(f'{key} varies beside {other}: give one of them', key=key)
 
 
 def _distinct(where: str, values: list[Any]) -> tuple[Any, ...]:
     for place, value in enumerate(values):
         if value in values[:place]:
-            raise ParameterError(f'{where} has {value!r} twice: give each once')
+            raise ParameterError(f'{where} has {value!r} twice: give each once', key=where)
     return tuple(values)

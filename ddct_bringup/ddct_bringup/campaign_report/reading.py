@@ -51,7 +51,7 @@ def read_table(folder: Path, manifest: Manifest) -> pa.Table:
         raise DdctError(f'{path}: it is damaged ({why}): {_RESUME_ADVICE}') from error
     for name in (*REQUIRED, *manifest.grid, *manifest.random):
         if name not in table.column_names:
-            raise DdctError(f'{path}: it has no column {name}: {_RESUME_ADVICE}')
+            raise DdctError(f'it has no column {name}: {_RESUME_ADVICE}', place=path)
     if not np.array_equal(numpy_column(table[INDEX]), np.arange(manifest.runs)):
         raise DdctError(
             f'{path}: its rows are not the {manifest.runs} runs that {folder} was started with: '

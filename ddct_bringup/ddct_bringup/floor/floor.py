@@ -105,7 +105,8 @@ def control_start(settings: RunSettings) -> Start:
     if not settings.detailed:
         raise ParameterError(
             f'architecture {settings.architecture}: feedback is on from t = 0, so the state at '
-            'control start depends on the controller: choose the architecture detailed'
+            'control start depends on the controller: choose the architecture detailed',
+            key='architecture',
         )
     if settings.shift:
         raise ParameterError(

@@ -43,13 +43,15 @@ class RunInfoCollector:
             if pairs.get(key, ours) != ours:
                 raise DdctError(
                     f'node {node} runs with {key} {pairs[key]} and the recorder with {ours}: '
-                    'start every node with the same settings'
+                    'start every node with the same settings',
+                    key=key,
                 )
         if pairs.get(TWO_INPUT, self._two_input) != self._two_input:
             raise DdctError(
                 f'node {node} runs with two_input {pairs[TWO_INPUT]} and the recorder with '
                 f'{self._two_input}: start engine and recorder with the two_input of the '
-                'controller, as --ros-args -p two_input:=true when it commands the engine'
+                'controller, as --ros-args -p two_input:=true when it commands the engine',
+                key=TWO_INPUT,
             )
         add_run_info(self._received, node, pairs)
 
@@ -77,7 +79,8 @@ class RunInfoCollector:
         if not steps.isdecimal():
             raise DdctError(
                 f'{RUN_INFO.name} of node {DRIVELINE_NODE} has steps {steps!r}: '
-                'give a whole number'
+                'give a whole number',
+                key='steps',
             )
         return int(steps)
 
@@ -95,7 +98,8 @@ class RunInfoCollector:
         if text not in (flag(True), flag(False)):
             raise DdctError(
                 f'{RUN_INFO.name} of node {CONTROLLER_NODE} has {PARTS} {text!r}: give true where '
-                'it publishes controller/torque_parts, or leave the key out'
+                'it publishes controller/torque_parts, or leave the key out',
+                key=PARTS,
             )
         return text == flag(True)
 
@@ -104,6 +108,7 @@ class RunInfoCollector:
         if key not in pairs:
             raise DdctError(
                 f'{RUN_INFO.name} of node {node} has no {key}, which the bag needs: whoever '
-                f'stands in for {node} must publish it'
+                f'stands in for {node} must publish it',
+                key=key,
             )
         return pairs[key]

@@ -50,7 +50,7 @@ class TickBuffer:
         try:
             step = step_of_stamp(stamp_ns)
         except DdctError as error:
-            raise DdctError(f'{topic}: {error}') from error
+            raise DdctError(f'{topic}: {error}', key=topic) from error
         if topic not in self.topics:
             return []
         if step < self._next_step:
@@ -60,7 +60,8 @@ class TickBuffer:
         if lags and not self.undecided:
             raise DdctError(
                 f'{topic}: step {step} came where step {self._next_step} was due: this recorder '
-                'missed a part of the run, start it first or set require_recorder on driveline'
+                'missed a part of the run, start it first or set require_recorder on driveline',
+                key=topic,
             )
         tick = self._pending.setdefault(step, {})
         if topic in tick:
@@ -123,5 +124,6 @@ class TickBuffer:
         if first != second and not self.same(topic, first, second):
             raise TwoMessagesError(
                 f'{topic} carries two different messages for stamp {stamp_of_step(step)} ns: stop '
-                'the second node that publishes it, or use another ROS_DOMAIN_ID'
+                'the second node that publishes it, or use another ROS_DOMAIN_ID',
+                key=topic,
             )

@@ -92,12 +92,15 @@ class StagedFolder:
 def require_ours_or_empty(folder: Path) -> None:
     """Raise DdctError when `folder` contains files that these programs did not write."""
     if folder.is_symlink():
-        raise DdctError(f'{folder} is a symbolic link: give the folder itself, or another --out')
+        raise DdctError(
+            f'{folder} is a symbolic link: give the folder itself, or another --out', key='--out'
+        )
     if folder.exists() and not folder.is_dir():
-        raise DdctError(f'{folder} is not a folder: choose another --out')
+        raise DdctError(f'{folder} is not a folder: choose another --out', key='--out')
     if not is_empty(folder) and not (folder / MARKER).is_file():
         raise DdctError(
-            f'{folder} holds files that are not ours (no {MARKER} in it): choose another --out'
+            f'{folder} holds files that are not ours (no {MARKER} in it): choose another --out',
+            key='--out',
         )
 
 
@@ -121,7 +124,7 @@ def _refused(folder: Path, what: str) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        raise DdctError(f'{folder}: cannot be {what} ({error.strerror})') from error
+        raise DdctError(f'cannot be {what} ({error.strerror})', place=folder) from error
 
 
 @contextmanager
@@ -171,7 +174,8 @@ def _lock(folder: Path, shared: bool) -> Iterator[None]:
         descriptor = _open_locked(file, shared)
     except BlockingIOError:
         raise DdctError(
-            f'{folder}: {_owner(file)} is writing there: wait for its end or give another folder'
+            f'{_owner(file)} is writing there: wait for its end or give another folder',
+            place=folder,
         ) from None
     except OSError as error:
         if error.errno not in _NO_PLACE:

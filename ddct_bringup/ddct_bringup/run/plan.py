@@ -37,7 +37,8 @@ class RunPlan:
             if not isinstance(self.controller, str):
                 raise ParameterError(
                     f'controller {self.name!r} is known to this process alone: run it headless, '
-                    'or give a name or a file, which the nodes of a graph can find'
+                    'or give a name or a file, which the nodes of a graph can find',
+                    key=self.name,
                 )
             require_ros()
             require_domain()
@@ -101,5 +102,6 @@ def require_headless(settings: RunSettings) -> None:
     """Raise ParameterError where a run needs the graph, as in real time."""
     if not settings.lockstep:
         raise ParameterError(
-            'mode realtime needs the graph, which --headless does without: drop one of them'
+            'mode realtime needs the graph, which --headless does without: drop one of them',
+            key='mode',
         )

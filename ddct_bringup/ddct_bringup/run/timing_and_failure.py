@@ -46,7 +46,7 @@ def read_timing(folder: Path) -> RunTiming | None:
     except FileNotFoundError:
         return None
     except OSError as error:
-        raise DdctError(f'{path}: cannot read the timing: {error.strerror}') from error
+        raise DdctError(f'cannot read the timing: {error.strerror}', place=path) from error
     try:
         values = parse_json(text)
         lateness = values.get('worst_lateness_us')
@@ -68,7 +68,7 @@ def read_timing(folder: Path) -> RunTiming | None:
         )
     except (DdctError, LookupError, TypeError, AttributeError) as error:
         raise DdctError(
-            f'{path}: not the timing of a run ({error!r}): delete it to score without'
+            f'not the timing of a run ({error!r}): delete it to score without', place=path
         ) from error
 
 

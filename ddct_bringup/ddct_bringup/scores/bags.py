@@ -46,7 +46,7 @@ def find_bags(path: Path) -> list[Path]:
     files += [note for note in _visible(path, NOTE_FILE) if note.parent not in recorded]
     files.sort()
     if not files:
-        raise DdctError(f'{path}: no .mcap file in this folder or below it: give a bag')
+        raise DdctError('no .mcap file in this folder or below it: give a bag', place=path)
     folders = [file.parent for file in files]
     return [
         folder if folders.count(folder) == 1 else file

@@ -92,7 +92,7 @@ def read_scores(path: str | Path) -> list[ScoredRun]:
         raise DdctError(f'{path}: cannot read the scores: {error.strerror}') from error
     except (DdctError, LookupError, TypeError, AttributeError) as error:
         raise DdctError(
-            f'{path}: not the scores of runs ({error!r}): score the bags again with ddct score'
+            f'not the scores of runs ({error!r}): score the bags again with ddct score', place=path
         ) from error
 
 

@@ -72,7 +72,9 @@ def floor_metrics(text: str) -> tuple[str, ...] | None:
     with located('--floors'):
         require_known(names, METRICS, 'metric')
     if not names:
-        raise ParameterError('--floors is empty: name a metric, usual, all or none')
+        raise ParameterError(
+            '--floors is empty: name a metric, usual, all or none', key='--floors'
+        )
     return names
 
 

@@ -38,9 +38,11 @@ class Axis:
             raise ParameterError(f'{where}: {len(self.values)} values: give 1 to {MOST}')
         for value in self.values:
             if isinstance(value, (list, tuple, dict)) or value is None:
-                raise ParameterError(f'{where}: {value!r} is no single value: {_HOW}')
+                raise ParameterError(f'{where}: {value!r} is no single value: {_HOW}', key=where)
             if self.values.count(value) > 1:
-                raise ParameterError(f'{where}: {value} is there twice: give each value once')
+                raise ParameterError(
+                    f'{where}: {value} is there twice: give each value once', key=where
+                )
 
     @property
     def heading(self) -> str:
@@ -57,7 +59,7 @@ def axis_of(text: str) -> Axis:
     """Return the axis for `KEY=START:STOP:COUNT` or `KEY=A,B,C`, else raise ParameterError."""
     key, _, given = text.partition('=')
     if not key or not given:
-        raise ParameterError(f'--over {printable(text)}: {_HOW}')
+        raise ParameterError(f'--over {printable(text)}: {_HOW}', key='--over')
     parts = [part.strip() for part in given.split(':')]
     values = [_value(part, key) for part in given.split(',')] if len(parts) == 1 else None
     return axis(key, _range(text, parts) if values is None else values)
@@ -88,12 +90,15 @@ def _range(text: str, parts: list[str]) -> list[float | int]:
         if len(parts) != 3 or not math.isfinite(start) or not math.isfinite(stop):
             raise ValueError
     except (ValueError, IndexError) as error:
-        raise ParameterError(f'--over {printable(text)}: {_HOW}') from error
+        raise ParameterError(f'--over {printable(text)}: {_HOW}', key='--over') from error
     if not 1 <= count <= MOST:
-        raise ParameterError(f'--over {printable(text)}: COUNT is {count}: give 1 to {MOST}')
+        raise ParameterError(
+            f'--over {printable(text)}: COUNT is {count}: give 1 to {MOST}', key='--over'
+        )
     if start == stop and count > 1:
         raise ParameterError(
-            f'--over {printable(text)}: START and STOP are the same: give two values, or COUNT 1'
+            f'--over {printable(text)}: START and STOP are the same: give two values, or COUNT 1',
+            key='--over',
         )
     values = [float(f'{value:.{_DIGITS}g}') for value in np.linspace(start, stop, count)]
     if all(map(_WHOLE.fullmatch, parts[:2])) and all(value.is_integer() for value in values):
@@ -111,5 +116,7 @@ def _value(text: str, key: str) -> Any:
         with located(f'--over {printable(key)}'):
             return parse_yaml(text)
     if not math.isfinite(number):
-        raise ParameterError(f'--over {printable(key)}: {text} is not finite: give a number')
+        raise ParameterError(
+            f'--over {printable(key)}: {text} is not finite: give a number', key='--over'
+        )
     return number

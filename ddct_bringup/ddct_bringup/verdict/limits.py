@@ -193,14 +193,21 @@ def _limit(path: str, content: Any, version: int) -> Limit:
 
 def _source(path: str, limit: Mapping[str, Any], version: int) -> str:
     if not isinstance(limit.get(CONVENTION, False), bool):
-        raise ParameterError(f'{path}.{CONVENTION}: give true or false')
+        raise ParameterError(
+            f'{path}.{CONVENTION}: give true or false', key=f'{path}.{CONVENTION}'
+        )
     if limit.get(CONVENTION):
         return _convention(path, limit, version)
     if 'reason' in limit:
-        raise ParameterError(f'{path}.reason: only a convention has one: cite a clause, or add it')
+        raise ParameterError(
+            f'{path}.reason: only a convention has one: cite a clause, or add it',
+            key=f'{path}.reason',
+        )
     for key in _CITATION:
         if key not in limit:
-            raise ParameterError(f'{path}: {key} is missing: cite it, or add `convention: true`')
+            raise ParameterError(
+                f'{path}: {key} is missing: cite it, or add `convention: true`', key=key
+            )
         _require_text(f'{path}.{key}', limit[key])
     return f'{limit["source"]}, {limit["clause"]}'
 
@@ -210,7 +217,9 @@ def _convention(path: str, limit: Mapping[str, Any], version: int) -> str:
         _require_text(f'{path}.reason', limit['reason'])
         return f'{CONVENTION}: {limit["reason"]}'
     if version >= _REASONED_FROM:
-        raise ParameterError(f'{path}: reason is missing: say why this value is agreed on')
+        raise ParameterError(
+            f'{path}: reason is missing: say why this value is agreed on', key=f'{path}.reason'
+        )
     return CONVENTION
 
 
@@ -233,7 +242,7 @@ def _mapping(
     require_known(content, (*required, *optional), prefix=f'{path}.' if path else '')
     for key in required:
         if key not in content:
-            raise ParameterError(f'{where}: the key {key} is missing')
+            raise ParameterError(f'{where}: the key {key} is missing', key=key)
     return content
 
 

@@ -200,7 +200,7 @@ def test_the_nodes_of_all_compared_controllers_are_forked_by_one_warm_parent(mon
 def test_controllers_may_be_given_as_on_the_command_line():
     runs = api.compare('pi, ls8,', duration=SHORT_S)
     assert [each.controller for each in runs] == ['pi', 'ls8']
-    with pytest.raises(api.ParameterError, match='controllers is empty'):
+    with refused(api.ParameterError, 'controllers'):
         api.compare(' ')
 
 
@@ -217,7 +217,7 @@ def test_a_broken_controller_of_another_package_does_not_stop_the_comparison_of_
         runs = api.compare('all', duration=SHORT_S, out=tmp_path, wear_gain=0.9)
     assert [each.controller for each in runs] == ['pi', 'soft']
     assert [each.filename for each in warned] == [__file__]
-    with pytest.raises(api.DdctError, match='no_such_package'):
+    with refused(api.DdctError, 'no_such_package:make', place="controller 'absent'"):
         api.compare('pi,absent', duration=SHORT_S)
 
 
@@ -271,23 +271,23 @@ def test_runs_in_threads_are_those_of_the_main_one(worn):
 
 
 @pytest.mark.parametrize(
-    ('options', 'text'),
+    ('options', 'key', 'place'),
     [
-        ({'wear': 0.7}, 'unknown option wear: did you mean wear_gain'),
-        ({'wear_gain': -1.0}, 'wear_gain'),
-        ({'scenario': 'thesys'}, 'unknown scenario'),
-        ({'set': ['load.slope_rad=0.1']}, 'set is .* give keys and values'),
-        ({'set': {'load.slop_rad': 0.1}}, 'load.slop_rad'),
-        ({'set': {'controllers.nobody.gain': 0.1}}, 'controllers.nobody: there is no such'),
-        ({'controller': 'nobody'}, "unknown controller 'nobody'"),
-        ({'controller': Failing}, 'Failing'),
-        ({'controller': Soft, 'headless': False}, 'known to this process alone'),
-        ({'mode': 'realtime'}, 'realtime needs the graph'),
-        ({'limits': 'no_such.yaml'}, 'no_such.yaml'),
+        ({'wear': 0.7}, 'wear', ''),
+        ({'wear_gain': -1.0}, 'wear_gain', ''),
+        ({'scenario': 'thesys'}, 'thesys', ''),
+        ({'set': ['load.slope_rad=0.1']}, 'set', ''),
+        ({'set': {'load.slop_rad': 0.1}}, 'load.slop_rad', 'scenario thesis'),
+        ({'set': {'controllers.nobody.gain': 0.1}}, 'controllers.nobody', ''),
+        ({'controller': 'nobody'}, 'nobody', ''),
+        ({'controller': Failing}, "controller 'Failing': its torque at step 60", ''),
+        ({'controller': Soft, 'headless': False}, 'Soft', ''),
+        ({'mode': 'realtime'}, 'mode', ''),
+        ({'limits': 'no_such.yaml'}, '', 'no_such.yaml'),
     ],
 )
-def test_an_invalid_argument_is_an_error_that_names_it(options, text):
-    with pytest.raises(api.DdctError, match=text):
+def test_an_invalid_argument_is_an_error_that_names_it(options, key, place):
+    with refused(api.DdctError, key, place):
         api.run(**{'controller': 'pi', 'duration': SHORT_S, **options})
 
 

@@ -8,9 +8,9 @@ import sys
 from pathlib import Path
 
 import pytest
+from refusals import refused
 
 from ddct_bringup.bag.file.message_definitions import (
-    TYPES_FILE,
     definition_in,
     load_definition,
     message_types,
@@ -80,7 +80,7 @@ def test_a_message_made_without_ros_is_serialised_as_one_of_ros(type_name):
 
 
 def test_a_type_that_is_not_defined_is_named():
-    with pytest.raises(DdctError, match=f'{TYPES_FILE.name} does not define a_msgs/msg/B: add it'):
+    with refused(DdctError, 'a_msgs/msg/B'):
         definition_in({'c/msg/C': {'hash': '', 'fields': ['a_msgs/B b']}}, 'c/msg/C')
 
 

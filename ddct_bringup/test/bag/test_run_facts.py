@@ -6,6 +6,7 @@ import dataclasses
 import math
 
 import pytest
+from refusals import refused
 
 from ddct_bringup.bag.run_facts import RunFacts
 from ddct_plant.base.errors import DdctError
@@ -35,7 +36,7 @@ def test_facts_come_back_to_the_last_bit():
 def test_a_missing_fact_is_named(name):
     custom_data = FACTS.to_custom_data()
     del custom_data[name]
-    with pytest.raises(DdctError, match=f'no {name} '):
+    with refused(DdctError, name):
         RunFacts.from_custom_data(custom_data)
 
 
@@ -66,6 +67,6 @@ def test_the_largest_seed_comes_back():
     ],
 )
 def test_an_unusable_fact_is_named(name, text):
-    with pytest.raises(DdctError, match=f'{name} is ') as caught:
+    with refused(DdctError, name) as caught:
         RunFacts.from_custom_data({**FACTS.to_custom_data(), name: text})
     assert str(caught.value).isprintable()

@@ -4,6 +4,7 @@
 
 import pytest
 from made_run import made_facts
+from refusals import refused
 
 from ddct_bringup.bag.ticks import check_ticks, complete_ticks, tick_topics
 from ddct_plant.base.errors import DdctError
@@ -50,7 +51,7 @@ def test_a_gap_in_the_states_is_an_error_in_every_mode(lockstep):
     stamps = stamps_of(5)
     for topic in stamps:
         stamps[topic].remove(stamp_of_step(3))
-    with pytest.raises(DdctError, match='no message at step 3 '):
+    with refused(DdctError, '/clock'):
         check_ticks(stamps, RunKind(lockstep))
 
 
@@ -94,7 +95,7 @@ def test_engine_torque_request_is_needed_once_it_was_recorded():
     assert '/engine/torque_request' not in tick_topics(LOCKSTEP, replies=True)
     two_input = RunKind(two_input=True)
     assert '/engine/torque_request' in tick_topics(two_input, replies=True)
-    with pytest.raises(DdctError, match='no message on /engine/torque_request'):
+    with refused(DdctError, '/engine/torque_request'):
         check_ticks(stamps_of(5), two_input)
 
 
@@ -103,7 +104,7 @@ def test_one_topic_of_sensors_requires_the_others(lacking):
     names = [topic.resolved_name for topic in SENSED_TOPICS if topic is not lacking]
     run = made_facts().kind_of_bag({'/controller/torque_parts', names[0]})
     stamps = {**stamps_of(5), **{name: stamps_of(5)['/clutch/slip'] for name in names}}
-    with pytest.raises(DdctError, match=f'no message on {lacking.resolved_name}'):
+    with refused(DdctError, lacking.resolved_name):
         check_ticks(stamps, run)
     assert made_facts().kind_of_bag({'/controller/torque_parts'}) == LOCKSTEP
 
@@ -112,7 +113,7 @@ def test_the_parts_of_the_torque_request_are_needed_once_one_was_recorded():
     without = made_facts().kind_of_bag(stamps_of(5).keys() - {'/controller/torque_parts'})
     stamps = {**stamps_of(5), '/controller/torque_parts': []}
     assert check_ticks(stamps, without) == 5
-    with pytest.raises(DdctError, match='no message on /controller/torque_parts'):
+    with refused(DdctError, '/controller/torque_parts'):
         check_ticks(stamps, LOCKSTEP)
 
 

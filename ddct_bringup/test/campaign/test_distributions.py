@@ -2,11 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Named distributions have the right quantiles, and stay within the range of their key."""
 
-import re
 from typing import Any
 
 import numpy as np
 import pytest
+from refusals import refused
 from scipy import stats
 
 from ddct_bringup.campaign.distributions import distribution_of
@@ -69,85 +69,93 @@ def test_a_step_rounds_what_is_drawn_to_what_the_key_takes() -> None:
 
 
 @pytest.mark.parametrize(
-    ('key', 'content', 'words'),
+    ('key', 'content', 'wrong'),
     [
-        (MASS, {}, 'random.vary.vehicle.mass_kg.distribution is missing: choose from uniform'),
-        (MASS, {'distribution': 'gauss'}, "'gauss': choose from uniform"),
-        (MASS, {'distribution': 'uniform', 'low': 1}, 'mass_kg.high is missing: uniform needs it'),
-        (MASS, {'distribution': 'normal', 'mean': 1, 'std': 0, 'low': 1}, 'std is 0: it must be'),
+        (MASS, {}, 'random.vary.vehicle.mass_kg.distribution'),
+        (MASS, {'distribution': 'gauss'}, 'random.vary.vehicle.mass_kg.distribution'),
+        (MASS, {'distribution': 'uniform', 'low': 1}, 'random.vary.vehicle.mass_kg.high'),
+        (
+            MASS,
+            {'distribution': 'normal', 'mean': 1, 'std': 0, 'low': 1},
+            'random.vary.vehicle.mass_kg.std',
+        ),
         (
             MASS,
             {'distribution': 'normal', 'mean': 1500, 'std': 100, 'high': 2000},
-            'mass_kg.low is missing: vehicle.mass_kg must be above 0, and normal has no bound',
+            'random.vary.vehicle.mass_kg.low',
         ),
         (
             'wear_gain',
             {'distribution': 'lognormal', 'median': 1, 'sigma': 0.2},
-            'wear_gain.high is missing: wear_gain must be above 0',
+            'random.vary.wear_gain.high',
         ),
         (
             MASS,
             {'distribution': 'uniform', 'low': -5, 'high': 5},
-            'low is -5 kg: it must be above',
+            'random.vary.vehicle.mass_kg.low',
         ),
         (
             'wear_gain',
             {'distribution': 'uniform', 'low': 0.5, 'high': 9},
-            'wear_gain.high is 9: it must be at most 3',
+            'random.vary.wear_gain.high',
         ),
-        (MASS, {'distribution': 'uniform', 'low': 5, 'high': 5}, 'must be in this order'),
+        (MASS, {'distribution': 'uniform', 'low': 5, 'high': 5}, 'random.vary.vehicle.mass_kg'),
         (
             MASS,
             {'distribution': 'loguniform', 'low': 0, 'high': 5},
-            'low is 0: it must be above 0',
+            'random.vary.vehicle.mass_kg.low',
         ),
         (
             MASS,
             {'distribution': 'normal', 'mean': 1, 'std': 1, 'low': 90, 'high': 91},
-            'nothing of the distribution is between 90 and 91',
+            'random.vary.vehicle.mass_kg',
         ),
         (
             MASS,
             {'distribution': 'uniform', 'low': 1, 'hihg': 5},
-            'unknown key random.vary.vehicle.mass_kg.hihg: did you mean high?',
+            'random.vary.vehicle.mass_kg.hihg',
         ),
         (
             'gear',
             {'distribution': 'uniform', 'low': 1, 'high': 5},
-            'random.vary.gear.step: gear takes whole numbers: give step: 1',
+            'random.vary.gear.step',
         ),
         (
             'control_start_s',
             {'distribution': 'uniform', 'low': 0.5, 'high': 0.7, 'step': 0.015},
-            'low is 0.5: give a multiple of the step, 0.015',
+            'random.vary.control_start_s.low',
         ),
         (
             'control_start_s',
             {'distribution': 'uniform', 'low': 0.5, 'high': 0.7},
-            'control_start_s.step: control_start_s takes multiples of 10 ms: give step: 0.01',
+            'random.vary.control_start_s.step',
         ),
         (
             'clutch',
             {'distribution': 'uniform', 'low': 0.5, 'high': 0.7},
-            'clutch takes no number: use {distribution: choice',
+            'random.vary.clutch',
         ),
-        ('gear', {'distribution': 'choice', 'values': [1, 9]}, 'gear.values is 9: it must be at'),
-        ('gear', {'distribution': 'choice', 'values': []}, 'gear.values: give a list'),
+        ('gear', {'distribution': 'choice', 'values': [1, 9]}, 'random.vary.gear.values'),
+        ('gear', {'distribution': 'choice', 'values': []}, 'random.vary.gear.values'),
         (
             'gear',
             {'distribution': 'choice', 'values': [1, 2], 'weights': [1]},
-            'gear.weights: give a number for each',
+            'random.vary.gear.weights',
         ),
-        ('gear', {'distribution': 'choice', 'values': [1], 'weights': [0]}, 'are all zero'),
+        (
+            'gear',
+            {'distribution': 'choice', 'values': [1], 'weights': [0]},
+            'random.vary.gear.weights',
+        ),
     ],
 )
 def test_an_unusable_distribution_is_reported_with_its_key(
-    key: str, content: Any, words: str
+    key: str, content: Any, wrong: str
 ) -> None:
-    with pytest.raises(ParameterError, match=re.escape(words)):
+    with refused(ParameterError, wrong):
         described(key, **content)
 
 
 def test_a_distribution_that_is_no_mapping_is_refused() -> None:
-    with pytest.raises(ParameterError, match='give {distribution: uniform'):
+    with refused(ParameterError, 'random.vary.gear'):
         distribution_of('random.vary.gear', [1, 2], None)

@@ -6,6 +6,7 @@ import re
 from pathlib import Path
 
 import pytest
+from refusals import refused
 
 from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.spec import read_spec
@@ -95,30 +96,30 @@ def test_a_specification_that_cannot_be_used_is_named(
 ) -> None:
     with pytest.raises(DdctError, match=re.escape(words)) as complaint:
         read_spec(written(tmp_path, text))
-    assert str(complaint.value).startswith(f'{tmp_path}/spec.yaml: ')
+    assert complaint.value.place.startswith(f'{tmp_path}/spec.yaml')
 
 
 def test_a_missing_specification_is_reported(tmp_path: Path) -> None:
-    with pytest.raises(DdctError, match=r'absent\.yaml: cannot be read \(No such file'):
+    with refused(DdctError, place='absent.yaml'):
         read_spec(tmp_path / 'absent.yaml')
 
 
 @pytest.mark.parametrize(
-    ('text', 'words'),
+    ('text', 'key'),
     [
-        ('controllers: [pie]\n' + GRID, "unknown controller 'pie'"),
-        (PI + 'scenario: thesys\n' + GRID, "unknown scenario 'thesys'"),
+        ('controllers: [pie]\n' + GRID, 'pie'),
+        (PI + 'scenario: thesys\n' + GRID, 'thesys'),
         (
             'controllers: [pi, ls8]\n'
             f'random: {{samples: 9999999, vary: {{vehicle.mass_kg: {MASS}}}}}\n',
-            '19999998 runs: give at most 10000000',
+            'runs',
         ),
     ],
     ids=['controller', 'scenario', 'runs'],
 )
 def test_missing_or_excessive_parts_are_reported_before_anything_is_computed(
-    tmp_path: Path, text: str, words: str
+    tmp_path: Path, text: str, key: str
 ) -> None:
     spec = read_spec(written(tmp_path, text))
-    with pytest.raises(DdctError, match=re.escape(words)):
+    with refused(DdctError, key):
         Campaign(spec)

@@ -282,7 +282,7 @@ def test_a_late_reply_of_the_parent_is_not_taken_for_the_reply_to_the_next_reque
         stopped = parent.process.pid
         os.kill(stopped, signal.SIGSTOP)
         monkeypatch.setattr(warm_parent, 'START_S', 0.2)
-        with pytest.raises(DdctError, match='could not be started'):
+        with pytest.raises(DdctError):
             parent.start([child.job])
         monkeypatch.setattr(warm_parent, 'START_S', WITHIN_S)
         if not gone(stopped):

@@ -3,6 +3,7 @@
 """The collector of `run_info` names missing nodes and refuses nodes that do not agree."""
 
 import pytest
+from refusals import refused
 
 from ddct_bringup.record.run_info_collector import RunInfoCollector
 from ddct_plant.base.errors import DdctError
@@ -34,20 +35,20 @@ def test_what_the_bag_needs_is_read_and_the_controller_comes_last():
 
 @pytest.mark.parametrize('extras', [{}, {'driveline': {}}, {'driveline': {'steps': '8.5'}}])
 def test_missing_or_unusable_steps_are_named(extras):
-    with pytest.raises(DdctError, match='run_info of node /driveline has .*steps'):
+    with refused(DdctError, 'steps'):
         _ = collected(**extras).steps
 
 
 def test_a_missing_name_of_the_controller_is_named():
-    with pytest.raises(DdctError, match='run_info of node /controller has no controller'):
+    with refused(DdctError, 'controller'):
         _ = collected(controller={}).controller
 
 
 def test_other_settings_are_refused():
     nodes = collected()
-    with pytest.raises(DdctError, match='node /load runs with seed 7 and the recorder with 0'):
+    with refused(DdctError, 'seed'):
         nodes.receive('/load', {'seed': '7'})
-    with pytest.raises(DdctError, match=r'two_input true and .* -p two_input:=true'):
+    with refused(DdctError, 'two_input'):
         nodes.receive('/engine', {'two_input': 'true'})
 
 
@@ -59,7 +60,7 @@ def test_a_node_that_repeats_its_run_info_is_recorded_once():
 
 def test_a_node_name_with_two_different_run_info_is_refused():
     nodes = collected(controller={'controller': 'ls8'}, driveline={'steps': '80'})
-    with pytest.raises(DdctError, match='node /controller came twice, with controller ls8 and pi'):
+    with refused(DdctError, 'controller'):
         nodes.receive('/controller', dict(run_info_pairs(SETTINGS, {'controller': 'pi'})))
     assert nodes.controller == 'ls8'
 
@@ -79,5 +80,5 @@ def test_the_controller_announces_its_torque_parts():
     assert collected(controller={'controller': 'mine'}).torque_parts is False
     assert collected(controller={'torque_parts': 'false'}).torque_parts is False
     assert collected(controller=controller_info({})).torque_parts is True
-    with pytest.raises(DdctError, match="/controller has torque_parts 'yes'"):
+    with refused(DdctError, 'torque_parts'):
         _ = collected(controller={'torque_parts': 'yes'}).torque_parts

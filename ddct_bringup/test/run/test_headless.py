@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from refusals import refused
 from tight_tolerance import tight_tolerance_run
 
 from ddct_bringup.run.headless import run_headless
@@ -71,5 +72,5 @@ def test_a_controller_that_commands_nan_ends_the_run():
         def update(self, measurement):
             return Command(math.nan)
 
-    with pytest.raises(DdctError, match='torque at step 60 is nan'):
+    with refused(DdctError, "controller 'Broken': its torque at step 60"):
         run_headless(SETTINGS, Broken())

@@ -6,6 +6,7 @@ import argparse
 
 import numpy as np
 import pytest
+from refusals import refused
 
 from ddct_bringup import api
 from ddct_bringup.run.headless import run_headless
@@ -213,11 +214,11 @@ def test_a_driveline_too_fast_for_a_clutch_that_sticks_is_refused_before_the_run
     text = scenario_to_yaml(load_scenario('thesis', ['driveline.shaft_inertia=0.0005']))
     path.write_text(text, encoding='utf-8')
     line = text.splitlines().index('  shaft_inertia: 0.0005') + 1
-    complaint = rf'line {line}: driveline\.shaft_inertia is 0\.0005: .* rates of 2906'
+    place = f'fast.yaml: line {line}'
     parser = argparse.ArgumentParser()
     add_run_options(parser)
     options = parser.parse_args(['--scenario', str(path), '--clutch', 'stick_slip'])
-    with pytest.raises(ParameterError, match=complaint):
+    with refused(ParameterError, 'driveline.shaft_inertia', place):
         settings_of(options, [])
-    with pytest.raises(ParameterError, match=complaint):
+    with refused(ParameterError, 'driveline.shaft_inertia', place):
         api.run('pi', scenario=path, clutch='stick_slip')

@@ -6,6 +6,7 @@ import csv
 import json
 
 import pytest
+from refusals import refused
 
 from ddct_bringup import api
 from ddct_bringup.programs.sweep import main
@@ -165,7 +166,7 @@ def test_an_option_of_ones_own_controller_can_be_swept():
     alone = api.run(mine, set={'controllers.mine.gain': 0.2}, duration=SHORT_S)
     assert rows['slip_final_rpm'][1] == alone.metrics['slip_final_rpm']
     assert rows['slip_final_rpm'][0] != rows['slip_final_rpm'][1]
-    with pytest.raises(api.ParameterError, match=r'controllers\.none: there is no such'):
+    with refused(api.ParameterError, 'controllers.none'):
         api.sweep([mine], {'controllers.none.gain': [0.1]})
 
 
@@ -187,5 +188,5 @@ def test_a_sweep_from_python_is_a_table_that_takes_objects_and_keeps_failures():
     assert rows['verdict_state'].tolist()[2:] == ['invalid', 'invalid']
     alone = api.run('pi', wear_gain=0.8, duration=SHORT_S)
     assert rows['slip_final_rpm'][0] == alone.metrics['slip_final_rpm']
-    with pytest.raises(api.ParameterError, match='did you mean wear_gain'):
+    with refused(api.ParameterError, 'wear_gian'):
         api.sweep('pi', {'wear_gian': '1:2:3'})

@@ -61,7 +61,8 @@ class MpcController(Controller, Generic[Estimator]):
         if len(settings.inputs) != self._inputs:
             raise ParameterError(
                 f'MPC: {len(settings.inputs)} inputs given: with'
-                f'{"" if authority else "out"} an engine authority it decides {self._inputs}'
+                f'{"" if authority else "out"} an engine authority it decides {self._inputs}',
+                key='inputs',
             )
         if authority is not None:
             model = with_engine(model, authority.lag_share)

@@ -27,7 +27,7 @@ def require_place(option: str, target: str | None) -> None:
         raise DdctError(f'{option} {target}: there is no folder {path.parent}: make it first')
     replaced = path.is_file() or not path.exists()
     if not os.access(path.parent if replaced else path, os.W_OK):
-        raise DdctError(f'{option} {target}: cannot be written: choose another place')
+        raise DdctError(f'{option} {target}: cannot be written: choose another place', key=option)
 
 
 def require_one_for_stdout(json_target: str | None, csv_target: str | None) -> None:
@@ -63,7 +63,7 @@ def write_bytes(target: str, content: bytes, advice: str = _ADVICE) -> None:
         else:
             _replace(path, content)
     except OSError as error:
-        raise DdctError(f'{target}: cannot be written ({error.strerror}); {advice}') from error
+        raise DdctError(f'cannot be written ({error.strerror}); {advice}', place=target) from error
 
 
 def _replace(path: Path, content: bytes) -> None:

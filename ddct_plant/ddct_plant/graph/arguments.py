@@ -66,7 +66,8 @@ def require_declared(node: GraphNode) -> None:
             raise ParameterError(
                 f'parameter {name}: node {node.get_name()} has no such override: give '
                 f'{QOS_OVERRIDES}.TOPIC.publisher.depth or .subscription.depth, with the full '
-                'name of a topic of this node'
+                'name of a topic of this node',
+                key=name,
             )
     require_known(undeclared, node.own_parameters(), 'parameter')
 

@@ -100,5 +100,6 @@ def named_override_errors(topic: str) -> Iterator[None]:
     except (InvalidQosOverridesError, InvalidParameterTypeException, ValueError) as error:
         reason = str(error).rpartition('not valid: ')[2]
         raise ParameterError(
-            f'{QOS_OVERRIDES} of {topic}: {reason}: give a whole number of at least the default'
+            f'{QOS_OVERRIDES} of {topic}: {reason}: give a whole number of at least the default',
+            key=topic,
         ) from error

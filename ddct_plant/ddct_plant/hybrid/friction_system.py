@@ -73,13 +73,15 @@ def require_capacities(element: int, kinetic: Values, static: Values) -> None:
     """Raise ParameterError where a capacity of an element is negative, or static below kinetic."""
     if min(kinetic) < 0.0:
         raise ParameterError(
-            f'friction element {element}: its capacity {min(kinetic)} must not be negative'
+            f'friction element {element}: its capacity {min(kinetic)} must not be negative',
+            key=f'friction element {element}',
         )
     for low, high in zip(kinetic, static, strict=True):
         if high < low:
             raise ParameterError(
                 f'friction element {element}: its static capacity {high} is below the kinetic '
-                f'one {low}: give at least that'
+                f'one {low}: give at least that',
+                key=f'friction element {element}',
             )
 
 

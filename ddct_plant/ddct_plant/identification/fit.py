@@ -121,11 +121,11 @@ def predict_left_out(
     """
     labels = [(function, number.label) for function, number in coefficients.numbers]
     if (name, coefficient) not in labels:
-        raise DdctError(f'{name} has no coefficient {coefficient!r} to leave out')
+        raise DdctError(f'{name} has no coefficient {coefficient!r} to leave out', key=name)
     index = labels.index((name, coefficient))
     kept = np.arange(len(labels)) != index
     if np.linalg.cond(coefficients.jacobian(coefficients.start())[kept]) > _SINGULAR:
-        raise DdctError(f'the other coefficients do not determine {name} {coefficient}')
+        raise DdctError(f'the other coefficients do not determine {name} {coefficient}', key=name)
     logarithms, covariance = _fit(coefficients, kept)
     gradient = coefficients.jacobian(logarithms)[index]
     half_unit = coefficients.numbers[index][1].half_unit

@@ -32,7 +32,8 @@ def realise_cascade(
     if _order(zeros) > _order(poles):
         raise ParameterError(
             f'transfer function has {_order(zeros)} zeros and {_order(poles)} poles: '
-            'only a proper one has a state-space form'
+            'only a proper one has a state-space form',
+            key='zeros',
         )
     a, b, c, d = np.zeros((0, 0)), np.zeros((0, 1)), np.zeros((1, 0)), np.ones((1, 1))
     for zero, pole in _paired(zeros, poles):

@@ -53,11 +53,11 @@ def own_matrices(owner: object, what: str, **letters: str) -> None:
     for name, rows_and_columns in letters.items():
         matrix = np.array(getattr(owner, name), dtype=float)
         if matrix.ndim != 2 or not np.all(np.isfinite(matrix)):
-            raise ParameterError(f'{what}: {name} must be a matrix of finite numbers')
+            raise ParameterError(f'{what}: {name} must be a matrix of finite numbers', key=name)
         pairs = zip(rows_and_columns, matrix.shape, strict=True)
         shape = tuple(sizes.setdefault(letter, size) for letter, size in pairs)
         if matrix.shape != shape:
-            raise ParameterError(f'{what}: {name} is {matrix.shape}, it must be {shape}')
+            raise ParameterError(f'{what}: {name} is {matrix.shape}, it must be {shape}', key=name)
         matrix.setflags(write=False)
         object.__setattr__(owner, name, matrix)
 
@@ -182,7 +182,7 @@ def _factors(name: str, roots: ArrayLike) -> tuple[Factor, ...]:
     far = [root for root in upper if np.all(np.abs(lower.conj() - root) > _PAIRED * abs(root))]
     if far or len(upper) != len(lower):
         raise ParameterError(
-            f'transfer function: its {name} {roots.tolist()} are not in conjugate pairs'
+            f'transfer function: its {name} {roots.tolist()} are not in conjugate pairs', key=name
         )
     return (
         *(float(a) for a in singles),

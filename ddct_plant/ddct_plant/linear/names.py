@@ -24,7 +24,9 @@ class Names:
         """Check that no name stands twice; raise ParameterError otherwise."""
         for name in self.names:
             if self.names.count(name) > 1:
-                raise ParameterError(f'the name {name} stands twice: give each name once')
+                raise ParameterError(
+                    f'the name {name} stands twice: give each name once', key=name
+                )
 
     def __len__(self) -> int:
         """Return the number of names."""
@@ -37,7 +39,9 @@ class Names:
     def __getitem__(self, name: str) -> int:
         """Return the index of a name; raise ParameterError for an unknown one."""
         if name not in self.names:
-            raise ParameterError(f'there is no {name}: choose from {", ".join(self.names)}')
+            raise ParameterError(
+                f'there is no {name}: choose from {", ".join(self.names)}', key=name
+            )
         return self.names.index(name)
 
     def __add__(self, more: 'Names') -> 'Names':

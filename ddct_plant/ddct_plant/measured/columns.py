@@ -125,7 +125,7 @@ def _column_map(content: Any) -> ColumnMap:
     require_known(content, ('columns', 'run'))
     columns = {str(name): _column(str(name), each) for name, each in content['columns'].items()}
     if TIME not in columns:
-        raise ParameterError(f'columns.{TIME} is missing')
+        raise ParameterError(f'columns.{TIME} is missing', key=f'columns.{TIME}')
     run = content.get('run') or {}
     if not isinstance(run, dict):
         raise ParameterError('run: give keys and values')
@@ -137,19 +137,22 @@ def _column(name: str, content: Any) -> LogColumn:
     if name not in QUANTITIES:
         raise ParameterError(f'unknown {key}: {close_name(name, QUANTITIES, "columns.")}')
     if not isinstance(content, dict) or not {'column', 'unit'} <= set(content):
-        raise ParameterError(f'{key}: give {{column: NAME, unit: UNIT}}')
+        raise ParameterError(f'{key}: give {{column: NAME, unit: UNIT}}', key=key)
     require_known(content, ('column', 'unit', 'between', 'delay_s'), prefix=f'{key}.')
     delay = content.get('delay_s')
     if delay is not None and (type(delay) not in (int, float) or not abs(delay) <= MOST_DELAY_S):
         raise ParameterError(
-            f'{key}.delay_s is {delay!r}: give a number of s up to {MOST_DELAY_S:g} either way'
+            f'{key}.delay_s is {delay!r}: give a number of s up to {MOST_DELAY_S:g} either way',
+            key=f'{key}.delay_s',
         )
     for part, value in content.items():
         if part != 'delay_s' and not isinstance(value, str):
-            raise ParameterError(f'{key}.{part} is {value!r}: give text')
+            raise ParameterError(f'{key}.{part} is {value!r}: give text', key=f'{key}.{part}')
     found = LogColumn(**content)
     if found.between not in BETWEEN:
-        raise ParameterError(f'{key}.between is {found.between!r}: choose from linear, held')
+        raise ParameterError(
+            f'{key}.between is {found.between!r}: choose from linear, held', key=f'{key}.between'
+        )
     if name != TIME or found.unit != DATE_TIME:
         with located(key):
             _require_unit(name, found.unit)

@@ -60,7 +60,8 @@ def _with_control_in(scenario: Scenario) -> Scenario:
         ]
         raise ParameterError(
             f'score_window_s ends at {last:g} s, before control_start_s, {start:g} s, so nothing '
-            f'of the control is scored: give a later window, such as {window}'
+            f'of the control is scored: give a later window, such as {window}',
+            key='score_window_s',
         )
     if first >= start:
         return scenario
@@ -168,7 +169,8 @@ def _move_window(scenario: Scenario, start_before: float) -> Scenario:
     if last > scenario.duration_s:
         raise ParameterError(
             f'{change} would move score_window_s to {[first, last]}, beyond duration_s, '
-            f'{scenario.duration_s:g} s: give score_window_s too, or a longer duration_s'
+            f'{scenario.duration_s:g} s: give score_window_s too, or a longer duration_s',
+            key='score_window_s',
         )
     about = f'score_window_s moved from {list(before)} to {[first, last]} s with {change}'
     return _with_line(replace(scenario, score_window_s=(first, last)), about)

@@ -198,7 +198,7 @@ def _packaged() -> Traversable:
 
 def _read(name_or_file: str) -> tuple[str, str]:
     if not name_or_file:
-        raise ParameterError('scenario is empty: give a name or a YAML file')
+        raise ParameterError('scenario is empty: give a name or a YAML file', key='scenario')
     if is_packaged(name_or_file):
         if name_or_file not in scenario_names():
             raise ParameterError(

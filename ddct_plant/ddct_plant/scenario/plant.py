@@ -44,7 +44,8 @@ def require_driveline(parameters: DrivelineParameters, clutch: str) -> None:
             friction_system(parameters)
     except (ParameterError, ArithmeticError) as error:
         raise ParameterError(
-            f'{_least_usual(parameters)}: give inertias, damping and stiffness of a car ({error})'
+            f'{_least_usual(parameters)}: give inertias, damping and stiffness of a car ({error})',
+            key=_least_usual(parameters).partition(' ')[0],
         ) from error
 
 
@@ -71,9 +72,10 @@ def make_driveline(settings: RunSettings, initial: InitialState) -> Driveline | 
         return model(scenario.driveline, scenario.vehicle, initial)
     except ParameterError as error:
         raise ParameterError(
-            f'scenario {scenario.name}: {_least_usual(scenario.driveline)}: the driveline cannot '
-            f'be integrated with the clutch {settings.clutch}: give inertias, damping and '
-            f'stiffness of a car ({error})'
+            f'{_least_usual(scenario.driveline)}: the driveline cannot be integrated with the '
+            f'clutch {settings.clutch}: give inertias, damping and stiffness of a car ({error})',
+            key=_least_usual(scenario.driveline).partition(' ')[0],
+            place=f'scenario {scenario.name}',
         ) from error
 
 

@@ -58,7 +58,8 @@ class Joints(MessageKind):
         if list(message.name) != names or len(message.velocity) != len(names):
             raise DdctError(
                 f'{topic} names {list(message.name)} with {len(message.velocity)} velocities: '
-                f'it needs one velocity for each of {names}, in this order'
+                f'it needs one velocity for each of {names}, in this order',
+                key=topic,
             )
         return message.velocity
 

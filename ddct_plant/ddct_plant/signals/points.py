@@ -87,7 +87,8 @@ class TorqueRows(Points):
         if list(message.joint_names) != needed:
             raise DdctError(
                 f'{topic} has the joints {", ".join(message.joint_names) or "(none)"}: this run '
-                f'needs {", ".join(needed)}; start every node with the same clutch'
+                f'needs {", ".join(needed)}; start every node with the same clutch',
+                key=topic,
             )
         try:
             values = self.values(message)
@@ -103,7 +104,7 @@ class TorqueRows(Points):
             if joints > 1:
                 require_capacities(0, *rows)
         except ParameterError as error:
-            raise ParameterError(f'{topic}: {error}') from error
+            raise ParameterError(f'{topic}: {error}', key=topic) from error
         return rows
 
 
@@ -126,7 +127,8 @@ class PreviewPoints(Points):
             raise DdctError(
                 f'{topic} has {len(message.points)} points and the controller needs '
                 f'{preview_steps + 1}: start the reference with '
-                f'--ros-args -p preview_steps:={preview_steps}'
+                f'--ros-args -p preview_steps:={preview_steps}',
+                key=topic,
             )
         try:
             speeds, rates = self.values(message)

@@ -148,6 +148,6 @@ class PhaseReport(MessageKind):
             _, work, _ = self.values(message)
         except LookupError as error:
             raise DdctError(
-                f'{topic}: {error}: it needs phase, {self._WORK}, then the events'
+                f'{topic}: {error}: it needs phase, {self._WORK}, then the events', key=topic
             ) from error
         return require_number(topic, work, at_least=0.0)

@@ -36,7 +36,9 @@ class BlockDiagram:
         for name in sources:
             for source in sources[name]:
                 if source not in sources and source not in inputs:
-                    raise ParameterError(f'block {name}: there is no signal {source!r}')
+                    raise ParameterError(
+                        f'block {name}: there is no signal {source!r}', key=source
+                    )
         direct = {name: factors.keys() & sums.keys() for name, factors in sums.items()}
         try:
             order = list(TopologicalSorter(direct).static_order())

@@ -53,7 +53,7 @@ class SlipPhase:
         for name, shape in shapes.items():
             given = np.shape(getattr(self, name))
             if given != shape:
-                raise ParameterError(f'{name} has shape {given}, it must be {shape}')
+                raise ParameterError(f'{name} has shape {given}, it must be {shape}', key=name)
 
 
 SimplifiedPlant = Callable[[DrivelineParameters, SlipPhase], np.ndarray]

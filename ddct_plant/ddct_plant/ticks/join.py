@@ -51,7 +51,7 @@ class StampJoin:
         try:
             step = step_of_stamp(stamp_ns)
         except DdctError as error:
-            raise DdctError(f'{topic}: {error}') from error
+            raise DdctError(f'{topic}: {error}', key=topic) from error
         if step <= self.last_step:
             again = step == self.last_step and topic == self.topics[0]
             return JoinResult.REPEAT if again else JoinResult.IGNORE
@@ -76,7 +76,8 @@ class StampJoin:
             raise DdctError(
                 f'{topic}: step {step} came while {len(self._waiting)} others wait for the rest '
                 f'of their inputs and step {self.last_step + 1} is due: check what publishes '
-                f'{" and ".join(self.topics)}'
+                f'{" and ".join(self.topics)}',
+                key=topic,
             )
         del self._waiting[min(self._waiting)]
 
@@ -85,7 +86,8 @@ class StampJoin:
         if step != expected and not self.allow_gaps:
             raise DdctError(
                 f'{self.topics[0]}: step {step} came where step {expected} was due: this node '
-                'missed a part of the run, start the graph again with every node in it'
+                'missed a part of the run, start the graph again with every node in it',
+                key=self.topics[0],
             )
         self.last_step = step
         if len(self._waiting) > 1:

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 import pytest
+from refusals import refused
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import (
@@ -75,7 +76,7 @@ class Load(OptionGroup):
 
 def test_an_option_without_default_may_be_left_out_and_is_checked_when_given():
     assert Load().mass_kg is None
-    with pytest.raises(ParameterError, match='mass_kg is -1 kg: it must be at least 0'):
+    with refused(ParameterError, 'mass_kg'):
         Load(-1.0)
 
 
@@ -90,7 +91,7 @@ def test_a_group_takes_the_values_of_its_options_and_no_others():
     taken = with_values(Load(2.0, wheels=2), {'mass_kg': 5.0, 'wheels': 9, 'make': 'here'})
     assert taken == Load(5.0, wheels=2)
     assert with_values(taken, {}) == taken
-    with pytest.raises(ParameterError, match='mass_kg is -1 kg'):
+    with refused(ParameterError, 'mass_kg'):
         with_values(taken, {'mass_kg': -1.0})
 
 

@@ -131,7 +131,7 @@ def test_sensed_joints_have_speeds_alone_and_leave_no_array_empty_at_the_end():
     with refused(DdctError, key='sensors/joint_states'):
         topic.read(write(LATER, [1.0, math.inf, 3.0]))
     some.name = ['engine', 'wheel', 'primary_shaft']
-    with pytest.raises(DdctError, match='in this order'):
+    with refused(DdctError, 'sensors/joint_states'):
         topic.read(some)
 
 
@@ -180,7 +180,7 @@ def test_joint_states_of_other_joints_are_an_error():
     message.name = ['wheel']
     with pytest.raises(DdctError, match='the joints are wheel, not engine, primary_shaft'):
         topics.JOINT_STATES.values(message)
-    with pytest.raises(DdctError, match='needs one velocity for each'):
+    with refused(DdctError, 'driveline/joint_states'):
         topics.JOINT_STATES.read(message)
 
 

@@ -55,25 +55,25 @@ def test_events_of_bags_recorded_before_have_no_slip_acceleration():
 
 
 @pytest.mark.parametrize(
-    ('place', 'key', 'value', 'complaint'),
+    ('place', 'key', 'value'),
     [
-        (0, 'phase', 'melted', 'its status holds'),
-        (1, 'friction_work_j', 'much', 'its status holds'),
-        (1, 'friction_work_j', '-1.0', 'is -1: it must be at least 0'),
-        (1, 'friction_work_j', 'nan', 'finite'),
-        (1, 'work', '1.0', 'its status holds'),
-        (2, 'lock', 'soon', 'its status holds'),
-        (2, 'bounce', '0.5', 'its status holds'),
-        (2, 'slip_acceleration_rad_s2', '1.0', 'its status holds'),
-        (3, 'slip_acceleration_rad_s2', 'fast', 'its status holds'),
-        (3, 'slip_acceleration', '1.0', 'its status holds'),
+        (0, 'phase', 'melted'),
+        (1, 'friction_work_j', 'much'),
+        (1, 'friction_work_j', '-1.0'),
+        (1, 'friction_work_j', 'nan'),
+        (1, 'work', '1.0'),
+        (2, 'lock', 'soon'),
+        (2, 'bounce', '0.5'),
+        (2, 'slip_acceleration_rad_s2', '1.0'),
+        (3, 'slip_acceleration_rad_s2', 'fast'),
+        (3, 'slip_acceleration', '1.0'),
     ],
 )
-def test_a_report_that_is_none_is_refused(place, key, value, complaint):
+def test_a_report_that_is_none_is_refused(place, key, value):
     message = CLUTCH_PHASE.message(STAMP, 1.0, 0.25, LOCKS)
     pair = message.status[0].values[place]
     pair.key, pair.value = key, value
-    with pytest.raises(DdctError, match=complaint):
+    with refused(DdctError, 'clutch/phase'):
         CLUTCH_PHASE.read(message)
 
 

@@ -388,7 +388,7 @@ def test_impossible_capacities_are_refused(kinetic, static, message):
     with pytest.raises(ParameterError, match=message):
         integrator.advance([1.0], (1,), [0.0] * 11, kinetic, static)
     nodes = HybridIntegrator(block(), PIECE_S, PIECES, held=[0])
-    with pytest.raises(ParameterError, match='static capacity'):
+    with refused(ParameterError, 'friction element 0'):
         nodes.advance([1.0], (1,), [0.0], [1.0] * 11, [1.0] * 10 + [0.9])
     with pytest.raises(ParameterError, match='do not fit the interval'):
         nodes.advance([1.0], (1,), [0.0], [1.0] * 5, [1.0] * 5)

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from refusals import refused
 
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.identification.checks import (
@@ -102,9 +103,9 @@ def test_334_4_fits_no_driveline_and_339_4_is_what_the_others_predict():
 
 
 def test_leaving_out_a_gain_leaves_a_parameter_free_and_is_an_error():
-    with pytest.raises(DdctError, match='do not determine P2 gain'):
+    with refused(DdctError, 'P2'):
         predict_left_out(COEFFICIENTS, 'P2', 'gain')
-    with pytest.raises(DdctError, match="P3 has no coefficient 'pole z'"):
+    with refused(DdctError, 'P3'):
         predict_left_out(COEFFICIENTS, 'P3', 'pole z')
 
 

@@ -89,19 +89,19 @@ def poly_distance(found: np.ndarray, expected: np.ndarray) -> float:
 
 
 def test_improper_transfer_function_has_no_state_space():
-    with pytest.raises(ParameterError, match='2 zeros and 1 poles'):
+    with refused(ParameterError, 'zeros'):
         FactoredTransferFunction(1.0, ((1.0, 1.0),), (3.0,)).to_state_space()
 
 
 def test_not_a_number_is_refused():
     with refused(ParameterError, key='transfer function: a coefficient'):
         FactoredTransferFunction(1.0, (float('nan'),), (3.0, 4.0))
-    with pytest.raises(ParameterError, match='b must be'):
+    with refused(ParameterError, 'b'):
         StateSpace(np.eye(1), np.array([[np.nan]]), np.eye(1), np.eye(1))
 
 
 def test_state_space_refuses_shapes_that_do_not_fit_and_cannot_be_written():
-    with pytest.raises(ParameterError, match=r'c is \(1, 3\), it must be \(1, 2\)'):
+    with refused(ParameterError, 'c'):
         StateSpace(np.eye(2), np.ones((2, 1)), np.ones((1, 3)), np.zeros((1, 1)))
     model = StateSpace(np.eye(1), np.eye(1), np.eye(1), np.eye(1))
     with pytest.raises(ValueError, match='read-only'):

@@ -3,7 +3,7 @@
 """Names of states, inputs and outputs, and models that give the index of each."""
 
 import numpy as np
-import pytest
+from refusals import refused
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.linear.names import Names
@@ -32,9 +32,9 @@ def test_names_give_indices_and_slices_and_can_be_joined() -> None:
 
 
 def test_an_unknown_or_repeated_name_is_refused() -> None:
-    with pytest.raises(ParameterError, match='there is no torque: choose from speed, twist'):
+    with refused(ParameterError, 'torque'):
         Names(('speed', 'twist'))['torque']
-    with pytest.raises(ParameterError, match='the name speed stands twice'):
+    with refused(ParameterError, 'speed'):
         Names(('speed',)) + Names(('speed',))
 
 

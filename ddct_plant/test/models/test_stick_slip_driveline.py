@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from refusals import refused
 from scipy.integrate import solve_ivp
 
 from ddct_plant.base.errors import ParameterError
@@ -172,11 +173,11 @@ def test_a_launch_without_dampers_loses_no_energy_but_by_friction():
 
 def test_capacities_that_cannot_be_are_refused():
     driveline = make(initial(170.0, 160.0))
-    with pytest.raises(ParameterError, match='element 0: its static capacity'):
+    with refused(ParameterError, 'friction element 0'):
         driveline.step(60.0, 20.0, [150.0] * 11, [149.0] * 11, ROLLING)
-    with pytest.raises(ParameterError, match='element 0: its capacity'):
+    with refused(ParameterError, 'friction element 0'):
         driveline.step(60.0, 20.0, [-1.0] * 11, [1.0] * 11, ROLLING)
-    with pytest.raises(ParameterError, match='element 1: its capacity -2.0 must not be negative'):
+    with refused(ParameterError, 'friction element 1'):
         driveline.step(60.0, 20.0, [1.0] * 11, [1.0] * 11, -2.0)
 
 

@@ -53,17 +53,13 @@ def test_the_clutch_starts_open_but_for_the_detailed_architecture():
 def test_a_driveline_that_sticks_and_cannot_be_integrated_is_named():
     scenario = load_scenario('thesis', ['driveline.shaft_inertia=0.0005'])
     settings = RunSettings(scenario, clutch='stick_slip')
-    complaint = (
-        'scenario thesis: driveline.shaft_inertia is 0.0005: the driveline .* rates of 2906'
-    )
-    with pytest.raises(ParameterError, match=complaint):
+    with refused(ParameterError, 'driveline.shaft_inertia', place='scenario thesis'):
         make_driveline(settings, initial_state(settings))
 
 
 def test_a_driveline_whose_elements_cannot_stick_together_is_no_scenario():
     given = [f'driveline.{name}_inertia=1e300' for name in ('engine', 'shaft', 'vehicle')]
-    complaint = r'scenario thesis: driveline\.shaft_inertia is 1e\+300: give .* is singular'
-    with pytest.raises(ParameterError, match=complaint):
+    with refused(ParameterError, 'driveline.shaft_inertia', place='scenario thesis'):
         load_scenario('thesis', given)
 
 

@@ -3,6 +3,7 @@
 """Inputs are joined on their stamp and answered once."""
 
 import pytest
+from refusals import refused
 
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import stamp_of_step
@@ -45,7 +46,7 @@ def test_a_repeated_input_of_an_open_stamp_does_not_complete_it():
 
 @pytest.mark.parametrize('first', [1, 5])
 def test_a_node_that_joins_mid_run_ends_with_an_error(first):
-    with pytest.raises(DdctError, match=f'step {first} came where step 0 was due'):
+    with refused(DdctError, 'a'):
         offer(StampJoin(['a']), 'a', first)
 
 
@@ -68,7 +69,7 @@ def test_inputs_of_skipped_steps_are_removed():
 
 
 def test_a_stamp_off_the_grid_is_an_error():
-    with pytest.raises(DdctError, match='not on the grid'):
+    with refused(DdctError, 'a'):
         StampJoin(['a']).offer('a', stamp_of_step(0) + 1, None)
 
 

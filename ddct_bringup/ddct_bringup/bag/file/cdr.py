@@ -123,9 +123,11 @@ class CdrNormaliser:
             if walk.at > len(cdr):
                 raise ValueError('it is cut short')
         except struct.error as error:
-            raise DdctError(f'a message is no {type_name}: it is cut short') from error
+            raise DdctError(
+                f'a message is no {type_name}: it is cut short', key=type_name
+            ) from error
         except ValueError as error:
-            raise DdctError(f'a message is no {type_name}: {error}') from error
+            raise DdctError(f'a message is no {type_name}: {error}', key=type_name) from error
         depends = _ones(walk.at, walk.lengths)
         keep = _ones(walk.at, [range(walk.at)]) & ~_ones(walk.at, walk.gaps)
         return _Layout(walk.at, keep, depends, int.from_bytes(cdr, 'little') & depends)

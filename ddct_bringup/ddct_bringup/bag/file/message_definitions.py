@@ -78,7 +78,7 @@ def definition_in(types: Mapping[str, Any], type_name: str) -> MessageDefinition
         if name in fields:
             return
         if name not in types:
-            raise DdctError(f'{TYPES_FILE.name} does not define {name}: add it there')
+            raise DdctError(f'{TYPES_FILE.name} does not define {name}: add it there', key=name)
         lines = types[name]['fields']
         if text:
             text.extend(('', _SEPARATOR, f'MSG: {name.replace("/msg/", "/")}'))

@@ -92,8 +92,9 @@ def read_records(path: Path) -> BagRecords:
     data = _bytes_of(path)
     if not data.endswith(MAGIC) or len(data) == len(MAGIC):
         raise DdctError(
-            f'{path}: the recording is unfinished, its writer was interrupted or the file cut '
-            'short: rescue what it holds with ddct score --repair'
+            'the recording is unfinished, its writer was interrupted or the file cut '
+            'short: rescue what it holds with ddct score --repair',
+            place=path,
         )
     bag = BagRecords(path)
     try:
@@ -102,8 +103,8 @@ def read_records(path: Path) -> BagRecords:
     except _READ_ERRORS as error:
         what = ' '.join(str(error).split()) or type(error).__name__
         raise DdctError(
-            f'{path}: the recording is damaged ({what}): '
-            'rescue what is readable with ddct score --repair'
+            f'the recording is damaged ({what}): rescue what is readable with ddct score --repair',
+            place=path,
         ) from error
     return bag
 
@@ -150,10 +151,10 @@ def _bytes_of(path: Path) -> bytes:
     try:
         data = read_file(path, MOST_BYTES)
     except OSError as error:
-        raise DdctError(f'{path}: cannot read the bag: {error.strerror}') from error
+        raise DdctError(f'cannot read the bag: {error.strerror}', place=path) from error
     if not data.startswith(MAGIC):
         what = 'the file is empty' if not data else 'not an MCAP file'
-        raise DdctError(f'{path}: {what}: give a bag that this project recorded')
+        raise DdctError(f'{what}: give a bag that this project recorded', place=path)
     return data
 
 

@@ -67,7 +67,8 @@ def capacity_range(settings: RunSettings, temperature_c: float) -> CapacityRange
     friction = settings.scenario.friction
     if friction.slip_rad_s:
         raise ParameterError(
-            'friction.slip_rad_s: friction depends on the slip speed: there is no floor'
+            'friction.slip_rad_s: friction depends on the slip speed: there is no floor',
+            key='friction.slip_rad_s',
         )
     coolest, hottest = temperature_c - COOLER_K, temperature_c + WARMER_K
     inner = [t for t in friction.temperature_c if coolest < t < hottest]

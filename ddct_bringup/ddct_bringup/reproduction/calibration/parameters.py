@@ -81,7 +81,8 @@ def values_of(scenario: Scenario) -> tuple[float, ...]:
     if len(engine.time_s) != 2 or engine.time_s[0] != 0.0 or not {*NAMES[4:]} <= {*gains}:
         raise ParameterError(
             f'scenario {scenario.name} is not of the calibrated kind: engine torque from 0 s in '
-            'one straight rise, and both gains of pi'
+            'one straight rise, and both gains of pi',
+            key=scenario.name,
         )
     return (
         *engine.torque_n_m,
@@ -124,7 +125,8 @@ def require_stable_pi(values: Values) -> None:
     if not rate < 0.0:
         raise DdctError(
             f'the PI loop with gains {values[4]:g} and {values[5]:g} grows by {rate:.2g}/s: '
-            'no scenario may leave the calibration with it'
+            'no scenario may leave the calibration with it',
+            key='gains',
         )
 
 

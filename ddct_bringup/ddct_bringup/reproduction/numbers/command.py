@@ -100,7 +100,9 @@ def compute(
         found = source()
         twice = sorted(values.keys() & found.keys())
         if twice:
-            raise ParameterError(f'thesis numbers of {name}: computed already: {", ".join(twice)}')
+            raise ParameterError(
+                f'thesis numbers of {name}: computed already: {", ".join(twice)}', key=twice[0]
+            )
         values.update(found)
     return values
 

@@ -78,7 +78,9 @@ def judge(
     """
     unknown = sorted(values.keys() - {number.id for number in numbers})
     if unknown:
-        raise ParameterError(f'computed, but not in the list of numbers: {", ".join(unknown)}')
+        raise ParameterError(
+            f'computed, but not in the list of numbers: {", ".join(unknown)}', key=unknown[0]
+        )
     return tuple(_row(number, values) for number in numbers)
 
 

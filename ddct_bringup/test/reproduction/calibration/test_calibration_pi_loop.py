@@ -6,6 +6,7 @@ import dataclasses
 
 import numpy as np
 import pytest
+from refusals import refused
 
 from ddct_bringup.reproduction.calibration import record
 from ddct_bringup.reproduction.calibration.parameters import pi_growth_rate
@@ -81,12 +82,12 @@ def test_a_pi_that_only_rounding_makes_unstable_does_not_leave_the_calibration(m
     chosen = optimum(0.0023, 0.04, 0.1)
     assert chosen.pi_stable
     monkeypatch.setattr(record, 'search', lambda _: ([], [chosen]))
-    with pytest.raises(DdctError, match=r'gains 0\.002 and 0\.04 grows by 0\.0023/s'):
+    with refused(DdctError, 'gains'):
         record.calibrate(print)
 
 
 def test_a_frozen_scenario_with_an_unstable_pi_is_refused():
     scenario = load_scenario('thesis')
     unstable = {'pi': {'proportional_gain': 0.0, 'integral_gain': 0.14}}
-    with pytest.raises(DdctError, match='gains 0 and 0.14 grows'):
+    with refused(DdctError, 'gains'):
         record.check_frozen(dataclasses.replace(scenario, controllers=unstable), print)

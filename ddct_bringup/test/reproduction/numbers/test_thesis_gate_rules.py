@@ -5,6 +5,7 @@
 import dataclasses
 
 import pytest
+from refusals import refused
 
 from ddct_bringup.reproduction.numbers.command import compute
 from ddct_bringup.reproduction.numbers.gate import judge
@@ -107,7 +108,7 @@ def test_given_number_has_no_computed_value_and_always_holds():
 
 
 def test_computed_value_without_an_entry_in_the_list_is_refused():
-    with pytest.raises(ParameterError, match='not in the list of numbers: other'):
+    with refused(ParameterError, 'other'):
         judge([REPRODUCED], {'zeta': 0.53, 'other': 1.0})
 
 
@@ -188,7 +189,7 @@ def test_bad_entry_is_refused_by_name(old, new, complaint_text):
 
 
 def test_two_sources_may_not_compute_the_same_number():
-    with pytest.raises(ParameterError, match='second: computed already: zeta'):
+    with refused(ParameterError, 'zeta'):
         compute({'first': lambda: {'zeta': 1.0}, 'second': lambda: {'zeta': 2.0}})
 
 

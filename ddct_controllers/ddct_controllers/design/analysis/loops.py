@@ -45,7 +45,8 @@ class ContinuousLoop:
         """Return a realisation; raise ParameterError for a loop with delay, which has none."""
         if self.delay_s:
             raise ParameterError(
-                f'loop: a delay of {self.delay_s:g} s has no state space: leave it out, or sample'
+                f'loop: a delay of {self.delay_s:g} s has no state space: leave it out, or sample',
+                key='delay',
             )
         return self.transfer_function.to_state_space()
 

@@ -113,7 +113,8 @@ def _require_attainable(
         raise ParameterError(
             f'no controller meets the bounds on S and T: the least norm of their stack is '
             f'{bound:.2f}, above sqrt(2): allow a longer rise time, more overshoot, '
-            'a larger K or a larger w_2'
+            'a larger K or a larger w_2',
+            key='rise time',
         )
 
 

@@ -82,7 +82,8 @@ def _derivatives(
     if degree > relative_degree:
         raise ParameterError(
             f'W_2 is of degree {degree}, but the plant has only {relative_degree} more poles than '
-            f'zeros, so that W_2 T is improper: give it at most {relative_degree} zeros'
+            f'zeros, so that W_2 T is improper: give it at most {relative_degree} zeros',
+            key='W_2',
         )
     derivatives = [plant.c]
     for _ in range(degree):

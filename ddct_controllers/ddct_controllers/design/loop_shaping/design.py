@@ -54,7 +54,8 @@ def required_integrators(
     """
     if disturbance_order < 0:
         raise ParameterError(
-            f'disturbance order is {disturbance_order}: it must be 0 (a step), 1 (a ramp) or more'
+            f'disturbance order is {disturbance_order}: it must be 0 (a step), 1 (a ramp) or more',
+            key='disturbance order',
         )
     needed = poles_at_zero(disturbance_path) + disturbance_order + 1
     return max(0, needed - poles_at_zero(plant))

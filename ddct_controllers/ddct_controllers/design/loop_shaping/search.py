@@ -82,9 +82,12 @@ def _failure(
     )
     if fastest_s <= limit_s:
         return ParameterError(
-            f'{goal} (last candidate: {"; ".join(rejections)}): allow a longer rise time'
+            f'{goal} (last candidate: {"; ".join(rejections)}): allow a longer rise time',
+            key='rise time',
         )
     if math.isinf(fastest_s):
-        return ParameterError(f'{goal}, nor a slower one: allow more overshoot')
+        return ParameterError(f'{goal}, nor a slower one: allow more overshoot', key='overshoot')
     fastest_s = math.ceil(1000.0 * fastest_s) / 1000.0
-    return ParameterError(f'{goal}: the fastest has {fastest_s:g} s: allow that or more overshoot')
+    return ParameterError(
+        f'{goal}: the fastest has {fastest_s:g} s: allow that or more overshoot', key='rise time'
+    )

@@ -146,5 +146,6 @@ def require_reachable(specifications: TimeSpecifications) -> None:
             f'rise time {specifications.rise_time_s:g} s with overshoot '
             f'{100.0 * specifications.overshoot:g} % asks for a crossover of {crossover:.3g} '
             f"rad/s, but the actuator's delay, hold and right-half-plane zeros allow {bound:.3g} "
-            f'rad/s: allow a rise time of {slowest:.2g} s or more overshoot'
+            f'rad/s: allow a rise time of {slowest:.2g} s or more overshoot',
+            key='rise time',
         )

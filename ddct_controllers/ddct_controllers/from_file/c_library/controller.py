@@ -103,4 +103,4 @@ class CLibraryController(Controller):
             return answer
         (code,) = host.EXITED.unpack(answer) if answer else (0,)
         self._end()
-        raise DdctError(f'{self._where}: {exit_text(code)} when {when}: mend the C')
+        raise DdctError(f'{exit_text(code)} when {when}: mend the C', place=self._where)

@@ -71,7 +71,8 @@ def kalman_gain(model: TransmissionModel, noise: NoiseLevels) -> np.ndarray:
     if len(noise.drift) != model.disturbances:
         raise ParameterError(
             f'observer: {len(noise.drift)} drifts given for {model.disturbances} disturbances: '
-            'give one for each'
+            'give one for each',
+            key='drifts',
         )
     process = torque_noise(model, noise)
     process[STATES:, STATES:] += np.diag(np.square(noise.drift))

@@ -38,14 +38,18 @@ def exportable(controller: Controller, name: str) -> tuple[MpcController[Observe
     """Return controller and observer; raise ParameterError for features that the C lacks."""
     if not isinstance(controller, MpcController):
         raise ParameterError(
-            f'{name} cannot be exported: it is not a predictive controller; choose one, as mpc3 is'
+            f'{name} cannot be exported: it is not a predictive controller; choose one, '
+            'as mpc3 is',
+            key=name,
         )
     observer = controller.observer
     # Classes made from these do something else, which would be missing in C without a word.
     if type(controller) is not MpcController or type(observer) is not Observer:
         raise ParameterError(
             f'{name} cannot be exported: {type(controller).__name__} with its '
-            f'{type(observer).__name__} does more than there is in C; choose another, such as mpc3'
+            f'{type(observer).__name__} does more than there is in C; choose another, '
+            'such as mpc3',
+            key=name,
         )
     return controller, observer
 

@@ -56,7 +56,9 @@ def export_controller(
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise DdctError(f'--export {folder}: cannot be made ({error.strerror})') from error
+        raise DdctError(
+            f'--export {folder}: cannot be made ({error.strerror})', key='--export'
+        ) from error
     for file, text in texts.items():
         write_text(str(folder / file), text)
     return [folder / file for file in texts]
@@ -67,16 +69,19 @@ def _require_free(folder: Path, *, overwrite: bool) -> None:
         present = sorted(path.name for path in folder.iterdir()) if folder.exists() else []
         if present and not overwrite:
             raise DdctError(
-                f'--export {folder}: holds {present[0]}; choose a new folder or add --overwrite'
+                f'--export {folder}: holds {present[0]}; choose a new folder or add --overwrite',
+                key='--export',
             )
         for file in {HEADER, SOURCE, EXAMPLE, LIBRARY, INTERFACE} & set(present):
             if _MARK not in read_file(folder / file, MOST_TEXT_BYTES).decode(errors='replace'):
                 raise DdctError(
-                    f'--export {folder}: {file} is no such export; choose another folder'
+                    f'--export {folder}: {file} is no such export; choose another folder',
+                    key='--export',
                 )
     except OSError as error:
         raise DdctError(
-            f'--export {folder}: cannot be read ({error.strerror}); choose another folder'
+            f'--export {folder}: cannot be read ({error.strerror}); choose another folder',
+            key='--export',
         ) from error
 
 

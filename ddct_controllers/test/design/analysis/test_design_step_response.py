@@ -92,7 +92,7 @@ def test_rise_is_interpolated_and_none_when_the_final_value_is_not_reached():
 
 
 def test_a_dead_time_or_a_bad_duration_is_refused():
-    with pytest.raises(ParameterError, match='delay of 0.01 s has no state space'):
+    with refused(ParameterError, 'delay'):
         step_response(ContinuousLoop(SECOND_ORDER, 0.01), 1.0)
     with refused(ParameterError, key='duration_s'):
         step_response(ContinuousLoop(SECOND_ORDER), 0.0)

@@ -4,6 +4,7 @@
 
 import numpy as np
 import pytest
+from refusals import refused
 
 from ddct_controllers.registry import make_controller
 from ddct_controllers.synthesised import SYNTHESISED, synthesised_design
@@ -31,7 +32,7 @@ def test_a_run_has_the_design_for_its_own_driveline(name):
 
 def test_a_driveline_without_such_a_controller_is_named_in_one_line():
     undamped = ('driveline.halfshaft_damping=0', 'driveline.shaft_damping=0')
-    with pytest.raises(DdctError, match='undamped pole') as caught:
+    with refused(DdctError, 'hinf_thesis') as caught:
         model_in('hinf_thesis', *undamped)
     message = str(caught.value)
     assert message.startswith("controller 'hinf_thesis' cannot be computed for the scenario's dr")

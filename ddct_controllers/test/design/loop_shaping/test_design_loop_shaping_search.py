@@ -4,6 +4,7 @@
 
 import numpy as np
 import pytest
+from refusals import refused
 
 from ddct_controllers.design.analysis.loops import sampled_loop
 from ddct_controllers.design.loop_shaping.search import STRUCTURES, design_loop_shaping
@@ -81,19 +82,20 @@ def test_one_structure_can_be_selected(structure):
 
 def test_networks_alone_cannot_have_0_2_s_and_14_percent_as_the_thesis_found():
     specifications = TimeSpecifications(0.2, 0.14)
-    with pytest.raises(ParameterError, match=r'the fastest has 0\.\d+ s: allow that or more'):
+    with refused(ParameterError, 'rise time'):
         design_loop_shaping(specifications, 1, DRIVELINE, ('networks',))
     assert design_loop_shaping(specifications, 1, DRIVELINE).structure == 'placement'
 
 
 def test_specifications_that_the_actuator_forbids_are_refused_at_once():
-    with pytest.raises(ParameterError, match=r'right-half-plane zeros allow 24\.5 rad/s'):
+    with refused(ParameterError, 'rise time'):
         design_loop_shaping(TimeSpecifications(0.05, 0.14), 1, DRIVELINE)
 
 
 def test_between_bound_and_structure_the_error_has_reachable_specifications():
-    with pytest.raises(ParameterError, match=r'the fastest has 0\.104 s: allow that'):
+    with refused(ParameterError, 'rise time') as caught:
         design_loop_shaping(TimeSpecifications(0.1, 0.14), 1, DRIVELINE)
+    assert '0.104 s' in str(caught.value)
     design = design_loop_shaping(TimeSpecifications(0.104, 0.14), 1, DRIVELINE)
     assert design.verification.rejections == ()
 

@@ -4,6 +4,7 @@
 
 import pytest
 from nyquist_contour import unstable_by_contour
+from refusals import refused
 
 from ddct_controllers.design.analysis.loops import ContinuousLoop, continuous_loop, plant_in_rpm
 from ddct_controllers.design.analysis.margins import unstable_poles
@@ -83,5 +84,5 @@ def test_a_loop_that_is_not_strictly_proper_is_refused():
 
 
 def test_a_loop_with_dead_time_is_refused():
-    with pytest.raises(ParameterError, match='a delay of 0.01 s has no state space'):
+    with refused(ParameterError, 'delay'):
         nyquist_count(continuous_loop(PRINTED_CONTROLLERS['ls8'], delay_s=0.01))

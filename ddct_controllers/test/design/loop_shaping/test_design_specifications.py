@@ -121,9 +121,6 @@ def test_less_overshoot_allows_less_crossover():
 
 
 def test_a_crossover_above_the_bound_is_refused_with_the_bound_and_a_way_out():
-    with pytest.raises(
-        ParameterError,
-        match=r'crossover of 38.4 rad/s.*allow 24.5 rad/s: allow a rise time of 0.078 s or more',
-    ):
+    with refused(ParameterError, 'rise time'):
         require_reachable(TimeSpecifications(rise_time_s=0.05, overshoot=0.14))
     require_reachable(CHAPTER_2)

@@ -115,7 +115,7 @@ def test_without_disturbances_the_observer_stays_wrong():
 
 
 def test_every_disturbance_needs_a_drift():
-    with pytest.raises(ParameterError, match='1 drifts given for 2 disturbances'):
+    with refused(ParameterError, 'drifts'):
         kalman_gain(offset_free_model(DRIVELINE), NoiseLevels(drift=(1.0,)))
 
 

@@ -204,5 +204,5 @@ def test_moves_that_nothing_weighs_are_refused(inputs):
 def test_weights_that_leave_the_program_singular_are_refused():
     """With weights on slip alone, C_m and the clutch have the same effect."""
     loose = MpcSettings((OutputTerms(SLIP_SPEED, 1.0),), (InputTerms(), InputTerms()), 60, 20)
-    with pytest.raises(ParameterError, match='hessian is singular'):
+    with refused(ParameterError, 'hessian'):
         condense(MODEL, loose)

@@ -44,38 +44,38 @@ def test_bad_vectors_are_named_and_harm_nothing(name, f, lower, upper, key):
 
 
 @pytest.mark.parametrize(
-    ('hessian', 'complaint'),
+    ('hessian', 'key'),
     [
-        ([[1.0, 0.0], [0.0, 0.0]], 'variable 1 costs nothing'),
-        ([[1.0, 1.0], [1.0, 1.0]], 'singular to working precision'),
-        ([[1.0, 1.0], [1.0, 1.0 + 1e-12]], 'singular to working precision'),
-        ([[1.0, 2.0], [2.0, 1.0]], 'singular to working precision'),
-        ([[1.0, 0.5], [0.4, 1.0]], 'not symmetric'),
-        ([[1.0, math.nan], [math.nan, 1.0]], 'hessian must be a matrix of finite numbers'),
-        ([[1.0, 0.0]], r'hessian is \(1, 2\), it must be \(1, 1\)'),
-        ([1.0, 2.0], 'hessian must be a matrix'),
+        ([[1.0, 0.0], [0.0, 0.0]], 'variable 1'),
+        ([[1.0, 1.0], [1.0, 1.0]], 'hessian'),
+        ([[1.0, 1.0], [1.0, 1.0 + 1e-12]], 'hessian'),
+        ([[1.0, 2.0], [2.0, 1.0]], 'hessian'),
+        ([[1.0, 0.5], [0.4, 1.0]], 'hessian'),
+        ([[1.0, math.nan], [math.nan, 1.0]], 'hessian'),
+        ([[1.0, 0.0]], 'hessian'),
+        ([1.0, 2.0], 'hessian'),
     ],
 )
-def test_a_hessian_that_cannot_be_solved_is_refused_at_configuration(hessian, complaint):
-    with pytest.raises(ParameterError, match=complaint):
+def test_a_hessian_that_cannot_be_solved_is_refused_at_configuration(hessian, key):
+    with refused(ParameterError, key):
         QpStructure(np.array(hessian), np.eye(2))
 
 
 @pytest.mark.parametrize(
-    ('arguments', 'complaint'),
+    ('arguments', 'key'),
     [
-        ({'constraints': np.eye(3)}, r'constraints is \(3, 3\), it must be \(3, 2\)'),
-        ({'hessian': np.eye(0), 'constraints': np.ones((1, 0))}, 'hessian is empty'),
-        ({'constraints': np.full((1, 2), INF)}, 'constraints must be a matrix of finite'),
-        ({'soft': np.array([True])}, '2 booleans'),
-        ({'soft': np.array([0.0, 1.0])}, '2 booleans'),
-        ({'soft': np.array([True, False])}, 'soft_weight is None'),
-        ({'soft': np.array([True, False]), 'soft_weight': 0.0}, 'above 0'),
-        ({'soft': np.array([True, False]), 'soft_weight': math.nan}, 'finite number'),
+        ({'constraints': np.eye(3)}, 'constraints'),
+        ({'hessian': np.eye(0), 'constraints': np.ones((1, 0))}, 'hessian'),
+        ({'constraints': np.full((1, 2), INF)}, 'constraints'),
+        ({'soft': np.array([True])}, 'soft'),
+        ({'soft': np.array([0.0, 1.0])}, 'soft'),
+        ({'soft': np.array([True, False])}, 'QP: soft_weight'),
+        ({'soft': np.array([True, False]), 'soft_weight': 0.0}, 'QP: soft_weight'),
+        ({'soft': np.array([True, False]), 'soft_weight': math.nan}, 'QP: soft_weight'),
     ],
 )
-def test_a_bad_structure_is_refused(arguments, complaint):
-    with pytest.raises(ParameterError, match=complaint):
+def test_a_bad_structure_is_refused(arguments, key):
+    with refused(ParameterError, key):
         QpStructure(**({'hessian': np.eye(2), 'constraints': np.eye(2)} | arguments))
 
 

@@ -98,8 +98,9 @@ def fit_log(
             return _result(problem, x - moved, deviations, weak, stretches, dependent)
         weak += found
     raise DdctError(
-        f'{log.path}: the log determines none of {", ".join(free)}: take one in which torques and '
-        'speeds change'
+        f'the log determines none of {", ".join(free)}: take one in which torques and '
+        'speeds change',
+        place=log.path,
     )
 
 
@@ -124,8 +125,9 @@ def _gear(log: MeasuredLog, stretches: Sequence[Stretch]) -> EngagedGear:
     least, most = RATIOS_OF_CARS
     if not least <= ratio <= most:
         raise DdctError(
-            f'{log.path}: shaft_speed over wheel_speed is {ratio:.4g} as a rule, a car has '
-            f'{least:g} to {most:g}: check both units, or give --fix total_ratio'
+            f'shaft_speed over wheel_speed is {ratio:.4g} as a rule, a car has '
+            f'{least:g} to {most:g}: check both units, or give --fix total_ratio',
+            place=log.path,
         )
     return EngagedGear(ratio)
 

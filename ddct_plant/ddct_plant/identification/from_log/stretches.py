@@ -41,8 +41,8 @@ def stretches_of(log: MeasuredLog, known_load: KnownLoad) -> list[Stretch]:
     rows = np.isfinite(speeds).all(axis=1)
     if rows.sum() < FEWEST_SAMPLES:
         raise DdctError(
-            f'{log.path}: {rows.sum()} rows have all of {", ".join(SPEEDS)}: give at least '
-            f'{FEWEST_SAMPLES}'
+            f'{rows.sum()} rows have all of {", ".join(SPEEDS)}: give at least {FEWEST_SAMPLES}',
+            place=log.path,
         )
     time_s, speeds = log.time_s[rows], speeds[rows]
     torques = {name: log.samples(name) for name in (*TORQUES, LOAD) if name in log.signals}
@@ -54,8 +54,8 @@ def stretches_of(log: MeasuredLog, known_load: KnownLoad) -> list[Stretch]:
     ]
     if not stretches:
         raise DdctError(
-            f'{log.path}: no {FEWEST_SAMPLES} samples in a row without a gap: give a log with '
-            'fewer holes'
+            f'no {FEWEST_SAMPLES} samples in a row without a gap: give a log with fewer holes',
+            place=log.path,
         )
     return stretches
 

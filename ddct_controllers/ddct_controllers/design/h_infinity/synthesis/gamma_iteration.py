@@ -95,7 +95,8 @@ def _first_reached(plant: GeneralisedPlant) -> Synthesis:
     raise DdctError(
         f'synthesis: no level up to {_HIGHEST:g} gave a controller whose closed loop verifies: '
         'move plant poles and zeros off the imaginary axis, or scale the weights to about 1 near '
-        'the crossover'
+        'the crossover',
+        key='weights',
     )
 
 

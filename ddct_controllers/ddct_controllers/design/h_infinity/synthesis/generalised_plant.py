@@ -78,7 +78,8 @@ class GeneralisedPlant:
             raise DdctError(
                 'generalised plant: no external output has the control in it directly (D12 is 0), '
                 'so that infinite gain costs nothing: weigh the torque, or give W_2 as many zeros '
-                'as the plant has more poles than zeros'
+                'as the plant has more poles than zeros',
+                key='W_2',
             )
         if not np.any(self.d21):
             raise DdctError(

@@ -61,7 +61,8 @@ def synthesise_by_lmi(plant: GeneralisedPlant) -> Synthesis:
             return Synthesis(controller, norm, norm, optimum, 'lmi')
     raise DdctError(
         'synthesis by LMI: no solution gave a closed loop that verifies: use the Riccati method, '
-        'or scale the weights to about 1 near the crossover'
+        'or scale the weights to about 1 near the crossover',
+        key='weights',
     )
 
 

@@ -142,7 +142,7 @@ def test_a_closed_loop_above_the_promised_level_is_refused(monkeypatch, method, 
     for module in (riccati_synthesis, lmi_synthesis):
         monkeypatch.setattr(module, 'central_controller', promised)
         monkeypatch.setattr(module, 'verified_norm', lambda *_: levels[-1] * (1.0 + excess))
-    with pytest.raises(DdctError, match='closed loop'):
+    with refused(DdctError, 'weights'):
         (synthesise_by_lmi if method == 'lmi' else synthesise)(simple_plant())
 
 
@@ -191,7 +191,7 @@ def test_a_plant_without_a_solution_is_named(method, changes, complaint):
 def test_the_thesis_constant_w_2_alone_has_no_solution():
     """W_2* = 1/T_p of Section 3.2.2, before `sderiv`, weighs nothing at high frequency."""
     plant = mixed_sensitivity(plant_in_rpm(), W_1, FactoredTransferFunction(1.0 / 1.02))
-    with pytest.raises(DdctError, match='D12 is 0'):
+    with refused(DdctError, 'W_2'):
         synthesise(plant)
 
 
@@ -203,9 +203,7 @@ def test_an_unstable_w_1_is_named():
 
 def test_a_w_2_with_too_many_zeros_is_named():
     third = W_2 * FactoredTransferFunction(1.0, (100.0,))
-    with pytest.raises(
-        ParameterError, match='W_2 is of degree 3, .* only 2 more poles than zeros'
-    ):
+    with refused(ParameterError, 'W_2'):
         mixed_sensitivity(plant_in_rpm(), W_1, third)
 
 
@@ -226,20 +224,20 @@ def test_a_plant_that_blocks_at_rest_has_no_small_s_there():
 
 def test_weights_far_from_one_are_named():
     huge = FactoredTransferFunction(1e9) * W_1
-    with pytest.raises(DdctError, match=r'no level up to 1e\+06 .*scale the weights'):
+    with refused(DdctError, 'weights'):
         synthesise(mixed_sensitivity(plant_in_rpm(), huge, W_2))
 
 
 @pytest.mark.parametrize('recipe', ['thesis', 'sampled'])
 def test_specifications_that_no_controller_meets_are_named(recipe):
     wanted = TimeSpecifications(rise_time_s=0.02, overshoot=0.08)
-    with pytest.raises(ParameterError, match=r'above sqrt\(2\): allow a longer rise time'):
+    with refused(ParameterError, 'rise time'):
         design_h_infinity(make_weights(recipe, wanted))
 
 
 def test_bounds_on_s_and_t_that_exclude_each_other_are_named():
     weights = make_weights('thesis', bandwidth_rad_s=2.0)
-    with pytest.raises(ParameterError, match='no controller meets the bounds on S and T'):
+    with refused(ParameterError, 'rise time'):
         design_h_infinity(weights)
 
 
@@ -255,7 +253,7 @@ def test_the_back_off_is_at_least_one():
 
 
 def test_a_peak_below_one_is_refused_before_any_synthesis():
-    with pytest.raises(ParameterError, match='it must be above 1'):
+    with refused(ParameterError, 'S_p'):
         SensitivityWeight(0.15, 1.0)
 
 
