@@ -54,7 +54,7 @@ class RunConditions:
     clutch: str
     wear_gain: float
     mode: str
-    """'lockstep' or 'realtime', MEASURED of a log of another tool."""
+    """Mode: 'lockstep', 'realtime', or MEASURED for the log of another tool."""
     seed: int
 
     def __post_init__(self) -> None:

@@ -34,7 +34,7 @@ def stacked_results(
     Return the results of runs of one length, control start and score window.
 
     `trajectory` is a stack of these runs in which all values are finite. All are valid, and have
-    neither a bag nor facts: the caller knows them. The times of updates are None.
+    neither a bag nor facts, which the caller has. The times of updates are None.
     """
     scenario = runs[0].scenario
     start = scenario.control_start_step

@@ -11,15 +11,15 @@ import numpy as np
 from ddct_plant.linear.lti import StateSpace
 
 
-def stacked(things: Sequence[Any]) -> Any:
+def stacked(members: Sequence[Any]) -> Any:
     """
-    Return one dataclass whose fields are arrays, (R,), of those of R; nested dataclasses likewise.
+    Return one dataclass with the fields of R as arrays, (R,), also in nested dataclasses.
 
     Its class is theirs, so that equations may call its methods; it is not checked.
     """
-    stack = object.__new__(type(things[0]))
-    for field in fields(things[0]):
-        values = [getattr(each, field.name) for each in things]
+    stack = object.__new__(type(members[0]))
+    for field in fields(members[0]):
+        values = [getattr(each, field.name) for each in members]
         column = stacked(values) if is_dataclass(values[0]) else np.array(values)
         object.__setattr__(stack, field.name, column)
     return stack

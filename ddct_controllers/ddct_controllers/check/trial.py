@@ -100,8 +100,8 @@ def closed_trial(
     Run a new object, which stays wrapped, on the plant; its slip reference falls to zero.
 
     `reference_step` lowers the reference by PROBE_RAD_S at the probe step. Sensors of the scenario
-    are left out: trials differ by less than their noise. Raise what the controller raises, as a
-    DdctError with its name.
+    are left out: trials differ by less than their noise. Raise an error of the
+    controller as a DdctError with its name.
     """
     log = ClosedLoopLog()
     exact = replace(settings, scenario=replace(settings.scenario, sensors=None))

@@ -31,7 +31,7 @@ class DesignedController:
     provenance: Mapping[str, Any] = field(default_factory=dict)
     """Method, specifications and verified quantities, as plain values."""
     discretisation: str = HOLD
-    """HOLD or BILINEAR: a design with hold and delay in the plant is BILINEAR."""
+    """Discretisation: HOLD, or BILINEAR for a design with hold and delay in its plant."""
 
     def __post_init__(self) -> None:
         """Check name, properness and choice; raise ParameterError that names the wrong one."""

@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Program `design`: from specifications to a verified controller, and what it can bear."""
+"""Program `design`: from specifications to a verified controller and its margins."""
 
 from ddct_controllers.workflows import (
     h_infinity_command,

@@ -106,21 +106,21 @@ class _Document:
         next(self._events)
         after = next(self._events)
         if not isinstance(after, yaml.StreamEndEvent):
-            raise _refused(after, 'a second document begins: give one')
+            raise _bad_yaml(after, 'a second document begins: give one')
         return value
 
     def _value(self, event: yaml.Event, depth: int, path: str) -> Any:
         self._values += 1
         if self._values > MOST_VALUES:
-            raise _refused(event, f'more than {MOST_VALUES} values')
+            raise _bad_yaml(event, f'more than {MOST_VALUES} values')
         if isinstance(event, yaml.AliasEvent):
-            raise _refused(event, f'the alias *{event.anchor}: write out what it stands for')
+            raise _bad_yaml(event, f'the alias *{event.anchor}: write out what it stands for')
         if event.tag is not None:
-            raise _refused(event, f'the tag {event.tag}: write the value without it')
+            raise _bad_yaml(event, f'the tag {event.tag}: write the value without it')
         if isinstance(event, yaml.ScalarEvent):
             return _scalar(event)
         if depth == MOST_DEPTH:
-            raise _refused(event, f'nested more than {MOST_DEPTH} deep')
+            raise _bad_yaml(event, f'nested more than {MOST_DEPTH} deep')
         if isinstance(event, yaml.SequenceStartEvent):
             return self._sequence(depth, path)
         return self._mapping(depth, path)
@@ -138,11 +138,11 @@ class _Document:
         lines: dict[Any, int] = {}
         for event in self._until(yaml.MappingEndEvent):
             if not isinstance(event, (yaml.ScalarEvent, yaml.AliasEvent)):
-                raise _refused(event, 'a list or mapping is used as a key: give text')
+                raise _bad_yaml(event, 'a list or mapping is used as a key: give text')
             key = self._value(event, depth, '')
             if key in lines:
                 first = lines[key]
-                raise _refused(event, f'the key {key!r} is given twice, first in line {first}')
+                raise _bad_yaml(event, f'the key {key!r} is given twice, first in line {first}')
             key_path = f'{path}.{key}' if path else str(key)
             lines[key] = self.lines[key_path] = _line(event)
             content[key] = self._value(next(self._events), depth + 1, key_path)
@@ -156,7 +156,7 @@ class _Document:
 def _scalar(event: yaml.ScalarEvent) -> Any:
     text = event.value
     if _SURROGATE.search(text):
-        raise _refused(event, 'half of a surrogate pair is no character')
+        raise _bad_yaml(event, 'half of a surrogate pair is no character')
     if not event.implicit[0]:  # in quotes, or a block of text
         return text
     if text in _WORDS:
@@ -165,13 +165,13 @@ def _scalar(event: yaml.ScalarEvent) -> Any:
     if not integer and not _FLOAT.fullmatch(text):
         return text
     if len(text) > MOST_DIGITS:
-        raise _refused(event, f'a number of {len(text)} digits: give at most {MOST_DIGITS}')
+        raise _bad_yaml(event, f'a number of {len(text)} digits: give at most {MOST_DIGITS}')
     if integer:
         return int(text, {'0o': 8, '0x': 16}.get(text[:2], 10))
     return float(text.lower().replace('.inf', 'inf').replace('.nan', 'nan'))
 
 
-def _refused(event: yaml.Event, what: str) -> ParameterError:
+def _bad_yaml(event: yaml.Event, what: str) -> ParameterError:
     return ParameterError(f'not valid YAML: {what}', place=f'line {_line(event)}')
 
 

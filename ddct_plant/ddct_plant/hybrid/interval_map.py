@@ -75,11 +75,10 @@ class IntervalMap:
         rows = [ends[-1], flow.force @ driven]
         self._friction = slice(flow.states, flow.states + len(flow.force))
         self._work: list[tuple[int, slice, slice]] = []
-        """For each slipping element: its index, slice of its integrals, slice of its
-        capacities."""
+        """Index, slice of the integrals and slice of the capacities of each slipping element."""
         self._held_work: list[tuple[int, int, int]] = []
-        """For each slipping element with a held capacity: its index, that of its integral, that of
-        its capacity; a sum would take longer."""
+        """Indices of the element, its integral and its capacity, for each slipping element with a
+        held capacity; a sum would take longer."""
         first = self._friction.stop
         for place, element in enumerate(flow.slipping):
             where = layout.capacities[element]

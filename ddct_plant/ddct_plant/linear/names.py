@@ -13,15 +13,15 @@ class Names:
     """
     Names in the order of the rows or columns that they stand for.
 
-    A model has one for its states, so that nobody else needs to know at which index a state is,
-    or how many there are.
+    A model has one for its states, so that other modules use neither the index of a state nor
+    the number of states.
     """
 
     names: tuple[str, ...]
     """Names, each once."""
 
     def __post_init__(self) -> None:
-        """Check that no name stands twice; raise ParameterError otherwise."""
+        """Check that no name occurs twice; raise ParameterError otherwise."""
         for name in self.names:
             if self.names.count(name) > 1:
                 raise ParameterError(

@@ -82,7 +82,7 @@ def run_program(
         _drop_output()
         return PIPE_CLOSED
     except OSError as error:
-        complain(name, _refused(error))
+        complain(name, _io_error_text(error))
         _drop_output()
         return 1
 
@@ -129,7 +129,7 @@ def _flush() -> None:
         sys.stdout.flush()
 
 
-def _refused(error: OSError) -> str:
+def _io_error_text(error: OSError) -> str:
     """Return one line about an error of the operating system: the file, the cause, an advice."""
     what = 'the output' if error.filename is None else error.filename
     advice = _ADVICE.get(error.errno or 0, 'choose another place')

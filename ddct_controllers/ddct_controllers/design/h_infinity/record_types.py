@@ -139,4 +139,4 @@ class UncertaintyRecord(TypedDict):
     printed_falls_short_by: float
     """Largest relative amount by which the printed W_u is below the error."""
     printed_falls_short_above_rad_s: float | None
-    """Frequency in rad/s above which it is; None where it nowhere is."""
+    """Frequency in rad/s above which the printed W_u is below the error; None for none."""

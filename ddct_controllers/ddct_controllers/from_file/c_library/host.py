@@ -4,9 +4,9 @@
 The process that loads a controller's library, and the processes that make its calls.
 
 They are processes of their own because C may crash, loop for ever or print. The library is loaded
-once. Each controller has a fork of the process that loaded it, so that none sees what another has
-left in static variables. Replies go over a socket, a message each; a process ends when the other
-end closes.
+once. Each controller has a fork of the process that loaded it, so that none has the static
+variables of another. Replies go over a socket, a message each; a process ends when the other end
+closes.
 """
 
 import contextlib

@@ -32,7 +32,7 @@ class ParameterRow:
     """Upper end of that interval."""
     unit: str
     state: str
-    """`fitted`, `fixed` or `not determined`."""
+    """State of the parameter: `fitted`, `fixed` or `not determined`."""
     used: float
     """Value in the new scenario."""
 
@@ -50,7 +50,7 @@ class DelayRow:
     highest_s: float | None
     """Upper end of that interval in s."""
     state: str
-    """`fitted`, `given`, `reference` or `not determined`."""
+    """State of the delay: `fitted`, `given`, `reference` or `not determined`."""
 
 
 @dataclass(frozen=True)
