@@ -9,14 +9,8 @@ from ddct_bringup.bag.measured_keys import MeasuredKeys
 from ddct_controllers.mpc.costs import BASIS
 from ddct_controllers.mpc.program.settings import program_options
 from ddct_controllers.registry import controller_spec
-from ddct_plant.base.options import (
-    OPTION_HEADERS,
-    OptionGroup,
-    Options,
-    group_of,
-    option_rows,
-    options_of,
-)
+from ddct_plant.base.option import OPTION_HEADERS, option_rows
+from ddct_plant.base.options import OptionGroup, Options, group_of, options_of
 from ddct_plant.program.table import Table
 from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings

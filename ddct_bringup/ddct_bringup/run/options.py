@@ -15,7 +15,8 @@ from ddct_controllers.registry import (
     controller_spec,
 )
 from ddct_plant.base.errors import DdctError, ParameterError, printable
-from ddct_plant.base.options import OPTION_HEADERS, Option, option_rows, options_of
+from ddct_plant.base.option import OPTION_HEADERS, option_rows
+from ddct_plant.base.options import Option, options_of
 from ddct_plant.models.clutch import CLUTCHES
 from ddct_plant.program.table import Table, print_table
 from ddct_plant.scenario.file import scenario_names

@@ -9,13 +9,13 @@ import pytest
 from refusals import refused
 
 from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.option import option_rows
 from ddct_plant.base.options import (
     REQUIRED,
     Option,
     OptionGroup,
     close_name,
     option,
-    option_rows,
     options_of,
     with_values,
 )
