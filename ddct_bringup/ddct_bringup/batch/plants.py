@@ -11,8 +11,9 @@ import numpy as np
 from ddct_bringup.batch.stacks import distinct, product, stacked
 from ddct_plant.base.timebase import STEPS_PER_S, SUBSTEPS
 from ddct_plant.models.actuator import ActuatorParameters, at_rest, lifted
-from ddct_plant.models.driveline import driveline_outputs, step_matrix
+from ddct_plant.models.driveline import driveline_outputs
 from ddct_plant.models.driveline_model import STATES
+from ddct_plant.models.linear_driveline import step_matrix
 from ddct_plant.models.load import resisting_torque
 from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.models.static_torque import StaticTorque

@@ -12,9 +12,10 @@ from dataclasses import replace
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.models.actuator import Actuator
 from ddct_plant.models.clutch import STICK_SLIP, FrictionClutch, LinearClutch
-from ddct_plant.models.driveline import OPEN, Driveline
+from ddct_plant.models.driveline import OPEN
 from ddct_plant.models.engine import Engine
 from ddct_plant.models.initial_state import InitialState
+from ddct_plant.models.linear_driveline import Driveline
 from ddct_plant.models.load import HoldingTorque, RoadLoad, air_and_slope
 from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.models.static_torque import StaticTorque

@@ -10,7 +10,7 @@ from typing import Any
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import stamp_of_step
 from ddct_plant.fail_safe.request_watch import CLUTCH_TIMEOUT_S, FailSafeSettings
-from ddct_plant.models.driveline import Driveline
+from ddct_plant.models.linear_driveline import Driveline
 from ddct_plant.models.stick_slip_driveline import StickSlipDriveline
 
 Rows = Sequence[list[float]]

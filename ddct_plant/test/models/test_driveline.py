@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from ddct_plant.models.driveline import Driveline
 from ddct_plant.models.driveline_model import driveline_matrices
+from ddct_plant.models.linear_driveline import Driveline
 from ddct_plant.models.static_torque import constant_slip_torque
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.plant import initial_state

@@ -12,9 +12,10 @@ from refusals import refused
 from scipy.integrate import solve_ivp
 
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.models.driveline import PHASES, Driveline
+from ddct_plant.models.driveline import PHASES
 from ddct_plant.models.driveline_model import states_and_torques
 from ddct_plant.models.initial_state import InitialState
+from ddct_plant.models.linear_driveline import Driveline
 from ddct_plant.models.parameters import DrivelineParameters, VehicleParameters
 from ddct_plant.models.stick_slip_driveline import CLUTCH, WHEEL, StickSlipDriveline
 

@@ -10,9 +10,9 @@ from scipy.linalg import expm
 from scipy.signal import lsim
 
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.models.driveline import Driveline
 from ddct_plant.models.driveline_model import driveline_matrices
 from ddct_plant.models.initial_state import InitialState
+from ddct_plant.models.linear_driveline import Driveline
 from ddct_plant.models.parameters import DrivelineParameters, VehicleParameters
 from ddct_plant.simplified.elementary import BlockDiagram, elementary_slip
 from ddct_plant.simplified.plants import (

@@ -21,7 +21,7 @@ from ddct_controllers.registry import make_controller
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.models.actuator import ActuatorParameters, at_rest, lifted
-from ddct_plant.models.driveline import step_matrix
+from ddct_plant.models.linear_driveline import step_matrix
 from ddct_plant.models.static_torque import StaticTorque
 from ddct_plant.scenario.plant import initial_state, make_load
 from ddct_plant.scenario.settings import RunSettings

@@ -6,8 +6,8 @@ import numpy as np
 
 from ddct_plant.base.timebase import PERIOD_S, SUBSTEP_S, SUBSTEPS
 from ddct_plant.linear.sampling import hold_inputs, lift_piecewise_linear
-from ddct_plant.models.driveline import step_matrix
 from ddct_plant.models.driveline_model import states_and_torques
+from ddct_plant.models.linear_driveline import step_matrix
 from ddct_plant.models.parameters import DrivelineParameters
 
 STATES = ENGINE, SHAFT, WHEEL, TWIST = (0, 1, 2, 3)

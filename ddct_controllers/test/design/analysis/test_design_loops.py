@@ -15,12 +15,7 @@ from ddct_controllers.design.analysis.loops import (
     sampled_loop,
     sampled_plant,
 )
-from ddct_controllers.design.state_space import (
-    close_loop,
-    frequency_response,
-    poles_rad_s,
-    series,
-)
+from ddct_controllers.design.state_space import close_loop, frequency_response, poles_rad_s, series
 from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import PERIOD_S
@@ -29,8 +24,8 @@ from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
 from ddct_plant.linear.sampling import discretise_zoh
 from ddct_plant.models.actuator import Actuator, ActuatorParameters
 from ddct_plant.models.clutch import LinearClutch
-from ddct_plant.models.driveline import Driveline
 from ddct_plant.models.initial_state import InitialState
+from ddct_plant.models.linear_driveline import Driveline
 from ddct_plant.models.parameters import VehicleParameters
 
 OMEGA = np.geomspace(1e-3, 300.0, 200)

@@ -29,9 +29,9 @@ from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.models.actuator import Actuator
 from ddct_plant.models.clutch import LinearClutch
-from ddct_plant.models.driveline import Driveline
 from ddct_plant.models.driveline_model import driveline_matrices
 from ddct_plant.models.initial_state import InitialState
+from ddct_plant.models.linear_driveline import Driveline
 from ddct_plant.models.parameters import DrivelineParameters, VehicleParameters
 from ddct_plant.models.printed import ACTUATOR
 
