@@ -13,7 +13,8 @@ from ddct_bringup.metrics.metric import Metrics
 from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_bringup.scores.csv_text import score_row, signal_columns
 from ddct_bringup.scores.document import run_entry, verdict_entry
-from ddct_bringup.scores.floors import scores_with_floors
+from ddct_bringup.scores.floors import with_floors
+from ddct_bringup.scores.scored_recording import ScoredRecording
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.verdict.limits import Limits
 from ddct_controllers.registry import Chosen
@@ -27,11 +28,8 @@ from ddct_plant.scenario.settings import RunSettings
 class Run:
     """One run: simulated, recorded from the graph, or loaded from a bag."""
 
-    recording: Recording
-    scores: ScoredRun
-    """Facts, metrics and verdict of the run."""
-    timing: RunTiming | None
-    """Wall-clock times and counts; None of a bag without `timing.json`."""
+    scored: ScoredRecording
+    """Scores of the run, its recording and its timing; the recording can be read."""
     chosen: Chosen
     """Controller, as the registry accepts it."""
 
@@ -45,6 +43,22 @@ class Run:
             f'{facts.wear_gain:g}, {verdict.state}, limits {verdict.limits}, '
             f'{counts}>'
         )
+
+    @property
+    def recording(self) -> Recording:
+        """Recording of the run: signals, facts and settings."""
+        assert self.scored.recording is not None, 'only a readable bag is scored here'
+        return self.scored.recording
+
+    @property
+    def scores(self) -> ScoredRun:
+        """Facts, metrics and verdict of the run."""
+        return self.scored.scores
+
+    @property
+    def timing(self) -> RunTiming | None:
+        """Wall-clock times and counts; None of a bag without `timing.json`."""
+        return self.scored.timing
 
     @property
     def controller(self) -> str:
@@ -104,11 +118,8 @@ class Run:
 
     def with_floors(self, metrics: Iterable[str] | None, limits: Limits) -> 'Run':
         """Return the run with the floors of metrics beside its scores; itself for None."""
-        if metrics is None or self.recording.settings is None:
-            return self
-        settings, run = self.recording.settings, self.recording.trajectory
-        scores = scores_with_floors(self.scores, settings, run, tuple(metrics), limits)
-        return replace(self, scores=scores)
+        scored = with_floors(self.scored, None if metrics is None else tuple(metrics), limits)
+        return replace(self, scored=scored)
 
     def frequency(self) -> ControllerEntry:
         """

@@ -154,7 +154,8 @@ def _kept(
             return kept
         folder.commit()
     path = bag_file(folder.final, plan.name)
-    return replace(kept, recording=replace(kept.recording, path=path))
+    recording = replace(kept.recording, path=path)
+    return replace(kept, scored=replace(kept.scored, recording=recording))
 
 
 def _execute(plan: RunPlan, folder: Path, parent: WarmParent | None) -> None:
@@ -164,5 +165,4 @@ def _execute(plan: RunPlan, folder: Path, parent: WarmParent | None) -> None:
 
 def _run_of(scored: ScoredRecording, chosen: Chosen = '') -> Run:
     assert scored.recording is not None, 'only a readable bag is scored here'
-    recording = scored.recording
-    return Run(recording, scored.scores, scored.timing, chosen or recording.facts.controller)
+    return Run(scored, chosen or scored.recording.facts.controller)

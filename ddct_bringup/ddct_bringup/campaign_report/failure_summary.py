@@ -17,7 +17,7 @@ from ddct_bringup.campaign_report.summary_types import (
     FailedSummary,
     PartSummary,
     Reason,
-    RunOfValue,
+    RunReference,
     RunValue,
     ShareOfRuns,
     StateSummary,
@@ -101,7 +101,7 @@ def _side(results: Results, rows: np.ndarray, side: FailureBoundary) -> Boundary
         'failed': side.failed,
         'runs': side.runs,
         'invalid': side.invalid,
-        **_run(results, rows, side.row),
+        **_reference(results, rows, side.row),
     }
 
 
@@ -138,10 +138,10 @@ def _part(part: attribution.Part) -> PartSummary:
 def case_of(results: Results, rows: np.ndarray, values: np.ndarray, place: int | None) -> RunValue:
     """Return the value, index and state of the run at a place among `rows`, None for none."""
     value = None if place is None else float(values[place])
-    return {'value': value, **_run(results, rows, place)}
+    return {'value': value, **_reference(results, rows, place)}
 
 
-def _run(results: Results, rows: np.ndarray, place: int | None) -> RunOfValue:
+def _reference(results: Results, rows: np.ndarray, place: int | None) -> RunReference:
     """Return index and state of a run."""
     if place is None:
         return {'index': None, 'state': None}

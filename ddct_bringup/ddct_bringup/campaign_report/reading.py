@@ -36,9 +36,9 @@ def read_table(folder: Path, manifest: Manifest) -> pa.Table:
     path = folder / RESULTS
     try:
         table = read_parquet(path)
-        known = table.schema.metadata or {}
+        metadata = table.schema.metadata or {}
         require_schema_version(
-            {SCHEMA_KEY: int(known.get(SCHEMA_KEY.encode(), 0))}, SCHEMA_VERSION
+            {SCHEMA_KEY: int(metadata.get(SCHEMA_KEY.encode(), 0))}, SCHEMA_VERSION
         )
     except FileNotFoundError as error:
         raise DdctError(
@@ -63,10 +63,10 @@ def read_table(folder: Path, manifest: Manifest) -> pa.Table:
 def results_of(manifest: Manifest, table: pa.Table) -> Results:
     """Return the results from the rows and the manifest."""
     columns = {name: numpy_column(table[name]) for name in table.column_names}
-    ours = (*REQUIRED, PATH, *COMPARED, *manifest.grid, *manifest.random)
+    expected = (*REQUIRED, PATH, *COMPARED, *manifest.grid, *manifest.random)
     absent = tuple(name for name in COMPARED if name not in columns)
     unknown = tuple(
-        name for name in columns if name not in ours and not name.startswith(OVER_FLOOR)
+        name for name in columns if name not in expected and not name.startswith(OVER_FLOOR)
     )
     nominal: dict[str, float] = {}
     why = ''

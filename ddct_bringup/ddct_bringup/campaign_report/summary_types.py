@@ -47,20 +47,20 @@ class FailedSummary(ShareOfRuns):
     reasons: list[Reason]
 
 
-class RunOfValue(TypedDict):
+class RunReference(TypedDict):
     """Index and state of a run; null without one."""
 
     index: int | None
     state: str | None
 
 
-class RunValue(RunOfValue):
+class RunValue(RunReference):
     """Value of a quantity in one run."""
 
     value: float | None
 
 
-class BoundarySide(RunOfValue):
+class BoundarySide(RunReference):
     """Boundary of failure on one side of a line, as in `FailureBoundary`, and its first run."""
 
     last_good: float | None

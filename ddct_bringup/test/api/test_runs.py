@@ -121,7 +121,8 @@ def test_a_run_is_printed_as_one_line(worn):
     assert repr(worn) == (
         '<Run of ls8: thesis, 3 s, wear gain 0.7, engaged, limits beyond, valid>'
     )
-    crashed = replace(worn, scores=replace(worn.scores, valid=False, reason='it crashed'))
+    failed = replace(worn.scores, valid=False, reason='it crashed')
+    crashed = replace(worn, scored=replace(worn.scored, scores=failed))
     assert repr([crashed]).endswith(', not valid: it crashed>]')
 
 
