@@ -87,7 +87,7 @@ def sweep(
     judged_by = load_limits(limits)
     planned = Sweep(base, [_axis(key, over[key]) for key in over], chosen, judged_by)
     with planned.runs() as runs:
-        return pandas_module().DataFrame([result_row(each.scores, each.point) for each in runs])
+        return pandas_module().DataFrame([result_row(each.scores, each.varied) for each in runs])
 
 
 def _axis(key: str, values: str | Iterable[Any]) -> Axis:

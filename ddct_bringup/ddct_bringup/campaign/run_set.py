@@ -25,8 +25,8 @@ MOST_CHECKED = 1000
 
 
 @dataclass(frozen=True)
-class CampaignRun:
-    """One run, which becomes one row."""
+class PlannedRow:
+    """A run of the set with its settings, before it is computed; it becomes one row."""
 
     index: int
     controller: ControllerSpec[Controller]
@@ -41,8 +41,8 @@ class CampaignRun:
 
 
 @dataclass(frozen=True)
-class RefusedRun:
-    """One run whose settings cannot be built."""
+class ImpossibleRow:
+    """A run of the set whose settings cannot be built; it becomes a row with the reason."""
 
     index: int
     controller: ControllerSpec[Controller]
@@ -91,14 +91,14 @@ class RunSet:
         """Names of the controllers in results."""
         return [each.name for each in self.controllers]
 
-    def run(self, index: int) -> CampaignRun:
+    def run(self, index: int) -> PlannedRow:
         """Return a run; raise ParameterError with its index where its settings are invalid."""
         (run,) = self.planned(index, index + 1)
-        if isinstance(run, RefusedRun):
+        if isinstance(run, ImpossibleRow):
             raise run.error
         return run
 
-    def planned(self, first: int, last: int) -> Iterator[CampaignRun | RefusedRun]:
+    def planned(self, first: int, last: int) -> Iterator[PlannedRow | ImpossibleRow]:
         """Yield the runs from the index `first` to `last`, `last` excluded."""
         while first < last:
             number, case = divmod(first, self.cases)
@@ -118,14 +118,14 @@ class RunSet:
         controller: ControllerSpec[Controller],
         varied: Mapping[str, Any],
         given: dict[str, Any],
-    ) -> CampaignRun | RefusedRun:
+    ) -> PlannedRow | ImpossibleRow:
         base = self.bases[given.pop(SCENARIO)]
         try:
             settings = base.at({key: self.placed(key, given[key]) for key in given})
         except DdctError as error:
             named = error.at(_name(index, varied))
-            return RefusedRun(index, controller, varied, given.get(SEED, 0), named)
-        return CampaignRun(index, controller, varied, settings)
+            return ImpossibleRow(index, controller, varied, given.get(SEED, 0), named)
+        return PlannedRow(index, controller, varied, settings)
 
     def placed(self, key: str, value: Any) -> Any:
         """Return a value; if it names a file, its path."""

@@ -22,7 +22,7 @@ from ddct_bringup.campaign.rows import (
     result_row,
     scored_headless,
 )
-from ddct_bringup.campaign.run_set import CampaignRun, RefusedRun, RunSet
+from ddct_bringup.campaign.run_set import ImpossibleRow, PlannedRow, RunSet
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.scores.scoring import run_without_score
 from ddct_bringup.verdict.limits import Limits
@@ -38,8 +38,8 @@ _PARTS_EACH = 8
 
 
 @dataclass(frozen=True)
-class ScoredCampaignRun:
-    """Scores of one run, and what distinguishes it from the others."""
+class ScoredRow:
+    """A run of the set with its scores, and the values that distinguish it from the others."""
 
     index: int
     controller: str
@@ -70,7 +70,7 @@ class Scorer:
     """Metrics that are set beside the least; the runs are then computed step by step."""
     _shared: dict[str, Controller] = field(default_factory=dict)
 
-    def scored(self, runs: Iterable[CampaignRun | RefusedRun]) -> list[ScoredCampaignRun]:
+    def scored(self, runs: Iterable[PlannedRow | ImpossibleRow]) -> list[ScoredRow]:
         """
         Return every run with its scores, in their order.
 
@@ -79,20 +79,20 @@ class Scorer:
         planned = list(runs)
         # A value that is not finite becomes a reason in the row of its run.
         with np.errstate(all='ignore'):
-            found = self._together([run for run in planned if isinstance(run, CampaignRun)])
+            found = self._together([run for run in planned if isinstance(run, PlannedRow)])
             return [self._of(run, found.get(run.index)) for run in planned]
 
-    def _of(self, run: CampaignRun | RefusedRun, found: ScoredRun | None) -> ScoredCampaignRun:
+    def _of(self, run: PlannedRow | ImpossibleRow, found: ScoredRun | None) -> ScoredRow:
         name, path, scores = run.controller.name, VECTORISED, found
-        if isinstance(run, RefusedRun):
+        if isinstance(run, ImpossibleRow):
             failed = run_without_score(name, None, str(run.error))
             path, scores = SERIAL, replace(failed, over_floor=dict.fromkeys(self.floors))
         elif scores is None:
             path = SERIAL
             scores = scored_headless(run.settings, run.controller, self.limits, self.floors)
-        return ScoredCampaignRun(run.index, name, run.seed, run.varied, scores, path)
+        return ScoredRow(run.index, name, run.seed, run.varied, scores, path)
 
-    def _together(self, runs: Sequence[CampaignRun]) -> dict[int, ScoredRun]:
+    def _together(self, runs: Sequence[PlannedRow]) -> dict[int, ScoredRun]:
         """Return the scores of the runs that can be computed at once, by index."""
         suited = []
         for run in runs if self.at_once and not self.floors else ():
@@ -111,7 +111,7 @@ class Scorer:
             if result is not None
         }
 
-    def _controller(self, run: CampaignRun) -> Controller:
+    def _controller(self, run: PlannedRow) -> Controller:
         """Return the controller of a run; a packaged one that no run changes is built once."""
         spec = run.controller
         if spec.computed_from != THESIS or spec.name not in own_controller_names():
@@ -130,7 +130,7 @@ def scored_runs(
     workers: int | None = None,
     at_once: bool = True,
     floors: tuple[str, ...] = (),
-) -> Iterator[Iterator[ScoredCampaignRun]]:
+) -> Iterator[Iterator[ScoredRow]]:
     """
     Yield an iterator over all runs with their scores, in the order of their indices.
 
@@ -144,7 +144,7 @@ def scored_runs(
     size = max(1, min(largest, runs.runs // (_PARTS_EACH * count)))
     parts = -(-runs.runs // size)
 
-    def part(number: int) -> list[ScoredCampaignRun]:
+    def part(number: int) -> list[ScoredRow]:
         first = number * size
         return scorer.scored(runs.planned(first, min(first + size, runs.runs)))
 

@@ -24,7 +24,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import NoReturn
 
-from ddct_bringup.processes.jobs import JobText, Request
+from ddct_bringup.processes.jobs import ForkRequest, JobText
 from ddct_bringup.processes.preloading import preload
 from ddct_bringup.processes.tracing_locks import TracingLocks
 from ddct_plant.program.supervision import PULSE_FD, end_with_parent
@@ -61,7 +61,9 @@ def main() -> int:
 
 def _answer(channel: socket.socket, descriptors: list[int], locks: TracingLocks) -> None:
     """Fork the processes of the request in the first descriptor; send `DONE` when all exist."""
-    request: Request = json.loads(os.pread(descriptors[0], os.fstat(descriptors[0]).st_size, 0))
+    request: ForkRequest = json.loads(
+        os.pread(descriptors[0], os.fstat(descriptors[0]).st_size, 0)
+    )
     between = locks.fork()
     if between == 0:
         channel.close()
@@ -70,7 +72,7 @@ def _answer(channel: socket.socket, descriptors: list[int], locks: TracingLocks)
     channel.sendall(DONE)
 
 
-def _fork_all(request: Request, descriptors: list[int], locks: TracingLocks) -> NoReturn:
+def _fork_all(request: ForkRequest, descriptors: list[int], locks: TracingLocks) -> NoReturn:
     """
     Fork all processes of a request, write this process's id and theirs into a pipe, and exit.
 
@@ -91,7 +93,7 @@ def _fork_all(request: Request, descriptors: list[int], locks: TracingLocks) -> 
         os._exit(0)
 
 
-def _become(job: JobText, index: int, request: Request, descriptors: list[int]) -> NoReturn:
+def _become(job: JobText, index: int, request: ForkRequest, descriptors: list[int]) -> NoReturn:
     """Run a job in this fork, as if Python had been started for it."""
     code = 1
     try:

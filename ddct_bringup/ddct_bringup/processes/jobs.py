@@ -24,7 +24,7 @@ class JobText(TypedDict):
     outlives: bool
 
 
-class Request(TypedDict):
+class ForkRequest(TypedDict):
     """Text of a request to the warm parent, as JSON."""
 
     supervisor: int
@@ -66,7 +66,7 @@ def send_request(channel: socket.socket, jobs: Sequence[Job], go: int, born: int
     The descriptors are those of the text, of the pipe `go` at which the processes wait, of the
     pipe `born` for their ids, and three for each job.
     """
-    request: Request = {
+    request: ForkRequest = {
         'supervisor': os.getpid(),
         'environment': dict(os.environ),
         'jobs': [job.text() for job in jobs],

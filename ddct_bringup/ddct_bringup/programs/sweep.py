@@ -10,6 +10,7 @@ from pathlib import Path
 
 from rich.text import Text
 
+from ddct_bringup.campaign.scored import ScoredRow
 from ddct_bringup.metrics.catalogue import METRICS, TABLE_5_1
 from ddct_bringup.run.options import (
     ALL,
@@ -23,7 +24,6 @@ from ddct_bringup.scores.run_table import table_console
 from ddct_bringup.sweep.axis import axis_of
 from ddct_bringup.sweep.sweep import (
     Sweep,
-    SweptRun,
     sweep_csv,
     sweep_document,
     sweep_notes,
@@ -114,7 +114,7 @@ def _planned(options: argparse.Namespace) -> Sweep:
     return sweep
 
 
-def _carried_out(sweep: Sweep) -> list[SweptRun]:
+def _carried_out(sweep: Sweep) -> list[ScoredRow]:
     started = time.monotonic()
     with sweep.runs() as runs:
         done = list(with_progress(runs, len(sweep), f'{len(sweep)} runs'))

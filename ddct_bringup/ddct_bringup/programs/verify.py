@@ -18,7 +18,7 @@ from ddct_bringup.verification.folder import (
     folders_with_digests,
     verified_folder,
 )
-from ddct_bringup.verification.request import Request
+from ddct_bringup.verification.request import VerificationRequest
 from ddct_bringup.verification.text import complaints, print_verification
 from ddct_plant.files.output_file import require_place
 from ddct_plant.program.command_line import (
@@ -57,7 +57,7 @@ def _verify(argv: list[str]) -> int:
     for folder in folders_with_digests(options.path):
         with locked_folders(folder, shared=True):
             digests = read_digests(folder)
-            request = Request(folder, digests, limits, options.files, options.workers)
+            request = VerificationRequest(folder, digests, limits, options.files, options.workers)
             found.append(verified_folder(request))
     show_and_write(options.json, _document(found), lambda: _show(found))
     for line in (line for each in found for line in complaints(each)):

@@ -25,7 +25,7 @@ _HEADROOM = 1.1
 
 
 @dataclass(frozen=True)
-class FrontRun:
+class FrontPoint:
     """One run on the drawing, in shares of its width and height from the lower left corner."""
 
     index: int
@@ -44,7 +44,7 @@ class FrontView:
     """Runs that the least is proven for."""
     line: tuple[tuple[float, float], ...]
     """Points of the least, from the earliest lock time on."""
-    runs: tuple[FrontRun, ...]
+    runs: tuple[FrontPoint, ...]
     across: tuple[tuple[str, float], ...]
     """Text and place of each tick of the lock time in s."""
     up: tuple[tuple[str, float], ...]
@@ -96,7 +96,7 @@ def _drawn(settings: RunSettings, runs: Mapping[int, ScoredRecording]) -> FrontV
             for floor in floors
         ),
         runs=tuple(
-            FrontRun(
+            FrontPoint(
                 index,
                 _share(over.floor.lock_time_s, *across),
                 _share(over.value, 0.0, top),

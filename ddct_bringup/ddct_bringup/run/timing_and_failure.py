@@ -81,7 +81,7 @@ def _count(name: str, value: object) -> int:
 
 
 @dataclass(frozen=True)
-class FailedRun:
+class RunFailure:
     """Reason of a failed run, and its planned facts."""
 
     reason: str
@@ -98,7 +98,7 @@ def note_failure(folder: Path, reason: str, custom_data: Mapping[str, str]) -> N
     write_json(str(folder / NOTE_FILE), {'reason': reason, 'run': dict(custom_data)}, _ADVICE)
 
 
-def failed_run(folder: Path) -> FailedRun | None:
+def failed_run(folder: Path) -> RunFailure | None:
     """
     Return the failure noted in a run's folder; None without a note.
 
@@ -107,8 +107,8 @@ def failed_run(folder: Path) -> FailedRun | None:
     path = folder / NOTE_FILE
     try:
         note = parse_json(read_text_file(path))
-        return FailedRun(printable(note['reason']), RunFacts.from_custom_data(note['run']))
+        return RunFailure(printable(note['reason']), RunFacts.from_custom_data(note['run']))
     except FileNotFoundError:
         return None
     except (OSError, DdctError, LookupError, TypeError, AttributeError) as error:
-        return FailedRun(printable(f'the run failed, and its {path} cannot be read ({error!r})'))
+        return RunFailure(printable(f'the run failed, and its {path} cannot be read ({error!r})'))

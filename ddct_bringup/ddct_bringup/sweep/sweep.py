@@ -3,7 +3,7 @@
 """A sweep: every controller at every point of its axes, headless, scored, judged, tabulated."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from functools import cached_property
 from math import prod
@@ -12,12 +12,11 @@ from typing import Any
 from ddct_bringup.campaign.keys import SCENARIO
 from ddct_bringup.campaign.rows import result_row
 from ddct_bringup.campaign.run_set import RunSet
-from ddct_bringup.campaign.scored import scored_runs
+from ddct_bringup.campaign.scored import ScoredRow, scored_runs
 from ddct_bringup.run.run_base import RunBase
 from ddct_bringup.scores.csv_text import rows_csv
 from ddct_bringup.scores.document import run_entry
 from ddct_bringup.scores.run_table import CONTROLLER, STATE, RunColumn, dash_notes, metric
-from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.sweep.axis import MOST, Axis, value_text
 from ddct_bringup.verdict.limits import Limits
 from ddct_controllers.registry import Chosen, controller_label, controller_spec
@@ -30,15 +29,6 @@ SCHEMA_VERSION = 1
 """Schema version of the output of `ddct sweep --json`."""
 OVER = 'over'
 """Key in a run's entry of the values by the keys of the axes."""
-
-
-@dataclass(frozen=True)
-class SweptRun:
-    """One run of a sweep."""
-
-    point: Mapping[str, Any]
-    """Values by the keys of the axes."""
-    scores: ScoredRun
 
 
 @dataclass(frozen=True)
@@ -105,18 +95,16 @@ class Sweep:
         """Return the number of runs."""
         return self.run_set.runs
 
-    @contextmanager
-    def runs(self) -> Iterator[Iterator[SweptRun]]:
+    def runs(self) -> AbstractContextManager[Iterator[ScoredRow]]:
         """
         Carry out all runs on all cores as the iterator is consumed; see `scored_runs`.
 
         Those of the first controller come first.
         """
-        with scored_runs(self.run_set, self.limits, at_once=False) as found:
-            yield (SweptRun(each.varied, each.scores) for each in found)
+        return scored_runs(self.run_set, self.limits, at_once=False)
 
 
-def sweep_document(sweep: Sweep, runs: Sequence[SweptRun]) -> Mapping[str, Any]:
+def sweep_document(sweep: Sweep, runs: Sequence[ScoredRow]) -> Mapping[str, Any]:
     """
     Return the document of `--json`: the axes, the limits, and a row per run.
 
@@ -134,17 +122,17 @@ def sweep_document(sweep: Sweep, runs: Sequence[SweptRun]) -> Mapping[str, Any]:
     }
 
 
-def _row(run: SweptRun) -> Mapping[str, Any]:
+def _row(run: ScoredRow) -> Mapping[str, Any]:
     entry = run_entry(run.scores)
-    return {OVER: run.point, **{key: value for key, value in entry.items() if key != 'bag'}}
+    return {OVER: run.varied, **{key: value for key, value in entry.items() if key != 'bag'}}
 
 
-def sweep_csv(runs: Sequence[SweptRun]) -> str:
+def sweep_csv(runs: Sequence[ScoredRow]) -> str:
     """Return the text of `--csv`: a row per run, with the columns of a campaign."""
-    return rows_csv([result_row(run.scores, run.point) for run in runs])
+    return rows_csv([result_row(run.scores, run.varied) for run in runs])
 
 
-def sweep_table(sweep: Sweep, runs: Sequence[SweptRun], metrics: Sequence[Quantity]) -> Table:
+def sweep_table(sweep: Sweep, runs: Sequence[ScoredRow], metrics: Sequence[Quantity]) -> Table:
     """Return the table with a row per run: controller, varied values, metrics and state."""
     title = f'{sweep.conditions}; {sweep.varied}'
     of_runs = [_of_swept(each) for each in (CONTROLLER, *map(metric, metrics), STATE)]
@@ -152,23 +140,23 @@ def sweep_table(sweep: Sweep, runs: Sequence[SweptRun], metrics: Sequence[Quanti
     return table_of(title, columns, runs)
 
 
-def _of_swept(column: RunColumn) -> Column[SweptRun]:
+def _of_swept(column: RunColumn) -> Column[ScoredRow]:
     """Return the column of the scores of swept runs."""
     return Column(column.heading, column.form, lambda run: column.value(run.scores), column.number)
 
 
-def _place(axis: Axis) -> Column[SweptRun]:
+def _place(axis: Axis) -> Column[ScoredRow]:
     heading = f'{axis.key}\n{axis.unit}' if axis.unit else axis.key
-    return Column(heading, '', lambda run: value_text(run.point[axis.key]), number=axis.numeric)
+    return Column(heading, '', lambda run: value_text(run.varied[axis.key]), number=axis.numeric)
 
 
-def sweep_notes(runs: Sequence[SweptRun], metrics: Sequence[Quantity]) -> list[str]:
+def sweep_notes(runs: Sequence[ScoredRow], metrics: Sequence[Quantity]) -> list[str]:
     """Return notes on dashes, and on invalid runs with their values, as `wear_gain=0.7`."""
     failed: dict[str, list[str]] = {}
     for run in runs:
         if not run.scores.valid:
             reason = f'{run.scores.controller} is not valid: {run.scores.reason}'
-            place = ', '.join(f'{key}={value_text(value)}' for key, value in run.point.items())
+            place = ', '.join(f'{key}={value_text(value)}' for key, value in run.varied.items())
             failed.setdefault(reason, []).append(place)
     notes = [f'{reason} (at {"; ".join(places)})' for reason, places in failed.items()]
     return [*dash_notes([run.scores for run in runs], [metric(each) for each in metrics]), *notes]

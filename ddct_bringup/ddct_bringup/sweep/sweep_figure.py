@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from ddct_bringup.campaign.scored import ScoredRow
 from ddct_bringup.report.page_parts import unit_text
 from ddct_bringup.sweep.state_map import (
     draw_states,
@@ -18,7 +19,7 @@ from ddct_bringup.sweep.state_map import (
     places_of,
     state_legend,
 )
-from ddct_bringup.sweep.sweep import Sweep, SweptRun
+from ddct_bringup.sweep.sweep import Sweep
 from ddct_bringup.verdict.state import ENGAGED
 from ddct_controllers.design.drawing.chart_style import (
     chart_style,
@@ -49,7 +50,7 @@ runaway would leave no room for the others.
 
 
 def write_sweep_figure(
-    sweep: Sweep, runs: Sequence[SweptRun], metrics: Sequence[Quantity], path: Path
+    sweep: Sweep, runs: Sequence[ScoredRow], metrics: Sequence[Quantity], path: Path
 ) -> None:
     """Write the figure as PNG or SVG by the file's ending; raise DdctError where it cannot be."""
     with chart_style():
@@ -61,7 +62,7 @@ def _title(sweep: Sweep, names: Sequence[str], width_in: float) -> str:
     return headed(f'{controllers_text(names)} {sweep.varied}', sweep.conditions, width_in)
 
 
-def sweep_figure(sweep: Sweep, runs: Sequence[SweptRun], metrics: Sequence[Quantity]) -> Figure:
+def sweep_figure(sweep: Sweep, runs: Sequence[ScoredRow], metrics: Sequence[Quantity]) -> Figure:
     """Return the figure of the runs of a sweep over one axis or two, in its order."""
     names = [controller_label(each) for each in sweep.controllers]
     states = np.array([run.scores.verdict.state for run in runs]).reshape(len(names), -1)

@@ -14,13 +14,13 @@ from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.columns import INDEX, schema_of
 from ddct_bringup.campaign.conduct import RESULTS, SHARDS
 from ddct_bringup.campaign.manifest import MANIFEST, Manifest
-from ddct_bringup.campaign.scored import ScoredCampaignRun, scored_runs
+from ddct_bringup.campaign.scored import ScoredRow, scored_runs
 from ddct_bringup.campaign_report.folder import SUMMARY
 from ddct_bringup.campaign_report.reading import read_table, results_of
 from ddct_bringup.campaign_report.summary import summary_of
 from ddct_bringup.verification.comparison import Comparison, plain_json
-from ddct_bringup.verification.request import Request
-from ddct_bringup.verification.result import RunResult
+from ddct_bringup.verification.request import VerificationRequest
+from ddct_bringup.verification.result import RepetitionResult
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.input_file import parse_json, read_text_file
 from ddct_plant.program.progress import Progress
@@ -35,7 +35,7 @@ _OF_CODE = ('version', 'code_digest', 'schema_version')
 """Keys of the manifest that another code writes otherwise."""
 
 
-def verified_campaign(request: Request) -> Iterator[RunResult]:
+def verified_campaign(request: VerificationRequest) -> Iterator[RepetitionResult]:
     """
     Yield the results of manifest, rows by controller, shards and summary of a campaign.
 
@@ -53,7 +53,9 @@ def verified_campaign(request: Request) -> Iterator[RunResult]:
         yield _verified_summary(request, manifest, table)
 
 
-def _verified_manifest(request: Request, manifest: Manifest, campaign: Campaign) -> RunResult:
+def _verified_manifest(
+    request: VerificationRequest, manifest: Manifest, campaign: Campaign
+) -> RepetitionResult:
     ours, theirs = asdict(manifest), asdict(Manifest.of(campaign, request.limits))
     ignored = _OF_PLACE if request.same_code else (*_OF_PLACE, *_OF_CODE)
     comparison = Comparison()
@@ -63,10 +65,12 @@ def _verified_manifest(request: Request, manifest: Manifest, campaign: Campaign)
     environment = request.digests.environment
     comparison.add({'key': 'code_digest'}, manifest.code_digest, environment.code)
     comparison.add({'key': 'version'}, manifest.version, environment.version)
-    return RunResult.of(MANIFEST, comparison, same_environment=request.same_environment)
+    return RepetitionResult.of(MANIFEST, comparison, same_environment=request.same_environment)
 
 
-def _verified_rows(request: Request, table: pa.Table, campaign: Campaign) -> Iterator[RunResult]:
+def _verified_rows(
+    request: VerificationRequest, table: pa.Table, campaign: Campaign
+) -> Iterator[RepetitionResult]:
     """Yield the result of the rows of each controller, computed by worker processes."""
     schema = schema_of(campaign.spec)
     progress = Progress('runs', campaign.runs)
@@ -82,7 +86,7 @@ def _verified_rows(request: Request, table: pa.Table, campaign: Campaign) -> Ite
                 _compare_rows(comparison, table.slice(start, count), schema, repeated)
                 progress.update(start + count)
             name = f'{label}: rows {first} to {first + campaign.cases - 1}'
-            yield RunResult.of(name, comparison, same_environment=request.same_environment)
+            yield RepetitionResult.of(name, comparison, same_environment=request.same_environment)
     progress.end()
 
 
@@ -90,7 +94,7 @@ def _compare_rows(
     comparison: Comparison,
     recorded: pa.Table,
     schema: pa.Schema,
-    repeated: list[ScoredCampaignRun],
+    repeated: list[ScoredRow],
 ) -> None:
     """Compare the columns of rows; a file of another version may lack some."""
     rows = [each.row() for each in repeated]
@@ -104,7 +108,7 @@ def _compare_rows(
             comparison.add({'row': row[INDEX], 'signal': name}, ours[place], theirs[place])
 
 
-def _verified_shards(request: Request, table: pa.Table) -> RunResult:
+def _verified_shards(request: VerificationRequest, table: pa.Table) -> RepetitionResult:
     """Compare the rows of the shards with those of the results file, which is made of them."""
     comparison = Comparison()
     start = 0
@@ -115,7 +119,7 @@ def _verified_shards(request: Request, table: pa.Table) -> RunResult:
         comparison.add({'file': f'{SHARDS}/{path.name}', 'reason': reason}, same, True)
         start += rows.num_rows
     comparison.add({'key': 'rows of all shards'}, start, table.num_rows)
-    return RunResult.of(SHARDS, comparison, same_environment=request.same_environment)
+    return RepetitionResult.of(SHARDS, comparison, same_environment=request.same_environment)
 
 
 def _shard(path: Path) -> pa.Table:
@@ -125,7 +129,9 @@ def _shard(path: Path) -> pa.Table:
         raise DdctError(f'{path}: cannot be read ({error})') from error
 
 
-def _verified_summary(request: Request, manifest: Manifest, table: pa.Table) -> RunResult:
+def _verified_summary(
+    request: VerificationRequest, manifest: Manifest, table: pa.Table
+) -> RepetitionResult:
     """Compare `summary.json` with the summary of the recorded rows."""
     path = request.folder / SUMMARY
     try:
@@ -134,4 +140,4 @@ def _verified_summary(request: Request, manifest: Manifest, table: pa.Table) -> 
         raise DdctError(f'{path}: cannot be read ({error.strerror})') from error
     comparison = Comparison()
     comparison.add_nested('', stored, plain_json(summary_of(results_of(manifest, table))))
-    return RunResult.of(SUMMARY, comparison, same_environment=request.same_environment)
+    return RepetitionResult.of(SUMMARY, comparison, same_environment=request.same_environment)

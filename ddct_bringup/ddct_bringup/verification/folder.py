@@ -13,8 +13,8 @@ from ddct_bringup.digests.files import SAME, UNLISTED, FileState, file_states
 from ddct_bringup.run.output_folder import PARTIAL
 from ddct_bringup.verification.comparison import BOUND, DIGEST_ONLY
 from ddct_bringup.verification.kinds import KINDS
-from ddct_bringup.verification.request import Request
-from ddct_bringup.verification.result import RunResult
+from ddct_bringup.verification.request import VerificationRequest
+from ddct_bringup.verification.result import RepetitionResult
 from ddct_plant.base.errors import DdctError
 
 BY_DIGEST = frozenset({'report.html', 'timing.json'})
@@ -25,9 +25,9 @@ BY_DIGEST = frozenset({'report.html', 'timing.json'})
 class Verification:
     """Result of one folder."""
 
-    request: Request
+    request: VerificationRequest
     files: Sequence[FileState]
-    runs: Sequence[RunResult]
+    runs: Sequence[RepetitionResult]
     """Results of the runs; none where a file was not the same, so that nothing was repeated."""
     error: str = ''
     """Reason why the runs could not be repeated; empty in general."""
@@ -81,7 +81,7 @@ def folders_with_digests(path: Path) -> list[Path]:
     return top
 
 
-def verified_folder(request: Request) -> Verification:
+def verified_folder(request: VerificationRequest) -> Verification:
     """Compare the files of a folder with their digests, then repeat its runs."""
     files = file_states(request.folder, request.digests)
     found = Verification(request, files, ())
@@ -91,7 +91,7 @@ def verified_folder(request: Request) -> Verification:
     if repeat is None:
         error = f'this version cannot verify a folder of the kind {request.digests.kind!r}'
         return Verification(request, files, (), error)
-    runs: list[RunResult] = []
+    runs: list[RepetitionResult] = []
     try:
         runs.extend(repeat(request))
     except DdctError as error:

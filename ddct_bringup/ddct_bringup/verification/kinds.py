@@ -10,11 +10,11 @@ from collections.abc import Callable, Iterator, Mapping
 
 from ddct_bringup.digests.digest_file import CAMPAIGN, RUNS
 from ddct_bringup.verification.campaign import verified_campaign
-from ddct_bringup.verification.request import Request
-from ddct_bringup.verification.result import RunResult
+from ddct_bringup.verification.request import VerificationRequest
+from ddct_bringup.verification.result import RepetitionResult
 from ddct_bringup.verification.runs import verified_runs
 
-KINDS: Mapping[str, Callable[[Request], Iterator[RunResult]]] = {
+KINDS: Mapping[str, Callable[[VerificationRequest], Iterator[RepetitionResult]]] = {
     RUNS: verified_runs,
     CAMPAIGN: verified_campaign,
 }

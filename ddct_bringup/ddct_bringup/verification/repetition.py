@@ -8,13 +8,13 @@ from pathlib import Path
 from ddct_bringup.bag.recording import Recording
 from ddct_bringup.digests.digest_file import RunDigests
 from ddct_bringup.run.plan import RunPlan
-from ddct_bringup.verification.request import Request
+from ddct_bringup.verification.request import VerificationRequest
 from ddct_controllers.from_file.controller_file import is_controller_file
 from ddct_controllers.registry import controller_spec
 from ddct_plant.base.errors import DdctError
 
 
-def plan_of(request: Request, recording: Recording, digests: RunDigests) -> RunPlan:
+def plan_of(request: VerificationRequest, recording: Recording, digests: RunDigests) -> RunPlan:
     """Return the headless plan of a recorded run; raise DdctError where it cannot be made."""
     settings = recording.settings
     if settings is None:
@@ -31,7 +31,7 @@ def plan_of(request: Request, recording: Recording, digests: RunDigests) -> RunP
     return plan
 
 
-def controller_of(request: Request, digests: RunDigests) -> str:
+def controller_of(request: VerificationRequest, digests: RunDigests) -> str:
     """Return the name or the file of a run's controller; raise DdctError unless it is the same."""
     chosen = digests.controller
     if chosen is None:
@@ -52,7 +52,7 @@ def controller_of(request: Request, digests: RunDigests) -> str:
     return chosen
 
 
-def _found(request: Request, file: Path) -> Path:
+def _found(request: VerificationRequest, file: Path) -> Path:
     """Return the path of a controller file; raise DdctError where it is gone."""
     places = [Path(os.path.normpath(request.folder / file))]
     if request.files:

@@ -12,7 +12,7 @@ from ddct_bringup.verdict.limits import Limits
 
 
 @dataclass(frozen=True)
-class Request:
+class VerificationRequest:
     """Folder to verify, and the inputs for the repetition of its runs."""
 
     folder: Path

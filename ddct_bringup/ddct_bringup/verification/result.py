@@ -15,7 +15,7 @@ from ddct_bringup.verification.comparison import (
 
 
 @dataclass(frozen=True)
-class RunResult:
+class RepetitionResult:
     """State of one run, or of one file with values that follow from the runs."""
 
     run: str
@@ -29,19 +29,19 @@ class RunResult:
     """Reason why it was not repeated."""
 
     @classmethod
-    def of(cls, run: str, comparison: Comparison, *, same_environment: bool) -> 'RunResult':
+    def of(cls, run: str, comparison: Comparison, *, same_environment: bool) -> 'RepetitionResult':
         """Return the result of a comparison."""
         first = comparison.first(same_environment=same_environment)
         state = comparison.state(same_environment=same_environment)
         return cls(run, state, first.entry() if first else None, comparison.largest)
 
     @classmethod
-    def failed(cls, run: str, reason: object) -> 'RunResult':
+    def failed(cls, run: str, reason: object) -> 'RepetitionResult':
         """Return the result of a run that could not be repeated, though it should be."""
         return cls(run, DIFFERENT, {'reason': str(reason)})
 
     @classmethod
-    def by_digest(cls, run: str, note: str) -> 'RunResult':
+    def by_digest(cls, run: str, note: str) -> 'RepetitionResult':
         """Return the result of a run of which only digests and scores can be checked."""
         return cls(run, DIGEST_ONLY, note=note)
 

@@ -21,8 +21,8 @@ from ddct_bringup.run.timing_and_failure import NOTE_FILE, failed_run
 from ddct_bringup.scores.bags import bag_name, find_bags
 from ddct_bringup.verification.comparison import SAME_BITS, Comparison, plain_json
 from ddct_bringup.verification.repetition import plan_of
-from ddct_bringup.verification.request import Request
-from ddct_bringup.verification.result import RunResult
+from ddct_bringup.verification.request import VerificationRequest
+from ddct_bringup.verification.result import RepetitionResult
 from ddct_bringup.verification.scores import SCORES, verified_frequency, verified_scores
 from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError
 from ddct_plant.files.input_file import parse_json, read_text_file
@@ -37,7 +37,7 @@ _COMMIT = 'commit'
 _REAL_TIME = 'real time: only its digests and scores can be checked'
 
 
-def verified_runs(request: Request) -> Iterator[RunResult]:
+def verified_runs(request: VerificationRequest) -> Iterator[RepetitionResult]:
     """Yield the result of every run of a folder, then those of its scores and loop analyses."""
     names = set()
     for bag in find_bags(request.folder):
@@ -45,36 +45,36 @@ def verified_runs(request: Request) -> Iterator[RunResult]:
         names.add(name)
         yield replace(_verified_bag(request, bag, name), run=_shown(request, name))
     for name in sorted(request.digests.runs.keys() - names):
-        yield RunResult.failed(name, 'it has digests, but there is no bag')
+        yield RepetitionResult.failed(name, 'it has digests, but there is no bag')
     if (request.folder / SCORES).exists():
         yield verified_scores(request)
     if (request.folder / FREQUENCY_FILE).exists():
         yield verified_frequency(request)
 
 
-def _shown(request: Request, name: str) -> str:
+def _shown(request: VerificationRequest, name: str) -> str:
     """Return the name of a bag in results; a run's own folder has that of the folder."""
     return request.folder.resolve().name if name == ITSELF else name
 
 
-def _verified_bag(request: Request, bag: Path, name: str) -> RunResult:
+def _verified_bag(request: VerificationRequest, bag: Path, name: str) -> RepetitionResult:
     digests = request.digests.runs.get(name)
     if digests is None:
-        return RunResult.failed(name, 'no digests of this run')
+        return RepetitionResult.failed(name, 'no digests of this run')
     try:
         if failure := failed_run(bag if bag.is_dir() else bag.parent):
             return _verified_failure(request, bag, name, digests, failure.reason)
         recording = read_bag(bag)
         if not recording.facts.lockstep:
-            return RunResult.by_digest(name, _REAL_TIME)
+            return RepetitionResult.by_digest(name, _REAL_TIME)
         return _verified_recording(request, recording, name, digests)
     except DdctError as error:
-        return RunResult.failed(name, error)
+        return RepetitionResult.failed(name, error)
 
 
 def _verified_recording(
-    request: Request, recording: Recording, name: str, digests: RunDigests
-) -> RunResult:
+    request: VerificationRequest, recording: Recording, name: str, digests: RunDigests
+) -> RepetitionResult:
     comparison = Comparison()
     plan = plan_of(request, recording, digests)
     if request.same_code:
@@ -84,23 +84,23 @@ def _verified_recording(
     try:
         repeated, _ = simulate(plan)
     except FOREIGN_FAILURES as error:
-        return RunResult.failed(name, f'its repetition fails: {error}')
+        return RepetitionResult.failed(name, f'its repetition fails: {error}')
     _compare_descriptions(comparison, recording, repeated, same_code=request.same_code)
     comparison.add_trajectories(recording.trajectory, repeated.trajectory)
     if request.same_code and comparison.state(same_environment=True) == SAME_BITS:
         _compare_bytes(comparison, recording, repeated)
-    return RunResult.of(name, comparison, same_environment=request.same_environment)
+    return RepetitionResult.of(name, comparison, same_environment=request.same_environment)
 
 
 def _verified_failure(
-    request: Request, bag: Path, name: str, digests: RunDigests, reason: str
-) -> RunResult:
+    request: VerificationRequest, bag: Path, name: str, digests: RunDigests, reason: str
+) -> RepetitionResult:
     """Return the result of a run that failed: its repetition has to fail with the same reason."""
     folder = bag if bag.is_dir() else bag.parent
     custom_data = parse_json(read_text_file(folder / NOTE_FILE))['run']
     facts = RunFacts.from_custom_data(custom_data)
     if not facts.lockstep:
-        return RunResult.by_digest(name, _REAL_TIME)
+        return RepetitionResult.by_digest(name, _REAL_TIME)
     described = Recording(bag, Trajectory({}), facts, custom_data)
     comparison = Comparison()
     try:
@@ -111,7 +111,7 @@ def _verified_failure(
     # In a graph the name of the node and its log stand around the reason.
     ours, theirs = (_FOLDERS.sub('', text) for text in (reason, repeated))
     comparison.add({'key': 'reason'}, theirs if theirs in ours else ours, theirs)
-    return RunResult.of(name, comparison, same_environment=request.same_environment)
+    return RepetitionResult.of(name, comparison, same_environment=request.same_environment)
 
 
 def _compare_descriptions(

@@ -17,8 +17,8 @@ from ddct_bringup.scores.floors import NONE, floor_metrics, with_floors
 from ddct_bringup.scores.scored_recording import score_any_bag
 from ddct_bringup.verification.comparison import Comparison, plain_json
 from ddct_bringup.verification.repetition import controller_of
-from ddct_bringup.verification.request import Request
-from ddct_bringup.verification.result import RunResult
+from ddct_bringup.verification.request import VerificationRequest
+from ddct_bringup.verification.result import RepetitionResult
 from ddct_controllers.workflows.evidence import frequency_evidence
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.input_file import parse_json, read_text_file
@@ -30,12 +30,12 @@ _MOST_BYTES = 100_000_000
 """Largest size of a file of scores in bytes."""
 
 
-def verified_scores(request: Request) -> RunResult:
+def verified_scores(request: VerificationRequest) -> RepetitionResult:
     """Compare `scores.json` with the scores of the recorded bags."""
     stored = _stored(request.folder / SCORES)
     limits = stored.get('limits') if isinstance(stored, dict) else None
     if limits != plain_json(request.limits.origin):
-        return RunResult.failed(
+        return RepetitionResult.failed(
             SCORES,
             f'judged by the limits {json.dumps(limits)}, not by '
             f'{json.dumps(request.limits.origin)}: give --limits with that file',
@@ -51,7 +51,7 @@ def verified_scores(request: Request) -> RunResult:
             for name in names
         ]
     except (AttributeError, TypeError, DdctError) as error:
-        return RunResult.failed(SCORES, f'not the scores of runs ({error})')
+        return RepetitionResult.failed(SCORES, f'not the scores of runs ({error})')
     runs = [
         with_floors(run, metrics, request.limits).scores
         for run, metrics in zip(scored, floors, strict=True)
@@ -59,7 +59,7 @@ def verified_scores(request: Request) -> RunResult:
     computed = plain_json(scores_document(runs, request.limits))
     comparison = Comparison()
     comparison.add_nested('', recorded, _by_bag(computed, names))
-    return RunResult.of(SCORES, comparison, same_environment=request.same_environment)
+    return RepetitionResult.of(SCORES, comparison, same_environment=request.same_environment)
 
 
 def _stored(path: Path) -> Any:
@@ -80,7 +80,7 @@ def _by_bag(document: Mapping[str, Any], names: Sequence[str]) -> Mapping[str, A
     return {**document, 'runs': runs}
 
 
-def verified_frequency(request: Request) -> RunResult:
+def verified_frequency(request: VerificationRequest) -> RepetitionResult:
     """Compare `frequency.json` with the analyses of the controllers in the first run's plant."""
     comparison = Comparison()
     try:
@@ -89,9 +89,11 @@ def verified_frequency(request: Request) -> RunResult:
         settings = _first_settings(request.folder)
         computed = plain_json(frequency_evidence(controllers, settings))
     except DdctError as error:
-        return RunResult.failed(FREQUENCY_FILE, error)
+        return RepetitionResult.failed(FREQUENCY_FILE, error)
     comparison.add_nested('', stored, computed)
-    return RunResult.of(FREQUENCY_FILE, comparison, same_environment=request.same_environment)
+    return RepetitionResult.of(
+        FREQUENCY_FILE, comparison, same_environment=request.same_environment
+    )
 
 
 def _first_settings(folder: Path) -> RunSettings:

@@ -13,7 +13,7 @@ from ddct_bringup.verification.comparison import (
     SAME_WITHIN,
 )
 from ddct_bringup.verification.folder import Verification
-from ddct_bringup.verification.result import RunResult
+from ddct_bringup.verification.result import RepetitionResult
 from ddct_plant.base.errors import printable
 from ddct_plant.program.table import Table, print_table
 
@@ -70,7 +70,7 @@ def _bound(found: Verification) -> str:
     )
 
 
-def _detail(run: RunResult) -> str:
+def _detail(run: RepetitionResult) -> str:
     """Return the first difference of a run, or why it was not repeated."""
     if run.first_difference is None:
         return printable(run.note or (f'at most {run.largest:.2g}' if run.largest else ''))

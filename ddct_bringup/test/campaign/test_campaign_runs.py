@@ -11,8 +11,8 @@ from refusals import refused
 from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.run_set import (
     MOST_CHECKED,
-    CampaignRun,
-    RefusedRun,
+    ImpossibleRow,
+    PlannedRow,
     checked_cases,
 )
 from ddct_bringup.campaign.spec import spec_of
@@ -118,7 +118,7 @@ def test_the_check_before_the_first_run_builds_each_case_once(
     built: list[int] = []
     run = made.run
 
-    def counted(index: int) -> CampaignRun:
+    def counted(index: int) -> PlannedRow:
         built.append(index)
         return run(index)
 
@@ -144,7 +144,7 @@ def test_a_range_of_runs_is_built_as_each_of_them_alone() -> None:
 def test_a_run_that_cannot_be_built_is_named_and_does_not_end_the_others() -> None:
     made = campaign(grid={'duration_s': [1.0, 3.0], 'control_start_s': [0.6, 2.4]})
     runs = [*made.planned(0, made.runs)]
-    left_out = [run.index for run in runs if isinstance(run, RefusedRun)]
+    left_out = [run.index for run in runs if isinstance(run, ImpossibleRow)]
     assert left_out == [3, 4, 5, 9, 10, 11, 15, 16, 17, 21, 22, 23]
     with refused(ParameterError, 'score_window_s') as caught:
         made.run(4)

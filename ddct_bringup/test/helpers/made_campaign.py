@@ -11,7 +11,7 @@ from ddct_bringup.campaign.columns import schema_of, shard_bytes
 from ddct_bringup.campaign.conduct import RESULTS
 from ddct_bringup.campaign.manifest import Manifest
 from ddct_bringup.campaign.rows import METRIC_COLUMNS
-from ddct_bringup.campaign.run_set import CampaignRun
+from ddct_bringup.campaign.run_set import PlannedRow
 from ddct_bringup.campaign.spec import spec_of
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_bringup.verdict.state import ENGAGED, INVALID
@@ -26,7 +26,7 @@ GRID = {
 def make_campaign(
     folder: Path,
     content: Mapping[str, Any],
-    state_of: Callable[[CampaignRun], str] = lambda run: ENGAGED,
+    state_of: Callable[[PlannedRow], str] = lambda run: ENGAGED,
     **cells: Any,
 ) -> Path:
     """

@@ -9,11 +9,12 @@ import pytest
 from made_scores import made_scores, made_verdict
 from matplotlib.colors import to_hex
 
+from ddct_bringup.campaign.scored import ScoredRow
 from ddct_bringup.metrics.catalogue import TABLE_5_1
 from ddct_bringup.run.run_base import RunBase
 from ddct_bringup.sweep.axis import axis_of
 from ddct_bringup.sweep.state_map import STATE_COLOURS, edges_of
-from ddct_bringup.sweep.sweep import Sweep, SweptRun
+from ddct_bringup.sweep.sweep import Sweep
 from ddct_bringup.sweep.sweep_figure import sweep_figure
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_bringup.verdict.state import ENGAGED, INVALID, NOT_ENGAGED, RUNAWAY, STATES
@@ -32,7 +33,10 @@ def drawn(over: list[str], controllers: list[str], runs: list[tuple[str, float |
         made_scores(verdict=made_verdict(state), engagement_time_s=value) for state, value in runs
     ]
     places = [*sweep.run_set.varied(range(sweep.run_set.cases))] * len(controllers)
-    swept = [SweptRun(place, scores) for place, scores in zip(places, scored, strict=True)]
+    swept = [
+        ScoredRow(index, controllers[0], 0, place, scores, 'serial')
+        for index, (place, scores) in enumerate(zip(places, scored, strict=True))
+    ]
     with chart_style():
         return sweep_figure(sweep, swept, TIME)
 

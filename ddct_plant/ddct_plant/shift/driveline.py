@@ -15,7 +15,7 @@ from ddct_plant.shift.engagements import (
     ON_COMING,
     SHIFT_STATES,
     WHEEL,
-    Engagement,
+    EngagedGears,
     both_engaged,
     off_going_engaged,
     on_coming_engaged,
@@ -87,8 +87,8 @@ class ShiftDriveline:
         self._parameters = gears.on_coming
         self._wheel_radius = vehicle.wheel_radius_m
         both = both_engaged(gears)
-        self._engaged: Engagement = off_going_engaged(gears) if preselection_step else both
-        self._changes: dict[int, Engagement] = {preselection_step: both}
+        self._engaged: EngagedGears = off_going_engaged(gears) if preselection_step else both
+        self._changes: dict[int, EngagedGears] = {preselection_step: both}
         if disengagement_step is not None:
             self._changes[disengagement_step] = on_coming_engaged(gears)
         self._steps = 0
@@ -174,7 +174,7 @@ class ShiftDriveline:
         if self._steps in self._changes:
             self._engage(self._changes[self._steps])
 
-    def _engage(self, new: Engagement) -> None:
+    def _engage(self, new: EngagedGears) -> None:
         """Go over to other engaged gears at the present step."""
         now, before = self.now, self._engaged.to_shift(self.now.state)
         now.state = new.of_shift(before)

@@ -36,7 +36,7 @@ _SWAPPED[_DRIVEN + _ALONE], _SWAPPED[_DRIVEN + _ALONE_ANGLE] = _SHAFT, _ANGLE
 """Places of SHIFT_STATES with the two primary shafts exchanged."""
 
 
-class Engagement(Protocol):
+class EngagedGears(Protocol):
     """Engaged gears: integrator of their system, its states from and to SHIFT_STATES."""
 
     integrator: HybridIntegrator
