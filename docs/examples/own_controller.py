@@ -24,7 +24,7 @@ class OwnController(Node):
     def __init__(self) -> None:
         super().__init__('controller')
         self.request, self.integral = WrenchStamped(), 0.0
-        self.heard = {kind: kind() for kind in (TwistStamped, JointTrajectory)}
+        self.last = {kind: kind() for kind in (TwistStamped, JointTrajectory)}
         self.create_subscription(TwistStamped, 'clutch/slip', self.answer, 10)
         self.create_subscription(JointTrajectory, 'clutch/slip_reference', self.answer, 10)
         self.requests = self.create_publisher(WrenchStamped, 'clutch/torque_request', 10)
@@ -34,8 +34,8 @@ class OwnController(Node):
 
     def answer(self, message: TwistStamped | JointTrajectory) -> None:
         """Answer once both inputs are there; a stamp that comes again gets the same answer."""
-        self.heard[type(message)] = message
-        slip, reference = self.heard[TwistStamped], self.heard[JointTrajectory]
+        self.last[type(message)] = message
+        slip, reference = self.last[TwistStamped], self.last[JointTrajectory]
         if slip.header.stamp != reference.header.stamp:
             return
         if slip.header.stamp != self.request.header.stamp:

@@ -161,7 +161,7 @@ def score_windows() -> Study:
             'in tolerances',
             'mpc3',
             'mpc3, Q per rad/s',
-            'the same, told w_m, w_p, w_r and C_load',
+            'the same, with w_m, w_p, w_r and C_load',
             'mpc4',
             'C_fOL alone, std w_sr rpm',
         ),
