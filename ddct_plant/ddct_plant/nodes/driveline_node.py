@@ -104,7 +104,7 @@ class DrivelineNode(GraphNode):
         )
         return TickPlan(
             tuple(topic.name for topic in self._torques),
-            CLUTCH_TORQUE.name,
+            (CLUTCH_TORQUE.name,),
             RECORDER_ACK.name if recorder else '',
             steps=steps_in('duration', duration_s) or self.settings.scenario.steps,
             answer_timeout_s=declare(
@@ -124,7 +124,7 @@ class DrivelineNode(GraphNode):
         )
 
     def _make_owner(self) -> TickOwner:
-        parts = (self.driveline, self.plan, self._publish_tick, self._sole_publishers.finish)
+        parts = (self.driveline.step, self.plan, self._publish_tick, self._sole_publishers.finish)
         if self.settings.lockstep:
             return TickOwner(*parts, over=self._over_early)
         owner = RealtimeOwner(
@@ -160,8 +160,9 @@ class DrivelineNode(GraphNode):
             values |= self._sensors.measure(step, true).signals
         for output, names in self._outputs:
             output.fill(stamp, *[values[name] for name in names]).publish()
-        if isinstance(self.owner, RealtimeOwner) and self.owner.safe:
-            why = f'no {CLUTCH_TORQUE.name} for longer than clutch_timeout_s: opening the clutch'
+        if isinstance(self.owner, RealtimeOwner) and (missing := self.owner.safe_clutches):
+            topics = ' and no '.join(missing)
+            why = f'no {topics} for longer than clutch_timeout_s: opening the clutch'
             self._safe_state.publish(step, stamp, why)
         if step % STEPS_PER_S == 0 or step == self.owner.last_step:
             name = StatusName(self.get_fully_qualified_name(), TICKS)

@@ -2,13 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """The owner of time at 100 Hz on a steady clock; does not depend on ROS."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from ddct_plant.base.errors import DdctError
-from ddct_plant.base.timebase import PERIOD_S, SUBSTEPS, stamp_of_step, time_of_step
-from ddct_plant.fail_safe.request_watch import FailSafe
-from ddct_plant.ticks.tick_owner import Reply, Rows, TickOwner
+from ddct_plant.base.timebase import PERIOD_S, stamp_of_step, time_of_step
+from ddct_plant.fail_safe.guarded_clutch import GuardedClutch
+from ddct_plant.ticks.tick_owner import Reply, TickOwner
 
 RECORDER_PATIENCE_S = 2.0
 """Longest wait in s of a real-time run at t_N for the recorder, which may have missed a reply."""
@@ -20,9 +20,8 @@ class RealtimeOwner(TickOwner):
 
     At t_0 the owner waits for all replies as in lock-step, recorder included: the start barrier.
     At t_N it waits for the torques, which end the run, and up to `RECORDER_PATIENCE_S` for the
-    recorder. In between a missing torque is held at its last value. When the clutch torque is
-    missing for longer than its timeout, it runs to zero at the rate of the plan and later clutch
-    torques are ignored: that is the safe state.
+    recorder. In between a missing torque is held at its last value. When the torque of a clutch is
+    missing for longer than its timeout, that clutch goes to its safe state: see `GuardedClutch`.
     """
 
     def __init__(
@@ -35,14 +34,15 @@ class RealtimeOwner(TickOwner):
         self.worst_lateness_s = 0.0
         self._held: dict[str, Reply] = {}
         self._silent_since: dict[str, int] = dict.fromkeys(self._plan.torques, 0)
-        self._held_clutch: list[float] = []
-        self._clutch = FailSafe(self._plan.fail_safe)
+        self._clutches = {
+            topic: GuardedClutch(self._plan.fail_safe) for topic in self._plan.clutches
+        }
         self._started_at: float | None = None
 
     @property
-    def safe(self) -> bool:
-        """Whether the clutch torque has timed out and is on its way to zero."""
-        return self._clutch.stopped
+    def safe_clutches(self) -> list[str]:
+        """Topics of the clutch torques that have timed out and are on their way to zero."""
+        return [topic for topic, clutch in self._clutches.items() if clutch.safe]
 
     def tick(self) -> None:
         """Integrate every step that is due by the wall clock."""
@@ -70,8 +70,8 @@ class RealtimeOwner(TickOwner):
     def _awaited_at(self, step: int) -> tuple[str, ...]:
         if step not in (0, self.last_step):
             return self._plan.torques
-        awaited = self._plan.topics
-        return tuple(each for each in awaited if each != self._plan.clutch or not self.safe)
+        safe = self.safe_clutches
+        return tuple(topic for topic in self._plan.topics if topic not in safe)
 
     def _on_complete(self) -> None:
         if self.step == self.last_step:
@@ -89,28 +89,16 @@ class RealtimeOwner(TickOwner):
             else:
                 self._silent_since[topic] = self.step
                 self._held[topic] = reply
-        clutch = self._plan.clutch
-        reply = replies[clutch]
-        assert reply is None or isinstance(reply, Sequence)
-        self._integrate({**self._held, clutch: self._clutch_torques(reply)})
+        self._step(self._held | self._clutch_torques(replies))
 
-    def _clutch_torques(self, reply: Rows | None) -> Rows:
-        """Return the rows of torques in N m of this period: the reply, held values, or a ramp."""
-        if reply is not None and not self.safe:
-            self._held_clutch = [row[-1] for row in reply]
-            self._clutch.request(self.step)
-            self._clutch.torque = self._held_clutch[0]
-            return reply
-        held = self._held_clutch
-        if self._clutch.tick(self.step):
-            self._held_clutch = self._ramped(held)
-        return [_line(*ends) for ends in zip(held, self._held_clutch, strict=True)]
-
-    def _ramped(self, held: list[float]) -> list[float]:
-        """Return the torques in N m one period later on the ramp to zero, in proportion."""
-        first = self._clutch.next_torque()
-        share = first / held[0] if held[0] else 0.0
-        return [first, *(max(share * other, first) for other in held[1:])]
+    def _clutch_torques(self, replies: Mapping[str, Reply]) -> dict[str, Reply]:
+        """Return the rows of torques in N m of each clutch over this period, by topic."""
+        rows: dict[str, Reply] = {}
+        for topic, clutch in self._clutches.items():
+            reply = replies[topic]
+            assert reply is None or isinstance(reply, Sequence)
+            rows[topic] = clutch.torques(self.step, reply)
+        return rows
 
     def _miss(self, topic: str) -> None:
         self.missed_replies[topic] += 1
@@ -122,9 +110,3 @@ class RealtimeOwner(TickOwner):
                     f'{silent_s:.2f} s ago: check that the node which publishes it is running'
                 )
             )
-
-
-def _line(first: float, last: float) -> list[float]:
-    """Return the (11,) torques in N m of a period, linear from `first` to `last`."""
-    change = (last - first) / SUBSTEPS
-    return [*(first + i * change for i in range(SUBSTEPS)), last]

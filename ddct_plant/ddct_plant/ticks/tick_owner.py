@@ -9,12 +9,9 @@ from typing import Any
 
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import stamp_of_step
+from ddct_plant.fail_safe.guarded_clutch import Rows
 from ddct_plant.fail_safe.request_watch import CLUTCH_TIMEOUT_S, FailSafeSettings
-from ddct_plant.models.linear_driveline import Driveline
-from ddct_plant.models.stick_slip_driveline import StickSlipDriveline
 
-Rows = Sequence[list[float]]
-"""Rows of 11 torques in N m within a period: transmitted, or kinetic and static capacity."""
 Reply = float | Rows | None
 """Values of a reply: a torque in N m, those of the clutch, or None for an acknowledgement."""
 RESEND_AFTER_S = 0.1
@@ -26,10 +23,10 @@ class TickPlan:
     """Length of a run, topics of the replies to its ticks, and timeouts."""
 
     torques: tuple[str, ...]
-    """Topics of the torques that the driveline integrates, in the order of its `step`."""
-    clutch: str
-    """Topic with rows of 11 torques: the transmitted torque, or kinetic and static capacity. Each
-    of the others has one number."""
+    """Topics of the torques that the driveline integrates, in the order that it takes them."""
+    clutches: tuple[str, ...]
+    """Topics with rows of 11 torques, one for each clutch: the transmitted torque, or kinetic and
+    static capacity. Each of the other topics has one number."""
     recorder: str
     """Topic on which the recorder acknowledges a tick; empty where the run does not wait for
     it."""
@@ -38,7 +35,7 @@ class TickPlan:
     answer_timeout_s: float
     """Wall time in s after which an unanswered tick ends the run."""
     fail_safe: FailSafeSettings = field(default_factory=lambda: FailSafeSettings(CLUTCH_TIMEOUT_S))
-    """Real time: timeout of the clutch torque, and rate at which it then runs to zero."""
+    """Real time: timeout of a clutch torque, and rate at which it then runs to zero."""
 
     @property
     def topics(self) -> tuple[str, ...]:
@@ -50,13 +47,14 @@ class TickOwner:
     """
     Publish a tick, wait for every reply stamped exactly t_k, integrate, go on: lock-step.
 
-    Any other message is ignored, so that old data never enters a step.
-    `publish(step)` sends the driveline's present outputs; `finish(error)` ends the run.
+    Any other message is ignored, so that old data never enters a step. `integrate(*torques)` takes
+    the driveline over one period, with the torques of the plan in their order and each row of a
+    clutch apart. `publish(step)` sends its present outputs; `finish(error)` ends the run.
     """
 
     def __init__(
         self,
-        driveline: Driveline | StickSlipDriveline,
+        integrate: Callable[..., None],
         plan: TickPlan,
         publish: Callable[[int], None],
         finish: Callable[[DdctError | None], None],
@@ -73,7 +71,7 @@ class TickOwner:
         self._awaited: tuple[str, ...] = ()
         self._replies: dict[str, Reply] = {}
         """Replies to the present tick that have arrived, by topic."""
-        self._driveline = driveline
+        self._integrate = integrate
         self._plan = plan
         self._publish = publish
         self._finish = finish
@@ -126,7 +124,7 @@ class TickOwner:
         if self.step == self.last_step:
             self._finish(None)
         else:
-            self._integrate(self._replies)
+            self._step(self._replies)
 
     def _open(self, step: int) -> None:
         self.step = step
@@ -135,12 +133,12 @@ class TickOwner:
         self._opened_at = self._sent_at = self._clock()
         self._publish(step)
 
-    def _integrate(self, replies: Mapping[str, Reply]) -> None:
+    def _step(self, replies: Mapping[str, Reply]) -> None:
         torques: list[Any] = []
         for topic in self._plan.torques:
             reply = replies[topic]
             torques += reply if isinstance(reply, Sequence) else (reply,)
-        self._driveline.step(*torques)
+        self._integrate(*torques)
         if self._over():
             self.last_step = self.step + 1
         self._open(self.step + 1)

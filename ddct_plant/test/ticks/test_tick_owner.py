@@ -11,6 +11,7 @@ from ddct_plant.ticks.tick_owner import TickOwner, TickPlan
 
 TORQUES = ('engine/torque', 'load/torque', 'clutch/torque')
 ENGINE, LOAD, CLUTCH = TORQUES
+OFF_GOING = 'off_going/clutch/torque'
 RECORDER = 'recorder/ack'
 HOLDING = 'load/holding_torque'
 STICK_SLIP = (*TORQUES, HOLDING)
@@ -37,6 +38,7 @@ class Harness:
         require_recorder=False,
         torques=TORQUES,
         clutch=(POINTS,),
+        clutches=(CLUTCH,),
         over=lambda: False,
     ):
         self.now = 0.0
@@ -45,8 +47,8 @@ class Harness:
         self.clutch = clutch
         self.driveline = FakeDriveline()
         self.owner = owner_type(
-            self.driveline,
-            TickPlan(torques, CLUTCH, RECORDER if require_recorder else '', steps, 1.0),
+            self.driveline.step,
+            TickPlan(torques, clutches, RECORDER if require_recorder else '', steps, 1.0),
             self.published.append,
             self.ends.append,
             clock=lambda: self.now,
@@ -54,7 +56,14 @@ class Harness:
         )
 
     def answer(self, step, engine=1.0, topics=(ENGINE, LOAD, CLUTCH)):
-        replies = {ENGINE: engine, LOAD: 2.0, CLUTCH: self.clutch, HOLDING: 60.0, RECORDER: None}
+        replies = {
+            ENGINE: engine,
+            LOAD: 2.0,
+            CLUTCH: self.clutch,
+            HOLDING: 60.0,
+            OFF_GOING: self.clutch,
+            RECORDER: None,
+        }
         for topic in topics:
             self.owner.offer(topic, stamp_of_step(step), replies[topic])
 
@@ -246,16 +255,16 @@ def test_a_clutch_torque_that_stays_away_is_held_then_runs_to_zero_at_the_stated
     # 10 N m at 1000 N m/s: the last period of the ramp is the first one.
     assert torques[31] == pytest.approx([10.0 - i for i in range(11)])
     assert torques[32:] == [[0.0] * 11] * len(torques[32:])
-    assert run.owner.safe
+    assert run.owner.safe_clutches == [CLUTCH]
 
 
 def test_a_clutch_torque_that_comes_back_after_the_safe_state_counts_no_more():
     run = Run()
     run.go_to(20)
     run.go_to(32, topics=(ENGINE, LOAD))
-    assert run.owner.safe
+    assert run.owner.safe_clutches
     run.go_to(60)
-    assert run.owner.safe
+    assert run.owner.safe_clutches
     assert run.driveline.steps[-1][2] == [0.0] * 11
 
 
@@ -264,7 +273,7 @@ def test_a_clutch_torque_that_comes_back_in_time_is_taken():
     run.go_to(20)
     run.go_to(30, topics=(ENGINE, LOAD))
     run.go_to(32)
-    assert not run.owner.safe
+    assert not run.owner.safe_clutches
     assert run.driveline.steps[-1][2] == POINTS
 
 
@@ -313,7 +322,28 @@ def test_a_missing_holding_torque_holds_the_last_and_is_counted():
     assert {step[-1] for step in run.driveline.steps} == {60.0}
     assert run.owner.missed_replies[HOLDING] == 19
     assert run.owner.missed_steps == 19
-    assert not run.owner.safe
+    assert not run.owner.safe_clutches
+
+
+SHIFT = (*STICK_SLIP, OFF_GOING)
+"""Topics of a gear shift, with the capacities of a second clutch."""
+
+
+@pytest.mark.parametrize('missing', [[CLUTCH], [OFF_GOING], [CLUTCH, OFF_GOING]])
+def test_of_two_clutches_the_one_whose_torque_stays_away_opens(missing):
+    capacities = ([23.0] * 11, [23.0] * 11)
+    run = Run(torques=SHIFT, clutches=(CLUTCH, OFF_GOING), clutch=capacities, topics=SHIFT)
+    run.go_to(20, topics=SHIFT)
+    run.go_to(60, topics=[topic for topic in SHIFT if topic not in missing])
+    assert run.owner.safe_clutches == missing
+    engine, load, on_coming, _, holding, off_going, _ = zip(*run.driveline.steps, strict=True)
+    for topic, kinetic in ((CLUTCH, on_coming), (OFF_GOING, off_going)):
+        if topic in missing:
+            assert kinetic[30] == [23.0] * 11
+            assert [row[-1] for row in kinetic[31:35]] == pytest.approx([13.0, 3.0, 0.0, 0.0])
+        else:
+            assert set(map(tuple, kinetic)) == {(23.0,) * 11}
+    assert {*engine, *load, *holding} == {1.0, 2.0, 60.0}
 
 
 @pytest.mark.parametrize('owner_type', [TickOwner, RealtimeOwner])
