@@ -2,29 +2,24 @@
 # SPDX-License-Identifier: Apache-2.0
 """Node `recorder`: writes every tick into a bag and acknowledges it."""
 
-from dataclasses import replace
 from functools import partial
-from pathlib import Path
 from typing import Any, ClassVar
 
 from rclpy.serialization import deserialize_message, serialize_message
 
 from ddct_bringup.bag.file.cdr import CdrNormaliser, stamp_of_cdr
 from ddct_bringup.bag.file.message_definitions import load_definition
-from ddct_bringup.bag.realtime_facts import RealtimeFacts
-from ddct_bringup.processes.graph_nodes import NODE_NAMES
+from ddct_bringup.record.parameters import declare_parameters
 from ddct_bringup.record.recorded_bag import RecordedBag
 from ddct_bringup.record.run_info_collector import RunInfoCollector
 from ddct_bringup.record.tick_buffer import TickBuffer, TwoMessagesError
-from ddct_bringup.run.timing_and_failure import RunTiming
-from ddct_plant.base.errors import DdctError, require_name
-from ddct_plant.base.options import Option
+from ddct_bringup.record.wall_clock_facts import WallClockFacts
+from ddct_plant.base.errors import DdctError
 from ddct_plant.graph.node import GraphNode
 from ddct_plant.graph.node_names import StatusName, name_in_graph
 from ddct_plant.graph.node_reports import update_times
 from ddct_plant.graph.output import create_publisher
 from ddct_plant.graph.qos import RECORDER_QOS
-from ddct_plant.graph.settings import declare
 from ddct_plant.graph.sole_publishers import publishers_of
 from ddct_plant.graph.spin import run_node
 from ddct_plant.signals.topic import Topic
@@ -60,30 +55,9 @@ class RecorderNode(GraphNode):
     def __init__(self, **kwargs: Any) -> None:
         """Declare the parameters and subscribe to every recorded topic."""
         super().__init__('recorder', **kwargs)
-        self._folder = Path(
-            declare(self, 'out', Option('recording', 'folder of the bag, created if absent'))
-        )
-        name = declare(self, 'name', Option('', 'name of the bag; empty is that of the folder'))
-        if name:
-            require_name('parameter name', name)
-        self._two_input = declare(
-            self,
-            'two_input',
-            Option(False, 'record engine/torque_request of a two-input controller'),
-        )
-        nodes = declare(
-            self,
-            'nodes',
-            Option(
-                NODE_NAMES,
-                'nodes whose run_info the bag must hold; names without a slash are those of '
-                "the recorder's namespace",
-                kind=str,
-                many=True,
-            ),
-        )
-        self._nodes = RunInfoCollector(self.settings, self._two_input, nodes)
-        self._run = self.settings.kind(two_input=self._two_input)
+        recording = self._recording = declare_parameters(self)
+        self._nodes = RunInfoCollector(self.settings, recording.two_input, recording.nodes)
+        self._run = self.settings.kind(two_input=recording.two_input)
         self._topics = recorded_topics(self._run)
         ticks = [topic for topic in self._topics if topic.every_tick]
         self._buffer = TickBuffer(
@@ -93,7 +67,7 @@ class RecorderNode(GraphNode):
             undecided=frozenset({TORQUE_PARTS.name}),
         )
         self._bag = RecordedBag(
-            (self._folder, name or self._folder.name),
+            (recording.folder, recording.name),
             self._run,
             self.settings,
             self._nodes,
@@ -101,8 +75,7 @@ class RecorderNode(GraphNode):
         )
         if not self.settings.lockstep:
             self.limit = StampLimit(tick_names(), from_t0=True)
-        self._timing = RunTiming()
-        self._realtime = RealtimeFacts()
+        self._wall_clock = WallClockFacts()
         self._ack = create_publisher(self, RECORDER_ACK)
         self._write_ack = RECORDER_ACK.writer()
         self._acknowledged = 0
@@ -121,28 +94,20 @@ class RecorderNode(GraphNode):
         try:
             self._bag.write_ticks(self._buffer.drain())
             if not self._bag.is_open:
-                raise DdctError(f'{self._folder}: nothing was recorded, {self._waiting_for()}')
+                folder = self._recording.folder
+                raise DdctError(f'{folder}: nothing was recorded, {self._waiting_for()}')
             self._bag.close()
-            self._write_timing()
+            self._wall_clock.write(
+                self._recording.folder,
+                self._bag.steps,
+                self._bag.wall_time_s,
+                self._buffer.dropped,
+                self.refused,
+            )
             if self._second_node is not None:
                 raise self._second_node
         except DdctError as error:
             self.finish(error)
-
-    def _write_timing(self) -> None:
-        facts = self._realtime
-        timing = replace(
-            self._timing,
-            steps=self._bag.steps,
-            wall_time_s=self._bag.wall_time_s,
-            missed_steps=facts.missed_steps,
-            resends=facts.resends,
-            late_messages=facts.late_messages + self._buffer.dropped,
-            refused_messages=self.refused,
-            worst_lateness_us=facts.worst_lateness_us,
-            safe_states=facts.safe_states,
-        )
-        timing.write(self._folder)
 
     def _subscribe_all(self) -> None:
         special = {
@@ -192,7 +157,7 @@ class RecorderNode(GraphNode):
 
     def _on_timing(self, cdr: bytes) -> None:
         _, pairs = CONTROLLER_TIMING.read(_message(CONTROLLER_TIMING, cdr))
-        self._timing.update_times_us += update_times(pairs)
+        self._wall_clock.add_update_times(update_times(pairs))
         self._bag.write_unordered(CONTROLLER_TIMING, cdr)
 
     def _on_diagnostics(self, cdr: bytes) -> None:
@@ -202,7 +167,7 @@ class RecorderNode(GraphNode):
         # Every graph of the domain publishes on this topic, whatever its namespace.
         given, pairs = DIAGNOSTICS.read(message)
         name = StatusName.of(given, self.get_namespace())
-        if self._nodes.has(name.node) and self._realtime.receive(name, pairs):
+        if self._nodes.has(name.node) and self._wall_clock.receive(name, pairs):
             message.status[0].name = str(name)
             self._bag.write_unordered(DIAGNOSTICS, serialize_message(message))
 
