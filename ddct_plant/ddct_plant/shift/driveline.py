@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """The driveline of a shift, stepped exactly: two clutches, two gears, friction at the wheels."""
 
-from typing import NamedTuple
+from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 from ddct_plant.hybrid.interval_map import Interval
-from ddct_plant.models.clutch import Capacity
 from ddct_plant.models.driveline import OPEN, DrivelineOutputs, PhaseEvent, driveline_outputs
 from ddct_plant.models.driveline_model import STATES_AND_ANGLES
 from ddct_plant.models.parameters import VehicleParameters
@@ -58,6 +58,12 @@ class ShiftOutputs(NamedTuple):
     """Signals of the off-going side."""
     wheel_friction_work: float
     """Exact work in J of rolling resistance and brake in the last period."""
+
+    def signals(self) -> dict[str, Any]:
+        """Return the signals of a tick by name; those of the off-going side have a prefix."""
+        off_going = self.off_going._asdict().items()
+        prefixed = {f'off_going_{name}': value for name, value in off_going}
+        return {**self.driveline._asdict(), **prefixed}
 
 
 class ShiftDriveline:
@@ -149,25 +155,28 @@ class ShiftDriveline:
         self,
         engine_torque: float,
         load_torque: float,
-        on_coming: Capacity,
-        off_going: Capacity,
+        kinetic_torque: Sequence[float],
+        static_torque: Sequence[float],
         holding_torque: float,
+        off_going_kinetic: Sequence[float],
+        off_going_static: Sequence[float],
     ) -> None:
         """
-        Advance by 10 ms with held C_m, C_load and holding torque in N m.
+        Advance by 10 ms with held C_m and C_load and the (11,) nodes of both clutches' capacities.
 
-        The capacities of both clutches are linear between their 11 nodes. Raise ParameterError
-        for a negative capacity, or a static one below the kinetic one.
+        The arguments are those of `StickSlipDriveline.step`, in N m, then the kinetic and the
+        static capacity of the off-going clutch. Raise ParameterError for a negative capacity, or a
+        static one below the kinetic one.
         """
-        kinetic = static = [*on_coming.kinetic, *off_going.kinetic, holding_torque]
-        if on_coming.static is not on_coming.kinetic or off_going.static is not off_going.kinetic:
-            static = [*on_coming.static, *off_going.static, holding_torque]
+        kinetic = static = [*kinetic_torque, *off_going_kinetic, holding_torque]
+        if static_torque is not kinetic_torque or off_going_static is not off_going_kinetic:
+            static = [*static_torque, *off_going_static, holding_torque]
         now = self.now = self._engaged.integrator.advance(
             self.now.state, self.now.signs, (engine_torque, load_torque), kinetic, static
         )
         self._phases = [
-            phase_of(now.signs[ON_COMING], on_coming.kinetic[-1]),
-            phase_of(now.signs[OFF_GOING], off_going.kinetic[-1]),
+            phase_of(now.signs[ON_COMING], kinetic_torque[-1]),
+            phase_of(now.signs[OFF_GOING], off_going_kinetic[-1]),
         ]
         self._torques = engine_torque, load_torque
         self._steps += 1

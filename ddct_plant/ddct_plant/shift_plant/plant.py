@@ -4,9 +4,8 @@
 
 from typing import NamedTuple
 
-from ddct_plant.base.timebase import steps_in, time_of_step
-from ddct_plant.models.actuator import Actuator
-from ddct_plant.models.clutch import Capacity, FrictionClutch
+from ddct_plant.base.timebase import time_of_step
+from ddct_plant.models.clutch import Capacity
 from ddct_plant.scenario.plant import (
     driveline_sensors,
     holding_torque,
@@ -15,15 +14,20 @@ from ddct_plant.scenario.plant import (
     torque_estimate,
 )
 from ddct_plant.scenario.settings import RunSettings
-from ddct_plant.scenario.shift_rules import gears_of, shift_of
+from ddct_plant.scenario.shift_rules import gears_of
 from ddct_plant.scenario.whole_plant import Observation
 from ddct_plant.sensors.sensed import MeasuredSpeeds
-from ddct_plant.shift.driveline import OffGoingOutputs, ShiftDriveline, ShiftOutputs
-from ddct_plant.shift_plant.start import locked_request, shift_start
+from ddct_plant.shift.driveline import ShiftOutputs
+from ddct_plant.shift_plant.sides import (
+    OFF_GOING,
+    ROLES,
+    first_request,
+    shift_driveline,
+    side_actuator,
+    side_clutch,
+)
 from ddct_plant.signals.signal import SignalValue
 
-OPEN_BELOW = 0.01
-"""Torque in N m of the actuator up to which a clutch of a shift is open."""
 _OF_CLUTCH = (
     'torque_request',
     'actuator_torque',
@@ -32,8 +36,8 @@ _OF_CLUTCH = (
     'clutch_temperature',
 )
 """Names of the signals of a clutch and its actuator."""
-_OF_OFF_GOING = tuple(f'off_going_{name}' for name in (*OffGoingOutputs._fields, *_OF_CLUTCH))
-"""Names of the signals of the off-going side."""
+_OF_OFF_GOING_CLUTCH = tuple(f'off_going_{name}' for name in _OF_CLUTCH)
+"""Names of the signals of the off-going clutch and its actuator."""
 
 
 class ShiftReply(NamedTuple):
@@ -64,31 +68,19 @@ class ShiftPlant:
 
     def __init__(self, settings: RunSettings, *, two_input: bool = False) -> None:
         """Start in the drive before the shift; `two_input`: the controller commands C_m."""
-        self._scenario = scenario = settings.scenario
+        self._scenario = settings.scenario
         self._two_input = two_input
-        shift, gears, start = shift_of(scenario), gears_of(scenario), shift_start(settings)
-        self._ratio = gears.ratio
-        disengagement_s = shift.disengagement_s
-        self.driveline = ShiftDriveline(
-            gears,
-            scenario.vehicle,
-            start,
-            steps_in('shift.preselection_s', shift.preselection_s),
-            None
-            if disengagement_s is None
-            else steps_in('shift.disengagement_s', disengagement_s),
-        )
-        self.first_request = locked_request(scenario, start.off_going_torque)
+        self._ratio = gears_of(settings.scenario).ratio
+        self.driveline = shift_driveline(settings)
+        self.first_request = first_request(settings, OFF_GOING)
         """Request of the off-going clutch before t_0 in N m, which keeps it locked."""
         self._engine, self._load = make_engine(settings), make_load(settings)
         self._holding = holding_torque(settings)
         self._sensors, self._estimate = driveline_sensors(settings), torque_estimate(settings)
-        self._actuator = Actuator(0.0, scenario.actuator)
-        self._off_going_actuator = Actuator(self.first_request, scenario.actuator)
-        self._clutch, self._off_going_clutch = (
-            FrictionClutch(scenario.friction, wear_gain, scenario.heat, OPEN_BELOW)
-            for wear_gain in (settings.wear_gain, settings.off_going_wear_gain)
+        self._actuator, self._off_going_actuator = (
+            side_actuator(settings, role) for role in ROLES
         )
+        self._clutch, self._off_going_clutch = (side_clutch(settings, role) for role in ROLES)
 
     def demand(self, step: int) -> float:
         """Return the driver's demand of C_m in N m at step k."""
@@ -155,11 +147,11 @@ class ShiftPlant:
             step, other_nodes, other.slip_speed, other.friction_work
         )
         requests_and_torques = torque_request, nodes, *clutch
-        of_off_going = *other, off_going_request, other_nodes, *other_clutch
+        of_off_going = off_going_request, other_nodes, *other_clutch
         signals: dict[str, SignalValue] = {
-            **true._asdict(),
+            **outputs.signals(),
             **dict(zip(_OF_CLUTCH, requests_and_torques, strict=True)),
-            **dict(zip(_OF_OFF_GOING, of_off_going, strict=True)),
+            **dict(zip(_OF_OFF_GOING_CLUTCH, of_off_going, strict=True)),
             'wheel_friction_work': outputs.wheel_friction_work,
             'torque_demand': self._engine.demand(step),
             'engine_torque': engine_torque,
@@ -182,7 +174,7 @@ class ShiftPlant:
         self.driveline.step(
             reply.engine_torque,
             reply.load_torque,
-            reply.on_coming,
-            reply.off_going,
+            *reply.on_coming[:2],
             reply.holding_torque,
+            *reply.off_going[:2],
         )

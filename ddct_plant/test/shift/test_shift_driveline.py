@@ -38,6 +38,18 @@ def capacity(start: float, end: float | None = None, ratio: float = 1.0) -> Capa
 OPEN = capacity(0.0)
 
 
+def step(
+    driveline: ShiftDriveline,
+    engine: float,
+    load: float,
+    on_coming: Capacity,
+    off_going: Capacity,
+    holding: float,
+) -> None:
+    """Advance by one period with torques in N m and the capacities of both clutches."""
+    driveline.step(engine, load, *on_coming[:2], holding, *off_going[:2])
+
+
 def at(engine: float, wheel: float, twist: float = 0.0) -> ShiftStart:
     """Return a start with both gears engaged, at an engine and a wheel speed in rad/s."""
     return ShiftStart(engine, TAU_J * wheel, TAU_I * wheel, wheel, twist, 0.0, 0.0, 0.0, 0.0)
@@ -92,7 +104,7 @@ def test_in_an_ideal_torque_phase_the_wheel_torque_falls_by_a_third():
     off_going = []
     for period in range(1000):
         on_coming = capacity(0.1 * period, 0.1 * (period + 1))
-        driveline.step(engine, load, on_coming, capacity(200.0), 0.0)
+        step(driveline, engine, load, on_coming, capacity(200.0), 0.0)
         now = driveline.outputs()
         off_going.append(now.off_going.transmitted_torque)
         found.append(now.driveline.joint_effort.driveshaft)
@@ -121,7 +133,7 @@ def test_the_work_of_an_inertia_phase_is_that_of_the_engine_and_of_its_kinetic_e
     driveline = ShiftDriveline(GearPair(p, FIRST), VEHICLE, at(engine_speed, wheel, twist))
     work = 0.0
     for _ in range(32):
-        driveline.step(torque, 0.0, capacity(transmitted, ratio=2.0), OPEN, 0.0)
+        step(driveline, torque, 0.0, capacity(transmitted, ratio=2.0), OPEN, 0.0)
         now = driveline.outputs().driveline
         work += now.friction_work
         for event in now.phase_events:
@@ -144,7 +156,7 @@ def test_a_tie_up_brings_car_and_engine_to_rest_and_keeps_them_there(torques, ra
     on_coming, off_going = (capacity(torque, ratio=ratio) for torque in torques)
     at_rest = []
     for period in range(1000):
-        driveline.step(100.0, 0.0, on_coming, off_going, rolling)
+        step(driveline, 100.0, 0.0, on_coming, off_going, rolling)
         now = driveline.outputs()
         assert np.isfinite([*now.driveline.joint_speed, *now.driveline.joint_effort]).all()
         if phases(now) == ('locked', 'locked'):
@@ -170,7 +182,7 @@ def test_a_tie_up_at_the_capacity_of_the_c635_brakes_the_car_by_the_difference_o
     inertia += PARAMETERS.shaft_inertia * (TAU_I**2 + TAU_J**2)
     torque = 100.0 * TAU_I - 350.0 * (TAU_I - TAU_J) - 70.0
     for _ in range(200):
-        driveline.step(100.0, 10.0, capacity(350.0), capacity(350.0), 60.0)
+        step(driveline, 100.0, 10.0, capacity(350.0), capacity(350.0), 60.0)
     now = driveline.outputs()
     assert phases(now) == ('slipping', 'locked')
     assert now.driveline.wheel_speed == pytest.approx(
@@ -200,7 +212,7 @@ def test_with_one_gear_engaged_it_is_the_driveline_with_one_clutch():
     )
     for period in range(20):
         clutch = capacity(120.0 - 5.0 * period, 115.0 - 5.0 * period, ratio=1.1)
-        shift.step(100.0, 10.0, OPEN, clutch, 60.0)
+        step(shift, 100.0, 10.0, OPEN, clutch, 60.0)
         one.step(100.0, 10.0, clutch.kinetic, clutch.static, 60.0)
         if period < 19:
             both, alone = shift.outputs(), one.outputs()
@@ -216,7 +228,7 @@ def test_with_one_gear_engaged_it_is_the_driveline_with_one_clutch():
                 assert found.kind == expected.kind
                 assert found.time_s == pytest.approx(expected.time_s, abs=1e-12)
     for _ in range(10):
-        shift.step(100.0, 10.0, OPEN, OPEN, 60.0)
+        step(shift, 100.0, 10.0, OPEN, OPEN, 60.0)
     now = shift.outputs()
     engine, shaft, wheel, twist = *now.driveline.joint_speed[:3], now.driveline.twist
     one = StickSlipDriveline(
@@ -224,7 +236,7 @@ def test_with_one_gear_engaged_it_is_the_driveline_with_one_clutch():
     )
     for period in range(40):
         clutch = capacity(6.0 * period, 6.0 * (period + 1))
-        shift.step(100.0, 10.0, clutch, OPEN, 60.0)
+        step(shift, 100.0, 10.0, clutch, OPEN, 60.0)
         one.step(100.0, 10.0, clutch.kinetic, clutch.static, 60.0)
     both, alone = shift.outputs(), one.outputs()
     assert both.driveline.joint_speed == pytest.approx(alone.joint_speed, rel=1e-11, abs=1e-9)
@@ -246,7 +258,7 @@ def test_preselection_gives_the_free_shaft_the_speed_of_its_gear():
         shafts.append(now.off_going.shaft_speed)
         assert phases(now) == ('open', 'locked')
         assert now.driveline.slip_speed == now.driveline.engine_speed - now.driveline.shaft_speed
-        driveline.step(100.0, 10.0, OPEN, capacity(150.0), 60.0)
+        step(driveline, 100.0, 10.0, OPEN, capacity(150.0), 60.0)
     decay = math.exp(-0.01 * PARAMETERS.shaft_damping / PARAMETERS.shaft_inertia)
     assert free[:5] == pytest.approx([40.0 * decay**k for k in range(5)], rel=1e-12)
     assert free[5] == pytest.approx(shafts[5] * TAU_J / TAU_I, rel=1e-14)
@@ -260,7 +272,7 @@ def test_a_steady_drive_before_the_shift_has_no_oscillation():
     accels = []
     for _ in range(50):
         accels.append(driveline.outputs().driveline.vehicle_accel)
-        driveline.step(100.0, 10.0, OPEN, capacity(150.0), 60.0)
+        step(driveline, 100.0, 10.0, OPEN, capacity(150.0), 60.0)
     assert np.ptp(accels) < 0.03
     assert accels[0] > accels[-1] > 2.0  # the shafts' damping grows with speed
 

@@ -15,7 +15,8 @@ from ddct_plant.models.load import HoldingTorque, RoadLoad, air_and_slope
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.scenario.shift_rules import gears_of
 from ddct_plant.shift.driveline import ShiftOutputs
-from ddct_plant.shift_plant.plant import OPEN_BELOW, ShiftPlant, ShiftReply
+from ddct_plant.shift_plant.plant import ShiftPlant, ShiftReply
+from ddct_plant.shift_plant.sides import OPEN_BELOW
 from ddct_plant.shift_plant.start import shift_start
 
 TOLERANCE = 1e-12

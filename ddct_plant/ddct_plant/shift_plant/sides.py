@@ -1,0 +1,58 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Driveline, actuators and clutches of a run, with a gear shift or without one, by their role."""
+
+from ddct_plant.base.timebase import steps_in
+from ddct_plant.models.actuator import Actuator
+from ddct_plant.models.clutch import FrictionClutch
+from ddct_plant.scenario.plant import initial_state, stick_slip_clutch
+from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.shift_rules import gears_of, shift_of
+from ddct_plant.shift.driveline import ShiftDriveline
+from ddct_plant.shift_plant.start import locked_request, shift_start
+
+ON_COMING, OFF_GOING = 'on_coming', 'off_going'
+ROLES = (ON_COMING, OFF_GOING)
+"""Sides of a gear shift; without a shift there is the first one alone."""
+OPEN_BELOW = 0.01
+"""Torque in N m of the actuator up to which a clutch of a shift is open."""
+
+
+def shift_driveline(settings: RunSettings) -> ShiftDriveline:
+    """Return the driveline of a shift in the drive before it; raise ParameterError without one."""
+    scenario, shift = settings.scenario, shift_of(settings.scenario)
+    disengagement_s = shift.disengagement_s
+    return ShiftDriveline(
+        gears_of(scenario),
+        scenario.vehicle,
+        shift_start(settings),
+        steps_in('shift.preselection_s', shift.preselection_s),
+        None if disengagement_s is None else steps_in('shift.disengagement_s', disengagement_s),
+    )
+
+
+def first_request(settings: RunSettings, role: str) -> float:
+    """
+    Return the request before t_0 in N m of the clutch with a role.
+
+    In a shift that of the on-coming clutch is 0, and that of the off-going one keeps it locked.
+    """
+    if not settings.shift:
+        return initial_state(settings).torque_request
+    if role == ON_COMING:
+        return 0.0
+    return locked_request(settings.scenario, shift_start(settings).off_going_torque)
+
+
+def side_actuator(settings: RunSettings, role: str) -> Actuator:
+    """Return the actuator of a clutch, in its steady state for the request before t_0."""
+    return Actuator(first_request(settings, role), settings.scenario.actuator)
+
+
+def side_clutch(settings: RunSettings, role: str) -> FrictionClutch:
+    """Return the stick-slip clutch of a role, with its wear, at its initial temperatures."""
+    if not settings.shift:
+        return stick_slip_clutch(settings)
+    scenario = settings.scenario
+    wear_gain = settings.wear_gain if role == ON_COMING else settings.off_going_wear_gain
+    return FrictionClutch(scenario.friction, wear_gain, scenario.heat, OPEN_BELOW)
