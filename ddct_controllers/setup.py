@@ -13,6 +13,7 @@ PROGRAMS = [
     'check-controller = ddct_controllers.check.program:main',
     'controller = ddct_controllers.controller_node:main',
     'design = ddct_controllers.workflows.design_program:main',
+    'handover = ddct_controllers.handover.handover_node:main',
     'new-controller = ddct_controllers.template.new_controller:main',
 ]
 WHEEL = not {'bdist_wheel', 'dist_info', 'editable_wheel'}.isdisjoint(sys.argv)

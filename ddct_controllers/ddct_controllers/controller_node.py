@@ -20,11 +20,14 @@ from ddct_plant.graph.node_reports import controller_info, timing_pairs
 from ddct_plant.graph.output import Output
 from ddct_plant.graph.settings import declare
 from ddct_plant.graph.spin import run_node
+from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import (
     CONTROLLER_STATUS,
     CONTROLLER_TIMING,
     ENGINE_REQUEST,
+    HANDOVER_SHARE,
     SLIP_REFERENCE,
+    TORQUE_CUT,
     TORQUE_DEMAND,
     TORQUE_PARTS,
     TORQUE_REQUEST,
@@ -41,8 +44,10 @@ class ControllerNode(FollowerNode):
 
     In a run with sensors the measurements are those of the sensors. A controller with two inputs
     also answers with `engine/torque_request`, and takes the driver's demand in place of
-    `engine/torque`. The options of the controller are parameters `gains.<name>`; its gains among
-    them may be changed while it runs.
+    `engine/torque`, in a gear shift less `engine/torque_cut`. In a gear shift every controller
+    waits for `clutch/handover_share`, carries that share of the open loop, and has feedback with
+    the share 1. The options of the controller are parameters `gains.<name>`; its gains among them
+    may be changed while it runs.
     """
 
     EXAMPLES: ClassVar[tuple[str, ...]] = (
@@ -75,6 +80,7 @@ class ControllerNode(FollowerNode):
             self._measured_topics.vehicle_speed,
             self._engine_topic,
             SLIP_REFERENCE,
+            *self._of_handover(),
             readers={SLIP_REFERENCE: self._read_reference},
         )
 
@@ -82,7 +88,7 @@ class ControllerNode(FollowerNode):
         """Return the request for the period of step k and its parts."""
         measurement = self._measure(step, inputs)
         started = time.perf_counter()
-        request = self._architecture.update(measurement)
+        request = self._architecture.update(measurement, inputs.get(HANDOVER_SHARE.name, 1.0))
         self._update_times_us.append(1e6 * (time.perf_counter() - started))
         if len(self._update_times_us) == TIMING_BATCH:
             self._publish_timing(step)
@@ -100,6 +106,13 @@ class ControllerNode(FollowerNode):
         if self._update_times_us:
             self._publish_timing(self.join.last_step)
 
+    def _of_handover(self) -> tuple[Topic, ...]:
+        """Return the topics of the handover that the controller reads in a gear shift."""
+        if not self.settings.shift:
+            return ()
+        commands_engine = self._controller.commands_engine
+        return (HANDOVER_SHARE, TORQUE_CUT) if commands_engine else (HANDOVER_SHARE,)
+
     def _read_reference(self, message: Any) -> tuple[list[float], list[float]]:
         return SLIP_REFERENCE.read(message, preview_steps=self._controller.preview_steps)
 
@@ -112,7 +125,7 @@ class ControllerNode(FollowerNode):
             shaft_speed=joint_speed.primary_shaft,
             wheel_speed=joint_speed.wheel,
             vehicle_speed=inputs[self._measured_topics.vehicle_speed.name],
-            engine_torque=inputs[self._engine_topic.name],
+            engine_torque=inputs[self._engine_topic.name] - inputs.get(TORQUE_CUT.name, 0.0),
             slip_reference=speeds,
             slip_reference_rate=rates,
         )

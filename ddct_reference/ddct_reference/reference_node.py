@@ -11,7 +11,7 @@ from ddct_plant.graph.node_reports import reference_info
 from ddct_plant.graph.output import Output
 from ddct_plant.graph.settings import declare
 from ddct_plant.graph.spin import run_node
-from ddct_plant.signals.topics import SLIP_REFERENCE, measurement_topics
+from ddct_plant.signals.topics import HANDOVER_SHARE, SLIP_REFERENCE, measurement_topics
 from ddct_reference.factory import make_reference
 
 
@@ -20,7 +20,8 @@ class ReferenceNode(FollowerNode):
     Answer `clutch/slip` with `clutch/slip_reference`, `preview_steps` periods ahead.
 
     With the shape `engine_speed_target` it also subscribes to `driveline/joint_states`. In a run
-    with sensors it subscribes to their topics for both.
+    with sensors it subscribes to their topics for both. In a gear shift it waits for
+    `clutch/handover_share` too, and starts with the first period whose share is 1.
     """
 
     EXAMPLES: ClassVar[tuple[str, ...]] = ('-p preview_steps:=22',)
@@ -38,7 +39,8 @@ class ReferenceNode(FollowerNode):
         self.publish_run_info(reference_info(preview_steps))
         self._measured_topics = measurement_topics(sensed=self.settings.sensed)
         shafts = (self._measured_topics.joint_states,) if self._reference.follows_shaft else ()
-        self.follow(self._measured_topics.slip, *shafts)
+        shares = (HANDOVER_SHARE,) if self.settings.shift else ()
+        self.follow(self._measured_topics.slip, *shafts, *shares)
 
     def answer(self, step: int, stamp_ns: int, inputs: dict[str, Any]) -> Reply:
         """Return the reference at t_k and ahead."""
@@ -46,7 +48,10 @@ class ReferenceNode(FollowerNode):
         if self._reference.follows_shaft:
             shaft_speed = inputs[self._measured_topics.joint_states.name].primary_shaft
         speeds, rates = self._reference.update(
-            step, inputs[self._measured_topics.slip.name], shaft_speed
+            step,
+            inputs[self._measured_topics.slip.name],
+            shaft_speed,
+            inputs.get(HANDOVER_SHARE.name, 1.0),
         )
         return (self._output.fill(stamp_ns, speeds, rates),)
 

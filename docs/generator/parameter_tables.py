@@ -8,7 +8,7 @@ from unittest.mock import patch
 
 from rclpy.context import Context
 
-from ddct_bringup.processes.graph_nodes import GRAPH_NODES
+from ddct_bringup.processes.graph_nodes import NODE_PROGRAMS
 from ddct_plant.base.options import options_of
 from ddct_plant.graph.arguments import init_ros
 from ddct_plant.graph.node import GraphNode
@@ -29,7 +29,7 @@ def parameter_tables() -> dict[str, Table]:
         context = Context()
         init_ros([], context)
         try:
-            for spec in GRAPH_NODES:
+            for spec in NODE_PROGRAMS:
                 node_class = getattr(importlib.import_module(spec.module), spec.class_name)
                 node: GraphNode = node_class(context=context)
                 if rows := _rows(node):

@@ -13,7 +13,7 @@ import pytest
 from support.complaints import assert_one_line
 from support.processes import Program, Programs, package_of
 
-from ddct_bringup.processes.graph_nodes import GRAPH_NODES
+from ddct_bringup.processes.graph_nodes import NODE_PROGRAMS
 from ddct_bringup.programs import bringup
 from ddct_plant.scenario.file import load_scenario, scenario_to_yaml
 
@@ -94,7 +94,7 @@ WRAPPERS = ('run_program', 'run_subcommands', 'run_node')
 """Wrappers of programs' main; `run_subcommands` chooses the subcommand and calls `run_program`."""
 
 
-@pytest.mark.parametrize('package', sorted({package_of(spec) for spec in GRAPH_NODES}))
+@pytest.mark.parametrize('package', sorted({package_of(spec) for spec in NODE_PROGRAMS}))
 def test_every_program_ends_through_the_one_wrapper(package: str) -> None:
     setup = (ROOT / package / 'setup.py').read_text(encoding='utf-8')
     programs = re.findall(r"'[a-z-]+ = ([a-z_.]+):main'", setup)

@@ -15,15 +15,24 @@ from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.processes.graph_nodes import NODE_NAMES
 from ddct_plant.graph import sole_publishers
 from ddct_plant.graph.qos import RECORDER_QOS
+from ddct_plant.models.driveline import DrivelineOutputs
 from ddct_plant.nodes.driveline_node import DrivelineNode
 from ddct_plant.signals.signal import RunKind
 from ddct_plant.signals.topic import Topic
-from ddct_plant.signals.topics import ENGINE_REQUEST, TOPICS
+from ddct_plant.signals.topics import (
+    ENGINE_REQUEST,
+    OFF_GOING_CLUTCH_TORQUE,
+    SHIFT_TOPICS,
+    TOPICS,
+)
 from ddct_plant.ticks.realtime_owner import RealtimeOwner
 
 STALL_S = 0.03
 """Lateness, s, from which a request may be missing for longer than the actuator's timeout."""
 LOOP = [topic for topic in TOPICS if topic.every_tick]
+ECHOED = [topic for topic in LOOP if topic not in SHIFT_TOPICS] + [OFF_GOING_CLUTCH_TORQUE]
+"""Topics of the loop of other runs, and one of a shift, where the check is the same."""
+COPIED = [*(name for name in NODE_NAMES if name != 'recorder'), 'handover', 'off_going/actuator']
 
 
 class Echo(Node):
@@ -68,7 +77,9 @@ def _owner(graph: InProcessGraph) -> RealtimeOwner:
 
 def _clutch_torque(graph: InProcessGraph) -> float:
     """Return the torque in N m that the driveline integrates last."""
-    return _driveline(graph).driveline.outputs().joint_effort[1]
+    outputs = _driveline(graph).driveline.outputs()
+    assert isinstance(outputs, DrivelineOutputs)
+    return outputs.joint_effort.primary_shaft
 
 
 def test_the_publishers_of_every_topic_of_a_tick_are_checked(graph_of: GraphOf) -> None:
@@ -77,16 +88,19 @@ def test_the_publishers_of_every_topic_of_a_tick_are_checked(graph_of: GraphOf) 
     assert sorted(driveline._sole_publishers._topics) == sorted(topic.name for topic in LOOP)
 
 
-@pytest.mark.parametrize('topic', LOOP, ids=lambda topic: topic.name)
+@pytest.mark.parametrize('topic', ECHOED, ids=lambda topic: topic.name)
 def test_a_second_publisher_of_any_loop_topic_ends_the_run_with_its_name(
     graph_of: GraphOf, topic: Topic
 ) -> None:
-    sensed = not topic.in_run(RunKind(two_input=True, clutch='stick_slip'))
+    shift = topic in SHIFT_TOPICS
+    sensed = not shift and not topic.in_run(RunKind(two_input=True, clutch='stick_slip'))
     clutch = 'linear' if topic.in_run(RunKind(two_input=True, sensed=sensed)) else 'stick_slip'
     controller = 'ls8' if topic.in_run(RunKind(clutch=clutch, sensed=sensed)) else 'mpc4'
     changes = ('sensors={}',) if sensed else ()
     recorded = topic.name in ('recorder/ack', 'engine/torque')
-    graph = graph_of(plan(controller, duration_s=0.3, clutch=clutch, changes=changes))
+    scenario = 'upshift' if shift else 'thesis'
+    run = plan(controller, scenario=scenario, duration_s=0.3, clutch=clutch, changes=changes)
+    graph = graph_of(run)
     graph.add_other(Echo(topic, context=graph.context))
     node, complaint = _graph(graph, recorded=recorded).first_failure()
     assert node == 'driveline', complaint
@@ -120,11 +134,13 @@ def test_a_process_that_could_not_run_does_not_miss_the_second_publisher(
 
 
 @pytest.mark.parametrize('recorded', [True, False], ids=['recorded', 'not recorded'])
-@pytest.mark.parametrize('name', [name for name in NODE_NAMES if name != 'recorder'])
+@pytest.mark.parametrize('name', COPIED)
 def test_a_second_copy_of_any_node_ends_the_run_with_its_name(
     graph_of: GraphOf, name: str, recorded: bool
 ) -> None:
-    graph = graph_of(plan(duration_s=0.3))
+    shift = name not in NODE_NAMES
+    run = plan('pi', scenario='upshift', duration_s=0.3, clutch='stick_slip')
+    graph = graph_of(run if shift else plan(duration_s=0.3))
     graph.add(name, key='second')
     _, complaint = _graph(graph, recorded=recorded).first_failure()
     assert 'has two live publishers, of the nodes ' in complaint

@@ -13,7 +13,7 @@ import yaml
 from rclpy.context import Context
 from rclpy.signals import SignalHandlerOptions
 
-from ddct_bringup.processes.graph_nodes import GRAPH_NODES, NodeSpec
+from ddct_bringup.processes.graph_nodes import NODE_PROGRAMS, NodeSpec
 
 ROOT = Path(__file__).resolve().parents[2]
 FILES = sorted(ROOT.glob('ddct_*/config/*.yaml'))
@@ -38,7 +38,7 @@ def listed(section: str) -> dict[str, Any]:
     return found
 
 
-@pytest.mark.parametrize('spec', GRAPH_NODES, ids=lambda spec: spec.name)
+@pytest.mark.parametrize('spec', NODE_PROGRAMS, ids=lambda spec: spec.name)
 def test_a_node_declares_just_what_the_files_list_with_the_same_defaults(
     spec: NodeSpec, context: Context
 ) -> None:
@@ -56,4 +56,4 @@ def test_every_section_belongs_to_a_node() -> None:
     sections = {
         section for path in FILES for section in yaml.safe_load(path.read_text(encoding='utf-8'))
     }
-    assert sections <= {SHARED, *(f'/**/{spec.name}' for spec in GRAPH_NODES)}
+    assert sections <= {SHARED, *(f'/**/{spec.name}' for spec in NODE_PROGRAMS)}

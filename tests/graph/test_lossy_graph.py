@@ -9,6 +9,7 @@ import threading
 import time
 from pathlib import Path
 
+import pytest
 from support.in_process_graph import GraphOf, InProcessGraph
 from support.processes import node_of
 from support.relay import Relay, lossy_remaps
@@ -16,7 +17,8 @@ from support.runs import expected, plan, record
 from support.waiting import wait_until
 
 from ddct_bringup.bag.reader import read_bag
-from ddct_bringup.processes.graph_nodes import GRAPH_NODES
+from ddct_bringup.processes.graph_nodes import nodes_of
+from ddct_bringup.run.plan import RunPlan
 from ddct_plant.signals.signal import RunKind
 from ddct_plant.signals.topics import TOPICS, recorded_topics
 
@@ -46,15 +48,43 @@ def _type_of(topic: str) -> type:
     return next(each.message_class for each in TOPICS if each.name == topic)
 
 
-def _add_lossy(graph: InProcessGraph, lost: float, doubled: float) -> list[Relay]:
+def _inputs(run: RunPlan) -> dict[str, list[str]]:
+    """Return the topics that each node of a run reads, by its full name within the graph."""
+    if not run.settings.shift:
+        return INPUTS
+    share = 'clutch/handover_share'
+    sticking = ['clutch/slip', 'clutch/phase']
+    return {
+        'load': INPUTS['load'],
+        'actuator': INPUTS['actuator'],
+        'engine': [*INPUTS['engine'], 'engine/torque_cut'],
+        'clutch': [*INPUTS['clutch'], *sticking],
+        'reference': [*INPUTS['reference'], share],
+        'controller': [*INPUTS['controller'], share],
+        'handover': [
+            *('driveline/joint_states', 'clutch/slip', 'off_going/clutch/slip', 'vehicle/twist'),
+            'engine/torque_demand',
+        ],
+        'off_going/actuator': ['off_going/clutch/torque_request'],
+        'off_going/clutch': [f'off_going/{topic}' for topic in ('actuator/torque', *sticking)],
+        'driveline': [*INPUTS['driveline'], 'load/holding_torque', 'off_going/clutch/torque'],
+        'recorder': [
+            topic.name
+            for topic in recorded_topics(run.settings.kind())
+            if topic.every_tick and topic.name != 'recorder/ack'
+        ],
+    }
+
+
+def _add_lossy(graph: InProcessGraph, run: RunPlan, lost: float, doubled: float) -> list[Relay]:
     relays = []
-    for spec in GRAPH_NODES:
-        topics = INPUTS[spec.name]
-        graph.add(spec.name, cli_args=lossy_remaps(spec.name, topics))
+    for spec in nodes_of(shift=run.settings.shift):
+        topics = _inputs(run)[spec.path]
+        graph.add(spec.path, cli_args=lossy_remaps(spec.path, topics))
         for topic in topics:
             relays.append(
                 Relay(
-                    spec.name,
+                    spec.path,
                     topic,
                     _type_of(topic),
                     lost=lost,
@@ -77,10 +107,16 @@ def _stop_for_half_a_second(module: str, bag: Path) -> None:
     os.kill(node, signal.SIGCONT)
 
 
-def test_one_percent_lost_and_doubled_messages_change_no_bit(graph_of: GraphOf) -> None:
-    run = plan()
+@pytest.mark.parametrize(
+    'run',
+    [plan(), plan('pi', scenario='upshift', duration_s=0.6, clutch='stick_slip')],
+    ids=['thesis', 'upshift'],
+)
+def test_one_percent_lost_and_doubled_messages_change_no_bit(
+    graph_of: GraphOf, run: RunPlan
+) -> None:
     graph = graph_of(run)
-    relays = _add_lossy(graph, lost=0.01, doubled=0.01)
+    relays = _add_lossy(graph, run, lost=0.01, doubled=0.01)
     graph.run(within_s=60.0)
     assert sum(relay.lost for relay in relays) >= 10
     assert sum(relay.doubled for relay in relays) >= 10

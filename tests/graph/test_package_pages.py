@@ -12,7 +12,7 @@ from support.documented import ROOT
 from support.in_process_graph import GraphOf
 from support.runs import plan
 
-from ddct_bringup.processes.graph_nodes import GRAPH_NODES
+from ddct_bringup.processes.graph_nodes import NODE_PROGRAMS, nodes_of
 from ddct_plant.base.options import options_of
 from ddct_plant.scenario.settings import RunSettings
 
@@ -23,6 +23,7 @@ WITH_TARGET = (
     'reference.shape=engine_speed_target',
     'engine_speed_reference={time_s: [0.0, 2.0], speed_rad_s: [160.0, 180.0]}',
 )
+SHIFT = plan('pi', scenario='upshift', duration_s=2.0, clutch='stick_slip')
 RUNS = (
     plan('pi'),
     plan('pi', clutch='stick_slip', changes=('sensors={}',)),
@@ -30,6 +31,8 @@ RUNS = (
     plan('pi', mode='realtime'),
     plan('pi', changes=WITH_TARGET),
     plan('pi', changes=(*WITH_TARGET, 'sensors={}')),
+    SHIFT,
+    plan('mpc4', scenario='upshift', duration_s=2.0, clutch='stick_slip', changes=('sensors={}',)),
 )
 """Runs that have every topic between them."""
 
@@ -45,11 +48,13 @@ def cells(package: str, node: str) -> list[set[str]]:
     return [set(re.findall(r'`([^`]+)`', cell)) for cell in row.split('|')]
 
 
-@pytest.mark.parametrize('spec', GRAPH_NODES, ids=lambda spec: spec.name)
+@pytest.mark.parametrize('spec', NODE_PROGRAMS, ids=lambda spec: spec.name)
 def test_the_row_of_a_node_is_what_it_declares(graph_of: GraphOf, spec) -> None:
     read: set[str] = set()
     published: set[str] = set()
     for run in RUNS:
+        if spec not in nodes_of(shift=run.settings.shift):
+            continue
         node = graph_of(run).add(spec.name)
         read |= {each.topic_name for each in node.subscriptions}
         published |= {each.topic_name for each in node.publishers}
@@ -63,7 +68,7 @@ def test_the_row_of_a_node_is_what_it_declares(graph_of: GraphOf, spec) -> None:
 def test_the_tables_of_parameters_are_what_the_nodes_declare() -> None:
     shown = shown_tables('parameters')
     assert shown == as_markdown(parameter_tables()), 'run: make docs KINDS=parameters'
-    for spec in GRAPH_NODES:
+    for spec in NODE_PROGRAMS:
         marked = f'<!-- parameters: {spec.name} -->' in page(spec.module.split('.')[0])
         assert marked == (spec.name in shown)
 
@@ -72,8 +77,8 @@ def test_shared_parameters_and_those_of_its_own_are_all_that_a_node_declares(
     graph_of: GraphOf,
 ) -> None:
     tables = shown_tables('parameters')
-    graph = graph_of(RUNS[0])
-    for spec in GRAPH_NODES:
+    graph = graph_of(SHIFT)
+    for spec in NODE_PROGRAMS:
         shown = {row[0].strip('`') for row in rows_of(tables.get(spec.name, ''))}
         declared = set(graph.add(spec.name).own_parameters())
         gains = {name for name in declared if name.startswith('gains.')}

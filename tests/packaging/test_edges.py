@@ -77,7 +77,8 @@ EDGES = {*FILES, *VALUES_BY_KEY, *CALLERS}
 def open_mappings(package: str) -> Iterator[str]:
     """Yield the modules, within their package, that name a mapping from text to Any."""
     for file in sorted((ROOT / package / package).rglob('*.py')):
-        if file.name.endswith('_node.py') or 'graph' in file.parts:
+        module = file.relative_to(ROOT / package)
+        if file.name.endswith('_node.py') or 'graph' in module.parts:
             continue
         for node in ast.walk(ast.parse(file.read_text(encoding='utf-8'))):
             if (
@@ -86,7 +87,7 @@ def open_mappings(package: str) -> Iterator[str]:
                 and node.value.id in MAPPINGS
                 and ast.unparse(node.slice) == '(str, Any)'
             ):
-                yield file.relative_to(ROOT / package).as_posix()
+                yield module.as_posix()
                 break
 
 

@@ -9,7 +9,7 @@ import sys
 import pytest
 from support.in_process_graph import node_class
 
-from ddct_bringup.processes.graph_nodes import GRAPH_NODES
+from ddct_bringup.processes.graph_nodes import NODE_PROGRAMS
 
 
 def _help(module: str, *arguments: str) -> str:
@@ -24,7 +24,7 @@ def _help(module: str, *arguments: str) -> str:
     return done.stdout
 
 
-@pytest.mark.parametrize('node', GRAPH_NODES, ids=lambda node: node.name)
+@pytest.mark.parametrize('node', NODE_PROGRAMS, ids=lambda node: node.name)
 def test_help_names_the_parameters_and_where_to_give_them(node):
     text = _help(node.module, '--help')
     program = f'ddct {node.name}'
@@ -39,7 +39,7 @@ def test_help_names_the_parameters_and_where_to_give_them(node):
 
 def test_no_example_makes_a_node_disagree_with_the_others():
     shared = {'scenario', 'architecture', 'clutch', 'wear_gain', 'mode', 'seed'}
-    for node in GRAPH_NODES:
+    for node in NODE_PROGRAMS:
         for example in node_class(node.name).EXAMPLES:
             assert not shared & set(re.findall(r'(\w+):=', example)), example
 

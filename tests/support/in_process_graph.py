@@ -16,7 +16,7 @@ from rclpy.parameter import Parameter
 from rclpy.signals import SignalHandlerOptions
 from rclpy.task import Future
 
-from ddct_bringup.processes.graph_nodes import GRAPH_NODES
+from ddct_bringup.processes.graph_nodes import NodeSpec, nodes_of
 from ddct_bringup.run.plan import RunPlan
 from ddct_plant.base.errors import DdctError
 from ddct_plant.graph.node import GraphNode
@@ -26,9 +26,14 @@ CHECK_PERIOD_S = 0.001
 """Period of the checks of a condition while the graph spins, s."""
 
 
-def node_class(name: str) -> type[GraphNode]:
-    """Return the class of the node with this name."""
-    spec = next(spec for spec in GRAPH_NODES if spec.name == name)
+def node_spec(path: str) -> NodeSpec:
+    """Return the description of the node with this full name within its graph."""
+    return next(spec for spec in nodes_of(shift=True) if spec.path == path)
+
+
+def node_class(path: str) -> type[GraphNode]:
+    """Return the class of the node with this full name within its graph."""
+    spec = node_spec(path)
     return getattr(importlib.import_module(spec.module), spec.class_name)
 
 
@@ -39,6 +44,7 @@ class InProcessGraph:
         """Prepare for the bag of `plan` in `folder`; `add` and `add_all` build the nodes."""
         folder.mkdir(parents=True, exist_ok=True)
         self.folder = folder
+        self._specs = nodes_of(shift=plan.settings.shift)
         self.parameters = plan.node_parameters(folder, folder)
         self.nodes: dict[str, GraphNode] = {}
         self.context = Context()
@@ -65,23 +71,24 @@ class InProcessGraph:
 
     def add_all(self, *, without: Collection[str] = (), **options: Any) -> None:
         """Add every node of the graph that is not there yet and not in `without`."""
-        for spec in GRAPH_NODES:
-            if spec.name not in self.nodes and spec.name not in without:
-                self.add(spec.name, **options)
+        for spec in self._specs:
+            if spec.path not in self.nodes and spec.path not in without:
+                self.add(spec.path, **options)
 
     def add(
         self,
-        name: str,
+        path: str,
         changes: Mapping[str, Any] | None = None,
         *,
         key: str = '',
         **options: Any,
     ) -> GraphNode:
-        """Add the node `name` with the run's parameters and `changes`, kept under `key`."""
-        values = {**self.parameters['*'], **self.parameters.get(name, {}), **(changes or {})}
+        """Add the node `path` with the run's parameters and `changes`, kept under `key`."""
+        values = {**self.parameters['*'], **self.parameters.get(path, {}), **(changes or {})}
         overrides = [Parameter(parameter, value=value) for parameter, value in values.items()]
-        node = node_class(name)(context=self.context, parameter_overrides=overrides, **options)
-        self.nodes[key or name] = node
+        options = {'namespace': node_spec(path).namespace or None, **options}
+        node = node_class(path)(context=self.context, parameter_overrides=overrides, **options)
+        self.nodes[key or path] = node
         self._executor.add_node(node)
         return node
 

@@ -14,8 +14,12 @@ LOSSY = 'lossy'
 
 
 def lossy_remaps(node: str, topics: Iterable[str]) -> list[str]:
-    """Return the ROS arguments by which a node receives `topics` only from a `Relay`."""
-    rules = [f'{topic}:={_relayed(node, topic)}' for topic in topics]
+    """
+    Return the ROS arguments by which a node receives `topics` only from a `Relay`.
+
+    Node and topics have their names within the graph, which is in no namespace.
+    """
+    rules = [f'/{topic.lstrip("/")}:=/{_relayed(node, topic)}' for topic in topics]
     return ['--ros-args', *(part for rule in rules for part in ('-r', rule))]
 
 

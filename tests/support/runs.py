@@ -3,6 +3,7 @@
 """Short planned runs, and their recordings."""
 
 from pathlib import Path
+from typing import Any
 
 from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.bag.recording import Recording
@@ -22,16 +23,20 @@ def plan(
     controller: str = 'ls8',
     layout: str = 'processes',
     *,
+    scenario: str = 'thesis',
     duration_s: float = SHORT_S,
     wear_gain: float = 1.0,
     mode: str = 'lockstep',
     clutch: str = 'linear',
     seed: int = 0,
     changes: tuple[str, ...] = (),
+    **of_shift: Any,
 ) -> RunPlan:
-    """Return a short run of the thesis's scenario."""
-    scenario = load_scenario('thesis', [f'duration_s={duration_s}', *changes])
-    settings = RunSettings(scenario, clutch=clutch, wear_gain=wear_gain, mode=mode, seed=seed)
+    """Return a short run of a packaged scenario; `of_shift` are settings of a gear shift."""
+    content = load_scenario(scenario, [f'duration_s={duration_s}', *changes])
+    settings = RunSettings(
+        content, clutch=clutch, wear_gain=wear_gain, mode=mode, seed=seed, **of_shift
+    )
     return RunPlan(settings, controller, layout)
 
 

@@ -11,7 +11,12 @@ from ddct_bringup.bag.earlier_bags import Messages, Values, earlier_values
 from ddct_bringup.bag.file.records import BagRecords, read_records
 from ddct_bringup.bag.realtime_facts import RealtimeFacts
 from ddct_bringup.bag.recording import Recording
-from ddct_bringup.bag.run_facts import RunFacts, RunInfoOfNodes, add_run_info
+from ddct_bringup.bag.run_facts import (
+    RUN_INFO_TOPICS,
+    RunFacts,
+    RunInfoOfNodes,
+    add_run_info,
+)
 from ddct_bringup.bag.ticks import check_ticks
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_plant.base.errors import DdctError
@@ -23,8 +28,6 @@ from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import (
     DIAGNOSTICS,
     JOINT_STATES,
-    OFF_GOING_RUN_INFO,
-    RUN_INFO,
     recorded_topics,
 )
 
@@ -137,7 +140,7 @@ def _rows(values: Values, last: int) -> tuple[list[tuple[Any, ...]], int]:
 
 def _run_info(messages: Messages) -> RunInfoOfNodes:
     received: RunInfoOfNodes = {}
-    for topic in (RUN_INFO, OFF_GOING_RUN_INFO):
+    for topic in RUN_INFO_TOPICS:
         for _, message in messages.get(topic.resolved_name, ()):
             node, pairs = topic.read(message)
             add_run_info(received, name_in_graph(node), pairs)

@@ -10,6 +10,7 @@ from typing import Any, TypedDict
 from ddct_plant.base.errors import DdctError, ParameterError, require_name, require_number
 from ddct_plant.base.timebase import steps_in
 from ddct_plant.files.input_file import parse_json
+from ddct_plant.shift_plant.sides import OFF_GOING
 from ddct_plant.signals.signal import RunKind
 from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import (
@@ -37,10 +38,10 @@ MEASURED = 'measured'
 RunInfoOfNodes = dict[str, Mapping[str, str]]
 """Key-value pairs that each node publishes on `run_info`, by full node name."""
 
+RUN_INFO_TOPICS = (RUN_INFO, OFF_GOING_RUN_INFO)
+"""Topics on which the nodes of a run publish what they are."""
 CONTROLLER_NODE = '/controller'
 DRIVELINE_NODE = '/driveline'
-_OFF_GOING = '/off_going/'
-"""Beginning of the full names of the nodes of a shift's off-going side."""
 
 
 @dataclass(frozen=True)
@@ -194,8 +195,8 @@ def add_run_info(received: RunInfoOfNodes, node: str, pairs: Mapping[str, str]) 
 
 
 def run_info_topic(node: str) -> Topic:
-    """Return the topic on which the `run_info` of a node is recorded, given its full name."""
-    return OFF_GOING_RUN_INFO if node.startswith(_OFF_GOING) else RUN_INFO
+    """Return the topic of the `run_info` of a node: the one in its namespace, of its full name."""
+    return OFF_GOING_RUN_INFO if node.startswith(f'/{OFF_GOING}/') else RUN_INFO
 
 
 def run_info_order(nodes: Iterable[str]) -> list[str]:

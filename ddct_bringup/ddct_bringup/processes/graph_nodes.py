@@ -1,18 +1,33 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Nodes of the graph: their modules, start order and timeout."""
+"""Nodes of the graph: their modules, namespaces, start order and timeout."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+
+from ddct_plant.shift_plant.sides import OFF_GOING
 
 
 @dataclass(frozen=True)
 class NodeSpec:
-    """Node of the graph: its name and module."""
+    """Node of the graph: its name, module and namespace."""
 
     name: str
+    """Name in its namespace, and of its program."""
     module: str
     """Module whose `main` runs the node."""
+    namespace: str = ''
+    """Namespace within that of the graph; empty for the graph's own."""
+
+    @property
+    def path(self) -> str:
+        """Full name within the graph, without a leading slash: 'off_going/actuator'."""
+        return f'{self.namespace}/{self.name}' if self.namespace else self.name
+
+    @property
+    def log_name(self) -> str:
+        """Name of the file with its output: 'off_going_actuator.log'."""
+        return f'{self.path.replace("/", "_")}.log'
 
     @property
     def class_name(self) -> str:
@@ -20,20 +35,42 @@ class NodeSpec:
         return f'{self.name.capitalize()}Node'
 
 
+RECORDER = NodeSpec('recorder', 'ddct_bringup.record.recorder_node')
+CLUTCH = NodeSpec('clutch', 'ddct_plant.nodes.clutch_node')
+ACTUATOR = NodeSpec('actuator', 'ddct_plant.nodes.actuator_node')
+HANDOVER = NodeSpec('handover', 'ddct_controllers.handover.handover_node')
+DRIVELINE = NodeSpec('driveline', 'ddct_plant.nodes.driveline_node')
+
 GRAPH_NODES: Sequence[NodeSpec] = (
-    NodeSpec('recorder', 'ddct_bringup.record.recorder_node'),
+    RECORDER,
     NodeSpec('engine', 'ddct_plant.nodes.engine_node'),
     NodeSpec('load', 'ddct_plant.nodes.load_node'),
-    NodeSpec('clutch', 'ddct_plant.nodes.clutch_node'),
-    NodeSpec('actuator', 'ddct_plant.nodes.actuator_node'),
+    CLUTCH,
+    ACTUATOR,
     NodeSpec('reference', 'ddct_reference.reference_node'),
     NodeSpec('controller', 'ddct_controllers.controller_node'),
-    NodeSpec('driveline', 'ddct_plant.nodes.driveline_node'),
+    DRIVELINE,
 )
-"""Nodes in start order; `driveline` owns time and ends the run."""
+"""Nodes of every run in start order; `driveline` owns time and ends the run."""
+
+SHIFT_NODES: Sequence[NodeSpec] = (
+    HANDOVER,
+    replace(CLUTCH, namespace=OFF_GOING),
+    replace(ACTUATOR, namespace=OFF_GOING),
+)
+"""Nodes that a run with a gear shift has besides."""
+
+NODE_PROGRAMS: Sequence[NodeSpec] = (*GRAPH_NODES, HANDOVER)
+"""Nodes with a program of their own, which the off-going side shares."""
 
 NODE_NAMES = tuple(node.name for node in GRAPH_NODES)
-"""Names of the nodes, in start order."""
+"""Names of the nodes of every run, in start order."""
 
 ANSWER_TIMEOUT_S = 20.0
 """Wall time within which a node of a supervised graph must answer, s."""
+
+
+def nodes_of(*, shift: bool) -> list[NodeSpec]:
+    """Return the nodes of a run in start order; those of a gear shift only with `shift`."""
+    others = [node for node in GRAPH_NODES if node is not DRIVELINE]
+    return [*others, *(SHIFT_NODES if shift else ()), DRIVELINE]

@@ -69,7 +69,7 @@ class NodeProcess(Child):
 
     def __init__(self, spec: NodeSpec, parameter_file: Path, log: Path) -> None:
         """Prepare the node with its parameter file; `tidy` writes its output into `log`."""
-        self.name = spec.name
+        self.name = spec.path
         self.log = log
         self.hung = False
         """Whether the node was killed because it did not end after the other signals."""
@@ -80,7 +80,9 @@ class NodeProcess(Child):
         self._announced_code: int | None = None
         self._segments: set[str] = set()
         self._pulse, pulse = os.pipe2(os.O_NONBLOCK | os.O_CLOEXEC)
-        parameters = ('--ros-args', '--params-file', str(parameter_file))
+        parameters = ['--ros-args', '--params-file', str(parameter_file)]
+        if spec.namespace:
+            parameters += ['-r', f'__ns:=/{spec.namespace}']
         super().__init__(spec.module, *parameters, pulse=pulse)
         self._pulse_writer: int | None = pulse
 
@@ -148,5 +150,6 @@ class NodeProcess(Child):
             return f'node {self.name} did not stop when asked and was killed'
         if code < 0:
             return f'node {self.name} was killed by {signal.Signals(-code).name}'
-        words = self.last_line().removeprefix(f'{self.name}: ')
+        program = self.name.rpartition('/')[2]
+        words = self.last_line().removeprefix(f'{program}: ')
         return f'node {self.name} ended with code {code}{f": {words}" if words else ""}'

@@ -36,7 +36,7 @@ class NodeProcesses:
         stopped: Callable[[], bool] = lambda: False,
     ) -> None:
         """
-        Store the settings; `<logs>/<node>.log` is written at the end.
+        Store the settings; a log of each node is written into the folder `logs` at the end.
 
         `parent` forks the nodes, which read their parameters from `parameter_file`. Waiting raises
         KeyboardInterrupt when `stopped()`.
@@ -61,8 +61,7 @@ class NodeProcesses:
     def start(self, specs: Sequence[NodeSpec]) -> None:
         """Start one process per node; raise the errors of `WarmParent.start`."""
         nodes = [
-            NodeProcess(spec, self._parameter_file, self._logs / f'{spec.name}.log')
-            for spec in specs
+            NodeProcess(spec, self._parameter_file, self._logs / spec.log_name) for spec in specs
         ]
         try:
             forked = self._parent.start(

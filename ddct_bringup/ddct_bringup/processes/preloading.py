@@ -5,7 +5,7 @@
 import contextlib
 import importlib
 
-from ddct_bringup.processes.graph_nodes import GRAPH_NODES
+from ddct_bringup.processes.graph_nodes import NODE_PROGRAMS
 
 _LATER = (
     'daqp',
@@ -35,7 +35,7 @@ def preload() -> None:
 
     No third party's controller is imported: only the process of its node loads it.
     """
-    for module in (*(node.module for node in GRAPH_NODES), *_LATER):
+    for module in (*(node.module for node in NODE_PROGRAMS), *_LATER):
         # The node itself reports a missing package.
         with contextlib.suppress(ImportError):
             importlib.import_module(module)

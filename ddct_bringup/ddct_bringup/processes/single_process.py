@@ -3,13 +3,13 @@
 """Run all nodes of the graph in this process, on one executor."""
 
 import importlib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from rclpy.context import Context
 from rclpy.parameter import Parameter
 
-from ddct_bringup.processes.graph_nodes import GRAPH_NODES, NodeSpec
+from ddct_bringup.processes.graph_nodes import NodeSpec
 from ddct_plant.base.errors import DdctError
 from ddct_plant.graph.arguments import init_ros
 from ddct_plant.graph.node import GraphNode
@@ -17,19 +17,21 @@ from ddct_plant.graph.spin import end_of, finish_node, make_executor, spin_until
 
 
 def run_single_process(
-    parameters: Mapping[str, Mapping[str, Any]], stopped: Callable[[], bool]
+    specs: Sequence[NodeSpec],
+    parameters: Mapping[str, Mapping[str, Any]],
+    stopped: Callable[[], bool],
 ) -> None:
     """
     Run the node classes of the separate processes until the driveline has ended the run.
 
-    `parameters` are by node name, those of '*' for all. Raise DdctError when a node fails and
-    KeyboardInterrupt when `stopped()` becomes true.
+    `specs` are the nodes of the run; `parameters` are by node path, those of '*' for all. Raise
+    DdctError when a node fails and KeyboardInterrupt when `stopped()` becomes true.
     """
     context = Context()
     init_ros([], context)
     nodes: list[GraphNode] = []
     try:
-        for spec in GRAPH_NODES:
+        for spec in specs:
             nodes.append(_build(spec, parameters, context))
         _spin(nodes, context, stopped)
     finally:
@@ -42,12 +44,14 @@ def _build(
     spec: NodeSpec, parameters: Mapping[str, Mapping[str, Any]], context: Context
 ) -> GraphNode:
     node_class = getattr(importlib.import_module(spec.module), spec.class_name)
-    values = {**parameters['*'], **parameters.get(spec.name, {})}
+    values = {**parameters['*'], **parameters.get(spec.path, {})}
     overrides = [Parameter(name, value=value) for name, value in values.items()]
     try:
-        return node_class(context=context, parameter_overrides=overrides)
+        return node_class(
+            context=context, parameter_overrides=overrides, namespace=spec.namespace or None
+        )
     except DdctError as error:
-        raise DdctError(f'node {spec.name}: {error}') from error
+        raise DdctError(f'node {spec.path}: {error}') from error
 
 
 def _spin(nodes: list[GraphNode], context: Context, stopped: Callable[[], bool]) -> None:
@@ -73,7 +77,7 @@ def _spin(nodes: list[GraphNode], context: Context, stopped: Callable[[], bool])
     for node in [*failed, *nodes]:
         error = failure(node)
         if error is not None:
-            raise DdctError(f'node {node.get_name()}: {error}')
+            raise DdctError(f'node {node.get_fully_qualified_name()[1:]}: {error}')
     if interrupted:
         raise KeyboardInterrupt
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from ddct_bringup.processes.graph_nodes import NODE_NAMES
+from ddct_bringup.processes.graph_nodes import nodes_of
 from ddct_plant.base.errors import require_name
 from ddct_plant.base.options import Option
 from ddct_plant.graph.node import GraphNode
@@ -44,9 +44,9 @@ def declare_parameters(node: GraphNode) -> RecorderParameters:
         node,
         'nodes',
         Option(
-            NODE_NAMES,
-            'nodes whose run_info the bag must hold; names without a slash are those of '
-            "the recorder's namespace",
+            tuple(each.path for each in nodes_of(shift=node.settings.shift)),
+            'nodes whose run_info the bag must hold, in a gear shift those of both sides; names '
+            "without a leading slash are those of the recorder's namespace",
             kind=str,
             many=True,
         ),

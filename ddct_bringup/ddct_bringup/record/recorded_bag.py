@@ -10,6 +10,7 @@ from pathlib import Path
 from rclpy.serialization import serialize_message
 
 from ddct_bringup.bag.file.cdr import stamp_of_cdr
+from ddct_bringup.bag.run_facts import run_info_topic
 from ddct_bringup.bag.writer import BagWriter, new_bag
 from ddct_bringup.record.run_info_collector import RunInfoCollector
 from ddct_bringup.record.tick_buffer import Tick
@@ -104,7 +105,7 @@ class RecordedBag:
         for node, pairs in self._nodes.received().items():
             # A new message: a third party's node may stamp its own with wall-clock time.
             message = RUN_INFO.message(START_NS, pairs.items(), name=node)
-            bag.write(RUN_INFO.name, START_NS, serialize_message(message))
+            bag.write(run_info_topic(node).name, START_NS, serialize_message(message))
         for topic, stamp, cdr in self._unordered:
             bag.write(topic, stamp, cdr)
         self._first_tick_at = time.monotonic()

@@ -10,12 +10,22 @@ from ddct_bringup.bag.run_facts import (
     RunInfoOfNodes,
     add_run_info,
     run_info_order,
+    run_info_topic,
 )
 from ddct_plant.base.errors import DdctError
 from ddct_plant.graph.node_names import name_in_graph
-from ddct_plant.graph.node_reports import CONTROLLER, PARTS, STEPS, TWO_INPUT, flag, run_info_pairs
+from ddct_plant.graph.node_reports import (
+    CONTROLLER,
+    PARTS,
+    ROLE,
+    STEPS,
+    TWO_INPUT,
+    flag,
+    run_info_pairs,
+)
 from ddct_plant.scenario.settings import RunSettings
-from ddct_plant.signals.topics import RUN_INFO
+from ddct_plant.shift_plant.sides import OFF_GOING, ON_COMING
+from ddct_plant.signals.topics import OFF_GOING_RUN_INFO, RUN_INFO
 
 
 class RunInfoCollector:
@@ -53,6 +63,7 @@ class RunInfoCollector:
                 'controller, as --ros-args -p two_input:=true when it commands the engine',
                 key=TWO_INPUT,
             )
+        self._require_role(node, pairs)
         add_run_info(self._received, node, pairs)
 
     def missing(self) -> list[str]:
@@ -102,6 +113,15 @@ class RunInfoCollector:
                 key=PARTS,
             )
         return text == flag(True)
+
+    def _require_role(self, node: str, pairs: Mapping[str, str]) -> None:
+        """Raise DdctError for a side of a gear shift other than that of the node's namespace."""
+        place = OFF_GOING if run_info_topic(node) is OFF_GOING_RUN_INFO else ON_COMING
+        if pairs.get(ROLE, place) != place:
+            raise DdctError(
+                f'node {node} has the role {pairs[ROLE]}, but its name is that of the {place} '
+                f'side: start it with --ros-args -p role:={place}, or in another namespace'
+            )
 
     def _value(self, node: str, key: str) -> str:
         pairs = self._received.get(node, {})

@@ -15,7 +15,7 @@ from rich.console import Console
 from ddct_bringup.bag.recording import Recording
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.bag.trajectory_bag import write_trajectory
-from ddct_bringup.processes.graph_nodes import GRAPH_NODES
+from ddct_bringup.processes.graph_nodes import DRIVELINE, RECORDER, nodes_of
 from ddct_bringup.processes.live_process import RECEIVE_S, LiveView
 from ddct_bringup.processes.node_processes import NodeProcesses
 from ddct_bringup.processes.warm_parent import WarmParent, warm_parent
@@ -108,7 +108,8 @@ def execute(
                 # The graph needs ROS installed and sourced; a headless run does not.
                 from ddct_bringup.processes.single_process import run_single_process
 
-                run_single_process(plan.node_parameters(folder, work), stopped)
+                nodes = nodes_of(shift=plan.settings.shift)
+                run_single_process(nodes, plan.node_parameters(folder, work), stopped)
         _keep_warnings(work)
     except OSError as error:
         raise DdctError(f'{error.filename or folder}: {error.strerror or error}') from error
@@ -155,17 +156,18 @@ def _execute_processes(
 ) -> None:
     parameter_file = plan.write_parameter_file(folder, work)
     with NodeProcesses(work, parameter_file, parent, stopped) as processes:
-        processes.start([node for node in GRAPH_NODES if node.name != 'recorder' or not live])
+        nodes = nodes_of(shift=plan.settings.shift)
+        processes.start([node for node in nodes if node is not RECORDER or not live])
         if live:
             # Without its recorder the graph stays at t_0 and publishes that tick repeatedly.
             processes.wait_until(live.receives, RECEIVE_S)
-            processes.start([node for node in GRAPH_NODES if node.name == 'recorder'])
+            processes.start([RECORDER])
         try:
-            processes.wait_for('driveline')
+            processes.wait_for(DRIVELINE.path)
         finally:
             # The recorder stops last: it must receive what the others publish when they stop.
-            processes.stop(lambda name: name != 'recorder')
-            processes.stop(lambda name: name == 'recorder')
+            processes.stop(lambda name: name != RECORDER.path)
+            processes.stop(lambda name: name == RECORDER.path)
         processes.require_clean_end()
 
 

@@ -5,15 +5,17 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from ddct_bringup.processes.graph_nodes import ANSWER_TIMEOUT_S
+from ddct_bringup.processes.graph_nodes import ANSWER_TIMEOUT_S, SHIFT_NODES
 from ddct_controllers.architecture import make_architecture
 from ddct_controllers.handover.laws import make_handover
 from ddct_controllers.registry import Chosen, controller_label, make_controller
 from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.options import options_of
 from ddct_plant.files.yaml_text import dump_yaml
 from ddct_plant.graph.domain import require_domain, require_ros
 from ddct_plant.scenario.file import scenario_to_yaml
 from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.shift_plant.sides import OFF_GOING
 
 
 @dataclass(frozen=True)
@@ -30,7 +32,7 @@ class RunPlan:
         """Raise DdctError for a plan that would fail in the graph."""
         make_architecture(self.settings, make_controller(self.controller, self.settings))
         if self.settings.shift:
-            self._require_shift()
+            make_handover(self.settings)
         if self.layout == 'headless':
             require_headless(self.settings)
         else:
@@ -42,14 +44,6 @@ class RunPlan:
                 )
             require_ros()
             require_domain()
-
-    def _require_shift(self) -> None:
-        make_handover(self.settings)
-        if self.layout != 'headless':
-            raise ParameterError(
-                f'scenario {self.settings.scenario.name} is a gear shift, which has no graph yet: '
-                'give --headless'
-            )
 
     @property
     def name(self) -> str:
@@ -63,7 +57,7 @@ class RunPlan:
 
     def node_parameters(self, folder: Path, work: Path) -> dict[str, dict[str, object]]:
         """
-        Return the ROS parameters by node name for a bag in `folder`; '*' is every node.
+        Return the ROS parameters by node path for a bag in `folder`; '*' is every node.
 
         The scenario, changes included, is written into the folder `work` for the nodes to read.
         """
@@ -74,17 +68,17 @@ class RunPlan:
         return {
             '*': {
                 'scenario': str(scenario_file),
-                'architecture': self.settings.architecture,
-                'clutch': self.settings.clutch,
-                'wear_gain': float(self.settings.wear_gain),
-                'mode': self.settings.mode,
-                'seed': self.settings.seed,
+                **{
+                    name: option.kind(getattr(self.settings, name))
+                    for name, option in options_of(RunSettings).items()
+                },
             },
             'recorder': {'out': str(folder), 'name': self.name, 'two_input': two_input},
             'engine': {'two_input': two_input},
             'reference': {'preview_steps': controller.preview_steps},
             'controller': {'controller': self.controller},
             'driveline': {'require_recorder': True, 'answer_timeout_s': ANSWER_TIMEOUT_S},
+            **{node.path: {'role': OFF_GOING} for node in SHIFT_NODES if node.namespace},
         }
 
     def write_parameter_file(self, folder: Path, work: Path) -> Path:

@@ -60,12 +60,12 @@ def processes(tmp_path: Path, stubs: Path, parent: WarmParent, monkeypatch: pyte
         assert time.monotonic() < deadlines[-1], 'nothing was detected'
         return False
 
-    def make(**texts: str) -> NodeProcesses:
+    def make(namespace: str = '', **texts: str) -> NodeProcesses:
         for name, text in texts.items():
             (stubs / package / f'{name}_node.py').write_text(LIVE + text)
         made = NodeProcesses(tmp_path, tmp_path / 'parameters.yaml', parent, stopped)
         made.__enter__()
-        made.start([NodeSpec(name, f'{package}.{name}_node') for name in texts])
+        made.start([NodeSpec(name, f'{package}.{name}_node', namespace) for name in texts])
         for node in made._nodes:
             wait_until(lambda node=node: b'ready' in node.printed())
         deadlines.append(time.monotonic() + WITHIN_S)
@@ -177,6 +177,16 @@ def test_a_node_that_was_killed_by_another_process_is_named_with_the_signal(proc
     nodes = processes(driveline=OBEDIENT)
     nodes._nodes[0].process.kill()
     assert wait_as_supervisor(nodes).startswith('node driveline was killed by SIGKILL; its log')
+
+
+def test_a_node_in_a_namespace_starts_there_and_has_its_full_name_in_errors_and_logs(processes):
+    killed = 'print(*sys.argv, flush=True)\nos.kill(os.getpid(), signal.SIGKILL)\n'
+    nodes = processes('off_going', load="print('ready', flush=True)\n" + killed)
+    log = nodes._nodes[0].log
+    reason = wait_as_supervisor(nodes)
+    assert reason == f'node off_going/load was killed by SIGKILL; its log is {log}'
+    assert log.name == 'off_going_load.log'
+    assert '-r __ns:=/off_going' in log.read_text(encoding='utf-8')
 
 
 def test_a_stopped_node_is_woken_to_end_in_order(processes):

@@ -24,8 +24,8 @@ class FakeNode:
         self.done = Future()
         self._name, self._closed = name, closed
 
-    def get_name(self) -> str:
-        return self._name
+    def get_fully_qualified_name(self) -> str:
+        return f'/{self._name}'
 
     def finish(self, error: Exception | None = None) -> None:
         if not self.done.done():

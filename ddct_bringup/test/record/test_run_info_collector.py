@@ -52,6 +52,17 @@ def test_other_settings_are_refused():
         nodes.receive('/engine', {'two_input': 'true'})
 
 
+@pytest.mark.parametrize(
+    ('node', 'role'), [('/off_going/clutch', 'on_coming'), ('/actuator', 'off_going')]
+)
+def test_a_node_whose_role_is_not_that_of_its_namespace_is_refused(node, role):
+    scenario = load_scenario('upshift', clutch='stick_slip')
+    settings = RunSettings(scenario, clutch='stick_slip')
+    nodes = RunInfoCollector(settings, two_input=False, expected=[])
+    with pytest.raises(DdctError, match=f'node {node} has the role {role}, but its name is'):
+        nodes.receive(node, run_info_pairs(settings, {'role': role}))
+
+
 def test_a_node_that_repeats_its_run_info_is_recorded_once():
     nodes = collected(controller={'controller': 'ls8'}, driveline={'steps': '80'})
     nodes.receive('/controller', dict(run_info_pairs(SETTINGS, {'controller': 'ls8'})))

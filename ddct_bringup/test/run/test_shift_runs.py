@@ -143,8 +143,6 @@ def test_an_unknown_handover_and_a_floor_are_refused():
         RunPlan(settings(handover='quick'), 'pi', 'headless')
     with pytest.raises(ParameterError, match='gear shift'):
         control_start(settings())
-    with pytest.raises(ParameterError, match='--headless'):
-        RunPlan(settings(), 'pi')
 
 
 def test_the_wear_of_either_clutch_changes_its_own_torque_alone():

@@ -101,8 +101,8 @@ def node_help(name: str, factory: Callable[[], GraphNode], arguments: Sequence[s
             f'  {program}',
             *(f'  {program} --ros-args {example}' for example in node.EXAMPLES),
             '',
-            'All nodes of a graph take the same scenario, architecture, clutch, wear_gain, mode',
-            'and seed.',
+            'All nodes of a graph take the same scenario, architecture, clutch, wear_gain, mode,',
+            'seed and, in a gear shift, off_going_wear_gain and handover.',
         ]
     )
 

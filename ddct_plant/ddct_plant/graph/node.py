@@ -47,11 +47,13 @@ class GraphNode(Node):
 
     EXAMPLES: ClassVar[tuple[str, ...]] = ()
     """Arguments after `--ros-args` that `--help` shows as examples for this node."""
+    DEFAULTS: ClassVar[Mapping[str, Any]] = {}
+    """Defaults of shared parameters that differ from those of other nodes, by name."""
 
     def __init__(self, name: str, **kwargs: Any) -> None:
         """Declare the shared parameters; raise ParameterError when one cannot be used."""
         super().__init__(name, **kwargs)
-        self.settings = declare_settings(self)
+        self.settings = declare_settings(self, self.DEFAULTS)
         self.limit: StampLimit | None = None
         """Limit of plausible stamps in real time; None in lock-step."""
         self.refused = 0

@@ -18,17 +18,16 @@ from ddct_plant.fail_safe.request_watch import (
 from ddct_plant.program.command_line import package_version
 from ddct_plant.scenario.file import scenario_digest
 from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.shift_plant.sides import OFF_GOING, ON_COMING
 
 Pairs = dict[str, str]
 """Texts by key."""
 CONTROLLER, STEPS, TWO_INPUT = 'controller', 'steps', 'two_input'
 """Keys on `run_info` without which there is no recording, or which the recorder compares."""
+ROLE = 'role'
+"""Key on `run_info` of a clutch and an actuator in a gear shift: the side on which they are."""
 PARTS = 'torque_parts'
 """Key on `run_info` of `controller`: true where it publishes `controller/torque_parts`."""
-ROLE = 'role'
-"""Key on `run_info` of the nodes of a shift's off-going side."""
-ON_COMING, OFF_GOING = ROLES = ('on_coming', 'off_going')
-"""Clutches of a shift, values of ROLE."""
 TICKS = ': ticks'
 """Ending, after the driveline's name, of the name of the status with its counts."""
 SAFE_STATE = ': safe state'
@@ -39,7 +38,11 @@ _LATENESS = 'worst_tick_lateness_us'
 
 
 def run_info_pairs(settings: RunSettings, own: Mapping[str, str] | None = None) -> Pairs:
-    """Return the `run_info` of a node: version and settings of the run, then `own` pairs."""
+    """
+    Return the `run_info` of a node: version and settings of the run, then `own` pairs.
+
+    Only a run with a gear shift has the settings of the off-going side and the handover.
+    """
     return {
         'version': package_version(),
         'scenario': settings.scenario.name,
@@ -62,6 +65,11 @@ def _of_shift(settings: RunSettings) -> Pairs:
 def engine_info(two_input: bool, request_timeout_s: float = REQUEST_TIMEOUT_S) -> Pairs:
     """Return the engine's own pairs: two inputs or not, and timeout of requests in s."""
     return {TWO_INPUT: flag(two_input), 'request_timeout_s': repr(request_timeout_s)}
+
+
+def role_info(settings: RunSettings, role: str) -> Pairs:
+    """Return the own pair of a clutch or an actuator in a gear shift, its role; else none."""
+    return {ROLE: role} if settings.shift else {}
 
 
 def actuator_info(fail_safe: FailSafeSettings | None = None) -> Pairs:
@@ -91,25 +99,26 @@ def node_info(
     settings: RunSettings, controller: Mapping[str, str], preview_steps: int, steps: int
 ) -> dict[str, Pairs]:
     """
-    Return the `run_info` of each node of a graph with default timeouts, by the node's name.
+    Return the `run_info` of each node of a graph with default timeouts, by the node's path.
 
     `controller` are the own pairs of the controller, from `Controller.info`.
     """
     own: dict[str, Mapping[str, str]] = {
         'engine': engine_info(controller[TWO_INPUT] == flag(True)),
         'load': {},
-        'clutch': {},
+        'clutch': role_info(settings, ON_COMING),
         'driveline': driveline_info(steps),
-        'actuator': actuator_info(),
+        'actuator': {**role_info(settings, ON_COMING), **actuator_info()},
         'reference': reference_info(preview_steps),
         'controller': controller_info(controller),
         'recorder': {},
     }
     if settings.shift:
+        role = role_info(settings, OFF_GOING)
         own |= {
             'handover': {},
-            'off_going/actuator': {ROLE: OFF_GOING, **actuator_info()},
-            'off_going/clutch': {ROLE: OFF_GOING},
+            f'{OFF_GOING}/clutch': role,
+            f'{OFF_GOING}/actuator': {**role, **actuator_info()},
         }
     return {node: run_info_pairs(settings, pairs) for node, pairs in own.items()}
 

@@ -1,7 +1,8 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""The ROS parameters that every node declares, as validated `RunSettings`."""
+"""The ROS parameters that every node declares, as validated `RunSettings`, and the role."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -14,18 +15,45 @@ from ddct_plant.base.options import Option, options_of
 from ddct_plant.fail_safe.request_watch import FailSafeSettings
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.shift_plant.sides import OFF_GOING, ON_COMING, ROLES
 
 _SCENARIO = Option('thesis', 'name of a packaged scenario, or path of a YAML file')
+_ROLE = Option(
+    ON_COMING, 'side of a gear shift; a run without a shift has the first alone', choices=ROLES
+)
 _FAIL_SAFE = options_of(FailSafeSettings)
 
 
-def declare_settings(node: Node) -> RunSettings:
-    """Declare the shared parameters on `node`; raise ParameterError for a value out of range."""
-    scenario = load_scenario(declare(node, 'scenario', _SCENARIO))
+def declare_settings(node: Node, defaults: Mapping[str, Any]) -> RunSettings:
+    """
+    Declare the shared parameters on `node`, with other `defaults` by name where given.
+
+    Raise ParameterError for a value out of range.
+    """
+    values = {
+        name: declare(node, name, replace(each, default=defaults.get(name, each.default)))
+        for name, each in {'scenario': _SCENARIO, **options_of(RunSettings)}.items()
+    }
+    scenario = load_scenario(values.pop('scenario'))
     for line in scenario.adjusted:
         node.get_logger().info(line)
-    settings = {name: declare(node, name, each) for name, each in options_of(RunSettings).items()}
-    return RunSettings(scenario, **settings)
+    return RunSettings(scenario, **values)
+
+
+def declare_role(node: Node, settings: RunSettings) -> str:
+    """
+    Declare the side of a gear shift on which a node is, as parameter `role`, and return it.
+
+    Raise ParameterError for the off-going side in a run without a shift.
+    """
+    role = declare(node, 'role', _ROLE)
+    if role == OFF_GOING and not settings.shift:
+        raise ParameterError(
+            f'parameter role is {role}, but scenario {settings.scenario.name} is no gear shift: '
+            'choose one with a section shift, such as upshift, or leave role out',
+            key='role',
+        )
+    return role
 
 
 def declare_timeout(node: Node, name: str, default: float, description: str) -> float:

@@ -8,11 +8,11 @@ from ddct_plant.base.errors import DdctError
 from ddct_plant.fail_safe.guarded import GuardedActuator
 from ddct_plant.fail_safe.request_watch import REQUEST_TIMEOUT_S
 from ddct_plant.graph.follower import FollowerNode, Reply
-from ddct_plant.graph.node_reports import actuator_info
+from ddct_plant.graph.node_reports import actuator_info, role_info
 from ddct_plant.graph.output import Output, SafeStateReport
-from ddct_plant.graph.settings import declare_fail_safe
+from ddct_plant.graph.settings import declare_fail_safe, declare_role
 from ddct_plant.graph.spin import run_node
-from ddct_plant.scenario.plant import initial_state, make_actuator
+from ddct_plant.shift_plant.sides import first_request, side_actuator
 from ddct_plant.signals.topics import ACTUATOR_TORQUE, CLOCK, TORQUE_REQUEST
 
 REQUEST = TORQUE_REQUEST.name
@@ -21,6 +21,8 @@ REQUEST = TORQUE_REQUEST.name
 class ActuatorNode(FollowerNode):
     """
     Answer `clutch/torque_request` with `actuator/torque`.
+
+    In a gear shift a second one, in a namespace of its own, has the `role` off_going.
 
     In real time it also follows `/clock`: the last request is held for `request_timeout_s` when
     requests stop, then the clutch opens at `fail_safe_ramp_n_m_s`. Until it receives `/clock` it
@@ -33,18 +35,19 @@ class ActuatorNode(FollowerNode):
     def __init__(self, **kwargs: Any) -> None:
         """Build the actuator in its steady state for the run's first request."""
         super().__init__('actuator', **kwargs)
+        role = declare_role(self, self.settings)
         fail_safe = declare_fail_safe(
             self,
             'request_timeout_s',
             REQUEST_TIMEOUT_S,
             'Real time: when requests stop for longer, the clutch opens',
         )
-        initial = initial_state(self.settings)
-        actuator = make_actuator(self.settings, initial)
-        self._actuator = GuardedActuator(actuator, initial.torque_request, fail_safe)
+        self._actuator = GuardedActuator(
+            side_actuator(self.settings, role), first_request(self.settings, role), fail_safe
+        )
         self._torque = Output(self, ACTUATOR_TORQUE)
         self._requests_without_clock = 0
-        self.publish_run_info(actuator_info(fail_safe))
+        self.publish_run_info({**role_info(self.settings, role), **actuator_info(fail_safe)})
         self.follow(TORQUE_REQUEST)
         if not self.settings.lockstep:
             self._safe_state = SafeStateReport(self)

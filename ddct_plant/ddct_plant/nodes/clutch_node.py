@@ -5,9 +5,12 @@
 from typing import Any
 
 from ddct_plant.graph.follower import FollowerNode, Reply
+from ddct_plant.graph.node_reports import role_info
 from ddct_plant.graph.output import Output
+from ddct_plant.graph.settings import declare_role
 from ddct_plant.graph.spin import run_node
-from ddct_plant.scenario.plant import linear_clutch, stick_slip_clutch
+from ddct_plant.scenario.plant import linear_clutch
+from ddct_plant.shift_plant.sides import side_clutch
 from ddct_plant.signals.topics import (
     ACTUATOR_TORQUE,
     CLUTCH_PHASE,
@@ -23,16 +26,18 @@ class ClutchNode(FollowerNode):
 
     In a stick-slip run `clutch/torque` has the kinetic and the static capacity, which depend on
     `clutch/slip` and on the friction work of `clutch/phase` too, and `clutch/temperature` is
-    published beside it.
+    published beside it. In a gear shift a second one, in a namespace of its own, has the `role`
+    off_going, and with it `off_going_wear_gain`.
     """
 
     def __init__(self, **kwargs: Any) -> None:
         """Build the clutch of the run, with its wear gain."""
         super().__init__('clutch', **kwargs)
+        role = declare_role(self, self.settings)
         self._torque = Output(self, CLUTCH_TORQUE)
-        self.publish_run_info()
+        self.publish_run_info(role_info(self.settings, role))
         if self.settings.stick_slip:
-            self._friction = stick_slip_clutch(self.settings)
+            self._friction = side_clutch(self.settings, role)
             self._temperature = Output(self, CLUTCH_TEMPERATURE)
             self.follow(ACTUATOR_TORQUE, SLIP, CLUTCH_PHASE)
         else:

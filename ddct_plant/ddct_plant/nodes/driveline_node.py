@@ -17,6 +17,8 @@ from ddct_plant.graph.settings import declare, declare_fail_safe
 from ddct_plant.graph.sole_publishers import SolePublishers
 from ddct_plant.graph.spin import run_node
 from ddct_plant.scenario.plant import driveline_sensors, initial_state, make_driveline
+from ddct_plant.shift.driveline import ShiftOutputs
+from ddct_plant.shift_plant.sides import shift_driveline, shift_signals
 from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import (
     CLOCK,
@@ -27,6 +29,10 @@ from ddct_plant.signals.topics import (
     HOLDING_TORQUE,
     JOINT_STATES,
     LOAD_TORQUE,
+    OFF_GOING_CLUTCH_TORQUE,
+    OFF_GOING_JOINT_STATES,
+    OFF_GOING_PHASE,
+    OFF_GOING_SLIP,
     RECORDER_ACK,
     SENSED_SLIP,
     SENSED_TOPICS,
@@ -37,13 +43,18 @@ from ddct_plant.signals.topics import (
 from ddct_plant.ticks.realtime_owner import RealtimeOwner
 from ddct_plant.ticks.tick_owner import TickOwner, TickPlan
 
-TORQUES = (ENGINE_TORQUE, LOAD_TORQUE, CLUTCH_TORQUE, HOLDING_TORQUE)
+CLUTCHES = (CLUTCH_TORQUE, OFF_GOING_CLUTCH_TORQUE)
+"""Topics of the torques of the clutches, the off-going one in a gear shift only."""
+TORQUES = (ENGINE_TORQUE, LOAD_TORQUE, CLUTCH_TORQUE, HOLDING_TORQUE, OFF_GOING_CLUTCH_TORQUE)
 """Topics of the torques that the driveline integrates, in the order of its `step`."""
 SENSED = sorted(
     (topic for topic in SENSED_TOPICS if topic.is_tick), key=lambda topic: topic is not SENSED_SLIP
 )
 """Topics of a tick that carry measurements of the sensors and their flags, the slip first."""
-TICK = (CLOCK, *SENSED, SLIP, CLUTCH_PHASE, JOINT_STATES, VEHICLE_SPEED, VEHICLE_ACCEL)
+TICK = (
+    *(CLOCK, *SENSED, SLIP, OFF_GOING_SLIP, CLUTCH_PHASE, OFF_GOING_PHASE),
+    *(JOINT_STATES, VEHICLE_SPEED, VEHICLE_ACCEL, OFF_GOING_JOINT_STATES),
+)
 """Topics of a tick, in the order of publication: the slip has the longest way round the loop."""
 WATCH_PERIOD_S = 0.02
 """Period in s at which an unanswered tick is checked."""
@@ -55,7 +66,9 @@ class DrivelineNode(GraphNode):
 
     In real time it steps on a steady 10 ms timer instead and counts missing replies; a bad torque
     counts as a missing one. When `clutch/torque` is missing for `clutch_timeout_s`, the held
-    torque runs to zero at `fail_safe_ramp_n_m_s`, and later clutch torques are ignored.
+    torque runs to zero at `fail_safe_ramp_n_m_s`, and later clutch torques are ignored. In a gear
+    shift it also publishes the states of the off-going side, waits for `off_going/clutch/torque`,
+    and treats it in the same way.
     """
 
     EXAMPLES: ClassVar[tuple[str, ...]] = ('-p require_recorder:=true -p duration:=2.0',)
@@ -65,8 +78,13 @@ class DrivelineNode(GraphNode):
         super().__init__('driveline', **kwargs)
         self._run = self.settings.kind()
         self._torques = [topic for topic in TORQUES if topic.in_run(self._run)]
+        self._clutches = [topic for topic in CLUTCHES if topic.in_run(self._run)]
         self.plan = self._declare_plan()
-        self.driveline = make_driveline(self.settings, initial_state(self.settings))
+        self.driveline = (
+            shift_driveline(self.settings)
+            if self.settings.shift
+            else make_driveline(self.settings, initial_state(self.settings))
+        )
         self._sensors = driveline_sensors(self.settings)
         self._sole_publishers = SolePublishers(self, lambda: self._publish_tick(self.owner.step))
         self.owner = self._make_owner()
@@ -104,7 +122,7 @@ class DrivelineNode(GraphNode):
         )
         return TickPlan(
             tuple(topic.name for topic in self._torques),
-            (CLUTCH_TORQUE.name,),
+            tuple(topic.name for topic in self._clutches),
             RECORDER_ACK.name if recorder else '',
             steps=steps_in('duration', duration_s) or self.settings.scenario.steps,
             answer_timeout_s=declare(
@@ -118,7 +136,7 @@ class DrivelineNode(GraphNode):
                 self,
                 'clutch_timeout_s',
                 CLUTCH_TIMEOUT_S,
-                'Real time: when clutch/torque stays away for longer, the clutch opens; '
+                'Real time: when the torque of a clutch stays away for longer, that clutch opens; '
                 'give more than request_timeout_s of actuator',
             ),
         )
@@ -138,14 +156,14 @@ class DrivelineNode(GraphNode):
     def _subscribe_to_replies(self) -> None:
         rows = len(CLUTCH_TORQUE.signals_in(self._run))
         for topic in self._torques:
-            read = partial(topic.read, joints=rows) if topic is CLUTCH_TORQUE else None
+            read = partial(topic.read, joints=rows) if topic in self._clutches else None
             self.subscribe_values(topic, partial(self._receive, topic), read)
         if self.plan.recorder:
             self.subscribe_values(RECORDER_ACK, partial(self._receive, RECORDER_ACK))
 
     def _receive(self, topic: Topic, stamp: int, reply: Any) -> None:
         # With two publishers no clutch torque counts, so that the clutch opens.
-        if topic is not CLUTCH_TORQUE or not self._sole_publishers.found:
+        if topic not in self._clutches or not self._sole_publishers.found:
             self.owner.offer(topic.name, stamp, reply)
 
     def _begin(self) -> None:
@@ -154,8 +172,11 @@ class DrivelineNode(GraphNode):
 
     def _publish_tick(self, step: int) -> None:
         stamp = stamp_of_step(step)
-        true = self.driveline.outputs()
-        values = true._asdict()
+        outputs = self.driveline.outputs()
+        if isinstance(outputs, ShiftOutputs):
+            true, values = outputs.driveline, shift_signals(outputs)
+        else:
+            true, values = outputs, outputs._asdict()
         if self._sensors:
             values |= self._sensors.measure(step, true).signals
         for output, names in self._outputs:

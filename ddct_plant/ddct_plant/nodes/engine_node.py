@@ -21,6 +21,7 @@ from ddct_plant.signals.topics import (
     ENGINE_TORQUE,
     JOINT_STATES,
     SENSED_TOPICS,
+    TORQUE_CUT,
     TORQUE_DEMAND,
 )
 
@@ -34,9 +35,11 @@ class EngineNode(FollowerNode):
     In a run with sensors it also publishes `sensors/engine_torque`, the estimate of the latter.
 
     With `two_input` the demand is published at once, and `engine/torque` once the controller's
-    `engine/torque_request` of that stamp has arrived. In real time, when requests stop for
-    `request_timeout_s`, the engine returns to the demand as fast as its authority allows, and
-    follows it until the node is started again: the actuator has opened the clutch by then.
+    `engine/torque_request` of that stamp has arrived. In a gear shift, without `two_input`, it
+    waits for `engine/torque_cut` of the handover in the same way, and takes it off the demand. In
+    real time, when requests or cuts stop for `request_timeout_s`, the engine returns to the demand
+    as fast as its authority allows, and follows it until the node is started again: the actuators
+    have opened the clutches by then.
     """
 
     EXAMPLES: ClassVar[tuple[str, ...]] = ('-p two_input:=true',)
@@ -49,12 +52,15 @@ class EngineNode(FollowerNode):
             'two_input',
             Option(False, 'wait for engine/torque_request of a two-input controller'),
         )
+        cut = TORQUE_CUT if self.settings.shift else None
+        self._command = ENGINE_REQUEST if self._two_input else cut
         self._engine = make_engine(self.settings)
         timeout_s = declare_timeout(
             self,
             'request_timeout_s',
             REQUEST_TIMEOUT_S,
-            "Real time: when requests stop for longer, the driver's demand takes over",
+            "Real time: when requests, or torque cuts of a shift, stop for longer, the driver's "
+            'demand takes over',
         )
         self._commanded = GuardedEngine(self._engine, timeout_s)
         self._demand = Output(self, TORQUE_DEMAND)
@@ -68,26 +74,28 @@ class EngineNode(FollowerNode):
             ]
         self.publish_run_info(engine_info(self._two_input, timeout_s))
         readers = {JOINT_STATES: self._speed}
-        if self._two_input:
-            self.subscribe_values(JOINT_STATES, self._on_tick, self._speed)
-            self.follow(JOINT_STATES, ENGINE_REQUEST, readers=readers)
-        else:
+        if not self._two_input:
             self.subscribe_messages(ENGINE_REQUEST, self._refuse_request)
+        if self._command is not None:
+            self.subscribe_values(JOINT_STATES, self._on_tick, self._speed)
+            self.follow(JOINT_STATES, self._command, readers=readers)
+        else:
             self.follow(JOINT_STATES, readers=readers)
         if not self.settings.lockstep:
             self._safe_state = SafeStateReport(self)
 
     def answer(self, step: int, stamp_ns: int, inputs: dict[str, Any]) -> Reply:
         """Return the torque over the period of step k, and the demand unless published."""
-        speed = inputs[JOINT_STATES.name]
-        if self._two_input:
-            self._commanded.speed = speed
-            torque = self._commanded.request(step, inputs[REQUEST])
-            return () if torque is None else self._delivered(step, stamp_ns, torque)
-        return (
-            *self._delivered(step, stamp_ns, self._engine.torque(step, speed=speed)),
-            self._demand.fill(stamp_ns, self._engine.demand(step)),
-        )
+        speed, demand = inputs[JOINT_STATES.name], self._engine.demand(step)
+        if self._command is None:
+            return (
+                *self._delivered(step, stamp_ns, self._engine.torque(step, speed=speed)),
+                self._demand.fill(stamp_ns, demand),
+            )
+        command = inputs[self._command.name]
+        self._commanded.speed = speed
+        torque = self._commanded.request(step, command if self._two_input else demand - command)
+        return () if torque is None else self._delivered(step, stamp_ns, torque)
 
     def _delivered(self, step: int, stamp: int, torque: float) -> Reply:
         """Return C_m over the period of step k, preceded by its estimate in a run with sensors."""
@@ -113,13 +121,15 @@ class EngineNode(FollowerNode):
             self._answer_alone(step, stamp, speed)
 
     def _answer_alone(self, step: int, stamp: int, speed: float) -> None:
+        assert self._command is not None
         self._commanded.speed = speed
         torque = self._commanded.tick(step)
         if self._commanded.watch.stopped:
             self._safe_state.publish(
                 step,
                 stamp,
-                f'no {REQUEST} for too long: the demand holds until the engine is started again',
+                f'no {self._command.name} for too long: the demand holds until the engine is '
+                'started again',
             )
         if torque is not None:
             for output in self._delivered(step, stamp, torque):

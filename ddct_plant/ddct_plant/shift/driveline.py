@@ -3,7 +3,7 @@
 """The driveline of a shift, stepped exactly: two clutches, two gears, friction at the wheels."""
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from ddct_plant.hybrid.interval_map import Interval
 from ddct_plant.models.driveline import OPEN, DrivelineOutputs, PhaseEvent, driveline_outputs
@@ -58,12 +58,6 @@ class ShiftOutputs(NamedTuple):
     """Signals of the off-going side."""
     wheel_friction_work: float
     """Exact work in J of rolling resistance and brake in the last period."""
-
-    def signals(self) -> dict[str, Any]:
-        """Return the signals of a tick by name; those of the off-going side have a prefix."""
-        off_going = self.off_going._asdict().items()
-        prefixed = {f'off_going_{name}': value for name, value in off_going}
-        return {**self.driveline._asdict(), **prefixed}
 
 
 class ShiftDriveline:

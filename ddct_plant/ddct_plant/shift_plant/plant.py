@@ -23,6 +23,7 @@ from ddct_plant.shift_plant.sides import (
     ROLES,
     first_request,
     shift_driveline,
+    shift_signals,
     side_actuator,
     side_clutch,
 )
@@ -149,7 +150,7 @@ class ShiftPlant:
         requests_and_torques = torque_request, nodes, *clutch
         of_off_going = off_going_request, other_nodes, *other_clutch
         signals: dict[str, SignalValue] = {
-            **outputs.signals(),
+            **shift_signals(outputs),
             **dict(zip(_OF_CLUTCH, requests_and_torques, strict=True)),
             **dict(zip(_OF_OFF_GOING_CLUTCH, of_off_going, strict=True)),
             'wheel_friction_work': outputs.wheel_friction_work,

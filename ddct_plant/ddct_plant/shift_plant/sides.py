@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Driveline, actuators and clutches of a run, with a gear shift or without one, by their role."""
+"""Driveline of a shift and its signals; actuator and clutch of a run by their role."""
 
 from ddct_plant.base.timebase import steps_in
 from ddct_plant.models.actuator import Actuator
@@ -8,8 +8,9 @@ from ddct_plant.models.clutch import FrictionClutch
 from ddct_plant.scenario.plant import initial_state, stick_slip_clutch
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.scenario.shift_rules import gears_of, shift_of
-from ddct_plant.shift.driveline import ShiftDriveline
+from ddct_plant.shift.driveline import ShiftDriveline, ShiftOutputs
 from ddct_plant.shift_plant.start import locked_request, shift_start
+from ddct_plant.signals.signal import SignalValue
 
 ON_COMING, OFF_GOING = 'on_coming', 'off_going'
 ROLES = (ON_COMING, OFF_GOING)
@@ -29,6 +30,13 @@ def shift_driveline(settings: RunSettings) -> ShiftDriveline:
         steps_in('shift.preselection_s', shift.preselection_s),
         None if disengagement_s is None else steps_in('shift.disengagement_s', disengagement_s),
     )
+
+
+def shift_signals(outputs: ShiftOutputs) -> dict[str, SignalValue]:
+    """Return the signals of a tick by name; those of the off-going side have a prefix."""
+    off_going = outputs.off_going._asdict().items()
+    prefixed = {f'{OFF_GOING}_{name}': value for name, value in off_going}
+    return {**outputs.driveline._asdict(), **prefixed}
 
 
 def first_request(settings: RunSettings, role: str) -> float:

@@ -1,0 +1,236 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""A shift in real time whose messages stop: each row of the table in time_and_ticks.md."""
+
+from collections.abc import Collection
+from typing import NamedTuple
+
+import pytest
+
+from ddct_bringup.run.headless import run_headless
+from ddct_controllers.architecture import make_architecture
+from ddct_controllers.handover.interface import HandoverCommand, HandoverMeasurement
+from ddct_controllers.handover.laws import make_handover
+from ddct_controllers.interface import Measurement
+from ddct_controllers.registry import make_controller
+from ddct_plant.base.timebase import stamp_of_step, time_of_step
+from ddct_plant.fail_safe.guarded import GuardedActuator, GuardedEngine
+from ddct_plant.fail_safe.request_watch import REQUEST_TIMEOUT_S, FailSafeSettings
+from ddct_plant.models.driveline import OPEN, PHASES
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.plant import holding_torque, make_engine, make_load
+from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.shift.driveline import ShiftOutputs
+from ddct_plant.shift_plant.sides import (
+    OFF_GOING,
+    ON_COMING,
+    first_request,
+    shift_driveline,
+    side_actuator,
+    side_clutch,
+)
+from ddct_plant.signals.topic import Topic
+from ddct_plant.signals.topics import (
+    CLUTCH_TORQUE,
+    ENGINE_TORQUE,
+    HANDOVER_SHARE,
+    HOLDING_TORQUE,
+    LOAD_TORQUE,
+    OFF_GOING_CLUTCH_TORQUE,
+    OFF_GOING_TORQUE_REQUEST,
+    TORQUE_CUT,
+    TORQUE_REQUEST,
+)
+from ddct_plant.ticks.realtime_owner import RealtimeOwner
+from ddct_plant.ticks.tick_owner import Reply, TickPlan
+from ddct_reference.factory import make_reference
+
+SILENT_FROM = 60
+"""First step without the messages, in the handover, which lasts from step 30 to 130."""
+OPEN_BY = SILENT_FROM + 45 + 10
+"""Step by which the table promises an open clutch: 0.45 s, and the lag of the actuator."""
+HANDOVER = (HANDOVER_SHARE, OFF_GOING_TORQUE_REQUEST, TORQUE_CUT)
+SETTINGS = RunSettings(
+    load_scenario('upshift', {'shift.handover_s': 1.0}), clutch='stick_slip', handover='timed'
+)
+TORQUES = (ENGINE_TORQUE, LOAD_TORQUE, CLUTCH_TORQUE, HOLDING_TORQUE, OFF_GOING_CLUTCH_TORQUE)
+
+
+class Side:
+    """Actuator with its fail-safe, and clutch, of one side."""
+
+    def __init__(self, role: str) -> None:
+        self.actuator = GuardedActuator(
+            side_actuator(SETTINGS, role), first_request(SETTINGS, role), FailSafeSettings()
+        )
+        self._clutch = side_clutch(SETTINGS, role)
+
+    def capacities(
+        self, step: int, request: float | None, slip: float, work: float
+    ) -> list[list[float]] | None:
+        """Return the capacities of a period, None where the actuator is silent."""
+        torques = self.actuator.tick(step)
+        if torques is None and request is not None:
+            torques = self.actuator.request(step, request)
+        return None if torques is None else list(self._clutch.reply(step, torques, slip, work)[:2])
+
+
+class RealTimeShift:
+    """The parts of a shift connected as the nodes are; some messages stop on the way."""
+
+    def __init__(self, missing: Collection[Topic]) -> None:
+        """`missing` are the topics without a message from `SILENT_FROM` on."""
+        self._missing = missing
+        self._now = 0.0
+        self.outputs: list[ShiftOutputs] = []
+        self.sides = {role: Side(role) for role in (ON_COMING, OFF_GOING)}
+        self.engine = GuardedEngine(make_engine(SETTINGS), REQUEST_TIMEOUT_S)
+        self._demand = make_engine(SETTINGS).demand
+        self._load, self._holding = make_load(SETTINGS), holding_torque(SETTINGS)
+        self._handover = make_handover(SETTINGS)
+        controller = make_controller('pi', SETTINGS)
+        self._reference = make_reference(SETTINGS, controller.preview_steps)
+        self._architecture = make_architecture(SETTINGS, controller)
+        self._driveline = shift_driveline(SETTINGS)
+        clutches = CLUTCH_TORQUE.name, OFF_GOING_CLUTCH_TORQUE.name
+        self.owner = RealtimeOwner(
+            self._driveline.step,
+            TickPlan(tuple(topic.name for topic in TORQUES), clutches, '', 200, 1.0),
+            self._answer,
+            lambda error: None,
+            clock=lambda: self._now,
+        )
+        self.owner.start()
+
+    def go_to(self, last: int) -> None:
+        """Step until t_last is out."""
+        for step in range(self.owner.step + 1, last + 1):
+            self._now = time_of_step(step) + 1e-4
+            self.owner.tick()
+
+    def _comes(self, topic: Topic, step: int) -> bool:
+        return step < SILENT_FROM or topic not in self._missing
+
+    def _answer(self, step: int) -> None:
+        """Answer a tick as the nodes do, each with what has come."""
+        outputs = self._driveline.outputs()
+        self.outputs.append(outputs)
+        true, other = outputs.driveline, outputs.off_going
+        command = self._handover.update(
+            HandoverMeasurement(
+                step,
+                self._demand(step),
+                true.engine_speed,
+                true.slip_speed,
+                other.slip_speed,
+                true.vehicle_speed,
+            )
+        )
+        torque = self._engine_torque(step, outputs, command)
+        request = self._request(step, outputs, command, torque)
+        comes = self._comes(OFF_GOING_TORQUE_REQUEST, step)
+        assert true.friction_work is not None
+        replies: dict[Topic, Reply] = {
+            ENGINE_TORQUE: torque,
+            LOAD_TORQUE: self._load.torque(true.vehicle_speed, time_of_step(step)),
+            CLUTCH_TORQUE: self.sides[ON_COMING].capacities(
+                step, request, true.slip_speed, true.friction_work
+            ),
+            HOLDING_TORQUE: self._holding.capacity(time_of_step(step)),
+            OFF_GOING_CLUTCH_TORQUE: self.sides[OFF_GOING].capacities(
+                step,
+                command.off_going_request if comes else None,
+                other.slip_speed,
+                other.friction_work,
+            ),
+        }
+        for topic, reply in replies.items():
+            if reply is not None and self._comes(topic, step):
+                self.owner.offer(topic.name, stamp_of_step(step), reply)
+
+    def _engine_torque(
+        self, step: int, outputs: ShiftOutputs, command: HandoverCommand
+    ) -> float | None:
+        self.engine.speed = outputs.driveline.engine_speed
+        torque = self.engine.tick(step)
+        if torque is None and self._comes(TORQUE_CUT, step):
+            torque = self.engine.request(step, self._demand(step) - command.torque_cut)
+        return torque
+
+    def _request(
+        self, step: int, outputs: ShiftOutputs, command: HandoverCommand, torque: float | None
+    ) -> float | None:
+        if torque is None or not self._comes(HANDOVER_SHARE, step):
+            return None
+        now, share = outputs.driveline, command.share
+        speeds, rates = self._reference.update(step, now.slip_speed, now.shaft_speed, share)
+        measurement = Measurement(
+            step=step,
+            engine_speed=now.engine_speed,
+            shaft_speed=now.shaft_speed,
+            wheel_speed=now.wheel_speed,
+            vehicle_speed=now.vehicle_speed,
+            engine_torque=torque,
+            slip_reference=speeds,
+            slip_reference_rate=rates,
+        )
+        request = self._architecture.update(measurement, share).torque
+        return request if self._comes(TORQUE_REQUEST, step) else None
+
+
+def test_with_every_message_it_is_the_run_in_lock_step() -> None:
+    run, expected = RealTimeShift(()), run_headless(SETTINGS, 'pi')
+    run.go_to(200)
+    assert len(run.outputs) == expected.steps + 1
+    for step, outputs in enumerate(run.outputs):
+        assert outputs.driveline.slip_speed == expected.slip_speed[step]
+        assert outputs.off_going.slip_speed == expected.off_going_slip_speed[step]
+
+
+class Row(NamedTuple):
+    """What is missing, who notices it, and which sides open."""
+
+    missing: tuple[Topic, ...]
+    notices: set[str]
+    opens: set[str]
+
+
+ROWS = {
+    'controller': Row((TORQUE_REQUEST,), {'actuator'}, {ON_COMING}),
+    'off-going request': Row((OFF_GOING_TORQUE_REQUEST,), {'off_going/actuator'}, {OFF_GOING}),
+    'share': Row((HANDOVER_SHARE,), {'actuator'}, {ON_COMING}),
+    'cut': Row((TORQUE_CUT,), {'actuator', 'engine'}, {ON_COMING}),
+    'handover': Row(
+        HANDOVER, {'actuator', 'off_going/actuator', 'engine'}, {ON_COMING, OFF_GOING}
+    ),
+    'clutch torque': Row((CLUTCH_TORQUE,), {'driveline'}, {ON_COMING}),
+    'off-going clutch torque': Row((OFF_GOING_CLUTCH_TORQUE,), {'driveline'}, {OFF_GOING}),
+    'both, as with two publishers': Row(
+        (CLUTCH_TORQUE, OFF_GOING_CLUTCH_TORQUE), {'driveline'}, {ON_COMING, OFF_GOING}
+    ),
+}
+
+
+@pytest.mark.parametrize('row', ROWS.values(), ids=ROWS)
+def test_the_clutch_that_follows_what_is_missing_opens_in_time_and_stays_open(row: Row) -> None:
+    run = RealTimeShift(row.missing)
+    run.go_to(125)
+    noticed = {
+        'actuator': run.sides[ON_COMING].actuator.watch.stopped,
+        'off_going/actuator': run.sides[OFF_GOING].actuator.watch.stopped,
+        'engine': run.engine.watch.stopped,
+        'driveline': bool(run.owner.safe_clutches),
+    }
+    assert {who for who, does in noticed.items() if does} == row.notices
+    assert carrying(run.outputs[SILENT_FROM]) == {ON_COMING, OFF_GOING}
+    for outputs in run.outputs[OPEN_BY:]:
+        assert carrying(outputs) == {ON_COMING, OFF_GOING} - row.opens
+
+
+def carrying(outputs: ShiftOutputs) -> set[str]:
+    """Return the sides whose clutch is not open."""
+    phases = {
+        ON_COMING: outputs.driveline.clutch_phase,
+        OFF_GOING: outputs.off_going.clutch_phase,
+    }
+    return {side for side, phase in phases.items() if PHASES[int(phase or 0.0)] != OPEN}
