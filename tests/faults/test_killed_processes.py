@@ -7,6 +7,7 @@ import os
 import signal
 from collections.abc import Iterable
 from pathlib import Path
+from typing import Any
 
 import pytest
 from support.complaints import assert_one_line
@@ -18,6 +19,7 @@ from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.processes.shared_memory import SHARED_MEMORY, remove_segments, segments_of
 from ddct_bringup.programs import score
 
+SHIFT = {'scenario': 'upshift', 'clutch': 'stick_slip'}
 ENDLESS = ('--controller', 'ls8', '--duration', '3600')
 
 
@@ -37,26 +39,32 @@ def _running(programs: Programs, out: Path, *options: str) -> Program:
     return bringup
 
 
-def _require_whole_until_its_end(bag: Path) -> int:
-    """Require that a bag can be read and has the first steps of the run; return their number."""
+def _require_whole_until_its_end(bag: Path, **options: Any) -> int:
+    """
+    Require that a bag can be read and has the first steps of the run; return their number.
+
+    `options` are those of `plan`.
+    """
     trajectory = read_bag(bag).trajectory
     steps = trajectory.steps
     # The length of the run changes nothing before its end.
-    whole = expected(plan(duration_s=steps / 100))
+    whole = expected(plan(duration_s=steps / 100, **options))
     assert trajectory.sha256() == whole.sha256()
     return steps
 
 
+@pytest.mark.parametrize(('node', 'options'), [('clutch', {}), ('handover', SHIFT)])
 def test_a_killed_node_is_named_and_what_was_recorded_is_kept(
-    programs: Programs, tmp_path: Path
+    programs: Programs, tmp_path: Path, node: str, options: dict[str, str]
 ) -> None:
-    bringup = _running(programs, tmp_path / 'runs')
-    os.kill(node_of('clutch_node'), signal.SIGKILL)
+    given = [part for key, value in options.items() for part in (f'--{key}', value)]
+    bringup = _running(programs, tmp_path / 'runs', *given)
+    os.kill(node_of(f'{node}_node'), signal.SIGKILL)
     assert bringup.wait() == 1
     assert not processes_left()
-    assert_one_line(bringup.errors(), 'ddct bringup', 'node clutch was killed by SIGKILL')
+    assert_one_line(bringup.errors(), 'ddct bringup', f'node {node} was killed by SIGKILL')
     assert not (tmp_path / 'runs' / 'ls8').exists()
-    assert _require_whole_until_its_end(tmp_path / 'runs' / 'ls8.partial') > 20
+    assert _require_whole_until_its_end(tmp_path / 'runs' / 'ls8.partial', **options) > 20
 
 
 def test_score_repair_rescues_what_a_killed_recorder_wrote(

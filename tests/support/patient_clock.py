@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Clock for the driveline in real time with which a busy machine misses no step."""
 
+import sys
 import time
 
 from ddct_plant.base.timebase import PERIOD_S
@@ -22,7 +23,7 @@ class PatientClock:
         """Replace the clock of `owner`, before its run begins."""
         self._owner = owner
         self._offset: float | None = None
-        self._not_awaited: set[str] = set()
+        self._not_awaited: dict[str, int] = {}
         owner._clock = self
 
     def __call__(self) -> float:
@@ -32,12 +33,14 @@ class PatientClock:
             return time.monotonic() + self._offset
         if started is None or owner.step == owner._plan.steps:
             return time.monotonic()
-        missing = set(owner.missing()) - self._not_awaited
+        missing = [
+            topic for topic in owner.missing() if owner.step >= self._not_awaited.get(topic, 0)
+        ]
         return started + (owner.step + (0.5 if missing else 1.5)) * PERIOD_S
 
-    def go_on_without(self, topic: str) -> None:
-        """Stop waiting for the replies on `topic`."""
-        self._not_awaited.add(topic)
+    def go_on_without(self, topic: str, until_step: int = sys.maxsize) -> None:
+        """Stop waiting for the replies on `topic` to ticks before `until_step`."""
+        self._not_awaited[topic] = until_step
 
     def release(self) -> None:
         """Follow the wall clock from now on."""
