@@ -16,6 +16,7 @@ from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.signals.topics import RunKind, recorded_topics
 
 CHAIN = 'the bare rclpy chain'
+SHIFT_CHAIN = 'the bare rclpy chain of a shift'
 STEPS, FEWER_STEPS = 1000, 500
 """Steps of a run, and of a run for a point of a curve."""
 SINGLE = '--single-process'
@@ -48,6 +49,16 @@ def one_process(bench: Bench) -> Iterator[Sides]:
     yield Sides(
         lambda: graph_s(bench.ours, SINGLE), Chain(STEPS, single=True).step_s, warm_up=False
     )
+
+
+@comparison('graph: a gear shift, one process per node, step', SHIFT_CHAIN, at_most=1.5)
+def shift_in_processes(bench: Bench) -> Iterator[Sides]:
+    """Wall time per step of a lock-step upshift of 10 s with PI and both clutches."""
+    # With little torque the engine does not over-rev within 10 s.
+    engine = ('--set', 'engine.torque_n_m=[30.0]')
+    options = ('--scenario', 'upshift', '--clutch', 'stick_slip', *engine)
+    chain = Chain(STEPS, shift=True)
+    yield Sides(lambda: graph_s(bench.ours, *options), chain.step_s, warm_up=False)
 
 
 @curve('chain of processes', CHAIN, 'nodes', (8, 10, 12, 16))

@@ -6,7 +6,8 @@ The graph's topics, hops and processes in bare rclpy, doing no work: the floor o
 Each node publishes its constant messages as soon as it has received its inputs, with the same QoS,
 executor and message sizes as the real graph. Run one node per process with `python bare_chain.py
 NODE STEPS [PATIENCE_S]`, or all in one process with NODE `all`; `driveline` prints the time per
-step. Nothing is sent twice, so no node may miss the first message: see `_announce_when_ready`.
+step. With `--shift` it is the graph of a gear shift. Nothing is sent twice, so no node may miss
+the first message: see `_announce_when_ready`.
 """
 
 import argparse
@@ -26,6 +27,7 @@ from std_msgs.msg import Header
 from ddct_plant.base.timebase import START_NS
 from ddct_plant.graph.qos import LOOP_QOS, RECORDER_QOS
 from ddct_plant.graph.spin import SLICE_S, make_executor
+from ddct_plant.signals.points import TorqueRows
 from ddct_plant.signals.signal import RunKind
 from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import recorded_topics
@@ -38,22 +40,31 @@ VALUES: dict[str, tuple[Any, ...]] = {
     'driveline/joint_states': ([1.0] * 4, [1.0] * 4, [1.0] * 4),
     'clutch/slip_reference': ([1.0], [1.0]),
     'controller/status': (STATUS,),
-    'actuator/torque': (POINTS,),
-    'clutch/torque': (POINTS,),
+    'clutch/phase': (1.0, 1.0, ()),
+    'off_going/clutch/phase': (1.0, 1.0, ()),
 }
-"""Values of the message of a topic; other topics have the number 1 for each signal."""
+"""Values of the message of a topic; others have the number 1, or a row of it, for each signal."""
+SHIFT = RunKind(clutch='stick_slip', shift=True)
+"""Kind of a gear shift, which has the topics of the off-going side."""
 
-
-def _example(topic: Topic) -> Any:
-    return topic.message(START_NS, *VALUES.get(topic.name, [1.0] * len(topic.signals)))
-
-
-EXAMPLES: dict[str, Callable[[], Any]] = {
-    topic.name: partial(_example, topic)
-    for topic in recorded_topics(RunKind())
-    if topic.every_tick
-}
+Examples = dict[str, Callable[[], Any]]
 """Function that makes a message, by topic of a tick; its size is that of the real graph."""
+
+
+def _example(topic: Topic, kind: RunKind) -> Any:
+    number = POINTS if isinstance(topic.kind, TorqueRows) else 1.0
+    values = [number] * len(topic.signals_in(kind))
+    return topic.message(START_NS, *VALUES.get(topic.name, values))
+
+
+def examples_of(kind: RunKind) -> Examples:
+    """Return the functions that make the messages of a tick of a kind of run."""
+    topics = [topic for topic in recorded_topics(kind) if topic.every_tick]
+    return {topic.name: partial(_example, topic, kind) for topic in topics}
+
+
+EXAMPLES = examples_of(RunKind())
+SHIFT_EXAMPLES = examples_of(SHIFT)
 
 WIRING: dict[str, tuple[Sequence[str], Sequence[str]]] = {
     'engine': (['driveline/joint_states'], ['engine/torque', 'engine/torque_demand']),
@@ -69,6 +80,39 @@ WIRING: dict[str, tuple[Sequence[str], Sequence[str]]] = {
     'driveline': (['engine/torque', 'load/torque', 'clutch/torque', 'recorder/ack'], TICK),
 }
 """Topics that a node subscribes to and topics that it publishes, by node, as in the real graph."""
+SHARE = 'clutch/handover_share'
+SHIFT_WIRING: dict[str, tuple[Sequence[str], Sequence[str]]] = {
+    **WIRING,
+    'engine': (['driveline/joint_states', 'engine/torque_cut'], WIRING['engine'][1]),
+    'load': (['vehicle/twist'], ['load/torque', 'load/holding_torque']),
+    'handover': (
+        ['driveline/joint_states', 'clutch/slip', 'off_going/clutch/slip', 'vehicle/twist'],
+        [SHARE, 'off_going/clutch/torque_request', 'engine/torque_cut'],
+    ),
+    'reference': (['clutch/slip', SHARE], ['clutch/slip_reference']),
+    'controller': ([*WIRING['controller'][0], SHARE], WIRING['controller'][1]),
+    'clutch': (
+        ['actuator/torque', 'clutch/slip', 'clutch/phase'],
+        ['clutch/torque', 'clutch/temperature'],
+    ),
+    'off_going_actuator': (['off_going/clutch/torque_request'], ['off_going/actuator/torque']),
+    'off_going_clutch': (
+        ['off_going/actuator/torque', 'off_going/clutch/slip', 'off_going/clutch/phase'],
+        ['off_going/clutch/torque', 'off_going/clutch/temperature'],
+    ),
+    'recorder': ([topic for topic in SHIFT_EXAMPLES if topic != 'recorder/ack'], ['recorder/ack']),
+    'driveline': (
+        [*WIRING['driveline'][0], 'load/holding_torque', 'off_going/clutch/torque'],
+        [
+            *(*TICK, 'clutch/phase', 'off_going/clutch/slip', 'off_going/clutch/phase'),
+            'off_going/joint_states',
+        ],
+    ),
+}
+"""
+The same in a gear shift, but that `handover` does not wait for the demand of the engine: a bare
+node sends all its messages at once. So this chain has one hop less than the graph.
+"""
 Wiring = dict[str, tuple[list[str], list[str]]]
 
 
@@ -91,9 +135,18 @@ def wiring_with(more_nodes: int = 0, more_topics: int = 0) -> Wiring:
     return wired | {'driveline': driveline}
 
 
-def example_of(topic: str) -> Any:
+def shift_wiring() -> Wiring:
+    """Return the wiring of a gear shift, the driveline last."""
+    others = (name for name in SHIFT_WIRING if name != 'driveline')
+    return {
+        name: (list(SHIFT_WIRING[name][0]), list(SHIFT_WIRING[name][1]))
+        for name in (*others, 'driveline')
+    }
+
+
+def example_of(topic: str, examples: Examples) -> Any:
     """Return a message of a topic; a further topic has messages like `load/torque`."""
-    return EXAMPLES.get(topic, EXAMPLES['load/torque'])()
+    return examples.get(topic, examples['load/torque'])()
 
 
 READY = 'ready'
@@ -106,20 +159,21 @@ PATIENCE_S = 60.0
 class BareNode(Node):
     """Node that publishes all its outputs once it has received every input once more."""
 
-    def __init__(self, name: str, wiring: Wiring) -> None:
+    def __init__(self, name: str, wiring: Wiring, examples: Examples) -> None:
         super().__init__(f'bare_{name}')
         self._name = name
         self._wiring = wiring
         inputs, outputs = wiring[name]
         self._expected = len(inputs)
         self._received = 0
+        messages = {topic: example_of(topic, examples) for topic in (*inputs, *outputs)}
         self._outputs = [
-            (self.create_publisher(type(example_of(topic)), topic, LOOP_QOS), example_of(topic))
+            (self.create_publisher(type(messages[topic]), topic, LOOP_QOS), messages[topic])
             for topic in outputs
         ]
         raw = name == 'recorder'
         for topic in inputs:
-            kind = type(example_of(topic))
+            kind = type(messages[topic])
             qos = RECORDER_QOS if raw else LOOP_QOS
             self.create_subscription(kind, topic, self._receive, qos, raw=raw)
         self._match_timer = self.create_timer(POLL_S, self._announce_when_ready)
@@ -161,8 +215,8 @@ class BareNode(Node):
 class BareDriveline(BareNode):
     """Node that begins a tick when the last one is answered, and the first once all are ready."""
 
-    def __init__(self, steps: int, wiring: Wiring) -> None:
-        super().__init__('driveline', wiring)
+    def __init__(self, steps: int, wiring: Wiring, examples: Examples) -> None:
+        super().__init__('driveline', wiring, examples)
         self.done: Future = Future()
         self.left = steps
         self._steps = steps
@@ -199,10 +253,15 @@ def main() -> None:
     """Run the node of the command line, or all of them, until the driveline has done its steps."""
     options = _options()
     wiring = wiring_with(options.more_nodes, options.more_topics)
+    examples = EXAMPLES
+    if options.shift:
+        wiring, examples = shift_wiring(), SHIFT_EXAMPLES
     rclpy.init()
     names = list(wiring) if options.node == 'all' else [options.node]
     nodes = [
-        BareDriveline(options.steps, wiring) if name == 'driveline' else BareNode(name, wiring)
+        BareDriveline(options.steps, wiring, examples)
+        if name == 'driveline'
+        else BareNode(name, wiring, examples)
         for name in names
     ]
     executor = make_executor()
@@ -225,6 +284,7 @@ def _options() -> argparse.Namespace:
     parser.add_argument('patience_s', type=float, nargs='?', default=PATIENCE_S)
     parser.add_argument('--more-nodes', type=int, default=0)
     parser.add_argument('--more-topics', type=int, default=0)
+    parser.add_argument('--shift', action='store_true')
     return parser.parse_args()
 
 

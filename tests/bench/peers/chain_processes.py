@@ -9,7 +9,7 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-from bench.peers.bare_chain import EXAMPLES, WIRING
+from bench.peers.bare_chain import EXAMPLES, WIRING, shift_wiring
 from bench.skeleton.interruption import uninterrupted
 
 from ddct_plant.graph.domain import own_domain
@@ -30,6 +30,8 @@ class Chain:
     """Number of nodes; those beyond the graph's answer each tick on a topic of their own."""
     topics: int = len(EXAMPLES)
     """Number of topics of a tick before nodes are added; more are published by the driveline."""
+    shift: bool = False
+    """Whether it has the nodes and topics of a gear shift, whatever the two numbers are."""
 
     def step_s(self) -> float:
         """Return the wall time per step in s, as the driveline measured it."""
@@ -45,6 +47,8 @@ class Chain:
         more = self.nodes - len(WIRING), self.topics - len(EXAMPLES)
         options = ['--more-nodes', str(more[0]), '--more-topics', str(more[1])]
         names = [*WIRING][:-1] + [f'more_{i}' for i in range(more[0])] + ['driveline']
+        if self.shift:
+            options, names = ['--shift'], [*shift_wiring()]
         started = time.monotonic()
         with own_domain():
             output = _output(['all'] if self.single else names, str(self.steps), *options)
