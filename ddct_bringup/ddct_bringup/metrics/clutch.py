@@ -60,13 +60,13 @@ QUANTITIES = (
         meaning='slope of w_d where it first changes its sign; of plates that stick, the exact '
         'one just before the first lock',
         undefined=NO_LOCKUP,
-        value=lambda engagement: engagement.lockup_slip_acceleration,
+        value=lambda engagement: engagement.lockup.slip_acceleration,
         criterion='slip_acceleration_at_lock',
     ),
     criterion(
         'releases_after_lock',
         '1',
-        lambda engagement: engagement.releases,
+        lambda engagement: engagement.lockup.releases,
         'how often the plates part again',
         NO_LOCK,
         exists=lambda engagement: engagement.sticks,

@@ -42,7 +42,7 @@ QUANTITIES = (
     criterion(
         'time_to_lock',
         's',
-        lambda engagement: engagement.time_to_lock_s,
+        lambda engagement: engagement.lockup.time_to_lock_s,
         'control start to the first lock',
         f'{NO_LOCK}, or was locked there',
         exists=lambda engagement: engagement.sticks,
@@ -55,7 +55,7 @@ QUANTITIES = (
         meaning='t_a, control start to the first change of sign of w_d; of plates that stick, to '
         'the exact instant at which they first lock or pass through zero',
         undefined=NO_CROSSING,
-        value=lambda engagement: engagement.engagement_time_s,
+        value=lambda engagement: engagement.lockup.engagement_time_s,
         criterion='engagement_time',
         column=True,
     ),

@@ -36,25 +36,25 @@ def run(scenario, controller, *changes, wear_gain=1.0):
     ],
 )
 def test_a_run_that_parts_again_without_it_stays_locked_with_it(scenario, controller):
-    assert run(scenario, controller, OFF)[0].releases > 0
+    assert run(scenario, controller, OFF)[0].lockup.releases > 0
     judged, trajectory = run(scenario, controller, ON)
-    assert judged.releases == 0
+    assert judged.lockup.releases == 0
     assert dict(trajectory.status[-1])['closing'] == 'closed'
 
 
 def test_a_tip_in_parts_only_the_plates_of_a_clutch_that_cannot_carry_the_swing():
-    assert run('tip_in', 'pi', OFF)[0].releases > 0
-    assert run('tip_in', 'pi', ON, 'friction.most_n_m=500')[0].releases == 0
+    assert run('tip_in', 'pi', OFF)[0].lockup.releases > 0
+    assert run('tip_in', 'pi', ON, 'friction.most_n_m=500')[0].lockup.releases == 0
     judged, trajectory = run('tip_in', 'pi', ON)
     assert trajectory.torque_request.max() > trajectory.clutch_torque.max() == 350.0
-    assert judged.releases == 1
+    assert judged.lockup.releases == 1
     assert dict(trajectory.status[-1])['closing'] == 'closed'
 
 
 def test_it_changes_nothing_before_the_lock():
     judged, closing = run('thesis', 'mpc3', ON)
     _, without = run('thesis', 'mpc3', OFF)
-    before = slice(0, judged.together_from - 1)
+    before = slice(0, judged.lockup.together_from - 1)
     assert (closing.torque_request[before] == without.torque_request[before]).all()
     assert (closing.joint_speed[before] == without.joint_speed[before]).all()
 
@@ -62,7 +62,7 @@ def test_it_changes_nothing_before_the_lock():
 def test_a_worn_clutch_that_feedback_has_locked_stays_locked():
     for controller in ('ls8', 'mpc_offset_free'):
         judged, trajectory = run('thesis', controller, ON, wear_gain=0.7)
-        assert (judged.releases, dict(trajectory.status[-1])['closing']) == (0, 'closed')
+        assert (judged.lockup.releases, dict(trajectory.status[-1])['closing']) == (0, 'closed')
 
 
 def test_the_engine_goes_back_to_the_driver_without_a_step():

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The time of a step is converted to that step, independent of the rounding of the division."""
 
-from ddct_bringup.metrics.engagement import step_at
+from ddct_bringup.metrics.lockup import step_at
 from ddct_plant.base.timebase import PERIOD_S, time_of_step
 
 
