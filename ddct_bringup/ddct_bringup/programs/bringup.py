@@ -17,7 +17,7 @@ from ddct_bringup.run.output_folder import StagedFolder, run_folder
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.run.run_base import settings_of
 from ddct_bringup.scores.floors import add_floors_option, floor_metrics, with_floors
-from ddct_bringup.scores.run_table import slow_notes
+from ddct_bringup.scores.run_notes import slow_notes
 from ddct_bringup.scores.scored_recording import ScoredRecording, run_and_score
 from ddct_bringup.scores.validity import realtime_summary
 from ddct_bringup.verdict.limits import Limits, add_limits_option, load_limits

@@ -12,7 +12,7 @@ from ddct_bringup.report.charts import ChartRun
 from ddct_bringup.report.run_labels import run_labels
 from ddct_bringup.report.run_tables import RunOrigin, UpdateTimes, run_origin, update_times
 from ddct_bringup.report.score_tables import comparable_rows
-from ddct_bringup.scores.run_table import fallback_note
+from ddct_bringup.scores.run_notes import fallback_note
 from ddct_bringup.scores.scored_recording import ScoredRecording
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.thesis.table_5_1 import ThesisRow

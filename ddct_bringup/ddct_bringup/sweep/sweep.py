@@ -16,7 +16,8 @@ from ddct_bringup.campaign.scored import ScoredRow, scored_runs
 from ddct_bringup.run.run_base import RunBase
 from ddct_bringup.scores.csv_text import rows_csv
 from ddct_bringup.scores.document import run_entry
-from ddct_bringup.scores.run_table import CONTROLLER, STATE, RunColumn, dash_notes, metric
+from ddct_bringup.scores.run_notes import dash_notes
+from ddct_bringup.scores.run_table import CONTROLLER, STATE, RunColumn, metric
 from ddct_bringup.sweep.axis import MOST, Axis, value_text
 from ddct_bringup.verdict.limits import Limits
 from ddct_controllers.registry import Chosen, controller_label, controller_spec
