@@ -31,6 +31,7 @@ FILES = {
     'ddct_bringup/scores/document.py': 'scores.json',
     'ddct_bringup/sweep/sweep.py': 'sweep --json',
     'ddct_bringup/verdict/limits.py': 'limits, YAML',
+    'ddct_bringup/verdict/limits_keys.py': 'limits, YAML',
     'ddct_bringup/verification/comparison.py': 'any JSON, compared with its repetition',
     'ddct_bringup/verification/folder.py': 'verify --json',
     'ddct_bringup/verification/result.py': 'verify --json',

@@ -9,7 +9,7 @@ Every error in a limits file is reported with file, line and key.
 import argparse
 import dataclasses
 import hashlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from importlib.resources import files
@@ -18,9 +18,15 @@ from pathlib import Path
 from typing import Any
 
 from ddct_bringup.metrics.catalogue import CRITERION_UNITS
+from ddct_bringup.verdict.limits_keys import (
+    MOST,
+    require_keys,
+    require_text,
+    require_unit,
+    rule_value,
+)
 from ddct_bringup.verdict.traction import TractionRule
 from ddct_plant.base.errors import ParameterError, require_number
-from ddct_plant.base.options import require_known
 from ddct_plant.files.input_file import SCHEMA_KEY, located, require_schema_version, user_text
 from ddct_plant.files.yaml_text import parse_yaml_with_lines
 
@@ -30,7 +36,6 @@ CONVENTION = 'convention'
 _REASONED_FROM = 2
 """First schema version in which a convention has a reason."""
 _CITATION = ('source', 'clause')
-_MOST = 1e9
 
 
 def _rule(unit: str, at_least: float | None = None) -> float:
@@ -134,7 +139,7 @@ def limits_of_text(text: str, name: str) -> Limits:
         content, lines = parse_yaml_with_lines(text)
     digest = hashlib.sha256(text.encode()).hexdigest()[:16]
     with located(f'limits {name}', lines):
-        top = _mapping('', content, ('rules', 'limits'), (SCHEMA_KEY, 'traction'))
+        top = require_keys('', content, ('rules', 'limits'), (SCHEMA_KEY, 'traction'))
         require_schema_version(top, SCHEMA_VERSION)
         version = top.get(SCHEMA_KEY, SCHEMA_VERSION)
         origin = {'name': Path(name).name, 'digest': digest, 'schema_version': version}
@@ -147,43 +152,34 @@ def limits_of_text(text: str, name: str) -> Limits:
 
 def _traction(content: Any) -> TractionRule:
     names = ('friction', 'driven_share', 'height_over_wheelbase')
-    rules = _mapping('traction', content, (*names, 'reason'))
-    _require_text('traction.reason', rules['reason'])
-    values = {name: _rule_value(f'traction.{name}', rules[name], '1', None) for name in names}
+    rules = require_keys('traction', content, (*names, 'reason'))
+    require_text('traction.reason', rules['reason'])
+    values = {name: rule_value(f'traction.{name}', rules[name], '1', None) for name in names}
     return TractionRule(**values, reason=rules['reason'])
 
 
 def _rules(content: Any) -> Rules:
     described = dataclasses.fields(Rules)
-    rules = _mapping('rules', content, [each.name for each in described])
+    rules = require_keys('rules', content, [each.name for each in described])
     return Rules(
         **{
-            each.name: _rule_value(f'rules.{each.name}', rules[each.name], **each.metadata)
+            each.name: rule_value(f'rules.{each.name}', rules[each.name], **each.metadata)
             for each in described
         }
     )
 
 
-def _rule_value(path: str, content: Any, unit: str, at_least: float | None) -> float:
-    rule = _mapping(path, content, ('value', 'unit', 'reason'))
-    _require_text(f'{path}.reason', rule['reason'])
-    _require_unit(f'{path}.unit', rule['unit'], unit)
-    return require_number(
-        f'{path}.value: it', rule['value'], above=0.0, at_least=at_least, at_most=_MOST
-    )
-
-
 def _limit(path: str, content: Any, version: int) -> Limit:
     required = ('criterion', 'value', 'unit', 'applies_to')
-    limit = _mapping(path, content, required, (*_CITATION, CONVENTION, 'reason'))
+    limit = require_keys(path, content, required, (*_CITATION, CONVENTION, 'reason'))
     criterion = limit['criterion']
     if not isinstance(criterion, str) or criterion not in CRITERION_UNITS:
         known = ', '.join(CRITERION_UNITS)
         raise ParameterError(f'{path}.criterion: {criterion!r} is unknown: choose from {known}')
-    _require_unit(f'{path}.unit', limit['unit'], CRITERION_UNITS[criterion])
+    require_unit(f'{path}.unit', limit['unit'], CRITERION_UNITS[criterion])
     return Limit(
         criterion,
-        require_number(f'{path}.value: it', limit['value'], at_least=0.0, at_most=_MOST),
+        require_number(f'{path}.value: it', limit['value'], at_least=0.0, at_most=MOST),
         limit['unit'],
         _scenarios(f'{path}.applies_to', limit['applies_to']),
         _source(path, limit, version),
@@ -208,13 +204,13 @@ def _source(path: str, limit: Mapping[str, Any], version: int) -> str:
             raise ParameterError(
                 f'{path}: {key} is missing: cite it, or add `convention: true`', key=key
             )
-        _require_text(f'{path}.{key}', limit[key])
+        require_text(f'{path}.{key}', limit[key])
     return f'{limit["source"]}, {limit["clause"]}'
 
 
 def _convention(path: str, limit: Mapping[str, Any], version: int) -> str:
     if 'reason' in limit:
-        _require_text(f'{path}.reason', limit['reason'])
+        require_text(f'{path}.reason', limit['reason'])
         return f'{CONVENTION}: {limit["reason"]}'
     if version >= _REASONED_FROM:
         raise ParameterError(
@@ -230,27 +226,3 @@ def _scenarios(path: str, value: Any) -> tuple[str, ...] | None:
     if not names or not all(isinstance(name, str) for name in value):
         raise ParameterError(f"{path}: give 'all' or a list of scenarios")
     return tuple(value)
-
-
-def _mapping(
-    path: str, content: Any, required: Sequence[str], optional: Sequence[str] = ()
-) -> Mapping[str, Any]:
-    """Return the mapping at `path`, '' for the whole file; require these keys and no others."""
-    where = path or 'line 1'
-    if not isinstance(content, dict):
-        raise ParameterError(f'{where}: give keys and values')
-    require_known(content, (*required, *optional), prefix=f'{path}.' if path else '')
-    for key in required:
-        if key not in content:
-            raise ParameterError(f'{where}: the key {key} is missing', key=key)
-    return content
-
-
-def _require_unit(path: str, value: Any, unit: str) -> None:
-    if value != unit:
-        raise ParameterError(f'{path}: it is {value!r}: give the value in {unit!r}')
-
-
-def _require_text(path: str, value: Any) -> None:
-    if not isinstance(value, str) or not value.strip():
-        raise ParameterError(f'{path}: it is {value!r}: give text')
