@@ -3,55 +3,33 @@
 """Time charts of the page: one per signal with all runs, on one time axis."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from bokeh.document import Document
-from bokeh.models import (
-    CDSView,
-    ColumnDataSource,
-    CrosshairTool,
-    DataRange1d,
-    HoverTool,
-    IndexFilter,
-    Range1d,
-)
-from bokeh.models.annotations import BoxAnnotation, Span
+from bokeh.models import ColumnDataSource, CrosshairTool, DataRange1d, HoverTool, Range1d
+from bokeh.models.annotations import Span
 from bokeh.models.renderers import DataRenderer
 from bokeh.plotting import figure
 
 from ddct_bringup.bag.run_facts import MEASURED, RunFacts
 from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.report.chart_marks import (
+    NEUTRAL,
+    ChartRun,
+    mark_events,
+    mark_line,
+    mark_thesis,
+    mark_window,
+    switch,
+)
 from ddct_bringup.report.chart_signals import ChartSignal, chart_signals_of
 from ddct_bringup.report.phase_lanes import LANES, draw_events, draw_phases
-from ddct_controllers.design.drawing.line_looks import LineLook
 from ddct_plant.base.units import rpm_from_rad_s
 
 _HEIGHT_PX = 300
 _LANE_PX, _LANES_FRAME_PX = 28, 70
-_MARK_SPACING = 0.12
-"""Distance between the marks of a line, as a share of the run."""
 FAINT = 0.6
 """Opacity of a limit next to the line that it bounds."""
-NEUTRAL = '#808080'
-"""Colour that is readable on a light and on a dark page."""
-
-
-@dataclass(frozen=True)
-class ChartRun:
-    """One run of the charts."""
-
-    index: int
-    """Position in the report, by which the page switches its lines on and off."""
-    label: str
-    look: LineLook
-    trajectory: Trajectory
-    facts: RunFacts
-    shown: bool
-    """Whether the lines are visible when the page opens."""
-    thesis_engagement_time_s: float | None = None
-    """Engagement time t_a of Table 5.1 in s, where the run is comparable."""
 
 
 def chart_document(runs: Sequence[ChartRun]) -> tuple[Mapping[str, object], dict[str, str]]:
@@ -69,8 +47,8 @@ def chart_document(runs: Sequence[ChartRun]) -> tuple[Mapping[str, object], dict
                 _line(chart, quantity, run, source)
         if quantity.key == 'w_d':
             _draw_references(chart, runs, sources)
-            _mark_thesis(chart, runs)
-            _mark_events(chart, runs)
+            mark_thesis(chart, runs)
+            mark_events(chart, runs)
         document.add_root(chart)
         roots[quantity.key] = str(chart.id)
     sticking = [run for run in runs if run.trajectory.clutch_phase is not None]
@@ -132,25 +110,8 @@ def _chart(key: str, unit: str, time_axis: Range1d, cursor: Span, facts: RunFact
     chart.axis.axis_label_text_font_style = 'normal'
     chart.axis.minor_tick_line_color = None
     chart.add_tools(CrosshairTool(overlay=cursor))
-    _mark_window(chart, facts)
+    mark_window(chart, facts)
     return chart
-
-
-def _mark_window(chart: figure, facts: RunFacts) -> None:
-    """Mark the score window and where feedback starts."""
-    first, last = facts.score_window_s
-    chart.add_layout(
-        BoxAnnotation(left=first, right=last, fill_color=NEUTRAL, fill_alpha=0.10, line_color=None)
-    )
-    chart.add_layout(
-        Span(
-            location=facts.control_start_s,
-            dimension='height',
-            line_color=NEUTRAL,
-            line_dash=[2, 3],
-            line_width=1.5,
-        )
-    )
 
 
 def _line(chart: figure, quantity: ChartSignal, run: ChartRun, source: ColumnDataSource) -> None:
@@ -163,9 +124,9 @@ def _line(chart: figure, quantity: ChartSignal, run: ChartRun, source: ColumnDat
         line_dash=list(run.look.dash),
         name=run.label,
     )
-    _switch(line, [run])
+    switch(line, [run])
     if run.look.mark:
-        _mark_line(chart, quantity, run, source)
+        mark_line(chart, quantity, run, source)
     if quantity.limit:
         limit = chart.line(
             't',
@@ -175,28 +136,7 @@ def _line(chart: figure, quantity: ChartSignal, run: ChartRun, source: ColumnDat
             line_alpha=FAINT,
             line_color=run.look.light,
         )
-        _switch(limit, [run], alpha=FAINT)
-
-
-def _mark_line(
-    chart: figure, quantity: ChartSignal, run: ChartRun, source: ColumnDataSource
-) -> None:
-    """Draw the marks of a line that has some, at separate times for each run."""
-    steps = len(run.trajectory.time_s)
-    spacing = max(1, round(_MARK_SPACING * steps))
-    first = round(0.37 * run.index % 1.0 * spacing)
-    marks = chart.scatter(
-        't',
-        quantity.key,
-        source=source,
-        view=CDSView(filter=IndexFilter(indices=list(range(first, steps, spacing)))),
-        marker=run.look.mark,
-        size=8,
-        line_width=1.5,
-        line_color=run.look.light,
-        fill_color=run.look.light if run.look.filled else None,
-    )
-    _switch(marks, [run], fill=run.look.filled)
+        switch(limit, [run], alpha=FAINT)
 
 
 def _draw_references(
@@ -218,23 +158,7 @@ def _draw_references(
             line_color=NEUTRAL,
             line_dash=[5, 4],
         )
-        _switch(line, members, colour=None)
-
-
-def _mark_thesis(chart: figure, runs: Sequence[ChartRun]) -> None:
-    """Mark the times at which w_d reaches zero by Table 5.1."""
-    for run in runs:
-        if run.thesis_engagement_time_s is not None:
-            mark = chart.scatter(
-                [run.facts.control_start_s + run.thesis_engagement_time_s],
-                [0.0],
-                marker='diamond',
-                size=13,
-                fill_color=None,
-                line_color=run.look.light,
-                line_width=2,
-            )
-            _switch(mark, [run])
+        switch(line, members, colour=None)
 
 
 def _draw_lanes(chart: figure, runs: Sequence[ChartRun]) -> None:
@@ -248,9 +172,9 @@ def _draw_lanes(chart: figure, runs: Sequence[ChartRun]) -> None:
     for lane, run in enumerate(runs):
         shade = draw_phases(chart, run.trajectory, lane, run.look.light)
         shade.name = run.label
-        _switch(shade, [run], fill=True)
+        switch(shade, [run], fill=True)
         for mark in draw_events(chart, run.trajectory, lane, NEUTRAL):
-            _switch(mark, [run], colour=None)
+            switch(mark, [run], colour=None)
         shades.append(shade)
     chart.add_tools(
         HoverTool(
@@ -258,17 +182,3 @@ def _draw_lanes(chart: figure, runs: Sequence[ChartRun]) -> None:
             tooltips=[('', '$name'), ('phase', '@phase'), ('', '@left{0.000} to @right{0.000} s')],
         )
     )
-
-
-def _mark_events(chart: figure, runs: Sequence[ChartRun]) -> None:
-    """Mark locks and releases where the slip is zero."""
-    for run in runs:
-        if run.trajectory.clutch_phase is not None:
-            for mark in draw_events(chart, run.trajectory, 0.0, run.look.light):
-                _switch(mark, [run])
-
-
-def _switch(mark: DataRenderer, runs: Sequence[ChartRun], **tag: Any) -> None:
-    """Let the page switch a mark with its runs; its tag has their colour, or None if neutral."""
-    mark.visible = any(run.shown for run in runs)
-    mark.tags = [{'runs': [run.index for run in runs], 'colour': runs[0].look.colour, **tag}]

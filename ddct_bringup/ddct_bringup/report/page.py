@@ -13,7 +13,8 @@ from markupsafe import Markup
 from ddct_bringup.bag.recording import Recording
 from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.metrics.catalogue import FURTHER, TABLE_5_1
-from ddct_bringup.report.charts import NEUTRAL, chart_document, charted_signals, has_reference
+from ddct_bringup.report.chart_marks import NEUTRAL
+from ddct_bringup.report.charts import chart_document, charted_signals, has_reference
 from ddct_bringup.report.definitions import definitions
 from ddct_bringup.report.evidence import COMPUTED, LoopEvidence, loop_rows, without_evidence
 from ddct_bringup.report.front_view import front_view

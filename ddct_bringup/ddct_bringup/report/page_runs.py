@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from markupsafe import Markup
 
 from ddct_bringup.bag.recording import Recording
-from ddct_bringup.report.charts import ChartRun
+from ddct_bringup.report.chart_marks import ChartRun
 from ddct_bringup.report.run_labels import run_labels
 from ddct_bringup.report.run_tables import RunOrigin, UpdateTimes, run_origin, update_times
 from ddct_bringup.report.score_tables import comparable_rows
