@@ -20,7 +20,7 @@ from generator.pages import DOCS
 
 SPECS = {name: DOCS / 'examples' / f'robustness_{name}.yaml' for name in ('delay', 'mass')}
 RECORD = DOCS / 'thesis' / 'robustness_map.json'
-LETTERS = dict(zip(STATES, 'EenoRsvX', strict=True))
+LETTERS = dict(zip(STATES, 'EenoRsvtfX', strict=True))
 """Letters by state."""
 ARCHITECTURE, CLUTCH, WEAR = 'architecture', 'clutch', 'wear_gain'
 THIRD = {'delay': 'actuator.delay_s', 'mass': 'vehicle.mass_kg'}

@@ -9,6 +9,7 @@ batch, campaigns, report and pages take it from here.
 
 from ddct_bringup.metrics import clutch, comfort, control, driveline, slip
 from ddct_bringup.metrics.metric import Computed, Criterion, Metric
+from ddct_bringup.metrics.shift import quantities as shift
 from ddct_bringup.thesis.table_5_1 import TABLE_METRICS
 
 _DECLARED: tuple[Computed, ...] = (
@@ -17,6 +18,7 @@ _DECLARED: tuple[Computed, ...] = (
     *clutch.QUANTITIES,
     *driveline.QUANTITIES,
     *control.QUANTITIES,
+    *shift.QUANTITIES,
 )
 
 
@@ -36,6 +38,10 @@ FURTHER = tuple(
     each for each in METRICS.values() if not each.from_timing and each not in TABLE_5_1
 )
 """Metrics that are neither in Table 5.1 nor computed from `timing.json`."""
+OF_SHIFT = tuple(each for each in FURTHER if each.of_shift)
+"""Metrics that only a gear shift has."""
+OF_EVERY_RUN = tuple(each for each in FURTHER if not each.of_shift)
+"""Those of `FURTHER` that every run may have."""
 CRITERION_UNITS = {each.key: each.unit for each in CRITERIA}
 
 

@@ -4,6 +4,7 @@
 
 import numpy as np
 
+from ddct_bringup.metrics.engagement import Engagement, Values
 from ddct_bringup.metrics.friction_work import (
     LEAST_SLIP_RPM,
     friction_work,
@@ -17,6 +18,15 @@ NO_LOCKUP = (
     'after control start the plates never came together, or they were together there already, or '
     'the bag was recorded before locks had a slip acceleration'
 )
+
+
+def peak_temperature(engagement: Engagement) -> Values:
+    """Return the highest temperature in degC of the facing, in a gear shift of both facings."""
+    run = engagement.trajectory
+    highest = np.max(run.clutch_temperature)
+    if engagement.shift is None:
+        return highest
+    return max(highest, np.max(run.off_going_clutch_temperature))
 
 
 QUANTITIES = (
@@ -35,19 +45,19 @@ QUANTITIES = (
         'friction_work_over_least',
         '1',
         lambda engagement: work_over_least(
-            engagement.trajectory, engagement.control_start, engagement.plant
+            engagement.trajectory, engagement.feedback_start, engagement.plant
         ),
         'friction work after control start over the least for a rigid car, '
         'J_m J_eq/(J_m + J_eq) w_d^2/2 with w_d at control start',
         f'the slip at control start is below {LEAST_SLIP_RPM:g} rpm, or the plant is not known',
-        exists=lambda engagement: slips_at(engagement.trajectory, engagement.control_start),
+        exists=lambda engagement: slips_at(engagement.trajectory, engagement.feedback_start),
         needs=('clutch_torque',),
     ),
     criterion(
         'peak_temperature',
         'degC',
-        lambda engagement: np.max(engagement.trajectory.clutch_temperature),
-        'highest temperature of the facing',
+        peak_temperature,
+        'highest temperature of the facing, in a gear shift of both facings',
         'the clutch is linear',
         exists=lambda engagement: engagement.sticks,
         signals=('clutch_temperature',),

@@ -11,6 +11,7 @@ import numpy as np
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.metrics.lockup import Lockup
 from ddct_bringup.metrics.plant import JudgedPlant
+from ddct_bringup.metrics.shift.course import ShiftCourse
 from ddct_bringup.metrics.vibration import (
     SHORTEST_JUDDER_S,
     judder_of,
@@ -39,7 +40,7 @@ class Engagement:
 
     trajectory: Trajectory
     control_start: int
-    """Step at which feedback starts."""
+    """Step at which control starts: feedback, or a gear shift."""
     score_window: tuple[int, int]
     """First and last scored step."""
     engagements_a_day: float = 1.0
@@ -93,9 +94,29 @@ class Engagement:
         return torque / (self.plant.wheel_radius * self.plant.mass)
 
     @cached_property
+    def shift(self) -> ShiftCourse | None:
+        """Course of a gear shift, which starts at `control_start`; None for any other run."""
+        return ShiftCourse(self.trajectory, self.control_start) if self.trajectory.shift else None
+
+    @property
+    def feedback_start(self) -> int:
+        """
+        Step at which feedback starts.
+
+        In a gear shift it is the first one whose share is 1, N+1 where the share never is.
+        """
+        return self.control_start if self.shift is None else self.shift.feedback_start
+
+    @property
+    def judged_from(self) -> int:
+        """Step from which the slip decides the state: that of feedback, or of control without."""
+        within = self.feedback_start <= self.trajectory.steps
+        return self.feedback_start if within else self.control_start
+
+    @cached_property
     def lockup(self) -> Lockup:
         """Instants at which the plates come together and part, from the start of feedback on."""
-        return Lockup(self.trajectory, self.control_start)
+        return Lockup(self.trajectory, self.feedback_start)
 
     @property
     def slips_for_judder(self) -> np.ndarray:

@@ -67,6 +67,8 @@ class Metric(Computed):
     """Whether a smaller magnitude is better. Only then campaigns summarise and compare it."""
     from_timing: bool = False
     """Whether it is computed from `timing.json`; the others are equal in every repetition."""
+    of_shift: bool = False
+    """Whether only a gear shift has it: tables and pages of other runs leave it out."""
 
     def as_criterion(self) -> Criterion:
         """Return the criterion with the value of this metric."""

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from ddct_plant.models.gearbox import EngagedGear
 from ddct_plant.models.parameters import DrivelineParameters, VehicleParameters
 from ddct_plant.scenario.scenario import Scenario
+from ddct_plant.scenario.shift_rules import gears_of
 
 
 @dataclass(frozen=True)
@@ -33,8 +34,11 @@ class JudgedPlant:
 
     @classmethod
     def of(cls, scenario: Scenario) -> 'JudgedPlant':
-        """Return the plant of a scenario."""
-        return cls.of_parameters(scenario.driveline, scenario.vehicle, scenario.cut_speed)
+        """Return the plant of a scenario; in a gear shift both primary shafts turn."""
+        driveline = (
+            scenario.driveline if scenario.shift is None else gears_of(scenario).both_engaged
+        )
+        return cls.of_parameters(driveline, scenario.vehicle, scenario.cut_speed)
 
     @classmethod
     def of_parameters(

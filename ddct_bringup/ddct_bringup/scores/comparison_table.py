@@ -14,6 +14,7 @@ from ddct_bringup.scores.run_table import (
     FINAL_SLIP,
     FURTHER_COLUMNS,
     PEAK_JERK,
+    SHIFT_COLUMNS,
     TORSION_STD,
     VALID,
     RunColumn,
@@ -61,12 +62,10 @@ def print_comparison(
             ),
             Column('thesis row', '', _use, number=False, undefined=_NO_ROW),
         ]
-    print_runs(
-        runs,
-        [*columns, FINAL_SLIP, PEAK_JERK, *FURTHER_COLUMNS, VALID],
-        stream,
-        _title(settings, overrides),
-    )
+    columns += [FINAL_SLIP, PEAK_JERK, *FURTHER_COLUMNS, VALID]
+    if settings.shift:
+        columns = [CONTROLLER, *SHIFT_COLUMNS]
+    print_runs(runs, columns, stream, _title(settings, overrides))
     if compared and any(thesis_row(run.controller or '') for run in runs):
         print(_NOTE, file=stream)
 

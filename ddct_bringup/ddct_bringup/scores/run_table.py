@@ -8,7 +8,7 @@ from typing import TextIO
 from rich.console import Console
 from rich.text import Text
 
-from ddct_bringup.metrics.catalogue import FURTHER, METRICS, TABLE_5_1
+from ddct_bringup.metrics.catalogue import METRICS, OF_EVERY_RUN, OF_SHIFT, TABLE_5_1
 from ddct_bringup.metrics.metric import NO_TIMING
 from ddct_bringup.scores.run_notes import (
     beyond_notes,
@@ -53,7 +53,7 @@ _HEADINGS = {
 """Headings shorter than symbol and unit, in the order of the columns."""
 FINAL_SLIP, SLIP_RMSE, PEAK_JERK = (metric(METRICS[key], text) for key, text in _HEADINGS.items())
 FURTHER_COLUMNS = tuple(
-    metric(each) for each in FURTHER if each.column and each.key not in _HEADINGS
+    metric(each) for each in OF_EVERY_RUN if each.column and each.key not in _HEADINGS
 )
 """Columns of all other metrics that are declared to have one."""
 OVER_FLOOR: RunColumn = Column(
@@ -75,7 +75,25 @@ COLUMNS = (
     *FURTHER_COLUMNS,
     VALID,
 )
-"""Columns of every table of runs, after those that identify the run."""
+"""Columns of a table of runs, after those that identify the run."""
+_SHIFT_HEADINGS = {
+    'shift_time_s': 'shift\ntime s',
+    'torque_phase_s': 'torque\nphase s',
+    'inertia_phase_s': 'inertia\nphase s',
+    'torque_dip_percent': 'torque\ndip %',
+    'flare_rad_s': 'flare\nrad/s',
+    'tie_up_work_j': 'tie-up\nJ',
+    'friction_energy_j': 'friction\nJ',
+    'off_going_friction_energy_j': 'off-going\nJ',
+}
+"""Headings of gear shifts that are shorter than symbol and unit, in the order of the columns."""
+SHIFT_COLUMNS = (
+    *(metric(METRICS[key], text) for key, text in _SHIFT_HEADINGS.items()),
+    *(metric(each) for each in OF_SHIFT if each.column and each.key not in _SHIFT_HEADINGS),
+    PEAK_JERK,
+    VALID,
+)
+"""Columns of a table of gear shifts, after those that identify the run."""
 
 STATE: RunColumn = Column('state', '', lambda run: run.verdict.state, number=False)
 VERDICT_COLUMNS: tuple[RunColumn, ...] = (
@@ -102,6 +120,14 @@ REALTIME_COLUMNS: tuple[RunColumn, ...] = (
     ),
 )
 """Additional columns of a table with at least one real-time run."""
+
+
+def columns_of(runs: Sequence[ScoredRun]) -> tuple[RunColumn, ...]:
+    """Return the columns of a table of these runs, after those that identify the run."""
+    shifts = [run.is_shift for run in runs if run.valid]
+    if not any(shifts):
+        return COLUMNS
+    return SHIFT_COLUMNS if all(shifts) else tuple(dict.fromkeys((*COLUMNS[:-1], *SHIFT_COLUMNS)))
 
 
 def table_console(stream: TextIO) -> Console:

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from ddct_bringup.bag.run_facts import MEASURED, RunConditions
+from ddct_bringup.metrics.catalogue import OF_SHIFT
 from ddct_bringup.metrics.metric import Metrics
 from ddct_bringup.verdict.verdict import Verdict
 
@@ -51,6 +52,11 @@ class ScoredRun:
     def scenario(self) -> str | None:
         """Name of the scenario; None where it cannot be read."""
         return self.facts.scenario if self.facts else None
+
+    @property
+    def is_shift(self) -> bool:
+        """Whether the run is a gear shift that has scores."""
+        return any(self.metrics.get(each.key) is not None for each in OF_SHIFT)
 
     @property
     def label(self) -> str:

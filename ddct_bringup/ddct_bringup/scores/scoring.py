@@ -20,6 +20,7 @@ from ddct_bringup.scores.bags import bag_name
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.scores.validity import engine_end, safe_state, why_invalid
 from ddct_bringup.verdict.limits import Limits
+from ddct_bringup.verdict.shift_state import state_of_shift
 from ddct_bringup.verdict.state import INVALID, slip_state
 from ddct_bringup.verdict.verdict import UNREADABLE, Verdict, judged_traction, verdict_of
 from ddct_plant.base.errors import DdctError
@@ -117,7 +118,8 @@ def _verdict(
     plant = engagement.plant
     state = engine_end(recording) if valid else INVALID
     if state is None:
-        state = slip_state(recording.trajectory, engagement.control_start, limits.rules, plant)
+        state = slip_state(recording.trajectory, engagement.judged_from, limits.rules, plant)
+    state = state_of_shift(state, engagement.shift, limits.shift)
     return verdict_of(
         state,
         criteria_of(engagement, metrics),

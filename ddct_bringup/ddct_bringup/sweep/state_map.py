@@ -15,12 +15,14 @@ from matplotlib.patches import Patch
 from ddct_bringup.sweep.axis import Axis, value_text
 from ddct_bringup.verdict.state import (
     ENGAGED,
+    FLARED,
     INVALID,
     NEARLY_ENGAGED,
     NOT_ENGAGED,
     OSCILLATING,
     RUNAWAY,
     STATES,
+    TIED_UP,
 )
 from ddct_controllers.design.drawing.line_styles import BLACK, ORANGE, PURPLE, VERMILLION
 from ddct_plant.models.engine_limits import OVER_REVVED, STALLED
@@ -33,6 +35,8 @@ STATE_COLOURS: Mapping[str, str] = {
     RUNAWAY: VERMILLION,
     STALLED: '#5c3a21',
     OVER_REVVED: '#7a0019',
+    TIED_UP: '#3d3d3d',
+    FLARED: '#b58900',
     INVALID: BLACK,
 }
 """Colours by state: blue for engaged plates, pale for locked ones; darker is worse."""

@@ -7,7 +7,6 @@ Every error in a limits file is reported with file, line and key.
 """
 
 import argparse
-import dataclasses
 import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -25,6 +24,7 @@ from ddct_bringup.verdict.limits_keys import (
     require_unit,
     rule_value,
 )
+from ddct_bringup.verdict.rules import Rules, ShiftRules, packaged_shift_rules, thresholds_of
 from ddct_bringup.verdict.traction import TractionRule
 from ddct_plant.base.errors import ParameterError, require_number
 from ddct_plant.files.input_file import SCHEMA_KEY, located, require_schema_version, user_text
@@ -36,34 +36,6 @@ CONVENTION = 'convention'
 _REASONED_FROM = 2
 """First schema version in which a convention has a reason."""
 _CITATION = ('source', 'clause')
-
-
-def _rule(unit: str, at_least: float | None = None) -> float:
-    return field(metadata={'unit': unit, 'at_least': at_least})
-
-
-@dataclass(frozen=True)
-class Rules:
-    """Thresholds of the states, and assumptions of the criteria; the file gives the reasons."""
-
-    engaged_slip: float = _rule('rpm')
-    """Magnitude of w_d in rpm below which the plates of a linear clutch count as engaged."""
-    locked_slip: float = _rule('rpm')
-    """Magnitude of w_d in rpm below which a stick-slip clutch without a lock is nearly engaged."""
-    settled_time: float = _rule('s')
-    """Time in s for which the slip must stay below the threshold at the end of the run."""
-    oscillation_turns: float = _rule('1', at_least=3.0)
-    """
-    Number of turns of the slip after control start that make an oscillation; 3 are one cycle.
-    """
-    runaway_slip: float = _rule('rpm')
-    """Magnitude of w_d in rpm above which the plates have been driven apart."""
-    runaway_growth: float = _rule('rpm/s')
-    """Growth rate of |w_d| in rpm/s at the end above which the plates are being driven apart."""
-    runaway_swing: float = _rule('1', at_least=1.0)
-    """Ratio of the last swing to the largest earlier one at which oscillations diverge."""
-    engagements_a_day: float = _rule('1')
-    """Number of engagements per day, for the daily vibration dose."""
 
 
 @dataclass(frozen=True)
@@ -89,6 +61,8 @@ class Limits:
     limits: tuple[Limit, ...]
     traction: TractionRule | None
     """Limit of the traction of the driven axle; None where the file has none."""
+    shift: ShiftRules
+    """Thresholds of the states of a gear shift; the packaged ones where the file has none."""
     origin: Mapping[str, str | int] = field(compare=False)
     """Name, digest and schema version of the file, under the keys of `scores.json`."""
 
@@ -139,7 +113,7 @@ def limits_of_text(text: str, name: str) -> Limits:
         content, lines = parse_yaml_with_lines(text)
     digest = hashlib.sha256(text.encode()).hexdigest()[:16]
     with located(f'limits {name}', lines):
-        top = require_keys('', content, ('rules', 'limits'), (SCHEMA_KEY, 'traction'))
+        top = require_keys('', content, ('rules', 'limits'), (SCHEMA_KEY, 'traction', 'shift'))
         require_schema_version(top, SCHEMA_VERSION)
         version = top.get(SCHEMA_KEY, SCHEMA_VERSION)
         origin = {'name': Path(name).name, 'digest': digest, 'schema_version': version}
@@ -147,7 +121,11 @@ def limits_of_text(text: str, name: str) -> Limits:
             raise ParameterError('limits: give a list of limits')
         limits = [_limit(f'limits[{i}]', item, version) for i, item in enumerate(top['limits'])]
         traction = _traction(top['traction']) if 'traction' in top else None
-        return Limits(_rules(top['rules']), tuple(limits), traction, origin)
+        rules = thresholds_of(Rules, 'rules', top['rules'])
+        shift = packaged_shift_rules()
+        if 'shift' in top:
+            shift = thresholds_of(ShiftRules, 'shift', top['shift'])
+        return Limits(rules, tuple(limits), traction, shift, origin)
 
 
 def _traction(content: Any) -> TractionRule:
@@ -156,17 +134,6 @@ def _traction(content: Any) -> TractionRule:
     require_text('traction.reason', rules['reason'])
     values = {name: rule_value(f'traction.{name}', rules[name], '1', None) for name in names}
     return TractionRule(**values, reason=rules['reason'])
-
-
-def _rules(content: Any) -> Rules:
-    described = dataclasses.fields(Rules)
-    rules = require_keys('rules', content, [each.name for each in described])
-    return Rules(
-        **{
-            each.name: rule_value(f'rules.{each.name}', rules[each.name], **each.metadata)
-            for each in described
-        }
-    )
 
 
 def _limit(path: str, content: Any, version: int) -> Limit:

@@ -9,6 +9,7 @@ State at the end of a run, by the rules of the limits file.
     oscillating      the slip oscillates and has not settled
     runaway          the plates are driven apart
     stalled, over_revved   the engine left its limits, which ends the run
+    tied_up, flared  the handover of a gear shift went wrong (`shift_state.py`)
     invalid          the run does not count
 
 The first two are successes, of first and of second rank; all others are failures.
@@ -21,7 +22,7 @@ import numpy as np
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.metrics.plant import JudgedPlant
 from ddct_bringup.metrics.zero_slip import LOCKED
-from ddct_bringup.verdict.limits import Rules
+from ddct_bringup.verdict.rules import Rules
 from ddct_bringup.verdict.swings import FEWEST_SWINGS, cycle_of, free_turns
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.base.units import rpm_from_rad_s
@@ -29,10 +30,20 @@ from ddct_plant.models.engine_limits import OVER_REVVED, STALLED
 
 ENGAGED, NEARLY_ENGAGED, NOT_ENGAGED = 'engaged', 'nearly_engaged', 'not_engaged'
 OSCILLATING, RUNAWAY, INVALID = 'oscillating', 'runaway', 'invalid'
+TIED_UP, FLARED = 'tied_up', 'flared'
 SUCCESSES = (ENGAGED, NEARLY_ENGAGED)
 """States of a successful engagement, the best first."""
-STATES = (*SUCCESSES, NOT_ENGAGED, OSCILLATING, RUNAWAY, STALLED, OVER_REVVED, INVALID)
-"""Index of the engine among the joints."""
+STATES = (
+    *SUCCESSES,
+    NOT_ENGAGED,
+    OSCILLATING,
+    RUNAWAY,
+    STALLED,
+    OVER_REVVED,
+    TIED_UP,
+    FLARED,
+    INVALID,
+)
 DOUBT = 2.0
 """Half-width of the 95 % confidence interval of a slope, in standard errors."""
 

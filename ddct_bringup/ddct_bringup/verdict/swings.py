@@ -8,7 +8,7 @@ import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.metrics.plant import JudgedPlant
-from ddct_bringup.verdict.limits import Rules
+from ddct_bringup.verdict.rules import Rules
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.base.units import rpm_from_rad_s
 

@@ -19,7 +19,7 @@ from ddct_bringup.report.charts import chart_document
 from ddct_bringup.report.phase_lanes import LANES, OPACITY, phase_spans
 from ddct_controllers.design.drawing.line_looks import LineLook
 from ddct_plant.models.driveline import PhaseEvent
-from ddct_plant.signals.topics import all_signals
+from ddct_plant.signals.topics import SHIFT_TOPICS, all_signals
 
 STEPS = 20
 RPM = 30.0 / math.pi
@@ -40,6 +40,7 @@ STICKING = (
     'clutch_static_torque',
     'clutch_temperature',
 )
+OF_SHIFT = {signal.name for topic in SHIFT_TOPICS for signal in topic.signals}
 FACTS = made_facts(
     controller='pi', control_start_s=0.06, score_window_s=(0.06, 0.18), duration_s=0.2
 )
@@ -51,7 +52,7 @@ def random_run() -> Trajectory:
     arrays = {
         signal.name: random.normal(0.0, 100.0, (STEPS + 1, *WIDTHS.get(signal.name, ())))
         for signal in all_signals()
-        if signal.name not in ('status', 'engine_torque_request', *STICKING)
+        if signal.name not in ('status', 'engine_torque_request', *STICKING, *OF_SHIFT)
     }
     return Trajectory({**arrays, 'status': ((),) * (STEPS + 1)})
 

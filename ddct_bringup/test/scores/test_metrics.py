@@ -13,13 +13,14 @@ from ddct_bringup.metrics.catalogue import METRICS
 from ddct_bringup.metrics.values import compute_metrics
 from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_plant.models.driveline import PhaseEvent
-from ddct_plant.signals.topics import all_signals
+from ddct_plant.signals.topics import SHIFT_TOPICS, all_signals
 
 STEPS = 300
 TIME = np.arange(STEPS + 1) / 100.0
 RPM = 30.0 / math.pi
 WINDOW = (0.6, 2.0)
 IN_WINDOW = slice(60, 201)
+OF_SHIFT = {signal.name for topic in SHIFT_TOPICS for signal in topic.signals}
 
 
 def trajectory(steps=STEPS, **signals):
@@ -36,7 +37,7 @@ def trajectory(steps=STEPS, **signals):
     arrays = {
         each.name: signals.get(each.name, np.zeros((STEPS + 1, *shapes.get(each.name, ()))))
         for each in all_signals()
-        if each.name not in ('status', 'friction_work', 'clutch_phase', 'phase_events')
+        if each.name not in ('status', 'friction_work', 'clutch_phase', 'phase_events', *OF_SHIFT)
     }
     rows = {name: np.asarray(value, float)[: steps + 1] for name, value in arrays.items()}
     return Trajectory({**rows, 'status': ((),) * (steps + 1)})
@@ -269,4 +270,18 @@ def test_metrics_have_the_names_that_other_scripts_rely_on():
         'missed_steps',
         'resends',
         'worst_lateness_us',
+        'shift_time_s',
+        'torque_phase_s',
+        'inertia_phase_s',
+        'torque_dip_n_m',
+        'torque_dip_percent',
+        'flare_rad_s',
+        'tie_up_work_j',
+        'off_going_friction_energy_j',
+        'on_coming_temperature_degc',
+        'off_going_temperature_degc',
+        'on_coming_locks',
+        'on_coming_releases',
+        'off_going_locks',
+        'off_going_releases',
     ]

@@ -1,0 +1,184 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Metrics of a gear shift; no other run has them."""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from ddct_bringup.metrics.engagement import Engagement, Values
+from ddct_bringup.metrics.metric import Metric
+from ddct_bringup.metrics.shift.course import ShiftCourse
+from ddct_plant.program.table import PURE
+
+NO_SHIFT = 'the run is no gear shift'
+_NOT_BEGUN = f'{NO_SHIFT}, or ends before the shift starts'
+_NOT_HANDED_OVER = f'{NO_SHIFT}, or the share of the on-coming clutch never reaches 1'
+_NOT_LOCKED = f'{_NOT_HANDED_OVER}, or that clutch never locks'
+
+
+def _of(
+    compute: Callable[[ShiftCourse], float | int | None],
+) -> Callable[[Engagement], Values | None]:
+    """Return a metric's function, which is None for a run that is no shift."""
+
+    def value(engagement: Engagement) -> Values | None:
+        return None if engagement.shift is None else compute(engagement.shift)
+
+    return value
+
+
+def _events(key: str, symbol: str, meaning: str, *, locks: bool, off_going: bool) -> Metric:
+    count = ShiftCourse.locks if locks else ShiftCourse.releases
+    return Metric(
+        key=key,
+        symbol=symbol,
+        unit=PURE,
+        form='.0f',
+        meaning=f'{meaning} from the start of the shift on',
+        undefined=_NOT_BEGUN,
+        value=_of(lambda course: count(course, off_going=off_going)),
+        of_shift=True,
+    )
+
+
+QUANTITIES = (
+    Metric(
+        key='shift_time_s',
+        symbol='shift time',
+        unit='s',
+        form='.3f',
+        meaning='start of the shift to the first lock of the on-coming clutch in the inertia '
+        'phase: torque phase and inertia phase together',
+        undefined=_NOT_LOCKED,
+        value=_of(lambda course: course.shift_time_s),
+        of_shift=True,
+        column=True,
+    ),
+    Metric(
+        key='torque_phase_s',
+        symbol='torque phase',
+        unit='s',
+        form='.2f',
+        meaning='start of the shift to the first tick whose share of C_fOL is 1',
+        undefined=_NOT_HANDED_OVER,
+        value=_of(lambda course: course.torque_phase_s),
+        of_shift=True,
+        column=True,
+    ),
+    Metric(
+        key='inertia_phase_s',
+        symbol='inertia phase',
+        unit='s',
+        form='.3f',
+        meaning='from that tick to the exact instant of the first lock of the on-coming clutch',
+        undefined=_NOT_LOCKED,
+        value=_of(lambda course: course.inertia_phase_s),
+        of_shift=True,
+        column=True,
+    ),
+    Metric(
+        key='torque_dip_n_m',
+        symbol='wheel torque dip',
+        unit='N m',
+        form='.0f',
+        meaning='fall of the torque of the driveshaft at the wheels, from the start of the shift '
+        'to its least until the lock',
+        undefined=_NOT_BEGUN,
+        value=_of(lambda course: course.torque_dip),
+        of_shift=True,
+    ),
+    Metric(
+        key='torque_dip_percent',
+        symbol='wheel torque dip',
+        unit='%',
+        form='.0f',
+        meaning='the same in % of that torque at the start; above 100 the car is braked',
+        undefined=f'{_NOT_BEGUN}, or that torque does not drive the car',
+        value=_of(lambda course: course.torque_dip_percent),
+        of_shift=True,
+        column=True,
+    ),
+    Metric(
+        key='flare_rad_s',
+        symbol='flare',
+        unit='rad/s',
+        form='.1f',
+        meaning='largest rise of w_m above its speed in the off-going gear until the lock',
+        undefined=f'{_NOT_BEGUN}, or the shafts stand still there',
+        value=_of(lambda course: course.flare),
+        of_shift=True,
+        column=True,
+    ),
+    Metric(
+        key='tie_up_work_j',
+        symbol='tie-up work',
+        unit='J',
+        form='.0f',
+        meaning='work of the clutches against each other: integral of the smaller torque times '
+        'the difference of the shaft speeds while their torques have opposite signs',
+        undefined=_NOT_BEGUN,
+        value=_of(lambda course: course.tie_up_work),
+        of_shift=True,
+        column=True,
+    ),
+    Metric(
+        key='off_going_friction_energy_j',
+        symbol='off-going friction',
+        unit='J',
+        form='.0f',
+        meaning='friction work of the off-going clutch, whole run',
+        undefined=NO_SHIFT,
+        value=_of(lambda course: np.sum(course.trajectory.off_going_friction_work)),
+        of_shift=True,
+        column=True,
+    ),
+    Metric(
+        key='on_coming_temperature_degc',
+        symbol='on-coming facing',
+        unit='degC',
+        form='.1f',
+        meaning='highest temperature of the facing of the on-coming clutch',
+        undefined=NO_SHIFT,
+        value=_of(lambda course: np.max(course.trajectory.clutch_temperature)),
+        of_shift=True,
+    ),
+    Metric(
+        key='off_going_temperature_degc',
+        symbol='off-going facing',
+        unit='degC',
+        form='.1f',
+        meaning='highest temperature of the facing of the off-going clutch',
+        undefined=NO_SHIFT,
+        value=_of(lambda course: np.max(course.trajectory.off_going_clutch_temperature)),
+        of_shift=True,
+    ),
+    _events(
+        'on_coming_locks',
+        'on-coming locks',
+        'number of locks of the on-coming clutch',
+        locks=True,
+        off_going=False,
+    ),
+    _events(
+        'on_coming_releases',
+        'on-coming releases',
+        'how often the on-coming clutch breaks loose',
+        locks=False,
+        off_going=False,
+    ),
+    _events(
+        'off_going_locks',
+        'off-going locks',
+        'how often the off-going clutch locks again',
+        locks=True,
+        off_going=True,
+    ),
+    _events(
+        'off_going_releases',
+        'off-going releases',
+        'how often the off-going clutch breaks loose; once is the handover',
+        locks=False,
+        off_going=True,
+    ),
+)

@@ -1,0 +1,140 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""States of a gear shift: tied up, flared, or as its on-coming clutch ends."""
+
+from dataclasses import replace
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from made_run import made_facts
+from made_shift import (
+    LOCKED,
+    RATIOS,
+    SLIPPING,
+    START,
+    STEP,
+    STEPS,
+    WINDOW,
+    events,
+    joints,
+    made_shift,
+)
+from refusals import refused
+
+from ddct_bringup.bag.reader import Recording
+from ddct_bringup.scores.scored_run import ScoredRun
+from ddct_bringup.scores.scoring import score_run
+from ddct_bringup.verdict.limits import Limits, limits_of_text, packaged_limits
+from ddct_bringup.verdict.rules import ShiftRules
+from ddct_plant.base.errors import ParameterError
+
+FACTS = made_facts(
+    clutch='stick_slip',
+    scenario='upshift',
+    control_start_s=0.01 * START,
+    score_window_s=tuple(0.01 * step for step in WINDOW),
+    duration_s=0.01 * STEPS,
+)
+
+
+def scored(limits: Limits | None = None, **signals: Any) -> ScoredRun:
+    """Return the scores of a shift made by hand."""
+    recording = Recording(Path('shift.mcap'), made_shift(**signals), FACTS)
+    return score_run(recording, 'shift', limits or packaged_limits(), None)
+
+
+def opposing(torque: float) -> dict[str, Any]:
+    """Return the signals of clutches that work against each other from 0.4 to 0.6 s."""
+    on_coming, off_going = (
+        np.where((STEP > 40) & (STEP < 60), each, 0.0) for each in (200.0, -torque)
+    )
+    return {
+        'joint_effort': joints(second=on_coming, fourth=1000.0),
+        'off_going_transmitted_torque': off_going,
+    }
+
+
+def risen(rise: float) -> dict[str, Any]:
+    """Return the signals of an engine that has run up by a speed in rad/s at 0.45 s."""
+    run = made_shift()
+    engine = run.engine_speed + np.where(STEP == 45, rise, 0.0)
+    return {
+        'joint_speed': joints(engine, 10.0 * RATIOS[1], 10.0),
+        'off_going_clutch_phase': np.where(STEP < 40, LOCKED, SLIPPING),
+    }
+
+
+def test_a_shift_whose_on_coming_clutch_is_locked_at_the_end_is_engaged():
+    run = scored()
+    assert (run.verdict.state, run.is_shift) == ('engaged', True)
+
+
+@pytest.mark.parametrize(('rise', 'state'), [(10.4, 'engaged'), (10.6, 'flared')])
+def test_an_engine_that_runs_up_by_more_than_100_rpm_has_flared(rise, state):
+    run = scored(**risen(rise))
+    assert run.verdict.state == state
+    assert (run.verdict.limits == 'failed') == (state == 'flared')
+
+
+@pytest.mark.parametrize(('torque', 'state'), [(7.5, 'engaged'), (8.5, 'tied_up')])
+def test_clutches_that_do_more_than_110_j_against_each_other_have_tied_up(torque, state):
+    run = scored(**opposing(torque))
+    assert run.metrics['tie_up_work_j'] == pytest.approx(torque * 70.0 * 0.19)
+    assert run.verdict.state == state
+
+
+def test_a_tie_up_is_the_state_also_where_the_on_coming_clutch_still_slips():
+    slipping = {
+        'slip_speed': np.full(STEPS + 1, 70.0),
+        'clutch_phase': np.full(STEPS + 1, SLIPPING),
+        'phase_events': events(),
+    }
+    assert scored(**slipping).verdict.state == 'not_engaged'
+    assert scored(**slipping, **risen(50.0)).verdict.state == 'not_engaged'
+    assert scored(**slipping, **opposing(50.0)).verdict.state == 'tied_up'
+
+
+def test_swings_of_the_slip_before_feedback_starts_are_no_oscillation():
+    swings = 60.0 + 50.0 * np.cos(np.pi * (STEP - 45) / 30.0)
+    slip = np.where(STEP < 105, swings, np.clip(110.0 - 5.5 * (STEP - 105), 0.0, None))
+    late = {
+        'slip_speed': slip,
+        'clutch_phase': np.where(STEP < 125, SLIPPING, LOCKED),
+        'phase_events': events((1.25, 'lock')),
+    }
+    at_once = np.where(STEP < START, 0.0, 1.0)
+    assert scored(**late, handover_share=at_once).verdict.state == 'oscillating'
+    assert scored(**late, handover_share=np.minimum(STEP / 100.0, 1.0)).verdict.state == 'engaged'
+
+
+def test_an_invalid_shift_stays_invalid():
+    broken = made_shift().slip_speed.copy()
+    broken[20] = np.nan
+    assert scored(**opposing(50.0), slip_speed=broken).verdict.state == 'invalid'
+
+
+def test_limits_of_ones_own_may_set_both_thresholds():
+    text = (files('ddct_bringup.verdict') / 'limits.yaml').read_text(encoding='utf-8')
+    own = (
+        'shift:\n'
+        '  flare: {value: 60.0, unit: rad/s, reason: a loud car}\n'
+        '  tie_up_work: {value: 5.0, unit: J, reason: a soft one}\n'
+    )
+    limits = limits_of_text(text + own, 'own')
+    assert limits.shift == ShiftRules(60.0, 5.0)
+    assert replace(limits, shift=packaged_limits().shift, origin={}) == replace(
+        packaged_limits(), origin={}
+    )
+    assert scored(limits, **risen(40.0)).verdict.state == 'engaged'
+    assert scored(limits, **opposing(1.0)).verdict.state == 'tied_up'
+    with refused(ParameterError):
+        limits_of_text(text + own.replace('rad/s', 'rpm'), 'own')
+
+
+def test_the_packaged_thresholds_say_that_they_are_conventions():
+    assert packaged_limits().shift == ShiftRules(10.5, 110.0)
+    text = (files('ddct_bringup.verdict') / 'shift_rules.yaml').read_text(encoding='utf-8')
+    assert 'conventions' in text
