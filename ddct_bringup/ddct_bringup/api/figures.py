@@ -7,7 +7,8 @@ from collections.abc import Iterable, Sequence
 from matplotlib.figure import Figure
 
 from ddct_bringup.api.result import Run, as_runs
-from ddct_bringup.report.chart_signals import ChartSignal, chart_signals_of
+from ddct_bringup.report.chart_signals import ChartSignal
+from ddct_bringup.report.charts import chart_signals_of
 from ddct_bringup.report.run_labels import common_conditions, run_labels, varied_conditions
 from ddct_controllers.design.drawing.chart_style import chart_style, controllers_text, headed
 from ddct_controllers.design.drawing.charts import label_time_axis

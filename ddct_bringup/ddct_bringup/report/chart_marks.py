@@ -2,23 +2,27 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs of the charts, and the marks in charts: windows, times of the thesis, locks, releases."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 from bokeh.models import CDSView, ColumnDataSource, IndexFilter
 from bokeh.models.annotations import BoxAnnotation, Span
-from bokeh.models.renderers import DataRenderer
+from bokeh.models.renderers import DataRenderer, GlyphRenderer
 from bokeh.plotting import figure
 
 from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.metrics.shift.course import ShiftCourse
 from ddct_bringup.report.chart_signals import ChartSignal
-from ddct_bringup.report.phase_lanes import draw_events
 from ddct_controllers.design.drawing.line_looks import LineLook
+from ddct_plant.base.timebase import steps_in, time_of_step
+from ddct_plant.models.driveline import LOCK, RELEASE
 
 _MARK_SPACING = 0.12
 """Distance between the marks of a line, as a share of the run."""
+EVENT_MARKERS = {LOCK: 'triangle', RELEASE: 'inverted_triangle'}
 NEUTRAL = '#808080'
 """Colour that is readable on a light and on a dark page."""
 
@@ -38,9 +42,18 @@ class ChartRun:
     thesis_engagement_time_s: float | None = None
     """Engagement time t_a of Table 5.1 in s, where the run is comparable."""
 
+    @cached_property
+    def course(self) -> ShiftCourse | None:
+        """Course of a gear shift; None for any other run, and one that ends before the shift."""
+        if not self.trajectory.shift:
+            return None
+        start = steps_in('control_start_s', self.facts.control_start_s)
+        course = ShiftCourse(self.trajectory, start)
+        return course if course.begun else None
+
 
 def mark_window(chart: figure, facts: RunFacts) -> None:
-    """Mark the score window and where feedback starts."""
+    """Mark the score window, and where control starts."""
     first, last = facts.score_window_s
     chart.add_layout(
         BoxAnnotation(left=first, right=last, fill_color=NEUTRAL, fill_alpha=0.10, line_color=None)
@@ -93,12 +106,51 @@ def mark_thesis(chart: figure, runs: Sequence[ChartRun]) -> None:
             switch(mark, [run])
 
 
-def mark_events(chart: figure, runs: Sequence[ChartRun]) -> None:
-    """Mark locks and releases where the slip is zero."""
+def mark_feedback(chart: figure, runs: Sequence[ChartRun]) -> None:
+    """Mark where the inertia phase of gear shifts begins, and feedback with it."""
+    courses = (run.course for run in runs)
+    steps = {course.feedback_start for course in courses if course and course.handed_over}
+    for step in sorted(steps):
+        chart.add_layout(
+            Span(
+                location=time_of_step(step),
+                dimension='height',
+                line_color=NEUTRAL,
+                line_dash=[6, 3],
+                line_width=1.5,
+            )
+        )
+
+
+def mark_events(chart: figure, runs: Sequence[ChartRun], side: str = '') -> None:
+    """Mark locks and releases of a clutch where its slip is zero."""
     for run in runs:
-        if run.trajectory.clutch_phase is not None:
-            for mark in draw_events(chart, run.trajectory, 0.0, run.look.light):
+        if getattr(run.trajectory, f'{side}clutch_phase') is not None:
+            for mark in draw_events(chart, run.trajectory, 0.0, run.look.light, side):
                 switch(mark, [run])
+
+
+def draw_events(
+    chart: figure, run: Trajectory, height: float, colour: str, side: str = ''
+) -> 'Iterator[GlyphRenderer[Any]]':
+    """
+    Mark the locks and releases of a clutch at a height of the chart, and yield the marks.
+
+    `side` is the prefix of its signals.
+    """
+    periods = getattr(run, f'{side}phase_events')
+    for kind, marker in EVENT_MARKERS.items():
+        times = [each.time_s for events in periods for each in events if each.kind == kind]
+        if times:
+            yield chart.scatter(
+                times,
+                [height] * len(times),
+                marker=marker,
+                size=9,
+                fill_color='#ffffff',
+                line_color=colour,
+                line_width=1.5,
+            )
 
 
 def switch(mark: DataRenderer, runs: Sequence[ChartRun], **tag: Any) -> None:

@@ -102,16 +102,17 @@ CHART_SIGNALS = (
 """Signals of every run."""
 
 
-def _capacity(run: Trajectory) -> np.ndarray:
+def capacity(run: Trajectory, side: str = '') -> np.ndarray:
     """
-    Return the friction torque capacity in N m: the static capacity while locked.
+    Return the friction torque capacity of a clutch in N m: the static capacity while locked.
 
-    NaN where it is not known, as for a log.
+    `side` is the prefix of its signals. NaN where it is not known, as for a log.
     """
-    if run.clutch_phase is None:
+    phase = getattr(run, f'{side}clutch_phase')
+    if phase is None:
         return np.full(run.steps + 1, np.nan)
-    static, kinetic = run.at_tick('clutch_static_torque'), run.at_tick('clutch_torque')
-    return np.where(run.clutch_phase == LOCKED, static, kinetic)
+    static, kinetic = (run.at_tick(f'{side}clutch_{name}') for name in ('static_torque', 'torque'))
+    return np.where(phase == LOCKED, static, kinetic)
 
 
 TRANSMITTED = ChartSignal(
@@ -121,7 +122,7 @@ TRANSMITTED = ChartSignal(
     'N m',
     'what passes through the plates. A thin line is what they can carry.',
     lambda run: run.primary_shaft_effort,
-    _capacity,
+    capacity,
 )
 
 CLUTCH_SIGNALS = (
@@ -159,15 +160,25 @@ SENSOR_SIGNALS = (
 """Signals of runs with sensors."""
 
 
+ENGINE_SPEED = ChartSignal(
+    'w_m',
+    'Engine speed',
+    'w_m',
+    'rpm',
+    'speed of the engine.',
+    lambda run: rpm_from_rad_s(run.engine_speed),
+)
+WHEEL_TORQUE = ChartSignal(
+    'driveshaft_torque',
+    'Torque of the driveshaft',
+    'C_s',
+    'N m',
+    'at the wheels. Above zero it drives them.',
+    lambda run: run.driveshaft_effort,
+)
+
 LOG_SIGNALS = (
-    ChartSignal(
-        'w_m',
-        'Engine speed',
-        'w_m',
-        'rpm',
-        'speed of the engine.',
-        lambda run: rpm_from_rad_s(run.engine_speed),
-    ),
+    ENGINE_SPEED,
     ChartSignal(
         'V_x',
         'Speed of the vehicle',
@@ -177,26 +188,6 @@ LOG_SIGNALS = (
         lambda run: 3.6 * run.vehicle_speed,
     ),
     TRANSMITTED,
-    ChartSignal(
-        'driveshaft_torque',
-        'Torque of the driveshaft',
-        'C_s',
-        'N m',
-        'at the wheels. Above zero it drives them.',
-        lambda run: run.driveshaft_effort,
-    ),
+    WHEEL_TORQUE,
 )
 """Signals of logs of a car, and of the runs compared with them."""
-
-
-def chart_signals_of(trajectory: Trajectory, *, with_log: bool = False) -> tuple[ChartSignal, ...]:
-    """Return the signals of a run that are drawn; `with_log`: it is a log or compared with one."""
-    possible = (
-        *CHART_SIGNALS,
-        *(() if trajectory.clutch_phase is None else CLUTCH_SIGNALS),
-        *(SENSOR_SIGNALS if trajectory.sensed else ()),
-        *(LOG_SIGNALS if with_log else ()),
-    )
-    return tuple(
-        each for each in dict.fromkeys(possible) if np.isfinite(each.values(trajectory)).any()
-    )

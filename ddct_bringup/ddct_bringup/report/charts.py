@@ -6,28 +6,34 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 from bokeh.document import Document
-from bokeh.models import ColumnDataSource, CrosshairTool, DataRange1d, HoverTool, Range1d
+from bokeh.models import ColumnDataSource, CrosshairTool, DataRange1d, Range1d
 from bokeh.models.annotations import Span
-from bokeh.models.renderers import DataRenderer
 from bokeh.plotting import figure
 
-from ddct_bringup.bag.run_facts import MEASURED, RunFacts
+from ddct_bringup.bag.run_facts import MEASURED
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.report.chart_marks import (
     NEUTRAL,
     ChartRun,
     mark_events,
+    mark_feedback,
     mark_line,
     mark_thesis,
     mark_window,
     switch,
 )
-from ddct_bringup.report.chart_signals import ChartSignal, chart_signals_of
-from ddct_bringup.report.phase_lanes import LANES, draw_events, draw_phases
+from ddct_bringup.report.chart_signals import (
+    CHART_SIGNALS,
+    CLUTCH_SIGNALS,
+    LOG_SIGNALS,
+    SENSOR_SIGNALS,
+    ChartSignal,
+)
+from ddct_bringup.report.phase_lanes import LANES, draw_lanes
+from ddct_bringup.report.shift_signals import OFF_GOING, SHIFT_SIGNALS
 from ddct_plant.base.units import rpm_from_rad_s
 
 _HEIGHT_PX = 300
-_LANE_PX, _LANES_FRAME_PX = 28, 70
 FAINT = 0.6
 """Opacity of a limit next to the line that it bounds."""
 
@@ -41,7 +47,7 @@ def chart_document(runs: Sequence[ChartRun]) -> tuple[Mapping[str, object], dict
     document = Document()
     roots = {}
     for quantity in charted_signals(runs):
-        chart = _chart(quantity.key, quantity.unit, time_axis, cursor, runs[0].facts)
+        chart = _chart(quantity.key, quantity.unit, time_axis, cursor, runs)
         for run, source, of in zip(runs, sources, drawn, strict=True):
             if quantity in of:
                 _line(chart, quantity, run, source)
@@ -49,12 +55,14 @@ def chart_document(runs: Sequence[ChartRun]) -> tuple[Mapping[str, object], dict
             _draw_references(chart, runs, sources)
             mark_thesis(chart, runs)
             mark_events(chart, runs)
+        if quantity.key == 'w_d1':
+            mark_events(chart, runs, OFF_GOING)
         document.add_root(chart)
         roots[quantity.key] = str(chart.id)
     sticking = [run for run in runs if run.trajectory.clutch_phase is not None]
     if sticking:
-        chart = _chart(LANES, '', time_axis, cursor, runs[0].facts)
-        _draw_lanes(chart, sticking)
+        chart = _chart(LANES, '', time_axis, cursor, runs)
+        draw_lanes(chart, sticking)
         document.add_root(chart)
         roots[LANES] = str(chart.id)
     return dict(document.to_json(deferred=False)), roots
@@ -63,6 +71,20 @@ def chart_document(runs: Sequence[ChartRun]) -> tuple[Mapping[str, object], dict
 def charted_signals(runs: Sequence[ChartRun]) -> list[ChartSignal]:
     """Return the signals that at least one run has, in the order of the page."""
     return list(dict.fromkeys(each for of in _drawn(runs) for each in of))
+
+
+def chart_signals_of(trajectory: Trajectory, *, with_log: bool = False) -> tuple[ChartSignal, ...]:
+    """Return the signals of a run that are drawn; `with_log`: it is a log or compared with one."""
+    possible = (
+        *CHART_SIGNALS,
+        *(() if trajectory.clutch_phase is None else CLUTCH_SIGNALS),
+        *(SHIFT_SIGNALS if trajectory.shift else ()),
+        *(SENSOR_SIGNALS if trajectory.sensed else ()),
+        *(LOG_SIGNALS if with_log else ()),
+    )
+    return tuple(
+        each for each in dict.fromkeys(possible) if np.isfinite(each.values(trajectory)).any()
+    )
 
 
 def has_reference(runs: Sequence[ChartRun]) -> bool:
@@ -87,7 +109,9 @@ def _source(trajectory: Trajectory, quantities: Sequence[ChartSignal]) -> Column
     return ColumnDataSource({key: values.astype(np.float32) for key, values in columns.items()})
 
 
-def _chart(key: str, unit: str, time_axis: Range1d, cursor: Span, facts: RunFacts) -> figure:
+def _chart(
+    key: str, unit: str, time_axis: Range1d, cursor: Span, runs: Sequence[ChartRun]
+) -> figure:
     chart = figure(
         height=_HEIGHT_PX,
         sizing_mode='stretch_width',
@@ -110,7 +134,8 @@ def _chart(key: str, unit: str, time_axis: Range1d, cursor: Span, facts: RunFact
     chart.axis.axis_label_text_font_style = 'normal'
     chart.axis.minor_tick_line_color = None
     chart.add_tools(CrosshairTool(overlay=cursor))
-    mark_window(chart, facts)
+    mark_window(chart, runs[0].facts)
+    mark_feedback(chart, runs)
     return chart
 
 
@@ -159,26 +184,3 @@ def _draw_references(
             line_dash=[5, 4],
         )
         switch(line, members, colour=None)
-
-
-def _draw_lanes(chart: figure, runs: Sequence[ChartRun]) -> None:
-    """Shade the phases of each run in a separate lane, with its locks and releases."""
-    chart.height = _LANES_FRAME_PX + _LANE_PX * len(runs)
-    chart.y_range = Range1d(start=len(runs) - 0.5, end=-0.5)
-    chart.yaxis.ticker = list(range(len(runs)))
-    chart.yaxis.major_label_overrides = {lane: run.label for lane, run in enumerate(runs)}
-    chart.ygrid.grid_line_color = None
-    shades: list[DataRenderer] = []
-    for lane, run in enumerate(runs):
-        shade = draw_phases(chart, run.trajectory, lane, run.look.light)
-        shade.name = run.label
-        switch(shade, [run], fill=True)
-        for mark in draw_events(chart, run.trajectory, lane, NEUTRAL):
-            switch(mark, [run], colour=None)
-        shades.append(shade)
-    chart.add_tools(
-        HoverTool(
-            renderers=shades,
-            tooltips=[('', '$name'), ('phase', '@phase'), ('', '@left{0.000} to @right{0.000} s')],
-        )
-    )

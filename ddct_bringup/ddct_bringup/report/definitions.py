@@ -5,7 +5,7 @@
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from ddct_bringup.metrics.catalogue import CRITERIA, FURTHER, METRICS, TABLE_5_1
+from ddct_bringup.metrics.catalogue import CRITERIA, METRICS, OF_EVERY_RUN, OF_SHIFT, TABLE_5_1
 from ddct_bringup.report.chart_signals import ChartSignal
 from ddct_bringup.report.page_parts import unit_text
 from ddct_controllers.design.analysis.loop_quantities import LOOP_QUANTITIES
@@ -66,6 +66,10 @@ _STATES = (
     Definition('oscillating', 'the slip swings to and fro and has not settled.'),
     Definition('runaway', 'the plates are driven apart.'),
     Definition('stalled, over revved', 'the engine reached this limit, which ended the run.'),
+    Definition(
+        'tied up, flared',
+        'a gear shift whose clutches worked against each other, or whose engine ran up.',
+    ),
     Definition('invalid', 'the run does not count. Its reason stands at the top of the page.'),
     Definition(
         'within, beyond, unavoidable, no limit',
@@ -73,6 +77,15 @@ _STATES = (
     ),
     Definition('failed', 'the word on limits of a run that neither engaged nor nearly engaged.'),
     Definition('traction', 'driving force at the wheels over the mass of the car.', 'm/s²'),
+)
+
+_SHIFT = (
+    Definition('on-coming, off-going', 'clutch of the gear after the shift, and of that before.'),
+    Definition(
+        'control start',
+        'in a gear shift its start. Feedback starts at the share 1; t_a and the criteria of the '
+        'lock count from there.',
+    ),
 )
 
 _LOOPS = (
@@ -104,12 +117,12 @@ _ORIGIN = (
 
 
 def definitions(
-    quantities: Iterable[ChartSignal], *, thesis: bool
+    quantities: Iterable[ChartSignal], *, thesis: bool, shift: bool = False
 ) -> dict[str, tuple[Definition, ...]]:
     """
     Return the definitions for a page that draws these signals, by subject.
 
-    `thesis` is whether runs are compared with Table 5.1.
+    `thesis` is whether runs are compared with Table 5.1, `shift` whether they are gear shifts.
     """
     reading = _READING + (_THESIS if thesis else ())
     signals = tuple(
@@ -118,7 +131,8 @@ def definitions(
     return {
         'Reading the tables': reading,
         'Signals': signals,
-        'Metrics': tuple(map(_defined, (*TABLE_5_1, *FURTHER))),
+        'Metrics': tuple(map(_defined, (*TABLE_5_1, *OF_EVERY_RUN))),
+        **({'Gear shift': (*_SHIFT, *map(_defined, OF_SHIFT))} if shift else {}),
         'Criteria': _criteria(),
         'States and limits': _STATES,
         'Frequency': (*_LOOPS, *map(_defined, LOOP_QUANTITIES)),

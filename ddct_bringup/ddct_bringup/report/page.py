@@ -12,7 +12,7 @@ from markupsafe import Markup
 
 from ddct_bringup.bag.recording import Recording
 from ddct_bringup.bag.run_facts import RunFacts
-from ddct_bringup.metrics.catalogue import FURTHER, TABLE_5_1
+from ddct_bringup.metrics.catalogue import METRICS, OF_EVERY_RUN, OF_SHIFT, TABLE_5_1
 from ddct_bringup.report.chart_marks import NEUTRAL
 from ddct_bringup.report.charts import chart_document, charted_signals, has_reference
 from ddct_bringup.report.definitions import definitions
@@ -21,7 +21,7 @@ from ddct_bringup.report.front_view import front_view
 from ddct_bringup.report.page_parts import MARKER, json_data, page_part, page_template
 from ddct_bringup.report.page_runs import PageRun, chart_runs, page_runs
 from ddct_bringup.report.pareto import pair_key, pareto_view
-from ddct_bringup.report.phase_lanes import LANES, OPACITY
+from ddct_bringup.report.phase_lanes import LANES, OPACITY, SHIFT_OPACITY
 from ddct_bringup.report.run_labels import common_conditions
 from ddct_bringup.report.run_tables import TICKS, time_place
 from ddct_bringup.report.score_tables import NOT_JUDGED, metric_cells, verdict_rows
@@ -35,6 +35,13 @@ from ddct_plant.program.command_line import package_version
 from ddct_plant.scenario.differences import scenario_title
 
 _ROOM = 'ddct_bringup.report'
+_SHIFT = (
+    *(each for each in OF_SHIFT if each.column),
+    METRICS['friction_energy_j'],
+    METRICS['peak_jerk_m_s3'],
+    *(each for each in OF_SHIFT if not each.column),
+)
+"""Metrics in the table of a gear shift."""
 _SCRIPTS = ('common.js', 'nearest.js', 'paper.js', 'page.js')
 
 
@@ -54,6 +61,7 @@ def report_page(
     pareto = pareto_view(runs)
     data = {'document': document, 'roots': roots, 'pareto': pareto and asdict(pareto)}
     recordings = _simulated_first(runs)
+    shift = any(run.scores.is_shift for run in runs)
     return page_template(_ROOM, 'page.html.j2').render(
         marker=Markup(MARKER),
         bokeh_js=_library(),
@@ -61,7 +69,7 @@ def report_page(
         script=Markup().join(page_part(_ROOM, each) for each in _SCRIPTS),
         data=json_data(data),
         quantities=quantities,
-        definitions=definitions(quantities, thesis=any(thesis_rows)),
+        definitions=definitions(quantities, thesis=any(thesis_rows), shift=shift),
         lanes=LANES if LANES in roots else None,
         phases=OPACITY,
         verdict=verdict_rows(runs),
@@ -75,7 +83,9 @@ def report_page(
         dark=Markup(css_colours(DARK_COLOURS)),
         runs=shown,
         columns=[(column, metric_cells(column, runs, thesis_rows)) for column in TABLE_5_1],
-        further=[(column, metric_cells(column, runs, thesis_rows)) for column in FURTHER],
+        further=[(each, metric_cells(each, runs, thesis_rows)) for each in OF_EVERY_RUN],
+        shift=[(each, metric_cells(each, runs, thesis_rows)) for each in _SHIFT if shift],
+        shift_phases=SHIFT_OPACITY if shift else {},
         prediction_tolerance=PREDICTION_TOLERANCE,
         loop_columns=LOOP_QUANTITIES,
         loops=loop_rows(evidence),

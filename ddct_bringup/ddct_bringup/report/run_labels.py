@@ -4,6 +4,7 @@
 
 from collections import Counter
 from collections.abc import Callable, Sequence
+from typing import Any
 
 from ddct_bringup.bag.run_facts import MEASURED, RunConditions
 from ddct_bringup.scores.scored_recording import ScoredRecording
@@ -11,14 +12,20 @@ from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_controllers.registry import controller_names
 from ddct_plant.base.errors import DdctError
 
-_CONDITIONS: dict[str, Callable[[RunConditions], str]] = {
-    'architecture': lambda facts: facts.architecture,
-    'clutch': lambda facts: f'{facts.clutch} clutch',
-    'wear_gain': lambda facts: f'wear {facts.wear_gain:g}',
-    'mode': lambda facts: facts.mode,
-    'seed': lambda facts: f'seed {facts.seed}',
+_CONDITIONS: dict[str, Callable[[Any], str]] = {
+    'architecture': str,
+    'clutch': lambda clutch: f'{clutch} clutch',
+    'handover': lambda handover: f'handover {handover}',
+    'wear_gain': lambda gain: f'wear {gain:g}',
+    'off_going_wear_gain': lambda gain: f'off-going wear {gain:g}',
+    'mode': str,
+    'seed': lambda seed: f'seed {seed}',
 }
-"""Conditions of a run that its label contains when the runs differ in them."""
+"""
+Texts of the conditions of a run that its label contains when the runs differ in them.
+
+Those of a gear shift are None in other runs, whose labels leave them out.
+"""
 
 
 def in_order(runs: Sequence[ScoredRecording]) -> list[ScoredRecording]:
@@ -68,16 +75,16 @@ def run_labels(runs: Sequence[ScoredRun]) -> list[str]:
 def varied_conditions(runs: Sequence[ScoredRun]) -> list[str]:
     """Return the keys of the conditions in which simulated runs differ; labels contain them."""
     known = _simulated(runs)
-    return [key for key in _CONDITIONS if len({getattr(facts, key) for facts in known}) > 1]
+    return [key for key in _CONDITIONS if len({_value(facts, key) for facts in known}) > 1]
 
 
 def common_conditions(runs: Sequence[ScoredRun]) -> list[str]:
     """Return the conditions that all simulated runs share, and how many logs there are."""
     known = _simulated(runs)
-    shared = [key for key in _CONDITIONS if len({getattr(facts, key) for facts in known}) == 1]
+    shared = [key for key in _CONDITIONS if len({_value(facts, key) for facts in known}) == 1]
     logs = sum(run.measured for run in runs)
     of_logs = [f'{logs} {"log" if logs == 1 else "logs"} of a car'] if logs else []
-    return [*(_CONDITIONS[key](known[0]) for key in shared), *of_logs]
+    return [*_texts(known[0], shared), *of_logs] if known else of_logs
 
 
 def _simulated(runs: Sequence[ScoredRun]) -> list[RunConditions]:
@@ -90,7 +97,18 @@ def _label(run: ScoredRun, differing: Sequence[str]) -> str:
         return run.bag
     if run.measured:
         return f'{run.facts.controller}, {MEASURED}'
-    return ', '.join([run.facts.controller, *(_CONDITIONS[key](run.facts) for key in differing)])
+    return ', '.join([run.facts.controller, *_texts(run.facts, differing)])
+
+
+def _value(facts: RunConditions, key: str) -> Any:
+    """Return a condition; None for one of a gear shift in another run."""
+    return getattr(facts, key, None)
+
+
+def _texts(facts: RunConditions, keys: Sequence[str]) -> list[str]:
+    """Return the texts of the conditions that a run has."""
+    values = ((key, _value(facts, key)) for key in keys)
+    return [_CONDITIONS[key](value) for key, value in values if value is not None]
 
 
 def _numbered(labels: Sequence[str]) -> list[str]:

@@ -72,9 +72,10 @@ def print_comparison(
 
 def _title(settings: RunSettings, overrides: Sequence[str]) -> str:
     changes = changed_values(settings.scenario) or overrides
+    handover = f', handover {settings.handover}' if settings.shift else ''
     return (
         f'{scenario_title(settings.scenario.name, changes)}; {settings.architecture}, '
-        f'{settings.clutch} clutch, wear gain {settings.wear_gain:g}, {settings.mode}'
+        f'{settings.clutch} clutch{handover}, wear gain {settings.wear_gain:g}, {settings.mode}'
     )
 
 

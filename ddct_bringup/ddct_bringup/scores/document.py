@@ -7,7 +7,7 @@ from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Any
 
-from ddct_bringup.bag.run_facts import RunConditions
+from ddct_bringup.bag.run_facts import RunConditions, RunFacts
 from ddct_bringup.metrics.catalogue import CRITERIA, METRICS
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.verdict.limits import Limits
@@ -46,6 +46,7 @@ def run_entry(run: ScoredRun) -> Mapping[str, Any]:
     entry = {
         'bag': run.bag,
         **{name: getattr(run.facts, name, None) for name in FACTS},
+        **(run.facts.of_shift if isinstance(run.facts, RunFacts) else {}),
         'valid': run.valid,
         'reason': run.reason,
         'metrics': dict(run.metrics),

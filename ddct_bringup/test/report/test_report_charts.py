@@ -14,8 +14,7 @@ from made_run import made_facts
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.report.chart_marks import ChartRun
-from ddct_bringup.report.chart_signals import chart_signals_of
-from ddct_bringup.report.charts import chart_document
+from ddct_bringup.report.charts import chart_document, chart_signals_of
 from ddct_bringup.report.phase_lanes import LANES, OPACITY, phase_spans
 from ddct_controllers.design.drawing.line_looks import LineLook
 from ddct_plant.models.driveline import PhaseEvent

@@ -4,21 +4,23 @@
 
 import pytest
 
-from ddct_bringup.metrics.catalogue import CRITERIA, FURTHER, TABLE_5_1
+from ddct_bringup.metrics.catalogue import CRITERIA, OF_EVERY_RUN, OF_SHIFT, TABLE_5_1
 from ddct_bringup.report.chart_signals import CHART_SIGNALS, CLUTCH_SIGNALS, SENSOR_SIGNALS
 from ddct_bringup.report.definitions import definitions
 from ddct_bringup.report.page_parts import unit_text
+from ddct_bringup.report.shift_signals import SHIFT_SIGNALS
 from ddct_bringup.verdict.state import STATES
 from ddct_controllers.design.analysis.loop_quantities import LOOP_QUANTITIES
 
-SIGNALS = (*CHART_SIGNALS, *CLUTCH_SIGNALS, *SENSOR_SIGNALS)
-GROUPS = definitions(SIGNALS, thesis=True)
+SIGNALS = (*CHART_SIGNALS, *CLUTCH_SIGNALS, *SHIFT_SIGNALS, *SENSOR_SIGNALS)
+GROUPS = definitions(SIGNALS, thesis=True, shift=True)
 
 
 @pytest.mark.parametrize(
     ('title', 'figures'),
     [
-        ('Metrics', (*TABLE_5_1, *FURTHER)),
+        ('Metrics', (*TABLE_5_1, *OF_EVERY_RUN)),
+        ('Gear shift', OF_SHIFT),
         ('Criteria', CRITERIA),
         ('Frequency', LOOP_QUANTITIES),
     ],
@@ -44,7 +46,7 @@ def test_every_signal_is_defined_with_unit_and_sign():
             quantity.unit,
             f'{quantity.title}: {quantity.meaning}',
         ) in entries
-    signed = ('w_d', 'e', 'w_sr', 'A_x', 'C_m')
+    signed = ('w_d', 'e', 'w_sr', 'A_x', 'C_m', 'w_d1')
     for term, _, meaning in entries:
         assert term not in signed or 'bove zero' in meaning or 'elow zero' in meaning, term
 
@@ -62,6 +64,8 @@ def test_a_dash_sigma_and_a_slip_below_zero_are_explained():
 
 
 def test_a_page_without_the_thesis_has_no_definitions_of_it():
-    reading = definitions(SIGNALS, thesis=False)['Reading the tables']
+    groups = definitions(SIGNALS, thesis=False)
+    assert 'Gear shift' not in groups
+    reading = groups['Reading the tables']
     assert 'thesis' not in ' '.join(entry.term for entry in reading)
     assert not any('Table 5.1' in entry.meaning for entry in reading)

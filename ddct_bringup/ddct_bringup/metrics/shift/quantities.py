@@ -90,7 +90,7 @@ QUANTITIES = (
     ),
     Metric(
         key='torque_dip_percent',
-        symbol='wheel torque dip',
+        symbol='relative dip',
         unit='%',
         form='.0f',
         meaning='the same in % of that torque at the start; above 100 the car is braked',

@@ -1,0 +1,155 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""The page and the tables of gear shifts: both clutches, phases, scores, handovers."""
+
+import io
+import re
+from typing import Any
+
+import numpy as np
+import pytest
+from bokeh.document import Document
+from made_scores import made_scores
+
+from ddct_bringup.campaign.rows import METRIC_COLUMNS, result_row, scored_headless
+from ddct_bringup.metrics.catalogue import OF_SHIFT
+from ddct_bringup.report.charts import chart_document
+from ddct_bringup.report.page import report_page
+from ddct_bringup.report.page_runs import chart_runs, page_runs
+from ddct_bringup.report.phase_lanes import LANES, shift_spans
+from ddct_bringup.run.plan import RunPlan
+from ddct_bringup.scores.comparison_table import print_comparison
+from ddct_bringup.scores.document import run_entry
+from ddct_bringup.scores.run_table import COLUMNS, SHIFT_COLUMNS, columns_of
+from ddct_bringup.scores.scored_recording import ScoredRecording, simulate_and_score
+from ddct_bringup.verdict.limits import packaged_limits
+from ddct_plant.base.timebase import time_of_step
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
+
+HANDOVERS = ('timed', 'model')
+
+
+def settings(handover: str) -> RunSettings:
+    """Return an upshift with a torque cut."""
+    scenario = load_scenario('upshift', ['shift.torque_cut_n_m=20'], clutch='stick_slip')
+    return RunSettings(scenario, clutch='stick_slip', handover=handover)
+
+
+@pytest.fixture(scope='module')
+def runs() -> list[ScoredRecording]:
+    """Return the shift of `pi` with two handovers."""
+    plans = [RunPlan(settings(each), 'pi', 'headless') for each in HANDOVERS]
+    return [simulate_and_score(plan, packaged_limits()) for plan in plans]
+
+
+@pytest.fixture(scope='module')
+def charts(runs: list[ScoredRecording]) -> dict[str, Any]:
+    """Return the charts of the page by name, as it loads them."""
+    document: Any = chart_document(chart_runs(page_runs(runs)))[0]
+    return {chart.name: chart for chart in Document.from_json(document).roots}
+
+
+def drawn(chart: Any, run: int, column: str) -> np.ndarray:
+    """Return a column of the data of a run's line."""
+    lines = [each for each in chart.renderers if each.glyph.__class__.__name__ == 'Line']
+    of_run = [line for line in lines if line.tags[0]['runs'] == [run]]
+    return np.asarray(of_run[0].data_source.data[column])
+
+
+def test_torques_slips_share_and_cut_of_the_off_going_side_have_their_charts(runs, charts):
+    for index, run in enumerate(runs):
+        signals = run.recording.trajectory
+        for key, expected in (
+            ('C_1_request', signals.off_going_torque_request),
+            ('C_1_transmitted', signals.off_going_transmitted_torque),
+            ('C_1_transmitted_limit', signals.at_tick('off_going_clutch_torque')),
+            ('w_d1', signals.off_going_slip_speed * 30.0 / np.pi),
+            ('handover_share', signals.handover_share),
+            ('torque_cut', signals.torque_cut),
+            ('driveshaft_torque', signals.driveshaft_effort),
+            ('temperature_1', signals.off_going_clutch_temperature),
+        ):
+            shown = drawn(charts[key.removesuffix('_limit')], index, key)
+            np.testing.assert_allclose(shown, expected, rtol=1e-6, atol=1e-6)
+
+
+def test_each_shift_has_a_row_of_its_phases_and_one_of_each_clutch(runs, charts):
+    labels = charts[LANES].yaxis[0].major_label_overrides
+    of_run = ('{0}', '{0}: on-coming', '{0}: off-going')
+    names = [each.format(f'pi, handover {name}') for name in HANDOVERS for each in of_run]
+    assert list(labels.values()) == names
+    metrics = runs[1].scores.metrics
+    course = chart_runs(page_runs(runs))[1].course
+    torque, inertia = shift_spans(course)
+    assert torque == (0.3, 0.5, 'torque phase')
+    assert inertia[1] - inertia[0] == pytest.approx(metrics['inertia_phase_s'], abs=1e-12)
+    assert inertia[2] == 'inertia phase'
+
+
+def test_every_chart_marks_the_start_of_the_shift_and_of_feedback(runs, charts):
+    expected = {
+        0.3,
+        *(time_of_step(run.course.feedback_start) for run in chart_runs(page_runs(runs))),
+    }
+    for chart in charts.values():
+        spans = [each for each in chart.center if each.__class__.__name__ == 'Span']
+        assert {span.location for span in spans} == expected
+
+
+def test_the_page_has_a_table_of_the_shift_and_its_words_and_other_pages_have_neither(runs):
+    html = report_page(runs, [], packaged_limits())
+    for metric in OF_SHIFT:
+        assert html.count(f'data-metric="{metric.key}"') == len(runs)
+    assert '<h1>Gear shift</h1>' in html
+    assert 'flared' in html and 'the shift starts' in html
+    assert re.search(
+        r'<title>Gear shift, upshift.*: pi, handover timed, pi, handover model<', html
+    )
+    other = report_page(
+        [
+            simulate_and_score(
+                RunPlan(RunSettings(load_scenario('thesis')), 'pi', 'headless'), packaged_limits()
+            )
+        ],
+        [],
+        packaged_limits(),
+    )
+    assert '<h1>Clutch engagement</h1>' in other
+    assert 'off-going' not in other.partition('<script>')[0]
+    assert not any(metric.key in other for metric in OF_SHIFT)
+
+
+def test_the_terminal_has_columns_of_the_shift_and_the_title_names_the_handover(runs):
+    stream = io.StringIO()
+    print_comparison([run.scores for run in runs[:1]], settings('timed'), [], stream)
+    table = stream.getvalue()
+    assert 'stick_slip clutch, handover timed, wear gain 1' in table
+    row = next(line for line in table.splitlines() if line.split()[:1] == ['pi'])
+    metrics = runs[0].scores.metrics
+    assert row.split()[1:4] == [
+        f'{metrics["shift_time_s"]:.3f}',
+        f'{metrics["torque_phase_s"]:.2f}',
+        f'{metrics["inertia_phase_s"]:.3f}',
+    ]
+    assert row.split()[-3] == runs[0].scores.verdict.state == 'engaged'
+    shifts, other = [run.scores for run in runs], made_scores(steps=300)
+    assert columns_of(shifts) == SHIFT_COLUMNS
+    assert columns_of([other]) == COLUMNS
+    assert set(columns_of([*shifts, other])) == {*COLUMNS, *SHIFT_COLUMNS}
+
+
+def test_a_campaign_has_the_scores_of_the_single_run_to_the_last_bit(runs):
+    row = result_row(scored_headless(settings('model'), 'pi', packaged_limits()), {})
+    single = runs[1].scores
+    assert {key: row[key] for key in METRIC_COLUMNS} == {
+        key: single.metrics[key] for key in METRIC_COLUMNS
+    }
+    assert row['verdict_state'] == single.verdict.state
+    assert set(OF_SHIFT) and {metric.key for metric in OF_SHIFT} <= set(METRIC_COLUMNS)
+
+
+def test_scores_of_a_shift_name_its_handover_and_those_of_other_runs_do_not(runs):
+    entry = run_entry(runs[0].scores)
+    assert (entry['handover'], entry['off_going_wear_gain']) == ('timed', 1.0)
+    assert 'handover' not in run_entry(made_scores())
