@@ -10,7 +10,7 @@ of `cells.py` too.
 """
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -30,6 +30,10 @@ HOLDS = ': holds'
 _WORN = '1.3'
 _SHORT = dict(zip(TABLE_METRICS, ('t_a', 'w_sr', 'a_x'), strict=True))
 _FORMS = dict(zip(TABLE_METRICS, ('.2f', '.2f', '.3f'), strict=True))
+_SHIFT_TIME, _JERK = 'shift time s', 'peak jerk m/s^3'
+"""Headings of columns of the tables of gear shifts."""
+_QUICK_S = 0.7
+"""Shift time in s below which a shift counts as quick in a sentence."""
 _MARKED = re.compile(r'(<!-- result: (\w+) -->)(.*?)(<!-- end -->)', re.DOTALL)
 PAGES = (DOCS.parent / 'README.md', *sorted(DOCS.rglob('*.md')))
 
@@ -69,6 +73,7 @@ def results() -> Mapping[str, str]:
         **_table_5_2(),
         **_engagements(),
         **_table_5_1(),
+        **_shifts(),
     }
 
 
@@ -126,3 +131,32 @@ def _table_5_1() -> dict[str, str]:
                 texts[name] = f'{value:{_FORMS[metric]}}'
                 texts[f'{name}_off'] = f'{abs(100.0 * (value / printed[metric] - 1.0)):.0f} %'
     return texts
+
+
+def _shifts() -> dict[str, str]:
+    """Return what the table of all controllers in a gear shift shows."""
+    table = shown_tables('shifts')['controllers']
+    headers = tuple(table.splitlines()[0][2:-2].split(' | '))
+    rows = [dict(zip(headers, row, strict=True)) for row in rows_of(table)]
+    engaged = [row for row in rows if row['state'] == ENGAGED]
+    of_thesis = [row for row in engaged if row['controller'] in ROW_OF]
+    times, jerks = ([float(row[name]) for row in engaged] for name in (_SHIFT_TIME, _JERK))
+    quick = [row for row in engaged if float(row[_SHIFT_TIME]) < _QUICK_S]
+    return {
+        'shifts_engaged': f'{len(engaged)} of {len(rows)}',
+        'shifts_failed': ', '.join(f'`{row["controller"]}`' for row in rows if row not in engaged),
+        'shifts_dip': _between([float(row['torque dip %']) for row in of_thesis], '.0f'),
+        'shifts_times': _between(times, '.2f'),
+        'shifts_jerks': _between(jerks, '.0f'),
+        'shifts_quick': ', '.join(map(_time_and_jerk, quick)) or 'none',
+        'shifts_quickest': _time_and_jerk(min(of_thesis, key=lambda row: float(row[_SHIFT_TIME]))),
+        'shifts_smoothest': _time_and_jerk(min(of_thesis, key=lambda row: float(row[_JERK]))),
+    }
+
+
+def _between(values: Sequence[float], form: str) -> str:
+    return f'{min(values):{form}} to {max(values):{form}}'
+
+
+def _time_and_jerk(row: Mapping[str, str]) -> str:
+    return f'`{row["controller"]}` ({row[_SHIFT_TIME]} s, {row[_JERK]} m/s³)'

@@ -48,6 +48,7 @@ from generator.robustness_map import kept_maps
 from generator.robustness_tables import robustness_tables
 from generator.score_tables import score_tables
 from generator.sensor_table import sensor_table
+from generator.shift_tables import shift_tables
 from generator.speed_charts import draw_speed
 from generator.speed_history import digest_of, histories, speed_tables
 from generator.study_charts import save_study_chart
@@ -158,6 +159,7 @@ TABLES: Mapping[str, Callable[[], Mapping[str, Table]]] = {
     'robustness': robustness_tables_and_charts,
     'launches': lambda: {'new_clutch': launch_table()},
     'sensors': lambda: {'in_thesis': sensor_table()},
+    'shifts': shift_tables,
     'numbers': lambda: page_tables(judge(thesis_numbers(), compute(SOURCES))),
     'figures': lambda: figure_tables(_drawn()),
     'studies': studies_and_charts,
