@@ -20,6 +20,7 @@ LAYOUT = Path(__file__).parents[2] / 'ddct_bringup' / 'foxglove' / 'ddct_layout.
 NOT_FOR_PANELS = {
     '/clock': 'only the time, which is the axis',
     '/recorder/ack': 'only the time',
+    '/off_going/run_info': 'a table shows the last message alone, and /run_info names the run',
     '/controller/timing': 'lists of numbers as text, which no panel draws; `score` reads them',
 }
 """Why a recorded topic need not be in the layout."""

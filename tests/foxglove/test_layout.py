@@ -23,10 +23,13 @@ from ddct_bringup.run.description import custom_data
 from ddct_bringup.run.plan import RunPlan
 from ddct_plant.graph.node_reports import TICKS
 from ddct_plant.models.driveline import PHASES
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.signals.topics import RUN_INFO, TOPICS
 
 Record = Callable[[RunPlan], Messages]
 
+EVENTS = ('phase_events', 'off_going_phase_events')
 FACTS = custom_data(plan('pi').settings, 'made-up', 70)
 SERIES: dict[tuple[str, str], Callable[[Trajectory], np.ndarray]] = {
     ('Plot!slip', 'slip w_d'): lambda run: run.slip_speed,
@@ -50,6 +53,22 @@ SERIES: dict[tuple[str, str], Callable[[Trajectory], np.ndarray]] = {
     ('Plot!driveshaft', 'angle theta_sr'): lambda run: run.joint_position[:, 3],
     ('Plot!vehicle', 'accel. A_x'): lambda run: run.vehicle_accel,
     ('Plot!vehicle', 'speed V_x'): lambda run: run.vehicle_speed,
+    ('Plot!slip', 'off-going slip (shift)'): lambda run: run.off_going_slip_speed,
+    ('Plot!clutch_torque', 'off-going transmitted (shift)'): lambda run: (
+        run.off_going_transmitted_torque
+    ),
+    ('Plot!clutch_torque', 'off-going request (shift)'): lambda run: run.off_going_torque_request,
+    ('Plot!clutch_torque', 'off-going actuator (shift)'): lambda run: (
+        run.off_going_actuator_torque[:, 0]
+    ),
+    ('Plot!clutch_torque', 'off-going capacity (shift)'): lambda run: run.off_going_clutch_torque[
+        :, 0
+    ],
+    ('Plot!clutch_torque', 'off-going temperature (shift)'): lambda run: (
+        run.off_going_clutch_temperature
+    ),
+    ('Plot!engine_torque', 'torque cut (shift)'): lambda run: run.torque_cut,
+    ('Plot!speeds', 'off-going shaft w_p1 (shift)'): lambda run: run.off_going_shaft_speed,
     ('Plot!slip', 'measured (sensors)'): lambda run: run.sensed_slip_speed,
     ('Plot!engine_torque', 'estimated C_m (sensors)'): lambda run: run.sensed_engine_torque,
     ('Plot!speeds', 'measured w_m (sensors)'): lambda run: run.sensed_joint_speed[:, 0],
@@ -58,7 +77,15 @@ SERIES: dict[tuple[str, str], Callable[[Trajectory], np.ndarray]] = {
     ('Plot!vehicle', 'measured V_x (sensors)'): lambda run: run.sensed_vehicle_speed,
     ('StateTransitions!controller', 'feedback'): lambda run: _told(run, 'feedback'),
     ('StateTransitions!controller', 'request saturated'): lambda run: _told(run, 'saturated'),
-    ('StateTransitions!controller', 'clutch phase (stick-slip)'): lambda run: _phases(run),
+    ('StateTransitions!controller', 'clutch phase (stick-slip)'): lambda run: _phases(
+        run.clutch_phase
+    ),
+    ('StateTransitions!controller', 'off-going clutch phase (shift)'): lambda run: _phases(
+        run.off_going_clutch_phase
+    ),
+    ('StateTransitions!controller', 'share of the on-coming clutch (shift)'): lambda run: (
+        run.handover_share
+    ),
     ('StateTransitions!controller', 'measured slip (3: sample lost)'): lambda run: _levels(
         run.sensed_slip_held
     ),
@@ -74,9 +101,9 @@ def _told(run: Trajectory, key: str) -> np.ndarray:
     return np.array([dict(pairs)[key] for pairs in run.status])
 
 
-def _phases(run: Trajectory) -> np.ndarray:
-    """Return the phase at each step, (N+1,), in words."""
-    return np.array(PHASES)[run.clutch_phase.astype(int)]
+def _phases(numbers: np.ndarray) -> np.ndarray:
+    """Return the phase of a clutch at each step, (N+1,), in words."""
+    return np.array(PHASES)[numbers.astype(int)]
 
 
 def _levels(flags: np.ndarray) -> np.ndarray:
@@ -84,18 +111,26 @@ def _levels(flags: np.ndarray) -> np.ndarray:
     return np.where(flags, 3, 0)
 
 
+def _shift(*changes: str) -> RunPlan:
+    """Return a headless gear shift of 0.7 s."""
+    given = ['duration_s=0.7', 'score_window_s=[0.3,0.6]', *changes]
+    scenario = load_scenario('upshift', given, clutch='stick_slip')
+    return RunPlan(RunSettings(scenario, clutch='stick_slip'), 'pi', 'headless')
+
+
 def _made_up_run() -> Trajectory:
-    """Return a stick-slip run with sensors, of two inputs, with another number in each place."""
-    run = expected(plan('pi', duration_s=0.7, clutch='stick_slip', changes=('sensors={}',)))
+    """Return a gear shift with sensors, of two inputs, with another number in each place."""
+    run = expected(_shift('sensors={}'))
     random = np.random.default_rng(1)
     arrays = {
         name: random.normal(0.0, 100.0, np.shape(values))
         for name, values in run.signals.items()
-        if name not in ('status', 'phase_events')
+        if name not in ('status', *EVENTS)
     }
     for name in ('sensed_slip_held', 'sensed_torque_held'):
         arrays[name] = random.integers(0, 2, run.steps + 1).astype(float)
-    arrays['clutch_phase'] = random.integers(0, len(PHASES), run.steps + 1).astype(float)
+    for name in ('clutch_phase', 'off_going_clutch_phase'):
+        arrays[name] = random.integers(0, len(PHASES), run.steps + 1).astype(float)
     status = tuple(
         tuple((key, str(1000.0 * place + step)) for place, (key, _) in enumerate(pairs))
         for step, pairs in enumerate(run.status)
@@ -106,7 +141,7 @@ def _made_up_run() -> Trajectory:
             **arrays,
             'status': status,
             'engine_torque_request': torques,
-            'phase_events': run.phase_events,
+            **{name: getattr(run, name) for name in EVENTS},
         }
     )
 
@@ -115,7 +150,7 @@ def test_each_series_is_the_signal_that_its_label_names(tmp_path: Path) -> None:
     from ddct_bringup.bag.trajectory_bag import write_trajectory
 
     run = _made_up_run()
-    facts = {**FACTS, 'clutch': 'stick_slip'}
+    facts = custom_data(_shift().settings, 'made-up', 70)
     write_trajectory(run, tmp_path, 'made-up', facts, {'/controller': {'two_input': 'true'}})
     bag = read_messages(tmp_path)
     drawn = {
@@ -139,6 +174,12 @@ def test_no_panel_is_empty_in_a_lock_step_bag(record: Record, controller: str) -
 def test_no_panel_is_empty_in_the_bag_of_a_clutch_that_sticks(record: Record) -> None:
     bag = record(plan('pi', 'headless', clutch='stick_slip'))
     assert '/clutch/phase' in bag
+    assert problems(read_layout(), bag) == []
+
+
+def test_no_panel_is_empty_in_the_bag_of_a_gear_shift(record: Record) -> None:
+    bag = record(_shift())
+    assert '/off_going/clutch/phase' in bag
     assert problems(read_layout(), bag) == []
 
 

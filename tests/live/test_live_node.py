@@ -83,24 +83,35 @@ def test_the_time_goes_back_when_the_next_run_begins() -> None:
     assert shown == [stamp_of_step(step) for step in (0, 100, 200, 0, 1)]
 
 
+def has_all(viewer: Viewer) -> bool:
+    """Return whether a viewer has what three nodes and one of the off-going side published."""
+    counts = [len(viewer.messages[name]) for name in ('/run_info', '/off_going/run_info')]
+    return counts[0] >= 3 and counts[1] >= 1
+
+
 def test_a_late_viewer_gets_the_time_and_what_is_latched_the_controller_last() -> None:
     now = stamp_of_step(300)
     with served() as both:
         clock = both.graph.create_publisher(Clock, '/clock', LOOP_QOS)
         latched = []
-        for name in ('engine', 'controller', 'recorder'):
-            latched.append(both.graph.create_publisher(DiagnosticArray, 'run_info', LATCHED_QOS))
+        for name in ('/engine', '/controller', '/off_going/clutch', '/recorder'):
+            topic = f'{name.rpartition("/")[0]}/run_info'
+            latched.append(both.graph.create_publisher(DiagnosticArray, topic, LATCHED_QOS))
             latched[-1].publish(RUN_INFO.message(START_NS, [('version', '1')], name=name))
         with Viewer(both.url) as early:
             wait_until(lambda: both.spin() and clock.get_subscription_count() == 1, 'the match')
             clock.publish(CLOCK.message(now))
-            wait_until(lambda: both.spin() and len(early.messages['/run_info']) >= 3, 'run_info')
+            wait_until(lambda: both.spin() and has_all(early), 'run_info')
             wait_until(lambda: both.spin() and early.times[-1:] == [now], 'the time')
         with Viewer(both.url) as late:
-            wait_until(lambda: both.spin() and len(late.messages['/run_info']) >= 3, 'run_info')
+            wait_until(lambda: both.spin() and has_all(late), 'run_info')
     assert late.times[0] == now
-    seen = [(stamp, RUN_INFO.read(message)[0]) for stamp, message in late.decoded('/run_info')]
-    assert seen == [(START_NS, name) for name in ('engine', 'recorder', 'controller')]
+    for topic, nodes in (
+        ('/run_info', ('/engine', '/recorder', '/controller')),
+        ('/off_going/run_info', ('/off_going/clutch',)),
+    ):
+        seen = [(stamp, RUN_INFO.read(message)[0]) for stamp, message in late.decoded(topic)]
+        assert seen == [(START_NS, name) for name in nodes]
 
 
 def test_a_graph_sends_nothing_without_a_viewer() -> None:

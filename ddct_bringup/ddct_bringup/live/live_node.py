@@ -19,6 +19,7 @@ from ddct_plant.graph.qos import LIVE_QOS
 from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import (
     CLOCK,
+    OFF_GOING_RUN_INFO,
     RECORDER_ACK,
     RUN_INFO,
     all_topics,
@@ -46,7 +47,7 @@ class LiveNode(GraphNode):
         super().__init__('live', **kwargs)
         self._print = print_line
         self._stamp_ns = self._sent_ns = START_NS
-        self._run_info: dict[str, bytes] = {}
+        self._run_info: dict[str, tuple[Topic, bytes]] = {}
         topics = recorded_topics(self.settings.kind())
         tick_topics = {topic for topic in topics if topic.every_tick}
         self._not_received = tick_topics - {RECORDER_ACK}
@@ -64,7 +65,9 @@ class LiveNode(GraphNode):
         self._server.stop()
 
     def _subscribe(self, *, latched: bool) -> None:
-        special = {CLOCK: self._on_clock, RUN_INFO: self._on_run_info}
+        special: dict[Topic, Callable[[bytes], None]] = {CLOCK: self._on_clock}
+        for topic in (RUN_INFO, OFF_GOING_RUN_INFO):
+            special[topic] = partial(self._on_run_info, topic)
         for topic in all_topics():
             if topic.latched == latched:
                 receive = special.get(topic, partial(self._pass_on, topic))
@@ -85,9 +88,9 @@ class LiveNode(GraphNode):
         self._stamp_ns = stamp
         self._pass_on(CLOCK, cdr)
 
-    def _on_run_info(self, cdr: bytes) -> None:
-        node, _ = RUN_INFO.read(deserialize_message(cdr, RUN_INFO.message_class))
-        self._run_info[name_in_graph(node, self.get_namespace())] = cdr
+    def _on_run_info(self, topic: Topic, cdr: bytes) -> None:
+        node, _ = topic.read(deserialize_message(cdr, topic.message_class))
+        self._run_info[name_in_graph(node, self.get_namespace())] = topic, cdr
         self._views_latched = -1
 
     def _on_view(self, topic: str) -> None:
@@ -107,7 +110,7 @@ class LiveNode(GraphNode):
             self._views_timed = views
         if not came and views != self._views_latched:
             for node in run_info_order(self._run_info):
-                self._pass_on(RUN_INFO, self._run_info[node])
+                self._pass_on(*self._run_info[node])
             self._views_latched = views
 
     def _send_time(self, stamp_ns: int) -> None:
