@@ -139,7 +139,7 @@ class Manifest:
 
     @property
     def code(self) -> str:
-        """Commit, and a digest that distinguishes two dirty ones."""
+        """Commit, and the digest of the code, which distinguishes changes without a commit."""
         return f'{short_commit(self.commit)} ({self.code_digest[:10]})'
 
 

@@ -13,7 +13,7 @@ from ddct_bringup.run.headless import run_headless
 from ddct_bringup.run.plan import require_headless
 from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_bringup.scores.csv_text import OVER_FLOOR
-from ddct_bringup.scores.floors import scores_over_floors
+from ddct_bringup.scores.floors import scores_with_ratios
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.scores.scoring import run_without_score, score_run
 from ddct_bringup.verdict.limits import Limits
@@ -66,7 +66,7 @@ def scored_headless(
         # Without update times, since no wall-clock time is measured.
         recording = recording_in_memory(settings, name, trajectory)
         scores = score_run(recording, name, limits, RunTiming())
-        return scores_over_floors(scores, settings, trajectory, floors) if floors else scores
+        return scores_with_ratios(scores, settings, trajectory, floors) if floors else scores
     facts = facts_of(settings, name, settings.scenario.steps)
     failed = run_without_score(name, facts, reason)
     return replace(failed, over_floor=dict.fromkeys(floors))

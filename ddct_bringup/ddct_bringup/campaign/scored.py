@@ -50,7 +50,7 @@ class ScoredRow:
     scores: ScoredRun
     """Scores; of a run that was computed at once without facts and bag."""
     path: str
-    """Whether it was computed `serial` or `vectorised`."""
+    """Path of the computation: `serial` or `vectorised`."""
 
     def row(self) -> Row:
         """Return the row of the run, by the columns of `results.parquet`."""

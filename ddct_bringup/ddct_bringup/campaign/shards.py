@@ -31,7 +31,7 @@ class ShardJob:
     """Digest of the specification and of the files that it names."""
     first: int
     last: int
-    """One after the last index."""
+    """Last index plus one."""
 
 
 def timed_shard(job: ShardJob) -> tuple[bytes, float]:

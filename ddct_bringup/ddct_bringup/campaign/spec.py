@@ -166,9 +166,9 @@ def _grid(content: Mapping[str, Any]) -> dict[str, tuple[Any, ...]]:
 
 def _not_empty(where: str, content: Any) -> Mapping[str, Any]:
     if not isinstance(content, Mapping) or not content:
-        said = f'is {content!r}' if content else 'is empty'
+        problem = f'is {content!r}' if content else 'is empty'
         raise ParameterError(
-            f'{where} {said}: give keys and what they are, or leave it out', key=where
+            f'{where} {problem}: give keys and what they are, or leave it out', key=where
         )
     for key in content:
         if not isinstance(key, str):

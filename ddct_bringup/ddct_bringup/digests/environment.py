@@ -21,7 +21,7 @@ _LONG = ('features',)
 
 @dataclass(frozen=True)
 class Environment:
-    """What decides the last bits of a run besides its settings."""
+    """Conditions that decide the last bits of a run besides its settings."""
 
     version: str
     """Version of this project's packages."""

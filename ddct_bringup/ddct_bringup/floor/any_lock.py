@@ -17,7 +17,7 @@ from ddct_plant.scenario.settings import RunSettings
 _SHARES = (1.0, 0.75, 0.55, 0.4, 0.25, 0.1)
 """Lock times of plates that stick, as shares of the latest one."""
 _FASTER = 10.0
-"""How far in rad/s w_r may be above its band here, about 3 m/s of the car."""
+"""Largest excess of w_r over its band here in rad/s, about 3 m/s of the car."""
 
 
 def lock_times(settings: RunSettings, start: Start) -> Sequence[float]:

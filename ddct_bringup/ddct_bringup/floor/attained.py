@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""What a run attains: requests near the bound that lock cleanly, and their replay in the plant."""
+"""Attained value of a metric: requests near its bound that lock cleanly, and their replay."""
 
 import math
 from dataclasses import dataclass
@@ -21,9 +21,9 @@ from ddct_plant.scenario.scenario import Scenario
 CLEAR_RAD_S = 3.0
 """Slip in rad/s that a run keeps until shortly before its lock, so that it does not lock early."""
 CLOSING_RAD_S2 = 50.0
-"""How fast the slip then goes to zero in rad/s^2: less would let the plates part again."""
+"""Rate in rad/s^2 at which the slip then goes to zero: with less the plates would part again."""
 LATEST_S = 0.01
-"""How far the lock of a run may be from the instant of the floor in s."""
+"""Largest distance in s of the lock of a run from the instant of the floor."""
 _SMOOTH = 1e-2
 """Share of the bound that may be given away for requests near the usual ones."""
 _QUADRATIC = 1e-3
@@ -31,7 +31,7 @@ _QUADRATIC = 1e-3
 _AT_LOCK = 3
 """Number of last requests, which act after the lock too."""
 _LEAST_SHARE, _MORE_SHARE = 0.9, 0.1
-"""Least share of the usual ones that these are, and how much more after each failed replay."""
+"""Least ratio of these requests to the usual ones, and its increase after each failed replay."""
 _ROUNDS = 6
 """Number of replays, each with the engine, load and kiss point of the one before."""
 _NEAR = 2e-3
@@ -43,7 +43,7 @@ class Attained:
     """A run of the simulated plant near the bound."""
 
     value: float
-    """Its metric."""
+    """Metric of the run."""
     predicted: float
     """Metric that the program predicts for it."""
     run: Trajectory

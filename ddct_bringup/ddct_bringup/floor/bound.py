@@ -44,7 +44,7 @@ def free_columns(case: Case) -> np.ndarray:
     """
     Return the mask of the variables that a solver chooses, (columns - 1,).
 
-    These are the requests, and what engine and capacity leave over. What the load leaves over is
+    These are the requests and the remainders of engine and capacity. The remainder of the load is
     small; it stays in the middle of its interval, and the certificate allows for all of the
     interval.
     """

@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""What a floor covers: the runs that start alike and lock at one instant, as a program's rows."""
+"""Runs that a floor covers: those that start alike and lock at one instant, as rows."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -29,8 +29,8 @@ class Case:
     """
     Runs of one scenario from one state at control start that lock once, at one instant.
 
-    What a controller changes is a variable in an interval: requests, and what the laws of engine,
-    load and capacity leave over. Every run whose speeds stay in the band is a point.
+    The variables, each in an interval, are the requests and the remainders of the laws of engine,
+    load and capacity. Every run whose speeds stay in the band is a point.
     """
 
     settings: RunSettings
@@ -70,7 +70,7 @@ class Case:
 
     @cached_property
     def inequalities(self) -> tuple[np.ndarray, np.ndarray]:
-        """Rows (m, columns) and limits (m,) of what is so in every run, rows z <= limits."""
+        """Rows (m, columns) and limits (m,) of the inequalities rows z <= limits of every run."""
         rows, limits = self.clutch_limits
         lines, line_limits = self._engine_lines()
         return np.vstack([rows, lines]), np.concatenate([limits, line_limits])
@@ -98,7 +98,7 @@ class Case:
         return np.vstack(rows), np.concatenate(limits)
 
     def _engine_lines(self) -> tuple[np.ndarray, np.ndarray]:
-        """Rows and limits of the lines over w_m between which the engine torque is."""
+        """Return rows and limits of the lines over w_m between which the engine torque is."""
         columns, law = self.motion.columns, self.engine
         if columns.engine.stop == columns.engine.start:
             return np.zeros((0, columns.count)), np.zeros(0)
@@ -167,7 +167,7 @@ class Case:
         return point
 
     def _add_capacity(self, point: np.ndarray, run: Trajectory) -> None:
-        """Write what the capacity of a run leaves over into its point."""
+        """Write the remainder of the capacity of a run into its point."""
         columns, first = self.motion.columns, self.start.step
         rest = run.clutch_torque - self.settings.wear_gain * run.actuator_torque
         rest = rest[first : first + len(self.motion.capacity)]

@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Floor of a metric: the least that any run can have, proven, beside what a run attains."""
+"""Floor of a metric: the proven least of any run, beside the value that a run attains."""
 
 import dataclasses
 from collections.abc import Mapping, Sequence
@@ -37,7 +37,7 @@ DEMAND, LIMITS = (
     'runs in which the engine gives the demand',
     'runs in which the engine gives what its limits allow',
 )
-"""What a floor covers."""
+"""Runs that a floor covers."""
 _DRIVER = 'pi'
 """Controller of the run to control start, where every controller of `detailed` is the same."""
 
@@ -55,7 +55,7 @@ class Floor:
     """Value of a run of the simulated plant with that lock, None where none was found."""
     certificate: Mapping[str, Any]
     """
-    Kind of the proof, its number, and what it covers.
+    Kind of the proof, its number, and the runs that it covers.
 
     The number is the bound that the multipliers prove by weak duality, of a Farkas ray the least
     violation of all constraints, which is positive.
@@ -65,7 +65,7 @@ class Floor:
 
     @property
     def gap(self) -> float | None:
-        """How far the attained value is above the least one in %; None where one is missing."""
+        """Excess of the attained value over the least one in %; None where one is missing."""
         if not self.least or self.attained is None:
             return None
         return 100.0 * (self.attained / self.least - 1.0)
@@ -211,7 +211,7 @@ def floor_of_case(case: Case, metric: str) -> Floor:
 
 @dataclass(frozen=True, eq=False)
 class _Found:
-    """A floor, and what its replays tell about the engine."""
+    """A floor, and the behaviour of the engine in its replays."""
 
     floor: Floor
     limited: bool
@@ -251,7 +251,7 @@ def _computed(case: Case, metric: str, begin: Trajectory | None, attain: bool) -
         )
     certificate = {'kind': bound.kind, 'proven': bound.certificate.claim, 'covers': covers}
     if bound.kind == RAY:
-        # Where even a free engine torque does not help, the wide case says so.
+        # Where even a free engine torque does not help, the wide case proves it.
         limited = not case.limited and settings.scenario.engine_limits is not None
         return _Found(Floor(metric, case.lock.time_s, None, None, certificate, None), limited)
     replays = Replays(None, None)

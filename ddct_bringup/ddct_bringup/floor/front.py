@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Floors over a grid of lock times, the least lock time under a cap, and controllers beside."""
+"""Floors over a grid of lock times, least lock times under a cap, and runs beside them."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TypedDict

@@ -17,7 +17,7 @@ WEAK_DUALITY, LINEARISED, RAY, CLOSED_FORM = (
 )
 """Kinds of proof: of a linear or a convex program, of infeasibility, and without a program."""
 _SLACK = 1e-9
-"""How far a claimed bound may exceed the checked one, relative: rounding of sums."""
+"""Largest excess of a claimed bound over the checked one, relative: rounding of sums."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,7 +43,7 @@ class LinearProgram:
     high: np.ndarray
 
     def residual(self, point: np.ndarray) -> float:
-        """Return how far a point (n,) is at most outside of a row, an equation or its box."""
+        """Return the largest violation of a row, an equation or the box by a point (n,)."""
         return max(
             float(np.max(self.rows @ point - self.limits, initial=0.0)),
             float(np.max(np.abs(self.equal_rows @ point - self.equal_values), initial=0.0)),

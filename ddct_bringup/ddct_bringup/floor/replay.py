@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Requests of a program, replayed through the simulated plant: what a run can attain."""
+"""Requests of a program, replayed through the simulated plant."""
 
 from typing import Any
 
@@ -17,7 +17,7 @@ from ddct_plant.signals.signal import SignalValue
 CLOSING_SHARE = 1.1
 """Request over C_fOL from the lock on."""
 CLOSING_RAMP = 600.0
-"""How fast the request rises then in N m/s; faster, and the undershoot of G_a opens the clutch."""
+"""Rate in N m/s of the request then; with more the undershoot of G_a opens the clutch."""
 FADE_S = 0.2
 """Time in s over which the torque that has taken the slip to zero fades out."""
 CLOSED = 500.0

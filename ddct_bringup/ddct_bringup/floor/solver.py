@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Solutions of the programs by HiGHS and DAQP; what they return is checked elsewhere."""
+"""Solutions of the programs by HiGHS and DAQP; `program.py` checks them."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -23,7 +23,7 @@ _OPTIONS = {
 """Options of HiGHS. Every inexact multiplier costs a bound its share of the box; without presolve
 a program takes two thirds of the time."""
 _EXCEEDED = 1e-3
-"""How far a point may be outside of a deferred row, in its unit."""
+"""Largest violation of a deferred row by a point, in the unit of the row."""
 _ROUNDS = 4
 """Number of times that rows are added to a linear program."""
 _QUADRATIC_ROUNDS = 12
@@ -218,7 +218,7 @@ def least_squares(
 
 
 def _solvable_with(hessian: np.ndarray, added: float) -> float:
-    """Return what the diagonal of a Hessian needs, at least `added`, for the solver to take it."""
+    """Return the least addition to the diagonal, from `added`, to make it solvable."""
     while True:
         diagonal = np.diag(hessian) + added
         # A unit diagonal, which the solver gives the Hessian, makes late requests count as much.

@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""What a metric is, and what a criterion is."""
+"""Declarations of metrics and criteria."""
 
 import math
 from collections.abc import Callable, Mapping

@@ -147,7 +147,7 @@ class NodeProcess(Child):
         """Return one line on how the node ended."""
         code = self.code
         if self.hung or code is None:
-            return f'node {self.name} did not stop when asked and was killed'
+            return f'node {self.name} did not stop on signals and was killed'
         if code < 0:
             return f'node {self.name} was killed by {signal.Signals(-code).name}'
         program = self.name.rpartition('/')[2]

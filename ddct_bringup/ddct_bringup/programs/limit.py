@@ -117,7 +117,7 @@ def _complain_impossible(floors: Sequence[Floor]) -> int:
 def _document(
     floors: Sequence[Floor], rows: Sequence[ControllerRow], capped: Sequence[LeastLockTime]
 ) -> dict[str, Any]:
-    """Return what `--json` writes."""
+    """Return the document of `--json`."""
     return {
         'front': [floor.as_dict() for floor in floors],
         'controllers': list(rows),

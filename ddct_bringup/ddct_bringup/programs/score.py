@@ -91,11 +91,11 @@ def _scored(
     limits: Limits,
     written: list[Path | str],
 ) -> list[ScoredRun]:
-    """Return the scores of bags; write their signals if wanted, and add the files to `written`."""
+    """Return the scores of bags; write signals if requested, and add the files to `written`."""
     runs = []
     metrics = floor_metrics(options.floors)
-    wanted = {ending: each for ending, each in _signal_folders(options).items() if each}
-    stems = signal_file_stems(bags) if wanted else {}
+    folders = {ending: each for ending, each in _signal_folders(options).items() if each}
+    stems = signal_file_stems(bags) if folders else {}
     columns = load_columns(options.columns) if options.columns else None
     for bag, folder in with_progress(bags, len(bags), 'scoring'):
         try:
@@ -103,7 +103,7 @@ def _scored(
             name = bag_name(bag, folder)
             for line in recording.custom_data.get('adjusted', '').splitlines():
                 complain(PROGRAM, f'{name}: {line}')
-            for ending, target in wanted.items():
+            for ending, target in folders.items():
                 write_signals(target, f'{stems[bag]}.{ending}', recording)
                 written.append(target / f'{stems[bag]}.{ending}')
             scored = score_recording(recording, name, limits)

@@ -38,7 +38,7 @@ class TickBuffer:
     wait_for_all: bool = True
     """Whether only complete ticks are returned, as in lock-step."""
     undecided: frozenset[str] = frozenset()
-    """Those of `topics` that the run may lack; complete ticks have them until `decide`."""
+    """Topics that the run may lack; complete ticks have them until `decide`."""
     dropped: int = 0
     """Number of messages that arrived too late; real time only."""
     _next_step: int = 0

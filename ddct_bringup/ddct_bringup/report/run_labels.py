@@ -113,9 +113,9 @@ def _texts(facts: RunConditions, keys: Sequence[str]) -> list[str]:
 
 def _numbered(labels: Sequence[str]) -> list[str]:
     """Return the labels, with a number on the second and later ones of equal text."""
-    seen: Counter[str] = Counter()
+    counts: Counter[str] = Counter()
     result = []
     for label in labels:
-        seen[label] += 1
-        result.append(f'{label} #{seen[label]}' if seen[label] > 1 else label)
+        counts[label] += 1
+        result.append(f'{label} #{counts[label]}' if counts[label] > 1 else label)
     return result

@@ -63,8 +63,10 @@ def metric_cells(
     printed = [
         row if row is not None and column.key in row.printed_values() else None for row in rows
     ]
-    figures = [row.printed_values()[column.key] for row in printed if row is not None]
-    largest = max((abs(value) for value in (*values, *figures) if value is not None), default=0.0)
+    of_thesis = [row.printed_values()[column.key] for row in printed if row is not None]
+    largest = max(
+        (abs(value) for value in (*values, *of_thesis) if value is not None), default=0.0
+    )
     return [
         _cell(column, value, row, largest or 1.0, valid=run.scores.valid)
         for run, value, row in zip(runs, values, printed, strict=True)

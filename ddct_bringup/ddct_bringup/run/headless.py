@@ -72,7 +72,7 @@ class Loop(Protocol[Reply]):
 
     @property
     def plant(self) -> WholePlant | ShiftPlant:
-        """Plant of the run, which knows when the engine ends it."""
+        """Plant of the run, which can end it by its engine."""
 
     def reply(self, step: int) -> Reply:
         """Return torques and every signal of step k; advance all but the plant."""

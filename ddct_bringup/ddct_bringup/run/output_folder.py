@@ -48,7 +48,7 @@ class StagedFolder:
                 f'{self.path} holds what an interrupted run left: rescue it with '
                 '`ddct score --repair`, then remove it or add --overwrite'
             )
-        with _refused(self.path, 'written'):
+        with _io_errors_named(self.path, 'written'):
             if self.path.exists():
                 shutil.rmtree(self.path)
         mark_folder(self.path)
@@ -69,7 +69,7 @@ class StagedFolder:
     def commit(self) -> None:
         """Move the partial folder to its final name; raise DdctError when that fails."""
         self._require_free(self.final, 'it came while this run took place')
-        with _refused(self.final, 'replaced'):
+        with _io_errors_named(self.final, 'replaced'):
             aside = Path(tempfile.mkdtemp(prefix=f'.{self.final.name}-', dir=self.final.parent))
             replaced = aside / self.final.name
             if self.final.exists():
@@ -106,20 +106,20 @@ def require_ours_or_empty(folder: Path) -> None:
 
 def is_empty(folder: Path) -> bool:
     """Return whether the folder is absent or empty."""
-    with _refused(folder, 'read'):
+    with _io_errors_named(folder, 'read'):
         return not folder.exists() or not any(folder.iterdir())
 
 
 def mark_folder(folder: Path) -> None:
     """Create `folder` with the marker when it is absent or empty; raise DdctError otherwise."""
     require_ours_or_empty(folder)
-    with _refused(folder, 'written'):
+    with _io_errors_named(folder, 'written'):
         folder.mkdir(parents=True, exist_ok=True)
         (folder / MARKER).write_text(_MARKER_TEXT, encoding='utf-8')
 
 
 @contextmanager
-def _refused(folder: Path, what: str) -> Iterator[None]:
+def _io_errors_named(folder: Path, what: str) -> Iterator[None]:
     """Raise DdctError where the operating system refuses to read or write a folder."""
     try:
         yield

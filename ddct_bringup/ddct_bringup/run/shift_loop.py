@@ -14,7 +14,7 @@ from ddct_reference.factory import make_reference
 
 
 class ShiftLoop:
-    """Closed loop of a shift, connected as in the graph; the handover answers a tick first."""
+    """Closed loop of a shift, connected as in the graph; the handover replies to a tick first."""
 
     def __init__(self, settings: RunSettings, controller: Controller) -> None:
         """Start in the drive before the shift."""

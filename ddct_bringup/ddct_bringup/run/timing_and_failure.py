@@ -51,9 +51,9 @@ def read_timing(folder: Path) -> RunTiming | None:
         values = parse_json(text)
         lateness = values.get('worst_lateness_us')
         if lateness is not None:
-            lateness = _positive('worst_lateness_us', lateness)
+            lateness = _at_least_0('worst_lateness_us', lateness)
         return RunTiming(
-            update_times_us=[_positive('update_times_us', x) for x in values['update_times_us']],
+            update_times_us=[_at_least_0('update_times_us', x) for x in values['update_times_us']],
             missed_steps=_count('missed_steps', values['missed_steps']),
             resends=_count('resends', values['resends']),
             late_messages=_count('late_messages', values['late_messages']),
@@ -63,7 +63,7 @@ def read_timing(folder: Path) -> RunTiming | None:
                 name_in_graph(node): _count('safe_states', stamp)
                 for node, stamp in values.get('safe_states', {}).items()
             },
-            wall_time_s=_positive('wall_time_s', values['wall_time_s']),
+            wall_time_s=_at_least_0('wall_time_s', values['wall_time_s']),
             steps=_count('steps', values['steps']),
         )
     except (DdctError, LookupError, TypeError, AttributeError) as error:
@@ -72,12 +72,12 @@ def read_timing(folder: Path) -> RunTiming | None:
         ) from error
 
 
-def _positive(name: str, value: object) -> float:
+def _at_least_0(name: str, value: object) -> float:
     return require_number(name, value, at_least=0.0)
 
 
 def _count(name: str, value: object) -> int:
-    return int(_positive(name, value))
+    return int(_at_least_0(name, value))
 
 
 @dataclass(frozen=True)

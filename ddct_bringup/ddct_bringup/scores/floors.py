@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Floors beside the scores of a run: what the drive demands, apart from what a controller adds."""
+"""Floors beside the scores of a run: the share of the drive apart from that of the controller."""
 
 import argparse
 from collections.abc import Mapping, Sequence
@@ -138,7 +138,7 @@ def scores_with_floors(
     )
 
 
-def scores_over_floors(
+def scores_with_ratios(
     scores: ScoredRun, settings: RunSettings, trajectory: Trajectory, metrics: Sequence[str]
 ) -> ScoredRun:
     """

@@ -51,11 +51,11 @@ def engine_end(recording: Recording) -> str | None:
 
 
 def _why_early(recording: Recording) -> str:
-    got, wanted = recording.trajectory.steps, recording.facts.steps
-    early = f'ended early: {got} of {wanted} steps'
+    got, planned = recording.trajectory.steps, recording.facts.steps
+    early = f'ended early: {got} of {planned} steps'
     if recording.facts.lockstep:
         return early
-    if recording.realtime.steps >= wanted:
+    if recording.realtime.steps >= planned:
         return f'{early}: the driveline took them all, but the recorder did not receive the last'
     return f'{early}: the driveline last counted at step {recording.realtime.steps}'
 

@@ -31,7 +31,7 @@ unit where it is smaller.
 _NUMBER = re.compile(r'[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?')
 
 Place = Mapping[str, Any]
-"""Where a value is, such as its signal and step, or its key."""
+"""Place of a value, such as its signal and step, or its key."""
 
 
 @dataclass(frozen=True)

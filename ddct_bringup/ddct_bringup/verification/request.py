@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""What a verification needs besides the folder: its digests, limits, files, workers."""
+"""Inputs of a verification: the folder with its digests, limits, files and workers."""
 
 from dataclasses import dataclass
 from functools import cached_property

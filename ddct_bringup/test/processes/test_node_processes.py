@@ -148,7 +148,7 @@ def test_a_node_that_ignores_signals_is_killed_at_the_end_of_the_ladder_and_name
     nodes = processes(driveline=OBEDIENT, load=DEAF)
     nodes.stop(lambda name: True)
     assert [node.process.returncode for node in nodes._nodes] == [0, -signal.SIGKILL]
-    with pytest.raises(DdctError, match='node load did not stop when asked and was killed; its'):
+    with pytest.raises(DdctError, match='node load did not stop on signals and was killed; its'):
         nodes.require_clean_end()
     nodes.__exit__()
 

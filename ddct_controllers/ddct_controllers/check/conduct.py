@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Checks that torques depend on the measurements alone: answers, prints, state, reset."""
+"""Checks that torques depend on the measurements alone: torques, prints, state, reset."""
 
 import sys
 from types import FunctionType
@@ -62,7 +62,7 @@ def own_state(subject: Subject) -> str:
             'a second object that runs beside it changes what it answers: they share an object '
             f'or a file; keep all state in the object ({place_of_method(one, "__init__")})'
         )
-    return 'nothing seen that objects share'
+    return 'objects share nothing'
 
 
 def determinism(subject: Subject) -> str:

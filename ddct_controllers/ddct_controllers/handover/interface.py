@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""What a handover receives and returns in each period, and what all handovers share."""
+"""Interface of handovers: measurement and command of a period, and the model that all share."""
 
 from typing import NamedTuple, Protocol, Self
 
@@ -49,7 +49,7 @@ class HandoverMeasurement(NamedTuple):
 
 
 class HandoverCommand(NamedTuple):
-    """What a handover commands for the coming period."""
+    """Command of a handover for the coming period."""
 
     share: float
     """Share of C_fOL that the on-coming clutch carries, 0 to 1; feedback starts with 1."""

@@ -58,7 +58,7 @@ class TimedHandover:
     def __init__(self, settings: RunSettings) -> None:
         """Start locked."""
         self._model = HandoverModel(settings)
-        self._from = 0.0
+        self._first_request = 0.0
 
     def update(self, measurement: HandoverMeasurement) -> HandoverCommand:
         """Return the command for the period of t_k."""
@@ -67,10 +67,10 @@ class TimedHandover:
             return self._model.inertia_phase(measurement)
         if elapsed <= 0:
             command = self._model.locked(measurement)
-            self._from = command.off_going_request
+            self._first_request = command.off_going_request
             return command
         share = elapsed / self._model.steps
-        return HandoverCommand(share, (1.0 - share) * self._from, 0.0)
+        return HandoverCommand(share, (1.0 - share) * self._first_request, 0.0)
 
 
 class ModelHandover:
@@ -119,7 +119,7 @@ class SlipHandover:
         self._target = shift_of(settings.scenario).handover_slip_rad_s
         self._difference: float | None = None
         """Request less the balance in N m that the slip needs; None until the clutch slips."""
-        self._rising = 0
+        self._rise_steps = 0
         self._open = False
 
     def update(self, measurement: HandoverMeasurement) -> HandoverCommand:
@@ -135,8 +135,8 @@ class SlipHandover:
                 return HandoverCommand(0.0, max((1.0 + share) * carried, 0.0), 0.0)
             # It slips by the torque of what was requested a lag before.
             self._difference = (share + SEARCH_RATE * LAG_S) * carried
-        self._rising += 1
-        share = min(self._rising / self._model.steps, 1.0)
+        self._rise_steps += 1
+        share = min(self._rise_steps / self._model.steps, 1.0)
         request = 0.0 if self._open else self._request(measurement, share)
         self._open = request <= 0.0
         if share == 1.0:

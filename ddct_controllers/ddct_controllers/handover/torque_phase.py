@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""What observers read in the torque phase of a shift, in which another clutch carries torque."""
+"""Measurements of observers in the torque phase of a shift, with torque of another clutch."""
 
 from dataclasses import replace
 

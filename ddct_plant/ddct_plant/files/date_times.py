@@ -55,7 +55,7 @@ def seconds_since_first(instants: Sequence[Instant | None]) -> list[float]:
 
 def _why_none(text: str) -> str:
     if _TIME_ALONE.fullmatch(text):
-        return 'has no date, so that midnight cannot be told'
+        return 'has no date, so that midnight is not known'
     if _DATE_ALONE.fullmatch(text):
         return 'has no time of day'
     if _OTHER_DATE.fullmatch(text):

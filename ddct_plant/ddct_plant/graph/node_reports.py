@@ -1,7 +1,7 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
 """
-What every node publishes about itself and about a run, as pairs of key and text, and their reader.
+Reports of nodes about themselves and about a run: pairs of key and text, and their reader.
 
 `run_info` is equal in the graph and in headless runs. Counts, safe states and update times exist
 in graphs only. No ROS is needed here.
@@ -86,7 +86,7 @@ def driveline_info(steps: int, fail_safe: FailSafeSettings | None = None) -> Pai
 
 
 def reference_info(preview_steps: int) -> Pairs:
-    """Return the reference's own pair: the number of periods that it looks ahead."""
+    """Return the reference's own pair: the number of periods of its preview."""
     return {'preview_steps': str(preview_steps)}
 
 

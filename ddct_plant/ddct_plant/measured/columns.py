@@ -64,7 +64,7 @@ QUANTITIES: Mapping[str, LogQuantity] = {
     'vehicle_speed': LogQuantity('V_x', 'of the car', 'vehicle_speed'),
     'vehicle_accel': LogQuantity('A_x', 'of the car', 'vehicle_accel'),
     'slip_reference': LogQuantity('', 'what w_m - w_p should be', 'slip_reference'),
-    'torque_request': LogQuantity('', 'asked of the clutch', 'torque_request'),
+    'torque_request': LogQuantity('', 'requested of the clutch', 'torque_request'),
 }
 
 OWN_HELD = ('engine_torque',)

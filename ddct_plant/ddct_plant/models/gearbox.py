@@ -1,9 +1,9 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
 """
-The gearbox: ratios of its gears, final drives, and what an engaged gear makes of a value.
+The gearbox: ratios of its gears, final drives, and the values at either side of an engaged gear.
 
-No other module knows a total ratio. They have an `EngagedGear` and ask it for the speed, the
+No other module uses a total ratio. Others have an `EngagedGear`, which returns the speed, the
 torque or the inertia at its other side.
 """
 

@@ -192,7 +192,7 @@ def _with_friction(settings: RunSettings, linear: InitialState) -> InitialState:
 
     Plates that slip transmit the kinetic capacity of the first request against their slip. Plates
     of one speed are locked, and carry the torque that keeps them so, at most the static capacity.
-    Wheels at rest are held likewise, and the shaft between them and the clutch is at rest too.
+    Wheels at rest stay so in the same way, and the shaft between them and the clutch rests too.
     """
     scenario = settings.scenario
     static = StaticTorque(scenario.driveline, scenario.equilibrium)

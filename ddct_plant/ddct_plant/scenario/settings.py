@@ -91,7 +91,7 @@ class RunSettings(OptionGroup):
         return self.scenario.shift is not None
 
     def kind(self, *, two_input: bool = False) -> RunKind:
-        """Return the kind of the run, which decides its topics; `two_input` of its controller."""
+        """Return the kind of the run, which decides its topics; `two_input` if it commands C_m."""
         return RunKind(self.lockstep, two_input, self.clutch, self.sensed, self.shift)
 
     def _require_clutch(self) -> None:

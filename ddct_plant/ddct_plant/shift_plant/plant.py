@@ -93,7 +93,7 @@ class ShiftPlant:
 
     def measured(self, step: int, outputs: ShiftOutputs) -> tuple[MeasuredSpeeds, float]:
         """
-        Return what a handover reads at step k: speeds, and the slip in rad/s of its clutch.
+        Return the measurements of a handover at step k: speeds, and its slip in rad/s.
 
         No sensor is at the off-going shaft: in a run with sensors its speed is that of the
         on-coming shaft times the ratio of the gears, which both are engaged in a handover.
@@ -106,7 +106,7 @@ class ShiftPlant:
 
     def observe(self, step: int, outputs: ShiftOutputs, torque_cut: float = 0.0) -> Observation:
         """
-        Return what a controller of the on-coming clutch receives at step k.
+        Return the observation of a controller of the on-coming clutch at step k.
 
         `torque_cut` in N m is taken off the driver's demand, within the engine's authority.
         """

@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Declaration of sensors: what a topic of sensors measures, and how lost samples are marked."""
+"""Declaration of sensors: the quantities of a topic of sensors, and the flags of lost samples."""
 
 from dataclasses import dataclass
 

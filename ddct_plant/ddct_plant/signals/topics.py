@@ -29,7 +29,7 @@ JOINTS = JointValues._fields
 SENSED_JOINTS = SensedJoints._fields
 """Joints whose speed a sensor measures."""
 BASE_LINK = 'base_link'
-"""Frame of the car's body (REP-105), x forward: of its motion, and of what joints carry."""
+"""Frame of the car's body (REP-105), x forward, for its motion and the torques of joints."""
 ENGINE_LINK, CLUTCH_LINK, WHEEL_LINK = 'engine_link', 'clutch_link', 'wheel_link'
 """Frames whose x axis is the axis on which crankshaft, clutch and wheels turn."""
 

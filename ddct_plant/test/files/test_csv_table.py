@@ -62,7 +62,7 @@ def test_a_nanosecond_between_two_rows_is_kept(tmp_path):
 BAD = {
     'day or month': ('01.05.2026 10:00:00', 'can be read with the day or the month first'),
     'slashes': ('05/01/2026 10:00', 'can be read with the day or the month first'),
-    'no date': ('10:00:00.25', 'has no date, so that midnight cannot be told'),
+    'no date': ('10:00:00.25', 'has no date, so that midnight is not known'),
     'no time': ('2026-05-01', 'has no time of day'),
     'no such day': ('2026-02-30T10:00:00', 'is no date and time that exists'),
     'a number': ('17.25', 'is no date and time of ISO 8601: write it as 2026-05-01T10:00:00.125'),

@@ -13,7 +13,7 @@ from ddct_plant.models.clutch import AMBIENT_C
 from ddct_plant.scenario.settings import RunSettings
 
 COOLER_K, WARMER_K = 2.0, 10.0
-"""How far the facing may cool down and warm up after control start in K."""
+"""Largest fall and rise of the temperature of the facing after control start in K."""
 _RESIDUAL = 1e-9
 """Difference in N m of a capacity from its law that is rounding."""
 
@@ -35,8 +35,8 @@ class CapacityRange:
     positive: bool
     """Whether the capacity is never negative, as of a clutch that sticks."""
     clipped: Mapping[int, tuple[np.ndarray, np.ndarray]] = field(default_factory=dict)
-    """By period after control start what clipping adds at the nodes at least and at most, (11,)
-    each."""
+    """Least and largest addition by clipping at the nodes, (11,) each, by period after control
+    start."""
 
     def with_run(self, settings: RunSettings, run: Trajectory, periods: range) -> 'CapacityRange':
         """Return the interval widened so that it contains the capacities of a run."""

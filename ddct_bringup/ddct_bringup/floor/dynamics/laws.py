@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Engine and load torque as affine functions of a speed, with an interval of what is left over."""
+"""Engine and load torque as affine functions of a speed, with an interval of the remainder."""
 
 from dataclasses import dataclass
 

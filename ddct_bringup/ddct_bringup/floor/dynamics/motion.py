@@ -20,11 +20,11 @@ from ddct_plant.scenario.settings import RunSettings
 @dataclass(frozen=True, eq=False)
 class Columns:
     """
-    Variables of the signals: column 0 is the constant, then requests, then what is left over.
+    Variables of the signals: column 0 is the constant, then requests, then remainders.
 
-    The requests are those from control start to the last with an effect on the signals. What the
-    laws of load, engine and capacity leave over follows, one column for each period; `low` and
-    `high` are the intervals of all variables but the constant.
+    The requests are those from control start to the last with an effect on the signals. The
+    remainders of the laws of load, engine and capacity follow, one column for each period; `low`
+    and `high` are the intervals of all variables but the constant.
     """
 
     requests: int

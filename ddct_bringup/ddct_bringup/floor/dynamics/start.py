@@ -117,7 +117,7 @@ def driving_acceleration(scenario: Scenario, torque: np.ndarray) -> np.ndarray:
 
 
 def _idle_integral(settings: RunSettings, engine_speed: np.ndarray) -> float:
-    """Return what idle control can have integrated at speeds in rad/s, (n,), at most, in N m."""
+    """Return the largest integral of idle control in N m after speeds in rad/s, (n,)."""
     limits = settings.scenario.engine_limits
     if limits is None:
         return 0.0

@@ -14,9 +14,9 @@ from ddct_plant.scenario.plant import holding_torque, make_engine, make_load
 from ddct_plant.scenario.settings import RunSettings
 
 ENGINE_MARGIN = 12.0
-"""How far in rad/s w_m may be below the common speed of a rigid car, or above after the lock."""
+"""Largest distance in rad/s of w_m below the speed of a rigid car, or above it after the lock."""
 RACING = 100.0
-"""How far in rad/s w_m may be above the rigid car with a linear slip while the plates slip."""
+"""Largest distance in rad/s of w_m above the rigid car with a linear slip, while plates slip."""
 WHEEL_MARGIN = 1.5
 """Half-width in rad/s of the band of w_r, about 0.5 m/s of the car."""
 

@@ -71,9 +71,7 @@ class GeneralisedPlant:
     def require_solvable(self) -> None:
         """Check the assumptions of the synthesis; raise DdctError that names the violated one."""
         _require_all_moved(self.system.a, self.b2, 'stabilisable', 'moved by the control')
-        _require_all_moved(
-            self.system.a.T, self.c2.T, 'detectable', 'seen in what the controller measures'
-        )
+        _require_all_moved(self.system.a.T, self.c2.T, 'detectable', 'visible in the measurements')
         if not np.any(self.d12):
             raise DdctError(
                 'generalised plant: no external output has the control in it directly (D12 is 0), '
