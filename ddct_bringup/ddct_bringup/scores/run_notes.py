@@ -27,10 +27,10 @@ def run_notes(run: ScoredRun) -> list[str]:
     if run.valid and run.fallbacks:
         notes.append(fallback_note(run))
     notes += [*slow_notes(run), *unknown_limits_notes(run)]
-    figures: dict[str, list[str]] = {}
+    names_by_reason: dict[str, list[str]] = {}
     for name, why in run.not_computed.items():
-        figures.setdefault(why, []).append(name)
-    notes += [f'{why}: no {", ".join(names)}' for why, names in figures.items()]
+        names_by_reason.setdefault(why, []).append(name)
+    notes += [f'{why}: no {", ".join(names)}' for why, names in names_by_reason.items()]
     if run.before_schema:
         notes.append('recorded before scenarios had a schema_version: judged by what it holds')
     return notes

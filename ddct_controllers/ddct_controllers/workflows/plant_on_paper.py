@@ -63,7 +63,7 @@ class StateSpaceEntry(TypedDict):
     D: list[list[float]]
 
 
-class FunctionEntry(TypedDict):
+class PlantFunction(TypedDict):
     """One transfer function from an input to an output."""
 
     input: str
@@ -91,7 +91,7 @@ class PlantOnPaper(TypedDict):
     parameters: dict[str, ParameterEntry]
     """Parameters by their symbol in the thesis."""
     state_space: StateSpaceEntry
-    transfer_functions: dict[str, FunctionEntry]
+    transfer_functions: dict[str, PlantFunction]
     """Transfer functions by their symbol."""
     actuator_delay_s: float
     c_fol: dict[str, StaticFactor]
@@ -150,7 +150,7 @@ def _rows(matrix: np.ndarray) -> list[list[float]]:
     return rows
 
 
-def _function_entry(source: str, output: str, function: FactoredTransferFunction) -> FunctionEntry:
+def _function_entry(source: str, output: str, function: FactoredTransferFunction) -> PlantFunction:
     return {
         'input': source,
         'output': output,

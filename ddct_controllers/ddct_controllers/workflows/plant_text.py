@@ -7,10 +7,10 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from ddct_controllers.design.state_space import factors_text
-from ddct_controllers.workflows.plant_on_paper import MATRICES, FunctionEntry, PlantOnPaper
+from ddct_controllers.workflows.plant_on_paper import MATRICES, PlantFunction, PlantOnPaper
 
 
-def factored_text(entry: FunctionEntry) -> str:
+def factored_text(entry: PlantFunction) -> str:
     """Return a transfer function as the thesis prints it: gain (s + a) (s^2 + b s + c) / [...]."""
     above, below = (
         factors_text(side, digits=6) for side in (entry['numerator'], entry['denominator'])

@@ -29,8 +29,8 @@ from ddct_bringup.reproduction.calibration.record_types import (
     CalibrationRecord,
     CheckRecord,
     DerivedEntry,
+    FittedParameterEntry,
     OptimumEntry,
-    ParameterEntry,
 )
 from ddct_bringup.reproduction.calibration.search import Progress, lowest_stable, search
 from ddct_bringup.thesis.table_5_1 import TOLERANCES
@@ -107,7 +107,7 @@ def check_frozen(scenario: Scenario, progress: Progress) -> CheckRecord:
 
 def _parameters(
     values: Sequence[float], frozen: Sequence[float], analysis: Identifiability
-) -> list[ParameterEntry]:
+) -> list[FittedParameterEntry]:
     shares = (np.array(values) - LOWER) / RANGE
     near = np.minimum(shares, 1.0 - shares) < 1e-3
     return [

@@ -61,7 +61,7 @@ class AssumptionEntry(FitEntry):
     """Name of the change."""
 
 
-class ParameterEntry(TypedDict):
+class FittedParameterEntry(TypedDict):
     """One fitted parameter."""
 
     name: str
@@ -125,7 +125,7 @@ class CalibrationRecord(TypedDict):
     objective: ObjectiveEntry
     score_window_s: list[float]
     """Start and end of the score window in s."""
-    parameters: list[ParameterEntry]
+    parameters: list[FittedParameterEntry]
     torque_and_slopes: list[DerivedEntry]
     residuals: list[ResidualEntry]
     """Residuals at the values of the scenario file."""

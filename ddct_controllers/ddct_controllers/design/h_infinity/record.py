@@ -20,9 +20,9 @@ from ddct_controllers.design.function_entry import function_entry
 from ddct_controllers.design.h_infinity.design import HinfDesign
 from ddct_controllers.design.h_infinity.recipes import HinfWeights
 from ddct_controllers.design.h_infinity.record_types import (
-    DesignRecord,
+    HinfProvenance,
+    HinfRecord,
     LoopEntry,
-    Provenance,
     UncertaintyRecord,
 )
 from ddct_controllers.design.h_infinity.uncertainty import (
@@ -48,7 +48,7 @@ def design_record(
     specifications: TimeSpecifications,
     design: HinfDesign,
     corners: PlantCorners,
-) -> DesignRecord:
+) -> HinfRecord:
     """Return a design and its verified quantities, at `corners` over wear and parameters too."""
     found = design.synthesis
     worst = worst_corner(design.sampled, corners)
@@ -74,7 +74,7 @@ def design_record(
     }
 
 
-def shortfalls(record: DesignRecord) -> list[str]:
+def shortfalls(record: HinfRecord) -> list[str]:
     """Return the specifications that a design with its corners does not meet, empty if none."""
     specified, loop, corners = record['specifications'], record['sampled_loop'], record['corners']
     if not loop['stable']:
@@ -97,7 +97,9 @@ def shortfalls(record: DesignRecord) -> list[str]:
     return found
 
 
-def provenance(recipe: str, specifications: TimeSpecifications, design: HinfDesign) -> Provenance:
+def provenance(
+    recipe: str, specifications: TimeSpecifications, design: HinfDesign
+) -> HinfProvenance:
     """Return the provenance of a design for the controller's file."""
     weights = design.weights
     w_s, w_t, effort = weights.sensitivity, weights.complementary, weights.effort

@@ -9,7 +9,7 @@ from ddct_controllers.design.analysis.margins import MarginEntry
 from ddct_controllers.design.function_entry import FunctionEntry
 
 
-class SpecificationEntry(TypedDict):
+class HinfSpecifications(TypedDict):
     """Time specifications, and their bounds by the second-order prototype."""
 
     rise_time_s: float
@@ -82,11 +82,11 @@ class LoopsEntry(TypedDict):
     sampled_loop: LoopEntry
 
 
-class Provenance(LoopsEntry):
+class HinfProvenance(LoopsEntry):
     """Provenance of a design, as it stands in the controller's file."""
 
     method: str
-    specifications: SpecificationEntry
+    specifications: HinfSpecifications
     weights: WeightEntry
     gamma: float
     cleaning: list[CleaningEntry]
@@ -101,7 +101,7 @@ class SynthesisEntry(TypedDict):
     gamma: float
 
 
-class CornersEntry(TypedDict):
+class HinfCorners(TypedDict):
     """Sampled loops at the corners of the driveline, over wear; the worst of them."""
 
     corners: int
@@ -115,7 +115,7 @@ class CornersEntry(TypedDict):
     """Multiples of the driveline's nominal parameters at the worst corner, by name."""
 
 
-class DesignRecord(Provenance):
+class HinfRecord(HinfProvenance):
     """A design and its verified quantities."""
 
     name: str
@@ -126,7 +126,7 @@ class DesignRecord(Provenance):
     """Controller after cleaning, in the same variable."""
     pulse_transfer_function: FunctionEntry
     """Controller G_c(z) as it runs."""
-    corners: CornersEntry
+    corners: HinfCorners
 
 
 class UncertaintyRecord(TypedDict):

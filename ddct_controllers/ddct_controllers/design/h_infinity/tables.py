@@ -6,10 +6,10 @@ from collections.abc import Mapping, Sequence
 
 from ddct_controllers.design.analysis.loop_quantities import DESIGN_QUANTITY_OF
 from ddct_controllers.design.h_infinity.record_types import (
-    DesignRecord,
+    HinfRecord,
+    HinfSpecifications,
     LoopEntry,
     LoopsEntry,
-    SpecificationEntry,
     UncertaintyRecord,
 )
 from ddct_controllers.design.state_space import factors_text
@@ -40,7 +40,7 @@ _WEIGHTS = (
 
 
 def design_tables(
-    records: Sequence[DesignRecord], uncertainty: UncertaintyRecord
+    records: Sequence[HinfRecord], uncertainty: UncertaintyRecord
 ) -> dict[str, Table]:
     """Return the tables of designs for one specification, by their names on the page."""
     return {
@@ -80,7 +80,7 @@ def loop_table(loops: Mapping[str, LoopsEntry]) -> Table:
     )
 
 
-def _specification_table(specified: SpecificationEntry) -> Table:
+def _specification_table(specified: HinfSpecifications) -> Table:
     return Table(
         'Specifications, translated by the second-order prototype',
         ('t_r s', 's^ %', 'zeta', 'S_p', 'T_p', 'w_n rad/s'),
@@ -97,7 +97,7 @@ def _specification_table(specified: SpecificationEntry) -> Table:
     )
 
 
-def _weight_table(records: Sequence[DesignRecord]) -> Table:
+def _weight_table(records: Sequence[HinfRecord]) -> Table:
     return Table(
         'Weights',
         ('controller', 'recipe', *(heading for heading, _, _ in _WEIGHTS), 'hold, delay in plant'),
@@ -136,7 +136,7 @@ def _uncertainty_table(found: UncertaintyRecord) -> Table:
     )
 
 
-def _synthesis_table(records: Sequence[DesignRecord]) -> Table:
+def _synthesis_table(records: Sequence[HinfRecord]) -> Table:
     return Table(
         'Synthesis: norms of the closed loop with the weights',
         ('controller', 'method', 'optimum', 'lower bound', 'taken'),
@@ -153,7 +153,7 @@ def _synthesis_table(records: Sequence[DesignRecord]) -> Table:
     )
 
 
-def _controller_table(records: Sequence[DesignRecord]) -> Table:
+def _controller_table(records: Sequence[HinfRecord]) -> Table:
     return Table(
         'Controllers in N m/rpm; the sampled design is discretised by the bilinear transform',
         ('controller', 'form', 'gain', 'numerator', 'denominator'),
@@ -175,7 +175,7 @@ def _controller_table(records: Sequence[DesignRecord]) -> Table:
     )
 
 
-def _corner_table(records: Sequence[DesignRecord]) -> Table:
+def _corner_table(records: Sequence[HinfRecord]) -> Table:
     return Table(
         'Worst of wear 0.7 to 1.3 and all driveline parameters +-20 %, sampled loop',
         ('controller', 'corners', 'unstable', 'M_s', 'K_usura', 'at'),

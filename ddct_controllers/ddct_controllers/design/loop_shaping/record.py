@@ -24,10 +24,10 @@ from ddct_controllers.design.loop_shaping.design import (
 )
 from ddct_controllers.design.loop_shaping.record_types import (
     ContourEntry,
-    DesignRecord,
     LoopEntry,
+    LoopShapingProvenance,
+    LoopShapingRecord,
     PlacementEntry,
-    Provenance,
     ThesisRecord,
 )
 from ddct_controllers.design.loop_shaping.search import LoopShapingDesign
@@ -61,7 +61,7 @@ def thesis_record() -> ThesisRecord:
     }
 
 
-def design_record(name: str, design: LoopShapingDesign) -> DesignRecord:
+def design_record(name: str, design: LoopShapingDesign) -> LoopShapingRecord:
     """Return a design and its verified quantities."""
     found = design.verification
     return {
@@ -72,7 +72,7 @@ def design_record(name: str, design: LoopShapingDesign) -> DesignRecord:
     }
 
 
-def provenance(design: LoopShapingDesign) -> Provenance:
+def provenance(design: LoopShapingDesign) -> LoopShapingProvenance:
     """Return the provenance of a design for the controller's file."""
     found = design.verification
     specifications = found.specifications

@@ -60,7 +60,7 @@ class ThesisRecord(TypedDict):
     loops: list[ThesisLoopEntry]
 
 
-class SpecificationEntry(TypedDict):
+class LoopShapingSpecifications(TypedDict):
     """Time specifications, and their bounds by the second-order prototype."""
 
     rise_time_s: float
@@ -81,18 +81,18 @@ class SampledLoopEntry(MarginEntry):
     """Whether the loop is stable, by the wear gain as text."""
 
 
-class Provenance(TypedDict):
+class LoopShapingProvenance(TypedDict):
     """Provenance of a design, as it stands in the controller's file."""
 
     method: str
     structure: str
     integrators: int
     """Number of integrators."""
-    specifications: SpecificationEntry
+    specifications: LoopShapingSpecifications
     sampled_loop: SampledLoopEntry
 
 
-class DesignRecord(Provenance):
+class LoopShapingRecord(LoopShapingProvenance):
     """A design and its verified quantities."""
 
     name: str

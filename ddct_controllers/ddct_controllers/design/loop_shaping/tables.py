@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from ddct_controllers.design.analysis.loop_quantities import DESIGN_QUANTITY_OF
 from ddct_controllers.design.loop_shaping.record_types import (
     ContourEntry,
-    DesignRecord,
     LoopEntry,
+    LoopShapingRecord,
     PlacementEntry,
     ThesisRecord,
 )
@@ -55,7 +55,7 @@ def thesis_tables(record: ThesisRecord) -> dict[str, Table]:
     }
 
 
-def design_tables(record: DesignRecord) -> tuple[Table, Table]:
+def design_tables(record: LoopShapingRecord) -> tuple[Table, Table]:
     """Return the tables of `design_record`: specified and reached quantities, and G_c(s)."""
     specified, found = record['specifications'], record['sampled_loop']
     overshoot = None if found['overshoot'] is None else 100.0 * found['overshoot']
