@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
-from typing import Any
 
 import numpy as np
 
@@ -119,7 +118,7 @@ class Results:
 
     def alike(self, rows: np.ndarray, keys: Sequence[str]) -> list[np.ndarray]:
         """Return rows in parts with equal values of the keys."""
-        found: dict[tuple[Any, ...], list[int]] = {}
+        found: dict[tuple[object, ...], list[int]] = {}
         values = zip(*(self.columns[key][rows].tolist() for key in keys), strict=True)
         for row, of_row in zip(rows, values, strict=True):
             found.setdefault(of_row, []).append(row)

@@ -2,8 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Friction work of an engagement relative to the minimum for a rigid car."""
 
-from typing import Any
-
 import numpy as np
 import scipy
 
@@ -22,7 +20,9 @@ def slips_at(trajectory: Trajectory, start: int) -> np.ndarray:
     return np.any(np.abs(slip) >= rad_s_from_rpm(LEAST_SLIP_RPM), axis=-1)
 
 
-def work_over_least(trajectory: Trajectory, start: int, plant: JudgedPlant | None) -> Any:
+def work_over_least(
+    trajectory: Trajectory, start: int, plant: JudgedPlant | None
+) -> np.ndarray | None:
     """
     Return the friction work from step `start` on over J_m J_eq/(J_m + J_eq) w_d^2/2, (...).
 
