@@ -10,15 +10,14 @@ repeated sample was the frame 'held' in the header, or the effort of a measured 
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from ddct_plant.signals.tables.sensors import ENGINE_SENSOR_STATUS, SENSOR_STATUS
 from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import (
     CONTROLLER_STATUS,
-    ENGINE_SENSOR_STATUS,
     SENSED_ENGINE_TORQUE,
     SENSED_JOINT_STATES,
     SENSED_SLIP,
     SENSED_VEHICLE_SPEED,
-    SENSOR_STATUS,
     TORQUE_PARTS,
 )
 

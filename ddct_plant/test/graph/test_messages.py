@@ -15,6 +15,8 @@ from ddct_plant.base.errors import DdctError  # noqa: E402
 from ddct_plant.base.timebase import stamp_of_step  # noqa: E402
 from ddct_plant.signals import topics  # noqa: E402
 from ddct_plant.signals.message_kind import NS_PER_S, Scalar, stamp_ns  # noqa: E402
+from ddct_plant.signals.tables import sensors  # noqa: E402
+from ddct_plant.signals.tables.rows import JOINTS  # noqa: E402
 
 STAMP = stamp_of_step(123)
 LATER = stamp_of_step(124)
@@ -102,20 +104,20 @@ def test_a_share_of_the_handover_is_within_zero_and_one():
 
 
 def test_a_lost_sample_is_a_stale_status_of_its_name():
-    write = topics.SENSOR_STATUS.writer()
+    write = sensors.SENSOR_STATUS.writer()
     some = write(STAMP, [0.0, 1.0, 0.0], 1.0, 0.0)
     names = ['engine', 'primary_shaft', 'wheel', 'slip', 'vehicle']
     assert [each.name for each in some.status] == names
     stale = rclpy_diagnostics.DiagnosticStatus.STALE
     assert [each.level == stale for each in some.status] == [False, True, False, True, False]
-    assert topics.SENSOR_STATUS.values(some) == ([0.0, 1.0, 0.0], 1.0, 0.0)
+    assert sensors.SENSOR_STATUS.values(some) == ([0.0, 1.0, 0.0], 1.0, 0.0)
     none = write(LATER, [0.0] * 3, 0.0, 0.0)
-    assert topics.SENSOR_STATUS.values(none) == ([0.0] * 3, 0.0, 0.0)
-    estimate = topics.ENGINE_SENSOR_STATUS
+    assert sensors.SENSOR_STATUS.values(none) == ([0.0] * 3, 0.0, 0.0)
+    estimate = sensors.ENGINE_SENSOR_STATUS
     assert estimate.values(estimate.message(STAMP, 1.0)) == (1.0,)
     none.status = none.status[:-1]
     with pytest.raises(LookupError, match='vehicle'):
-        topics.SENSOR_STATUS.values(none)
+        sensors.SENSOR_STATUS.values(none)
 
 
 def test_sensed_joints_have_speeds_alone_and_leave_no_array_empty_at_the_end():
@@ -166,7 +168,7 @@ def test_single_values_are_in_the_field_of_the_interfaces_page(topic, field):
 def test_joint_states_are_named_and_never_leave_an_array_empty():
     write = topics.JOINT_STATES.writer()
     first = write(STAMP, [1.0, 2, 3, 4], (5, 6, 7, 8), [9, 10, 11, 12])
-    assert tuple(first.name) == topics.JOINTS
+    assert tuple(first.name) == JOINTS
     assert list(first.position) == [1.0, 2.0, 3.0, 4.0]
     assert list(first.velocity) == [5.0, 6.0, 7.0, 8.0]
     assert list(first.effort) == [9.0, 10.0, 11.0, 12.0]
