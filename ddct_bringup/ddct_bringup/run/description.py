@@ -13,7 +13,7 @@ from ddct_plant.graph.node_names import name_in_graph
 from ddct_plant.graph.node_reports import node_info
 from ddct_plant.program.command_line import package_version
 from ddct_plant.scenario.file import scenario_to_yaml
-from ddct_plant.scenario.settings import OF_SHIFTS, RunSettings
+from ddct_plant.scenario.settings import RunSettings
 
 UNKNOWN = 'unknown'
 DIRTY = '-dirty'
@@ -37,7 +37,8 @@ def facts_of(settings: RunSettings, controller: str, steps: int) -> RunFacts:
         control_start_s=scenario.control_start_s,
         score_window_s=scenario.score_window_s,
         duration_s=time_of_step(steps),
-        **({name: getattr(settings, name) for name in OF_SHIFTS} if settings.shift else {}),
+        off_going_wear_gain=settings.off_going_wear_gain if settings.shift else None,
+        handover=settings.handover_name if settings.shift else None,
     )
 
 

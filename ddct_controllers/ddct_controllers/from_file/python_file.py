@@ -9,6 +9,7 @@ import sys
 from functools import lru_cache
 from pathlib import Path
 from types import ModuleType
+from typing import TypeVar
 
 from ddct_controllers.factories import factory_spec
 from ddct_controllers.interface import Controller, ControllerSpec
@@ -16,6 +17,7 @@ from ddct_controllers.places import place_of_error
 from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError, ParameterError, require_name
 from ddct_plant.files.input_file import located, user_text
 
+Base = TypeVar('Base')
 SUFFIX = '.py'
 _PAGE = 'docs/controllers/writing_a_controller.md'
 
@@ -30,7 +32,7 @@ def python_spec(file: str) -> ControllerSpec[Controller]:
     path = Path(file)
     with located(f'controller file {path}'):
         text = user_text(path)
-        made = _the_one_controller(_module(path.resolve(), text))
+        made = _the_one(Controller, _module(path.resolve(), text), _PAGE)  # type: ignore[type-abstract]
         require_name('controller name', made.__name__)
         spec = factory_spec(made.__name__, made, str(path))
     digest = hashlib.sha256(text.encode()).hexdigest()
@@ -41,6 +43,18 @@ def python_spec(file: str) -> ControllerSpec[Controller]:
         spec.computed_from,
         {'controller_file_sha256': digest},
     )
+
+
+def the_one_class(file: str, base: type[Base], page: str) -> type[Base]:
+    """
+    Return the one class of `base` that a Python file defines; `page` says how it is written.
+
+    Raise DdctError that names the file where it cannot be loaded, ParameterError where it does not
+    define one.
+    """
+    path = Path(file)
+    with located(f'{base.__name__.lower()} file {path}'):
+        return _the_one(base, _module(path.resolve(), user_text(path)), page)
 
 
 def module_name(file: str) -> str:
@@ -70,23 +84,22 @@ def _module(path: Path, text: str) -> ModuleType:
     return module
 
 
-def _the_one_controller(module: ModuleType) -> type[Controller]:
+def _the_one(base: type[Base], module: ModuleType, page: str) -> type[Base]:
     """Return the class; one with abstract methods counts only if there is no other."""
     defined = [
         value
         for value in vars(module).values()
         if inspect.isclass(value)
-        and issubclass(value, Controller)
+        and issubclass(value, base)
         and value.__module__ == module.__name__
     ]
     found = [each for each in defined if not inspect.isabstract(each)] or defined
     if not found:
         raise ParameterError(
-            f'it defines no class of ddct_controllers.interface.Controller: write one ({_PAGE})'
+            f'it defines no class of {base.__module__}.{base.__name__}: write one ({page})'
         )
     if len(found) > 1:
         names = ', '.join(each.__name__ for each in found)
-        raise ParameterError(
-            f'it defines {len(found)} controllers, {names}: keep one in each file'
-        )
+        kind = f'{base.__name__.lower()}s'
+        raise ParameterError(f'it defines {len(found)} {kind}, {names}: keep one in each file')
     return found[0]

@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Interface of handovers: measurement and command of a period, and the model that all share."""
 
-from typing import NamedTuple, Protocol, Self
+from abc import ABC, abstractmethod
+from typing import NamedTuple, Self
 
 from ddct_plant.base.timebase import steps_in, time_of_step
 from ddct_plant.models.load import RoadLoad
@@ -59,9 +60,14 @@ class HandoverCommand(NamedTuple):
     """Torque in N m that is taken off the driver's demand."""
 
 
-class Handover(Protocol):
-    """A law of the handover, called once per period, in order."""
+class Handover(ABC):
+    """A law of the handover, made for a run, called once per period, in order."""
 
+    def __init__(self, settings: RunSettings) -> None:
+        """Start before the shift; a law with parameters or state overrides this."""
+        super().__init__()
+
+    @abstractmethod
     def update(self, measurement: HandoverMeasurement) -> HandoverCommand:
         """Return the command for the period of t_k."""
 

@@ -10,7 +10,7 @@ from ddct_controllers.handover.interface import (
     HandoverMeasurement,
     HandoverModel,
 )
-from ddct_plant.base.errors import require_choice
+from ddct_controllers.handover.third_party import third_party_handover
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.scenario.shift_rules import shift_of
@@ -47,7 +47,7 @@ SEARCH_STEPS = 40
 """Longest search in periods: a clutch that does not slip by then hands over all the same."""
 
 
-class TimedHandover:
+class TimedHandover(Handover):
     """
     Both clutches follow ramps of time, without a measurement.
 
@@ -57,6 +57,7 @@ class TimedHandover:
 
     def __init__(self, settings: RunSettings) -> None:
         """Start locked."""
+        super().__init__(settings)
         self._model = HandoverModel(settings)
         self._first_request = 0.0
 
@@ -73,7 +74,7 @@ class TimedHandover:
         return HandoverCommand(share, (1.0 - share) * self._first_request, 0.0)
 
 
-class ModelHandover:
+class ModelHandover(Handover):
     """
     The off-going clutch follows the torque balance of the rigid car.
 
@@ -85,6 +86,7 @@ class ModelHandover:
 
     def __init__(self, settings: RunSettings) -> None:
         """Start locked."""
+        super().__init__(settings)
         self._model = HandoverModel(settings)
 
     def update(self, measurement: HandoverMeasurement) -> HandoverCommand:
@@ -100,7 +102,7 @@ class ModelHandover:
         return HandoverCommand(share, MARGIN * max(carried, 0.0), 0.0)
 
 
-class SlipHandover:
+class SlipHandover(Handover):
     """
     The off-going clutch slips a little, under feedback, until it carries nothing.
 
@@ -115,6 +117,7 @@ class SlipHandover:
 
     def __init__(self, settings: RunSettings) -> None:
         """Start locked."""
+        super().__init__(settings)
         self._model = HandoverModel(settings)
         self._target = shift_of(settings.scenario).handover_slip_rad_s
         self._difference: float | None = None
@@ -161,6 +164,10 @@ HANDOVERS: Mapping[str, Callable[[RunSettings], Handover]] = {
 
 
 def make_handover(settings: RunSettings) -> Handover:
-    """Return the handover of a run; raise ParameterError for an unknown name."""
-    require_choice('handover', settings.handover, tuple(HANDOVERS))
-    return HANDOVERS[settings.handover](settings)
+    """
+    Return the handover of a run: one of ours by name, or a third party's.
+
+    Raise ParameterError for an unknown name, DdctError for code of others that fails.
+    """
+    made = HANDOVERS.get(settings.handover)
+    return made(settings) if made else third_party_handover(settings, HANDOVERS)

@@ -59,7 +59,7 @@ def run_info_pairs(settings: RunSettings, own: Mapping[str, str] | None = None) 
 
 def _of_shift(settings: RunSettings) -> Pairs:
     wear_gain = repr(settings.off_going_wear_gain)
-    return {'off_going_wear_gain': wear_gain, 'handover': settings.handover}
+    return {'off_going_wear_gain': wear_gain, 'handover': settings.handover_name}
 
 
 def engine_info(two_input: bool, request_timeout_s: float = REQUEST_TIMEOUT_S) -> Pairs:

@@ -43,7 +43,7 @@ class RunSettings(OptionGroup):
     handover: str = option(
         'model',
         'how the torque goes from the off-going to the on-coming clutch, in a gear shift only: '
-        'timed, slip, model',
+        'timed, slip, model, one of another package, or a Python file',
     )
 
     def __post_init__(self) -> None:
@@ -89,6 +89,11 @@ class RunSettings(OptionGroup):
     def shift(self) -> bool:
         """Whether the run is a gear shift with two clutches, as the scenario has one."""
         return self.scenario.shift is not None
+
+    @property
+    def handover_name(self) -> str:
+        """Name of the handover in bags and tables: of a file its name without the ending."""
+        return self.handover.rpartition('/')[2].removesuffix('.py')
 
     def kind(self, *, two_input: bool = False) -> RunKind:
         """Return the kind of the run, which decides its topics; `two_input` if it commands C_m."""

@@ -1,0 +1,102 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Handovers of third parties: by the name of an entry point, or in a file of Python."""
+
+import importlib.metadata
+from collections.abc import Callable, Iterable
+from typing import Any
+
+from ddct_controllers.from_file.python_file import SUFFIX, the_one_class
+from ddct_controllers.handover.interface import Handover, HandoverCommand, HandoverMeasurement
+from ddct_controllers.places import place_of_error
+from ddct_plant.base.errors import (
+    FOREIGN_FAILURES,
+    DdctError,
+    ForeignError,
+    ParameterError,
+    require_number,
+)
+from ddct_plant.scenario.settings import RunSettings
+
+ENTRY_POINT_GROUP = 'ddct.handovers'
+"""Entry point group of handovers, `name = module:Class`; the class takes a RunSettings."""
+_PAGE = 'docs/develop/gear_shift.md'
+
+
+def third_party_handover(settings: RunSettings, own: Iterable[str]) -> Handover:
+    """
+    Return the handover that the run's settings name, with its commands checked.
+
+    `own` are the names of ours, for the error about an unknown one. Raise ParameterError for that
+    error, DdctError where the code cannot be loaded or fails.
+    """
+    name = settings.handover
+    made: Callable[[RunSettings], Any]
+    if name.endswith(SUFFIX):
+        made = the_one_class(name, Handover, _PAGE)
+    else:
+        made = _entry_point(name, own)
+    try:
+        handover = made(settings)
+    except DdctError:
+        raise
+    except FOREIGN_FAILURES as error:
+        raise ForeignError(_failure(name, made, 'cannot be made', error)) from error
+    if not isinstance(handover, Handover):
+        raise DdctError(
+            f'handover {name!r}: {made!r} returned {type(handover).__name__}, not a '
+            'ddct_controllers.handover.interface.Handover'
+        )
+    return _Checked(settings, handover)
+
+
+def _entry_point(name: str, own: Iterable[str]) -> Callable[[RunSettings], Any]:
+    points = importlib.metadata.entry_points(group=ENTRY_POINT_GROUP)
+    for point in points.select(name=name):
+        try:
+            found: Callable[[RunSettings], Any] = point.load()
+        except FOREIGN_FAILURES as error:
+            raise DdctError(
+                f'handover {name!r}: the entry point {point.value} cannot be loaded '
+                f'({type(error).__name__}: {error}): mend or uninstall the package that adds it'
+            ) from error
+        return found
+    names = [*own, *sorted(point.name for point in points)]
+    raise ParameterError(
+        f'unknown handover {name!r}: choose from {", ".join(names)}, or give the path of a Python '
+        'file',
+        key='handover',
+    )
+
+
+class _Checked(Handover):
+    """A handover of others, whose failures and commands name it."""
+
+    def __init__(self, settings: RunSettings, handover: Handover) -> None:
+        super().__init__(settings)
+        self._name, self._handover = settings.handover, handover
+
+    def update(self, measurement: HandoverMeasurement) -> HandoverCommand:
+        """Return its command; raise DdctError for a failure, or for values out of range."""
+        try:
+            command = self._handover.update(measurement)
+        except FOREIGN_FAILURES as error:
+            when = f'failed at step {measurement.step}'
+            raise ForeignError(_failure(self._name, type(self._handover), when, error)) from error
+        if not isinstance(command, HandoverCommand):
+            raise DdctError(
+                f'handover {self._name!r}: its answer at step {measurement.step} is of type '
+                f'{type(command).__name__}: return a HandoverCommand'
+            )
+        where = f'handover {self._name!r}, step {measurement.step}:'
+        return HandoverCommand(
+            require_number(f'{where} share', command.share, at_least=0.0, at_most=1.0),
+            require_number(f'{where} off_going_request', command.off_going_request),
+            require_number(f'{where} torque_cut', command.torque_cut, at_least=0.0),
+        )
+
+
+def _failure(name: str, made: Any, when: str, error: BaseException) -> str:
+    place = place_of_error(error, str(getattr(made, '__module__', '')).partition('.')[0])
+    where = f', in {place}' if place else ''
+    return f'handover {name!r} {when} ({type(error).__name__}: {error}{where}): mend its code'
