@@ -24,6 +24,8 @@ from ddct_controllers.mpc.export.export_controller import export_controller
 from ddct_controllers.registry import controller_spec, make_controller
 from ddct_plant.base.errors import DdctError
 from ddct_plant.program.workers import in_processes
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
 
 TOLERANCE_N_M = 1e-6
 """Tolerance in N m, as between the C and Python of a controller: both solvers leave about 1e-9."""
@@ -51,9 +53,9 @@ def library(tmp_path):
 def exported(tmp_path):
     """Return a function that exports and compiles a controller, and returns its YAML file."""
 
-    def make(name: str) -> str:
+    def make(name: str, settings: RunSettings = SETTINGS) -> str:
         folder = tmp_path / name
-        export_controller(make_controller(name, SETTINGS), name, SETTINGS, folder)
+        export_controller(make_controller(name, settings), name, settings, folder)
         sources = ('ddct_mpc.c', 'ddct_mpc_library.c')
         compile_c(folder, '-O2', '-shared', '-fPIC', *sources, '-o', 'ddct_mpc.so')
         file = folder / 'mpc.yaml'
@@ -76,6 +78,15 @@ def test_the_exported_mpc_run_from_its_file_gives_the_torques_of_python(exported
     assert np.abs(found.torque_request - expected.torque_request).max() <= TOLERANCE_N_M
     assert np.abs(found.engine_torque - expected.engine_torque).max() <= TOLERANCE_N_M
     assert np.ptp(expected.torque_request[60:]) > 1.0, 'this run asks nothing of the controller'
+
+
+def test_in_a_shift_the_exported_mpc_starts_as_that_of_python_does(exported):
+    scenario = load_scenario('upshift', ['duration_s=1.6'], clutch='stick_slip')
+    shift = RunSettings(scenario, clutch='stick_slip')
+    expected = run_headless(shift, 'mpc_offset_free')
+    found = run_headless(shift, exported('mpc_offset_free', shift))
+    assert np.abs(found.torque_request - expected.torque_request).max() <= TOLERANCE_N_M
+    assert expected.closed_loop_torque.max() > 10.0, 'this run asks nothing of the controller'
 
 
 def test_the_template_is_a_pi_controller(library):
