@@ -6,9 +6,11 @@ import pytest
 from support.in_process_graph import GraphOf, node_class
 from support.runs import plan
 
-from ddct_bringup.processes.graph_nodes import NODE_NAMES
+from ddct_bringup.processes.graph_nodes import GRAPH_NODES
 from ddct_bringup.record import recorder_node
 from ddct_plant.graph.node import GraphNode
+
+NODE_NAMES = [node.name for node in GRAPH_NODES]
 
 
 def test_a_waiting_recorder_names_the_missing_nodes(

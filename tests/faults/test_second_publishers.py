@@ -12,7 +12,7 @@ from support.processes import START_S, Programs
 from support.runs import expected, plan
 
 from ddct_bringup.bag.reader import read_bag
-from ddct_bringup.processes.graph_nodes import NODE_NAMES
+from ddct_bringup.processes.graph_nodes import GRAPH_NODES
 from ddct_plant.graph import sole_publishers
 from ddct_plant.graph.qos import RECORDER_QOS
 from ddct_plant.models.driveline import DrivelineOutputs
@@ -32,6 +32,7 @@ STALL_S = 0.03
 LOOP = [topic for topic in TOPICS if topic.every_tick]
 ECHOED = [topic for topic in LOOP if topic not in SHIFT_TOPICS] + [OFF_GOING_CLUTCH_TORQUE]
 """Topics of the loop of other runs, and one of a shift, where the check is the same."""
+NODE_NAMES = [node.name for node in GRAPH_NODES]
 COPIED = [*(name for name in NODE_NAMES if name != 'recorder'), 'handover', 'off_going/actuator']
 
 

@@ -63,9 +63,6 @@ SHIFT_NODES: Sequence[NodeSpec] = (
 NODE_PROGRAMS: Sequence[NodeSpec] = (*GRAPH_NODES, HANDOVER)
 """Nodes with a program of their own, which the off-going side shares."""
 
-NODE_NAMES = tuple(node.name for node in GRAPH_NODES)
-"""Names of the nodes of every run, in start order."""
-
 ANSWER_TIMEOUT_S = 20.0
 """Wall time within which a node of a supervised graph must answer, s."""
 

@@ -5,7 +5,7 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from ddct_bringup.processes.graph_nodes import ANSWER_TIMEOUT_S, SHIFT_NODES
+from ddct_bringup.processes.graph_nodes import ANSWER_TIMEOUT_S, nodes_of
 from ddct_controllers.architecture import make_architecture
 from ddct_controllers.handover.laws import make_handover
 from ddct_controllers.registry import Chosen, controller_label, make_controller
@@ -78,7 +78,11 @@ class RunPlan:
             'reference': {'preview_steps': controller.preview_steps},
             'controller': {'controller': self.controller},
             'driveline': {'require_recorder': True, 'answer_timeout_s': ANSWER_TIMEOUT_S},
-            **{node.path: {'role': OFF_GOING} for node in SHIFT_NODES if node.namespace},
+            **{
+                node.path: {'role': OFF_GOING}
+                for node in nodes_of(shift=self.settings.shift)
+                if node.namespace
+            },
         }
 
     def write_parameter_file(self, folder: Path, work: Path) -> Path:
