@@ -101,7 +101,8 @@ def _run_of(entry: Mapping[str, Any]) -> ScoredRun:
     verdict = _verdict_of(entry['verdict'])
     metrics = entry['metrics']
     of_verdict = (each.key for each in CRITERIA if each.key not in verdict.values)
-    missing = [key for key in METRICS if key not in metrics]
+    # Older scores are of no gear shift, so that its metrics are null as in any other run.
+    missing = [key for key in METRICS if key not in metrics and not METRICS[key].of_shift]
     missing += of_verdict if verdict.criteria else ()
     changes = entry['scenario_changes']
     return ScoredRun(

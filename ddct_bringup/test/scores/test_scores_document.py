@@ -11,7 +11,7 @@ import pytest
 from made_run import made_run, times
 from made_scores import made_result, made_scores, made_verdict
 
-from ddct_bringup.metrics.catalogue import CRITERIA, METRICS
+from ddct_bringup.metrics.catalogue import CRITERIA, METRICS, OF_SHIFT
 from ddct_bringup.metrics.engagement import Engagement
 from ddct_bringup.metrics.metric import criterion
 from ddct_bringup.scores.document import NO_SUCH_METRIC, read_scores, scores_document
@@ -103,3 +103,14 @@ def test_scores_from_before_floors_are_read_without_them(tmp_path: Path) -> None
     (found,) = read(tmp_path, document)
     assert (found.over_floor, found.no_floor) == ({}, '')
     assert found.verdict == RUN.verdict
+
+
+def test_scores_from_before_gear_shifts_have_null_metrics_of_a_shift_without_a_remark(
+    tmp_path: Path,
+) -> None:
+    document = content(RUN)
+    for metric in OF_SHIFT:
+        del document['runs'][0]['metrics'][metric.key]
+    (run,) = read(tmp_path, document)
+    assert all(run.metrics[metric.key] is None for metric in OF_SHIFT)
+    assert run.not_computed == {}
