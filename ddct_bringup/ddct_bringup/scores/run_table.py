@@ -77,14 +77,14 @@ COLUMNS = (
 )
 """Columns of a table of runs, after those that identify the run."""
 _SHIFT_HEADINGS = {
-    'shift_time_s': 'shift\ntime s',
+    'shift_time_s': 'shift\ns',
     'torque_phase_s': 'torque\nphase s',
     'inertia_phase_s': 'inertia\nphase s',
-    'torque_dip_percent': 'torque\ndip %',
+    'torque_dip_percent': 'dip\n%',
     'flare_rad_s': 'flare\nrad/s',
     'tie_up_work_j': 'tie-up\nJ',
-    'friction_energy_j': 'friction\nJ',
-    'off_going_friction_energy_j': 'off-going\nJ',
+    'friction_energy_j': 'work\nJ',
+    'off_going_friction_energy_j': 'off\nJ',
 }
 """Headings of gear shifts that are shorter than symbol and unit, in the order of the columns."""
 SHIFT_COLUMNS = (
