@@ -9,7 +9,13 @@ import numpy as np
 from ddct_bringup.bag.recording import Recording
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_plant.base.timebase import START_NS, time_of_step
-from ddct_plant.signals.topics import CLUTCH_TORQUE, ENGINE_TORQUE, HOLDING_TORQUE, LOAD_TORQUE
+from ddct_plant.signals.topics import (
+    CLUTCH_TORQUE,
+    ENGINE_TORQUE,
+    HOLDING_TORQUE,
+    LOAD_TORQUE,
+    OFF_GOING_CLUTCH_TORQUE,
+)
 
 MISS_TOLERANCE = 0.01
 """
@@ -18,6 +24,10 @@ Largest share of steps without a reply in a valid real-time run.
 A machine under load missed 6 of 2500, which does not change the metrics; a node that stops for
 half a second misses 50 of 300.
 """
+
+
+_TORQUES = (ENGINE_TORQUE, LOAD_TORQUE, CLUTCH_TORQUE, HOLDING_TORQUE, OFF_GOING_CLUTCH_TORQUE)
+"""Topics to which the driveline holds the last value for lack of a reply."""
 
 
 def why_invalid(recording: Recording) -> str:
@@ -67,8 +77,7 @@ def missed_steps(recording: Recording) -> int:
     The driveline counts them. Replies that are missing from the bag alone count too, since its
     signals hold the last value there.
     """
-    torques = (ENGINE_TORQUE, LOAD_TORQUE, CLUTCH_TORQUE, HOLDING_TORQUE)
-    held = (recording.missed.get(topic.name, 0) for topic in torques)
+    held = (recording.missed.get(topic.name, 0) for topic in _TORQUES)
     return max(recording.realtime.missed_steps, *held)
 
 

@@ -78,7 +78,9 @@ def test_misses_count_up_to_the_stated_tolerance():
     assert reason == '4 of 300 steps held a torque for want of a reply, more than 3 (1 %)'
 
 
-@pytest.mark.parametrize('topic', ['engine/torque', 'load/torque', 'clutch/torque'])
+@pytest.mark.parametrize(
+    'topic', ['engine/torque', 'load/torque', 'clutch/torque', 'off_going/clutch/torque']
+)
 def test_torques_that_the_bag_lacks_count_as_misses(topic):
     assert why_invalid(recording(missed={topic: TOLERATED})) == ''
     assert why_invalid(recording(missed={topic: TOLERATED + 1})).startswith('4 of 300 steps held')
