@@ -144,13 +144,13 @@ class DrivelineNode(GraphNode):
     def _make_owner(self) -> TickOwner:
         parts = (self.driveline.step, self.plan, self._publish_tick, self._sole_publishers.finish)
         if self.settings.lockstep:
-            return TickOwner(*parts, over=self._over_early)
+            return TickOwner(*parts, over=self._engine_ends_run)
         owner = RealtimeOwner(
-            *parts, over=self._over_early, on_started=lambda: self.every(PERIOD_S, owner.tick)
+            *parts, over=self._engine_ends_run, on_started=lambda: self.every(PERIOD_S, owner.tick)
         )
         return owner
 
-    def _over_early(self) -> bool:
+    def _engine_ends_run(self) -> bool:
         return bool(self.settings.scenario.end_cause(self.driveline.engine_speed))
 
     def _subscribe_to_replies(self) -> None:
