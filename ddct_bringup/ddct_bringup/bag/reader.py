@@ -11,12 +11,8 @@ from ddct_bringup.bag.earlier_bags import Messages, Values, earlier_values
 from ddct_bringup.bag.file.records import BagRecords, read_records
 from ddct_bringup.bag.realtime_facts import RealtimeFacts
 from ddct_bringup.bag.recording import Recording
-from ddct_bringup.bag.run_facts import (
-    RUN_INFO_TOPICS,
-    RunFacts,
-    RunInfoOfNodes,
-    add_run_info,
-)
+from ddct_bringup.bag.run_facts import RunFacts
+from ddct_bringup.bag.run_info import RUN_INFO_TOPICS, RunInfoOfNodes, add_run_info
 from ddct_bringup.bag.ticks import check_ticks
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_plant.base.errors import DdctError
@@ -25,11 +21,7 @@ from ddct_plant.files.input_file import located, mcap_of
 from ddct_plant.graph.node_names import StatusName, name_in_graph
 from ddct_plant.signals.signal import RunKind
 from ddct_plant.signals.topic import Topic
-from ddct_plant.signals.topics import (
-    DIAGNOSTICS,
-    JOINT_STATES,
-    recorded_topics,
-)
+from ddct_plant.signals.topics import DIAGNOSTICS, JOINT_STATES, recorded_topics
 
 
 def read_bag(path: Path) -> Recording:

@@ -5,7 +5,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from ddct_bringup.bag.run_facts import DRIVELINE_NODE
+from ddct_bringup.bag.run_info import DRIVELINE_NODE
 from ddct_plant.graph.node_names import StatusName
 from ddct_plant.graph.node_reports import SAFE_STATE, TICKS, TickCounts, safe_state_since
 

@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from ddct_bringup.bag.realtime_facts import RealtimeFacts
-from ddct_bringup.bag.run_facts import MEASURED, RunFacts, RunInfoOfNodes
+from ddct_bringup.bag.run_facts import MEASURED, RunFacts
+from ddct_bringup.bag.run_info import RunInfoOfNodes
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.input_file import SCHEMA_KEY

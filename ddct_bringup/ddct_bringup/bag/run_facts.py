@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Facts of a recorded run as text, and the nodes' `run_info`."""
+"""Facts of a run, and the custom data of a bag that have them as text."""
 
 import json
 from collections.abc import Container, Iterable, Mapping
@@ -10,13 +10,10 @@ from typing import Any, TypedDict
 from ddct_plant.base.errors import DdctError, ParameterError, require_name, require_number
 from ddct_plant.base.timebase import steps_in
 from ddct_plant.files.input_file import parse_json
-from ddct_plant.shift_plant.sides import OFF_GOING
 from ddct_plant.signals.signal import RunKind
 from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import (
     ENGINE_REQUEST,
-    OFF_GOING_RUN_INFO,
-    RUN_INFO,
     SENSED_TOPICS,
     SHIFT_TOPICS,
     TOPICS,
@@ -25,23 +22,12 @@ from ddct_plant.signals.topics import (
 
 _NAMES = ('controller', 'architecture', 'scenario', 'clutch', 'mode')
 """Facts that are plain names, used in tables, labels and file names."""
-
 _OF_SHIFTS = ('off_going_wear_gain', 'handover')
 """Facts that only a shift has."""
-
 _LARGEST = 2.0**31
 """Upper bound of any number, in its unit; the largest seed is one less."""
-
 MEASURED = 'measured'
 """Mode of the log of another tool, and the text for facts that such a log lacks."""
-
-RunInfoOfNodes = dict[str, Mapping[str, str]]
-"""Key-value pairs that each node publishes on `run_info`, by full node name."""
-
-RUN_INFO_TOPICS = (RUN_INFO, OFF_GOING_RUN_INFO)
-"""Topics on which the nodes of a run publish what they are."""
-CONTROLLER_NODE = '/controller'
-DRIVELINE_NODE = '/driveline'
 
 
 @dataclass(frozen=True)
@@ -174,36 +160,3 @@ def _parsed(name: str, text: str) -> Any:
             f'{name} is {text!r} in the custom data: not a recording of this project', key=name
         ) from error
     return value
-
-
-def add_run_info(received: RunInfoOfNodes, node: str, pairs: Mapping[str, str]) -> None:
-    """
-    Add the key-value pairs that `node` published on `run_info`; `node` is its full name.
-
-    Raise DdctError where a node of this name has published different pairs before.
-    """
-    before = received.setdefault(node, pairs)
-    if pairs == before:
-        return
-    key = next(key for key in (*before, *pairs) if before.get(key) != pairs.get(key))
-    raise DdctError(
-        f'run_info of node {node} came twice, with {key} {before.get(key, "missing")} and '
-        f'{pairs.get(key, "missing")}: two nodes had this name, record the run again with one of '
-        'them, or in another ROS_DOMAIN_ID',
-        key=key,
-    )
-
-
-def run_info_topic(node: str) -> Topic:
-    """Return the topic of the `run_info` of a node: the one in its namespace, of its full name."""
-    return OFF_GOING_RUN_INFO if node.startswith(f'/{OFF_GOING}/') else RUN_INFO
-
-
-def run_info_order(nodes: Iterable[str]) -> list[str]:
-    """
-    Return the full names of the nodes sorted, `/controller` last.
-
-    Viewers such as Foxglove keep only the last message of a topic when they are opened or moved
-    in time; the controller's names the controller that runs and its gains.
-    """
-    return sorted(nodes, key=lambda node: (node == CONTROLLER_NODE, node))

@@ -9,7 +9,7 @@ from typing import Any
 from rclpy.serialization import deserialize_message
 
 from ddct_bringup.bag.file.cdr import stamp_of_cdr
-from ddct_bringup.bag.run_facts import run_info_order
+from ddct_bringup.bag.run_info import run_info_order
 from ddct_bringup.live.server import LiveServer
 from ddct_bringup.processes.live_process import ALL_TOPICS_RECEIVED, VIEWER_SUBSCRIBED
 from ddct_plant.base.timebase import START_NS

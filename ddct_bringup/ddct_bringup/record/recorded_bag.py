@@ -10,7 +10,7 @@ from pathlib import Path
 from rclpy.serialization import serialize_message
 
 from ddct_bringup.bag.file.cdr import stamp_of_cdr
-from ddct_bringup.bag.run_facts import run_info_topic
+from ddct_bringup.bag.run_info import run_info_topic
 from ddct_bringup.bag.writer import BagWriter, new_bag
 from ddct_bringup.record.run_info_collector import RunInfoCollector
 from ddct_bringup.record.tick_buffer import Tick

@@ -9,7 +9,7 @@ from rclpy.serialization import deserialize_message, serialize_message
 
 from ddct_bringup.bag.file.cdr import CdrNormaliser, stamp_of_cdr
 from ddct_bringup.bag.file.message_definitions import load_definition
-from ddct_bringup.bag.run_facts import RUN_INFO_TOPICS
+from ddct_bringup.bag.run_info import RUN_INFO_TOPICS
 from ddct_bringup.record.parameters import declare_parameters
 from ddct_bringup.record.recorded_bag import RecordedBag
 from ddct_bringup.record.run_info_collector import RunInfoCollector

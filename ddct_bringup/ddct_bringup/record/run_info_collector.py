@@ -4,7 +4,7 @@
 
 from collections.abc import Collection, Mapping
 
-from ddct_bringup.bag.run_facts import (
+from ddct_bringup.bag.run_info import (
     CONTROLLER_NODE,
     DRIVELINE_NODE,
     RunInfoOfNodes,

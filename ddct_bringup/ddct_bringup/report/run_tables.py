@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ddct_bringup.bag.run_facts import CONTROLLER_NODE
+from ddct_bringup.bag.run_info import CONTROLLER_NODE
 from ddct_bringup.run.description import UNKNOWN
 from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_bringup.scores.scored_recording import ScoredRecording

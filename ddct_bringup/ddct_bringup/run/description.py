@@ -6,7 +6,8 @@ import os
 import subprocess
 from pathlib import Path
 
-from ddct_bringup.bag.run_facts import RunFacts, RunInfoOfNodes
+from ddct_bringup.bag.run_facts import RunFacts
+from ddct_bringup.bag.run_info import RunInfoOfNodes
 from ddct_controllers.interface import Controller
 from ddct_plant.base.timebase import time_of_step
 from ddct_plant.graph.node_names import name_in_graph

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The controller's `run_info` is the last, whatever the other nodes are called."""
 
-from ddct_bringup.bag.run_facts import run_info_order
+from ddct_bringup.bag.run_info import run_info_order
 
 
 def test_the_controller_comes_last_and_the_others_by_name() -> None:
