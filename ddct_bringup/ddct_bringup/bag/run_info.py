@@ -5,7 +5,7 @@
 from collections.abc import Iterable, Mapping
 
 from ddct_plant.base.errors import DdctError
-from ddct_plant.shift_plant.sides import OFF_GOING
+from ddct_plant.shift.roles import OFF_GOING
 from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import OFF_GOING_RUN_INFO, RUN_INFO
 

@@ -5,7 +5,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from ddct_plant.shift_plant.sides import OFF_GOING
+from ddct_plant.shift.roles import OFF_GOING
 
 
 @dataclass(frozen=True)

@@ -24,7 +24,7 @@ from ddct_plant.graph.node_reports import (
     run_info_pairs,
 )
 from ddct_plant.scenario.settings import RunSettings
-from ddct_plant.shift_plant.sides import OFF_GOING, ON_COMING
+from ddct_plant.shift.roles import OFF_GOING, ON_COMING
 from ddct_plant.signals.topics import OFF_GOING_RUN_INFO, RUN_INFO
 
 

@@ -15,7 +15,7 @@ from ddct_plant.files.yaml_text import dump_yaml
 from ddct_plant.graph.domain import require_domain, require_ros
 from ddct_plant.scenario.file import scenario_to_yaml
 from ddct_plant.scenario.settings import RunSettings
-from ddct_plant.shift_plant.sides import OFF_GOING
+from ddct_plant.shift.roles import OFF_GOING
 
 
 @dataclass(frozen=True)

@@ -21,14 +21,8 @@ from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.plant import holding_torque, make_engine, make_load
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.shift.driveline import ShiftOutputs
-from ddct_plant.shift_plant.sides import (
-    OFF_GOING,
-    ON_COMING,
-    first_request,
-    shift_driveline,
-    side_actuator,
-    side_clutch,
-)
+from ddct_plant.shift.roles import OFF_GOING, ON_COMING
+from ddct_plant.shift_plant.sides import first_request, shift_driveline, side_actuator, side_clutch
 from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import (
     CLUTCH_TORQUE,

@@ -18,7 +18,7 @@ from ddct_plant.fail_safe.request_watch import (
 from ddct_plant.program.command_line import package_version
 from ddct_plant.scenario.file import scenario_digest
 from ddct_plant.scenario.settings import RunSettings
-from ddct_plant.shift_plant.sides import OFF_GOING, ON_COMING
+from ddct_plant.shift.roles import OFF_GOING, ON_COMING
 
 Pairs = dict[str, str]
 """Texts by key."""

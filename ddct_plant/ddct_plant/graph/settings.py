@@ -15,7 +15,7 @@ from ddct_plant.base.options import Option, options_of
 from ddct_plant.fail_safe.request_watch import FailSafeSettings
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
-from ddct_plant.shift_plant.sides import OFF_GOING, ON_COMING, ROLES
+from ddct_plant.shift.roles import OFF_GOING, ON_COMING, ROLES
 
 _SCENARIO = Option('thesis', 'name of a packaged scenario, or path of a YAML file')
 _ROLE = Option(

@@ -18,9 +18,8 @@ from ddct_plant.scenario.shift_rules import gears_of
 from ddct_plant.scenario.whole_plant import Observation
 from ddct_plant.sensors.sensed import MeasuredSpeeds
 from ddct_plant.shift.driveline import ShiftOutputs
+from ddct_plant.shift.roles import OFF_GOING, ROLES
 from ddct_plant.shift_plant.sides import (
-    OFF_GOING,
-    ROLES,
     first_request,
     shift_driveline,
     shift_signals,

@@ -9,12 +9,10 @@ from ddct_plant.scenario.plant import initial_state, stick_slip_clutch
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.scenario.shift_rules import gears_of, shift_of
 from ddct_plant.shift.driveline import ShiftDriveline, ShiftOutputs
+from ddct_plant.shift.roles import OFF_GOING, ON_COMING
 from ddct_plant.shift_plant.start import locked_request, shift_start
 from ddct_plant.signals.signal import SignalValue
 
-ON_COMING, OFF_GOING = 'on_coming', 'off_going'
-ROLES = (ON_COMING, OFF_GOING)
-"""Sides of a gear shift; without a shift there is the first one alone."""
 OPEN_BELOW = 0.01
 """Torque in N m of the actuator up to which a clutch of a shift is open."""
 
