@@ -81,11 +81,12 @@ def test_every_layout_leaves_the_same_bytes_and_the_headless_trajectory(
 
 @pytest.mark.compiler
 @pytest.mark.parametrize('kind', ['python file', 'transfer function', 'C library', 'FMU'])
-def test_a_controller_of_any_kind_shifts_in_the_graph_as_headless(
+def test_a_controller_of_any_kind_and_a_handover_in_a_file_shift_in_the_graph_as_headless(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, kind: str
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    run = shift(_file_of(kind), 'single-process')
+    Path('ramps.py').write_text(HANDOVER, encoding='utf-8')
+    run = shift(_file_of(kind), 'single-process', 'ramps.py')
     trajectory = record(run, tmp_path / 'run').trajectory
     assert trajectory.sha256() == expected(run).sha256()
     assert not trajectory.closed_loop_torque[trajectory.handover_share < 1.0].any()
@@ -108,6 +109,13 @@ def _file_of(kind: str) -> str:
     return 'mine.py'
 
 
+HANDOVER = """
+from ddct_controllers.handover.laws import TimedHandover
+
+
+class Ramps(TimedHandover):
+    pass
+"""
 PYTHON = """
 from ddct_controllers.interface import Command, Controller
 
