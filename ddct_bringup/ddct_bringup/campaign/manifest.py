@@ -7,7 +7,9 @@ from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import Any
 
+from ddct_bringup.batch.run_batch import MOST_RUNS
 from ddct_bringup.campaign.campaign import Campaign
+from ddct_bringup.campaign.scored import are_linear
 from ddct_bringup.campaign.spec import CampaignSpec, spec_of
 from ddct_bringup.digests.code import code_digest
 from ddct_bringup.run.description import short_commit, source_commit
@@ -24,6 +26,14 @@ _MOST_RUNS = 2000
 """Largest number of runs in a shard."""
 _LEAST_SHARDS = 50
 """Smallest number of shards of a large campaign, so that all workers end together."""
+_MANY_LINEAR_RUNS = 1000
+"""
+Smallest number of linear runs of a campaign with fewer shards.
+
+They are computed together, and each costs less the more they are.
+"""
+_LEAST_LINEAR_SHARDS = 4
+"""Smallest number of shards of so many linear runs, which take seconds."""
 
 
 @dataclass(frozen=True)
@@ -43,7 +53,7 @@ class Manifest:
     """Name, digest and schema version of the limits by which the runs are judged."""
     runs: int
     shard_size: int
-    """Number of runs in a shard; it depends only on the number of runs."""
+    """Number of runs in a shard; it depends only on the specification."""
     folder: str
     """Folder that files of the specification are relative to."""
     spec: dict[str, Any]
@@ -60,7 +70,7 @@ class Manifest:
             spec_digest=campaign.digest(),
             limits=dict(limits.origin),
             runs=campaign.runs,
-            shard_size=min(_MOST_RUNS, -(-campaign.runs // _LEAST_SHARDS)),
+            shard_size=_shard_size(campaign),
             folder=str(campaign.spec.folder),
             spec=dict(campaign.spec.content),
         )
@@ -141,6 +151,15 @@ class Manifest:
     def code(self) -> str:
         """Commit, and the digest of the code, which distinguishes changes without a commit."""
         return f'{short_commit(self.commit)} ({self.code_digest[:10]})'
+
+
+def _shard_size(campaign: Campaign) -> int:
+    """Return the number of runs in a shard of a campaign."""
+    runs = campaign.runs
+    size = min(_MOST_RUNS, -(-runs // _LEAST_SHARDS))
+    if size < MOST_RUNS and runs >= _MANY_LINEAR_RUNS and are_linear(campaign):
+        return max(size, min(MOST_RUNS, -(-runs // _LEAST_LINEAR_SHARDS)))
+    return size
 
 
 def _keys(group: Any) -> tuple[str, ...]:

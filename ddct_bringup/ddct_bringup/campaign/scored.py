@@ -12,6 +12,7 @@ import numpy as np
 
 from ddct_bringup.batch.batchable import why_not_batchable
 from ddct_bringup.batch.run_batch import run_batch
+from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.rows import (
     CONTROLLER,
     INDEX,
@@ -120,6 +121,23 @@ class Scorer:
         if key not in self._shared:
             self._shared[key] = make_controller(spec, run.settings)
         return self._shared[key]
+
+
+def are_linear(campaign: Campaign) -> bool:
+    """Return whether the first run of each controller of a campaign can be computed at once."""
+    if campaign.spec.floors:
+        return False
+    for first in range(0, campaign.runs, campaign.cases):
+        (run,) = campaign.planned(first, first + 1)
+        if isinstance(run, ImpossibleRow):
+            return False
+        try:
+            controller = make_controller(run.controller, run.settings)
+        except FOREIGN_FAILURES:
+            return False
+        if why_not_batchable(run.settings, controller):
+            return False
+    return True
 
 
 @contextmanager

@@ -15,7 +15,7 @@ from ddct_bringup.campaign_report.map_types import (
     PointMap,
 )
 from ddct_bringup.campaign_report.results import Results
-from ddct_bringup.campaign_report.statistics.outcome import FAILED, count_outcomes
+from ddct_bringup.campaign_report.statistics.outcome import FAILED, Outcomes, count_outcomes
 from ddct_bringup.report.page_parts import unit_text
 from ddct_bringup.verdict.state import ENGAGED, INVALID, SUCCESSES
 
@@ -146,7 +146,7 @@ def _panel(
     results: Results, parts: Sequence[np.ndarray] | np.ndarray, keys: Sequence[str]
 ) -> MapPanel:
     """Return the cells or points of one group, column by column."""
-    counts = [count_outcomes(results.outcomes[rows]) for rows in parts]
+    counts = _counts(results.outcomes, parts)
     repeated = any(len(rows) > 1 for rows in parts)
     marking = [_marking(results, rows) for rows in parts]
     states, index = results.columns['verdict_state'], results.columns['index']
@@ -164,6 +164,14 @@ def _panel(
         if repeated
         else None,
     }
+
+
+def _counts(outcomes: np.ndarray, parts: Sequence[np.ndarray] | np.ndarray) -> Sequence[Outcomes]:
+    """Return the counts of outcomes in each cell, or of each point, which is one run."""
+    if isinstance(parts, np.ndarray):
+        of_one = {each: count_outcomes(np.array([each])) for each in set(outcomes.tolist())}
+        return [of_one[each] for each in outcomes[parts[:, 0]].tolist()]
+    return [count_outcomes(outcomes[rows]) for rows in parts]
 
 
 def _marking(results: Results, rows: np.ndarray) -> int:

@@ -4,7 +4,7 @@
 
 import argparse
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from ddct_controllers.registry import require_known_controllers
@@ -12,6 +12,7 @@ from ddct_plant.base.options import options_of
 from ddct_plant.models.clutch import LINEAR
 from ddct_plant.scenario.file import ScenarioFile, parsed_override
 from ddct_plant.scenario.options import print_adjusted
+from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
 
 _SETTINGS = options_of(RunSettings)
@@ -30,6 +31,10 @@ class RunBase:
     """Values of `RunSettings` by name, such as `clutch`."""
     labels: Sequence[str]
     """Names of the controllers, since `changes` may contain options of theirs."""
+    _unchanged: dict[str, Scenario] = field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
+    """Scenario of the runs without changes, by clutch."""
 
     def at(self, varied: Mapping[str, Any] = _NOTHING) -> RunSettings:
         """
@@ -41,9 +46,18 @@ class RunBase:
         settings = {**self.settings, **{key: varied[key] for key in varied if key in _SETTINGS}}
         ours = {key: value for key, value in self.changes.items() if key not in varied}
         changes = ours | {key: varied[key] for key in varied if key not in _SETTINGS}
-        scenario = self.file.scenario(changes, settings.get('clutch', LINEAR))
+        return RunSettings(self._scenario(changes, settings.get('clutch', LINEAR)), **settings)
+
+    def _scenario(self, changes: Mapping[str, Any], clutch: str) -> Scenario:
+        """Return the scenario with changes by dotted key; without any it is built once."""
+        key = str(clutch)  # what is no name is refused with the settings
+        if not changes and key in self._unchanged:
+            return self._unchanged[key]
+        scenario = self.file.scenario(changes, clutch)
         require_known_controllers(scenario, self.labels)
-        return RunSettings(scenario, **settings)
+        if not changes:
+            self._unchanged[key] = scenario
+        return scenario
 
 
 def base_of(options: argparse.Namespace, labels: Sequence[str]) -> RunBase:

@@ -31,7 +31,7 @@ _TOGETHER = 1000
 """Number of rows that are compared at once."""
 _OF_PLACE = ('commit', 'folder')
 """Keys of the manifest that are not compared, since they may change while the campaign stays."""
-_OF_CODE = ('version', 'code_digest', 'schema_version')
+_OF_CODE = ('version', 'code_digest', 'schema_version', 'shard_size')
 """Keys of the manifest that another code writes otherwise."""
 
 

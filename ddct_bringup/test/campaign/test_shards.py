@@ -5,9 +5,12 @@
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 from ddct_bringup.campaign import scored
 from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.columns import differences
+from ddct_bringup.campaign.manifest import Manifest
 from ddct_bringup.campaign.rows import VECTORISED
 from ddct_bringup.campaign.scored import Scorer
 from ddct_bringup.campaign.spec import spec_of
@@ -43,3 +46,21 @@ def test_each_run_is_scored_over_the_window_that_its_scenario_gives(monkeypatch)
     alone = rows_of(**content)
     for row, expected in zip(rows, alone, strict=True):
         assert differences(row, expected) == []
+
+
+@pytest.mark.parametrize(
+    ('content', 'size'),
+    [
+        ({'controllers': ['pi', 'ls8']}, 1000),
+        ({'controllers': ['pi', 'mpc3']}, 80),
+        ({'controllers': ['pi', 'ls8'], 'clutch': 'stick_slip'}, 80),
+        ({'controllers': ['pi', 'ls8'], 'floors': ['peak_jerk']}, 80),
+    ],
+)
+def test_shards_of_linear_runs_are_large_as_they_are_computed_together(
+    content: dict[str, Any], size: int
+) -> None:
+    wear = {'wear_gain': {'distribution': 'uniform', 'low': 0.8, 'high': 1.2}}
+    random = {'samples': 2000, 'vary': wear}
+    campaign = Campaign(spec_of({**content, 'random': random}, Path()))
+    assert Manifest.of(campaign, packaged_limits()).shard_size == size

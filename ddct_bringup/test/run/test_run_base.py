@@ -48,3 +48,13 @@ def test_adjusted_values_are_printed_for_a_run(capsys: pytest.CaptureFixture[str
 def test_an_option_of_another_controller_is_refused() -> None:
     with refused(ParameterError, 'controllers.mine'):
         settings_of(options('--set', 'controllers.mine.gain=3.0'), ['ls8'])
+
+
+def test_a_scenario_that_no_key_changes_is_built_once_for_each_clutch() -> None:
+    base = base_of(options(), ['pi'])
+    worn, new = base.at({'wear_gain': 1.2}), base.at({'wear_gain': 1.0})
+    assert worn.scenario is new.scenario
+    assert (worn.wear_gain, new.wear_gain) == (1.2, 1.0)
+    heavy = base.at({'wear_gain': 1.2, 'vehicle.mass_kg': 1500.0})
+    assert heavy.scenario.vehicle.mass_kg == 1500.0
+    assert base.at({'clutch': 'stick_slip'}).scenario is not new.scenario

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """`verify` computes every row of a campaign again."""
 
+import dataclasses
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -96,6 +97,22 @@ def test_a_manifest_edited_with_its_digest_is_found(
     code, document, errors = verified(folder, capfd, '--workers', '1')
     assert code == 1
     assert key in errors or document['error']
+
+
+def test_a_campaign_of_another_release_may_have_other_shards(
+    whole: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    def edit(manifest: Any) -> None:
+        manifest |= {'shard_size': 2, 'code_digest': 'f' * 64}
+
+    folder = copied(whole, tmp_path / 'there')
+    digests = read_digests(folder)
+    environment = dataclasses.replace(digests.environment, code='f' * 64)
+    dataclasses.replace(digests, environment=environment).write(folder)
+    edit_json_with_digest(folder, 'manifest.json', edit)
+    code, document, errors = verified(folder, capfd, '--workers', '1')
+    assert (code, errors) == (0, '')
+    assert states(document)['manifest.json'] == 'same_bits'
 
 
 def test_a_seed_of_the_specification_edited_with_its_digest_is_found(

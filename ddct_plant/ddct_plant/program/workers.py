@@ -8,6 +8,7 @@ refer to any object. It uses one thread for numerics.
 """
 
 import ctypes
+import gc
 import multiprocessing
 import os
 import signal
@@ -123,6 +124,8 @@ def _begin(work: Callable[[int], Any] | None) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     end_with_parent(signal.SIGKILL)
+    # Collecting what the program has imported would take as long as many runs, and copy it.
+    gc.freeze()
     one_numeric_thread()
 
 
