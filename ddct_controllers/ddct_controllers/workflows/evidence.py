@@ -13,6 +13,7 @@ from ddct_controllers.design.analysis.worst_corner import (
     PARAMETER_SPREAD,
     WEAR_GAINS,
     PlantCorners,
+    plant_corners,
     worst_corner,
 )
 from ddct_controllers.interface import Controller
@@ -44,7 +45,7 @@ def frequency_evidence(controllers: Sequence[Chosen], settings: RunSettings) -> 
     cannot be built or whose `linear_model` cannot be used.
     """
     scenario = settings.scenario
-    corners = PlantCorners(scenario.driveline, scenario.actuator)
+    corners = plant_corners(scenario.driveline, scenario.actuator)
     return {
         'conditions': {
             'scenario': scenario.name,

@@ -5,7 +5,7 @@
 import argparse
 from typing import Any
 
-from ddct_controllers.design.analysis.worst_corner import PlantCorners
+from ddct_controllers.design.analysis.worst_corner import plant_corners
 from ddct_controllers.design.h_infinity.design import METHODS, design_h_infinity
 from ddct_controllers.design.h_infinity.recipes import (
     RECIPES,
@@ -100,7 +100,7 @@ def run(options: argparse.Namespace) -> int:
         raise ParameterError('--back-off is for --method riccati: the LMIs give their optimum')
     design = design_h_infinity(weights, method=options.method)
     uncertainty = uncertainty_record()
-    record = design_record(name, options.weights, specifications, design, PlantCorners())
+    record = design_record(name, options.weights, specifications, design, plant_corners())
     missing = shortfalls(record)
     tables = design_tables([record], uncertainty)
     show(options, tables.values(), {**record, 'uncertainty': uncertainty, 'lacks': missing})

@@ -8,7 +8,7 @@ from scipy.linalg import solve_discrete_are
 
 from ddct_controllers.design.analysis.loops import sampled_loop, sampled_plant
 from ddct_controllers.design.analysis.margins import loop_margins
-from ddct_controllers.design.analysis.worst_corner import PlantCorners, worst_corner
+from ddct_controllers.design.analysis.worst_corner import plant_corners, worst_corner
 from ddct_controllers.interface import ControllerContext
 from ddct_controllers.registry import make_controller
 from ddct_controllers.state_of_art import lqi
@@ -61,7 +61,7 @@ def test_the_sampled_loop_keeps_its_margins_with_wear(wear_gain):
 
 
 def test_no_corner_of_the_driveline_is_unstable():
-    worst = worst_corner(MODEL, PlantCorners())
+    worst = worst_corner(MODEL, plant_corners())
     assert worst.unstable_corners == 0
     assert worst.sensitivity_peak < 3.0
 

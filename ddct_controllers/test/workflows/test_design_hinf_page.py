@@ -8,7 +8,7 @@ import pytest
 from generator.pages import as_markdown, shown_tables
 from generator.tables import h_infinity_tables
 
-from ddct_controllers.design.analysis.worst_corner import PlantCorners, worst_corner
+from ddct_controllers.design.analysis.worst_corner import plant_corners, worst_corner
 from ddct_controllers.printed import H_INFINITY_CONTROLLERS
 from ddct_plant.linear.sampling import discretise_zoh
 
@@ -32,7 +32,7 @@ def test_its_tables_are_those_of_the_program():
 
 def test_hinf1_has_the_worst_sensitivity_of_the_page():
     sampled = discretise_zoh(H_INFINITY_CONTROLLERS['hinf1'].to_state_space(), 0.01)
-    worst = worst_corner(sampled, PlantCorners()).sensitivity_peak
+    worst = worst_corner(sampled, plant_corners()).sensitivity_peak
     lines = HINF_SAMPLED.read_text('utf-8').split('\n')
     row = next(line for line in lines if line.startswith('| `hinf1` |'))
     assert float(row.split('|')[-2]) == pytest.approx(worst, abs=0.005)

@@ -4,6 +4,7 @@
 
 import itertools
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -79,6 +80,17 @@ class PlantCorners:
         """
         self.responses = np.array([frequency_response(p, self.omega) for p in self.plants])
         """Frequency responses of the plants, (corners, frequencies), complex."""
+        self.zeros = [locked_driveline_zero(each) for each in self.parameters]
+        """Zero of P_2 per corner, as `locked_driveline_zero` returns it."""
+
+
+@lru_cache(maxsize=4)
+def plant_corners(
+    nominal: DrivelineParameters = IDENTIFIED_DRIVELINE,
+    actuator: ActuatorParameters = PRINTED_ACTUATOR,
+) -> PlantCorners:
+    """Return the corners around a driveline with an actuator; recent ones are kept."""
+    return PlantCorners(nominal, actuator)
 
 
 @dataclass(frozen=True)
@@ -164,8 +176,7 @@ def _may_cross(responses: np.ndarray) -> np.ndarray:
 def _least_mode_damping(poles: np.ndarray, corners: PlantCorners) -> float | None:
     rates = to_s_plane(poles, PERIOD_S)
     found = []
-    for parameters, per_wear in zip(corners.parameters, rates, strict=True):
-        zero = locked_driveline_zero(parameters)
+    for zero, per_wear in zip(corners.zeros, rates, strict=True):
         modes = ((row, nearest_mode(row, zero)) for row in per_wear)
         found += [float(damping(row[mode])) for row, mode in modes if mode is not None]
     return min(found, default=None)

@@ -10,12 +10,14 @@ import control
 import numpy as np
 import pytest
 
+from ddct_controllers.design.analysis.driveline_mode import locked_driveline_zero
 from ddct_controllers.design.analysis.loops import IDENTIFIED_DRIVELINE, sampled_loop
 from ddct_controllers.design.analysis.margins import closed_loop_stable, loop_margins
 from ddct_controllers.design.analysis.worst_corner import (
     PARAMETER_SPREAD,
     WEAR_GAINS,
     PlantCorners,
+    plant_corners,
     worst_corner,
 )
 from ddct_controllers.design.state_space import frequency_response, scaled
@@ -30,7 +32,7 @@ pytestmark = pytest.mark.slow
 
 @pytest.fixture(scope='module')
 def corners() -> PlantCorners:
-    return PlantCorners()
+    return plant_corners()
 
 
 def sampled(name: str) -> StateSpace:
@@ -56,6 +58,13 @@ def test_every_corner_has_the_actuator_that_is_given():
     found = worst_corner(controller, corners)
     loop = sampled_loop(controller, corners.parameters[found.index], found.wear_gain, late)
     assert found.sensitivity_peak == pytest.approx(loop_margins(loop).sensitivity_peak, rel=1e-6)
+
+
+def test_the_corners_of_one_plant_are_computed_once_and_those_of_another_anew():
+    late = ActuatorParameters(delay_s=0.014)
+    assert plant_corners() is plant_corners()
+    assert plant_corners(actuator=late) is not plant_corners()
+    assert plant_corners(actuator=late).actuator == late
 
 
 @pytest.mark.parametrize('name', ['ls1', 'ls8', 'hinf1', 'hinf3'])
@@ -133,7 +142,7 @@ def test_a_loop_unstable_only_between_the_ends_of_the_wear_range_counts(gain, un
         plants=[plant],
         omega=PlantCorners.omega,
         responses=response[None, :],
-        parameters=[IDENTIFIED_DRIVELINE],
+        zeros=[locked_driveline_zero(IDENTIFIED_DRIVELINE)],
     )
     empty = np.zeros((0, 0)), np.zeros((0, 1)), np.zeros((1, 0))
     controller = StateSpace(*empty, np.array([[gain]]), PERIOD_S)

@@ -9,7 +9,12 @@ import pytest
 
 from ddct_controllers.design.analysis.loops import sampled_loop, sampled_plant
 from ddct_controllers.design.analysis.margins import loop_margins
-from ddct_controllers.design.analysis.worst_corner import PlantCorners, WorstCorner, worst_corner
+from ddct_controllers.design.analysis.worst_corner import (
+    PlantCorners,
+    WorstCorner,
+    plant_corners,
+    worst_corner,
+)
 from ddct_controllers.design.h_infinity.design import design_h_infinity
 from ddct_controllers.design.h_infinity.problem import sampled_sensitivity
 from ddct_controllers.design.h_infinity.recipes import make_weights
@@ -29,7 +34,7 @@ HIGHEST_SENSITIVITY = 2.0
 
 @pytest.fixture(scope='module')
 def corners() -> PlantCorners:
-    return PlantCorners()
+    return plant_corners()
 
 
 @pytest.fixture(scope='module')
