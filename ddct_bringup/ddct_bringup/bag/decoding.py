@@ -8,10 +8,15 @@ from typing import Any
 
 from mcap_ros2.decoder import DecoderFactory
 
+from ddct_bringup.bag.file.cdr import CdrDecoder
+from ddct_bringup.bag.file.message_definitions import load_definition
 from ddct_bringup.bag.file.records import BagRecords
 from ddct_plant.base.errors import DdctError
 from ddct_plant.signals.message_kind import stamp_ns
 from ddct_plant.signals.topics import all_topics
+
+Decode = Callable[[bytes], Any]
+"""Function that returns the message in serialised bytes."""
 
 
 def decoded_messages(records: BagRecords) -> dict[str, list[tuple[int, Any]]]:
@@ -32,7 +37,7 @@ def decoded_messages(records: BagRecords) -> dict[str, list[tuple[int, Any]]]:
     return dict(messages)
 
 
-def _decoders(records: BagRecords) -> dict[str, Callable[[bytes], Any]]:
+def _decoders(records: BagRecords) -> dict[str, Decode]:
     """Return a decoder for each known topic; raise DdctError for a topic of another type."""
     factory = DecoderFactory()
     ours = {topic.resolved_name: topic.type for topic in all_topics()}
@@ -50,5 +55,21 @@ def _decoders(records: BagRecords) -> dict[str, Callable[[bytes], Any]]:
                 f'{channel.topic} does not carry CDR messages of type {type_name}',
                 key=channel.topic,
             )
-        decoders[channel.topic] = decoder
+        decoders[channel.topic] = _fast(decoder, type_name, schema.data)
     return decoders
+
+
+def _fast(general: Decode, type_name: str, schema: bytes) -> Decode:
+    """Return a decoder that gives messages like `general`, in less time where it can."""
+    definition = load_definition(type_name)
+    if schema != definition.schema_text.encode():  # of an earlier version, or another recorder
+        return general
+    decoder = CdrDecoder(definition)
+
+    def decode(data: bytes) -> Any:
+        try:
+            return decoder(data)
+        except Exception:  # the general decoder takes other encodings, or has the reason
+            return general(data)
+
+    return decode

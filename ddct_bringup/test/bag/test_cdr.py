@@ -6,7 +6,7 @@ import pytest
 from mcap_ros2._dynamic import generate_dynamic, serialize_dynamic
 from refusals import refused
 
-from ddct_bringup.bag.file.cdr import CdrNormaliser
+from ddct_bringup.bag.file.cdr import CdrDecoder, CdrNormaliser
 from ddct_bringup.bag.file.message_definitions import (
     definition_in,
     load_definition,
@@ -154,3 +154,51 @@ def test_two_layouts_of_the_same_length_are_distinguished():
     assert len(first) == len(second)
     for data in (first, second, first):
         assert normaliser.normalise(data) == data
+
+
+def same(message, expected):
+    """Return whether a message has the values of one that the general decoder returned."""
+    if isinstance(expected, list):
+        return len(message) == len(expected) and all(map(same, message, expected))
+    if not hasattr(expected, '_type'):
+        return type(message) is type(expected) and message == expected
+    return all(
+        same(getattr(message, name), getattr(expected, name)) for name in expected.__slots__
+    )
+
+
+def test_a_decoded_message_has_the_values_that_the_general_decoder_returns(case):
+    definition, clean, decode = case
+    assert same(CdrDecoder(definition)(clean), decode(clean))
+    with pytest.raises(AttributeError, match='no_field'):
+        CdrDecoder(definition)(clean).no_field  # noqa: B018
+
+
+def test_other_values_at_the_same_places_are_decoded_anew(case):
+    definition, clean, decode = case
+    decoder = CdrDecoder(definition)
+    decoder(clean)
+    for place in range(4, len(clean)):
+        spoiled = bytearray(clean)
+        spoiled[place] ^= 0x15
+        try:
+            message = decoder(bytes(spoiled))
+        except DdctError:
+            continue  # a length is spoiled
+        assert same(message, decode(bytes(spoiled))), place
+    assert same(decoder(clean), decode(clean))
+
+
+def test_a_text_that_is_none_is_an_error_even_if_nobody_reads_it():
+    definition = load_definition('sensor_msgs/msg/JointState')
+    serialise = serialize_dynamic(definition.type_name, definition.schema_text)
+    data = serialise[definition.type_name](MESSAGES[definition.type_name])
+    with pytest.raises(UnicodeDecodeError):
+        CdrDecoder(definition)(data.replace(b'wheel', b'whe\xffl'))
+
+
+def test_a_message_in_another_encoding_is_left_to_the_general_decoder(case):
+    definition, clean, _ = case
+    for other in (b'\x00\x00' + clean[2:], clean[:-1], b''):
+        with pytest.raises(DdctError, match='a message is no '):
+            CdrDecoder(definition)(other)

@@ -17,15 +17,17 @@ TYPES_FILE = Path(__file__).with_name('messages.yaml')
 
 STRING = 'string'
 PRIMITIVES = {
-    **dict.fromkeys(('bool', 'byte', 'char', 'int8', 'uint8'), 1),
-    **dict.fromkeys(('int16', 'uint16'), 2),
-    **dict.fromkeys(('int32', 'uint32', 'float32'), 4),
-    **dict.fromkeys(('int64', 'uint64', 'float64'), 8),
+    **{'bool': (1, '?'), 'byte': (1, 'B'), 'char': (1, 'b')},
+    **{'int8': (1, 'b'), 'uint8': (1, 'B'), 'int16': (2, 'h'), 'uint16': (2, 'H')},
+    **{'int32': (4, 'i'), 'uint32': (4, 'I'), 'int64': (8, 'q'), 'uint64': (8, 'Q')},
+    **{'float32': (4, 'f'), 'float64': (8, 'd')},
 }
-"""Size in bytes of each primitive type, by name."""
+"""Size in bytes of each primitive type, and its letter for the module `struct`, by name."""
 
 _SEPARATOR = '=' * 80
-_FIELD = re.compile(r'(?P<kind>[\w/]+)(?:<=\d+)?(?P<many>\[(?:<=\d+|(?P<count>\d*))\])? \w+')
+_FIELD = re.compile(
+    r'(?P<kind>[\w/]+)(?:<=\d+)?(?P<many>\[(?:<=\d+|(?P<count>\d*))\])? (?P<name>\w+)'
+)
 """Pattern of a line of a definition that declares a field; constants do not match."""
 
 
@@ -37,6 +39,9 @@ class Field:
     """Type of its values: one of PRIMITIVES, STRING, or a type such as 'std_msgs/msg/Header'."""
     count: int | None
     """Number of its values; None where it differs from message to message."""
+    name: str
+    many: bool
+    """Whether it is a list."""
 
 
 @dataclass(frozen=True)
@@ -99,5 +104,6 @@ def _field(line: str) -> Field:
         raise DdctError(f'{TYPES_FILE.name}: {line!r} is no field')
     kind = found['kind'].replace('/', '/msg/')
     if not found['many']:
-        return Field(kind, 1)
-    return Field(kind, int(found['count']) if found['count'] else None)
+        return Field(kind, 1, found['name'], many=False)
+    count = int(found['count']) if found['count'] else None
+    return Field(kind, count, found['name'], many=True)
