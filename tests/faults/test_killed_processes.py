@@ -131,13 +131,13 @@ def test_a_run_goes_on_without_the_warm_parent_that_forked_its_nodes(
 ) -> None:
     out = tmp_path / 'runs'
     bringup = programs.start_module(
-        *('ddct_bringup.programs.bringup', '--controller', 'ls8', '--duration', '30'),
+        *('ddct_bringup.programs.bringup', '--controller', 'ls8', '--duration', '8'),
         *('--out', str(out)),
     )
     wait_until(lambda: (out / 'ls8.partial' / 'ls8_0.mcap').exists(), 'a bag', START_S)
     os.kill(node_of('processes.forks'), signal.SIGKILL)
     assert bringup.wait() == 0, bringup.errors()
-    assert _require_whole_until_its_end(out / 'ls8') == 3000
+    assert _require_whole_until_its_end(out / 'ls8') == 800
 
 
 def _segments(programs: Programs, node: Program) -> set[str]:

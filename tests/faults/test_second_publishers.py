@@ -57,6 +57,12 @@ class Echo(Node):
             self._publisher.publish(self._last)
 
 
+@pytest.fixture
+def checked_often(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Check more often than in a run, so that the tests wait less."""
+    monkeypatch.setattr(sole_publishers, 'CHECK_S', 0.03)
+
+
 def _graph(graph: InProcessGraph, *, recorded: bool) -> InProcessGraph:
     if not recorded:
         graph.add('driveline', {'require_recorder': False})
@@ -89,6 +95,7 @@ def test_the_publishers_of_every_topic_of_a_tick_are_checked(graph_of: GraphOf) 
     assert sorted(driveline._sole_publishers._topics) == sorted(topic.name for topic in LOOP)
 
 
+@pytest.mark.usefixtures('checked_often')
 @pytest.mark.parametrize('topic', ECHOED, ids=lambda topic: topic.name)
 def test_a_second_publisher_of_any_loop_topic_ends_the_run_with_its_name(
     graph_of: GraphOf, topic: Topic
@@ -134,6 +141,7 @@ def test_a_process_that_could_not_run_does_not_miss_the_second_publisher(
     assert (node, complaint.partition(' has ')[0]) == ('driveline', topic.name)
 
 
+@pytest.mark.usefixtures('checked_often')
 @pytest.mark.parametrize('recorded', [True, False], ids=['recorded', 'not recorded'])
 @pytest.mark.parametrize('name', COPIED)
 def test_a_second_copy_of_any_node_ends_the_run_with_its_name(

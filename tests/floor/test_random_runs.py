@@ -5,7 +5,7 @@
 import pytest
 from random_runs import outcomes
 
-RUNS = 40
+RUNS = 24
 
 
 @pytest.mark.slow
