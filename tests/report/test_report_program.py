@@ -23,6 +23,9 @@ from ddct_bringup.thesis.predictions import predicted_range
 from ddct_bringup.verdict.limits import load_limits
 from ddct_plant.scenario.settings import RunSettings
 
+NO_FLOORS = ('--floors', 'none')
+"""Options of reports on other subjects; floors take longer than the rest of a page."""
+
 
 def scores_of(folder: Path, capsys: pytest.CaptureFixture[str]) -> list[dict]:
     score([str(folder), '--json', '-'])
@@ -59,7 +62,7 @@ def test_the_text_shows_the_rounded_numbers_and_the_thesis_s(page: Path) -> None
 def test_a_predicted_value_has_its_range_and_hit_or_miss(tmp_path: Path) -> None:
     record(plan('mpc3', 'headless', duration_s=3.0), tmp_path / 'mpc3')
     out = tmp_path / 'report.html'
-    assert main([str(tmp_path), '--out', str(out)]) == 0
+    assert main([str(tmp_path), *NO_FLOORS, '--out', str(out)]) == 0
     text = read(out).text
     assert predicted_range('mpc3', 'torsion_speed_std_rpm') in text
     assert 'predicted' in text
@@ -90,7 +93,7 @@ def test_bad_limits_are_named_before_anything_is_read(tmp_path: Path, capsys) ->
 def test_the_header_lists_the_changes_of_the_packaged_scenario(page: Path, tmp_path: Path) -> None:
     record(plan('pi', 'headless', duration_s=1.0), tmp_path / 'pi')
     out = tmp_path / 'report.html'
-    assert main([str(tmp_path), '--out', str(out)]) == 0
+    assert main([str(tmp_path), *NO_FLOORS, '--out', str(out)]) == 0
     text = out.read_text(encoding='utf-8')
     changed = 'thesis, 1 value changed: duration_s=1.0'
     assert f'Scenario <b>{changed}</b>' in text
@@ -117,7 +120,7 @@ def test_the_page_of_the_same_runs_is_the_same_file(
 ) -> None:
     pages = []
     for name in ('first.html', 'second.html'):
-        arguments = [str(demo / 'pi'), '--out', str(tmp_path / name)]
+        arguments = [str(demo / 'pi'), *NO_FLOORS, '--out', str(tmp_path / name)]
         program = programs.start_module('ddct_bringup.programs.report', *arguments)
         assert program.wait() == 0, program.errors()
         pages.append((tmp_path / name).read_bytes())
@@ -157,7 +160,7 @@ def test_a_run_that_ended_early_is_marked(demo: Path, tmp_path: Path) -> None:
         {'load': {'version': '0.1.0'}},
     )
     out = tmp_path / 'report.html'
-    assert main([str(tmp_path / 'pi'), str(demo / 'ls8'), '--out', str(out)]) == 1
+    assert main([str(tmp_path / 'pi'), str(demo / 'ls8'), *NO_FLOORS, '--out', str(out)]) == 1
     assert 'ended early: 100 of 300 steps' in read(out).text
 
 
@@ -185,7 +188,7 @@ def test_labels_distinguish_wear_gains_and_architectures_of_one_scenario(
     record(type(other)(settings, 'ls8', 'headless'), tmp_path / 'other')
     out = tmp_path / 'report.html'
     bags = [str(folder) for folder in (demo / 'ls8', tmp_path / 'worn', tmp_path / 'other')]
-    assert main([*bags, '--out', str(out)]) == 0
+    assert main([*bags, *NO_FLOORS, '--out', str(out)]) == 0
     text = read(out).text
     for label in ('ls8, detailed, wear 1', 'ls8, detailed, wear 0.7', 'ls8, feedforward, wear 1'):
         assert label in text
@@ -202,7 +205,7 @@ def page_with(evidence: dict, demo: Path, folder: Path) -> str:
     shutil.copytree(demo / 'pi', folder / 'pi')
     (folder / FREQUENCY_FILE).write_text(json.dumps(evidence), encoding='utf-8')
     out = folder / 'report.html'
-    assert main([str(folder / 'pi'), '--out', str(out)]) == 0
+    assert main([str(folder / 'pi'), *NO_FLOORS, '--out', str(out)]) == 0
     return read(out).text
 
 
@@ -312,7 +315,7 @@ def test_a_controller_that_fell_back_is_named(tmp_path, capsys):
     changes = ['controllers.mpc3.iteration_limit=1', 'controllers.mpc3.highest_torque_n_m=300']
     options = [part for change in changes for part in ('--set', change)]
     folder = tmp_path / 'runs'
-    options += ['--headless', '--out', str(folder)]
+    options += [*NO_FLOORS, '--headless', '--out', str(folder)]
     assert compare.main(['--controllers', 'mpc3', *options]) == 0
     fallbacks = json.loads((folder / 'scores.json').read_text())['runs'][0]['fallbacks']
     assert fallbacks > 0

@@ -58,13 +58,15 @@ def _report(argv: list[str]) -> int:
     with locked_folders(*filter(is_ours, places)):
         bags = bags_in(options.runs)
         columns = load_columns(options.columns) if options.columns else None
-        runs = in_order(
-            [
-                with_floors(score_any_bag(*bag, limits, columns), metrics, limits)
-                for bag in with_progress(bags, len(bags), 'reading')
-            ]
-        )
-        write_report(runs, options.out, limits)
+        runs = [
+            score_any_bag(*bag, limits, columns)
+            for bag in with_progress(bags, len(bags), 'reading')
+        ]
+        require_one_scenario(runs)
+        floored = [
+            with_floors(run, metrics, limits) for run in with_progress(runs, len(runs), 'floors')
+        ]
+        write_report(in_order(floored), options.out, limits)
         keep_digests([options.out] if places else [])
     for run in runs:
         if not run.scores.valid:

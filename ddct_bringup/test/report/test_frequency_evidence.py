@@ -13,6 +13,7 @@ from ddct_bringup.report.evidence import FREQUENCY_FILE
 from ddct_bringup.run.headless import run_headless
 from ddct_controllers.design.analysis.loops import sampled_loop
 from ddct_controllers.design.analysis.step_response import step_response
+from ddct_controllers.design.analysis.worst_corner import plant_corners
 from ddct_controllers.interface import Command, Controller, Measurement
 from ddct_controllers.registry import controller_names, make_controller
 from ddct_controllers.workflows.evidence import frequency_evidence
@@ -88,8 +89,8 @@ def test_the_sampled_loop_has_the_actuator_of_the_run(delay_s):
 
 def test_compare_leaves_the_evidence_beside_the_scores(tmp_path):
     out = tmp_path / 'out'
-    arguments = ['--controllers', 'ls8,pi', '--wear-gain', '0.8', '--headless', '--out', str(out)]
-    assert compare.main(arguments) == 0
+    options = ['--wear-gain', '0.8', '--floors', 'none', '--headless', '--out', str(out)]
+    assert compare.main(['--controllers', 'ls8,pi', *options]) == 0
     document = json.loads((out / FREQUENCY_FILE).read_text(encoding='utf-8'))
     assert document['conditions']['delay_s'] == 0.01
     assert [entry['controller'] for entry in document['controllers']] == ['ls8', 'pi']
@@ -113,6 +114,8 @@ def test_the_evidence_of_a_repeated_run_is_the_same(tmp_path):
     texts = []
     for name in ('first', 'second'):
         out = tmp_path / name
-        assert compare.main(['--controllers', 'ls2', '--headless', '--out', str(out)]) == 0
+        plant_corners.cache_clear()
+        options = ['--floors', 'none', '--headless', '--out', str(out)]
+        assert compare.main(['--controllers', 'ls2', *options]) == 0
         texts.append((out / FREQUENCY_FILE).read_bytes())
     assert texts[0] == texts[1]

@@ -51,7 +51,8 @@ def test_it_gives_to_the_bit_the_run_of_the_same_controller_in_the_registry(file
 def test_compare_scores_it_beside_the_others(file, tmp_path, capsys):
     out = tmp_path / 'runs'
     names = f'ls8,{file}'
-    assert compare(['--controllers', names, '--headless', '--out', str(out)]) == 0
+    options = ['--floors', 'none', '--headless', '--out', str(out)]
+    assert compare(['--controllers', names, *options]) == 0
     ls8, mine = json.loads((out / 'scores.json').read_text(encoding='utf-8'))['runs']
     assert (mine['controller'], mine['bag']) == ('mine', 'mine')
     assert mine['metrics']['engagement_time_s'] == ls8['metrics']['engagement_time_s']
