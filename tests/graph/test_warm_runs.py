@@ -2,12 +2,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """Many runs of one warm parent: each is as if it were the only one."""
 
+import signal
 from pathlib import Path
 from typing import Any
 
 import pytest
+from support.processes import processes_left
 from support.runs import bag_bytes, plan
+from support.shared_parent import shared_parent
+from support.waiting import wait_until
 
+from ddct_bringup.processes.jobs import Job
 from ddct_bringup.processes.shared_memory import segments_of
 from ddct_bringup.processes.warm_parent import WarmParent
 from ddct_bringup.run.execution import execute
@@ -58,3 +63,14 @@ def test_each_run_has_its_own_domain_and_folder_of_logs(
             _run(plan(), tmp_path / f'run{number}', parent)
             logs.append(sorted((tmp_path / f'logs{number}').iterdir()))
     assert [len(each) for each in logs] == [8, 8], 'one of each node'
+
+
+def test_a_node_that_the_parent_of_all_tests_forked_is_found_when_it_stays() -> None:
+    parent = shared_parent()
+    assert parent is not None
+    (node,) = parent.start([Job('ddct_plant.nodes.load_node')])
+    wait_until(lambda: 'load_node' in processes_left().get(node.pid, ''), 'the node')
+    assert parent.process.pid not in processes_left()
+    node.send_signal(signal.SIGKILL)
+    node.wait(20.0)
+    assert node.pid not in processes_left()

@@ -13,10 +13,8 @@ from pathlib import Path
 from typing import Any
 
 from ddct_bringup.processes.graph_nodes import NodeSpec
+from support.shared_parent import TEST_ID, is_shared
 from support.waiting import wait_until
-
-TEST_ID = 'DDCT_TEST_ID'
-"""Environment variable that marks every process which a test starts, directly or not."""
 
 START_S = 60.0
 """Timeout for the start or end of a node or program on a loaded machine, s."""
@@ -116,12 +114,22 @@ def processes_left() -> dict[int, str]:
     for folder in Path('/proc').iterdir():
         if not folder.name.isdigit() or int(folder.name) == os.getpid():
             continue
+        if is_shared(pid := int(folder.name)):
+            continue
         # A process may end, or belong to another user, during the scan.
         with contextlib.suppress(OSError):
-            if mark in (folder / 'environ').read_bytes().split(b'\0'):
-                command = (folder / 'cmdline').read_bytes().replace(b'\0', b' ').decode()
-                left[int(folder.name)] = command.strip()
+            command = (folder / 'cmdline').read_bytes().replace(b'\0', b' ').decode().strip()
+            marked = mark in (folder / 'environ').read_bytes().split(b'\0')
+            # A fork of the shared parent has the variables that this one had at its start.
+            if marked or ('ddct_' in command and _parent_of(pid) == os.getpid()):
+                left[pid] = command
     return left
+
+
+def _parent_of(pid: int) -> int:
+    """Return the id of a process's parent; raise OSError where the process has ended."""
+    status = Path(f'/proc/{pid}/stat').read_text(encoding='utf-8')
+    return int(status.rpartition(')')[2].split()[1])
 
 
 def children_of(parent: int) -> list[int]:
@@ -129,8 +137,7 @@ def children_of(parent: int) -> list[int]:
     found = []
     for pid in processes_left():
         with contextlib.suppress(OSError):
-            status = Path(f'/proc/{pid}/stat').read_text(encoding='utf-8')
-            if int(status.rpartition(')')[2].split()[1]) == parent:
+            if _parent_of(pid) == parent:
                 found.append(pid)
     return found
 
