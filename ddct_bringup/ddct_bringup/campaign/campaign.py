@@ -9,7 +9,8 @@ from typing import Any
 
 from ddct_bringup.campaign.keys import CONTROLLERS, FILE_KEY, SCENARIO
 from ddct_bringup.campaign.run_set import RunSet
-from ddct_bringup.campaign.spec import MOST_RUNS, CampaignSpec
+from ddct_bringup.campaign.spec import CampaignSpec
+from ddct_bringup.campaign.specification.parts import MOST_RUNS
 from ddct_bringup.run.run_base import RunBase
 from ddct_controllers.from_file.controller_file import is_controller_file
 from ddct_controllers.registry import controller_spec
@@ -44,6 +45,8 @@ class Campaign(RunSet):
             common=spec.common,
             grid=spec.grid,
             samples=spec.samples,
+            of=spec.of,
+            floor_samples=spec.floor_samples,
             vary=spec.vary,
             root=spec.root,
         )

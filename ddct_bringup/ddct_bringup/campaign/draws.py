@@ -8,11 +8,14 @@ The bits are those of the generator Philox 4x64, whose counter is the case; nump
 """
 
 import hashlib
+from collections.abc import Callable
 from functools import cache
+from typing import TypeVar
 
 import numpy as np
 from numpy.random import Philox, SeedSequence
 
+Draw = TypeVar('Draw')
 _WORDS = 4
 """Number of 32-bit words in the hash of a key, and of 64-bit words for one counter."""
 _LARGEST_SEED = 2**31
@@ -29,6 +32,27 @@ def uniforms(root: int, key: str, cases: range) -> list[float]:
 def run_seeds(root: int, cases: range) -> list[int]:
     """Return the seed of the random numbers within the runs of each of some cases."""
     return [bits % _LARGEST_SEED for bits in _bits(root, _SEED, cases)]
+
+
+def drawn_in_part(
+    draw: Callable[[range], list[Draw]], cases: range, samples: int, left_out: int
+) -> list[Draw]:
+    """
+    Return the random numbers of some successive cases in a part of a campaign.
+
+    Of the whole campaign the first `samples` at each point of the grid run, and the `left_out`
+    samples after them do not. `draw` returns the numbers of cases of the whole one.
+    """
+    if not left_out:
+        return draw(cases)
+    drawn: list[Draw] = []
+    first = cases.start
+    while first < cases.stop:
+        point = first // samples
+        end = min(cases.stop, (point + 1) * samples)
+        drawn += draw(range(first + point * left_out, end + point * left_out))
+        first = end
+    return drawn
 
 
 def _bits(root: int, key: str, cases: range) -> list[int]:

@@ -2,16 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """A set of runs by index: every controller in every case, where a case is a point with samples."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 from math import prod
 from typing import Any
 
 import numpy as np
 
 from ddct_bringup.campaign.distributions import Distribution
-from ddct_bringup.campaign.draws import run_seeds, uniforms
+from ddct_bringup.campaign.draws import Draw, drawn_in_part, run_seeds, uniforms
 from ddct_bringup.campaign.keys import COMMON, SCENARIO
 from ddct_bringup.campaign.rows import SEED, require_suitable
 from ddct_bringup.run.run_base import RunBase
@@ -33,6 +33,9 @@ class PlannedRow:
     varied: Mapping[str, Any]
     """Values by key, as they were given."""
     settings: RunSettings
+
+    has_floors: bool = True
+    """Whether it is one of the runs that have floors, where the campaign has any."""
 
     @property
     def seed(self) -> int:
@@ -71,6 +74,10 @@ class RunSet:
     """Values on the grid by key; the last key changes fastest."""
     samples: int = 1
     """Number of samples at each point of the grid."""
+    of: int | None = None
+    """Number of samples of the campaign whose first ones these are; None for this one."""
+    floor_samples: int | None = None
+    """Number of samples, the first at each point, whose runs have floors; None for all."""
     vary: Mapping[str, Distribution] = field(default_factory=dict)
     """Distributions of the keys that are drawn in each sample, by key."""
     root: int | None = None
@@ -104,13 +111,22 @@ class RunSet:
             number, case = divmod(first, self.cases)
             end = min(last, (number + 1) * self.cases)
             cases = range(case, case + end - first)
-            seeds = [] if self.root is None else run_seeds(self.root, cases)
+            seeds = [] if self.root is None else self._drawn(partial(run_seeds, self.root), cases)
             for place, varied in enumerate(self.varied(cases)):
                 given = {**self.common, **varied}
                 if seeds:
                     given.setdefault(SEED, seeds[place])
                 yield self._planned(first + place, self.controllers[number], varied, given)
             first = end
+
+    def has_floors(self, case: int) -> bool:
+        """Return whether the runs of a case have floors, where the campaign has any."""
+        return self.floor_samples is None or case % self.samples < self.floor_samples
+
+    def _drawn(self, draw: Callable[[range], list[Draw]], cases: range) -> list[Draw]:
+        """Return the random numbers of successive cases, from those of the whole campaign."""
+        left_out = (self.of or self.samples) - self.samples
+        return drawn_in_part(draw, cases, self.samples, left_out)
 
     def _planned(
         self,
@@ -125,7 +141,8 @@ class RunSet:
         except DdctError as error:
             named = error.at(_name(index, varied))
             return ImpossibleRow(index, controller, varied, given.get(SEED, 0), named)
-        return PlannedRow(index, controller, varied, settings)
+        has_floors = self.has_floors(index % self.cases)
+        return PlannedRow(index, controller, varied, settings, has_floors)
 
     def placed(self, key: str, value: Any) -> Any:
         """Return a value; if it names a file, its path."""
@@ -142,7 +159,10 @@ class RunSet:
         }
         if self.root is not None:
             columns |= {
-                key: [distribution.value(each) for each in uniforms(self.root, key, cases)]
+                key: [
+                    distribution.value(each)
+                    for each in self._drawn(partial(uniforms, self.root, key), cases)
+                ]
                 for key, distribution in self.vary.items()
             }
         return [

@@ -68,7 +68,7 @@ class Scorer:
     at_once: bool = True
     """Whether linear runs are computed together, to 1e-9 of the run step by step."""
     floors: tuple[str, ...] = ()
-    """Metrics that are set beside the least; the runs are then computed step by step."""
+    """Metrics that are set beside the least; runs with floors are computed step by step."""
     _shared: dict[str, Controller] = field(default_factory=dict)
 
     def scored(self, runs: Iterable[PlannedRow | ImpossibleRow]) -> list[ScoredRow]:
@@ -86,17 +86,20 @@ class Scorer:
     def _of(self, run: PlannedRow | ImpossibleRow, found: ScoredRun | None) -> ScoredRow:
         name, path, scores = run.controller.name, VECTORISED, found
         if isinstance(run, ImpossibleRow):
-            failed = run_without_score(name, None, str(run.error))
-            path, scores = SERIAL, replace(failed, over_floor=dict.fromkeys(self.floors))
+            path, scores = SERIAL, run_without_score(name, None, str(run.error))
         elif scores is None:
             path = SERIAL
-            scores = scored_headless(run.settings, run.controller, self.limits, self.floors)
+            floors = self.floors if run.has_floors else ()
+            scores = scored_headless(run.settings, run.controller, self.limits, floors)
+        scores = replace(scores, over_floor={**dict.fromkeys(self.floors), **scores.over_floor})
         return ScoredRow(run.index, name, run.seed, run.varied, scores, path)
 
     def _together(self, runs: Sequence[PlannedRow]) -> dict[int, ScoredRun]:
         """Return the scores of the runs that can be computed at once, by index."""
         suited = []
-        for run in runs if self.at_once and not self.floors else ():
+        for run in runs if self.at_once else ():
+            if self.floors and run.has_floors:
+                continue
             try:
                 controller = self._controller(run)
             except FOREIGN_FAILURES:

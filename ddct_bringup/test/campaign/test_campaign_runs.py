@@ -55,6 +55,17 @@ def test_all_controllers_have_the_same_cases_with_the_same_noise() -> None:
     assert len({made.run(case).varied['vehicle.mass_kg'] for case in range(made.cases)}) == 12
 
 
+@pytest.mark.parametrize('cases', [range(8), range(3, 6)])
+def test_the_first_samples_of_a_campaign_are_those_of_the_whole_one(cases: range) -> None:
+    part = campaign(random={'samples': 2, 'of': 3, 'vary': SPEC['random']['vary']})
+    whole = campaign()
+    assert part.cases == 8
+    for run in part.planned(cases.start, cases.stop):
+        point, sample = divmod(run.index, 2)
+        same = whole.run(3 * point + sample)
+        assert (run.varied, run.seed) == (same.varied, same.seed)
+
+
 def test_another_key_does_not_change_what_a_key_draws() -> None:
     vary = SPEC['random']['vary']
     more = {'pedal_position': {'distribution': 'uniform', 'low': 0, 'high': 1}, **vary}

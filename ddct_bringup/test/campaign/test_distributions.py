@@ -9,8 +9,8 @@ import pytest
 from refusals import refused
 from scipy import stats
 
-from ddct_bringup.campaign.distributions import distribution_of
 from ddct_bringup.campaign.keys import option_of
+from ddct_bringup.campaign.specification.distribution import distribution_of
 from ddct_plant.base.errors import ParameterError
 
 MASS = 'vehicle.mass_kg'

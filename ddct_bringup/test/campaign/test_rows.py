@@ -73,6 +73,25 @@ def test_a_campaign_with_floors_has_a_column_of_each_and_null_where_there_is_non
     assert shard_bytes(schema_of(spec), rows)
 
 
+def test_only_the_first_samples_at_each_point_have_floors():
+    content = {
+        'controllers': ['ls8'],
+        'grid': {'wear_gain': [1.0], 'duration_s': [3.0, 2.9]},
+        'random': {
+            'samples': 2,
+            'vary': {'vehicle.mass_kg': {'distribution': 'uniform', 'low': 1400, 'high': 1500}},
+        },
+        'floors': ['friction_energy'],
+        'floor_samples': 1,
+    }
+    spec = spec_of(content, Path())
+    planned = Campaign(spec).planned(0, 4)
+    rows = [each.row() for each in Scorer(packaged_limits(), floors=spec.floors).scored(planned)]
+    ratios = [row['over_floor.friction_energy'] for row in rows]
+    assert [ratio is None for ratio in ratios] == [False, True, False, True]
+    assert [row['path'] for row in rows] == ['serial', 'vectorised'] * 2
+
+
 def test_a_floor_of_an_unknown_metric_is_refused():
     content = {'controllers': ['ls8'], 'grid': {'wear_gain': [1.0]}, 'floors': ['jerk']}
     with refused(ParameterError, key='floors'):

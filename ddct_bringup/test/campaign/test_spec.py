@@ -59,6 +59,14 @@ def test_a_specification_has_defaults_for_all_but_what_varies(tmp_path: Path) ->
         ),
         (PI + 'grid: {mode: [realtime]}\n', 'grid.mode: unknown key mode'),
         (PI + GRID + 'seed: -1\n', 'line 3: seed is -1: it must be at least 0'),
+        (
+            PI + f'random: {{samples: 3, of: 2, vary: {{vehicle.mass_kg: {MASS}}}}}\n',
+            'line 2: random.of is 2: it must be at least 3',
+        ),
+        (
+            PI + GRID + 'floor_samples: 2\n',
+            'line 3: floor_samples is 2: it must be at most 1',
+        ),
         (PI + GRID + 'clutch: wet\n', "unknown clutch 'wet': choose from linear, stick_slip"),
         (PI + GRID + 'scenario: 3\n', 'scenario is 3: give text'),
         (PI + GRID + 'schema_version: 2\n', 'schema_version is 2, this version reads up to 1'),
