@@ -8,7 +8,6 @@ The bound is for another kind of processor or other versions, where the last bit
 
 import json
 import math
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -16,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.verification.deviation import deviation_of, deviations_of
 from ddct_plant.files.input_file import parse_json
 
 SAME_BITS, SAME_WITHIN = 'same_bits', 'same_within'
@@ -28,8 +28,6 @@ Largest difference of two numbers that are the same, relative to the largest mag
 That is the larger magnitude of a single number, and the largest in the run of a signal; 1 in its
 unit where it is smaller.
 """
-_NUMBER = re.compile(r'[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?')
-
 Place = Mapping[str, Any]
 """Place of a value, such as its signal and step, or its key."""
 
@@ -61,7 +59,7 @@ class Comparison:
 
     def add(self, place: Place, recorded: Any, repeated: Any) -> None:
         """Compare two values: numbers, texts, or None."""
-        deviation = _deviation(recorded, repeated)
+        deviation = deviation_of(recorded, repeated)
         if deviation is not None:
             self._note(deviation, Difference(place, recorded, repeated))
 
@@ -111,36 +109,6 @@ class Comparison:
             self.beyond = self.beyond or difference
 
 
-def _deviation(recorded: Any, repeated: Any) -> float | None:
-    """Return the relative difference of two values, None for equal ones, infinity without one."""
-    if recorded == repeated and isinstance(recorded, bool) == isinstance(repeated, bool):
-        return None
-    if isinstance(recorded, str) and isinstance(repeated, str):
-        return _text_deviation(recorded, repeated)
-    if _is_number(recorded) and _is_number(repeated):
-        if math.isnan(recorded) and math.isnan(repeated):
-            return None
-        return _relative(recorded, repeated)
-    return math.inf
-
-
-def _is_number(value: Any) -> bool:
-    return isinstance(value, (int, float)) and not isinstance(value, bool)
-
-
-def _relative(recorded: float, repeated: float) -> float:
-    difference = abs(recorded - repeated) / max(1.0, abs(recorded), abs(repeated))
-    return difference if math.isfinite(difference) else math.inf
-
-
-def _text_deviation(recorded: str, repeated: str) -> float:
-    """Return the largest difference of the numbers in two texts of the same words."""
-    if _NUMBER.split(recorded) != _NUMBER.split(repeated):
-        return math.inf
-    pairs = zip(_NUMBER.findall(recorded), _NUMBER.findall(repeated), strict=True)
-    return max((_relative(float(ours), float(theirs)) for ours, theirs in pairs), default=math.inf)
-
-
 def _signal_differences(
     name: str, recorded: Any, repeated: Any
 ) -> Iterator[tuple[float, Difference]]:
@@ -150,7 +118,7 @@ def _signal_differences(
         yield math.inf, Difference({'signal': name, 'step': 0}, ours, theirs)
         return
     steps = min(len(recorded), len(repeated))
-    deviations = _deviations(recorded[:steps], repeated[:steps])
+    deviations = deviations_of(recorded[:steps], repeated[:steps])
     places = [*np.flatnonzero(deviations >= 0.0)[:1], *np.flatnonzero(deviations > BOUND)[:1]]
     for step in (*places, *([deviations.argmax()] if places else [])):
         values = (recorded[step], repeated[step])
@@ -164,26 +132,6 @@ def _form(signal: Any) -> str:
     if signal is None:
         return 'absent'
     return f'numbers {signal.shape[1:]}' if isinstance(signal, np.ndarray) else 'texts'
-
-
-def _deviations(recorded: Any, repeated: Any) -> np.ndarray:
-    """Return the relative difference at each step, (N+1,); -1 where all bits are equal."""
-    if isinstance(recorded, np.ndarray):
-        return _array_deviations(recorded, repeated)
-    pairs = zip(recorded, repeated, strict=True)
-    return np.array([-1.0 if a == b else _text_deviation(repr(a), repr(b)) for a, b in pairs])
-
-
-def _array_deviations(recorded: np.ndarray, repeated: np.ndarray) -> np.ndarray:
-    """Return the largest relative difference at each step, (N+1,); -1 where all bits are equal."""
-    ours, theirs = (np.ascontiguousarray(each, dtype=float) for each in (recorded, repeated))
-    unequal = ours.view(np.uint64) != theirs.view(np.uint64)
-    with np.errstate(all='ignore'):
-        scale = np.maximum(1.0, np.nanmax(np.abs(ours), axis=0, initial=0.0))
-        relative = np.abs(ours - theirs) / scale
-    relative = np.where(np.isfinite(relative), relative, np.inf)
-    found = np.where(unequal, relative, -1.0)
-    return found.reshape(len(found), -1).max(axis=1, initial=-1.0)
 
 
 def _plain(value: Any) -> Any:
