@@ -2,7 +2,7 @@
 SHELL := /bin/bash
 .SHELLFLAGS := -e -o pipefail -c
 .DELETE_ON_ERROR:
-.PHONY: help setup demo docs fmu test test-fast mutants lint bench lock clean
+.PHONY: help setup demo docs fmu test test-fast mutants lint bench benchmark-rows lock clean
 
 ifneq ($(words $(CURDIR)),1)
 $(error colcon fails in a folder with a space in its path, move the repository: $(CURDIR))
@@ -87,6 +87,11 @@ test: fmu
 	$(BIN)/colcon test-result --all | awk -v folders=$(words $(TEST_FOLDERS)) '$(TOTAL)' \
 	    || status=1; \
 	exit $$status
+
+# Rows of all packaged controllers on the benchmark's development cases, kept with a release: a quarter of an hour.
+# It goes on with what is in runs/benchmark_rows, unless the sources have changed since: then remove that first.
+benchmark-rows: setup
+	@$(SOURCED) $(BIN)/python -m ddct_bringup.benchmark.release
 
 # Pure tests; the markers are described in pyproject.toml.
 test-fast: setup

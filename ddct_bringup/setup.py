@@ -10,6 +10,7 @@ from setuptools import find_packages, setup
 
 PACKAGE = 'ddct_bringup'
 PROGRAMS = [
+    'benchmark = ddct_bringup.programs.benchmark:main',
     'bringup = ddct_bringup.programs.bringup:main',
     'campaign = ddct_bringup.programs.campaign:main',
     'compare = ddct_bringup.programs.compare:main',
@@ -36,6 +37,8 @@ setup(
     packages=find_packages(exclude=['test']),
     package_data={
         f'{PACKAGE}.bag.file': ['*.yaml'],
+        f'{PACKAGE}.benchmark': ['packaged/*'],
+        f'{PACKAGE}.benchmark.report': ['*.j2', '*.css', '*.js'],
         f'{PACKAGE}.campaign_report': ['*.j2', '*.css', '*.js'],
         f'{PACKAGE}.report': ['*.j2', '*.css', '*.js'],
         f'{PACKAGE}.thesis': ['admissible_scenarios/*'],

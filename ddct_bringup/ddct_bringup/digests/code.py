@@ -6,6 +6,8 @@ import hashlib
 from functools import cache
 from importlib.resources import files
 from importlib.resources.abc import Traversable
+from importlib.util import find_spec
+from pathlib import Path
 
 _PACKAGES = ('ddct_plant', 'ddct_reference', 'ddct_controllers', 'ddct_bringup')
 _SOURCES = ('.py', '.yaml')
@@ -17,6 +19,18 @@ def code_digest() -> str:
     digest = hashlib.sha256()
     for package in _PACKAGES:
         _add(digest, package, files(package))
+    return digest.hexdigest()
+
+
+@cache
+def package_digest(name: str) -> str:
+    """Return a hash of the sources of an installed package, or of a module without a package."""
+    digest = hashlib.sha256()
+    spec = find_spec(name)
+    if spec is not None and spec.submodule_search_locations:
+        _add(digest, name, files(name))
+    elif spec is not None and spec.origin:
+        digest.update(Path(spec.origin).read_bytes())
     return digest.hexdigest()
 
 

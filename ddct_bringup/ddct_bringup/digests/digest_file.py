@@ -17,8 +17,8 @@ from ddct_plant.files.output_file import write_text
 DIGESTS = 'digests.json'
 SCHEMA_VERSION = 1
 """Schema version of `digests.json`."""
-RUNS, CAMPAIGN = 'runs', 'campaign'
-"""Kinds of folders: one bag or several with their scores, and a campaign."""
+RUNS, CAMPAIGN, BENCHMARK = 'runs', 'campaign', 'benchmark'
+"""Kinds of folders: one bag or several with their scores, a campaign, and a benchmark."""
 _MOST_BYTES = 50_000_000
 """Largest size of `digests.json` in bytes; a campaign has a thousandth of that."""
 

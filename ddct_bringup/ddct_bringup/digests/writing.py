@@ -61,6 +61,20 @@ def finish_campaign_digests(folder: Path) -> None:
     read_digests(folder).with_files(digests_of_files(folder)).write(folder)
 
 
+def write_folder_digests(folder: Path, kind: str) -> None:
+    """
+    Write the digests of a folder with folders of results in it.
+
+    The kind of processor is that of this one only if it is that of all of these. Raise DdctError
+    when a file cannot be read or written.
+    """
+    here = this_environment()
+    inner = [read_digests(file.parent).environment for file in folder.glob(f'*/**/{DIGESTS}')]
+    if any(each != here for each in inner):
+        here = replace(here, processor=None)
+    Digests(SCHEMA_VERSION, kind, digests_of_files(folder), here).write(folder)
+
+
 def keep_digests(paths: Iterable[Path | str]) -> None:
     """
     Renew the digests of files that a program has written, in the folders of results around them.

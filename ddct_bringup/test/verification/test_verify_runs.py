@@ -334,11 +334,11 @@ def test_a_folder_of_another_release_is_compared_with_the_bound(
     code, document, _ = verified(folder, capfd)
     assert (code, document['bound']) == (0, 1e-9)
     assert document['environment_differences'][0].startswith('version 0.0.1, here ')
-    content['kind'] = 'benchmark'
+    content['kind'] = 'a_later_one'
     _write_digests(folder, content)
     code, _, errors = verified(folder, capfd)
     assert code == 1
-    assert "this version cannot verify a folder of the kind 'benchmark'" in errors
+    assert "this version cannot verify a folder of the kind 'a_later_one'" in errors
 
 
 def _write_digests(folder: Path, content: dict[str, Any]) -> None:

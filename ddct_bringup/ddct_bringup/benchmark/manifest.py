@@ -1,0 +1,125 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""`benchmark.json`: the inputs of a benchmark, used to go on with it and to repeat it."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, field, fields
+from pathlib import Path
+from typing import Any
+
+from ddct_bringup.benchmark.cases import Cases
+from ddct_bringup.benchmark.judged import Judged
+from ddct_bringup.digests.code import code_digest
+from ddct_bringup.verdict.limits import packaged_limits
+from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.files.input_file import parse_json, read_text_file, require_schema_version
+from ddct_plant.files.output_file import write_json
+from ddct_plant.program.command_line import package_version
+
+MANIFEST = 'benchmark.json'
+SCHEMA_VERSION = 1
+"""Schema version of the manifest."""
+
+
+@dataclass(frozen=True)
+class JudgedEntry:
+    """A judged controller in the manifest."""
+
+    name: str
+    """Name in results, and of its folder."""
+    chosen: str
+    """Name, or name of the controller file without its folder."""
+    digests: Mapping[str, str]
+    """SHA-256 of the files that it is made of, or of its package, by their key."""
+    held_out_seed: int
+
+    @classmethod
+    def of(cls, judged: Judged, release: str, judge_seed: int | None) -> 'JudgedEntry':
+        """Return the entry of a controller, judged by a release with this digest of its code."""
+        seed = judged.held_out_seed(release) if judge_seed is None else judge_seed
+        return cls(judged.name, judged.chosen, dict(judged.digests), seed)
+
+
+@dataclass(frozen=True)
+class BenchmarkManifest:
+    """Inputs of a benchmark."""
+
+    schema_version: int
+    version: str
+    """Version of the release."""
+    code_digest: str
+    """Digest of the code of the release."""
+    limits: Mapping[str, Any]
+    """Name, digest and schema version of the limits by which runs are judged."""
+    quick: bool
+    judge_seed: int | None
+    """Seed of a judge for all held-out cases; None where it follows from the digests."""
+    controllers: Sequence[JudgedEntry]
+    cases: Mapping[str, Any] = field(default_factory=dict)
+    """Specification of the cases."""
+
+    @classmethod
+    def of(
+        cls, judged: Sequence[Judged], cases: Cases, judge_seed: int | None
+    ) -> 'BenchmarkManifest':
+        """Return the manifest of a benchmark by this release."""
+        release = code_digest()
+        return cls(
+            schema_version=SCHEMA_VERSION,
+            version=package_version(),
+            code_digest=release,
+            limits=dict(packaged_limits().origin),
+            quick=cases.quick,
+            judge_seed=judge_seed,
+            controllers=[JudgedEntry.of(each, release, judge_seed) for each in judged],
+            cases=dict(cases.content),
+        )
+
+    @classmethod
+    def read(cls, out: Path) -> 'BenchmarkManifest':
+        """Return the manifest in a folder; raise DdctError without a valid one."""
+        path = out / MANIFEST
+        try:
+            content = parse_json(read_text_file(path))
+            require_schema_version(content, SCHEMA_VERSION)
+            entries = [JudgedEntry(**each) for each in content['controllers']]
+            known = {each.name: content[each.name] for each in fields(cls)}
+            return cls(**{**known, 'controllers': entries})
+        except FileNotFoundError as error:
+            raise DdctError(
+                f'{out}: no {MANIFEST} in it: give the folder of a benchmark'
+            ) from error
+        except (OSError, ParameterError, LookupError, TypeError, AttributeError) as error:
+            raise DdctError(f'{path}: cannot be read ({error})') from error
+
+    def write(self, out: Path) -> None:
+        """Write the manifest into a folder; raise DdctError when that fails."""
+        write_json(str(out / MANIFEST), asdict(self))
+
+    @property
+    def run_cases(self) -> Cases:
+        """Cases of the benchmark."""
+        return Cases(self.cases, self.quick)
+
+    def require_same(self, other: 'BenchmarkManifest', out: Path) -> None:
+        """Raise DdctError with the first difference of another benchmark from this one, in out."""
+        ours, theirs = asdict(self), asdict(other)
+        for key, what in _PARTS.items():
+            if ours[key] != theirs[key]:
+                raise DdctError(
+                    f'{out} holds a benchmark {what}: finish it as it was started, or choose '
+                    'another --out'
+                )
+
+
+_PARTS = {
+    'schema_version': 'of another version',
+    'version': 'of another release',
+    'code_digest': 'of another release: its code is another one',
+    'limits': 'by other limits',
+    'cases': 'of other cases',
+    'quick': 'with another number of cases: --quick is given for one of the two',
+    'judge_seed': 'with another --seed',
+    'controllers': 'of other controllers, or of one whose file has changed since',
+}
+"""What another value of a key of the manifest means, the first one first."""

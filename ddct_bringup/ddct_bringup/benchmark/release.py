@@ -1,0 +1,139 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""
+Rows of the packaged controllers on the development cases, which are kept with a release.
+
+    make benchmark-rows
+
+computes them and writes them into the sources. It goes on with what an interruption left.
+"""
+
+import json
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from importlib.resources.abc import Traversable
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as parquet
+
+from ddct_bringup.benchmark.case_rows import CaseRows
+from ddct_bringup.benchmark.cases import Cases, packaged_folder
+from ddct_bringup.benchmark.unavoidable import unavoidable_limits
+from ddct_bringup.campaign.columns import CONTROLLER, SEED
+from ddct_bringup.campaign.conduct import carry_out
+from ddct_bringup.campaign.manifest import MANIFEST, Manifest
+from ddct_bringup.campaign.spec import CampaignSpec
+from ddct_bringup.campaign_report.evaluated_quantities import QUANTITIES
+from ddct_bringup.campaign_report.reading import read_table
+from ddct_bringup.digests.code import code_digest
+from ddct_bringup.scores.csv_text import OVER_FLOOR
+from ddct_bringup.verdict.limits import packaged_limits
+from ddct_controllers.registry import own_controller_names
+from ddct_plant.base.errors import DdctError
+from ddct_plant.files.input_file import parse_json
+from ddct_plant.files.output_file import write_bytes
+from ddct_plant.program.command_line import package_version, run_program
+
+ROWS = 'development.parquet'
+UNAVOIDABLE = 'development_unavoidable.json'
+_PROGRAM = 'make benchmark-rows'
+_CASES, _CODE, _VERSION = b'cases_digest', b'code_digest', b'version'
+_VERDICT = ('valid', 'reason', 'verdict_state', 'verdict_limits')
+
+
+@dataclass(frozen=True)
+class ReleaseRows:
+    """What a release has of its own controllers on the development cases."""
+
+    rows: CaseRows
+    unavoidable: Mapping[int, list[str]]
+    """Limits that no controller can keep, for each case with floors."""
+    cases_digest: str
+    """Digest of the cases that were run."""
+    code: str
+    """Digest of the code that computed the rows."""
+    version: str
+
+    def of(self, cases: Cases) -> 'ReleaseRows':
+        """Return the rows of the cases that run; raise DdctError for cases without rows."""
+        if cases.digest != self.cases_digest:
+            raise DdctError(f'{ROWS} has the rows of other cases: run {_PROGRAM}')
+        campaign = cases.planned
+        samples, each = campaign.samples, cases.whole.samples
+        whole = [case // samples * each + case % samples for case in range(campaign.cases)]
+        unavoidable = {
+            case: self.unavoidable[number]
+            for case, number in enumerate(whole)
+            if campaign.has_floors(case)
+        }
+        floors = np.array([campaign.has_floors(case) for case in range(campaign.cases)])
+        rows = self.rows.of_cases(whole).with_floors_in(floors)
+        return replace(self, rows=rows, unavoidable=unavoidable)
+
+
+def columns_kept(spec: CampaignSpec) -> list[str]:
+    """Return the columns that a release keeps: what runs are evaluated by, and what varied."""
+    varied = [key for key in spec.vary if key != SEED]
+    grid = [key for key, values in spec.grid.items() if len(values) > 1]
+    quantities = [each.key for each in QUANTITIES]
+    floors = [f'{OVER_FLOOR}{name}' for name in spec.floors]
+    return [CONTROLLER, SEED, *grid, *varied, *_VERDICT, *quantities, *floors]
+
+
+def release_rows(folder: Traversable | Path) -> ReleaseRows:
+    """Return the rows of a release in a folder; raise DdctError where they cannot be read."""
+    try:
+        with (folder / ROWS).open('rb') as file:
+            table = parquet.read_table(file)
+        known = table.schema.metadata
+        limits = parse_json((folder / UNAVOIDABLE).read_text(encoding='utf-8'))
+        return ReleaseRows(
+            CaseRows.of_table(table),
+            {int(case): list(names) for case, names in limits.items()},
+            *(known[key].decode() for key in (_CASES, _CODE, _VERSION)),
+        )
+    except (OSError, pa.ArrowException, LookupError, TypeError, ValueError) as error:
+        why = next(iter(str(error).splitlines()), type(error).__name__)
+        raise DdctError(f'{folder}: its rows of the release cannot be read ({why})') from error
+
+
+def copy_release_rows(target: Path) -> None:
+    """Write the rows of this release into a folder; raise DdctError when that fails."""
+    for name in (ROWS, UNAVOIDABLE):
+        write_bytes(str(target / name), (packaged_folder() / name).read_bytes())
+
+
+def write_release_rows(work: Path, target: Path, workers: int | None = None) -> None:
+    """
+    Compute the rows of all packaged controllers in the folder `work`, and write them to `target`.
+
+    The runs of an earlier start with the same code are taken. Raise DdctError where that fails.
+    """
+    cases, limits = Cases.packaged(), packaged_limits()
+    campaign = cases.development(own_controller_names(), Path())
+    resume = (work / MANIFEST).exists()
+    carry_out(campaign, limits, work, workers=workers, resume=resume)
+    table = read_table(work, Manifest.read(work)).select(columns_kept(campaign.spec))
+    origin = {_CASES: cases.digest, _CODE: code_digest(), _VERSION: package_version()}
+    table = table.replace_schema_metadata({key: text.encode() for key, text in origin.items()})
+    unavoidable = unavoidable_limits(campaign, limits, workers)
+    _write_table(table, target / ROWS)
+    text = json.dumps({str(case): names for case, names in unavoidable.items()}, indent=0)
+    (target / UNAVOIDABLE).write_text(text + '\n', encoding='utf-8')
+
+
+def _write_table(table: pa.Table, path: Path) -> None:
+    parquet.write_table(table, path, compression='zstd', compression_level=19)
+
+
+def _main(argv: list[str]) -> int:
+    work = Path(argv[0]) if argv else Path('runs') / 'benchmark_rows'
+    write_release_rows(work, Path(__file__).parent / 'packaged')
+    return 0
+
+
+if __name__ == '__main__':
+    sys.exit(run_program(_PROGRAM, _main, None))

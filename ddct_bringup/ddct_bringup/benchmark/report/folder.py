@@ -1,0 +1,52 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Write the result, the page and the digests of a benchmark into its folder."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from ddct_bringup.benchmark.conduct import JudgedRows, read_judged_rows
+from ddct_bringup.benchmark.manifest import BenchmarkManifest
+from ddct_bringup.benchmark.release import release_rows
+from ddct_bringup.benchmark.report.page import benchmark_page
+from ddct_bringup.benchmark.result import result_of
+from ddct_bringup.benchmark.result_types import Result
+from ddct_bringup.benchmark.update_times import read_update_times
+from ddct_bringup.digests.digest_file import BENCHMARK
+from ddct_bringup.digests.writing import write_folder_digests
+from ddct_bringup.run.output_folder import locked_folders
+from ddct_plant.files.output_file import write_json, write_text
+
+RESULT, PAGE = 'result.json', 'report.html'
+_NOTHING: Mapping[str, str] = {}
+
+
+def result_in(out: Path, failed: Mapping[str, str] = _NOTHING) -> Result:
+    """
+    Return the result of the rows in a folder; raise DdctError where some are missing.
+
+    `failed` has the reasons of the controllers without rows.
+    """
+    manifest = BenchmarkManifest.read(out)
+    rows: dict[str, JudgedRows] = {
+        each.name: read_judged_rows(out / each.name)
+        for each in manifest.controllers
+        if each.name not in failed
+    }
+    return result_of(manifest, release_rows(out).of(manifest.run_cases), rows, failed)
+
+
+def write_result(out: Path, failed: Mapping[str, str]) -> Result:
+    """Write the result of the rows in a folder, and return it; raise DdctError as `result_in`."""
+    result = result_in(out, failed)
+    with locked_folders(out):
+        write_json(str(out / RESULT), result)
+        write_text(str(out / PAGE), benchmark_page(result, read_update_times(out)))
+        write_folder_digests(out, BENCHMARK)
+    return result
+
+
+def document_of(result: Result, out: Path) -> Mapping[str, Any]:
+    """Return the result with the update times, as `--json` has it."""
+    return {**result, 'update_times': read_update_times(out)}

@@ -1,0 +1,85 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Tables of a benchmark for the terminal."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from ddct_bringup.benchmark.report import texts
+from ddct_bringup.benchmark.result_types import Evaluation, JudgedResult, Result, Share
+from ddct_bringup.campaign_report.printed_summary import MAIN
+from ddct_bringup.campaign_report.texts import interval_text, p_text, share_text
+from ddct_bringup.metrics.catalogue import METRICS
+from ddct_plant.base.errors import printable
+from ddct_plant.program.table import UNDEFINED, Table, print_tables, text_or_dash
+
+_TITLES = 'development', '95 % interval', 'held out', '95 % interval'
+
+
+def print_result(result: Result, update_times: Mapping[str, Any]) -> None:
+    """Print the main tables of a benchmark; the page has all."""
+    for judged in result['controllers']:
+        if judged['development'] and judged['held_out']:
+            print_tables(_tables(judged, judged['development'], judged['held_out']))
+    for name, found in update_times.items():
+        ratio = text_or_dash(found['ratio_to_pi'], '.2f')
+        print(f'update time of {printable(name)} over that of pi: {ratio}')
+    best = [row['controller'] for row in result['board'] if row['non_dominated']]
+    print(printable(f'not dominated on the development cases: {", ".join(best)}'))
+
+
+def _tables(
+    judged: JudgedResult, ours: list[Evaluation], theirs: list[Evaluation]
+) -> Iterator[Table]:
+    both = [*zip(ours, theirs, strict=True)]
+    name = judged['controller']
+    rows = [
+        (first['controller'], *_share_cells(first['success']), *_share_cells(second['success']))
+        for first, second in both
+    ]
+    yield Table(f'{name}: successful engagements', ('controller', *_TITLES), rows)
+    yield Table(
+        f'{name}: P95 of engaged runs, and over the least',
+        ('quantity', 'controller', 'development', '/least', 'held out', '/least'),
+        [
+            (METRICS[key].heading, first['controller'], *_p95(first, key), *_p95(second, key))
+            for key in MAIN
+            for first, second in both
+        ],
+    )
+    kept = [
+        (first['controller'], _limit_text(first), _limit_text(second)) for first, second in both
+    ]
+    yield Table(f'{name}: avoidable limits kept', ('controller', *_TITLES[::2]), kept)
+    yield Table(
+        f'{name}: development beside held out',
+        ('figure', 'a held-out run is worse', 'p', 'beyond chance'),
+        [
+            (
+                texts.gap_name(gap['name']),
+                share_text(gap['worse']),
+                UNDEFINED if gap['p_value'] is None else p_text(gap['p_value']),
+                'yes' if gap['differs'] else 'no',
+            )
+            for gap in judged['gaps'] or ()
+        ],
+    )
+
+
+def _share_cells(share: Share) -> tuple[str, str]:
+    return share_text(share['share']), interval_text(share['interval'])
+
+
+def _limit_text(evaluation: Evaluation) -> str:
+    found = evaluation['limits']
+    return f'{share_text(found["share"])} of {found["avoidable"]}'
+
+
+def _p95(evaluation: Evaluation, key: str) -> tuple[str, str]:
+    """Return P95 of a quantity and of its ratio to the least."""
+    for found in evaluation['quantities']:
+        if found['name'] == key:
+            over = found['over_floor']
+            ratio = text_or_dash(over['p95'] if over else None, '.2f')
+            return text_or_dash(found['p95'], METRICS[key].form), ratio
+    return UNDEFINED, UNDEFINED

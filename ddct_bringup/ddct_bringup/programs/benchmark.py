@@ -1,0 +1,137 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Program `benchmark`: judge controllers on fixed and on held-out cases."""
+
+import argparse
+import sys
+from pathlib import Path
+
+from ddct_bringup.benchmark.cases import Cases
+from ddct_bringup.benchmark.conduct import Options, carry_out_benchmark
+from ddct_bringup.benchmark.judged import Judged
+from ddct_bringup.benchmark.report import texts
+from ddct_bringup.benchmark.report.folder import PAGE, RESULT, document_of, write_result
+from ddct_bringup.benchmark.report.printed import print_result
+from ddct_bringup.benchmark.result_types import Result
+from ddct_bringup.benchmark.update_times import read_update_times, write_update_times
+from ddct_bringup.campaign.rows import require_suitable
+from ddct_controllers.registry import controller_spec
+from ddct_plant.base.errors import DdctError, ParameterError, printable
+from ddct_plant.base.options import Option
+from ddct_plant.files.output_file import require_place
+from ddct_plant.program.command_line import (
+    ProgramParser,
+    complain,
+    run_program,
+    show_and_write,
+)
+from ddct_plant.program.supervision import stop_signals
+
+PROGRAM = 'ddct benchmark'
+_SEED = Option(0, 'seed of a judge', at_least=0, at_most=2**31 - 1)
+
+_EPILOG = f"""\
+examples:
+  ddct benchmark mine.yaml --out results/mine            a few minutes on two cores
+  ddct benchmark mine.yaml --out results/try --quick     a tenth of the cases
+  ddct benchmark a.py b.py ls8 --out results/three       each on its own held-out cases
+  ddct benchmark mine.yaml --out results/judged --seed 7 a judge chooses the held-out cases
+  ddct verify results/mine                               whether a result comes out again
+
+The development cases are fixed in a release, which has our controllers' rows of them. The seed of
+the held-out cases follows from the digests of controller and release; pi, ls8, hinf_sampled and
+mpc_wear run beside yours. DIR/{PAGE} shows both side by side, DIR/{RESULT} has the same as JSON.
+After an interruption the same command goes on with what is done. docs/use/benchmark.md has the
+rules.
+"""
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Run the program and return its exit code."""
+    return run_program(PROGRAM, _benchmark, argv)
+
+
+def _benchmark(argv: list[str]) -> int:
+    options = _parser().parse_args(argv)
+    require_place('--json', options.json)
+    if options.seed is not None:
+        _SEED.checked('--seed', options.seed)
+    cases = Cases.packaged(quick=options.quick)
+    judged = _judged(options.controllers, cases)
+    if judged is None:
+        return 1
+    with stop_signals() as stops:
+        given = Options(options.workers, lambda: bool(stops))
+        failed = carry_out_benchmark(judged, cases, options.out, options.seed, given)
+        write_update_times(
+            [each for each in judged if each.name not in failed], cases, options.out
+        )
+        result = write_result(options.out, failed)
+    _show(result, options)
+    return 1 if _complaints(result) else 0
+
+
+def _judged(names: list[str], cases: Cases) -> list[Judged] | None:
+    """Return the controllers; print a line for each that cannot be built, and return None."""
+    found = []
+    settings = cases.planned.run(0).settings
+    for name in names:
+        try:
+            require_suitable(controller_spec(name), settings)
+            found.append(Judged.of(name))
+        except DdctError as error:
+            complain(PROGRAM, error)
+    labels = [each.name for each in found]
+    for label in dict.fromkeys(each for each in labels if labels.count(each) > 1):
+        raise ParameterError(f'two controllers are called {label}: rename one')
+    return found if len(found) == len(names) else None
+
+
+def _complaints(result: Result) -> bool:
+    """Print a line for each controller that has no result; return whether there is one."""
+    found = False
+    for judged in result['controllers']:
+        name = judged['controller']
+        if judged['error']:
+            complain(PROGRAM, f'{name}: {judged["error"]}')
+            found = True
+        elif judged['held_out'] and judged['held_out'][0]['states'].keys() == {'invalid'}:
+            reason = judged['held_out'][0]['reasons'][0]['reason']
+            complain(PROGRAM, f'{name}: every held-out run is invalid, such as: {reason}')
+            found = True
+    return found
+
+
+def _show(result: Result, options: argparse.Namespace) -> None:
+    def show() -> None:
+        print_result(result, read_update_times(options.out)['controllers'])
+        for note in (*texts.notes_of(result), *texts.warnings_of(result)):
+            print(printable(note))
+        print(options.out / PAGE, flush=True)
+
+    show_and_write(options.json, document_of(result, options.out), show)
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = ProgramParser(
+        prog=PROGRAM,
+        description='Judge controllers on fixed cases and on held-out ones, headless.',
+        epilog=_EPILOG,
+    )
+    parser.add_argument(
+        'controllers', nargs='+', metavar='NAME|FILE', help='a controller or a controller file'
+    )
+    parser.add_argument('--out', type=Path, metavar='DIR', required=True, help='folder for it')
+    parser.add_argument('--quick', action='store_true', help='a tenth of the cases')
+    parser.add_argument(
+        '--seed', type=int, metavar='N', help='held-out cases of a judge; the result has a mark'
+    )
+    parser.add_argument(
+        '--workers', type=int, metavar='N', help='processes here; default: one for each core'
+    )
+    parser.add_argument('--json', metavar='FILE', help="write the result; '-' is standard output")
+    return parser
+
+
+if __name__ == '__main__':
+    sys.exit(main())

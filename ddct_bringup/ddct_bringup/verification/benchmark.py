@@ -1,0 +1,141 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Repeat the runs of a benchmark, and compare its rows, seeds, limits and result."""
+
+import json
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from ddct_bringup.benchmark.cases import Cases, packaged_folder
+from ddct_bringup.benchmark.conduct import HELD_OUT, UNAVOIDABLE, campaigns_of
+from ddct_bringup.benchmark.judged import Judged
+from ddct_bringup.benchmark.manifest import MANIFEST, BenchmarkManifest, JudgedEntry
+from ddct_bringup.benchmark.release import ROWS
+from ddct_bringup.benchmark.release import UNAVOIDABLE as UNAVOIDABLE_OF_RELEASE
+from ddct_bringup.benchmark.report.folder import RESULT, result_in
+from ddct_bringup.benchmark.unavoidable import unavoidable_limits
+from ddct_bringup.campaign.manifest import Manifest
+from ddct_bringup.digests.digest_file import read_digests
+from ddct_bringup.verification.campaign import verified_campaign
+from ddct_bringup.verification.comparison import Comparison, plain_json
+from ddct_bringup.verification.request import VerificationRequest
+from ddct_bringup.verification.result import RepetitionResult
+from ddct_plant.base.errors import DdctError
+from ddct_plant.files.input_file import parse_json, read_text_file
+
+_MOST_BYTES = 100_000_000
+"""Largest size of a file of JSON in bytes."""
+
+
+def verified_benchmark(request: VerificationRequest) -> Iterator[RepetitionResult]:
+    """
+    Yield the results of manifest, rows of the release, campaigns, limits and result.
+
+    Raise DdctError for a benchmark that is not finished.
+    """
+    manifest = BenchmarkManifest.read(request.folder)
+    yield _verified_manifest(request, manifest)
+    yield from _verified_release(request)
+    for entry in manifest.controllers:
+        yield from _verified_controller(request, manifest, entry)
+    yield _verified_result(request)
+
+
+def _verified_manifest(
+    request: VerificationRequest, manifest: BenchmarkManifest
+) -> RepetitionResult:
+    """Compare the release, the cases, and each seed with that of the digests."""
+    comparison = Comparison()
+    environment = request.digests.environment
+    comparison.add({'key': 'code_digest'}, manifest.code_digest, environment.code)
+    comparison.add({'key': 'version'}, manifest.version, environment.version)
+    if request.same_code:
+        ours = plain_json(Cases.packaged().content)
+        comparison.add_nested('cases', plain_json(manifest.cases), ours)
+        comparison.add_nested('limits', manifest.limits, plain_json(request.limits.origin))
+    for number, entry in enumerate(manifest.controllers):
+        judged = Judged(entry.name, entry.chosen, request.folder, entry.digests)
+        again = JudgedEntry.of(judged, manifest.code_digest, manifest.judge_seed)
+        place = {'key': f'controllers[{number}].held_out_seed'}
+        comparison.add(place, entry.held_out_seed, again.held_out_seed)
+    return RepetitionResult.of(MANIFEST, comparison, same_environment=request.same_environment)
+
+
+def _verified_release(request: VerificationRequest) -> Iterator[RepetitionResult]:
+    """Compare the rows of the release with those that this release has, if it is the same."""
+    for name in (ROWS, UNAVOIDABLE_OF_RELEASE):
+        if not request.same_code:
+            yield RepetitionResult.by_digest(name, 'rows of another release')
+            continue
+        comparison = Comparison()
+        same = (request.folder / name).read_bytes() == (packaged_folder() / name).read_bytes()
+        comparison.add(
+            {'file': name, 'reason': 'other rows than those of the release'}, same, True
+        )
+        yield RepetitionResult.of(name, comparison, same_environment=request.same_environment)
+
+
+def _verified_controller(
+    request: VerificationRequest, manifest: BenchmarkManifest, entry: JudgedEntry
+) -> Iterator[RepetitionResult]:
+    """Yield the results of the campaigns of a controller, and of the limits of its cases."""
+    folder = request.folder / entry.name
+    campaigns = sorted(file.parent for file in folder.glob('*/manifest.json'))
+    for each in campaigns:
+        name = f'{entry.name}/{each.name}'
+        inner = replace(request, folder=each, digests=read_digests(each))
+        yield _verified_cases(inner, manifest, entry, name)
+        for found in verified_campaign(inner):
+            yield replace(found, run=f'{name}: {found.run}')
+    yield _verified_limits(request, folder, entry)
+
+
+def _verified_cases(
+    request: VerificationRequest, manifest: BenchmarkManifest, entry: JudgedEntry, name: str
+) -> RepetitionResult:
+    """Compare the specification of a campaign with that which the manifest gives."""
+    known = Manifest.read(request.folder)
+    place = request.files or Path(known.folder)
+    judged = Judged(entry.name, entry.chosen, place, entry.digests)
+    campaigns = campaigns_of(judged, manifest.run_cases, entry.held_out_seed)
+    comparison = Comparison()
+    found = campaigns.get(request.folder.name)
+    expected = plain_json(found.spec.content) if found else None
+    comparison.add_nested('spec', plain_json(known.spec), expected)
+    if request.same_code or not judged.is_packaged:
+        again = Judged.of(judged.path).digests
+        comparison.add_nested('digests', dict(entry.digests), dict(again))
+    return RepetitionResult.of(
+        f'{name}: cases', comparison, same_environment=request.same_environment
+    )
+
+
+def _verified_limits(
+    request: VerificationRequest, folder: Path, entry: JudgedEntry
+) -> RepetitionResult:
+    """Compare the limits that no controller can keep with those computed again."""
+    held_out = folder / HELD_OUT
+    campaign = Manifest.read(held_out).campaign(held_out, request.files)
+    found = unavoidable_limits(campaign, request.limits, request.workers)
+    comparison = Comparison()
+    again = {str(case): names for case, names in found.items()}
+    comparison.add_nested('', _stored(folder / UNAVOIDABLE), plain_json(again))
+    name = f'{entry.name}/{UNAVOIDABLE}'
+    return RepetitionResult.of(name, comparison, same_environment=request.same_environment)
+
+
+def _verified_result(request: VerificationRequest) -> RepetitionResult:
+    """Compare `result.json` with the result of the recorded rows."""
+    comparison = Comparison()
+    again = plain_json(result_in(request.folder))
+    comparison.add_nested('', _stored(request.folder / RESULT), again)
+    return RepetitionResult.of(RESULT, comparison, same_environment=request.same_environment)
+
+
+def _stored(path: Path) -> Any:
+    try:
+        return parse_json(read_text_file(path, _MOST_BYTES))
+    except (OSError, json.JSONDecodeError) as error:
+        raise DdctError(f'{path}: cannot be read ({error})') from error

@@ -1,0 +1,275 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""A benchmark shows a controller that remembers, gives the same bytes, and can be verified."""
+
+import json
+import os
+import shutil
+import struct
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from itertools import count
+from pathlib import Path
+from typing import Any
+
+import pytest
+from altered_bytes import kinds_of_files, not_found
+from small_benchmark import (
+    judge,
+    use_small_release,
+    write_controller_that_remembers,
+)
+from verified import copied, edit_json_with_digest, states, verified
+
+from ddct_bringup.benchmark.cases import Cases
+from ddct_bringup.benchmark.conduct import AGAIN, Options, carry_out_benchmark
+from ddct_bringup.benchmark.judged import Judged
+from ddct_bringup.benchmark.report.folder import PAGE, RESULT
+from ddct_bringup.digests.digest_file import DIGESTS
+from ddct_bringup.run.timing_and_failure import TIMING_FILE
+from ddct_bringup.verification.comparison import Comparison
+
+pytestmark = pytest.mark.slow
+NAME = 'Remembers'
+WALL_CLOCK = {TIMING_FILE, PAGE, DIGESTS}
+"""Files of a benchmark's folder that depend on the update times."""
+LIBRARY = 'name: foreign\nc_library: {file: foreign.so}\n'
+FAILS = """\
+from ddct_bringup.api import Controller
+
+
+class Fails(Controller):
+    def reset(self):
+        pass
+
+    def update(self, measurement):
+        raise ValueError('it has no law')
+"""
+ON_OTHER_KERNELS = """
+import sys
+from pathlib import Path
+from pytest import MonkeyPatch
+from small_benchmark import judge, use_release
+patch = MonkeyPatch()
+use_release(Path(sys.argv[1]), patch)
+raise SystemExit(judge(Path(sys.argv[3]), sys.argv[2]))
+"""
+
+
+@pytest.fixture(scope='module')
+def place(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
+    """Return a folder with a small release, a controller that remembers, and its benchmark."""
+    folder = tmp_path_factory.mktemp('small')
+    with pytest.MonkeyPatch.context() as patch:
+        use_small_release(folder, patch)
+        remembers = write_controller_that_remembers(folder / 'remembers.py')
+        assert judge(folder / 'first', str(remembers)) == 0
+        yield folder
+
+
+def result_in(folder: Path) -> dict[str, Any]:
+    found: dict[str, Any] = json.loads((folder / RESULT).read_text(encoding='utf-8'))
+    return found
+
+
+def content_of(folder: Path) -> dict[str, bytes]:
+    """Return the files of a benchmark by path, without those of the wall clock."""
+    return {
+        path.relative_to(folder).as_posix(): path.read_bytes()
+        for path in folder.rglob('*')
+        if path.is_file() and path.relative_to(folder).as_posix() not in WALL_CLOCK
+    }
+
+
+def test_a_controller_that_remembers_the_development_cases_is_worse_on_held_out_ones(
+    place: Path,
+) -> None:
+    result = result_in(place / 'first')
+    (judged,) = result['controllers']
+    ours, theirs = judged['development'], judged['held_out']
+    assert (ours[0]['controller'], ours[0]['success']['runs']) == (NAME, 6)
+    assert theirs[0]['success']['runs'] == 0
+    assert theirs[0]['success']['interval'][1] < ours[0]['success']['interval'][0]
+    gap = judged['gaps'][0]
+    assert (gap['name'], gap['differs'], gap['worse']) == ('success', True, 1.0)
+    assert 'worse on held-out cases, beyond chance' in (place / 'first' / PAGE).read_text()
+    # The others are as good in both, so the held-out cases are not the harder ones.
+    assert [each['success']['runs'] for each in (*ours[1:], *theirs[1:])] == [6] * 4
+    assert [pair['second_only'] for pair in judged['held_out_pairs']] == [6, 6]
+
+
+def test_the_board_has_every_controller_and_the_limits_leave_out_what_nobody_can_keep(
+    place: Path,
+) -> None:
+    result = result_in(place / 'first')
+    assert [row['controller'] for row in result['board']] == [NAME, 'pi', 'ls8', 'hinf1']
+    limits = result['board'][2]['limits']
+    assert (limits['runs'], limits['unavoidable']) == (2, 1)
+    assert 0 < limits['kept'] < limits['avoidable']
+    ls8 = result['controllers'][0]['held_out'][2]
+    over = {each['name']: each['over_floor'] for each in ls8['quantities']}
+    assert over['friction_energy_j']['worst']['value'] > 1.0
+
+
+def test_the_bytes_are_the_same_with_any_number_of_workers_and_after_an_interruption(
+    place: Path, tmp_path: Path
+) -> None:
+    expected = content_of(place / 'first')
+    file = str(place / 'remembers.py')
+    assert judge(tmp_path / 'two', file, '--workers', '2') == 0
+    assert content_of(tmp_path / 'two') == expected
+    looks = count()
+    out = tmp_path / 'stopped'
+    options = Options(1, lambda: next(looks) > 12)
+    with pytest.raises(KeyboardInterrupt, match=AGAIN):
+        carry_out_benchmark([Judged.of(file)], Cases.packaged(), out, None, options)
+    left = len([*out.rglob('*.parquet')])
+    assert not (out / RESULT).exists()
+    assert judge(out, file, '--workers', '3') == 0
+    assert content_of(out) == expected
+    assert 1 < left < len([*out.rglob('*.parquet')])
+    pages = [(each / PAGE).read_text().splitlines() for each in (place / 'first', out)]
+    other = [a for a, b in zip(*pages, strict=True) if a != b]
+    assert [line for line in other if 'class="num wall"' not in line] == []
+
+
+def test_other_kernels_give_the_same_values_within_the_bound(place: Path, tmp_path: Path) -> None:
+    program = [sys.executable, '-c', ON_OTHER_KERNELS]
+    paths = [place / 'packaged', place / 'remembers.py', tmp_path / 'other']
+    done = subprocess.run(
+        [*program, *map(str, paths)],
+        env={**os.environ, 'OPENBLAS_CORETYPE': 'Prescott', 'PYTHONPATH': ':'.join(sys.path)},
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stderr
+    comparison = Comparison()
+    comparison.add_nested('', result_in(place / 'first'), result_in(tmp_path / 'other'))
+    assert comparison.beyond is None
+
+
+def test_verify_computes_all_of_it_again(
+    place: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    folder = copied(place / 'first', tmp_path / 'there')
+    code, document, errors = verified(folder, capfd, '--workers', '1')
+    assert (code, 'ddct verify' in errors) == (0, False)
+    found = states(document)
+    assert {'benchmark.json', 'development.parquet', RESULT} <= found.keys()
+    assert f'{NAME}/held_out: {NAME}: rows 0 to 5' in found
+    assert set(found.values()) == {'same_bits'}
+
+
+def _seed(content: Any) -> None:
+    content['controllers'][0]['held_out_seed'] += 1
+
+
+def _judge(content: Any) -> None:
+    content['judge_seed'] = content['controllers'][0]['held_out_seed'] = 3
+
+
+def _share(content: Any) -> None:
+    content['controllers'][0]['held_out'][0]['success']['runs'] = 6
+
+
+@pytest.mark.parametrize(
+    ('name', 'edit', 'run'),
+    [
+        ('benchmark.json', _seed, 'benchmark.json'),
+        ('benchmark.json', _judge, f'{NAME}/held_out: cases'),
+        (RESULT, _share, RESULT),
+    ],
+)
+def test_a_seed_or_a_figure_edited_with_its_digest_is_found(
+    place: Path,
+    tmp_path: Path,
+    capfd: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+    name: str,
+    edit: Callable[[Any], None],
+    run: str,
+) -> None:
+    monkeypatch.setattr('ddct_bringup.verification.benchmark.verified_campaign', lambda _: [])
+    folder = copied(place / 'first', tmp_path / 'there')
+    edit_json_with_digest(folder, name, edit)
+    code, document, _ = verified(folder, capfd, '--workers', '1')
+    assert (code, states(document)[run]) == (1, 'different')
+
+
+def test_any_altered_byte_of_a_benchmark_is_found(place: Path) -> None:
+    files = kinds_of_files(place / 'first')
+    assert {'.parquet', '.html', RESULT, 'benchmark.json', 'unavoidable.json'} <= files.keys()
+    lost = {name: not_found(place / 'first', file, 20) for name, file in files.items()}
+    assert lost == dict.fromkeys(files, [])
+
+
+def test_a_seed_of_a_judge_is_marked(place: Path, tmp_path: Path) -> None:
+    assert judge(tmp_path / 'judged', 'ls8', '--seed', '7', '--quick') == 0
+    result = result_in(tmp_path / 'judged')
+    assert (result['judge_seed'], result['controllers'][0]['held_out_seed']) == (7, 7)
+    page = (tmp_path / 'judged' / PAGE).read_text(encoding='utf-8')
+    assert 'those of a judge: --seed 7' in page
+    assert 'a quick benchmark' in page
+    assert not (tmp_path / 'judged' / 'ls8' / 'development').exists()
+
+
+def test_a_controller_that_fails_in_every_case_is_one_line_and_its_rows_stay(
+    place: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / 'fails.py').write_text(FAILS, encoding='utf-8')
+    out = tmp_path / 'out'
+    assert judge(out, str(tmp_path / 'fails.py'), '--quick') == 1
+    errors = capfd.readouterr().err.splitlines()
+    (line,) = [each for each in errors if each.startswith('ddct benchmark')]
+    assert 'Fails: every held-out run is invalid, such as: ' in line
+    assert result_in(out)['controllers'][0]['held_out'][0]['states']['invalid']['runs'] == 2
+
+
+def foreign_library(folder: Path) -> str:
+    """Write a controller file that names a library for another processor."""
+    header = bytearray(Path(sys.executable).resolve().read_bytes()[:4096])
+    struct.pack_into('<HH', header, 16, 3, 183)  # a shared library for AArch64
+    (folder / 'foreign.so').write_bytes(header)
+    (folder / 'foreign.yaml').write_text(LIBRARY, encoding='utf-8')
+    return str(folder / 'foreign.yaml')
+
+
+def test_what_cannot_be_judged_is_a_line_each_before_anything_is_written(
+    place: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / 'out'
+    names = ('absent.yaml', 'no_such', foreign_library(tmp_path))
+    assert judge(out, *names, 'ls8') == 1
+    lines = capfd.readouterr().err.splitlines()
+    assert len(lines) == len(names)
+    for line, name in zip(lines, names, strict=True):
+        assert line.startswith('ddct benchmark: ')
+        assert Path(name).stem in line
+    assert judge(out, 'ls8', 'ls8') == 1
+    assert judge(out, 'ls8', '--seed', '-1') == 1
+    assert judge(out, 'hinf2') == 1  # not in this release
+    assert [len(capfd.readouterr().err.splitlines()), out.exists()] == [3, False]
+
+
+def test_a_folder_of_another_benchmark_or_release_is_refused_and_stays(
+    place: Path,
+    tmp_path: Path,
+    capfd: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    folder = copied(place / 'first', tmp_path / 'there')
+    before = content_of(folder)
+    file = str(place / 'remembers.py')
+    assert judge(folder, file, '--quick') == 1
+    assert judge(folder, 'ls8') == 1
+    monkeypatch.setattr('ddct_bringup.benchmark.manifest.code_digest', lambda: '0' * 64)
+    assert judge(folder, file) == 1
+    quick, others, release = capfd.readouterr().err.splitlines()
+    assert 'with another number of cases' in quick
+    assert 'of other controllers' in others
+    assert 'of another release' in release
+    assert content_of(folder) == before
+    shutil.rmtree(folder / NAME)
+    code, _, errors = verified(folder, capfd)
+    assert (code, errors.count('missing') > 1) == (1, True)

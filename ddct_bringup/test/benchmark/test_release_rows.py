@@ -1,0 +1,116 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""The packaged cases cover what they should, and the packaged rows come out again."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ddct_bringup.benchmark.cases import Cases, packaged_folder
+from ddct_bringup.benchmark.release import ReleaseRows, columns_kept, release_rows
+from ddct_bringup.campaign.columns import schema_of
+from ddct_bringup.campaign.scored import Scorer
+from ddct_bringup.verdict.limits import packaged_limits
+from ddct_bringup.verification.comparison import Comparison, plain_json
+from ddct_controllers.registry import own_controller_names
+from ddct_plant.scenario.file import load_scenario, scenario_names
+
+DEPEND_ON_KERNELS = ('hinf_fitted', 'hinf_sampled', 'hinf_thesis', 'mpc4', 'mpc4_wear')
+"""Controllers whose runs exceed the bound on other processors: docs/use/verify.md."""
+COMMANDS_ENGINE = ('mpc4', 'mpc4_wear')
+"""Controllers outside of the floors, which are those of the clutch alone."""
+ROWS = 8
+"""Number of rows that are computed again, each of another controller and case."""
+
+
+@pytest.fixture(scope='module')
+def release() -> ReleaseRows:
+    return release_rows(packaged_folder())
+
+
+def test_the_cases_are_every_packaged_scenario_with_the_stated_car_clutch_and_sensors() -> None:
+    spec = Cases.packaged().whole
+    left_out = {*scenario_names()} - {*spec.values_of('scenario')}
+    assert [name for name in left_out if load_scenario(name).shift is None] == []
+    ends = {key: spec.vary[key].ends for key in spec.vary}
+    assert ends == {
+        'wear_gain': (0.7, 1.3),
+        'actuator.delay_s': (0.005, 0.02),
+        'vehicle.mass_kg': (0.8 * 1500.0, 1.3 * 1500.0),
+    }
+    (sensors,) = spec.values_of('sensors')
+    assert sensors.keys() == {'engine_speed', 'shaft_speed', 'vehicle_speed', 'engine_torque'}
+    assert spec.controllers == ('pi', 'ls8', 'hinf_sampled', 'mpc_wear')
+
+
+def test_the_page_names_the_scenarios_and_the_number_of_cases() -> None:
+    page = (Path(__file__).parents[3] / 'docs' / 'use' / 'benchmark.md').read_text(
+        encoding='utf-8'
+    )
+    campaign = Cases.packaged().planned
+    for name in campaign.spec.values_of('scenario'):
+        assert f'`{name}`' in page
+    cases = campaign.cases
+    assert f'in {cases} development cases and in {cases} held-out cases' in page
+    assert f'{campaign.samples} samples each' in page
+
+
+def test_a_quick_benchmark_has_the_first_tenth_of_the_cases(release: ReleaseRows) -> None:
+    whole, quick = Cases.packaged().planned, Cases.packaged(quick=True).planned
+    assert quick.cases == whole.cases / 10
+    each, spec = whole.spec.samples, quick.spec
+    for case in (0, 1, quick.cases - 1):
+        same = whole.run(case // spec.samples * each + case % spec.samples)
+        assert quick.run(case).settings == same.settings
+    rows = release.of(Cases.packaged(quick=True)).rows
+    wear = [quick.run(case).varied['wear_gain'] for case in range(quick.cases)]
+    assert rows.of('pi')['wear_gain'].tolist() == wear
+    with_floor = ~np.isnan(rows.columns['over_floor.peak_jerk']).all(axis=0)
+    assert not any(with_floor[case] and not quick.has_floors(case) for case in range(quick.cases))
+
+
+def test_the_release_has_every_packaged_controller_in_every_case(release: ReleaseRows) -> None:
+    campaign = Cases.packaged().planned
+    assert list(release.rows.controllers) == own_controller_names()
+    assert release.rows.cases == campaign.cases
+    assert release.cases_digest == Cases.packaged().digest
+    with_floors = [case for case in range(campaign.cases) if campaign.has_floors(case)]
+    assert list(release.unavoidable) == with_floors
+
+
+def test_a_sample_of_the_rows_comes_out_again_within_the_bound(release: ReleaseRows) -> None:
+    names = [name for name in own_controller_names() if name not in DEPEND_ON_KERNELS]
+    campaign = Cases.packaged().development(names, Path())
+    scorer = Scorer(packaged_limits(), floors=campaign.spec.floors)
+    kept = columns_kept(campaign.spec)
+    assert {*kept} <= {*schema_of(campaign.spec).names}
+    comparison = Comparison()
+    draw = np.random.default_rng(1)
+    for place in draw.choice(len(names), ROWS, replace=False).tolist():
+        case = int(draw.integers(campaign.cases))
+        index = place * campaign.cases + case
+        (found,) = scorer.scored(campaign.planned(index, index + 1))
+        row, columns = found.row(), release.rows.of(names[place])
+        for name in kept:
+            value = columns[name][case]
+            ours = None if isinstance(value, float) and np.isnan(value) else value
+            ours = ours.item() if isinstance(ours, np.generic) else ours
+            ours = None if isinstance(ours, float) and np.isnan(ours) else ours
+            comparison.add({'row': index, 'column': name}, ours, plain_json(row[name]))
+    assert comparison.beyond is None
+
+
+def test_no_controller_of_the_clutch_keeps_a_limit_that_nobody_can_keep(
+    release: ReleaseRows,
+) -> None:
+    names = [name for name in release.rows.controllers if name not in COMMANDS_ENGINE]
+    columns = release.rows.only(names).columns
+    proven = [(case, name) for case, found in release.unavoidable.items() for name in found]
+    assert len(proven) > 2
+    for case, name in proven:
+        limit = packaged_limits().of(columns['scenario'][0, case])[name]
+        engaged = columns['verdict_state'][:, case] == 'engaged'
+        values = columns[f'criterion.{name}'][:, case][engaged]
+        assert values.size
+        assert values.min() > limit.value

@@ -1,0 +1,107 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""A benchmark of few cases: a folder that takes the place of the packaged cases and rows."""
+
+from pathlib import Path
+
+import pytest
+
+from ddct_bringup.benchmark import cases, conduct, release, unavoidable
+from ddct_bringup.benchmark.cases import SPECIFICATION, Cases
+from ddct_bringup.benchmark.release import write_release_rows
+from ddct_bringup.programs import benchmark
+from ddct_bringup.run.headless import run_headless
+from ddct_bringup.verification import benchmark as verification
+
+SPEC = """\
+controllers: [pi, ls8]
+clutch: stick_slip
+seed: 1
+grid:
+  scenario: [launch, launch_hill]
+  duration_s: [2.0]
+  sensors:
+    - engine_speed: {noise_rad_s: 0.1, quantum_rad_s: 0.0262}
+random:
+  samples: 3
+  vary:
+    wear_gain: {distribution: uniform, low: 0.95, high: 1.05}
+floors: [friction_energy]
+floor_samples: 1
+"""
+PACKAGED = ('pi', 'ls8', 'hinf1')
+"""Controllers of the release with these cases."""
+SEEN = 12
+"""Number of measurements by which a case is recognised."""
+REMEMBERS = '''\
+from ddct_bringup.api import Command, Controller
+
+SEEN = {seen}
+TORQUES = {torques}
+
+
+class Remembers(Controller):
+    """Plays back what worked in the development cases, and opens the clutch in others."""
+
+    def __init__(self, context):
+        self.speeds = []
+
+    def reset(self):
+        self.speeds = []
+
+    def hold(self, measurement):
+        self.speeds.append(measurement.engine_speed)
+
+    def update(self, measurement):
+        known = TORQUES.get(tuple(self.speeds[:SEEN]))
+        if known is None:
+            return Command(-measurement.open_loop_torque)
+        return Command(known[measurement.step])
+'''
+
+
+def use_small_release(place: Path, patch: pytest.MonkeyPatch) -> Path:
+    """Make the cases and rows of a small release in a folder, and use them from now on."""
+    folder = place / 'packaged'
+    folder.mkdir()
+    (folder / SPECIFICATION).write_text(SPEC, encoding='utf-8')
+    patch.setattr(release, 'own_controller_names', lambda: list(PACKAGED))
+    use_release(folder, patch)
+    write_release_rows(place / 'rows', folder, workers=1)
+    return folder
+
+
+def use_release(folder: Path, patch: pytest.MonkeyPatch) -> None:
+    """
+    Use the cases and rows in a folder from now on.
+
+    No controller can keep the limit of the weighted acceleration there: to prove what is so takes
+    seconds for each case.
+    """
+    for module in (cases, conduct, release, verification):
+        patch.setattr(module, 'packaged_folder', lambda: folder)
+    patch.setattr(
+        unavoidable,
+        'least_at_any_lock',
+        lambda settings, name, start, limit: name == 'weighted_acceleration',
+    )
+
+
+def judge(out: Path, *arguments: str) -> int:
+    """Run the benchmark of controllers with one worker, and return its exit code."""
+    workers = () if '--workers' in arguments else ('--workers', '1')
+    return benchmark.main([*arguments, '--out', str(out), *workers])
+
+
+def write_controller_that_remembers(file: Path) -> Path:
+    """Write a controller that plays back the torques of `ls8` in each development case."""
+    campaign = Cases.packaged().development(['ls8'], Path())
+    torques = {}
+    for case in range(campaign.cases):
+        run = run_headless(campaign.run(case).settings, 'ls8')
+        assert run.sensed_engine_speed is not None
+        key = tuple(run.sensed_engine_speed[:SEEN].ravel().tolist())
+        torques[key] = run.closed_loop_torque.ravel().tolist()
+    text = REMEMBERS.format(seen=SEEN, torques=torques)
+    file.write_text(text, encoding='utf-8')
+    return file

@@ -1,0 +1,61 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""The page of a benchmark in a real browser, on a narrow screen and on a wide one."""
+
+from pathlib import Path
+
+import pytest
+from headless_chromium import chromium, visit
+
+from ddct_bringup.benchmark.cases import Cases, packaged_folder
+from ddct_bringup.benchmark.conduct import JudgedRows
+from ddct_bringup.benchmark.judged import Judged
+from ddct_bringup.benchmark.manifest import BenchmarkManifest
+from ddct_bringup.benchmark.release import release_rows
+from ddct_bringup.benchmark.report.page import benchmark_page
+from ddct_bringup.benchmark.result import result_of
+
+pytestmark = [
+    pytest.mark.browser,
+    pytest.mark.skipif(
+        chromium() is None, reason='no Chromium on this machine (Debian: apt install chromium)'
+    ),
+]
+WIDER = 'document.documentElement.scrollWidth - innerWidth'
+SORT = """(() => {
+  const body = document.querySelector('#board tbody');
+  const before = body.rows[0].textContent;
+  document.querySelectorAll('#board .sort')[2].click();
+  return before !== body.rows[0].textContent;
+})()"""
+TIMES = {
+    'ratio_to_pi': 1.5,
+    'lowest_ratio': 1.4,
+    'highest_ratio': 1.6,
+    'update_time_median_us': 6.0,
+}
+
+
+@pytest.fixture(scope='module')
+def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return the page of a packaged controller whose held-out cases are those of development."""
+    cases = Cases.packaged(quick=True)
+    release = release_rows(packaged_folder()).of(cases)
+    manifest = BenchmarkManifest.of([Judged.of('ls8')], cases, 3)
+    rows = release.rows.only(['ls8', 'pi', 'hinf_sampled', 'mpc_wear'])
+    judged = {'ls8': JudgedRows(None, rows, release.unavoidable)}
+    result = result_of(manifest, release, judged, {})
+    file = tmp_path_factory.mktemp('benchmark') / 'report.html'
+    file.write_text(benchmark_page(result, {'controllers': {'ls8': TIMES}}), encoding='utf-8')
+    return file
+
+
+@pytest.mark.parametrize(('width', 'scheme'), [(390, 'dark'), (1280, 'light')])
+def test_the_page_needs_no_network_sorts_and_is_no_wider_than_the_window(
+    page: Path, width: int, scheme: str
+) -> None:
+    found = visit(page, width=width, scheme=scheme, scripts=[WIDER, SORT])
+    assert found.errors == []
+    assert {request.partition(':')[0] for request in found.requests} <= {'file', 'data'}
+    assert found.values[0] <= 0
+    assert found.values[1]
