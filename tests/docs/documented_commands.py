@@ -37,6 +37,8 @@ NOT_RUN_HERE = {
         'takes minutes; test_robustness_page.py makes some of its runs again'
     ),
     'python docs/robustness.py': 'takes the folders of those campaigns',
+    'ddct benchmark': 'takes minutes; ddct_bringup/test/benchmark runs a small one',
+    'ddct verify results/mine': 'needs that benchmark',
     'ddct reproduce calibration': 'takes minutes; a test runs it with --quick',
 }
 """First words of commands and why no test runs them."""

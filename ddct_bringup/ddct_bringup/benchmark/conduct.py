@@ -11,7 +11,7 @@ from ddct_bringup.benchmark.case_rows import CaseRows
 from ddct_bringup.benchmark.cases import Cases, packaged_folder
 from ddct_bringup.benchmark.judged import Judged
 from ddct_bringup.benchmark.manifest import MANIFEST, BenchmarkManifest
-from ddct_bringup.benchmark.release import copy_release_rows, release_rows
+from ddct_bringup.benchmark.release import COPIED, copy_release_rows, release_rows
 from ddct_bringup.benchmark.unavoidable import unavoidable_limits
 from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.conduct import RESUME, carry_out
@@ -94,7 +94,8 @@ def _begin(manifest: BenchmarkManifest, out: Path) -> None:
     if (out / MANIFEST).exists():
         BenchmarkManifest.read(out).require_same(manifest, out)
         return
-    if out.is_dir() and {each.name for each in out.iterdir()} - {MARKER}:
+    begun = {MARKER, *COPIED}  # what a start that was killed may leave
+    if out.is_dir() and {each.name for each in out.iterdir()} - begun:
         raise DdctError(f'{out} holds other results: choose another --out')
     mark_folder(out)
     copy_release_rows(out)

@@ -39,6 +39,8 @@ from ddct_plant.program.command_line import package_version, run_program
 
 ROWS = 'development.parquet'
 UNAVOIDABLE = 'development_unavoidable.json'
+COPIED = (ROWS, UNAVOIDABLE)
+"""Files of the release that each benchmark has a copy of."""
 _PROGRAM = 'make benchmark-rows'
 _CASES, _CODE, _VERSION = b'cases_digest', b'code_digest', b'version'
 _VERDICT = ('valid', 'reason', 'verdict_state', 'verdict_limits')
@@ -102,7 +104,7 @@ def release_rows(folder: Traversable | Path) -> ReleaseRows:
 
 def copy_release_rows(target: Path) -> None:
     """Write the rows of this release into a folder; raise DdctError when that fails."""
-    for name in (ROWS, UNAVOIDABLE):
+    for name in COPIED:
         write_bytes(str(target / name), (packaged_folder() / name).read_bytes())
 
 

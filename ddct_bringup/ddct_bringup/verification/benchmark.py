@@ -12,8 +12,7 @@ from ddct_bringup.benchmark.cases import Cases, packaged_folder
 from ddct_bringup.benchmark.conduct import HELD_OUT, UNAVOIDABLE, campaigns_of
 from ddct_bringup.benchmark.judged import Judged
 from ddct_bringup.benchmark.manifest import MANIFEST, BenchmarkManifest, JudgedEntry
-from ddct_bringup.benchmark.release import ROWS
-from ddct_bringup.benchmark.release import UNAVOIDABLE as UNAVOIDABLE_OF_RELEASE
+from ddct_bringup.benchmark.release import COPIED
 from ddct_bringup.benchmark.report.folder import RESULT, result_in
 from ddct_bringup.benchmark.unavoidable import unavoidable_limits
 from ddct_bringup.campaign.manifest import Manifest
@@ -65,7 +64,7 @@ def _verified_manifest(
 
 def _verified_release(request: VerificationRequest) -> Iterator[RepetitionResult]:
     """Compare the rows of the release with those that this release has, if it is the same."""
-    for name in (ROWS, UNAVOIDABLE_OF_RELEASE):
+    for name in COPIED:
         if not request.same_code:
             yield RepetitionResult.by_digest(name, 'rows of another release')
             continue
