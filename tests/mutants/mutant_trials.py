@@ -3,6 +3,7 @@
 """Run tests in a scratch copy of the tracked files, which may have one seeded defect."""
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -19,14 +20,19 @@ WITHIN_S = 300.0
 
 
 class TrialError(Exception):
-    """The tests could not be run, which says nothing of the defect."""
+    """The tests could not be run, so that the defect is not tried."""
+
+
+class AllSkippedError(Exception):
+    """All tests were skipped, as an optional package is absent, so the defect is not tried."""
 
 
 def tests_pass(root: Path, tests: Sequence[str], mutant: Mutant | None = None) -> bool:
     """
     Return whether the tests pass in a copy of the repository `root`, changed by `mutant`.
 
-    Raise TrialError if they cannot be collected, do not end or import a package from elsewhere.
+    Raise TrialError if they cannot be collected, do not end or import a package from elsewhere,
+    and AllSkippedError if none of them has run.
     """
     with tempfile.TemporaryDirectory(prefix='mutant') as folder:
         # Always a new copy: bytecode of a file of the same second and size would be taken for it.
@@ -37,6 +43,8 @@ def tests_pass(root: Path, tests: Sequence[str], mutant: Mutant | None = None) -
         code, printed = _pytest(copy, Path(folder) / 'printed', tests)
     if code not in (pytest.ExitCode.OK, pytest.ExitCode.TESTS_FAILED):
         raise TrialError(f'pytest {" ".join(tests)} ended with code {code}:\n{printed}')
+    if code == pytest.ExitCode.OK and not re.search(r'\d passed', printed):
+        raise AllSkippedError(f'all tests are skipped: {" ".join(tests)}')
     return code == pytest.ExitCode.OK
 
 

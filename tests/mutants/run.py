@@ -3,9 +3,10 @@
 """
 `make mutants`: seed every defect of tests/mutants/*.yaml in a scratch copy and run its tests.
 
-A defect that its tests do not notice lives, and the exit code is 1; so it is for an entry whose
-text is gone from its file, and for tests that fail without a defect. README.md beside this file
-says which defects are in the list.
+A defect that its tests do not catch lives, and the exit code is 1; so it is for an entry whose
+text is gone from its file, and for tests that fail without a defect. A defect whose tests are all
+skipped, as an optional package is absent, is not tried and changes no exit code. README.md beside
+this file has the rule for the list.
 """
 
 import argparse
@@ -15,10 +16,10 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from mutant_entries import Mutant, read_mutants
-from mutant_trials import TrialError, tests_pass
+from mutant_trials import AllSkippedError, TrialError, tests_pass
 
 WORKERS = 2
-CAUGHT, LIVED, ERROR = 'caught', 'LIVED', 'ERROR'
+CAUGHT, LIVED, ERROR, SKIPPED = 'caught', 'LIVED', 'ERROR', 'skipped'
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -49,34 +50,35 @@ def try_all(root: Path, mutants: Sequence[Mutant]) -> int:
     """Try each set of tests without a defect, then each defect; return the exit code."""
     with ThreadPoolExecutor(WORKERS) as pool:
         test_sets = list(dict.fromkeys(mutant.tests for mutant in mutants))
-        sound = dict(
-            zip(test_sets, pool.map(lambda tests: _sound(root, tests), test_sets), strict=True)
+        obstacles = dict(
+            zip(test_sets, pool.map(lambda tests: _obstacle(root, tests), test_sets), strict=True)
         )
         outcomes = []
         for mutant, outcome in zip(
-            mutants, pool.map(lambda m: _try(root, m, sound[m.tests]), mutants), strict=True
+            mutants, pool.map(lambda m: obstacles[m.tests] or _try(root, m), mutants), strict=True
         ):
             print(f'{outcome:6}  {mutant.file}: {mutant.claim}', flush=True)
             outcomes.append(outcome)
-    print(', '.join(f'{outcomes.count(kind)} {kind}' for kind in (CAUGHT, LIVED, ERROR)))
-    return int(any(outcome != CAUGHT for outcome in outcomes))
+    print(', '.join(f'{outcomes.count(kind)} {kind}' for kind in (CAUGHT, LIVED, ERROR, SKIPPED)))
+    return int(LIVED in outcomes or ERROR in outcomes)
 
 
-def _sound(root: Path, tests: Sequence[str]) -> bool:
-    """Return whether the tests pass without a defect; tell on stderr when they do not."""
+def _obstacle(root: Path, tests: Sequence[str]) -> str:
+    """Return '' if the tests pass without a defect, else the outcome; print why on stderr."""
     try:
         if tests_pass(root, tests):
-            return True
+            return ''
         print(f'mutants: without a defect these fail: {" ".join(tests)}', file=sys.stderr)
+    except AllSkippedError as error:
+        print(f'mutants: {error}', file=sys.stderr)
+        return SKIPPED
     except TrialError as error:
         print(f'mutants: {error}', file=sys.stderr)
-    return False
+    return ERROR
 
 
-def _try(root: Path, mutant: Mutant, sound: bool) -> str:
+def _try(root: Path, mutant: Mutant) -> str:
     """Return whether the tests caught the defect."""
-    if not sound:
-        return ERROR
     try:
         return LIVED if tests_pass(root, mutant.tests, mutant) else CAUGHT
     except TrialError as error:

@@ -58,7 +58,7 @@ def test_defects_that_are_caught_and_that_are_not_are_reported_as_such(repositor
     assert ended.stdout.splitlines() == [
         f'caught  {file}: it multiplies',
         f'LIVED   {file}: -b',
-        '1 caught, 1 LIVED, 0 ERROR',
+        '1 caught, 1 LIVED, 0 ERROR, 0 skipped',
     ]
     assert ended.returncode == 1
     assert run_mutants(repository, caught).returncode == 0
@@ -98,6 +98,17 @@ def test_a_defect_is_not_caught_by_tests_that_fail_without_it_or_cannot_be_run(
     ended = run_mutants(repository, entry('it multiplies', 'a + b', 'a * b'))
     assert (ended.returncode, '1 ERROR' in ended.stdout) == (1, True)
     assert 'without a defect these fail: ddct_sums/test_sums.py' in ended.stderr
+
+
+@pytest.mark.slow
+def test_a_defect_whose_tests_are_all_skipped_is_not_tried(repository: Path) -> None:
+    tests = repository / 'ddct_sums' / 'test_sums.py'
+    tests.write_text(
+        f'import pytest\npytestmark = pytest.mark.skip("absent")\n{tests.read_text()}'
+    )
+    ended = run_mutants(repository, entry('it multiplies', 'a + b', 'a * b'))
+    assert (ended.returncode, '0 LIVED, 0 ERROR, 1 skipped' in ended.stdout) == (0, True)
+    assert 'all tests are skipped: ddct_sums/test_sums.py' in ended.stderr
 
 
 @pytest.mark.slow
