@@ -35,9 +35,17 @@ class Mutant:
         if self.find == self.replace:
             raise ValueError(f'{self.claim}: `find` and `replace` are the same')
         for test in self.tests:
-            if not (root / test.partition('::')[0]).exists():
+            if not _exists(root, test):
                 raise ValueError(f'{self.claim}: there is no test {test}')
         return text.replace(self.find, self.replace)
+
+
+def _exists(root: Path, test: str) -> bool:
+    """Return whether an argument of pytest, FILE or FILE::FUNCTION[PARAMETERS], names a test."""
+    file, _, function = test.partition('::')
+    name = function.partition('[')[0]
+    path = root / file
+    return path.exists() and (not name or f'\ndef {name}(' in path.read_text(encoding='utf-8'))
 
 
 def read_mutants(file: Path) -> list[Mutant]:

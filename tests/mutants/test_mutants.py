@@ -80,11 +80,14 @@ def test_a_check_tries_no_defect(repository: Path) -> None:
     assert (ended.returncode, ended.stdout, ended.stderr) == (0, '', '')
 
 
-def test_a_test_that_is_gone_is_an_error(repository: Path) -> None:
-    lacks = entry('-b', 'a + b', 'a - b', 'ddct_sums/test_differences.py')
+@pytest.mark.parametrize(
+    'test', ['ddct_sums/test_differences.py', '"ddct_sums/test_sums.py::test_ad"']
+)
+def test_a_test_that_is_gone_is_an_error(repository: Path, test: str) -> None:
+    lacks = entry('-b', 'a + b', 'a - b', test)
     ended = run_mutants(repository, lacks, options=('--check',))
     assert (ended.returncode, ended.stdout) == (1, '')
-    assert 'ddct_sums/test_differences.py' in ended.stderr
+    assert test.strip('"') in ended.stderr
 
 
 @pytest.mark.slow
