@@ -9,8 +9,8 @@ from typing import Any
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import Group, OptionGroup, group_of, key_of
 from ddct_plant.files.input_file import SCHEMA_KEY, require_schema_version
-from ddct_plant.scenario.consistency import without_derived
 from ddct_plant.scenario.key_names import scenario_key_hint
+from ddct_plant.scenario.rules.consistency import without_derived
 from ddct_plant.scenario.scenario import Scenario
 
 SCHEMA_VERSION = 1

@@ -14,16 +14,22 @@ from pathlib import Path
 from typing import Any
 
 from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.base.options import OptionGroup, key_of, options_of
-from ddct_plant.base.timebase import steps_in, time_of_step
 from ddct_plant.files.input_file import SCHEMA_KEY, located, user_text
-from ddct_plant.files.yaml_text import dump_yaml, parse_yaml, parse_yaml_with_lines
+from ddct_plant.files.yaml_text import dump_yaml, parse_yaml_with_lines
 from ddct_plant.models.clutch import LINEAR
-from ddct_plant.scenario.consistency import FILE, SET, consistent
 from ddct_plant.scenario.content import SCHEMA_VERSION, flat, scenario_content, scenario_of
 from ddct_plant.scenario.csv_profiles import with_points
-from ddct_plant.scenario.plant import require_driveline
-from ddct_plant.scenario.plausible import with_remarks
+from ddct_plant.scenario.overrides import (
+    is_number_of,
+    lines_in_file,
+    parsed_override,
+    put,
+    time_or_none,
+    with_numbers,
+)
+from ddct_plant.scenario.rules.consistency import FILE, SET, consistent
+from ddct_plant.scenario.rules.driveline import require_driveline
+from ddct_plant.scenario.rules.plausible import with_remarks
 from ddct_plant.scenario.scenario import Scenario
 
 
@@ -77,12 +83,12 @@ class ScenarioFile:
         start = self._starts.get(keys) if numbers else None
         if start is None:
             start = self._start(pairs)
-            if numbers and all(_is_number_of(start.scenario, key) for key in keys):
+            if numbers and all(is_number_of(start.scenario, key) for key in keys):
                 self._starts[keys] = start
             scenario = start.scenario
         with located(f'scenario {self.name}', start.lines):
             if start is self._starts.get(keys):
-                scenario = _with_numbers(start.scenario, pairs)
+                scenario = with_numbers(start.scenario, pairs)
             scenario = with_remarks(consistent(scenario, start.origins, self._control_start))
             require_driveline(scenario.driveline, clutch)
             return scenario
@@ -90,8 +96,8 @@ class ScenarioFile:
     def _start(self, pairs: Sequence[tuple[str, Any]]) -> '_Start':
         """Return the scenario with values by dotted key, from the content of the file."""
         content = dict(self.content)
-        set_keys = [leaf for key, value in pairs for leaf in _put(content, key, value)]
-        lines = _in_file(self.lines, set_keys)
+        set_keys = [leaf for key, value in pairs for leaf in put(content, key, value)]
+        lines = lines_in_file(self.lines, set_keys)
         with located(f'scenario {self.name}', lines):
             content = with_points(content, Path(self.name).parent, set_keys)
             scenario = scenario_of(content)
@@ -101,7 +107,7 @@ class ScenarioFile:
     @cached_property
     def _control_start(self) -> float | None:
         """Time in s at which control starts in the file, None if it is missing or wrong."""
-        return _number(self.content.get('control_start_s'))
+        return time_or_none(self.content.get('control_start_s'))
 
 
 @dataclass(frozen=True)
@@ -113,32 +119,6 @@ class _Start:
     """Origin of each given value by dotted key."""
     lines: Mapping[str, int]
     """Line numbers of the keys that are in the file, by path."""
-
-
-_SECTIONS = {key_of(field): field.name for field in dataclasses.fields(Scenario)}
-"""Field of a scenario by its key in files."""
-
-
-def _is_number_of(scenario: Scenario, key: str) -> bool:
-    """Return whether a dotted key is that of a number in the scenario or in one of its groups."""
-    section, _, leaf = key.rpartition('.')
-    group = getattr(scenario, _SECTIONS.get(section, ''), None) if section else scenario
-    if not isinstance(group, OptionGroup):
-        return False
-    option = options_of(type(group)).get(leaf)
-    return option is not None and option.kind is float and not option.many
-
-
-def _with_numbers(scenario: Scenario, pairs: Iterable[tuple[str, float]]) -> Scenario:
-    """Return the scenario with other numbers by dotted key; only their groups are built anew."""
-    groups: dict[str, dict[str, float]] = {}
-    for key, value in pairs:
-        section, _, leaf = key.rpartition('.')
-        groups.setdefault(_SECTIONS[section] if section else '', {})[leaf] = value
-    changes: dict[str, Any] = groups.pop('', {})
-    for name, values in groups.items():
-        changes[name] = dataclasses.replace(getattr(scenario, name), **values)
-    return dataclasses.replace(scenario, **changes)
 
 
 def load_scenario(
@@ -181,17 +161,6 @@ def scenario_digest(scenario: Scenario) -> str:
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
-def parsed_override(override: str) -> tuple[str, Any]:
-    """Return the dotted key and the value of `KEY=VALUE`; raise ParameterError for other text."""
-    key, equals, text = override.partition('=')
-    if not equals or not key:
-        raise ParameterError(
-            f'--set {override}: write KEY=VALUE, for example duration_s=2.0',
-        )
-    with located(f'--set {override}'):
-        return key, parse_yaml(text)
-
-
 def _packaged() -> Traversable:
     return importlib.resources.files('ddct_plant.scenario') / 'packaged'
 
@@ -211,37 +180,3 @@ def _read(name_or_file: str) -> tuple[str, str]:
     path = Path(name_or_file)
     with located(f'scenario {path}'):
         return user_text(path), path.stem
-
-
-def _put(content: dict[str, Any], key: str, value: Any) -> list[str]:
-    """
-    Set one value or group in `content`; return the dotted keys of the given values.
-
-    Every group on the way is copied, because other contents may share it.
-    """
-    *folders, leaf = key.split('.')
-    target = content
-    for folder in folders:
-        group = target.get(folder, {})
-        if not isinstance(group, dict):
-            raise ParameterError(f'--set {key}: {folder} holds a value, not keys', key=key)
-        target[folder] = dict(group)
-        target = target[folder]
-    target[leaf] = value
-    return list(flat(value, key))
-
-
-def _number(value: Any) -> float | None:
-    """Return a replaced time of the file in s, None if it is no multiple of 10 ms or missing."""
-    try:
-        return time_of_step(steps_in('', value))
-    except (ParameterError, TypeError, ValueError, OverflowError):
-        return None
-
-
-def _in_file(lines: Mapping[str, int], set_keys: Iterable[str]) -> dict[str, int]:
-    """Return the lines, with 0 for the keys of `--set`, which are in no line of the file."""
-    given = tuple(set_keys)
-    within = tuple(f'{key}{mark}' for key in given for mark in '.[')
-    kept = {key: line for key, line in lines.items() if not key.startswith(within)}
-    return kept | dict.fromkeys(given, 0)

@@ -6,59 +6,23 @@ The models of a run by its settings, and their initial state.
 Nodes and the headless loop make their models here.
 """
 
-import math
 from dataclasses import replace
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.models.actuator import Actuator
-from ddct_plant.models.clutch import STICK_SLIP, FrictionClutch, LinearClutch
+from ddct_plant.models.clutch import FrictionClutch, LinearClutch
 from ddct_plant.models.driveline import OPEN
 from ddct_plant.models.engine import Engine
 from ddct_plant.models.initial_state import InitialState
 from ddct_plant.models.linear_driveline import Driveline
 from ddct_plant.models.load import HoldingTorque, RoadLoad, air_and_slope
-from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.models.static_torque import StaticTorque
 from ddct_plant.models.stick_slip_driveline import (
     StickSlipDriveline,
-    friction_integrator,
-    friction_system,
 )
+from ddct_plant.scenario.rules.driveline import least_usual
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.sensors.sensed import DrivelineSensors, TorqueEstimate
-
-_SMALLEST, _LARGEST = 1e-12, 1e12
-"""Magnitudes in SI units far beyond those of any driveline, between which nothing overflows."""
-
-
-def require_driveline(parameters: DrivelineParameters, clutch: str) -> None:
-    """
-    Raise ParameterError with a key for a driveline that cannot be integrated.
-
-    That is so with either clutch if clutch and wheels cannot stick together, as H_S G_S is
-    singular; with the stick-slip clutch also if its rates are too fast for the pieces of 1 ms.
-    """
-    try:
-        if clutch == STICK_SLIP:
-            friction_integrator(parameters)
-        elif not _usual(parameters):
-            friction_system(parameters)
-    except (ParameterError, ArithmeticError) as error:
-        raise ParameterError(
-            f'{_least_usual(parameters)}: give inertias, damping and stiffness of a car ({error})',
-            key=_least_usual(parameters).partition(' ')[0],
-        ) from error
-
-
-def _usual(parameters: DrivelineParameters) -> bool:
-    """
-    Return whether H_S G_S, which is -diag(1/J_m + 1/J_p, 1/J_v), is regular by its magnitudes.
-
-    Between them no entry of the system and no determinant is rounded to zero or infinity.
-    """
-    # Inertias and the ratio are positive; a damping may be zero.
-    values = parameters.values().values()
-    return all(value == 0.0 or _SMALLEST <= value <= _LARGEST for value in values)
 
 
 def make_driveline(settings: RunSettings, initial: InitialState) -> Driveline | StickSlipDriveline:
@@ -73,23 +37,11 @@ def make_driveline(settings: RunSettings, initial: InitialState) -> Driveline | 
         return model(scenario.driveline, scenario.vehicle, initial)
     except ParameterError as error:
         raise ParameterError(
-            f'{_least_usual(scenario.driveline)}: the driveline cannot be integrated with the '
+            f'{least_usual(scenario.driveline)}: the driveline cannot be integrated with the '
             f'clutch {settings.clutch}: give inertias, damping and stiffness of a car ({error})',
-            key=_least_usual(scenario.driveline).partition(' ')[0],
+            key=least_usual(scenario.driveline).partition(' ')[0],
             place=f'scenario {scenario.name}',
         ) from error
-
-
-def _least_usual(parameters: DrivelineParameters) -> str:
-    """Return key and value of the parameter farthest from its default."""
-    values, usual = parameters.values(), DrivelineParameters().values()
-    distances = {
-        name: abs(math.log(value) - math.log(usual[name]))
-        for name, value in values.items()
-        if usual[name] > 0.0 and value > 0.0
-    }
-    name = max(distances, key=lambda name: distances[name])
-    return f'{parameters.prefix}{name} is {values[name]:g}'
 
 
 def make_engine(settings: RunSettings) -> Engine:

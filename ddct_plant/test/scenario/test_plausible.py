@@ -5,7 +5,7 @@
 import pytest
 
 from ddct_plant.scenario.file import load_scenario, scenario_names, scenario_to_yaml
-from ddct_plant.scenario.plausible import RANGES
+from ddct_plant.scenario.rules.plausible import RANGES
 
 
 @pytest.mark.parametrize('name', scenario_names())

@@ -8,9 +8,9 @@ from refusals import refused
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.models import parameters
-from ddct_plant.scenario import plant
 from ddct_plant.scenario.file import ScenarioFile, load_scenario
-from ddct_plant.scenario.plant import require_driveline
+from ddct_plant.scenario.rules import driveline
+from ddct_plant.scenario.rules.driveline import require_driveline
 
 CHANGES: tuple[dict[str, Any], ...] = (
     {},
@@ -47,7 +47,7 @@ def test_a_bad_value_is_refused_after_good_ones_with_its_key() -> None:
 
 def test_a_driveline_of_usual_magnitudes_needs_no_matrices(monkeypatch) -> None:
     built: list[object] = []
-    monkeypatch.setattr(plant, 'friction_system', built.append)
+    monkeypatch.setattr(driveline, 'friction_system', built.append)
     require_driveline(parameters.DrivelineParameters(), 'linear')
     assert built == []
     require_driveline(parameters.DrivelineParameters(vehicle_inertia=1e-15), 'linear')

@@ -20,9 +20,9 @@ from ddct_plant.models.engine import TorqueProfile
 from ddct_plant.models.gearbox import AGREE
 from ddct_plant.models.load import RoadLoad
 from ddct_plant.models.parameters import DrivelineSection
-from ddct_plant.scenario.consistency import gear_line
 from ddct_plant.scenario.csv_profiles import MOST_ROWS
 from ddct_plant.scenario.initial_speeds import InitialSpeeds
+from ddct_plant.scenario.rules.consistency import gear_line
 from ddct_plant.scenario.scenario import Scenario
 
 STEEPEST_RAD = 0.6

@@ -1,0 +1,85 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Overrides of a scenario: texts `KEY=VALUE`, their place in a file's content, changed numbers."""
+
+import dataclasses
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.options import OptionGroup, key_of, options_of
+from ddct_plant.base.timebase import steps_in, time_of_step
+from ddct_plant.files.input_file import located
+from ddct_plant.files.yaml_text import parse_yaml
+from ddct_plant.scenario.content import flat
+from ddct_plant.scenario.scenario import Scenario
+
+_SECTIONS = {key_of(field): field.name for field in dataclasses.fields(Scenario)}
+"""Field of a scenario by its key in files."""
+
+
+def is_number_of(scenario: Scenario, key: str) -> bool:
+    """Return whether a dotted key is that of a number in the scenario or in one of its groups."""
+    section, _, leaf = key.rpartition('.')
+    group = getattr(scenario, _SECTIONS.get(section, ''), None) if section else scenario
+    if not isinstance(group, OptionGroup):
+        return False
+    option = options_of(type(group)).get(leaf)
+    return option is not None and option.kind is float and not option.many
+
+
+def with_numbers(scenario: Scenario, pairs: Iterable[tuple[str, float]]) -> Scenario:
+    """Return the scenario with other numbers by dotted key; only their groups are built anew."""
+    groups: dict[str, dict[str, float]] = {}
+    for key, value in pairs:
+        section, _, leaf = key.rpartition('.')
+        groups.setdefault(_SECTIONS[section] if section else '', {})[leaf] = value
+    changes: dict[str, Any] = groups.pop('', {})
+    for name, values in groups.items():
+        changes[name] = dataclasses.replace(getattr(scenario, name), **values)
+    return dataclasses.replace(scenario, **changes)
+
+
+def parsed_override(override: str) -> tuple[str, Any]:
+    """Return the dotted key and the value of `KEY=VALUE`; raise ParameterError for other text."""
+    key, equals, text = override.partition('=')
+    if not equals or not key:
+        raise ParameterError(
+            f'--set {override}: write KEY=VALUE, for example duration_s=2.0',
+        )
+    with located(f'--set {override}'):
+        return key, parse_yaml(text)
+
+
+def put(content: dict[str, Any], key: str, value: Any) -> list[str]:
+    """
+    Set one value or group in `content`; return the dotted keys of the given values.
+
+    Every group on the way is copied, because other contents may share it.
+    """
+    *folders, leaf = key.split('.')
+    target = content
+    for folder in folders:
+        group = target.get(folder, {})
+        if not isinstance(group, dict):
+            raise ParameterError(f'--set {key}: {folder} holds a value, not keys', key=key)
+        target[folder] = dict(group)
+        target = target[folder]
+    target[leaf] = value
+    return list(flat(value, key))
+
+
+def time_or_none(value: Any) -> float | None:
+    """Return a replaced time of the file in s, None if it is no multiple of 10 ms or missing."""
+    try:
+        return time_of_step(steps_in('', value))
+    except (ParameterError, TypeError, ValueError, OverflowError):
+        return None
+
+
+def lines_in_file(lines: Mapping[str, int], set_keys: Iterable[str]) -> dict[str, int]:
+    """Return the lines, with 0 for the keys of `--set`, which are in no line of the file."""
+    given = tuple(set_keys)
+    within = tuple(f'{key}{mark}' for key in given for mark in '.[')
+    kept = {key: line for key, line in lines.items() if not key.startswith(within)}
+    return kept | dict.fromkeys(given, 0)
