@@ -17,7 +17,8 @@ from ddct_plant.models.linear_driveline import step_matrix
 from ddct_plant.models.load import resisting_torque
 from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.models.static_torque import StaticTorque
-from ddct_plant.scenario.plant import initial_state, make_load
+from ddct_plant.scenario.initial_state import initial_state
+from ddct_plant.scenario.plant import make_load
 from ddct_plant.scenario.settings import RunSettings
 
 _STATES = slice(0, len(STATES))

@@ -12,7 +12,7 @@ from ddct_plant.models.driveline_model import driveline_matrices
 from ddct_plant.models.engine import Engine
 from ddct_plant.models.load import RoadLoad
 from ddct_plant.models.printed import ACTUATOR
-from ddct_plant.scenario.plant import initial_state
+from ddct_plant.scenario.initial_state import initial_state
 from ddct_plant.scenario.settings import RunSettings
 from ddct_reference.factory import make_reference
 

@@ -20,7 +20,7 @@ from ddct_controllers.registry import make_controller
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.models.linear_driveline import Driveline
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.plant import initial_state
+from ddct_plant.scenario.initial_state import initial_state
 from ddct_plant.scenario.settings import ARCHITECTURES, RunSettings
 
 pytestmark = pytest.mark.slow

@@ -16,7 +16,7 @@ from ddct_plant.base.errors import ParameterError
 from ddct_plant.models.load import RoadLoad
 from ddct_plant.models.static_torque import StaticTorque
 from ddct_plant.scenario.file import load_scenario, scenario_to_yaml
-from ddct_plant.scenario.plant import initial_state
+from ddct_plant.scenario.initial_state import initial_state
 from ddct_plant.scenario.settings import RunSettings
 
 UNDAMPED = ('driveline.shaft_damping=0.0', 'driveline.halfshaft_damping=0.0')

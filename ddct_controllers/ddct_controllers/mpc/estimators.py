@@ -19,7 +19,7 @@ from ddct_controllers.mpc.model.disturbances import offset_free_model
 from ddct_controllers.mpc.model.transmission_model import TransmissionModel, transmission_model
 from ddct_controllers.mpc.program.settings import MOST
 from ddct_plant.base.options import REQUIRED, OptionGroup, option
-from ddct_plant.scenario.plant import initial_request
+from ddct_plant.scenario.initial_state import initial_request
 from ddct_plant.scenario.settings import RunSettings
 
 

@@ -28,7 +28,7 @@ from ddct_plant.base.errors import ParameterError
 from ddct_plant.models.engine import Engine, EngineAuthority, EngineResponse
 from ddct_plant.models.static_torque import constant_slip_torque
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.plant import initial_state
+from ddct_plant.scenario.initial_state import initial_state
 from ddct_plant.scenario.settings import RunSettings
 
 RUN = RunSettings(load_scenario('thesis'))

@@ -16,7 +16,8 @@ from ddct_plant.graph.output import Output, SafeStateReport
 from ddct_plant.graph.settings import declare, declare_fail_safe
 from ddct_plant.graph.sole_publishers import SolePublishers
 from ddct_plant.graph.spin import run_node
-from ddct_plant.scenario.plant import driveline_sensors, initial_state, make_driveline
+from ddct_plant.scenario.initial_state import initial_state
+from ddct_plant.scenario.plant import driveline_sensors, make_driveline
 from ddct_plant.shift.driveline import ShiftOutputs
 from ddct_plant.shift_plant.sides import shift_driveline, shift_signals
 from ddct_plant.signals.topic import Topic

@@ -6,10 +6,10 @@ from typing import Any, NamedTuple, Protocol
 
 from ddct_plant.base.timebase import time_of_step
 from ddct_plant.models.driveline import DrivelineOutputs
+from ddct_plant.scenario.initial_state import initial_state
 from ddct_plant.scenario.plant import (
     driveline_sensors,
     holding_torque,
-    initial_state,
     linear_clutch,
     make_actuator,
     make_driveline,

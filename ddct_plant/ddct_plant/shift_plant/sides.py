@@ -5,7 +5,8 @@
 from ddct_plant.base.timebase import steps_in
 from ddct_plant.models.actuator import Actuator
 from ddct_plant.models.clutch import FrictionClutch
-from ddct_plant.scenario.plant import initial_state, stick_slip_clutch
+from ddct_plant.scenario.initial_state import initial_request
+from ddct_plant.scenario.plant import stick_slip_clutch
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.scenario.shift_rules import gears_of, shift_of
 from ddct_plant.shift.driveline import ShiftDriveline, ShiftOutputs
@@ -41,12 +42,10 @@ def first_request(settings: RunSettings, role: str) -> float:
     """
     Return the request before t_0 in N m of the clutch with a role.
 
-    In a shift that of the on-coming clutch is 0, and that of the off-going one keeps it locked.
+    That of the off-going clutch keeps it locked.
     """
-    if not settings.shift:
-        return initial_state(settings).torque_request
     if role == ON_COMING:
-        return 0.0
+        return initial_request(settings)
     return locked_request(settings.scenario, shift_start(settings).off_going_torque)
 
 

@@ -17,7 +17,7 @@ from ddct_plant.models.driveline_model import (
 )
 from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.plant import initial_state
+from ddct_plant.scenario.initial_state import initial_state
 from ddct_plant.scenario.settings import RunSettings
 
 PARAMETERS = DrivelineParameters()

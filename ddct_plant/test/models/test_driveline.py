@@ -10,7 +10,7 @@ from ddct_plant.models.driveline_model import driveline_matrices
 from ddct_plant.models.linear_driveline import Driveline
 from ddct_plant.models.static_torque import constant_slip_torque
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.plant import initial_state
+from ddct_plant.scenario.initial_state import initial_state
 from ddct_plant.scenario.settings import RunSettings
 
 SETTINGS = RunSettings(load_scenario('thesis'), wear_gain=0.8)

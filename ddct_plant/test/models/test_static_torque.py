@@ -12,7 +12,7 @@ from ddct_plant.base.errors import ParameterError
 from ddct_plant.models.driveline_model import driveline_matrices
 from ddct_plant.models.static_torque import StaticTorque, constant_slip_torque
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.plant import initial_state
+from ddct_plant.scenario.initial_state import initial_state
 from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import ARCHITECTURES, RunSettings
 

@@ -10,7 +10,7 @@ from shifts import SHIFTS
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.scenario.file import load_scenario, scenario_names
-from ddct_plant.scenario.plant import initial_state
+from ddct_plant.scenario.initial_state import initial_state
 from ddct_plant.scenario.settings import RunSettings
 
 NAMES = ('launch', 'launch_gentle', 'launch_hill', 'launch_hot', 'tip_in')

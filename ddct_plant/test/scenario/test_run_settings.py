@@ -7,7 +7,8 @@ from refusals import refused
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.plant import initial_state, make_driveline
+from ddct_plant.scenario.initial_state import initial_state
+from ddct_plant.scenario.plant import make_driveline
 from ddct_plant.scenario.settings import ARCHITECTURES, RunSettings
 
 THESIS = load_scenario('thesis')

@@ -23,7 +23,8 @@ from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.models.actuator import ActuatorParameters, at_rest, lifted
 from ddct_plant.models.linear_driveline import step_matrix
 from ddct_plant.models.static_torque import StaticTorque
-from ddct_plant.scenario.plant import initial_state, make_load
+from ddct_plant.scenario.initial_state import initial_state
+from ddct_plant.scenario.plant import make_load
 from ddct_plant.scenario.settings import RunSettings
 
 _NODES = [f'node{index}' for index in range(11)]

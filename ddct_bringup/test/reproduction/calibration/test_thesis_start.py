@@ -10,7 +10,7 @@ from ddct_bringup.run.headless import run_headless
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.models.driveline_model import driveline_matrices
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.plant import initial_state
+from ddct_plant.scenario.initial_state import initial_state
 from ddct_plant.scenario.settings import RunSettings
 
 PAGE = Path(__file__).resolve().parents[4] / 'docs' / 'thesis' / 'calibration.md'

@@ -14,7 +14,7 @@ from ddct_plant.linear.lti import StateSpace
 from ddct_plant.linear.sampling import discretise_zoh
 from ddct_plant.models.actuator import Actuator
 from ddct_plant.models.printed import ACTUATOR
-from ddct_plant.scenario.plant import initial_request
+from ddct_plant.scenario.initial_state import initial_request
 
 
 def _time_constant_s(factor: Factor) -> float:
