@@ -124,7 +124,7 @@ def test_the_terminal_has_columns_of_the_shift_and_the_title_names_the_handover(
     stream = io.StringIO()
     print_comparison([run.scores for run in runs[:1]], settings('timed'), [], stream)
     table = stream.getvalue()
-    assert 'stick_slip clutch, handover timed, wear gain 1' in table
+    assert 'stick_slip clutch, handover timed, wear gain 1' in ' '.join(table.split())
     row = next(line for line in table.splitlines() if line.split()[:1] == ['pi'])
     metrics = runs[0].scores.metrics
     assert row.split()[1:4] == [
