@@ -28,6 +28,8 @@ SHIFT_OPACITY = {TORQUE_PHASE: 0.15, INERTIA_PHASE: 0.5}
 _PHASES = tuple(OPACITY)
 _HALF_HEIGHT = 0.36
 _LANE_PX, _LANES_FRAME_PX = 28, 70
+_MOST_WIDE, _NARROW_LANE_PX = 36, 16
+"""Largest number of rows of full height, and the height in px of the rows of more."""
 _AFTER = {LOCK: LOCKED, RELEASE: SLIPPING}
 """Phase after an event. A reversal changes no phase: the clutch may be open."""
 
@@ -124,7 +126,8 @@ def _lanes_of(run: ChartRun) -> list[_Lane]:
 def draw_lanes(chart: figure, runs: Sequence[ChartRun]) -> None:
     """Shade the phases of each run in rows of its own, with locks and releases."""
     lanes = [lane for run in runs for lane in _lanes_of(run)]
-    chart.height = _LANES_FRAME_PX + _LANE_PX * len(lanes)
+    height = _LANE_PX if len(lanes) <= _MOST_WIDE else _NARROW_LANE_PX
+    chart.height = _LANES_FRAME_PX + height * len(lanes)
     chart.y_range = Range1d(start=len(lanes) - 0.5, end=-0.5)
     chart.yaxis.ticker = list(range(len(lanes)))
     chart.yaxis.major_label_overrides = {row: lane.label for row, lane in enumerate(lanes)}
