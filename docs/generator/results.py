@@ -149,6 +149,8 @@ def _shifts() -> dict[str, str]:
         'shifts_times': _between(times, '.2f'),
         'shifts_jerks': _between(jerks, '.0f'),
         'shifts_quick': ', '.join(map(_time_and_jerk, quick)) or 'none',
+        'shifts_quick_flare': f'{max(float(row["flare rad/s"]) for row in quick):.1f}',
+        'shifts_quick_tie_up': f'{max(float(row["tie-up J"]) for row in quick):.0f}',
         'shifts_quickest': _time_and_jerk(min(of_thesis, key=lambda row: float(row[_SHIFT_TIME]))),
         'shifts_smoothest': _time_and_jerk(min(of_thesis, key=lambda row: float(row[_JERK]))),
     }
