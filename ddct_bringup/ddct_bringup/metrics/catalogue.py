@@ -41,7 +41,7 @@ FURTHER = tuple(
 OF_SHIFT = tuple(each for each in FURTHER if each.of_shift)
 """Metrics that only a gear shift has."""
 OF_EVERY_RUN = tuple(each for each in FURTHER if not each.of_shift)
-"""Those of `FURTHER` that every run may have."""
+"""Metrics of `FURTHER` that every run may have."""
 CRITERION_UNITS = {each.key: each.unit for each in CRITERIA}
 
 

@@ -15,7 +15,7 @@ from ddct_plant.graph.settings import declare
 
 @dataclass(frozen=True)
 class RecorderParameters:
-    """Where a recorder writes its bag, and what the bag must contain."""
+    """Folder of a recorder's bag, and the required contents of the bag."""
 
     folder: Path
     """Folder of the bag."""

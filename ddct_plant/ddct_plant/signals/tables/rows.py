@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""What rows of the tables of topics share: names of joints, frames, conditions, kinds of rows."""
+"""Common parts of the tables of topics: names of joints, frames, conditions, kinds of rows."""
 
 from typing import Any
 
