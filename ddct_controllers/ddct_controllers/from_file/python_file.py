@@ -47,7 +47,7 @@ def python_spec(file: str) -> ControllerSpec[Controller]:
 
 def the_one_class(file: str, base: type[Base], page: str) -> type[Base]:
     """
-    Return the one class of `base` that a Python file defines; `page` says how it is written.
+    Return the one class of `base` that a Python file defines; `page` documents its form.
 
     Raise DdctError that names the file where it cannot be loaded, ParameterError where it does not
     define one.
