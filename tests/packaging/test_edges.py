@@ -58,6 +58,7 @@ FILES = {
     'ddct_plant/scenario/content.py': 'scenario, YAML',
     'ddct_plant/scenario/csv_profiles.py': 'profiles of a scenario, YAML and CSV',
     'ddct_plant/scenario/file.py': 'scenario, YAML',
+    'ddct_plant/scenario/overrides.py': 'options --set of a scenario',
 }
 """Modules that read or write files, with what they read or write."""
 VALUES_BY_KEY = {
