@@ -57,6 +57,7 @@ MESSAGES = {
         'covariance_type': 1,
         'few': [2.0],
         'short': 'abc',
+        'count': 3,
     },
 }
 TYPES = {
@@ -76,6 +77,7 @@ TYPES = {
             'uint8 covariance_type',
             'float64[<=3] few',
             'string<=5 short',
+            'uint32 count',
         ],
     },
 }

@@ -8,7 +8,7 @@ places, so that one walk serves both.
 """
 
 import struct
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from operator import itemgetter
 from typing import Any
 
@@ -29,18 +29,21 @@ Build = Callable[[list[Any]], Any]
 """Function that makes a value of a message from all numbers and texts in it."""
 
 
-class Message(tuple[dict[str, Build], list[Any]]):
+class Message:
     """Message whose fields are attributes; each is made when it is read, as few of them are."""
 
-    __slots__ = ()
+    __slots__ = ('_builds', '_values')
+
+    def __init__(self, builds: Mapping[str, Build], values: list[Any]) -> None:
+        self._builds = builds
+        self._values = values
 
     def __getattr__(self, name: str) -> Any:
-        builds, values = self
         try:
-            build = builds[name]
+            build = self._builds[name]
         except KeyError:
             raise AttributeError(name) from None
-        return build(values)
+        return build(self._values)
 
 
 class Walk:
@@ -77,7 +80,7 @@ class Walk:
 
     def _message(self, type_name: str) -> Build:
         builds = {field.name: self._field(field) for field in self._fields[type_name]}
-        return lambda values: Message((builds, values))
+        return lambda values: Message(builds, values)
 
     def _field(self, field: Field) -> Build:
         count = self._length() if field.count is None else field.count
@@ -96,8 +99,7 @@ class Walk:
         self._take(size, count, f'{count}{letter}', count)
         if not field.many:
             return itemgetter(first)
-        part = slice(first, first + count)
-        return itemgetter(part)
+        return itemgetter(slice(first, first + count))
 
     def _take(self, size: int, count: int, form: str, values: int) -> None:
         """Pass `count` items of `size` bytes, which are `values` values of the format `form`."""
