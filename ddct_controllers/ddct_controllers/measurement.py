@@ -89,8 +89,14 @@ class Measurement:
         """Slip reference less slip speed in rpm, the input of the thesis's controllers."""
         return rpm_from_rad_s(self.slip_reference[0] - self.slip_speed)
 
-    def within(self, load_torque: float, open_loop_torque: float) -> 'Measurement':
-        """Return the measurement completed with the architecture's two torques, in N m."""
+    def within(
+        self, load_torque: float, open_loop_torque: float, engine_torque: float | None = None
+    ) -> 'Measurement':
+        """
+        Return the measurement completed with the architecture's two torques, in N m.
+
+        `engine_torque` in N m takes the place of the measured one.
+        """
         # dataclasses.replace takes three times as long, at every step of every controller.
         return Measurement(
             self.step,
@@ -98,7 +104,7 @@ class Measurement:
             self.shaft_speed,
             self.wheel_speed,
             self.vehicle_speed,
-            self.engine_torque,
+            self.engine_torque if engine_torque is None else engine_torque,
             tuple(self.slip_reference),  # a copy: a controller may not change the record
             tuple(self.slip_reference_rate),
             load_torque,

@@ -2,8 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measurements of observers in the torque phase of a shift, with torque of another clutch."""
 
-from dataclasses import replace
-
 from ddct_controllers.interface import Measurement
 from ddct_plant.base.timebase import SUBSTEPS
 from ddct_plant.models.actuator import Actuator
@@ -38,8 +36,9 @@ class TorquePhase:
             measurement.engine_speed,
             sum(nodes[:-1]) / SUBSTEPS,
         )
-        return replace(
-            measurement,
-            engine_torque=measurement.engine_torque - carried,
-            load_torque=measurement.load_torque - self._gears.off_going.wheel_torque(carried),
+        wheel_torque = self._gears.off_going.wheel_torque(carried)
+        return measurement.within(
+            measurement.load_torque - wheel_torque,
+            measurement.open_loop_torque,
+            measurement.engine_torque - carried,
         )

@@ -36,8 +36,17 @@ _OF_CLUTCH = (
     'clutch_temperature',
 )
 """Names of the signals of a clutch and its actuator."""
-_OF_OFF_GOING_CLUTCH = tuple(f'off_going_{name}' for name in _OF_CLUTCH)
-"""Names of the signals of the off-going clutch and its actuator."""
+_OF_REPLY = (
+    *_OF_CLUTCH,
+    *(f'{OFF_GOING}_{name}' for name in _OF_CLUTCH),
+    'wheel_friction_work',
+    'torque_demand',
+    'engine_torque',
+    'engine_torque_request',
+    'load_torque',
+    'holding_torque',
+)
+"""Names of the other signals of a step."""
 
 
 class ShiftReply(NamedTuple):
@@ -146,19 +155,18 @@ class ShiftPlant:
         other_clutch = self._off_going_clutch.reply(
             step, other_nodes, other.slip_speed, other.friction_work
         )
-        requests_and_torques = torque_request, nodes, *clutch
-        of_off_going = off_going_request, other_nodes, *other_clutch
-        signals: dict[str, SignalValue] = {
-            **shift_signals(outputs),
-            **dict(zip(_OF_CLUTCH, requests_and_torques, strict=True)),
-            **dict(zip(_OF_OFF_GOING_CLUTCH, of_off_going, strict=True)),
-            'wheel_friction_work': outputs.wheel_friction_work,
-            'torque_demand': self._engine.demand(step),
-            'engine_torque': engine_torque,
-            'engine_torque_request': engine_request,
-            'load_torque': load_torque,
-            'holding_torque': holding,
-        }
+        values = (
+            *(torque_request, nodes, *clutch),
+            *(off_going_request, other_nodes, *other_clutch),
+            outputs.wheel_friction_work,
+            self._engine.demand(step),
+            engine_torque,
+            engine_request,
+            load_torque,
+            holding,
+        )
+        signals = shift_signals(outputs)
+        signals.update(zip(_OF_REPLY, values, strict=True))
         if self._sensors is not None and self._estimate is not None:
             signals |= self._sensors.measure(step, true).signals
             signals |= self._estimate.measure(step, engine_torque).signals

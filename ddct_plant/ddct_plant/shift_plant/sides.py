@@ -5,15 +5,21 @@
 from ddct_plant.base.timebase import steps_in
 from ddct_plant.models.actuator import Actuator
 from ddct_plant.models.clutch import FrictionClutch
+from ddct_plant.models.driveline import DrivelineOutputs
 from ddct_plant.scenario.initial_state import initial_request
 from ddct_plant.scenario.plant import stick_slip_clutch
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.scenario.shift_rules import gears_of, shift_of
-from ddct_plant.shift.driveline import ShiftDriveline, ShiftOutputs
+from ddct_plant.shift.driveline import OffGoingOutputs, ShiftDriveline, ShiftOutputs
 from ddct_plant.shift.roles import OFF_GOING, ON_COMING
 from ddct_plant.shift_plant.start import locked_request, shift_start
 from ddct_plant.signals.signal import SignalValue
 
+_OF_TICK = (
+    *DrivelineOutputs._fields,
+    *(f'{OFF_GOING}_{name}' for name in OffGoingOutputs._fields),
+)
+"""Names of the signals of a tick, in the order of the outputs."""
 OPEN_BELOW = 0.01
 """Torque in N m of the actuator up to which a clutch of a shift is open."""
 
@@ -33,9 +39,7 @@ def shift_driveline(settings: RunSettings) -> ShiftDriveline:
 
 def shift_signals(outputs: ShiftOutputs) -> dict[str, SignalValue]:
     """Return the signals of a tick by name; those of the off-going side have a prefix."""
-    off_going = outputs.off_going._asdict().items()
-    prefixed = {f'{OFF_GOING}_{name}': value for name, value in off_going}
-    return {**outputs.driveline._asdict(), **prefixed}
+    return dict(zip(_OF_TICK, (*outputs.driveline, *outputs.off_going), strict=True))
 
 
 def first_request(settings: RunSettings, role: str) -> float:
