@@ -97,6 +97,14 @@ def test_a_tie_up_is_the_state_also_where_the_on_coming_clutch_still_slips():
     assert scored(**slipping, **opposing(50.0)).verdict.state == 'tied_up'
 
 
+def test_a_handover_that_never_ends_is_judged_from_the_start_of_the_shift():
+    half = {'handover_share': np.clip((STEP - START) / 500.0, 0.0, 1.0)}
+    still = {'phase_events': events(), 'clutch_phase': np.full(STEPS + 1, SLIPPING)}
+    slip = np.full(STEPS + 1, 70.0)
+    assert scored(**half, **still, slip_speed=slip).verdict.state == 'not_engaged'
+    assert scored(**half).verdict.state == 'engaged'
+
+
 def test_swings_of_the_slip_before_feedback_starts_are_no_oscillation():
     swings = 60.0 + 50.0 * np.cos(np.pi * (STEP - 45) / 30.0)
     slip = np.where(STEP < 105, swings, np.clip(110.0 - 5.5 * (STEP - 105), 0.0, None))
