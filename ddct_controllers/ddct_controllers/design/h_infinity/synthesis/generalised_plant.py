@@ -82,7 +82,8 @@ class GeneralisedPlant:
         if not np.any(self.d21):
             raise DdctError(
                 'generalised plant: no external input is in the measurement directly (D21 is 0): '
-                'let the reference, or noise, enter the slip error'
+                'let the reference, or noise, enter the slip error',
+                key='reference',
             )
 
     def close(self, controller: StateSpace) -> StateSpace:
@@ -113,7 +114,8 @@ def _require_all_moved(a: np.ndarray, b: np.ndarray, property_name: str, what: s
             raise DdctError(
                 f'generalised plant is not {property_name}: its mode at {eigenvalue:.4g} rad/s '
                 f'is not {what}: take unstable poles out of the weights and cancelled ones out of '
-                'the plant'
+                'the plant',
+                key=property_name,
             )
 
 

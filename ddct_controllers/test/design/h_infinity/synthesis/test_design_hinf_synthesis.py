@@ -166,25 +166,25 @@ def test_feedthrough_of_the_plant_is_taken_into_account():
 
 
 @pytest.mark.parametrize(
-    ('changes', 'complaint'),
+    ('changes', 'key'),
     [
-        ({'b': [[1.0, 0.0, 0.0]]}, 'not stabilisable: its mode at 1.* is not moved'),
-        ({'c': [[1.0], [0.0], [0.0]]}, 'not detectable: its mode at 1.* is not seen'),
+        ({'b': [[1.0, 0.0, 0.0]]}, 'stabilisable'),
+        ({'c': [[1.0], [0.0], [0.0]]}, 'detectable'),
         (
             {'d': [[0.0, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, 1.0, 0.0]]},
-            'D12 is 0.*weigh the torque, or give W_2 as many zeros',
+            'W_2',
         ),
         (
             {'d': [[0.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, 0.0]]},
-            'D21 is 0.*let the reference',
+            'reference',
         ),
     ],
 )
 @pytest.mark.parametrize('method', [synthesise, synthesise_by_lmi])
-def test_a_plant_without_a_solution_is_named(method, changes, complaint):
+def test_a_plant_without_a_solution_is_named(method, changes, key):
     if method is synthesise_by_lmi:
         pytest.importorskip('clarabel', reason='the LMI method needs clarabel')
-    with pytest.raises(DdctError, match=complaint):
+    with refused(DdctError, key):
         method(simple_plant(**changes))
 
 
