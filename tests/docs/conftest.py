@@ -52,7 +52,8 @@ def install() -> Path:
 @pytest.fixture
 def workplace(install: Path, tmp_path: Path) -> Path:
     """Return a folder with what commands read and write, and the example in `site`."""
-    shutil.copytree(ROOT / 'docs', tmp_path / 'docs')
+    without = shutil.ignore_patterns('images', 'generator')  # no command reads them
+    shutil.copytree(ROOT / 'docs', tmp_path / 'docs', ignore=without)
     for folder in (
         'ddct_controllers/ddct_controllers/from_file/c_library/template',
         'ddct_plant/ddct_plant/scenario/packaged',
