@@ -54,6 +54,19 @@ def test_a_bad_key_of_the_shift_is_named(override, key):
         settings(override)
 
 
+@pytest.mark.parametrize(
+    ('override', 'speed'),
+    [('initial.shaft_speed_rad_s=100', 171.92), ('shift.off_going_gear=3', 102.23)],
+)
+def test_the_engine_speed_follows_the_car_and_the_gear_unless_it_is_given_too(override, speed):
+    shift = settings(override)
+    (line,) = shift.scenario.adjusted
+    assert line.startswith(f'initial.engine_speed_rad_s moved from 277.838 to {speed}')
+    assert shift.scenario.initial.engine_speed_rad_s == pytest.approx(speed, abs=0.01)
+    with refused(ParameterError, 'initial.engine_speed_rad_s'):
+        settings(override, 'initial.engine_speed_rad_s=250')
+
+
 def test_a_shift_in_another_scenario_needs_its_gear():
     with refused(ParameterError, 'shift.off_going_gear'):
         load_scenario('launch', ['shift.torque_cut_n_m=40'])

@@ -6,6 +6,7 @@ Consistency of scenario values that depend on each other: which of them hold.
     J_v = m_v r_w^2        driveline.vehicle_inertia, vehicle.mass_kg, vehicle.wheel_radius_m
     total ratio of a gear  gear, driveline.total_ratio
     the score window       control_start_s, score_window_s
+    a shift's start        initial.engine_speed_rad_s, initial.shaft_speed_rad_s, both gears
 
 J_v and the total ratio are left out of the scenario where they follow from mass and gear, and are
 computed where they are used. Where both values are given and contradict each other the scenario is
@@ -32,6 +33,7 @@ Origins = Mapping[str, int]
 
 INERTIA, MASS = 'driveline.vehicle_inertia', 'vehicle.mass_kg'
 RADIUS = 'vehicle.wheel_radius_m'
+ENGINE_SPEED, SHAFT_SPEED = 'initial.engine_speed_rad_s', 'initial.shaft_speed_rad_s'
 
 
 def consistent(scenario: Scenario, origins: Origins, start_before: float | None) -> Scenario:
@@ -42,6 +44,7 @@ def consistent(scenario: Scenario, origins: Origins, start_before: float | None)
     where given values contradict each other, or where the score window would be empty.
     """
     scenario = without_derived(_with_gear(_with_mass(scenario, origins), origins))
+    scenario = _with_locked_off_going_clutch(scenario, origins)
     if start_before is not None and _origin(origins, 'control_start_s') > _origin(
         origins, 'score_window_s'
     ):
@@ -134,6 +137,31 @@ def _with_gear(scenario: Scenario, origins: Origins) -> Scenario:
         return _with_line(scenario, about) if of_total == SET else scenario
     name = fits[0] if fits else None
     return _with_line(replace(scenario, gear=name), gear_line(name, given))
+
+
+def _with_locked_off_going_clutch(scenario: Scenario, origins: Origins) -> Scenario:
+    """
+    Return the scenario with the engine at the speed of the off-going shaft, if it has a shift.
+
+    The engine speed follows where the shaft speed or a gear is of a higher origin.
+    """
+    shift, initial = scenario.shift, scenario.initial
+    if shift is None:
+        return scenario
+    off_going = C635.gear(shift.off_going_gear)
+    speed = off_going.shaft_ratio(scenario.driveline.gear) * initial.shaft_speed_rad_s
+    moving = (SHAFT_SPEED, 'shift.off_going_gear', 'gear', RATIO_KEY)
+    highest = max(_origin(origins, key) for key in moving)
+    agree = math.isclose(initial.engine_speed_rad_s, speed, rel_tol=AGREE)
+    if agree or highest <= _origin(origins, ENGINE_SPEED):
+        return scenario
+    about = (
+        f'{ENGINE_SPEED} moved from {initial.engine_speed_rad_s:g} to {speed:g}: the off-going '
+        f'clutch is locked in gear {shift.off_going_gear} with {SHAFT_SPEED} '
+        f'{initial.shaft_speed_rad_s:g}'
+    )
+    moved = replace(scenario, initial=replace(initial, engine_speed_rad_s=speed))
+    return _with_line(moved, about)
 
 
 def without_derived(scenario: Scenario) -> Scenario:
