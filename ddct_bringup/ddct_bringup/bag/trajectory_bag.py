@@ -11,9 +11,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from mcap_ros2._dynamic import generate_dynamic
+from mcap_ros2._dynamic import generate_dynamic, serialize_dynamic
 
-from ddct_bringup.bag.file.cdr_encoding import CdrEncoder
 from ddct_bringup.bag.file.message_definitions import load_definition
 from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.run_info import run_info_order, run_info_topic
@@ -80,4 +79,4 @@ def plain_class(type_name: str) -> Callable[..., Any]:
 @cache
 def serialiser(type_name: str) -> Callable[[Any], bytes]:
     """Return the CDR serialiser of a message type; its bytes equal those of ROS."""
-    return CdrEncoder(load_definition(type_name))
+    return serialize_dynamic(type_name, load_definition(type_name).schema_text)[type_name]
