@@ -6,16 +6,14 @@ from dataclasses import replace
 from functools import partial
 from typing import Any, ClassVar
 
-from ddct_plant.base.options import Option
-from ddct_plant.base.timebase import LONGEST_S, PERIOD_S, STEPS_PER_S, stamp_of_step, steps_in
-from ddct_plant.fail_safe.request_watch import CLUTCH_TIMEOUT_S
+from ddct_plant.base.timebase import PERIOD_S, STEPS_PER_S, stamp_of_step
 from ddct_plant.graph.node import GraphNode
 from ddct_plant.graph.node_names import StatusName
 from ddct_plant.graph.node_reports import TICKS, TickCounts, driveline_info
 from ddct_plant.graph.output import Output, SafeStateReport
-from ddct_plant.graph.settings import declare, declare_fail_safe
 from ddct_plant.graph.sole_publishers import SolePublishers
 from ddct_plant.graph.spin import run_node
+from ddct_plant.graph.tick_plan import declare_tick_plan
 from ddct_plant.scenario.initial_state import initial_state
 from ddct_plant.scenario.plant import driveline_sensors, make_driveline
 from ddct_plant.shift.driveline import ShiftOutputs
@@ -42,7 +40,7 @@ from ddct_plant.signals.topics import (
     VEHICLE_SPEED,
 )
 from ddct_plant.ticks.realtime_owner import RealtimeOwner
-from ddct_plant.ticks.tick_owner import TickOwner, TickPlan
+from ddct_plant.ticks.tick_owner import TickOwner
 
 CLUTCHES = (CLUTCH_TORQUE, OFF_GOING_CLUTCH_TORQUE)
 """Topics of the torques of the clutches, the off-going one in a gear shift only."""
@@ -80,7 +78,7 @@ class DrivelineNode(GraphNode):
         self._run = self.settings.kind()
         self._torques = [topic for topic in TORQUES if topic.in_run(self._run)]
         self._clutches = [topic for topic in CLUTCHES if topic.in_run(self._run)]
-        self.plan = self._declare_plan()
+        self.plan = declare_tick_plan(self, self._torques, self._clutches)
         self.driveline = (
             shift_driveline(self.settings)
             if self.settings.shift
@@ -104,43 +102,6 @@ class DrivelineNode(GraphNode):
     def close(self) -> None:
         """End the check for second publishers."""
         self._sole_publishers.close()
-
-    def _declare_plan(self) -> TickPlan:
-        duration_s = declare(
-            self,
-            'duration',
-            Option(
-                0.0,
-                "length of the run; 0 is the scenario's",
-                's',
-                at_least=0.0,
-                at_most=LONGEST_S,
-                whole_periods=True,
-            ),
-        )
-        recorder = declare(
-            self, 'require_recorder', Option(False, 'whether each tick waits for recorder/ack')
-        )
-        return TickPlan(
-            tuple(topic.name for topic in self._torques),
-            tuple(topic.name for topic in self._clutches),
-            RECORDER_ACK.name if recorder else '',
-            steps=steps_in('duration', duration_s) or self.settings.scenario.steps,
-            answer_timeout_s=declare(
-                self,
-                'answer_timeout_s',
-                Option(
-                    60.0, 'wall time to wait for a reply', 's', at_least=0.1, at_most=LONGEST_S
-                ),
-            ),
-            fail_safe=declare_fail_safe(
-                self,
-                'clutch_timeout_s',
-                CLUTCH_TIMEOUT_S,
-                'Real time: when the torque of a clutch stays away for longer, that clutch opens; '
-                'give more than request_timeout_s of actuator',
-            ),
-        )
 
     def _make_owner(self) -> TickOwner:
         parts = (self.driveline.step, self.plan, self._publish_tick, self._sole_publishers.finish)
