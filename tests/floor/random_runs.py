@@ -19,9 +19,11 @@ import numpy as np
 
 from ddct_bringup.floor.bound import bound_of
 from ddct_bringup.floor.case import case_of_run
-from ddct_bringup.floor.floor import control_start, engagements_a_day, value_of
+from ddct_bringup.floor.control_start import control_start
 from ddct_bringup.floor.lock import lock_of
 from ddct_bringup.floor.objectives import OBJECTIVES, Signals
+from ddct_bringup.floor.point import point_of
+from ddct_bringup.floor.values import engagements_a_day, value_of
 from ddct_bringup.run.headless import run_headless
 from ddct_controllers.interface import Controller
 from ddct_controllers.registry import controller_names, make_controller
@@ -98,8 +100,8 @@ def outcome(random: np.random.Generator, index: int) -> Outcome:
         case = case_of_run(settings, start, lock, run)
     if case is None:
         return Outcome(text, covered=False)
-    point = case.point_of(run)
-    rows, limits = case.inequalities
+    point = point_of(case, run)
+    rows, limits = case.inequalities.rows, case.inequalities.limits
     columns = case.motion.columns
     residual = max(
         float(np.max(rows @ point - limits, initial=0.0)),

@@ -13,7 +13,7 @@ import argparse
 import os
 import time
 
-from ddct_bringup.floor.floor import control_start
+from ddct_bringup.floor.control_start import control_start
 from ddct_bringup.floor.front import front, usual_lock_times
 from ddct_bringup.run.headless import run_headless
 from ddct_plant.scenario.file import load_scenario

@@ -33,7 +33,7 @@ from ddct_bringup.campaign_report.results import is_number
 from ddct_bringup.campaign_report.statistics import attribution
 from ddct_bringup.campaign_report.summary_types import Reason
 from ddct_bringup.campaign_report.texts import range_text
-from ddct_bringup.floor.floor import METRICS as FLOOR_METRICS
+from ddct_bringup.floor.values import METRICS as FLOOR_METRICS
 from ddct_bringup.metrics.catalogue import METRICS
 from ddct_bringup.scores.csv_text import OVER_FLOOR
 from ddct_bringup.verdict.limits import Limits

@@ -7,7 +7,8 @@ from collections.abc import Callable, Mapping
 from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.conduct import require_going_on
 from ddct_bringup.floor.any_lock import least_at_any_lock
-from ddct_bringup.floor.floor import METRICS, control_start
+from ddct_bringup.floor.control_start import control_start
+from ddct_bringup.floor.values import METRICS
 from ddct_bringup.verdict.limits import Limits
 from ddct_plant.base.errors import DdctError
 from ddct_plant.program.progress import Progress

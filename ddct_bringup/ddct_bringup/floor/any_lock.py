@@ -10,8 +10,9 @@ import numpy as np
 from ddct_bringup.floor.case import Case, case_at
 from ddct_bringup.floor.dynamics.start import Start
 from ddct_bringup.floor.dynamics.tube import Tube
-from ddct_bringup.floor.floor import Floor, floor_of_case
+from ddct_bringup.floor.floor import floor_of_case
 from ddct_bringup.floor.lock import SETTLED_S
+from ddct_bringup.floor.values import Floor
 from ddct_plant.scenario.settings import RunSettings
 
 _SHARES = (1.0, 0.75, 0.55, 0.4, 0.25, 0.1)

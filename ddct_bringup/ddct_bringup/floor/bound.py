@@ -2,13 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Certified lower bounds of metrics over all runs of a case."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ddct_bringup.floor.case import Case
 from ddct_bringup.floor.objectives import Peak, RootMeanSquare, Signals
-from ddct_bringup.floor.program import (
+from ddct_bringup.floor.program.linear_program import (
     LINEARISED,
     RAY,
     WEAK_DUALITY,
@@ -16,7 +16,8 @@ from ddct_bringup.floor.program import (
     LinearProgram,
     require_proof,
 )
-from ddct_bringup.floor.solver import least_squares, solve
+from ddct_bringup.floor.program.quadratic import least_squares
+from ddct_bringup.floor.program.solve import solve
 
 _MOST_PEAK = 1e6
 """Upper bound of a peak in its unit; every run is below."""
@@ -38,6 +39,11 @@ class Bound:
     """Metric of the program at this point."""
     certificate: Certificate
     program: LinearProgram
+    engine_price: float = 0.0
+    """How much the bound would fall if the engine might be slower by 1 rad/s, as its share."""
+    stretch: int = 0
+    """First row of the stretch in which the point has the metric, where that is the largest over
+    all stretches."""
 
 
 def free_columns(case: Case) -> np.ndarray:
@@ -76,10 +82,10 @@ def bound_of(case: Case, objective: Peak | RootMeanSquare, signals: Signals) -> 
         found = _mean_square(case, rows[first : first + length], objective, signals)
         if found.point is None or found.least is None:
             return found
-        if best is None or best.least is None or found.least > best.least:
-            best = found
         squares = np.cumsum(np.concatenate([[0.0], (rows @ found.point) ** 2]))
         strongest = int(np.argmax(squares[length:] - squares[:-length]))
+        if best is None or best.least is None or found.least > best.least:
+            best = replace(found, stretch=strongest)
         if strongest == first:
             break
         first = strongest
@@ -88,7 +94,8 @@ def bound_of(case: Case, objective: Peak | RootMeanSquare, signals: Signals) -> 
 
 def _peak(case: Case, rows: np.ndarray, one_sided: bool) -> Bound:
     """Return the bound of the largest magnitude, or value, of `rows` (n, columns) times z."""
-    limiting, limits = case.inequalities
+    inequalities = case.inequalities
+    limiting, limits = inequalities.rows, inequalities.limits
     count = case.motion.columns.count
     both = rows if one_sided else np.vstack([rows, -rows])
     program = LinearProgram(
@@ -105,10 +112,11 @@ def _peak(case: Case, rows: np.ndarray, one_sided: bool) -> Bound:
         equal_values=-case.equations[:, 0],
         low=np.append(case.motion.columns.low, 0.0),
         high=np.append(case.motion.columns.high, _MOST_PEAK),
+        mirrored=0 if one_sided else len(rows),
     )
     free = np.append(free_columns(case), True)
-    deferred = np.concatenate([np.zeros(len(both), dtype=bool), case.deferred])
-    margin = np.concatenate([np.zeros(len(both)), case.margin])
+    deferred = np.concatenate([np.zeros(len(both), dtype=bool), inequalities.deferred])
+    margin = np.concatenate([np.zeros(len(both)), inequalities.margin])
     solution = solve(program, ~free, (program.low + program.high) / 2.0, deferred, margin)
     require_proof(solution.certificate, program)
     if solution.point is None:
@@ -116,7 +124,15 @@ def _peak(case: Case, rows: np.ndarray, one_sided: bool) -> Bound:
     point = np.concatenate([[1.0], solution.point[:-1]])
     value = float(np.max(both @ point))
     least = max(solution.certificate.claim, 0.0)
-    return Bound(least, WEAK_DUALITY, point, value, solution.certificate, program)
+    return Bound(
+        least,
+        WEAK_DUALITY,
+        point,
+        value,
+        solution.certificate,
+        program,
+        _engine_price(case, solution.certificate, value),
+    )
 
 
 def _mean_square(
@@ -128,7 +144,8 @@ def _mean_square(
     f(z) >= f(z_0) + f'(z_0) (z - z_0) for a convex f. So the proof is that of the linear program
     with the slope at the solution z_0 as cost.
     """
-    limiting, limits = case.inequalities
+    inequalities = case.inequalities
+    limiting, limits = inequalities.rows, inequalities.limits
     columns = case.motion.columns
     weighted = np.sqrt(objective.weights(signals))[:, np.newaxis] * rows
     middle = np.concatenate([[1.0], (columns.low + columns.high) / 2.0])
@@ -140,7 +157,7 @@ def _mean_square(
         columns.low[free[1:]],
         columns.high[free[1:]],
         limiting[:, free],
-        limits - case.margin - limiting @ fixed,
+        limits - inequalities.margin - limiting @ fixed,
         case.equations[:, free],
         -case.equations @ fixed,
         middle[free],
@@ -159,12 +176,26 @@ def _mean_square(
         low=columns.low,
         high=columns.high,
     )
-    solution = solve(program, ~free[1:], middle[1:], case.deferred)
+    solution = solve(program, ~free[1:], middle[1:], inequalities.deferred)
     require_proof(solution.certificate, program)
     if solution.point is None:
         return Bound(None, RAY, None, None, solution.certificate, program)
     scale = objective.scale(signals)
     least = scale * float(np.sqrt(max(solution.certificate.claim, 0.0)))
     return Bound(
-        least, LINEARISED, point, scale * float(np.sqrt(square)), solution.certificate, program
+        least,
+        LINEARISED,
+        point,
+        scale * float(np.sqrt(square)),
+        solution.certificate,
+        program,
+        _engine_price(case, solution.certificate, square),
     )
+
+
+def _engine_price(case: Case, certificate: Certificate, value: float) -> float:
+    """Return the sum of the multipliers of the least engine speeds over the cost `value`."""
+    if case.engine.least_speed is None:
+        return 0.0
+    last = len(case.engine.least_speed) - 1
+    return float(certificate.row_multipliers[-last:].sum()) / max(value, 1e-9)

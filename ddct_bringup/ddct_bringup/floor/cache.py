@@ -17,7 +17,6 @@ from ddct_bringup.floor.case import Case
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.input_file import parse_json, read_text_file
 from ddct_plant.files.output_file import write_text
-from ddct_plant.scenario.file import scenario_to_yaml
 
 VARIABLE = 'DDCT_CACHE'
 """Environment variable with the folder of the cache; empty for none."""
@@ -40,7 +39,7 @@ def digest_of(case: Case, metric: str, engagements_a_day: float, attain: bool) -
         metric,
         repr(engagements_a_day),
         repr(attain),
-        scenario_to_yaml(settings.scenario),
+        repr(settings.scenario),
         settings.clutch,
         repr(settings.wear_gain),
         repr(case.lock.time_s),

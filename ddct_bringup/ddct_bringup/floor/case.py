@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Runs that a floor covers: those that start alike and lock at one instant, as rows."""
+"""What a floor covers: the runs that start alike and lock at one instant, as a program's rows."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -9,19 +9,17 @@ import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.floor.dynamics.capacity import CapacityRange, capacity_range, stays_within
-from ddct_bringup.floor.dynamics.laws import EngineLaw, Law, demand_law, engine_law, load_law
+from ddct_bringup.floor.dynamics.engine_laws import EngineLaw, demand_law, engine_law
+from ddct_bringup.floor.dynamics.laws import Law, load_law
 from ddct_bringup.floor.dynamics.motion import Motion, motion_of
 from ddct_bringup.floor.dynamics.start import Start
 from ddct_bringup.floor.dynamics.tube import Tube, rigid_tube
-from ddct_bringup.floor.lock import BAND_RAD_S, Lock
+from ddct_bringup.floor.lock import Lock
+from ddct_bringup.floor.rows import Rows, band_rows, clutch_rows, engine_rows
 from ddct_plant.scenario.settings import RunSettings
 
 MOST_REQUEST = 2000.0
 """Highest request in N m that a floor covers, unless a compared run requests more."""
-_BAND_SHARE = 0.01
-"""Share of the band of a linear clutch that points keep clear of."""
-_LAST_SLIPS = 10
-"""Number of steps before the lock at which the sign of the slip is a limit from the beginning."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,8 +27,8 @@ class Case:
     """
     Runs of one scenario from one state at control start that lock once, at one instant.
 
-    The variables, each in an interval, are the requests and the remainders of the laws of engine,
-    load and capacity. Every run whose speeds stay in the band is a point.
+    What a controller changes is a variable in an interval: requests, and what the laws of engine,
+    load and capacity leave over. Every run whose speeds stay in the band is a point.
     """
 
     settings: RunSettings
@@ -41,10 +39,15 @@ class Case:
     """Whether C_m may differ from the demand, as where limits of the engine act."""
     capacity: CapacityRange
     most_request: float = MOST_REQUEST
+    near_run: tuple[EngineLaw, Law] | None = None
+    """Laws of C_m and of the load near one run, which the runs of a replay have; None: those of
+    all runs."""
 
     @cached_property
     def engine(self) -> EngineLaw:
         """Law of C_m."""
+        if self.near_run:
+            return self.near_run[0]
         if self.limited:
             return engine_law(self.settings, self.tube, self.start.step, self.start.idle_integral)
         return demand_law(self.settings, self.start.step, len(self.tube.engine_low))
@@ -52,6 +55,8 @@ class Case:
     @cached_property
     def load(self) -> Law:
         """Law of the torque at the wheel."""
+        if self.near_run:
+            return self.near_run[1]
         return load_law(self.settings, self.tube, self.start.step)
 
     @cached_property
@@ -69,114 +74,22 @@ class Case:
         )
 
     @cached_property
-    def inequalities(self) -> tuple[np.ndarray, np.ndarray]:
-        """Rows (m, columns) and limits (m,) of the inequalities rows z <= limits of every run."""
-        rows, limits = self.clutch_limits
-        lines, line_limits = self._engine_lines()
-        return np.vstack([rows, lines]), np.concatenate([limits, line_limits])
+    def clutch_limits(self) -> Rows:
+        """Rows of the slip and the capacity, the first of `inequalities`."""
+        if self.settings.stick_slip:
+            return clutch_rows(self.motion, self.capacity)
+        return band_rows(self.motion, self.lock)
 
     @cached_property
-    def clutch_limits(self) -> tuple[np.ndarray, np.ndarray]:
-        """
-        Rows and limits of the slip and the capacity, the first of `inequalities`.
-
-        Plates that stick slip one way until the lock, and their capacity is between zero and its
-        most. A linear clutch stays within the band from its lock on.
-        """
-        motion = self.motion
-        if not self.settings.stick_slip:
-            after = motion.slip[self.lock.periods - 1 :]
-            return np.vstack([after, -after]), np.full(2 * len(after), BAND_RAD_S)
-        slip = -motion.sign * motion.slip
-        # Node 10 of a period is node 0 of the next.
-        torque = motion.capacity[:, :-1].reshape(-1, motion.columns.count)
-        rows = [slip, -torque]
-        limits = [np.zeros(len(slip) + len(torque))]
-        if np.isfinite(self.capacity.most):
-            rows.append(torque)
-            limits.append(np.full(len(torque), self.capacity.most))
-        return np.vstack(rows), np.concatenate(limits)
-
-    def _engine_lines(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return rows and limits of the lines over w_m between which the engine torque is."""
-        columns, law = self.motion.columns, self.engine
-        if columns.engine.stop == columns.engine.start:
-            return np.zeros((0, columns.count)), np.zeros(0)
-        steps = columns.engine.stop - columns.engine.start
-        speed = self.motion.engine_speed[:steps]
-        torque = law.slope[:steps, np.newaxis] * speed
-        torque[:, 0] += law.offset[:steps]
-        torque[np.arange(steps), columns.engine.start + np.arange(steps)] += 1.0
-        rows = []
-        for offset, slope, side in law.lines:
-            beyond = torque - slope[:steps, np.newaxis] * speed
-            beyond[:, 0] -= offset[:steps]
-            rows.append(side * beyond)
-        return np.vstack(rows), np.zeros(steps * len(rows))
-
-    @property
-    def margin(self) -> np.ndarray:
-        """
-        Distance to the inequalities (m,) that makes a point a run of the simulated plant too.
-
-        Only the band of a linear clutch has one: the load is not exactly that of the point.
-        """
-        _, limits = self.inequalities
-        margin = np.zeros(len(limits))
-        if not self.settings.stick_slip:
-            margin[: 2 * (len(self.motion.slip) - self.lock.periods + 1)] = (
-                _BAND_SHARE * BAND_RAD_S
-            )
-        return margin
-
-    @property
-    def deferred(self) -> np.ndarray:
-        """Mask of the inequalities that seldom matter, (m,): all but the last slips and a band."""
-        _, limits = self.inequalities
-        deferred = np.ones(len(limits), dtype=bool)
-        slips = len(self.motion.slip)
-        if self.settings.stick_slip:
-            deferred[max(slips - _LAST_SLIPS, 0) : slips] = False
-        else:
-            deferred[: 2 * (slips - self.lock.periods + 1)] = False
-        return deferred
+    def inequalities(self) -> Rows:
+        """Rows of what is so in every run."""
+        return self.clutch_limits + engine_rows(self.motion, self.engine)
 
     @cached_property
     def equations(self) -> np.ndarray:
         """Rows (p, columns) that are zero in every run: the slip at the instant of the lock."""
         slip = self.motion.slip_at_lock
         return np.zeros((0, self.motion.columns.count)) if slip is None else slip[np.newaxis]
-
-    def point_of(self, run: Trajectory) -> np.ndarray:
-        """Return a run as a point of the program, (columns,), the constant 1 first."""
-        columns, first = self.motion.columns, self.start.step
-        point = np.zeros(columns.count)
-        point[0] = 1.0
-        used = slice(first, first + columns.requests)
-        point[1 : 1 + columns.requests] = np.maximum(run.torque_request[used], 0.0)
-        resisting = run.load_torque[first:]
-        if run.holding_torque is not None:
-            resisting = resisting + run.holding_torque[first:]
-        engine, wheel = run.engine_speed[first:], run.wheel_speed[first:]
-        if columns.load.stop > columns.load.start:
-            point[columns.load] = self.load.rest(resisting, wheel)[:-1]
-        if columns.engine.stop > columns.engine.start:
-            point[columns.engine] = self.engine.rest(run.engine_torque[first:], engine)[:-1]
-        if run.clutch_phase is not None:
-            self._add_capacity(point, run)
-        return point
-
-    def _add_capacity(self, point: np.ndarray, run: Trajectory) -> None:
-        """Write the remainder of the capacity of a run into its point."""
-        columns, first = self.motion.columns, self.start.step
-        rest = run.clutch_torque - self.settings.wear_gain * run.actuator_torque
-        rest = rest[first : first + len(self.motion.capacity)]
-        held = np.clip(rest[:, 0], self.capacity.low, self.capacity.high)
-        if columns.capacity.stop > columns.capacity.start:
-            point[columns.capacity] = held
-        clipped = [k for k in sorted(self.capacity.clipped) if k < len(rest)]
-        if clipped:
-            point[columns.nodes] = (rest - held[:, np.newaxis])[clipped].ravel()
 
 
 def case_at(

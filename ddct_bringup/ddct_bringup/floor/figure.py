@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ddct_bringup.floor.floor import METRICS, Floor
+from ddct_bringup.floor.values import METRICS, Floor
 from ddct_controllers.design.drawing.chart_style import chart_style, save_chart
 from ddct_controllers.design.drawing.line_styles import BLACK, GREY, LineStyle, controller_style
 

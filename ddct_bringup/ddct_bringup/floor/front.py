@@ -9,16 +9,10 @@ import numpy as np
 
 from ddct_bringup.floor.case import case_at
 from ddct_bringup.floor.dynamics.start import Start
-from ddct_bringup.floor.floor import (
-    Floor,
-    OverFloor,
-    floor_of_case,
-    floors_at,
-    floors_of_run,
-    value_of,
-)
+from ddct_bringup.floor.floor import floor_of_case, floors_at, floors_of_run
 from ddct_bringup.floor.lock import lock_of
 from ddct_bringup.floor.objectives import window_of
+from ddct_bringup.floor.values import Floor, OverFloor, value_of
 from ddct_bringup.run.headless import run_headless
 from ddct_controllers.registry import Chosen, controller_label
 from ddct_plant.scenario.settings import RunSettings

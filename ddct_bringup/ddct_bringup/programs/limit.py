@@ -8,7 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from ddct_bringup.floor.floor import METRICS, OF_STICK_SLIP, Floor, control_start
+from ddct_bringup.floor.control_start import control_start
 from ddct_bringup.floor.front import (
     ControllerRow,
     LeastLockTime,
@@ -17,6 +17,7 @@ from ddct_bringup.floor.front import (
     least_lock_time,
     usual_lock_times,
 )
+from ddct_bringup.floor.values import METRICS, OF_STICK_SLIP, Floor
 from ddct_bringup.run.options import (
     ALL,
     add_settings_options,

@@ -7,9 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ddct_bringup.floor.computed_floor import LIMITS
+from ddct_bringup.floor.control_start import control_start
 from ddct_bringup.floor.dynamics.start import Start
-from ddct_bringup.floor.floor import LIMITS, OverFloor, control_start, floors_of_run
+from ddct_bringup.floor.floor import floors_of_run
 from ddct_bringup.floor.front import least_values, usual_lock_times
+from ddct_bringup.floor.values import OverFloor
 from ddct_bringup.report.page_parts import value_text
 from ddct_bringup.report.pareto import round_numbers
 from ddct_bringup.scores.scored_recording import ScoredRecording

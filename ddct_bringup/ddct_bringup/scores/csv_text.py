@@ -8,7 +8,7 @@ import numpy as np
 
 from ddct_bringup.bag.recording import Recording
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.floor.floor import METRICS as FLOOR_METRICS
+from ddct_bringup.floor.values import METRICS as FLOOR_METRICS
 from ddct_bringup.scores.document import FACTS
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_plant.base.errors import printable

@@ -8,15 +8,10 @@ from dataclasses import replace
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.floor.any_lock import least_at_any_lock
+from ddct_bringup.floor.control_start import control_start
 from ddct_bringup.floor.dynamics.start import Start
-from ddct_bringup.floor.floor import (
-    METRICS,
-    OF_STICK_SLIP,
-    OverFloor,
-    control_start,
-    engagements_a_day,
-    floors_of_run,
-)
+from ddct_bringup.floor.floor import floors_of_run
+from ddct_bringup.floor.values import METRICS, OF_STICK_SLIP, OverFloor, engagements_a_day
 from ddct_bringup.scores.scored_recording import ScoredRecording
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.verdict.limits import Limits

@@ -6,22 +6,17 @@ import numpy as np
 import pytest
 from refusals import refused
 
-from ddct_bringup.floor import floor as floor_module
-from ddct_bringup.floor.case import case_of_run
-from ddct_bringup.floor.floor import (
-    DEMAND,
-    LIMITS,
-    METRICS,
-    OF_STICK_SLIP,
-    control_start,
-    floor_of,
-    floors_of_run,
-    value_of,
-)
+from ddct_bringup.floor import computed_floor
+from ddct_bringup.floor.case import case_at, case_of_run
+from ddct_bringup.floor.computed_floor import DEMAND, LIMITS
+from ddct_bringup.floor.control_start import control_start
+from ddct_bringup.floor.floor import floor_of, floors_of_run
 from ddct_bringup.floor.friction_work import least_friction_work
 from ddct_bringup.floor.front import least_lock_time
 from ddct_bringup.floor.lock import lock_of
-from ddct_bringup.floor.program import RAY
+from ddct_bringup.floor.point import point_of
+from ddct_bringup.floor.program.linear_program import RAY
+from ddct_bringup.floor.values import METRICS, OF_STICK_SLIP, value_of
 from ddct_bringup.run.execution import recording_in_memory
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.scores.scoring import score_run
@@ -51,10 +46,10 @@ def test_a_run_is_a_point_of_the_program_that_bounds_it(scenario, clutch, contro
     run = run_headless(settings, controller)
     start = control_start(settings)
     case = case_of_run(settings, start, lock_of(run, start.step), run)
-    point = case.point_of(run)
+    point = point_of(case, run)
     assert np.abs(case.motion.acceleration @ point - run.vehicle_accel).max() < 1e-10
     assert np.abs(case.motion.torsion_speed @ point - run.driveshaft_speed).max() < 1e-10
-    rows, limits = case.inequalities
+    rows, limits = case.inequalities.rows, case.inequalities.limits
     assert np.max(rows @ point - limits) < 1e-8
     assert np.max(np.abs(case.equations @ point), initial=0.0) < 1e-8
     assert np.all(case.motion.columns.low - point[1:] <= 1e-9)
@@ -126,7 +121,7 @@ def test_a_worn_clutch_has_the_same_floor_as_its_requests_are_free(wear_gain):
 
 def test_a_floor_is_computed_once_and_then_read_from_the_cache(monkeypatch):
     first = floor_of(settings_of(), 'peak_acceleration', 0.9)
-    monkeypatch.setattr(floor_module, 'bound_of', None)
+    monkeypatch.setattr(computed_floor, 'bound_of', None)
     assert floor_of(settings_of(), 'peak_acceleration', 0.9) == first
     with pytest.raises(TypeError):
         floor_of(settings_of(wear_gain=0.99), 'peak_acceleration', 0.9)
@@ -175,7 +170,7 @@ def test_friction_that_depends_on_the_slip_speed_is_refused():
 def test_the_least_friction_work_is_the_energy_of_the_slip_and_a_little_more():
     settings = settings_of()
     start = control_start(settings)
-    case = floor_module.case_at(settings, start, 1.0)
+    case = case_at(settings, start, 1.0)
     p = settings.scenario.driveline
     rest = p.shaft_inertia + p.gear.at_shaft(p.vehicle_inertia)
     joint = p.engine_inertia * rest / (p.engine_inertia + rest)

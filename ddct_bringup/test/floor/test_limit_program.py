@@ -58,6 +58,8 @@ def test_standard_output_is_json_alone(capsys):
         ([*LAUNCH, '--lock-times', '0.02'], 'a Farkas ray'),
         (['--scenario', 'tip_in', '--clutch', 'stick_slip'], 'do not slip at control start'),
         (['--architecture', 'base'], 'choose the architecture detailed'),
+        ([*LAUNCH, '--set', 'load.frontal_area_m2=1e7'], 'the model is unstable: its state grows'),
+        ([*LAUNCH, '--set', 'load.frontal_area_m2=1e8'], 'the model is unstable: its state grows'),
         ([*LAUNCH, '--lock-times', '9'], 'when the run ends'),
         ([*LAUNCH, '--lock-times', 'soon'], 'START:STOP:COUNT'),
         ([*LAUNCH, '--lock-times', '1:0.5:3'], 'rising'),

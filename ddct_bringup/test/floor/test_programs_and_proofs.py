@@ -8,7 +8,10 @@ import numpy as np
 import pytest
 import scipy
 
-from ddct_bringup.floor.program import (
+from ddct_bringup.floor.program import solve as solve_module
+from ddct_bringup.floor.program.highs import highs
+from ddct_bringup.floor.program.interior_point import interior_point
+from ddct_bringup.floor.program.linear_program import (
     RAY,
     WEAK_DUALITY,
     Certificate,
@@ -17,7 +20,7 @@ from ddct_bringup.floor.program import (
     proven,
     require_proof,
 )
-from ddct_bringup.floor.solver import solve
+from ddct_bringup.floor.program.solve import solve
 from ddct_plant.base.errors import DdctError
 
 
@@ -174,3 +177,30 @@ def test_a_kept_variable_that_excludes_all_points_is_let_go():
     solution = solve(program, kept, np.zeros(2), np.zeros(1, dtype=bool))
     assert solution.certificate.kind == WEAK_DUALITY
     assert solution.certificate.claim == pytest.approx(0.5, abs=1e-6)
+
+
+@pytest.mark.parametrize('seed', range(20))
+def test_both_solvers_find_the_same_optimum(seed):
+    program = random_program(np.random.default_rng(seed))
+    inner, other = interior_point(program), highs(program)
+    assert program.cost @ inner.point == pytest.approx(program.cost @ other.point, abs=1e-6)
+    for found in (inner, other):
+        certificate = certified(WEAK_DUALITY, program, found.rows, found.equal)
+        assert certificate.claim == pytest.approx(
+            program.cost @ other.point + program.constant, abs=1e-5
+        )
+
+
+def test_where_the_first_solver_gives_up_the_second_has_the_point_and_the_ray(monkeypatch):
+    monkeypatch.setattr(solve_module, 'interior_point', lambda program, proof=True: None)
+    program = random_program(np.random.default_rng(3))
+    assert solution_of(program).certificate.kind == WEAK_DUALITY
+    assert solution_of(impossible_program()).certificate.kind == RAY
+
+
+def test_a_variable_whose_box_has_no_width_keeps_its_value():
+    program = replace(impossible_program(), rows=np.zeros((0, 2)), limits=np.zeros(0))
+    program = replace(program, low=np.array([0.0, 2.0]), high=np.array([10.0, 2.0]))
+    solution = solution_of(program)
+    assert solution.point == pytest.approx([0.0, 2.0], abs=1e-6)
+    assert solution.certificate.claim == pytest.approx(0.0, abs=1e-6)

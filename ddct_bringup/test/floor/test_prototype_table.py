@@ -13,7 +13,8 @@ import pytest
 from ddct_bringup.floor.bound import bound_of
 from ddct_bringup.floor.case import Case
 from ddct_bringup.floor.dynamics.capacity import capacity_range
-from ddct_bringup.floor.dynamics.laws import EngineLaw, Law
+from ddct_bringup.floor.dynamics.engine_laws import EngineLaw
+from ddct_bringup.floor.dynamics.laws import Law
 from ddct_bringup.floor.dynamics.start import start_of
 from ddct_bringup.floor.dynamics.tube import rigid_tube
 from ddct_bringup.floor.lock import Lock

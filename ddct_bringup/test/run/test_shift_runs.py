@@ -11,7 +11,8 @@ from refusals import refused
 from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.batch.batchable import why_not_batchable
 from ddct_bringup.campaign.rows import scored_headless
-from ddct_bringup.floor.floor import control_start, floor_of
+from ddct_bringup.floor.control_start import control_start
+from ddct_bringup.floor.floor import floor_of
 from ddct_bringup.metrics.vibration import jerk
 from ddct_bringup.run.execution import execute, simulate
 from ddct_bringup.run.headless import run_headless

@@ -11,7 +11,9 @@ from made_scores import made_result, made_scores, made_verdict
 from refusals import refused
 
 from ddct_bringup.floor.any_lock import least_at_any_lock, lock_times
-from ddct_bringup.floor.floor import DEMAND, LIMITS, METRICS, control_start
+from ddct_bringup.floor.computed_floor import DEMAND, LIMITS
+from ddct_bringup.floor.control_start import control_start
+from ddct_bringup.floor.values import METRICS
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.scores.csv_text import score_row
 from ddct_bringup.scores.floors import ALL, NONE, USUAL, floor_metrics, with_floors

@@ -8,37 +8,15 @@ import numpy as np
 
 from ddct_bringup.floor.dynamics import propagators
 from ddct_bringup.floor.dynamics.capacity import CapacityRange
+from ddct_bringup.floor.dynamics.columns import Columns, columns_of
+from ddct_bringup.floor.dynamics.engine_laws import EngineLaw
 from ddct_bringup.floor.dynamics.laws import Law
 from ddct_bringup.floor.dynamics.propagators import ENGINE, NODES, SHAFT, TWIST, WHEEL
+from ddct_bringup.floor.dynamics.stability import require_stable
 from ddct_bringup.floor.dynamics.start import ActuatorModel, Start, driving_acceleration
-from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.models.driveline_model import states_and_torques
 from ddct_plant.scenario.settings import RunSettings
-
-
-@dataclass(frozen=True, eq=False)
-class Columns:
-    """
-    Variables of the signals: column 0 is the constant, then requests, then remainders.
-
-    The requests are those from control start to the last with an effect on the signals. The
-    remainders of the laws of load, engine and capacity follow, one column for each period; `low`
-    and `high` are the intervals of all variables but the constant.
-    """
-
-    requests: int
-    load: slice
-    engine: slice
-    capacity: slice
-    nodes: slice
-    low: np.ndarray
-    high: np.ndarray
-
-    @property
-    def count(self) -> int:
-        """Number of columns, the constant included."""
-        return 1 + len(self.low)
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,7 +59,7 @@ def motion_of(
     settings: RunSettings,
     start: Start,
     lock_time_s: float | None,
-    engine: Law,
+    engine: EngineLaw,
     load: Law,
     capacity: CapacityRange,
     most_request: float,
@@ -103,7 +81,7 @@ class _Builder:
         settings: RunSettings,
         start: Start,
         lock_time_s: float | None,
-        engine: Law,
+        engine: EngineLaw,
         load: Law,
         capacity: CapacityRange,
         most_request: float,
@@ -117,46 +95,35 @@ class _Builder:
         self._actuator = ActuatorModel.of(settings)
         self._lock = None if lock_time_s is None else divmod_period(lock_time_s)
         self._slipping_periods = self._periods if self._lock is None else self._lock[0] + 1
-        self.columns = self._columns(most_request)
-
-    def _columns(self, most_request: float) -> Columns:
-        requests = max(self._slipping_periods - self._actuator.delays[-1], 0)
-        low, high = [np.zeros(requests)], [np.full(requests, most_request)]
-        slices, first = [], 1 + requests
-        for law, periods in ((self._load, self._periods), (self._engine, self._periods)):
-            free = bool(np.any(law.high[:periods] > law.low[:periods]))
-            slices.append(slice(first, first + periods if free else first))
-            if free:
-                low.append(law.low[:periods])
-                high.append(law.high[:periods])
-                first += periods
-        held = self._slipping_periods if self._capacity.high > self._capacity.low else 0
-        slices.append(slice(first, first + held))
-        low.append(np.full(held, self._capacity.low))
-        high.append(np.full(held, self._capacity.high))
-        first += held
-        clipped = [k for k in sorted(self._capacity.clipped) if k < self._slipping_periods]
-        self._clipped = {k: first + i * NODES for i, k in enumerate(clipped)}
-        for k in clipped:
-            least, most = self._capacity.clipped[k]
-            low.append(least)
-            high.append(most)
-        slices.append(slice(first, first + len(clipped) * NODES))
-        load, engine, capacity, nodes = slices
-        return Columns(
-            requests, load, engine, capacity, nodes, np.concatenate(low), np.concatenate(high)
+        self.columns = columns_of(
+            max(self._slipping_periods - self._actuator.delays[-1], 0),
+            most_request,
+            load,
+            engine,
+            capacity,
+            self._periods,
+            self._slipping_periods,
         )
 
     def motion(self) -> Motion:
+        """Return the signals; raise ParameterError for an unstable model."""
+        require_stable(self._scenario.name, self._p, self._load, self._engine)
         state = np.zeros((4, self.columns.count))
         state[:, 0] = self._start.state
         actuator = np.zeros((len(self._start.actuator), self.columns.count))
         actuator[:, 0] = self._start.actuator
         slipping, locked = propagators.slipping(self._p), propagators.locked(self._p)
         states, loads, capacities = [state], [], []
+        integral = np.zeros(self.columns.count)
         slip_at_lock = slip_acceleration = None
         for k in range(self._periods):
             engine = self._torque(self._engine, self.columns.engine, k, state[ENGINE])
+            if self._engine.integral:
+                engine += self._engine.integral.share[k] * integral
+                integral = (
+                    self._engine.integral.keep[k] * integral
+                    + self._engine.integral.gain[k] * state[ENGINE]
+                )
             load = self._torque(self._load, self.columns.load, k, state[WHEEL])
             loads.append(load)
             if k < self._slipping_periods:
@@ -201,9 +168,8 @@ class _Builder:
             nodes[:, self.columns.capacity.start + k] += 1.0
         else:
             nodes[:, 0] += self._capacity.low
-        if k in self._clipped:
-            first = self._clipped[k]
-            nodes[:, first : first + NODES] += np.eye(NODES)
+        if k in self.columns.clipped:
+            nodes[:, self.columns.of_nodes(k)] += np.eye(NODES)
         return nodes, self._actuator.state_update @ values
 
     def _slip_acceleration(self, state: np.ndarray, inputs: np.ndarray) -> np.ndarray:
@@ -229,10 +195,6 @@ class _Builder:
         torsion[: start + 1, 0] = self._start.torsion_speeds
         driving[: start + 1, 0] = self._start.driving
         path = np.array(states)
-        if not np.isfinite(path).all():
-            raise ParameterError(
-                'the driveline grows beyond all numbers: there is no floor for an unstable model'
-            )
         speed = p.gear.wheel_speed(path[:, SHAFT]) - path[:, WHEEL]
         torque = p.halfshaft_damping * speed + p.halfshaft_stiffness * path[:, TWIST]
         torsion[start + 1 :] = speed[1:]

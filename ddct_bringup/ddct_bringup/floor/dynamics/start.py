@@ -77,7 +77,7 @@ def start_of(settings: RunSettings, run: Trajectory) -> Start:
     Raise ParameterError where the run ends before, or its wheels do not turn there.
     """
     step = settings.scenario.control_start_step
-    if run.steps <= step:
+    if run.steps < step:
         raise ParameterError('the run ends before control start: there is no floor')
     if settings.stick_slip and run.wheel_speed[step] <= 0.0:
         raise ParameterError(

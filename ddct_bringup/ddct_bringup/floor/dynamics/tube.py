@@ -51,6 +51,7 @@ class Tube:
         )
 
 
+@np.errstate(over='ignore', invalid='ignore')
 def rigid_tube(settings: RunSettings, start: Start, lock_time_s: float) -> Tube:
     """
     Return the band around a rigid car whose slip falls linearly to zero in `lock_time_s`.

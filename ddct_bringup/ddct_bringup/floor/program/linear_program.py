@@ -41,6 +41,8 @@ class LinearProgram:
     """Right-hand sides of the equations, (p,)."""
     low: np.ndarray
     high: np.ndarray
+    mirrored: int = 0
+    """Number r of first rows whose mirror images are the next r: only the last column is equal."""
 
     def residual(self, point: np.ndarray) -> float:
         """Return the largest violation of a row, an equation or the box by a point (n,)."""

@@ -1,0 +1,56 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""State at control start of a scenario, simulated once for all runs that start alike."""
+
+from ddct_bringup.floor.dynamics.start import Start, start_of
+from ddct_bringup.run.headless import ClosedLoop, run_loop
+from ddct_controllers.interface import Controller
+from ddct_controllers.registry import make_controller
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.scenario.settings import RunSettings
+
+_DRIVER = 'pi'
+"""Controller of the run to control start, where every controller of `detailed` is the same."""
+_MOST_KEPT = 16
+_kept: list[tuple[RunSettings, Start]] = []
+"""States of the last settings, the newest last."""
+
+
+def control_start(settings: RunSettings) -> Start:
+    """
+    Return the state at control start, which every controller of the architecture starts from.
+
+    Raise ParameterError where it depends on the controller, or the plates do not slip there.
+    """
+    if not settings.detailed:
+        raise ParameterError(
+            f'architecture {settings.architecture}: feedback is on from t = 0, so the state at '
+            'control start depends on the controller: choose the architecture detailed',
+            key='architecture',
+        )
+    if settings.shift:
+        raise ParameterError(
+            f'scenario {settings.scenario.name} is a gear shift: a floor is of an engagement '
+            'with one clutch, and none of a shift is computed'
+        )
+    start = _simulated(settings)
+    if start.slip == 0.0:
+        raise ParameterError(
+            f'scenario {settings.scenario.name}: the plates do not slip at control start: there '
+            'is nothing to engage, and no floor'
+        )
+    return start
+
+
+def _simulated(settings: RunSettings) -> Start:
+    """Return the state at the end of a run that ends with control start."""
+    for known, start in _kept:
+        if known == settings:
+            return start
+    controller = make_controller(_DRIVER, settings)
+    assert isinstance(controller, Controller)
+    steps = settings.scenario.control_start_step
+    start = start_of(settings, run_loop(ClosedLoop(settings, controller), steps))
+    _kept.append((settings, start))
+    del _kept[:-_MOST_KEPT]
+    return start
