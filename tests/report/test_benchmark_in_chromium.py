@@ -14,6 +14,7 @@ from ddct_bringup.benchmark.manifest import BenchmarkManifest
 from ddct_bringup.benchmark.release import release_rows
 from ddct_bringup.benchmark.report.page import benchmark_page
 from ddct_bringup.benchmark.result import result_of
+from ddct_bringup.benchmark.update_times import UpdateTime
 
 pytestmark = [
     pytest.mark.browser,
@@ -28,7 +29,7 @@ SORT = """(() => {
   document.querySelectorAll('#board .sort')[2].click();
   return before !== body.rows[0].textContent;
 })()"""
-TIMES = {
+TIMES: UpdateTime = {
     'ratio_to_pi': 1.5,
     'lowest_ratio': 1.4,
     'highest_ratio': 1.6,
@@ -46,7 +47,10 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
     judged = {'ls8': JudgedRows(None, rows, release.unavoidable)}
     result = result_of(manifest, release, judged, {})
     file = tmp_path_factory.mktemp('benchmark') / 'report.html'
-    file.write_text(benchmark_page(result, {'controllers': {'ls8': TIMES}}), encoding='utf-8')
+    file.write_text(
+        benchmark_page(result, {'reference': 'pi', 'controllers': {'ls8': TIMES}}),
+        encoding='utf-8',
+    )
     return file
 
 

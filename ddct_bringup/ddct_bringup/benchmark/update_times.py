@@ -9,14 +9,14 @@ They are wall-clock times, so they differ each time, and stand in a file of thei
 import statistics
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TypedDict, cast
 
 from ddct_bringup.benchmark.cases import Cases
 from ddct_bringup.benchmark.judged import Judged
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.run.timing_and_failure import TIMING_FILE, RunTiming
 from ddct_controllers.registry import make_controller
-from ddct_plant.base.errors import FOREIGN_FAILURES
+from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError
 from ddct_plant.files.input_file import parse_json, read_text_file
 from ddct_plant.files.output_file import write_json
 from ddct_plant.scenario.settings import RunSettings
@@ -26,22 +26,49 @@ _ROUNDS = 3
 """Number of runs of each, in turn, so that a busy machine slows both alike."""
 
 
+class UpdateTime(TypedDict, total=False):
+    """Update time of a controller; without a ratio there is the reason alone."""
+
+    ratio_to_pi: float | None
+    reason: str
+    lowest_ratio: float
+    highest_ratio: float
+    update_time_median_us: float
+    pi_update_time_median_us: float
+
+
+class UpdateTimes(TypedDict):
+    """Content of the file: the controller of the denominator, and the update times by name."""
+
+    reference: str
+    controllers: Mapping[str, UpdateTime]
+
+
 def write_update_times(judged: Sequence[Judged], cases: Cases, out: Path) -> None:
     """Measure the update times and write them into a folder, unless they are there."""
     if (out / TIMING_FILE).exists():
         return
     settings = cases.planned.run(0).settings
     found = {each.name: _update_time(each, settings) for each in judged}
-    write_json(str(out / TIMING_FILE), {'reference': REFERENCE, 'controllers': found})
+    content: UpdateTimes = {'reference': REFERENCE, 'controllers': found}
+    write_json(str(out / TIMING_FILE), content)
 
 
-def read_update_times(out: Path) -> Mapping[str, Any]:
-    """Return the content of the file in a folder."""
+def read_update_times(out: Path) -> UpdateTimes:
+    """Return the content of the file in a folder; raise DdctError for one that is damaged."""
     content = parse_json(read_text_file(out / TIMING_FILE))
-    return content if isinstance(content, dict) else {}
+    times = content.get('controllers') if isinstance(content, dict) else None
+    if not isinstance(times, dict) or not all(
+        isinstance(each, dict) and 'ratio_to_pi' in each for each in times.values()
+    ):
+        raise DdctError(
+            f'{out / TIMING_FILE}: it has no update times: delete it, and the same command '
+            'measures them again'
+        )
+    return cast(UpdateTimes, content)
 
 
-def _update_time(judged: Judged, settings: RunSettings) -> dict[str, float | str | None]:
+def _update_time(judged: Judged, settings: RunSettings) -> UpdateTime:
     """Return the median update times in us, and the median of their ratios over the rounds."""
     ours, theirs = [], []
     try:

@@ -2,14 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Figure of `limit`: the front of each metric over the lock time, with controllers on it."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from ddct_bringup.floor.front import ControllerRow
 from ddct_bringup.floor.values import METRICS, Floor
 from ddct_controllers.design.drawing.chart_style import chart_style, save_chart
 from ddct_controllers.design.drawing.line_styles import BLACK, GREY, LineStyle, controller_style
@@ -21,21 +22,21 @@ _HEADROOM = 8.0
 
 
 def write_front_figure(
-    floors: Sequence[Floor], rows: Sequence[Mapping[str, Any]], title: str, path: Path
+    floors: Sequence[Floor], rows: Sequence[ControllerRow], title: str, path: Path
 ) -> None:
     """Write the figure as PNG or SVG by the file's ending; raise DdctError where it cannot be."""
     with chart_style():
         save_chart(front_figure(floors, rows, title), path)
 
 
-def front_figure(floors: Sequence[Floor], rows: Sequence[Mapping[str, Any]], title: str) -> Figure:
+def front_figure(floors: Sequence[Floor], rows: Sequence[ControllerRow], title: str) -> Figure:
     """Return the figure with one panel for each metric, from floors and rows of controllers."""
     metrics = list(dict.fromkeys(floor.metric for floor in floors))
     drawing = Figure(figsize=(_WIDTH_IN, _PANEL_IN * len(metrics) + _MARGINS_IN))
     panels = drawing.subplots(len(metrics), sharex=True, squeeze=False)[:, 0]
     panels[0].set_title(title)
     for axes, metric in zip(panels, metrics, strict=True):
-        _draw(axes, [f for f in floors if f.metric == metric], _of(rows, metric))
+        _draw(axes, [f for f in floors if f.metric == metric], _marks(rows, metric))
         axes.set_ylabel(f'{metric.replace("_", " ")}\n{METRICS[metric]}')
     panels[-1].set_xlabel('time from control start to the lock, s')
     handles, labels = panels[0].get_legend_handles_labels()
@@ -43,16 +44,24 @@ def front_figure(floors: Sequence[Floor], rows: Sequence[Mapping[str, Any]], tit
     return drawing
 
 
-def _of(rows: Sequence[Mapping[str, Any]], metric: str) -> list[Mapping[str, Any]]:
-    """Return the rows of a metric whose run has a lock time and a value."""
+class _Mark(NamedTuple):
+    """Run of a controller in a panel: its lock time in s and its value of the metric."""
+
+    controller: str
+    lock_time_s: float
+    value: float
+
+
+def _marks(rows: Sequence[ControllerRow], metric: str) -> list[_Mark]:
+    """Return the runs with a lock time and a value of a metric."""
     return [
-        row
+        _Mark(row['controller'], row['lock_time_s'], row['value'])
         for row in rows
         if row['metric'] == metric and row['lock_time_s'] is not None and row['value'] is not None
     ]
 
 
-def _draw(axes: Axes, floors: Sequence[Floor], rows: Sequence[Mapping[str, Any]]) -> None:
+def _draw(axes: Axes, floors: Sequence[Floor], marks: Sequence[_Mark]) -> None:
     """Draw the proven least as an edge of what is impossible, the attained values as circles."""
     times = np.array([floor.lock_time_s for floor in floors])
     least = np.array([np.nan if floor.least is None else floor.least for floor in floors])
@@ -72,11 +81,11 @@ def _draw(axes: Axes, floors: Sequence[Floor], rows: Sequence[Mapping[str, Any]]
     values = [*least, *attained]
     top = _HEADROOM * float(np.nanmedian(values)) if np.isfinite(values).any() else 1.0
     highest = max(
-        [float(np.nanmax(values)), *(min(row['value'], top) for row in rows)], default=1.0
+        [float(np.nanmax(values)), *(min(mark.value, top) for mark in marks)], default=1.0
     )
     axes.set_ylim(0.0, 1.1 * highest if highest > 0.0 else 1.0)
-    for row in rows:
-        style: LineStyle = {'marker': 'o', **controller_style(row['controller'])}
+    for mark in marks:
+        style: LineStyle = {'marker': 'o', **controller_style(mark.controller)}
         style['linestyle'] = 'none'
-        place = min(row['value'], 1.1 * highest)
-        axes.plot(row['lock_time_s'], place, label=row['controller'], clip_on=False, **style)
+        place = min(mark.value, 1.1 * highest)
+        axes.plot(mark.lock_time_s, place, label=mark.controller, clip_on=False, **style)

@@ -104,7 +104,7 @@ def _complaints(result: Result) -> bool:
 
 def _show(result: Result, options: argparse.Namespace) -> None:
     def show() -> None:
-        print_result(result, read_update_times(options.out)['controllers'])
+        print_result(result, read_update_times(options.out))
         for note in (*texts.notes_of(result), *texts.warnings_of(result)):
             print(printable(note))
         print(options.out / PAGE, flush=True)

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Gaps, dominance, kept limits and distributions of rows that are made by hand."""
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,8 +13,10 @@ from ddct_bringup.benchmark.case_rows import CaseRows
 from ddct_bringup.benchmark.comparison import figures_of, non_dominated, pairs_of
 from ddct_bringup.benchmark.evaluation import evaluations_of
 from ddct_bringup.benchmark.gaps import fisher_p_value, gaps_of
+from ddct_bringup.benchmark.update_times import read_update_times
 from ddct_bringup.campaign_report.printed_summary import MAIN
 from ddct_bringup.verdict.limits import packaged_limits
+from ddct_plant.base.errors import DdctError
 
 CASES = 6
 
@@ -157,3 +160,10 @@ def test_an_honest_controller_is_rarely_marked() -> None:
         ]
         marked += any(gap['differs'] for gap in gaps_of(*sets))
     assert marked <= 10  # 5 % of 200
+
+
+@pytest.mark.parametrize('text', ['{}', '[1]', '{"controllers": {"ls8": 2.0}}'])
+def test_damaged_update_times_are_refused(text: str, tmp_path: Path) -> None:
+    (tmp_path / 'timing.json').write_text(text, encoding='utf-8')
+    with pytest.raises(DdctError, match='measures them again'):
+        read_update_times(tmp_path)

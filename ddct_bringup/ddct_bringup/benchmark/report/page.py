@@ -2,9 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The page of a benchmark."""
 
-from collections.abc import Mapping
-from typing import Any
-
 from markupsafe import Markup
 
 from ddct_bringup.benchmark.report import texts
@@ -14,6 +11,7 @@ from ddct_bringup.benchmark.result_types import (
     Result,
     ScenarioResult,
 )
+from ddct_bringup.benchmark.update_times import UpdateTimes
 from ddct_bringup.campaign_report import texts as campaign_texts
 from ddct_bringup.campaign_report.evaluated_quantities import QUANTITIES
 from ddct_bringup.campaign_report.printed_summary import MAIN
@@ -32,7 +30,7 @@ RATIO_FORM = '.2f'
 """Format of a ratio to the least."""
 
 
-def benchmark_page(result: Result, update_times: Mapping[str, Any]) -> str:
+def benchmark_page(result: Result, update_times: UpdateTimes) -> str:
     """
     Return the HTML page of a benchmark.
 
@@ -45,7 +43,7 @@ def benchmark_page(result: Result, update_times: Mapping[str, Any]) -> str:
         + page_part(_ROOM, 'benchmark.css'),
         script=page_part(_REPORT, 'common.js') + page_part(_ROOM, 'benchmark.js'),
         result=result,
-        update_times=update_times.get('controllers', {}),
+        update_times=update_times['controllers'],
         notes=list(texts.notes_of(result)),
         warnings=list(texts.warnings_of(result)),
         texts=texts,

@@ -2,11 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tables of a benchmark for the terminal."""
 
-from collections.abc import Iterator, Mapping
-from typing import Any
+from collections.abc import Iterator
 
 from ddct_bringup.benchmark.report import texts
 from ddct_bringup.benchmark.result_types import Evaluation, JudgedResult, Result, Share
+from ddct_bringup.benchmark.update_times import UpdateTimes
 from ddct_bringup.campaign_report.printed_summary import MAIN
 from ddct_bringup.campaign_report.texts import interval_text, p_text, share_text
 from ddct_bringup.metrics.catalogue import METRICS
@@ -16,12 +16,12 @@ from ddct_plant.program.table import UNDEFINED, Table, print_tables, text_or_das
 _TITLES = 'development', '95 % interval', 'held out', '95 % interval'
 
 
-def print_result(result: Result, update_times: Mapping[str, Any]) -> None:
+def print_result(result: Result, update_times: UpdateTimes) -> None:
     """Print the main tables of a benchmark; the page has all."""
     for judged in result['controllers']:
         if judged['development'] and judged['held_out']:
             print_tables(_tables(judged, judged['development'], judged['held_out']))
-    for name, found in update_times.items():
+    for name, found in update_times['controllers'].items():
         ratio = text_or_dash(found['ratio_to_pi'], '.2f')
         print(f'update time of {printable(name)} over that of pi: {ratio}')
     best = [row['controller'] for row in result['board'] if row['non_dominated']]
