@@ -161,6 +161,22 @@ def test_the_residual_of_a_point_is_its_farthest_violation():
     assert program.residual(np.array([-2.0, 3.2])) == pytest.approx(2.0)
 
 
+@pytest.mark.parametrize('mirrored', [0, 3])
+def test_products_with_mirrored_rows_are_those_with_all_rows(mirrored):
+    random = np.random.default_rng(5)
+    half = random.normal(size=(3, 4))
+    half[:, -1] = -1.0
+    mirror = half * np.array([-1.0, -1.0, -1.0, 1.0])
+    program = replace(
+        random_program(random),
+        rows=np.vstack([half, mirror, random.normal(size=(2, 4))]),
+        mirrored=mirrored,
+    )
+    point, multipliers = random.normal(size=4), random.uniform(size=8)
+    assert program.times(point) == pytest.approx(program.rows @ point)
+    assert program.combined(multipliers) == pytest.approx(multipliers @ program.rows)
+
+
 def test_a_kept_variable_that_excludes_all_points_is_let_go():
     """With x kept at 0 a row x >= 0.5 excludes all; the program itself has points, and no ray."""
     program = LinearProgram(

@@ -115,6 +115,7 @@ class _Builder:
         slipping, locked = propagators.slipping(self._p), propagators.locked(self._p)
         states, loads, capacities = [state], [], []
         integral = np.zeros(self.columns.count)
+        whole = np.zeros((6 + NODES, self.columns.count))
         slip_at_lock = slip_acceleration = None
         for k in range(self._periods):
             engine = self._torque(self._engine, self.columns.engine, k, state[ENGINE])
@@ -129,12 +130,13 @@ class _Builder:
             if k < self._slipping_periods:
                 nodes, actuator = self._clutch(k, actuator)
                 capacities.append(nodes)
-                inputs = np.vstack([engine, load, self._sign * nodes])
+                np.multiply(self._sign, nodes, out=whole[6:])
+            whole[:4], whole[4], whole[5] = state, engine, load
+            inputs = whole[4:]
             if self._lock is None or k < self._lock[0]:
-                state = slipping[:, :4] @ state + slipping[:, 4:] @ inputs
+                state = slipping @ whole
             elif k == self._lock[0]:
-                until = propagators.slipping_for(self._p, self._lock[1])
-                state = until[:, :4] @ state + until[:, 4:] @ inputs
+                state = propagators.slipping_for(self._p, self._lock[1]) @ whole
                 slip_at_lock = state[ENGINE] - state[SHAFT]
                 slip_acceleration = self._slip_acceleration(state, inputs)
                 after = propagators.locked(self._p, PERIOD_S - self._lock[1])
@@ -142,7 +144,7 @@ class _Builder:
                     after[:, :4] @ propagators.joined(self._p) @ state + after[:, 4:] @ inputs[:2]
                 )
             else:
-                state = locked[:, :4] @ state + locked[:, 4:] @ np.vstack([engine, load])
+                state = locked @ whole[:6]
             states.append(state)
         return self._signals(states, loads, capacities, slip_at_lock, slip_acceleration)
 

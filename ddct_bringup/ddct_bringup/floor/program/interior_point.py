@@ -14,7 +14,7 @@ import numpy as np
 from scipy.linalg import LinAlgError
 
 from ddct_bringup.floor.program.linear_program import WEAK_DUALITY, LinearProgram, proven
-from ddct_bringup.floor.program.newton import Iterate, Newton
+from ddct_bringup.floor.program.newton import Iterate, Newton, weighted_square
 
 _ITERATIONS = 80
 """Iteration limit; some 20 are usual."""
@@ -89,15 +89,15 @@ class _Method:
     def first(self) -> Iterate:
         """Return a point inside of the box, near all rows in least squares."""
         p = self._program
-        rows, limits = p.rows / self._row_scale[:, np.newaxis], p.limits / self._row_scale
+        weights = self._row_scale**-2
         edge = _EDGE * np.minimum(self._width, _WIDE)
         # The middle of the box counts a little, where the rows leave a variable free.
         pull = 1e-3 / np.minimum(self._width, _WIDE) ** 2
         middle = p.low + np.minimum(self._width, _WIDE) / 2.0
-        normal = rows.T @ rows + np.diag(pull)
-        x = np.linalg.solve(normal, rows.T @ limits + pull * middle)
+        normal = weighted_square(p, weights) + np.diag(pull)
+        x = np.linalg.solve(normal, p.combined(weights * p.limits) + pull * middle)
         x = np.clip(x, p.low + edge, p.high - edge)
-        distance = p.limits - p.rows @ x
+        distance = p.limits - p.times(x)
         s = (
             np.maximum(distance, 0.1 * np.abs(distance).mean() + 1e-3)
             if len(distance)
@@ -157,8 +157,8 @@ class _Method:
     def _residuals(self, now: Iterate) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return what the stationarity, the rows and the equations are off by."""
         p = self._program
-        dual = p.cost + now.rows @ p.rows + now.equal @ p.equal_rows - now.low + now.high
-        return dual, p.rows @ now.x + now.s - p.limits, p.equal_rows @ now.x - p.equal_values
+        dual = p.cost + p.combined(now.rows) + now.equal @ p.equal_rows - now.low + now.high
+        return dual, p.times(now.x) + now.s - p.limits, p.equal_rows @ now.x - p.equal_values
 
     def _products(self, now: Iterate) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return the products of distances and multipliers of rows, lower and upper edges."""

@@ -44,6 +44,26 @@ class LinearProgram:
     mirrored: int = 0
     """Number r of first rows whose mirror images are the next r: only the last column is equal."""
 
+    def times(self, point: np.ndarray) -> np.ndarray:
+        """Return rows times a point (n,), (m,); mirrored rows are multiplied once."""
+        count = self.mirrored
+        if not count:
+            return np.asarray(self.rows @ point)
+        shared = self.rows[:count, -1] * point[-1]
+        first = self.rows[:count, :-1] @ point[:-1]
+        return np.concatenate([first + shared, shared - first, self.rows[2 * count :] @ point])
+
+    def combined(self, multipliers: np.ndarray) -> np.ndarray:
+        """Return the sum of the rows with multipliers (m,), (n,); mirrored rows count once."""
+        count = self.mirrored
+        if not count:
+            return np.asarray(multipliers @ self.rows)
+        first, second = multipliers[:count], multipliers[count : 2 * count]
+        found = multipliers[2 * count :] @ self.rows[2 * count :]
+        found[:-1] += (first - second) @ self.rows[:count, :-1]
+        found[-1] += (first + second) @ self.rows[:count, -1]
+        return np.asarray(found)
+
     def residual(self, point: np.ndarray) -> float:
         """Return the largest violation of a row, an equation or the box by a point (n,)."""
         return max(
@@ -106,7 +126,9 @@ def proven(kind: str, program: LinearProgram, rows: np.ndarray, equal: np.ndarra
     its cost is at least the least over the box of cost z plus this sum (weak duality). Without the
     cost a positive least proves that there is no such point (Farkas).
     """
-    used = rows > 0.0
+    used: slice | np.ndarray = rows > 0.0
+    if np.all(used):
+        used = slice(None)  # A mask copies all rows.
     slopes = rows[used] @ program.rows[used] + equal @ program.equal_rows
     constant = -(rows[used] @ program.limits[used]) - equal @ program.equal_values
     if kind == WEAK_DUALITY:

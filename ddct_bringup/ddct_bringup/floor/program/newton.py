@@ -40,26 +40,28 @@ class Newton:
         self._to_low, self._to_high = now.x - program.low, program.high - now.x
         self._weights = now.rows / now.s
         self._box = now.low / self._to_low + now.high / self._to_high
-        matrix = _weighted_square(program, self._weights)
+        matrix = weighted_square(program, self._weights)
         diagonal = np.diag_indices_from(matrix)
         matrix[diagonal] += self._box
         self._scale = 1.0 / np.sqrt(matrix[diagonal])
         matrix *= self._scale
         matrix *= self._scale[:, np.newaxis]
         matrix[diagonal] += _REGULAR
-        self._factor = cho_factor(matrix, overwrite_a=True, check_finite=False)
+        # The transpose of a symmetric matrix has the order that LAPACK takes without a copy.
+        self._factor = cho_factor(matrix.T, lower=True, overwrite_a=True, check_finite=False)
         self._of_equations = np.column_stack(
             [self._solved(row) for row in program.equal_rows] or [np.zeros((len(now.x), 0))]
         )
 
     def _solved(self, right: np.ndarray) -> np.ndarray:
         """Return the solution of the reduced system, refined, for a right-hand side (n,)."""
-        rows = self._program.rows
-        x = np.zeros(len(right))
-        for _ in range(_REFINED):
-            left = (self._weights * (rows @ x)) @ rows + self._box * x
-            rest = self._scale * (right - left)
-            x = x + self._scale * cho_solve(self._factor, rest, check_finite=False)
+        p = self._program
+        x, rest = np.zeros(len(right)), right
+        for step in range(_REFINED):
+            if step:
+                left = p.combined(self._weights * p.times(x)) + self._box * x
+                rest = right - left
+            x = x + self._scale * cho_solve(self._factor, self._scale * rest, check_finite=False)
         return x
 
     def direction(self, wanted: list[np.ndarray]) -> Iterate:
@@ -67,14 +69,14 @@ class Newton:
         p, now = self._program, self._now
         dual, primal, equal = self._residuals
         rows, low, high = wanted
-        right = -dual - (rows / now.s + self._weights * primal) @ p.rows
+        right = -dual - p.combined(rows / now.s + self._weights * primal)
         right += low / self._to_low - high / self._to_high
         x = self._solved(right)
         y = np.zeros(0)
         if len(p.equal_values):
             y = np.linalg.solve(p.equal_rows @ self._of_equations, p.equal_rows @ x + equal)
             x = x - self._of_equations @ y
-        s = -primal - p.rows @ x
+        s = -primal - p.times(x)
         return Iterate(
             x,
             s,
@@ -85,7 +87,7 @@ class Newton:
         )
 
 
-def _weighted_square(program: LinearProgram, weights: np.ndarray) -> np.ndarray:
+def weighted_square(program: LinearProgram, weights: np.ndarray) -> np.ndarray:
     """Return rows^T diag(weights) rows, (n, n); mirrored rows are multiplied once."""
     count = program.mirrored
     rows = program.rows[count:] if count else program.rows

@@ -133,14 +133,16 @@ def _attempt(
 def _without(program: LinearProgram, kept: np.ndarray, values: np.ndarray) -> LinearProgram:
     """Return the program of the other variables, with those of the mask at these values."""
     free = ~kept
+    fixed = np.zeros(len(kept))
+    fixed[kept] = values
     return replace(
         program,
         cost=program.cost[free],
-        constant=program.constant + float(program.cost[kept] @ values),
+        constant=program.constant + float(program.cost @ fixed),
         rows=program.rows[:, free],
-        limits=program.limits - program.rows[:, kept] @ values,
+        limits=program.limits - program.rows @ fixed,
         equal_rows=program.equal_rows[:, free],
-        equal_values=program.equal_values - program.equal_rows[:, kept] @ values,
+        equal_values=program.equal_values - program.equal_rows @ fixed,
         low=program.low[free],
         high=program.high[free],
     )
