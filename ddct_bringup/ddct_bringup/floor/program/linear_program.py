@@ -126,9 +126,9 @@ def proven(kind: str, program: LinearProgram, rows: np.ndarray, equal: np.ndarra
     its cost is at least the least over the box of cost z plus this sum (weak duality). Without the
     cost a positive least proves that there is no such point (Farkas).
     """
-    used: slice | np.ndarray = rows > 0.0
-    if np.all(used):
-        used = slice(None)  # A mask copies all rows.
+    positive = rows > 0.0
+    # A mask copies all rows.
+    used = slice(None) if positive.all() else positive
     slopes = rows[used] @ program.rows[used] + equal @ program.equal_rows
     constant = -(rows[used] @ program.limits[used]) - equal @ program.equal_values
     if kind == WEAK_DUALITY:
