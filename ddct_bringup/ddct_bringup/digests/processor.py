@@ -58,7 +58,7 @@ def _kernels() -> dict[str, str]:
     import scipy.linalg  # noqa: F401
 
     found = {}
-    for path in sorted(_loaded_libraries()):
+    for path in sorted(loaded_libraries()):
         package = _BUNDLES.get(path.parent.name, SYSTEM)
         if package == SYSTEM and path.parent.name.endswith(_FOREIGN):
             continue
@@ -72,7 +72,7 @@ def _kernels() -> dict[str, str]:
     return found
 
 
-def _loaded_libraries() -> set[Path]:
+def loaded_libraries() -> set[Path]:
     """Return the paths of the OpenBLAS libraries that this process has loaded."""
     words = Path('/proc/self/maps').read_text(encoding='utf-8').split()
     return {Path(word) for word in words if '/' in word and 'openblas' in Path(word).name}

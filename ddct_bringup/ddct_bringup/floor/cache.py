@@ -6,13 +6,13 @@ import dataclasses
 import hashlib
 import json
 import os
-from functools import cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import scipy
 
+from ddct_bringup.digests.code import code_digest
 from ddct_bringup.floor.case import Case
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.input_file import parse_json, read_text_file
@@ -32,8 +32,8 @@ def cache_folder() -> Path | None:
 
 
 def digest_of(case: Case, metric: str, engagements_a_day: float, attain: bool) -> str:
-    """Return the SHA-256 of the case, the metric, the code of the floors and the solvers."""
-    digest = hashlib.sha256(_code())
+    """Return the SHA-256 of the case, the metric, the code of all packages, and the solvers."""
+    digest = hashlib.sha256(f'{code_digest()} {scipy.__version__}'.encode())
     settings = case.settings
     texts = (
         metric,
@@ -59,15 +59,6 @@ def digest_of(case: Case, metric: str, engagements_a_day: float, attain: bool) -
             else:
                 digest.update(repr(value).encode())
     return digest.hexdigest()
-
-
-@cache
-def _code() -> bytes:
-    """Return the digest of the source files of this room, and the version of scipy."""
-    digest = hashlib.sha256(scipy.__version__.encode())
-    for file in sorted(Path(__file__).parent.rglob('*.py')):
-        digest.update(file.read_bytes())
-    return digest.digest()
 
 
 def cached(digest: str) -> dict[str, Any] | None:

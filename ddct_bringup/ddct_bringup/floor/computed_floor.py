@@ -12,6 +12,7 @@ from ddct_bringup.floor.case import Case, gives_demand
 from ddct_bringup.floor.friction_work import least_friction_work
 from ddct_bringup.floor.objectives import Signals
 from ddct_bringup.floor.program.linear_program import CLOSED_FORM, RAY
+from ddct_bringup.floor.program.one_thread import one_thread
 from ddct_bringup.floor.replays.attained import Replays, replays_of
 from ddct_bringup.floor.values import FRICTION, Floor, engagements_a_day, objective_of
 from ddct_plant.base.errors import ParameterError
@@ -47,7 +48,8 @@ def computed_floor(
     if known is not None:
         return ComputedFloor(Floor(**known['floor']), known['limited'])
     closed = metric == FRICTION
-    found = _closed_form(case) if closed else _computed(case, metric, begin, attain)
+    with one_thread():
+        found = _closed_form(case) if closed else _computed(case, metric, begin, attain)
     store(digest, {'floor': dataclasses.asdict(found.floor), 'limited': found.limited})
     return found
 

@@ -2,10 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Floors contain the runs that they are compared with, and are attained by runs of the plant."""
 
+from importlib.resources import files
+
 import numpy as np
 import pytest
 from refusals import refused
 
+from ddct_bringup.digests import code
 from ddct_bringup.floor import computed_floor
 from ddct_bringup.floor.case import case_at, case_of_run
 from ddct_bringup.floor.computed_floor import DEMAND, LIMITS
@@ -16,6 +19,7 @@ from ddct_bringup.floor.front import least_lock_time
 from ddct_bringup.floor.lock import lock_of
 from ddct_bringup.floor.point import point_of
 from ddct_bringup.floor.program.linear_program import RAY
+from ddct_bringup.floor.program.one_thread import thread_counts
 from ddct_bringup.floor.values import METRICS, OF_STICK_SLIP, value_of
 from ddct_bringup.run.execution import recording_in_memory
 from ddct_bringup.run.headless import run_headless
@@ -125,6 +129,52 @@ def test_a_floor_is_computed_once_and_then_read_from_the_cache(monkeypatch):
     assert floor_of(settings_of(), 'peak_acceleration', 0.9) == first
     with pytest.raises(TypeError):
         floor_of(settings_of(wear_gain=0.99), 'peak_acceleration', 0.9)
+
+
+def test_a_floor_is_computed_anew_after_a_change_of_any_package(monkeypatch):
+    """Its replays run the plant, and its metrics have filters of other rooms."""
+    floor_of(settings_of(), 'peak_acceleration', 0.9)
+    monkeypatch.setattr(code, 'files', changed_plant)
+    code.code_digest.cache_clear()
+    try:
+        monkeypatch.setattr(computed_floor, 'bound_of', None)
+        with pytest.raises(TypeError):
+            floor_of(settings_of(), 'peak_acceleration', 0.9)
+    finally:
+        code.code_digest.cache_clear()
+
+
+def changed_plant(package):
+    """Return the files of a package; those of ddct_plant are other ones."""
+    return files('ddct_reference' if package == 'ddct_plant' else package)
+
+
+def test_a_floor_is_computed_by_one_thread_unless_the_user_wants_more(monkeypatch):
+    if not thread_counts():
+        pytest.skip('numpy and scipy have no OpenBLAS here')
+    before = [count() for count, _ in thread_counts()]
+    during = []
+
+    def bound_of(*_):
+        during.append([count() for count, _ in thread_counts()])
+
+    monkeypatch.setattr(computed_floor, 'bound_of', bound_of)
+    try:
+        for _, limit in thread_counts():
+            limit(2)
+        two = [count() for count, _ in thread_counts()]
+        for variable in (None, '2'):
+            if variable:
+                monkeypatch.setenv('OPENBLAS_NUM_THREADS', variable)
+            else:
+                monkeypatch.delenv('OPENBLAS_NUM_THREADS', raising=False)
+            with pytest.raises(ParameterError, match='is not defined'):
+                floor_of(settings_of(), 'peak_jerk', 0.9)
+            assert [count() for count, _ in thread_counts()] == two
+    finally:
+        for (_, limit), number in zip(thread_counts(), before, strict=True):
+            limit(number)
+    assert during == [[1] * len(before), two]
 
 
 def test_a_lock_at_once_is_impossible_and_has_its_ray():
