@@ -11,7 +11,7 @@ it returns proves nothing; the multipliers are checked as those of any solver.
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import LinAlgError
+from numpy.linalg import LinAlgError
 
 from ddct_bringup.floor.program.linear_program import WEAK_DUALITY, LinearProgram, proven
 from ddct_bringup.floor.program.newton import Iterate, Newton, weighted_square

@@ -5,7 +5,6 @@
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import cho_factor, cho_solve
 
 from ddct_bringup.floor.program.linear_program import LinearProgram
 
@@ -35,6 +34,10 @@ class Newton:
         primal: np.ndarray,
         equal: np.ndarray,
     ) -> None:
+        # Only here: programs that compute no floor need not wait for it.
+        from scipy.linalg import cho_factor, cho_solve
+
+        self._cho_solve = cho_solve
         self._program, self._now = program, now
         self._residuals = dual, primal, equal
         self._to_low, self._to_high = now.x - program.low, program.high - now.x
@@ -61,7 +64,8 @@ class Newton:
             if step:
                 left = p.combined(self._weights * p.times(x)) + self._box * x
                 rest = right - left
-            x = x + self._scale * cho_solve(self._factor, self._scale * rest, check_finite=False)
+            found = self._cho_solve(self._factor, self._scale * rest, check_finite=False)
+            x = x + self._scale * found
         return x
 
     def direction(self, wanted: list[np.ndarray]) -> Iterate:
