@@ -17,7 +17,7 @@ from ddct_bringup.scores.bags import bag_name, bags_in
 from ddct_bringup.scores.csv_text import scores_csv
 from ddct_bringup.scores.document import scores_document
 from ddct_bringup.scores.floors import add_floors_option, floor_metrics, with_floors
-from ddct_bringup.scores.run_table import BAG, CONTROLLER, WEAR, columns_of, print_runs
+from ddct_bringup.scores.run_table import columns_of, identifying_columns, print_runs
 from ddct_bringup.scores.scored_recording import score_recording
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.scores.scoring import unreadable_run
@@ -72,7 +72,7 @@ def _score(argv: list[str]) -> int:
         written += [file for file in (options.json, options.csv) if file not in (None, STDOUT)]
         keep_digests(written)
     table = sys.stderr if STDOUT in (options.json, options.csv) else sys.stdout
-    print_runs(runs, (BAG, CONTROLLER, WEAR, *columns_of(runs)), table)
+    print_runs(runs, (*identifying_columns(runs), *columns_of(runs)), table)
     return 0 if all(run.valid for run in runs) else 1
 
 

@@ -21,6 +21,7 @@ from ddct_bringup.scores.run_table import (
     print_runs,
 )
 from ddct_bringup.scores.scored_run import ScoredRun
+from ddct_bringup.scores.shift_conditions import shift_conditions
 from ddct_bringup.thesis.predictions import predicted_range
 from ddct_bringup.thesis.table_5_1 import (
     PREDICTED,
@@ -72,11 +73,14 @@ def print_comparison(
 
 def _title(settings: RunSettings, overrides: Sequence[str]) -> str:
     changes = changed_values(settings.scenario) or overrides
-    handover = f', handover {settings.handover}' if settings.shift else ''
-    return (
-        f'{scenario_title(settings.scenario.name, changes)}; {settings.architecture}, '
-        f'{settings.clutch} clutch{handover}, wear gain {settings.wear_gain:g}, {settings.mode}'
+    conditions = (
+        settings.architecture,
+        f'{settings.clutch} clutch',
+        f'wear gain {settings.wear_gain:g}',
+        *shift_conditions(settings).values(),
+        settings.mode,
     )
+    return f'{scenario_title(settings.scenario.name, changes)}; {", ".join(conditions)}'
 
 
 def _with_range(column: RunColumn, name: str) -> RunColumn:

@@ -8,6 +8,7 @@ from typing import TextIO
 from rich.console import Console
 from rich.text import Text
 
+from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.metrics.catalogue import METRICS, OF_EVERY_RUN, OF_SHIFT, TABLE_5_1
 from ddct_bringup.metrics.metric import NO_TIMING
 from ddct_bringup.scores.run_notes import (
@@ -44,6 +45,22 @@ def metric(quantity: Quantity, heading: str = '') -> RunColumn:
 BAG: RunColumn = Column('bag', '', lambda run: run.bag, number=False)
 CONTROLLER: RunColumn = Column('controller', '', lambda run: run.controller, number=False)
 WEAR: RunColumn = Column('wear', 'g', lambda run: run.facts.wear_gain if run.facts else None)
+SHIFT_CONDITIONS: tuple[RunColumn, ...] = (
+    Column(
+        'off-going\nwear',
+        'g',
+        lambda run: run.facts.off_going_wear_gain if isinstance(run.facts, RunFacts) else None,
+        undefined='the run is no gear shift',
+    ),
+    Column(
+        'handover',
+        '',
+        lambda run: run.facts.handover if isinstance(run.facts, RunFacts) else None,
+        number=False,
+        undefined='the run is no gear shift',
+    ),
+)
+"""Columns of the conditions that only a gear shift has."""
 ENGAGEMENT_TIME, TORSION_STD, ACCELERATION_STD = (metric(each) for each in TABLE_5_1)
 _HEADINGS = {
     'slip_final_rpm': 'final\nw_d rpm',
@@ -120,6 +137,12 @@ REALTIME_COLUMNS: tuple[RunColumn, ...] = (
     ),
 )
 """Additional columns of a table with at least one real-time run."""
+
+
+def identifying_columns(runs: Sequence[ScoredRun]) -> tuple[RunColumn, ...]:
+    """Return the columns that identify each of these runs."""
+    shifts = any(isinstance(run.facts, RunFacts) and run.facts.of_shift for run in runs)
+    return (BAG, CONTROLLER, WEAR, *(SHIFT_CONDITIONS if shifts else ()))
 
 
 def columns_of(runs: Sequence[ScoredRun]) -> tuple[RunColumn, ...]:

@@ -18,6 +18,7 @@ from ddct_bringup.scores.csv_text import rows_csv
 from ddct_bringup.scores.document import run_entry
 from ddct_bringup.scores.run_notes import dash_notes
 from ddct_bringup.scores.run_table import CONTROLLER, STATE, RunColumn, metric
+from ddct_bringup.scores.shift_conditions import shift_conditions
 from ddct_bringup.sweep.axis import MOST, Axis, value_text
 from ddct_bringup.verdict.limits import Limits
 from ddct_controllers.registry import Chosen, controller_label, controller_spec
@@ -75,7 +76,7 @@ class Sweep:
 
     @property
     def conditions(self) -> str:
-        """Common conditions of all runs as a heading: scenario, architecture, clutch, wear."""
+        """Common conditions of all runs as a heading: scenario, architecture and others."""
         settings = self.first
         changes = [f'{key}={value}' for key, value in self.base.changes.items()]
         swept = [axis.key for axis in self.axes]
@@ -83,6 +84,7 @@ class Sweep:
             'architecture': settings.architecture,
             'clutch': f'{settings.clutch} clutch',
             'wear_gain': f'wear gain {settings.wear_gain:g}',
+            **shift_conditions(settings),
         }
         kept = ', '.join(text for key, text in shared.items() if key not in swept)
         return '; '.join(filter(None, (scenario_title(settings.scenario.name, changes), kept)))

@@ -18,13 +18,22 @@ from ddct_bringup.report.page import report_page
 from ddct_bringup.report.page_runs import chart_runs, page_runs
 from ddct_bringup.report.phase_lanes import LANES, shift_spans
 from ddct_bringup.run.plan import RunPlan
+from ddct_bringup.run.run_base import RunBase
 from ddct_bringup.scores.comparison_table import print_comparison
 from ddct_bringup.scores.document import run_entry
-from ddct_bringup.scores.run_table import COLUMNS, SHIFT_COLUMNS, columns_of
+from ddct_bringup.scores.run_table import (
+    COLUMNS,
+    SHIFT_COLUMNS,
+    columns_of,
+    identifying_columns,
+    print_runs,
+)
 from ddct_bringup.scores.scored_recording import ScoredRecording, simulate_and_score
+from ddct_bringup.sweep.axis import axis_of
+from ddct_bringup.sweep.sweep import Sweep
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.base.timebase import time_of_step
-from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.file import ScenarioFile, load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
 HANDOVERS = ('timed', 'model')
@@ -124,7 +133,8 @@ def test_the_terminal_has_columns_of_the_shift_and_the_title_names_the_handover(
     stream = io.StringIO()
     print_comparison([run.scores for run in runs[:1]], settings('timed'), [], stream)
     table = stream.getvalue()
-    assert 'stick_slip clutch, handover timed, wear gain 1' in ' '.join(table.split())
+    conditions = 'stick_slip clutch, wear gain 1, handover timed, off-going wear gain 1, lockstep'
+    assert conditions in ' '.join(table.split())
     row = next(line for line in table.splitlines() if line.split()[:1] == ['pi'])
     metrics = runs[0].scores.metrics
     assert row.split()[1:4] == [
@@ -137,6 +147,28 @@ def test_the_terminal_has_columns_of_the_shift_and_the_title_names_the_handover(
     assert columns_of(shifts) == SHIFT_COLUMNS
     assert columns_of([other]) == COLUMNS
     assert set(columns_of([*shifts, other])) == {*COLUMNS, *SHIFT_COLUMNS}
+
+
+def test_a_table_of_recorded_shifts_has_their_handovers_and_off_going_wear(runs):
+    stream, shifts = io.StringIO(), [run.scores for run in runs]
+    print_runs(shifts, (*identifying_columns(shifts), *columns_of(shifts)), stream)
+    rows = [line.split()[:5] for line in stream.getvalue().splitlines()]
+    for handover in HANDOVERS:
+        assert rows.count(['pi', 'pi', '1', '1', handover]) == 1
+    other = identifying_columns([made_scores(steps=300)])
+    assert [column.heading for column in other] == ['bag', 'controller', 'wear']
+
+
+def test_the_heading_of_a_sweep_has_handover_and_off_going_wear_unless_they_vary():
+    fixed = {'clutch': 'stick_slip', 'handover': 'timed', 'off_going_wear_gain': 0.8}
+    base = RunBase(ScenarioFile.read('upshift'), {}, fixed, labels=())
+    axes = [axis_of('wear_gain=0.9,1'), axis_of('handover=slip,model')]
+    found = [Sweep(base, axes[:n], ['pi'], packaged_limits()).conditions for n in (1, 2)]
+    upshift = 'upshift; detailed, stick_slip clutch'
+    assert found == [
+        f'{upshift}, handover timed, off-going wear gain 0.8',
+        f'{upshift}, off-going wear gain 0.8',
+    ]
 
 
 def test_a_campaign_has_the_scores_of_the_single_run_to_the_last_bit(runs):
