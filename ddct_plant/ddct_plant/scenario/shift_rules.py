@@ -51,10 +51,12 @@ def _require_times(start_s: float, shift: ShiftParameters) -> None:
             f'control_start_s, {start_s:g} s, when the shift starts',
             key='shift.preselection_s',
         )
-    if shift.disengagement_s is not None and shift.disengagement_s <= start_s:
+    handed_over_s = start_s + shift.handover_s
+    if shift.disengagement_s is not None and shift.disengagement_s <= handed_over_s:
         raise ParameterError(
             f'shift.disengagement_s is {shift.disengagement_s:g} s: it must be after '
-            f'control_start_s, {start_s:g} s, when the shift starts',
+            f'{handed_over_s:g} s, control_start_s and shift.handover_s, until when the off-going '
+            'clutch carries torque',
             key='shift.disengagement_s',
         )
 

@@ -45,6 +45,7 @@ def test_keys_of_the_shift_are_set_like_others_and_survive_their_file():
         ('shift.handover_s=0.123', 'shift.handover_s'),
         ('shift.off_going_gear=2', 'shift.off_going_gear'),
         ('shift.preselection_s=0.5', 'shift.preselection_s'),
+        ('shift.disengagement_s=0.5', 'shift.disengagement_s'),
         ('initial.engine_speed_rad_s=250', 'initial.engine_speed_rad_s'),
         ('shift=fast', 'shift'),
     ],
