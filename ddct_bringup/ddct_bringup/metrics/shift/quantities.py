@@ -177,7 +177,7 @@ QUANTITIES = (
     _events(
         'off_going_releases',
         'off-going releases',
-        'how often the off-going clutch breaks loose; once is the handover',
+        'number of releases of the off-going clutch, that of the handover among them,',
         locks=False,
         off_going=True,
     ),
