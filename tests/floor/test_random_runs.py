@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """A sample of random runs over all controllers lies on the right side of its floors."""
 
+import numpy as np
 import pytest
-from random_runs import outcomes
+from random_runs import outcome, outcomes
 
 RUNS = 24
 
@@ -13,3 +14,9 @@ def test_random_runs_satisfy_their_constraints_and_lie_above_their_floors() -> N
     done = list(outcomes(RUNS, seed=7))
     assert [each for each in done if each.wrong] == []
     assert sum(each.covered for each in done) >= RUNS // 5
+
+
+def test_a_program_on_which_an_interior_point_method_of_highs_never_ended_gives_a_floor() -> None:
+    found = outcome(np.random.default_rng((1, 3875)), 3875)
+    assert found.covered
+    assert not found.wrong
