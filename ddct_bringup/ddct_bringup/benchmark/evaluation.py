@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""What one controller did on one set of cases: states, quantities, limits, causes of failure."""
+"""Result of one controller on one set of cases: states, quantities, limits, causes of failure."""
 
 from collections import Counter
 from collections.abc import Mapping, Sequence

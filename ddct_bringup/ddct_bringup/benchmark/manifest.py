@@ -122,4 +122,4 @@ _PARTS = {
     'judge_seed': 'with another --seed',
     'controllers': 'of other controllers, or of one whose file has changed since',
 }
-"""What another value of a key of the manifest means, the first one first."""
+"""Meaning of another value of each key of the manifest, in the order of the checks."""

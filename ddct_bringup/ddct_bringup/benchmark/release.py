@@ -48,7 +48,7 @@ _VERDICT = ('valid', 'reason', 'verdict_state', 'verdict_limits')
 
 @dataclass(frozen=True)
 class ReleaseRows:
-    """What a release has of its own controllers on the development cases."""
+    """Rows of the controllers of a release on the development cases."""
 
     rows: CaseRows
     unavoidable: Mapping[int, list[str]]

@@ -39,7 +39,7 @@ class QuantityResult(Spread):
 
 
 class ScenarioResult(TypedDict):
-    """What a controller did in one scenario."""
+    """Result of a controller in one scenario."""
 
     success: Share
     quantities: list[QuantityResult]
@@ -84,7 +84,7 @@ class Causes(TypedDict):
 
 
 class Evaluation(TypedDict):
-    """What one controller did on one set of cases."""
+    """Result of one controller on one set of cases."""
 
     controller: str
     runs: int

@@ -40,7 +40,7 @@ class Bound:
     certificate: Certificate
     program: LinearProgram
     engine_price: float = 0.0
-    """How much the bound would fall if the engine might be slower by 1 rad/s, as its share."""
+    """Fall of the bound, as its share, if the engine might be slower by 1 rad/s."""
     stretch: int = 0
     """First row of the stretch in which the point has the metric, where that is the largest over
     all stretches."""

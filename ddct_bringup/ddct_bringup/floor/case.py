@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""What a floor covers: the runs that start alike and lock at one instant, as a program's rows."""
+"""Runs that a floor covers, as rows of a program: they start alike and lock at one instant."""
 
 from dataclasses import dataclass
 from functools import cached_property

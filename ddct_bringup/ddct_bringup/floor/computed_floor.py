@@ -21,7 +21,7 @@ DEMAND, LIMITS = (
     'runs in which the engine gives the demand',
     'runs in which the engine gives what its limits allow',
 )
-"""What a floor covers."""
+"""Runs that a floor covers, for its certificate."""
 
 
 _PRICED = 1e-3

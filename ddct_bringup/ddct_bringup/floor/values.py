@@ -49,7 +49,7 @@ class Floor:
 
     @property
     def gap(self) -> float | None:
-        """How far the attained value is above the least one in %; None where one is missing."""
+        """Distance of the attained value above the least one in %; None where one is missing."""
         if not self.least or self.attained is None:
             return None
         return 100.0 * (self.attained / self.least - 1.0)

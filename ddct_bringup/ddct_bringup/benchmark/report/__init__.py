@@ -1,3 +1,3 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""What a benchmark leaves: its result, its page, and its tables for the terminal."""
+"""Output of a benchmark: its result, its page, and its tables for the terminal."""

@@ -25,7 +25,7 @@ class Integral:
     keep: np.ndarray
     gain: np.ndarray
     share: np.ndarray
-    """How much of S_k the torque of step k has, (n,)."""
+    """Share of S_k in the torque of step k, (n,)."""
 
     def over(self, speed: np.ndarray) -> np.ndarray:
         """Return S_k for speeds w_k in rad/s, (n,)."""
@@ -43,7 +43,7 @@ class EngineLaw(Law):
     """Offset and slope of each line, (n,), and 1 where the torque is at most on it, -1 where it is
     at least; the slope is in N m s/rad."""
     integral: Integral | None = None
-    """What the torque has of speeds before; None for nothing."""
+    """Part of the torque that depends on speeds before; None without one."""
     least_speed: np.ndarray | None = None
     """Least w_m in rad/s at which the engine gives this torque, (n,); None where any is enough."""
 

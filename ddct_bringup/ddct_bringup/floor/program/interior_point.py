@@ -33,7 +33,7 @@ _STALLED, _AT_END = 12, 2
 _PROGRESS = 0.9
 """Share of the gap that counts as progress."""
 _ROUNDED = 1000.0
-"""How often the accepted gap may be exceeded at the end, where rounding allows no less."""
+"""Multiple of the accepted gap that is allowed at the end, where rounding allows no less."""
 _EDGE, _WIDE = 0.05, 1e3
 """Distance of the first point to the edges of its box, as a share of its width, at most this."""
 

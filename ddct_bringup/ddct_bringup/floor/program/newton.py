@@ -9,7 +9,7 @@ import numpy as np
 from ddct_bringup.floor.program.linear_program import LinearProgram
 
 _REGULAR, _REFINED = 1e-12, 2
-"""What is added to the unit diagonal of a system, and how often it is solved to undo that."""
+"""Addition to the unit diagonal of a system, and number of solutions that undo it."""
 
 
 class Iterate(NamedTuple):

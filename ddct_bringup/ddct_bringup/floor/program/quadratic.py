@@ -8,7 +8,7 @@ from ddct_controllers.mpc.qp.backend import make_backend
 from ddct_controllers.mpc.qp.problem import QpStructure
 
 _EXCEEDED = 1e-3
-"""How far a point may be outside of a row, in its unit."""
+"""Largest distance of a point outside of a row, in the unit of the row."""
 _ROUNDS = 12
 """Number of times that rows are added; it begins without any."""
 _ITERATIONS = 20_000

@@ -18,7 +18,7 @@ from ddct_bringup.floor.program.linear_program import (
 from ddct_plant.base.errors import DdctError
 
 _EXCEEDED = 1e-3
-"""How far a point may be outside of a deferred row, in its unit."""
+"""Largest distance of a point outside of a deferred row, in the unit of the row."""
 _ROUNDS = 4
 """Number of times that deferred rows are added to a program."""
 _VIOLATION = 1e-5

@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""What a run attains: requests near the bound that lock cleanly, and their replay in the plant."""
+"""Attained values: requests near the bound that lock cleanly, and their replay in the plant."""
 
 import math
 from dataclasses import dataclass, replace
@@ -21,7 +21,7 @@ from ddct_bringup.floor.replays.requests import requests_near
 from ddct_plant.scenario.scenario import Scenario
 
 LATEST_S = 0.01
-"""How far the lock of a run may be from the instant of the floor in s."""
+"""Largest distance of the lock of a run from the instant of the floor in s."""
 _ROUNDS = 3
 """Number of replays, each with the engine, load and kiss point of the one before."""
 _FAILURES = 1

@@ -18,11 +18,11 @@ from ddct_bringup.floor.replays.replay import usual_requests
 CLEAR_RAD_S = 3.0
 """Slip in rad/s that a run keeps until shortly before its lock, so that it does not lock early."""
 CLOSING_RAD_S2, CLOSING_SHARE = 50.0, 0.25
-"""How fast the slip then goes to zero: at most this in rad/s^2, and this share of the mean slope.
+"""Slope of the slip from there to zero: at most this in rad/s^2, and this share of the mean slope.
 
 Slower, and the plates might part again; each replay that has failed adds as much."""
 _AWAY = 2.0
-"""How far requests may be from the usual ones, as a share of the largest of these."""
+"""Largest distance of requests from the usual ones, as a share of the largest of these."""
 _MOST_PEAK = 1e6
 _QUADRATIC = 1e-3
 """Curvature that keeps the requests of a quadratic program near the usual ones."""

@@ -82,7 +82,7 @@ def shortfalls(record: HinfRecord) -> list[str]:
     found = []
     if loop['rise_time_s'] is None or loop['rise_time_s'] > specified['rise_time_s']:
         reached = 'never' if loop['rise_time_s'] is None else f'in {loop["rise_time_s"]:.3g} s'
-        found.append(f'it rises {reached}, {specified["rise_time_s"]:g} s are asked for')
+        found.append(f'it rises {reached}, {specified["rise_time_s"]:g} s are specified')
     if loop['overshoot'] > specified['overshoot']:
         found.append(
             f'it overshoots by {100.0 * loop["overshoot"]:.3g} %, '
