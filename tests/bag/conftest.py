@@ -8,16 +8,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-from ddct_bringup.bag.file.records import read_records
 from ddct_bringup.bag.reader import mcap_of
 from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.bag.writer import new_bag
+from ddct_plant.bag_file.records import read_records
 from ddct_plant.models.driveline import PhaseEvent
 from ddct_plant.signals.signal import RunKind
 from ddct_plant.signals.topics import all_topics, recorded_topics
 
-RUN_INFO = {'/load': {'version': '1.0'}, '/engine': {'version': '1.0', 'seed': '0'}}
+RUN_INFO = {'/load': {'version': '1.0'}, '/engine': {'version': '1.0', 'two_input': 'false'}}
 
 
 def facts(steps, **changes):
@@ -100,7 +100,7 @@ class Bags:
         known = {topic.resolved_name: topic for topic in all_topics()}
         topics = [known[channel.topic] for channel in records.channels.values()]
         with new_bag(bag, name, topics, {**records.custom_data, **changes}) as writer:
-            for message in edit(records.messages):
+            for message in edit(list(records.messages())):
                 writer.write(*message)
         return bag
 

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from refusals import refused
 
-from ddct_bringup.bag.file.records import read_records
 from ddct_bringup.bag.reader import mcap_of, read_bag
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.bag.writer import new_bag
+from ddct_plant.bag_file.records import read_records
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import START_NS, stamp_of_step
 from ddct_plant.signals.message_kind import MessageKind
@@ -39,7 +39,7 @@ def test_a_stick_slip_run_comes_back_with_its_phases(bags, make_trajectory):
 def test_run_info_facts_and_counts_come_back(bags, trajectory):
     recording = read_bag(bags.write(trajectory, wear_gain=0.7))
     assert recording.run_info == {
-        '/engine': {'version': '1.0', 'seed': '0'},
+        '/engine': {'version': '1.0', 'two_input': 'false'},
         '/load': {'version': '1.0'},
     }
     assert recording.facts.wear_gain == 0.7
@@ -64,7 +64,7 @@ def test_non_finite_values_come_back(bags, trajectory):
 
 
 def test_every_tick_is_written_in_the_order_of_the_topic_table(bags, trajectory):
-    messages = read_records(mcap_of(bags.write(trajectory))).messages
+    messages = list(read_records(mcap_of(bags.write(trajectory))).messages())
     assert [(topic, stamp) for topic, stamp, _ in messages[:2]] == [('/run_info', START_NS)] * 2
     order = [topic.resolved_name for topic in recorded_topics(RunKind()) if topic.every_tick]
     expected = [(topic, stamp_of_step(k)) for k in range(trajectory.steps + 1) for topic in order]

@@ -72,11 +72,17 @@ def test_a_foreign_bag_is_reported_as_foreign(tmp_path):
         ('std_msgs/msg/Header', 'ros2msg', b'string frame_id', 'does not carry CDR messages'),
         ('sensor_msgs/msg/JointState', 'jsonschema', b'{}', 'does not carry CDR messages'),
         ('sensor_msgs/msg/JointState', 'ros2msg', b'what is this?', 'unusable message definition'),
+        (
+            'sensor_msgs/msg/JointState',
+            'ros2msg',
+            b'string} \x1b[2J',
+            'unusable message definition',
+        ),
         ('sensor_msgs/msg/JointState', 'ros2msg', b'string[] name', 'cannot be decoded'),
     ],
 )
 def test_a_foreign_type_on_our_topic_is_an_error(
-    bags, trajectory, tmp_path, type_name, encoding, text, message
+    bags, trajectory, tmp_path, capsys, type_name, encoding, text, message
 ):
     file = tmp_path / 'foreign.mcap'
     custom_data = read_bag(bags.write(trajectory)).custom_data
@@ -91,6 +97,7 @@ def test_a_foreign_type_on_our_topic_is_an_error(
         writer.finish()
     with pytest.raises(DdctError, match=f'foreign.mcap: /driveline/joint_states.* {message}'):
         read_bag(file)
+    assert capsys.readouterr().err == ''
 
 
 def test_a_bag_without_the_facts_of_the_run_is_reported_as_foreign(bags, trajectory):

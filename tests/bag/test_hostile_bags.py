@@ -15,12 +15,12 @@ from refusals import refused
 from support.complaints import assert_one_line
 from support.processes import Programs
 
-from ddct_bringup.bag.file import records
-from ddct_bringup.bag.file.metadata import HASH_KEY, QOS_KEY
-from ddct_bringup.bag.file.records import MAGIC, read_records
 from ddct_bringup.bag.reader import mcap_of, read_bag
 from ddct_bringup.bag.repair import repair_bag
 from ddct_bringup.programs.score import main as score
+from ddct_plant.bag_file import records
+from ddct_plant.bag_file.metadata import HASH_KEY, QOS_KEY
+from ddct_plant.bag_file.records import MAGIC, read_records
 from ddct_plant.base.errors import DdctError
 
 RED = '\x1b[31m'
@@ -152,6 +152,7 @@ def test_repair_names_the_missing_value_of_a_channel(
 ) -> None:
     bag = bags.write(trajectory)
     found = read_records(mcap_of(bag))
+    messages = list(found.messages())
     channel = next(iter(found.channels.values()))
     if damage == 'no hash':
         del channel.metadata[HASH_KEY]
@@ -163,6 +164,7 @@ def test_repair_names_the_missing_value_of_a_channel(
         channel.metadata[QOS_KEY] = 'a: &a [*a]'
     mcap_of(bag).write_bytes(MAGIC)
     monkeypatch.setattr('ddct_bringup.bag.repair.salvage_records', lambda path: found)
+    monkeypatch.setattr(records.BagRecords, 'messages', lambda bag: iter(messages))
     with pytest.raises(DdctError, match='cannot be repaired: .*(channels is unusable|alias)'):
         repair_bag(bag)
     assert mcap_of(bag).read_bytes() == MAGIC

@@ -15,9 +15,9 @@ from mcap.reader import make_reader
 from refusals import refused
 
 from ddct_bringup.bag import repair
-from ddct_bringup.bag.file.records import salvage_records
 from ddct_bringup.bag.reader import mcap_of, read_bag
 from ddct_bringup.bag.repair import REPAIRED_KEY, repair_bag
+from ddct_plant.bag_file.records import salvage_records
 from ddct_plant.base.errors import DdctError
 
 TICKS_PER_CHUNK = 64 * 1024 // 2000
@@ -26,7 +26,7 @@ TICKS_PER_CHUNK = 64 * 1024 // 2000
 COPY_BAG = """
     import resource, sys
     from pathlib import Path
-    from ddct_bringup.bag.file.records import read_records
+    from ddct_plant.bag_file.records import read_records
     from ddct_bringup.bag.writer import new_bag
     from ddct_plant.base.errors import DdctError
     from ddct_plant.signals.topics import TOPICS
@@ -40,7 +40,7 @@ COPY_BAG = """
         resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
     try:
         writer = new_bag(folder, 'copy', topics, records.custom_data)
-        for topic, stamp, data in records.messages:
+        for topic, stamp, data in records.messages():
             if stamp > 1_000_000_000 + last_step * 10_000_000:
                 break
             writer.write(topic, stamp, data)
@@ -117,7 +117,7 @@ def test_a_chunk_is_whole_on_the_disk_as_soon_as_it_is_full(bags, source, tmp_pa
             yield message
             if file.stat().st_size > size:
                 size = file.stat().st_size
-                seen.append((number, len(salvage_records(file).messages)))
+                seen.append((number, sum(1 for _ in salvage_records(file).messages())))
 
     bags.rewrite(source, 'copy', watched)
     assert len(seen) > 2

@@ -6,11 +6,11 @@ import json
 
 import pytest
 
-from ddct_bringup.bag.file.records import read_records
 from ddct_bringup.bag.reader import mcap_of
 from ddct_bringup.bag.writer import new_bag
 from ddct_bringup.programs import bringup, compare, score
 from ddct_bringup.run.timing_and_failure import RunTiming
+from ddct_plant.bag_file.records import read_records
 from ddct_plant.base.timebase import stamp_of_step
 from ddct_plant.signals.signal import RunKind
 from ddct_plant.signals.topics import DIAGNOSTICS, recorded_topics
@@ -38,7 +38,7 @@ def leave(bags, trajectory, monkeypatch):
         facts = {**records.custom_data, 'mode': 'realtime'}
         topics = recorded_topics(RunKind(lockstep=False))
         with new_bag(folder, 'pi', topics, facts) as bag:
-            for message in records.messages:
+            for message in records.messages():
                 bag.write(*message)
             bag.write(*diagnostics('/driveline: ticks', {**COUNTS, 'missed_steps': missed}))
             if safe:

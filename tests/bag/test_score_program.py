@@ -168,8 +168,10 @@ def test_a_bad_limits_file_is_a_mistake(bags, trajectory, tmp_path, capsys):
 
 
 def test_a_bag_older_than_the_schema_is_scored_and_marked(bags, trajectory, capsys):
-    bag = bags.write(trajectory)
-    later = bags.rewrite(bag, 'later', scenario_yaml=scenario_to_yaml(load_scenario('thesis')))
+    bag = bags.write(trajectory, scenario='thesis')
+    changes = ['duration_s=0.6', 'control_start_s=0.1', 'score_window_s=[0.3, 0.6]']
+    scenario = load_scenario('thesis', changes)
+    later = bags.rewrite(bag, 'later', scenario_yaml=scenario_to_yaml(scenario))
     assert main([str(bag), str(later), '--json', '-']) == 0
     captured = capsys.readouterr()
     before, after = runs_in(captured.out)

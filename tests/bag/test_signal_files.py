@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """`score` writes signals for other tools: the same numbers as CSV and MAT, a file for each bag."""
 
+import errno
+import os
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +14,7 @@ from ddct_bringup.programs.score import main
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.scores.csv_text import signal_columns
 from ddct_bringup.scores.signal_files import signal_file_stems
+from ddct_plant.files import output_file
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.signals.topics import all_signals
@@ -86,3 +89,20 @@ def test_a_bag_that_is_the_working_directory_gives_its_name(tmp_path, monkeypatc
     folder.mkdir()
     monkeypatch.chdir(folder)
     assert list(signal_file_stems([(Path(given), None)]).values()) == ['pi']
+
+
+def test_a_full_disk_is_named_and_no_fault_of_the_bag(
+    bags, trajectory, tmp_path, monkeypatch, capsys
+):
+    bag = str(bags.write(trajectory))
+
+    def full(path: Path, content: bytes) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(path))
+
+    monkeypatch.setattr(output_file, '_replace', full)
+    assert main([bag, '--signals-csv', str(tmp_path / 'csv')]) == 1
+    found = capsys.readouterr()
+    (line,) = found.err.splitlines()
+    assert 'No space left on device' in line
+    assert 'csv' in line
+    assert found.out == '', 'a table with a bag that is not valid'

@@ -26,6 +26,14 @@ Messages = Mapping[str, Sequence[tuple[int, Any]]]
 Values = dict[int, tuple[Any, ...]]
 """Values of a topic's signals by stamp in ns."""
 
+EARLIER_TOPICS = (
+    CONTROLLER_STATUS,
+    SENSED_JOINT_STATES,
+    SENSED_SLIP,
+    SENSED_VEHICLE_SPEED,
+    SENSED_ENGINE_TORQUE,
+)
+"""Topics whose messages have the signals of later topics."""
 _HELD = 'held'
 _PARTS = ('open_loop_torque_n_m', 'closed_loop_torque_n_m')
 _CLOSING = 'closing_torque_n_m'

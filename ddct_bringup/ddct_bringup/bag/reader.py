@@ -2,21 +2,24 @@
 # SPDX-License-Identifier: Apache-2.0
 """Read a recorded bag into a trajectory, its facts and counts, without ROS."""
 
-from dataclasses import replace
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from ddct_bringup.bag.decoding import decoded_messages
-from ddct_bringup.bag.earlier_bags import Messages, Values, earlier_values
-from ddct_bringup.bag.file.records import BagRecords, read_records
+from ddct_bringup.bag.earlier_bags import EARLIER_TOPICS, Messages, earlier_values
 from ddct_bringup.bag.realtime_facts import RealtimeFacts
-from ddct_bringup.bag.recording import Recording
+from ddct_bringup.bag.recording import Recording, require_consistent
 from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.run_info import RUN_INFO_TOPICS, RunInfoOfNodes, add_run_info
 from ddct_bringup.bag.ticks import check_ticks
+from ddct_bringup.bag.topic_values import Column, TopicValues
 from ddct_bringup.bag.trajectory import Trajectory
+from ddct_plant.bag_file.decoding import decoded_messages
+from ddct_plant.bag_file.records import BagRecords, read_records
 from ddct_plant.base.errors import DdctError
-from ddct_plant.base.timebase import stamp_of_step
 from ddct_plant.files.input_file import located, mcap_of
 from ddct_plant.graph.node_names import StatusName, name_in_graph
 from ddct_plant.signals.signal import RunKind
@@ -45,89 +48,111 @@ def recording_of(records: BagRecords) -> Recording:
             key=JOINT_STATES.resolved_name,
         )
     facts = RunFacts.from_custom_data(records.custom_data)
-    messages = decoded_messages(records)
-    stamps = {topic: [stamp for stamp, _ in each] for topic, each in messages.items()}
     run = facts.kind_of_bag(records.topics)
-    last = check_ticks(stamps, run)
-    columns: dict[str, tuple[Any, ...]] = {}
+    found = _Found.of(records, run)
+    last = check_ticks({name: each.stamps for name, each in found.values.items()}, run)
+    columns: dict[str, Column] = {}
     missed: dict[str, int] = {}
     absent: dict[str, str] = {}
-    for topic in recorded_topics(replace(run, earlier=False, torque_parts=True)):
-        if not topic.signals:
-            continue
-        values = _values(topic, messages, run)
-        if topic.optional and not values:
+    for topic in _topics_with_signals(run):
+        values = found.values.pop(topic.resolved_name, None) or _earlier(topic, found, run)
+        if not values.stamps:
+            if not topic.optional:
+                raise DdctError(f'no message on {topic.resolved_name}', key=topic.resolved_name)
             reason = f'the node {topic.publisher} did not publish {topic.name}'
             absent |= dict.fromkeys((signal.name for signal in topic.signals), reason)
             continue
-        rows, missing = _rows(values, last)
-        signals = topic.signals_in(run)
-        if len(rows[0]) != len(signals):
-            raise DdctError(
-                f'{topic.resolved_name}: a message has {len(rows[0])} values, not the '
-                f'{len(signals)} of a {run.clutch} run'
-            )
-        for signal, column in zip(signals, zip(*rows, strict=True), strict=True):
-            columns[signal.name] = column
+        at_ticks, missing = values.at_ticks(last)
+        columns |= at_ticks
         if missing and topic.in_run(run):
             missed[topic.name] = missing
-    return Recording(
+    recording = Recording(
         path=records.path,
         trajectory=Trajectory.of_columns(columns),
         facts=facts,
         custom_data=records.custom_data,
-        run_info=_run_info(messages),
-        counts={topic: len(each) for topic, each in messages.items()},
+        run_info=_run_info(found.messages),
+        counts=dict(found.counts),
         missed=missed,
-        realtime=_realtime(messages.get(DIAGNOSTICS.resolved_name, [])),
+        realtime=_realtime(found.messages.get(DIAGNOSTICS.resolved_name, ())),
         absent=absent,
     )
+    require_consistent(recording)
+    return recording
 
 
-def _realtime(messages: list[tuple[int, Any]]) -> RealtimeFacts:
+@dataclass(frozen=True)
+class _Found:
+    """What is kept of the messages of a bag while it is read."""
+
+    counts: Counter[str] = field(default_factory=Counter)
+    """Number of messages by resolved topic name."""
+    values: dict[str, TopicValues] = field(default_factory=dict)
+    """Values of the topics of every tick that the run has, by resolved name."""
+    messages: dict[str, list[tuple[int, Any]]] = field(default_factory=dict)
+    """(stamp in ns, message) of the few topics whose messages are needed, by resolved name."""
+
+    @classmethod
+    def of(cls, records: BagRecords, run: RunKind) -> '_Found':
+        """Decode all messages; raise DdctError for one that is unusable."""
+        found = cls()
+        kept = {*RUN_INFO_TOPICS, DIAGNOSTICS}
+        if any(not topic.in_run(run) for topic in _topics_with_signals(run)):
+            kept.update(EARLIER_TOPICS)
+        for topic in recorded_topics(run):
+            if topic.every_tick:
+                found.values[topic.resolved_name] = _no_values(topic, run)
+        for topic, stamp, message in decoded_messages(records):
+            name = topic.resolved_name
+            found.counts[name] += 1
+            if topic in kept:
+                found.messages.setdefault(name, []).append((stamp, message))
+            if name in found.values:
+                with _values_named(topic):
+                    found.values[name].add(stamp, topic.values(message))
+        return found
+
+
+def _topics_with_signals(run: RunKind) -> list[Topic]:
+    """Return the topics whose signals a run of this kind has, in bags of this version."""
+    topics = recorded_topics(replace(run, earlier=False, torque_parts=True))
+    return [topic for topic in topics if topic.signals]
+
+
+def _no_values(topic: Topic, run: RunKind) -> TopicValues:
+    return TopicValues(topic.resolved_name, topic.signals_in(run))
+
+
+def _earlier(topic: Topic, found: _Found, run: RunKind) -> TopicValues:
+    """Return the values of a topic that the bag lacks, if other messages have them."""
+    values = _no_values(topic, run)
+    if not topic.in_run(run):
+        with _values_named(topic):
+            for stamp, row in earlier_values(topic, found.messages).items():
+                values.add(stamp, row)
+    return values
+
+
+@contextmanager
+def _values_named(topic: Topic) -> Iterator[None]:
+    """Raise DdctError that names the topic where a message lacks a value."""
+    try:
+        yield
+    except DdctError as error:
+        raise error if error.key else error.at(topic.resolved_name) from error
+    except (LookupError, AttributeError, ValueError, TypeError) as error:
+        raise DdctError(
+            f'{topic.resolved_name}: a message lacks a value ({error})', key=topic.resolved_name
+        ) from error
+
+
+def _realtime(messages: Sequence[tuple[int, Any]]) -> RealtimeFacts:
     facts = RealtimeFacts()
     for _, message in messages:
         if message.status:
             name, pairs = DIAGNOSTICS.read(message)
             facts.receive(StatusName.of(name), pairs)
     return facts
-
-
-def _values(topic: Topic, messages: Messages, run: RunKind) -> Values:
-    """
-    Return the values of a topic by stamp.
-
-    They are empty for an optional topic that the run lacks. Raise DdctError for no message on
-    another, or a bad one.
-    """
-    in_run = topic.in_run(run)
-    try:
-        if in_run:
-            received = messages.get(topic.resolved_name, ())
-            values = {stamp: topic.values(message) for stamp, message in received}
-        else:
-            values = earlier_values(topic, messages)
-    except (LookupError, AttributeError, ValueError) as error:
-        raise DdctError(f'{topic.resolved_name}: a message lacks a value ({error})') from error
-    if not values and (in_run or not topic.optional):
-        raise DdctError(f'no message on {topic.resolved_name}', key=topic.resolved_name)
-    return values
-
-
-def _rows(values: Values, last: int) -> tuple[list[tuple[Any, ...]], int]:
-    """
-    Return the values at t_0..t_N, and the number of these stamps without a message.
-
-    A stamp without a message repeats the last one before; before the first message, the first.
-    """
-    row = values[min(values)]
-    rows, missing = [], 0
-    for step in range(last + 1):
-        found = values.get(stamp_of_step(step))
-        missing += found is None
-        row = row if found is None else found
-        rows.append(row)
-    return rows, missing
 
 
 def _run_info(messages: Messages) -> RunInfoOfNodes:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from ddct_bringup.bag.run_info import DRIVELINE_NODE
 from ddct_plant.graph.node_names import StatusName
 from ddct_plant.graph.node_reports import SAFE_STATE, TICKS, TickCounts, safe_state_since
+from ddct_plant.ticks.durations import DurationHistogram
 
 
 @dataclass
@@ -24,6 +25,8 @@ class RealtimeCounts:
     """Largest lateness of a step of the driveline, us; None in lock-step."""
     safe_states: dict[str, int] = field(default_factory=dict)
     """Stamp in ns at which a node entered its safe state, by full node name."""
+    durations: dict[str, DurationHistogram] = field(default_factory=dict)
+    """Histograms of lateness, jitter and latency of the ticks, by name; empty in lock-step."""
 
 
 @dataclass
@@ -48,4 +51,5 @@ class RealtimeFacts(RealtimeCounts):
         self.missed_steps, self.late_messages = counts.missed_steps, counts.late_messages
         if counts.worst_lateness_us is not None:
             self.worst_lateness_us = counts.worst_lateness_us
+            self.durations = dict(counts.durations)
         return True

@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""A recording: the signals of a run, its facts, settings and message counts."""
+"""A recording: the signals of a run, its facts, settings and counts, and their agreement."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -12,11 +12,15 @@ from ddct_bringup.bag.realtime_facts import RealtimeFacts
 from ddct_bringup.bag.run_facts import MEASURED, RunFacts
 from ddct_bringup.bag.run_info import RunInfoOfNodes
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_plant.base.errors import DdctError
+from ddct_plant.base.errors import DdctError, require_choice
 from ddct_plant.files.input_file import SCHEMA_KEY
 from ddct_plant.files.yaml_text import parse_yaml
+from ddct_plant.models.clutch import CLUTCHES
 from ddct_plant.scenario.content import scenario_from_mapping
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import MODES, RunSettings
+
+_OF_NODES = ('scenario', 'architecture', 'clutch', 'mode', 'seed', 'wear_gain')
+"""Facts that each node publishes on `run_info` too."""
 
 
 @dataclass(frozen=True)
@@ -80,3 +84,37 @@ class Recording:
             return parse_yaml(self.custom_data.get('scenario_yaml', ''))
         except DdctError:
             return None
+
+
+def require_consistent(recording: Recording) -> None:
+    """
+    Raise DdctError for a fact that the bag's scenario or one of its nodes contradicts.
+
+    All three were written by one recorder from one set of settings. Where they differ, the bag was
+    edited, and its scores would be those of another run.
+    """
+    facts = recording.facts
+    require_choice('mode', facts.mode, MODES)
+    require_choice('clutch', facts.clutch, CLUTCHES)
+    if recording.settings:
+        scenario = recording.settings.scenario
+        _require('scenario', facts.scenario, scenario.name, 'the recorded scenario')
+        for name in ('control_start_s', 'score_window_s'):
+            ours, theirs = getattr(facts, name), getattr(scenario, name)
+            _require(name, ours, theirs, 'the recorded scenario')
+        if facts.duration_s > scenario.duration_s:
+            _require('duration_s', facts.duration_s, scenario.duration_s, 'the recorded scenario')
+    for node, pairs in recording.run_info.items():
+        for name in _OF_NODES:
+            ours = getattr(facts, name)
+            text = repr(float(ours)) if name == 'wear_gain' else str(ours)
+            _require(name, text, pairs.get(name, text), f'node {node}')
+
+
+def _require(name: str, ours: object, theirs: object, whose: str) -> None:
+    if ours != theirs:
+        raise DdctError(
+            f'{name} is {ours} in its custom data and {theirs} in that of {whose}: it was edited, '
+            'take the original',
+            key=name,
+        )

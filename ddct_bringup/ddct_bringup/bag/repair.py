@@ -3,23 +3,24 @@
 """Rescue the complete ticks of an interrupted or damaged recording."""
 
 import tempfile
+from array import array
 from collections import defaultdict
 from dataclasses import dataclass
 from itertools import chain, count
 from pathlib import Path
 
-from ddct_bringup.bag.file.metadata import (
+from ddct_bringup.bag.reader import recording_of
+from ddct_bringup.bag.run_facts import RunFacts
+from ddct_bringup.bag.ticks import complete_ticks, tick_topics
+from ddct_bringup.bag.writer import BagWriter
+from ddct_plant.bag_file.metadata import (
     HASH_KEY,
     METADATA_FILE,
     QOS_KEY,
     Channel,
     write_metadata,
 )
-from ddct_bringup.bag.file.records import BagRecords, read_records, salvage_records
-from ddct_bringup.bag.reader import recording_of
-from ddct_bringup.bag.run_facts import RunFacts
-from ddct_bringup.bag.ticks import complete_ticks, tick_topics
-from ddct_bringup.bag.writer import BagWriter
+from ddct_plant.bag_file.records import BagRecords, read_records, salvage_records
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import stamp_of_step, time_of_step
 from ddct_plant.files.input_file import located, mcap_of
@@ -74,17 +75,21 @@ def repair_bag(path: Path) -> Repair:
 def _rewrite(mcap: Path) -> Repair:
     records = salvage_records(mcap)
     with located(f'{mcap}: cannot be repaired'):
-        kept, last_step = _whole_ticks(records)
+        last_step = _last_whole_tick(records)
         with _scratch_folder(mcap) as scratch:
             new = Path(scratch) / mcap.name
-            _write(new, records, kept)
+            dropped = _write(new, records, stamp_of_step(last_step))
             recording_of(read_records(new))
             original = _swap(new, mcap)
-    return Repair(mcap, original, last_step, len(records.messages) - len(kept))
+    return Repair(mcap, original, last_step, dropped)
 
 
-def _write(path: Path, records: BagRecords, messages: list[tuple[str, int, bytes]]) -> None:
-    """Write messages with the channels of the damaged file, so that nothing else is needed."""
+def _write(path: Path, records: BagRecords, last_ns: int) -> int:
+    """
+    Write the messages up to a stamp in ns, and return the number of the others.
+
+    They have the channels of the damaged file, so that nothing else is needed.
+    """
     try:
         channels = [
             Channel(
@@ -99,22 +104,27 @@ def _write(path: Path, records: BagRecords, messages: list[tuple[str, int, bytes
     except (LookupError, UnicodeDecodeError) as error:
         raise DdctError(f'what it says of its channels is unusable ({error!r})') from error
     with BagWriter(path, channels, {**records.custom_data, REPAIRED_KEY: 'true'}) as bag:
-        for message in messages:
-            bag.write(*message)
+        dropped = 0
+        for topic, stamp, data in records.messages():
+            if stamp > last_ns:
+                dropped += 1
+            else:
+                bag.write(topic, stamp, data)
+    return dropped
 
 
-def _whole_ticks(records: BagRecords) -> tuple[list[tuple[str, int, bytes]], int]:
-    """Return the messages up to the last complete tick, and the step of that tick."""
+def _last_whole_tick(records: BagRecords) -> int:
+    """Return the step of the last complete tick; raise DdctError without one."""
     facts = RunFacts.from_custom_data(records.custom_data)
-    stamps: dict[str, list[int]] = defaultdict(list)
-    for topic, stamp, _ in records.messages:
-        stamps[topic].append(stamp)
+    stamps: dict[str, array[int]] = defaultdict(lambda: array('q'))
+    for topic, stamp, _ in records.messages():
+        if stamp <= stamp_of_step(facts.steps):
+            stamps[topic].append(stamp)
     run = facts.kind_of_bag(records.topics)
     ticks = complete_ticks(stamps, tick_topics(run, replies=run.lockstep))
     if not ticks:
         raise DdctError('it holds no complete tick')
-    last_ns = stamp_of_step(ticks - 1)
-    return [message for message in records.messages if message[1] <= last_ns], ticks - 1
+    return ticks - 1
 
 
 def _scratch_folder(mcap: Path) -> 'tempfile.TemporaryDirectory[str]':

@@ -43,7 +43,7 @@ class Trajectory:
     """
 
     @classmethod
-    def of_columns(cls, columns: Mapping[str, Sequence[Any]]) -> 'Trajectory':
+    def of_columns(cls, columns: Mapping[str, Sequence[Any] | np.ndarray]) -> 'Trajectory':
         """Return a trajectory of values by signal name; raise DdctError for uneven sizes."""
         return cls(
             {
@@ -145,10 +145,10 @@ def _signal_names() -> frozenset[str]:
     return frozenset(signal.name for signal in all_signals())
 
 
-def _column(signal: Signal, values: Sequence[Any]) -> Any:
+def _column(signal: Signal, values: Sequence[Any] | np.ndarray) -> Any:
     if not signal.unit:
         return tuple(values)
     try:
-        return np.array(values, dtype=float)
+        return np.asarray(values, dtype=float)
     except ValueError as error:
         raise DdctError(f'{signal.name} does not have the same size at every stamp') from error

@@ -13,11 +13,11 @@ from typing import Any
 
 from mcap_ros2._dynamic import generate_dynamic, serialize_dynamic
 
-from ddct_bringup.bag.file.message_definitions import load_definition
 from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.run_info import run_info_order, run_info_topic
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.bag.writer import new_bag
+from ddct_plant.bag_file.message_definitions import load_definition
 from ddct_plant.base.timebase import START_NS, stamp_of_step
 from ddct_plant.signals.topics import RUN_INFO, recorded_topics
 

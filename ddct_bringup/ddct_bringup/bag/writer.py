@@ -9,9 +9,9 @@ from typing import Any
 
 from mcap.writer import Writer
 
-from ddct_bringup.bag.file.cdr import CdrNormaliser
-from ddct_bringup.bag.file.message_definitions import load_definition
-from ddct_bringup.bag.file.metadata import (
+from ddct_plant.bag_file.cdr import CdrNormaliser
+from ddct_plant.bag_file.message_definitions import load_definition
+from ddct_plant.bag_file.metadata import (
     ADVICE,
     HASH_KEY,
     QOS_KEY,

@@ -10,12 +10,12 @@ from pathlib import Path
 import pytest
 from refusals import refused
 
-from ddct_bringup.bag.file.message_definitions import (
+from ddct_bringup.bag.trajectory_bag import plain_class
+from ddct_plant.bag_file.message_definitions import (
     definition_in,
     load_definition,
     message_types,
 )
-from ddct_bringup.bag.trajectory_bag import plain_class
 from ddct_plant.base.errors import DdctError
 from ddct_plant.signals.topics import TOPICS
 
@@ -70,8 +70,8 @@ def test_every_type_on_the_graph_is_defined_and_no_other():
 @pytest.mark.parametrize('type_name', sorted({topic.type for topic in TOPICS}))
 def test_a_message_made_without_ros_is_serialised_as_one_of_ros(type_name):
     serialization = pytest.importorskip('rclpy.serialization', reason='ROS is not installed')
-    from ddct_bringup.bag.file.cdr import CdrNormaliser
     from ddct_bringup.bag.trajectory_bag import serialiser
+    from ddct_plant.bag_file.cdr import CdrNormaliser
     from ddct_plant.signals.message_kind import ros_class
 
     clean = CdrNormaliser(load_definition(type_name)).normalise

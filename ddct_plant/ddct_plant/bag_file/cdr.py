@@ -14,8 +14,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from ddct_bringup.bag.file.cdr_walk import BODY, HEADER, Walk
-from ddct_bringup.bag.file.message_definitions import MessageDefinition
+from ddct_plant.bag_file.cdr_walk import BODY, HEADER, Walk
+from ddct_plant.bag_file.message_definitions import MessageDefinition
 from ddct_plant.base.errors import DdctError
 from ddct_plant.signals.message_kind import NS_PER_S
 
@@ -33,7 +33,7 @@ def stamp_of_cdr(cdr: bytes) -> int:
 
 
 @dataclass(frozen=True)
-class Layout:
+class MessageLayout:
     """Places of the values in a message; the masks are each read as one little-endian integer."""
 
     walk: Walk
@@ -44,14 +44,14 @@ class Layout:
     length_values: int
 
 
-class Layouts:
+class MessageLayouts:
     """Layouts of the messages of one type."""
 
     def __init__(self, definition: MessageDefinition) -> None:
         self._definition = definition
-        self._layouts: dict[int, list[Layout]] = {}
+        self._layouts: dict[int, list[MessageLayout]] = {}
 
-    def layout(self, cdr: bytes, value: int) -> Layout:
+    def layout(self, cdr: bytes, value: int) -> MessageLayout:
         """
         Return the layout of a message; `value` is the message as one little-endian integer.
 
@@ -68,7 +68,7 @@ class Layouts:
         del known[_LAYOUTS_KEPT:]
         return found
 
-    def _found(self, cdr: bytes, value: int) -> Layout:
+    def _found(self, cdr: bytes, value: int) -> MessageLayout:
         type_name = self._definition.type_name
         try:
             if cdr[: len(HEADER)] != HEADER:
@@ -82,14 +82,14 @@ class Layouts:
             raise DdctError(f'a message is no {type_name}: {error}', key=type_name) from error
         depends = _ones(walk.size, walk.lengths)
         keep = _ones(walk.size, [range(walk.size)]) & ~_ones(walk.size, walk.gaps)
-        return Layout(walk, keep, depends, value & depends)
+        return MessageLayout(walk, keep, depends, value & depends)
 
 
 class CdrNormaliser:
     """Normaliser of one message type: sets alignment bytes to zero and cuts trailing bytes."""
 
     def __init__(self, definition: MessageDefinition) -> None:
-        self._layouts = Layouts(definition)
+        self._layouts = MessageLayouts(definition)
 
     def normalise(self, cdr: bytes) -> bytes:
         """Return the message with zeros between its values; raise DdctError for another type."""
@@ -102,7 +102,7 @@ class CdrDecoder:
     """Decoder of the messages of one type, many times as fast as a general one."""
 
     def __init__(self, definition: MessageDefinition) -> None:
-        self._layouts = Layouts(definition)
+        self._layouts = MessageLayouts(definition)
 
     def __call__(self, cdr: bytes) -> Any:
         """Return a message with the fields of its type; raise DdctError for another type."""

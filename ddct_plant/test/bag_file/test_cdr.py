@@ -6,8 +6,8 @@ import pytest
 from mcap_ros2._dynamic import generate_dynamic, serialize_dynamic
 from refusals import refused
 
-from ddct_bringup.bag.file.cdr import CdrDecoder, CdrNormaliser
-from ddct_bringup.bag.file.message_definitions import (
+from ddct_plant.bag_file.cdr import CdrDecoder, CdrNormaliser
+from ddct_plant.bag_file.message_definitions import (
     definition_in,
     load_definition,
     message_types,

@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping, Sequence
 from operator import itemgetter
 from typing import Any
 
-from ddct_bringup.bag.file.message_definitions import (
+from ddct_plant.bag_file.message_definitions import (
     PRIMITIVES,
     STRING,
     Field,

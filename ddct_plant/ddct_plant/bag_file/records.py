@@ -1,0 +1,241 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""
+Read the records of a bag's MCAP file, strictly or as far as it is readable.
+
+The messages are unpacked chunk by chunk, so that only one chunk of them is in memory.
+"""
+
+import contextlib
+import io
+import struct
+import zlib
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+from lz4.frame import LZ4FrameDecompressor
+from mcap.exceptions import McapError
+from mcap.records import Channel, Chunk, McapRecord, Message, Metadata, Schema
+from mcap.stream_reader import StreamReader, breakup_chunk
+from zstandard import ZstdError, frame_content_size
+
+from ddct_plant.bag_file.metadata import RECORD_NAME, information_of
+from ddct_plant.base.errors import DdctError
+from ddct_plant.base.timebase import STEPS_PER_S
+from ddct_plant.files.input_file import read_file
+
+MAGIC = b'\x89MCAP0\r\n'
+"""First and last bytes of an MCAP file."""
+MOST_BYTES = 1_000_000_000
+"""Largest size of a bag's file in bytes; an hour's run has a quarter of that."""
+MOST_CHUNK_BYTES = 64_000_000
+"""Largest size of an unpacked chunk in bytes; recorders make chunks of about 1 MB."""
+MOST_UNPACKED_BYTES = 8_000_000_000
+"""Largest size in bytes of all chunks of a bag, unpacked; an hour's run has a third of that."""
+MOST_STEP_BYTES = 100_000
+"""Largest mean size in bytes of a step of a run, unpacked; a usual step has 5000."""
+SPARE_BYTES = 10_000_000
+"""Size in bytes that a bag may have besides its steps: parameters, reports and definitions."""
+
+_READ_ERRORS = (
+    McapError,
+    ZstdError,
+    struct.error,
+    ValueError,
+    LookupError,
+    RuntimeError,
+    OverflowError,
+    MemoryError,
+)
+"""Exceptions of the MCAP library for damaged bytes; its checksum errors are ValueErrors."""
+
+_FOOTER = struct.Struct('<BQQQI8s')
+"""End of an MCAP file: opcode, length, starts of summary and its offsets, checksum, magic."""
+_FOOTER_OPCODE = 2
+
+
+@dataclass
+class BagRecords:
+    """Records of an MCAP file that readers use; messages are still serialised."""
+
+    path: Path
+    data: bytes = field(repr=False)
+    """Content of the file."""
+    strict: bool = True
+    """Whether damage is an error; else reading ends there."""
+    schemas: dict[int, Schema] = field(default_factory=dict)
+    channels: dict[int, Channel] = field(default_factory=dict)
+    information: dict[str, Any] = field(default_factory=dict)
+    """Content of the last readable `rosbag2` metadata record."""
+
+    @property
+    def topics(self) -> set[str]:
+        """Resolved names of the topics that have a channel."""
+        return {channel.topic for channel in self.channels.values()}
+
+    @property
+    def custom_data(self) -> dict[str, str]:
+        """Custom data of the bag: the recorder's description of the run."""
+        custom = self.information.get('custom_data')
+        if not isinstance(custom, dict):
+            return {}
+        return {str(key): str(value) for key, value in custom.items()}
+
+    def messages(self) -> Iterator[tuple[str, int, bytes]]:
+        """
+        Yield the messages as (topic, log time in ns, data), in the order of the file.
+
+        Raise DdctError at damage if `strict`.
+        """
+        unpacked = 0
+        with self._damage_named():
+            for record in self._records():
+                if isinstance(record, Chunk):
+                    unpacked += _unpacked_size(record)
+                    self._require_bounded(unpacked)
+                for each in in_chunk(record) if isinstance(record, Chunk) else (record,):
+                    if isinstance(each, Message):
+                        yield self.channels[each.channel_id].topic, each.log_time, each.data
+                    else:
+                        self._add(each)
+
+    def survey(self) -> None:
+        """
+        Add all records but those in chunks, after a check of the file's checksums and size.
+
+        Those in chunks are added too if there is no channel elsewhere. Raise DdctError at damage
+        if `strict`.
+        """
+        with self._damage_named():
+            unpacked = 0
+            for record in self._records(validate_crcs=self.strict):
+                if isinstance(record, Chunk):
+                    unpacked += _unpacked_size(record)
+                    self._require_bounded(unpacked)
+                else:
+                    self._add(record)
+        if not self.channels:
+            for _ in self.messages():
+                pass
+
+    def _records(self, *, validate_crcs: bool = False) -> Iterator[McapRecord]:
+        stream = io.BytesIO(self.data)
+        return StreamReader(
+            stream,
+            emit_chunks=True,
+            validate_crcs=validate_crcs,
+            record_size_limit=len(self.data),
+        ).records
+
+    def _add(self, record: McapRecord) -> None:
+        """Add a record; a repeated schema or channel does not replace the first one."""
+        if isinstance(record, Schema):
+            self.schemas.setdefault(record.id, record)
+        elif isinstance(record, Channel):
+            self.channels.setdefault(record.id, record)
+        elif isinstance(record, Metadata) and record.name == RECORD_NAME:
+            self.information = information_of(record.metadata) or self.information
+
+    def _require_bounded(self, unpacked: int) -> None:
+        """Raise ValueError where the chunks are larger than those of so long a run."""
+        most = MOST_UNPACKED_BYTES
+        try:
+            duration_s = float(self.custom_data['duration_s'])
+            most = min(most, SPARE_BYTES + int(duration_s * STEPS_PER_S) * MOST_STEP_BYTES)
+        except (KeyError, ValueError, OverflowError):
+            pass  # a bag of another recorder
+        if unpacked > most:
+            raise ValueError(f'its chunks have {unpacked} bytes unpacked, more than {most}')
+
+    @contextlib.contextmanager
+    def _damage_named(self) -> Iterator[None]:
+        """Raise DdctError for damage, or end there if not `strict`."""
+        try:
+            yield
+        except _READ_ERRORS as error:
+            if self.strict:
+                raise _damaged(self.path, error) from error
+
+
+def read_records(path: Path) -> BagRecords:
+    """
+    Read a complete MCAP file; its messages are yielded by `messages`, verified too.
+
+    Raise DdctError when the file cannot be read, is no MCAP file, is unfinished or is damaged.
+    """
+    data = _bytes_of(path)
+    if not data.endswith(MAGIC) or len(data) == len(MAGIC):
+        raise DdctError(
+            'the recording is unfinished, its writer was interrupted or the file cut '
+            'short: rescue what it holds with ddct score --repair',
+            place=path,
+        )
+    try:
+        _verify_summary(data)
+    except _READ_ERRORS as error:
+        raise _damaged(path, error) from error
+    bag = BagRecords(path, data)
+    bag.survey()
+    return bag
+
+
+def salvage_records(path: Path) -> BagRecords:
+    """
+    Read an MCAP file up to the first damage.
+
+    Raise DdctError when the file cannot be read or is no MCAP file.
+    """
+    bag = BagRecords(path, _bytes_of(path), strict=False)
+    bag.survey()
+    return bag
+
+
+def _damaged(path: Path, error: BaseException) -> DdctError:
+    what = ' '.join(str(error).split()) or type(error).__name__
+    return DdctError(
+        f'the recording is damaged ({what}): rescue what is readable with ddct score --repair',
+        place=path,
+    )
+
+
+def in_chunk(chunk: Chunk) -> list[McapRecord]:
+    """Return the records in a chunk, after a check of its checksum."""
+    if chunk.compression == 'lz4':
+        # The library would unpack it to any size.
+        lz4 = LZ4FrameDecompressor()
+        data = lz4.decompress(chunk.data, max_length=chunk.uncompressed_size)
+        if not lz4.eof and lz4.decompress(b'', max_length=1):
+            raise ValueError(f'a chunk has more than its {chunk.uncompressed_size} bytes')
+        chunk = replace(chunk, compression='', data=data)
+    return breakup_chunk(chunk, validate_crc=True)
+
+
+def _unpacked_size(chunk: Chunk) -> int:
+    """Return the size of an unpacked chunk; raise ValueError where it would fill the memory."""
+    size = max(chunk.uncompressed_size, len(chunk.data))
+    if chunk.compression == 'zstd':
+        size = max(size, frame_content_size(chunk.data))
+    if size > MOST_CHUNK_BYTES:
+        raise ValueError(f'a chunk has {size} bytes unpacked, more than {MOST_CHUNK_BYTES}')
+    return size
+
+
+def _bytes_of(path: Path) -> bytes:
+    try:
+        data = read_file(path, MOST_BYTES)
+    except OSError as error:
+        raise DdctError(f'cannot read the bag: {error.strerror}', place=path) from error
+    if not data.startswith(MAGIC):
+        what = 'the file is empty' if not data else 'not an MCAP file'
+        raise DdctError(f'{what}: give a bag that this project recorded', place=path)
+    return data
+
+
+def _verify_summary(data: bytes) -> None:
+    """Raise ValueError unless the footer's checksum of the summary is correct or absent."""
+    opcode, _, start, _, checksum, _ = _FOOTER.unpack(data[-_FOOTER.size :])
+    covered = data[start : -len(MAGIC) - 4]
+    if opcode != _FOOTER_OPCODE or (checksum and zlib.crc32(covered) != checksum):
+        raise ValueError('the checksum of the summary is wrong')
