@@ -1,0 +1,92 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Numbers of `least_jerk` that its scenario and options give, constant over a run."""
+
+from dataclasses import dataclass
+
+from ddct_controllers.interface import ControllerContext
+from ddct_controllers.least_jerk.engine_guard import EngineGuard, SpeedRange
+from ddct_controllers.least_jerk.options import LeastJerkOptions
+from ddct_controllers.least_jerk.slip_estimate import RigidSlip, twist_of
+from ddct_controllers.least_jerk.torque_estimate import (
+    APPLIED_SHARE,
+    APPLIED_SHARE_IN_SHIFTS,
+    CarriedTorque,
+    TorqueNoise,
+)
+from ddct_controllers.least_jerk.torque_plan import PlanLimits
+from ddct_plant.base.options import with_values
+from ddct_plant.models.clutch import LINEAR
+from ddct_plant.models.parameters import DrivelineParameters
+from ddct_plant.models.static_torque import StaticTorque
+from ddct_plant.scenario.initial_state import initial_request
+
+
+@dataclass(frozen=True)
+class LeastJerkDesign:
+    """What the controller is computed from."""
+
+    options: LeastJerkOptions
+    driveline: DrivelineParameters
+    static: StaticTorque
+    """Torque of constant slip."""
+    limits: PlanLimits
+    speeds: SpeedRange
+    sticks: bool
+    """Whether the plates can lock."""
+    shifts: bool
+    """Whether the run is a gear shift."""
+    initial_request: float
+    """Request in N m before the first measurement."""
+
+    @classmethod
+    def of(cls, context: ControllerContext) -> 'LeastJerkDesign':
+        """Return the design for a run; raise ParameterError for an option out of its range."""
+        settings, scenario = context.settings, context.settings.scenario
+        options = with_values(LeastJerkOptions(), context.gains)
+        driveline, sticks = scenario.controlled_driveline, settings.clutch != LINEAR
+        # Rate of the torque in N m/s at the jerk of `jerk_m_s3` of a rigid car.
+        wheel_torque = driveline.vehicle_inertia / scenario.vehicle.wheel_radius_m
+        limits = PlanLimits(
+            easy_rate=options.jerk_m_s3 * driveline.gear.shaft_torque(wheel_torque),
+            latest_s=options.latest_s,
+            bandwidth_rad_s=options.bandwidth_rad_s,
+            end_s=options.end_s,
+            twist=twist_of(driveline),
+            smoothing_s=options.smoothing_s,
+            sticks=sticks,
+        )
+        return cls(
+            options=options,
+            driveline=driveline,
+            static=StaticTorque(driveline, scenario.equilibrium),
+            limits=limits,
+            speeds=SpeedRange.of(options.least_speed_rad_s, scenario.engine_limits),
+            sticks=sticks,
+            shifts=bool(settings.shift),
+            initial_request=initial_request(settings),
+        )
+
+    def clutch(self) -> CarriedTorque:
+        """Return the estimate of the carried torque."""
+        options, p = self.options, self.driveline
+        return CarriedTorque(
+            p.engine_inertia,
+            p.engine_damping,
+            TorqueNoise(options.gain_drift, options.offset_drift_n_m),
+            self.applied_share,
+        )
+
+    @property
+    def applied_share(self) -> float:
+        """Share with which requests follow that estimate."""
+        return APPLIED_SHARE_IN_SHIFTS if self.shifts else APPLIED_SHARE
+
+    def slip(self) -> RigidSlip:
+        """Return the observer of the slip."""
+        return RigidSlip(self.driveline, self.options.observer_rad_s)
+
+    def guard(self) -> EngineGuard:
+        """Return the guard of the engine speed."""
+        options = self.options
+        return EngineGuard(self.driveline, self.speeds, options.guard_s, options.most_torque_n_m)

@@ -1,0 +1,50 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""The surplus torque that brings the slip to zero with the least rate, in closed form."""
+
+import math
+
+SHORTEST_S = 0.2
+"""Shortest time in s that a plan takes, five times the lag of the actuator."""
+
+LEVEL_S = 1.0
+"""Time in s that is left where the reference does not fall."""
+
+
+def time_left(speed: float, rate: float) -> float:
+    """Return the time in s until a reference in rad/s is zero, along its tangent in rad/s^2."""
+    if speed <= 0.0:
+        return 0.0
+    return speed / -rate if rate < 0.0 else LEVEL_S
+
+
+def least_rate(momentum: float, surplus: float, time_s: float) -> float:
+    """
+    Return the least |dy/dt| in N m/s with which slip and surplus are zero after `time_s`.
+
+    `momentum` is J_r s in N m s, `surplus` y in N m. The optimum rises with a rate R and then
+    falls with -R: y_0 + R t_1 - R t_2 = 0, t_1 + t_2 = T and the integral of y equal to J_r s give
+    T^2 R^2 + (2 y_0 T - 4 J_r s) R - y_0^2 = 0.
+    """
+    time_s = max(time_s, SHORTEST_S)
+    half = 2.0 * max(momentum, 0.0) - surplus * time_s
+    kept = surplus * time_s
+    return (half + math.sqrt(half * half + kept * kept)) / (time_s * time_s)
+
+
+def final_surplus(momentum: float, rate: float, bandwidth_rad_s: float, end: float) -> float:
+    """
+    Return the surplus in N m from which a fall at `rate` in N m/s ends the slip at `end` in N m.
+
+    With the momentum m = J_r s in N m s, y^2 = end^2 + 2 R m, as y dy = R dm on the way. The slope
+    R/y grows without bound as y becomes small. Where it would exceed the bandwidth w in rad/s, the
+    line y = end + w m takes its place, which meets the curve with the same slope. This is the
+    proximate time-optimal law of Workman (1987) with the rate as the input.
+    """
+    corner = rate / bandwidth_rad_s
+    if end >= corner:
+        return math.sqrt(end * end + 2.0 * rate * max(momentum, 0.0))
+    least = (corner - end) / bandwidth_rad_s
+    if momentum <= least:
+        return end + bandwidth_rad_s * momentum
+    return math.sqrt(corner * corner + 2.0 * rate * (momentum - least))

@@ -1,0 +1,170 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""The planned torque of slipping plates, moved by a period at a time."""
+
+import math
+from dataclasses import dataclass
+
+from ddct_controllers.least_jerk.plan import final_surplus, least_rate
+from ddct_plant.base.timebase import PERIOD_S
+
+LEAST_SHARE = 0.05
+"""Least rate of the plan over that of `jerk_m_s3`."""
+CATCH_UP = 1.6
+"""Highest rate on the way down, over that of the plan."""
+CORRECTION = 4.0
+"""Errors of the way down are corrected within this part of the time that it still takes."""
+GENTLE_S = 0.06
+"""Time of the fall that may be missing where the plates meet, for them to be closed from there."""
+MISSED = 0.3
+"""Share of the planned surplus below which the torque rises again."""
+MOST_BAND = 0.7
+"""
+Highest bandwidth over the frequency at which the twist of the half-shafts undoes the feedback.
+"""
+
+
+@dataclass(frozen=True)
+class PlanLimits:
+    """What bounds a plan, constant over a run."""
+
+    easy_rate: float
+    """Rate in N m/s at which the torque changes unless that takes too long."""
+    latest_s: float
+    """Time in s by which the lock may be later than the reference ends."""
+    bandwidth_rad_s: float
+    """Bandwidth of the last part of the way down, before `MOST_BAND` limits it."""
+    end_s: float
+    """Time in s for which the surplus at the lock would still fall."""
+    twist: float
+    """J_r w_d of a rigid car beyond that of the measured one, in N m s per N m/s."""
+    smoothing_s: float
+    """Time constant of the low-pass behind the plan."""
+    sticks: bool
+    """Whether the plates can lock; else the slip may pass zero."""
+
+    @property
+    def band(self) -> float:
+        """Bandwidth in rad/s of the last part of the way down."""
+        return min(self.bandwidth_rad_s, MOST_BAND / math.sqrt(self.twist))
+
+
+class TorquePlan:
+    """
+    A torque that rises at a constant rate, and then falls at it until slip and surplus are zero.
+
+    `torque` is the planned one, `smoothed` the same behind the low-pass that requests follow.
+    """
+
+    def __init__(self, limits: PlanLimits) -> None:
+        """Start with no torque."""
+        self._limits = limits
+        self._band = limits.band
+        self.share = min(PERIOD_S / max(limits.smoothing_s, PERIOD_S), 1.0)
+        """Share of the low-pass in a period."""
+        self.reset()
+
+    def reset(self) -> None:
+        """Clear the plan."""
+        self.rate = 0.0
+        """Rate of the plan in N m/s."""
+        self._falling = False
+        self.start(0.0)
+
+    def start(self, torque: float) -> None:
+        """Take a torque in N m as planned and smoothed."""
+        self.torque = self.smoothed = torque
+        self._needed = math.nan
+
+    def part(self, torque: float) -> None:
+        """Start anew from a torque in N m after plates have parted."""
+        self.start(torque)
+        self._falling = False
+
+    def smooth(self, share: float) -> None:
+        """Let the low-pass follow the planned torque by a share."""
+        self.smoothed += share * (self.torque - self.smoothed)
+
+    def move(self, momentum: float, needed: float, left_s: float) -> None:
+        """
+        Move the planned torque by a period.
+
+        `momentum` is J_r s in N m s when a new request acts, `needed` the torque in N m of
+        constant slip then, `left_s` the time in s from then until the slip shall be zero.
+        """
+        surplus = self.torque - needed
+        self._choose_rate(momentum, surplus, left_s)
+        final = self._final(momentum)
+        aim = needed + final
+        if not self._falling and self.torque >= aim:
+            self._falling = True
+        if not self._falling:
+            self.torque += min(aim - self.torque, PERIOD_S * self.rate)
+        elif self._meets(momentum) and surplus <= final + GENTLE_S * self.rate:
+            # The plates meet gently by the time at which this acts: begin to close them.
+            self.torque += PERIOD_S * self.rate
+        else:
+            self._fall(momentum, needed, final)
+        self._needed = needed
+
+    def _fall(self, momentum: float, needed: float, final: float) -> None:
+        """Follow the way down; errors are corrected the slower, the longer it still takes."""
+        surplus = self.torque - needed
+        change = self._final(momentum - PERIOD_S * surplus) - final
+        if not math.isnan(self._needed):
+            change += needed - self._needed
+        share = min(CORRECTION * PERIOD_S * self.rate / max(final, 1e-9), 1.0)
+        change += share * (final - surplus)
+        most = PERIOD_S * self.rate * CATCH_UP
+        self.torque += min(max(change, -most), most)
+
+    def _meets(self, momentum: float) -> bool:
+        return self._limits.sticks and self._twisted(momentum) <= 0.0
+
+    def _choose_rate(self, momentum: float, surplus: float, left_s: float) -> None:
+        """Choose the rate of a plan that still rises."""
+        limits = self._limits
+        least = LEAST_SHARE * limits.easy_rate
+        if not limits.sticks:
+            # Its slip may pass zero: the same plan serves below.
+            sign = -1.0 if momentum < 0.0 else 1.0
+            momentum, surplus, least = sign * momentum, sign * surplus, limits.easy_rate
+        elif self._falling:
+            if surplus < MISSED * self._final(momentum):
+                self._falling = False
+            elif (steeper := self._way_down(momentum, surplus)) > CATCH_UP * self.rate:
+                self.rate = steeper
+            return
+        twisted = self._twisted(momentum)
+        late = least_rate(twisted, surplus, left_s + limits.latest_s)
+        in_time = least_rate(twisted, surplus, left_s)
+        least = max(least, self._way_down(momentum, surplus))
+        self.rate = max(min(max(limits.easy_rate, late), in_time), least)
+
+    def _way_down(self, momentum: float, surplus: float) -> float:
+        """Return the rate in N m/s of a fall from a surplus in N m that ends with the slip."""
+        twisted = self._twisted(momentum)
+        if twisted * self._band * self._band <= self.rate:
+            return 0.0  # the line to zero: its rate does not exceed that of the plan
+        surplus = max(surplus, 0.0)
+        return surplus * surplus / (2.0 * twisted)
+
+    def _twisted(self, momentum: float) -> float:
+        """
+        Return J_r w_d in N m s at the rate of the way down, for J_r s in N m s.
+
+        w_d = s + kappa R while the torque falls at R. In the last part it falls at w^2 J_r w_d.
+        """
+        squared = self._band * self._band
+        ending = momentum / (1.0 - self._limits.twist * squared)
+        if ending * squared <= self.rate:
+            return ending
+        return momentum + self._limits.twist * self.rate
+
+    def _final(self, momentum: float) -> float:
+        """Return the surplus in N m of the way down."""
+        twisted = self._twisted(momentum)
+        if not self._limits.sticks:
+            return final_surplus(twisted, self.rate, self._band, 0.0)
+        end = self._limits.end_s * self.rate
+        return final_surplus(max(twisted, 0.0), self.rate, self._band, end)

@@ -1,0 +1,164 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Tables of `least_jerk`: development cases, ingredients, and its row beside Table 5.1."""
+
+from collections.abc import Mapping, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass, field
+from unittest.mock import patch
+
+import numpy as np
+
+from ddct_bringup.benchmark.cases import Cases, packaged_folder
+from ddct_bringup.benchmark.release import release_rows
+from ddct_bringup.metrics.vibration import jerk
+from ddct_bringup.reproduction.study_run import thesis_run
+from ddct_bringup.run.headless import run_headless
+from ddct_bringup.thesis.table_5_1 import ROW_OF, TABLE_METRICS
+from ddct_controllers.least_jerk import (
+    actuator_model,
+    controller,
+    demand_trend,
+    torque_estimate,
+    torque_plan,
+)
+from ddct_controllers.least_jerk.controller import NAME
+from ddct_plant.models.driveline import LOCK, LOCKED, PHASES, RELEASE
+from ddct_plant.program.table import Table
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
+from generator.benchmark_tables import CASE_HEADERS, case_cells
+from generator.distance_table import distance_table
+from generator.repeated_cases import handover_table, parted_table
+
+SCENARIOS = ('launch', 'launch_hill', 'launch_gentle', 'thesis', 'upshift')
+WEAR_GAINS = (0.7, 1.0, 1.3)
+DELAY_S = 0.015
+"""Delay of the actuator in the runs without an ingredient; the controller assumes 10 ms."""
+_HEADERS = ('without', 'locked runs', 'releases', *(f'`{name}`' for name in SCENARIOS))
+_CASE_HEADERS = ('scenario', *CASE_HEADERS)
+_ROW_HEADERS = ('controller', 't_a s', 'std w_sr rpm', 'std A_x m/s^2')
+_FORMS = ('.2f', '.2f', '.3f')
+
+
+@dataclass(frozen=True)
+class Variant:
+    """The controller without one ingredient."""
+
+    label: str
+    options: Mapping[str, float] = field(default_factory=dict)
+    """Options of the scenario's section."""
+    constants: Mapping[str, float] = field(default_factory=dict)
+    """Constants of the modules below, by name."""
+
+
+VARIANTS = (
+    Variant('nothing: all of it'),
+    Variant(
+        'the estimate of the wear',
+        {'gain_drift': 0.0, 'offset_drift_n_m': 0.0},
+        {'INITIAL_GAIN': 0.0, 'INITIAL_OFFSET_N_M': 0.0},
+    ),
+    Variant('the low-pass of that estimate', {}, {'APPLIED_SHARE': 1.0}),
+    Variant('the prediction over the lag of the actuator', {}, {'AHEAD': 0, 'LAG_S': 0.0}),
+    Variant('more time than the reference gives', {'latest_s': 0.0}),
+    Variant('the low-pass of the planned torque', {'smoothing_s': 0.0}),
+    Variant('the trend of the demand, but for its last values', {}, {'LONGEST': 12}),
+    Variant('the slow correction of the way down', {}, {'CORRECTION': 1e9}),
+    Variant('most of the correction by the measured slip', {'observer_rad_s': 0.5}),
+    Variant('the filter of the measured slip', {'observer_rad_s': 30.0}),
+)
+"""Variants in the order of the table."""
+_MODULES = (actuator_model, controller, demand_trend, torque_estimate, torque_plan)
+
+
+def least_jerk_tables() -> Mapping[str, Table]:
+    """Return the tables of the page by name."""
+    rows = [_row(variant) for variant in VARIANTS]
+    return {
+        'development': Table('Development cases', _CASE_HEADERS, development_rows()),
+        'unavoidable': parted_table(),
+        'handovers': handover_table(),
+        'distance': distance_table(),
+        'ingredients': Table('What each ingredient brings', _HEADERS, rows),
+        'table_5_1': Table('Beside Table 5.1', _ROW_HEADERS, list(_table_5_1())),
+    }
+
+
+def development_rows() -> list[tuple[str, ...]]:
+    """Return a row for each scenario, from the rows that the release has."""
+    rows = release_rows(packaged_folder()).rows.of(NAME)
+    scenarios = dict.fromkeys(rows['scenario'].tolist())
+    return [
+        (
+            f'`{name}`',
+            *case_cells({key: column[rows['scenario'] == name] for key, column in rows.items()}),
+        )
+        for name in scenarios
+    ]
+
+
+def _row(variant: Variant) -> tuple[str, ...]:
+    with ExitStack() as changed:
+        for module in _MODULES:
+            for name, value in variant.constants.items():
+                if hasattr(module, name):
+                    changed.enter_context(patch.object(module, name, value))
+        found = [_runs(name, variant.options) for name in SCENARIOS]
+    locked = sum(run.locked for runs in found for run in runs)
+    releases = sum(run.releases for runs in found for run in runs)
+    jerks = (max(run.peak_jerk for run in runs) for runs in found)
+    among = len(SCENARIOS) * len(WEAR_GAINS)
+    return (
+        variant.label,
+        f'{locked} of {among}',
+        str(releases),
+        *(f'{value:.1f}' for value in jerks),
+    )
+
+
+@dataclass(frozen=True)
+class _Run:
+    locked: bool
+    releases: int
+    peak_jerk: float
+
+
+def _runs(name: str, options: Mapping[str, float]) -> list[_Run]:
+    """Return the runs of a scenario with the sensors of the benchmark, one for each wear gain."""
+    (sensors,) = Cases.packaged().content['grid']['sensors']
+    changes = {
+        'sensors': sensors,
+        'actuator.delay_s': DELAY_S,
+        **{f'controllers.{NAME}.{key}': value for key, value in options.items()},
+    }
+    scenario = load_scenario(name, changes, 'stick_slip')
+    return [
+        _run(RunSettings(scenario, clutch='stick_slip', wear_gain=gain, seed=1))
+        for gain in WEAR_GAINS
+    ]
+
+
+def _run(settings: RunSettings) -> _Run:
+    run = run_headless(settings, NAME)
+    start = settings.scenario.control_start_step
+    assert run.phase_events is not None
+    events = [event.kind for step in run.phase_events[start:] for event in step]
+    first = events.index(LOCK) if LOCK in events else 0
+    assert run.clutch_phase is not None
+    return _Run(
+        bool(run.clutch_phase[-1] == PHASES.index(LOCKED)),
+        events[first:].count(RELEASE),
+        float(np.abs(jerk(run.vehicle_accel)[start:]).max()),
+    )
+
+
+def _table_5_1() -> Sequence[tuple[str, ...]]:
+    """Return the printed rows, then that of `least_jerk` with the linear clutch."""
+    printed = [(row.label, *row.cells()) for row in ROW_OF.values()]
+    values = (thesis_run(NAME, 'detailed', 1.0).metrics[name] for name in TABLE_METRICS)
+    cells = (
+        '-' if value is None else format(value, form)
+        for value, form in zip(values, _FORMS, strict=True)
+    )
+    return [*printed, (f'`{NAME}`, linear clutch', *cells)]
