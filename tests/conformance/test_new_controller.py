@@ -51,7 +51,7 @@ def test_the_package_installs_by_its_own_command_and_its_tests_pass(tmp_path: Pa
         check=True,
     )
     listing = "from ddct_bringup.programs.bringup import main\nmain(['--list'])"
-    assert 'lqi, my_slip' in python(site, listing).splitlines()[0]
+    assert 'least_jerk, my_slip' in python(site, listing).splitlines()[0]
     tests = f'import pytest\nassert pytest.main(["-q", {str(folder)!r}, "-p", "no:cacheprovider"])'
     assert '3 passed' in python(site, f'{tests} == 0')
 
@@ -110,6 +110,6 @@ def test_a_name_that_cannot_be_used_is_refused(
 def test_a_folder_that_is_there_stays_as_it_is(
     capfd: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
-    assert new_controller.main(['mine', '--out', str(tmp_path)]) == 1
+    assert new_controller.main(['no_module_yet', '--out', str(tmp_path)]) == 1
     assert_one_line(capfd.readouterr().err, 'ddct new-controller', f'{tmp_path} exists already')
     assert list(tmp_path.iterdir()) == []

@@ -18,11 +18,12 @@ from support.exported_mpc import STRICT, compile_c, run_settings
 from ddct_bringup.programs.bringup import main as bringup
 from ddct_bringup.run.headless import run_headless
 from ddct_controllers.check.checks import FAIL, check_controller
-from ddct_controllers.from_file.c_library import host, loaded
+from ddct_controllers.from_file.c_library import host
+from ddct_controllers.from_file.foreign import loaded
 from ddct_controllers.interface import Command, Controller
 from ddct_controllers.mpc.export.export_controller import export_controller
 from ddct_controllers.registry import controller_spec, make_controller
-from ddct_plant.base.errors import DdctError
+from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.program.workers import in_processes
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
@@ -94,6 +95,37 @@ def test_the_template_is_a_pi_controller(library):
     expected = run_headless(SETTINGS, make_controller('pi', SETTINGS, gains))
     found = run_headless(SETTINGS, library(TEMPLATE))
     assert np.abs(found.torque_request - expected.torque_request).max() <= 1e-9
+
+
+def test_a_file_gives_global_variables_of_c_other_values(library):
+    file = Path(library(TEMPLATE))
+    gains = {'proportional_gain': 0.31, 'integral_gain': 0.07}
+    text = f'name: my_controller\nc_library: {{file: my_controller.so, parameters: {gains}}}\n'
+    file.write_text(text.replace("'", ''))
+    ours = run_headless(SETTINGS, make_controller(str(file), SETTINGS))
+    assert _torques_differ_by(ours, make_controller('pi', SETTINGS, gains)) <= TOLERANCE_N_M
+    changed = run_settings('duration_s=1', 'controllers.my_controller.integral_gain=0.5')
+    again = run_headless(changed, make_controller(str(file), changed))
+    other = make_controller('pi', SETTINGS, {**gains, 'integral_gain': 0.5})
+    assert _torques_differ_by(again, other) <= TOLERANCE_N_M
+
+
+def _torques_differ_by(run, controller):
+    theirs = run_headless(SETTINGS, controller)
+    return np.abs(run.torque_request - theirs.torque_request).max()
+
+
+@pytest.mark.parametrize('name', ['missing', 'two words', 'double', 'ddct_command'])
+def test_a_variable_that_c_does_not_have_is_named(library, name):
+    file = Path(library(TEMPLATE))
+    parameters = f'{{"{name}": 1.0}}'
+    file.write_text(
+        f'name: my_controller\nc_library: {{file: my_controller.so, parameters: {parameters}}}\n'
+    )
+    with refused(
+        ParameterError, key=f'c_library.parameters.{name}', place='my_controller.yaml: line 2'
+    ):
+        make_controller(str(file), SETTINGS)
 
 
 def test_two_controllers_of_one_library_share_no_state(library):
@@ -230,11 +262,8 @@ def test_outputs_that_c_does_not_write_are_nan(library, source):
         run_headless(SETTINGS, library(source))
 
 
-def test_a_loop_without_end_is_ended(library, monkeypatch, tmp_path):
-    code = Path(host.__file__).read_text().replace('MOST_SECONDS = 10', 'MOST_SECONDS = 1')
-    (tmp_path / 'host.py').write_text(code)
-    monkeypatch.setattr(host, '__file__', str(tmp_path / 'host.py'))
-    (tmp_path / 'template').symlink_to(host.TEMPLATE)
+def test_a_loop_without_end_is_ended(library, monkeypatch):
+    monkeypatch.setattr(loaded, 'MOST_SECONDS', 1)
     controller = make_controller(library(command('for (;;) {}')), SETTINGS)
     with pytest.raises(DdctError, match='it gave no answer within'):
         run_headless(SETTINGS, controller)
@@ -265,7 +294,7 @@ def test_a_file_without_a_library_is_refused(tmp_path, content, complaint):
 
 def test_no_process_is_left_behind(library):
     controller: Any = make_controller(library(TEMPLATE), SETTINGS)
-    process = Path(f'/proc/{controller._process}')
+    process = Path(f'/proc/{controller._process.pid}')
     assert process.exists()
     del controller
     assert not process.exists()
@@ -294,6 +323,17 @@ def test_a_library_is_loaded_once_for_all_controllers_and_workers(library, monke
     assert again.torque_request.tolist() != first, 'a library that was compiled again is the old'
 
 
+def test_reset_is_called_before_hold_and_update(library):
+    """With a state that begins at 7: run without a call of reset it would begin at 0."""
+    source = TEMPLATE.replace('s->integral_rpm_s = 0.0;', 's->integral_rpm_s = 7.0;')
+    source = source.partition('    const double slip =')[0]
+    source += '    command->clutch_torque = ((my_state *)state)->integral_rpm_s; return 0;\n}\n'
+    source += 'int32_t ddct_controller_hold(void *state, const ddct_measurement *m)\n'
+    source += '{\n    (void)state; (void)m; return 0;\n}\n'
+    assert source != TEMPLATE
+    assert run_headless(SETTINGS, library(source)).closed_loop_torque[-1] == 7.0
+
+
 def test_static_variables_of_c_start_anew_for_each_controller(library):
     body = 'static double calls = 0.0; calls += 1.0; command->clutch_torque = calls;'
     file = library(command(body))
@@ -307,7 +347,7 @@ import os, sys
 from ddct_controllers.registry import controller_spec, make_controller
 from support.exported_mpc import run_settings
 made = make_controller(sys.argv[1], run_settings('duration_s=1'))
-print(made._process, flush=True)
+print(made._process.pid, flush=True)
 os.kill(os.getpid(), 9)
 """
 """Program that is killed while it has a controller of a library."""

@@ -2,13 +2,23 @@
 # SPDX-License-Identifier: Apache-2.0
 """Third parties' nodes in the graph: the recorder names their missing values."""
 
+from itertools import count
+
 import pytest
+import rclpy
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from geometry_msgs.msg import TwistStamped
+from rclpy.context import Context
+from rclpy.node import Node
+from rclpy.signals import SignalHandlerOptions
 from support.in_process_graph import GraphOf, node_class
 from support.runs import plan
 
 from ddct_bringup.processes.graph_nodes import GRAPH_NODES
 from ddct_bringup.record import recorder_node
+from ddct_plant.graph import sole_publishers
 from ddct_plant.graph.node import GraphNode
+from ddct_plant.graph.qos import LOOP_QOS, RECORDER_LATCHED_QOS
 
 NODE_NAMES = [node.name for node in GRAPH_NODES]
 
@@ -44,3 +54,79 @@ def test_a_run_info_without_what_the_bag_needs_is_named(
     failed, complaint = graph.first_failure()
     assert failed == 'recorder'
     assert f'run_info of node /{node} has no {key}' in complaint
+
+
+@pytest.mark.parametrize('topic', ['run_info', 'controller/timing'])
+def test_an_empty_report_ends_the_recorder_with_its_topic(graph_of: GraphOf, topic: str) -> None:
+    assert topic in complaint_of_recorder(graph_of, topic, DiagnosticArray())
+
+
+@pytest.mark.parametrize('times', ['soon', '1.0 nan', '-1.0', 'inf'])
+def test_update_times_that_are_none_end_the_recorder_with_their_topic(
+    graph_of: GraphOf, times: str
+) -> None:
+    pairs = [KeyValue(key='update_times_us', value=times)]
+    report = DiagnosticArray(status=[DiagnosticStatus(name='/controller', values=pairs)])
+    complaint = complaint_of_recorder(graph_of, 'controller/timing', report)
+    assert 'controller/timing update_times_us' in complaint
+
+
+def complaint_of_recorder(graph_of: GraphOf, topic: str, message: DiagnosticArray) -> str:
+    """Publish a message and return the error of the recorder that receives it."""
+    graph = graph_of(plan())
+    graph.add('recorder')
+    stranger = Node('stranger', context=graph.context)
+    graph.add_other(stranger)
+    qos = RECORDER_LATCHED_QOS if topic == 'run_info' else LOOP_QOS
+    publisher = stranger.create_publisher(DiagnosticArray, topic, qos)
+    stranger.create_timer(0.02, lambda: publisher.publish(message))
+    failed, complaint = graph.first_failure()
+    assert failed == 'recorder'
+    assert '\n' not in complaint
+    return complaint
+
+
+def complaint_about_another_type(graph_of: GraphOf) -> str:
+    """Run beside a node that publishes `load/torque` as another type; return the error."""
+    graph = graph_of(plan())
+    context = Context()
+    rclpy.init(args=[], context=context, signal_handler_options=SignalHandlerOptions.NO)
+    try:
+        stranger = Node('stranger', context=context)
+        stranger.create_publisher(TwistStamped, 'load/torque', LOOP_QOS)
+        graph.add_all()
+        failed, complaint = graph.first_failure()
+        stranger.destroy_node()
+    finally:
+        context.try_shutdown()
+    assert failed == 'driveline'
+    assert complaint.startswith('load/torque is published as geometry_msgs/msg/TwistStamped too')
+    return complaint
+
+
+def test_a_topic_of_another_type_is_named(
+    graph_of: GraphOf, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sole_publishers, 'CHECK_S', 0.03)
+    assert '/stranger' in complaint_about_another_type(graph_of)
+
+
+@pytest.mark.parametrize('unnamed_calls', [3, 10**6])
+def test_an_error_about_a_second_publisher_waits_a_while_for_its_name(
+    graph_of: GraphOf, monkeypatch: pytest.MonkeyPatch, unnamed_calls: int
+) -> None:
+    """The middleware lists a topic before the name of its node."""
+    monkeypatch.setattr(sole_publishers, 'CHECK_S', 0.03)
+    if unnamed_calls > 3:
+        monkeypatch.setattr(sole_publishers, 'NAMING_S', 0.3)
+    publishers_of, calls = sole_publishers.publishers_of, count()
+
+    def named_late(node: Node, topic: str) -> str:
+        shown = publishers_of(node, topic)
+        late = next(calls) < unnamed_calls
+        return shown.replace('/stranger', sole_publishers._UNNAMED) if late else shown
+
+    monkeypatch.setattr(sole_publishers, 'publishers_of', named_late)
+    complaint = complaint_about_another_type(graph_of)
+    assert next(calls) > 3
+    assert ('/stranger' in complaint) == (unnamed_calls == 3)

@@ -15,4 +15,5 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.chdir(tmp_path)
     Path('tmp').mkdir()
     monkeypatch.setattr('tempfile.tempdir', str(tmp_path / 'tmp'))
+    monkeypatch.setenv('TMPDIR', str(tmp_path / 'tmp'))
     return tmp_path

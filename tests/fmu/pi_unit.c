@@ -6,6 +6,7 @@
  * on request. It keeps its state in static variables, as careless tools do: only a binary that is
  * loaded anew is without the past. */
 #include <math.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -13,11 +14,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 enum { OK, WARNING, DISCARD, ERROR, FATAL };
 enum { ERROR_RPM, DEMAND, CLUTCH, ENGINE, KP, KI, FAULT_TIME, AHEAD, REALS };
 enum { FIRST_INTEGER = 20, FAULT = 0, ORDER, INTEGERS };
-enum { NO_FAULT, FAIL, DIE, NOT_A_NUMBER, STOP };
+enum { NO_FAULT, FAIL, DIE, NOT_A_NUMBER, STOP, LEAVE, ABORT, CRASH, LOOP };
 enum { EULER = 1, TRAPEZOIDAL = 2 };
 
 static double reals[REALS] = {0, 0, 0, 0, 0.1, 0.1, 0, 0};
@@ -35,6 +37,20 @@ static void note(const char *event) {
         fprintf(file, "%s\n", event);
         fclose(file);
     }
+}
+
+/* Do what ends, or stops, the process in which it runs. */
+static void harm(int fault) {
+    if (fault == LEAVE) exit(0);
+    if (fault == ABORT) abort();
+    if (fault == CRASH) raise(SIGSEGV);
+    while (fault == LOOP) pause();
+}
+
+static void instantiated(void) {
+    const char *fault = getenv("PI_UNIT_LOAD_FAULT");
+    note("instantiated");
+    if (fault) harm(atoi(fault));
 }
 
 static int set_reals(const uint32_t *refs, size_t count, const double *values) {
@@ -72,6 +88,7 @@ static int step(double time, double size, bool *stop) {
         if (integers[FAULT] == FAIL) return ERROR;
         if (integers[FAULT] == DIE) return FATAL;
         if (integers[FAULT] == STOP) *stop = true;
+        harm((int)integers[FAULT]);
     }
     if (integers[ORDER] == TRAPEZOIDAL) integral += 0.01 * reals[ERROR_RPM];
     double torque = -(reals[KP] * reals[ERROR_RPM] + reals[KI] * integral);
@@ -113,7 +130,7 @@ void *fmi2Instantiate(const char *name, int kind, const char *guid, const char *
     (void)name, (void)visible, (void)logging;
     if (kind != 1 || strcmp(guid, "{pi}") || strncmp(resources, "file:///", 8)) return NULL;
     callbacks = given;
-    note("instantiated");
+    instantiated();
     return reals;
 }
 void fmi2FreeInstance(void *self) { (void)self, note("freed"); }
@@ -173,7 +190,7 @@ void *fmi3InstantiateCoSimulation(const char *name, const char *token, const cha
     if (strcmp(token, "{pi}") || events || early || count) return NULL;
     environment = given;
     logger = log;
-    note("instantiated");
+    instantiated();
     return reals;
 }
 void fmi3FreeInstance(void *self) { (void)self, note("freed"); }

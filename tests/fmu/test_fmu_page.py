@@ -15,7 +15,7 @@ from support.fmu import write_fmu
 from ddct_bringup.programs import compare
 from ddct_controllers.from_file.fmu.fmu_controller import CLUTCH, ENGINE
 from ddct_controllers.from_file.fmu.variables import AHEAD, SCALARS
-from ddct_controllers.from_file.kinds import load_spec
+from ddct_controllers.registry import controller_spec
 
 PAGE = 'docs/controllers/fmu_controller.md'
 BLOCKS = [block for block in blocks() if block.page == PAGE]
@@ -51,7 +51,7 @@ def test_the_option_that_it_changes_is_one(template: str) -> None:
     write_fmu(Path('mine.fmu'), 3)
     changed = shlex.split([line for line in LINES if '--set' in line][0])
     key = changed[changed.index('--set') + 1].partition('=')[0]
-    assert key.removeprefix('controllers.mine.') in (load_spec(template).options or {})
+    assert key.removeprefix('controllers.mine.') in (controller_spec(template).options or {})
 
 
 def test_it_lists_every_name() -> None:

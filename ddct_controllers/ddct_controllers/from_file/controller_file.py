@@ -17,11 +17,14 @@ from ddct_plant.files.yaml_text import parse_yaml_with_lines
 
 MOST_BINARY_BYTES = 1 << 30
 """Largest size in bytes of a library or an FMU that a controller file names."""
-SUFFIXES = ('.yaml', '.yml', '.py')
+YAML_SUFFIXES = ('.yaml', '.yml')
+SUFFIXES = (*YAML_SUFFIXES, '.py')
 FORMAT = 'ddct-linear-controller-1'
 """Value of the key `format`, where a file has one."""
 COMMON = ('format', 'name', 'provenance')
 """Optional keys of a file of every kind, beside those of its kind; only `name` is required."""
+FILE_DIGEST = 'controller_file_sha256'
+"""Key of the digest of a controller file on `run_info`."""
 _NAME = re.compile(r'[a-z][a-z0-9_]{0,39}')
 
 
@@ -37,6 +40,11 @@ def require_name(name: object) -> None:
             f'controller name {name!r}: use up to 40 lower-case letters, digits and underscores, '
             'a letter first'
         )
+
+
+def option_name(path: str) -> str:
+    """Return the option of a value in a file or an FMU: dots and brackets become underscores."""
+    return re.sub(r'\W+', '_', path).strip('_')
 
 
 @dataclass(frozen=True)
@@ -103,8 +111,12 @@ def read_controller_file(file: str) -> ControllerFile:
     with located(f'controller file {path}'):
         text = user_text(path)
         content, lines = parse_yaml_with_lines(text)
-    digest = hashlib.sha256(text.encode()).hexdigest()
-    return ControllerFile(path, content, lines, {'controller_file_sha256': digest})
+    return ControllerFile(path, content, lines, {FILE_DIGEST: text_digest(text)})
+
+
+def text_digest(text: str) -> str:
+    """Return the SHA-256 of the text of a controller file, by which a bag identifies it."""
+    return hashlib.sha256(text.encode()).hexdigest()
 
 
 def mapping(

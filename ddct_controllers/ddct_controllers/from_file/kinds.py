@@ -5,6 +5,7 @@
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from difflib import get_close_matches
+from functools import partial
 
 from ddct_controllers.from_file.c_library.controller import c_library_spec
 from ddct_controllers.from_file.controller_file import (
@@ -16,6 +17,8 @@ from ddct_controllers.from_file.controller_file import (
 from ddct_controllers.from_file.fmu.keys import fmu_spec
 from ddct_controllers.from_file.python_file import SUFFIX, python_spec
 from ddct_controllers.from_file.transfer_functions import BESIDE_LINEAR, LINEAR
+from ddct_controllers.from_file.with_options import KIND as WITH_OPTIONS
+from ddct_controllers.from_file.with_options import Find, with_options_spec
 from ddct_controllers.interface import Controller, ControllerSpec
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import close_name
@@ -32,23 +35,29 @@ KINDS: Mapping[str, Loader] = {
     'c_library': c_library_spec,
     'fmu': fmu_spec,
 }
-"""Loaders by the key of their kind in a file."""
+"""Loaders of controllers that no other one is a part of, by the key of their kind in a file."""
+_ALL = (*KINDS, WITH_OPTIONS)
 
 
-def load_spec(file: str) -> ControllerSpec[Controller]:
-    """Return the specification of the controller in a file; DdctError names file and line."""
+def load_spec(file: str, find: Find) -> ControllerSpec[Controller]:
+    """
+    Return the specification of the controller in a file; DdctError names file and line.
+
+    `find` returns another controller that the file is made of.
+    """
     if file.endswith(SUFFIX):
         return python_spec(file)
     source = read_controller_file(file)
     with source.located():
         kind = _kind(source)
-        spec = KINDS[kind](source)
+        load = KINDS.get(kind) or partial(with_options_spec, find)
+        spec = load(source)
         return replace(spec, digests=source.digests, written_in=source.place_of(kind))
 
 
 def _kind(file: ControllerFile) -> str:
-    choices = ', '.join(KINDS)
-    kinds = [key for key in mapping('', file.content) if key in KINDS]
+    choices = ', '.join(_ALL)
+    kinds = [key for key in mapping('', file.content) if key in _ALL]
     if len(kinds) == 1:
         return str(kinds[0])
     if kinds:
@@ -56,8 +65,8 @@ def _kind(file: ControllerFile) -> str:
     strange = [key for key in file.content if key not in (*COMMON, *BESIDE_LINEAR)]
     if not strange:
         raise ParameterError(f'there is no kind of controller: give one of {choices}')
-    near = [key for key in strange if get_close_matches(str(key), KINDS, n=1)]
+    near = [key for key in strange if get_close_matches(str(key), _ALL, n=1)]
     key = (near or strange)[0]
     raise ParameterError(
-        f'{key!r} is no kind of controller: {close_name(key, KINDS)}', key=str(key)
+        f'{key!r} is no kind of controller: {close_name(key, _ALL)}', key=str(key)
     )

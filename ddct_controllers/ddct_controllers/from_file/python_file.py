@@ -12,6 +12,7 @@ from types import ModuleType
 from typing import TypeVar
 
 from ddct_controllers.factories import factory_spec
+from ddct_controllers.from_file.controller_file import FILE_DIGEST, text_digest
 from ddct_controllers.interface import Controller, ControllerSpec
 from ddct_controllers.places import place_of_error
 from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError, ParameterError, require_name
@@ -35,13 +36,12 @@ def python_spec(file: str) -> ControllerSpec[Controller]:
         made = _the_one(Controller, _module(path.resolve(), text), _PAGE)  # type: ignore[type-abstract]
         require_name('controller name', made.__name__)
         spec = factory_spec(made.__name__, made, str(path))
-    digest = hashlib.sha256(text.encode()).hexdigest()
     return ControllerSpec(
         spec.name,
         spec.make,
         spec.options,
         spec.computed_from,
-        {'controller_file_sha256': digest},
+        {FILE_DIGEST: text_digest(text)},
     )
 
 

@@ -3,16 +3,24 @@
 """Linear controllers in a file: a transfer function in one of four forms, in s or in z."""
 
 import cmath
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 from typing import Any
 
 import numpy as np
 
-from ddct_controllers.from_file.controller_file import ControllerFile, mapping
-from ddct_controllers.interface import Controller, ControllerSpec
-from ddct_controllers.linear import BILINEAR, HOLD, LinearSystem, in_z, linear_spec, sampled
+from ddct_controllers.from_file.controller_file import ControllerFile, mapping, option_name
+from ddct_controllers.interface import UNSTATED, Controller, ControllerContext, ControllerSpec
+from ddct_controllers.linear import (
+    BILINEAR,
+    HOLD,
+    LinearController,
+    LinearSystem,
+    in_z,
+    sampled,
+)
 from ddct_plant.base.errors import ParameterError, require_choice, require_number
+from ddct_plant.base.options import Option
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.files.input_file import line_of
 from ddct_plant.linear.cascade import Factor
@@ -43,9 +51,7 @@ def linear_in(file: ControllerFile, kind: str) -> tuple[LinearSystem, str]:
     require_choice('discretisation', discretisation, (HOLD, BILINEAR))
     _require_period(content)
     try:
-        given = FORMS[kind](kind, content[kind])
-        if 'sample_time_s' in content:
-            given = in_z(given)
+        given = _system(kind, content[kind], in_z_already='sample_time_s' in content)
         sampled(given, discretisation)
     except ParameterError as error:
         # The error of one coefficient has a line of its own, that of the whole system has none.
@@ -53,6 +59,12 @@ def linear_in(file: ControllerFile, kind: str) -> tuple[LinearSystem, str]:
             raise
         raise ParameterError(f'{kind}: {error}', key=kind) from error
     return given, discretisation
+
+
+def _system(kind: str, form: Any, *, in_z_already: bool) -> LinearSystem:
+    """Return the system of a form; raise ParameterError that names the wrong number."""
+    given = FORMS[kind](kind, form)
+    return in_z(given) if in_z_already else given
 
 
 def _require_period(content: Mapping[str, Any]) -> None:
@@ -74,8 +86,51 @@ def _require_period(content: Mapping[str, Any]) -> None:
 
 
 def _linear_spec(kind: str, file: ControllerFile) -> ControllerSpec[Controller]:
+    """Return the controller in a file; every real number of its form is an option."""
     given, discretisation = linear_in(file, kind)
-    return linear_spec(file.name, given, discretisation)
+    form, in_z_already = file.content[kind], 'sample_time_s' in file.content
+    places = {option_name(path): path for path, _ in _numbers('', form)}
+    options = {
+        option_name(path): Option(float(value), f'{kind}{path} of the file')
+        for path, value in _numbers('', form)
+    }
+
+    def make(context: ControllerContext) -> Controller:
+        changed = {
+            places[name]: value
+            for name, value in context.gains.items()
+            if value != options[name].default
+        }
+        if not changed:
+            return LinearController(given, discretisation)
+        with file.located():
+            system = _system(kind, _with_numbers('', form, changed), in_z_already=in_z_already)
+            return LinearController(system, discretisation)
+
+    return ControllerSpec(file.name, make, options, UNSTATED)
+
+
+def _numbers(path: str, form: Any) -> Iterator[tuple[str, float]]:
+    """Yield the numbers of a form by their paths in it, such as `.num[1]`."""
+    if isinstance(form, Mapping):
+        for key, value in form.items():
+            yield from _numbers(f'{path}.{key}', value)
+    elif isinstance(form, list):
+        for place, value in enumerate(form):
+            yield from _numbers(f'{path}[{place}]', value)
+    elif isinstance(form, (int, float)) and not isinstance(form, bool):
+        yield path, form
+
+
+def _with_numbers(path: str, form: Any, changed: Mapping[str, float]) -> Any:
+    """Return a form with the numbers at some paths replaced."""
+    if isinstance(form, Mapping):
+        return {key: _with_numbers(f'{path}.{key}', form[key], changed) for key in form}
+    if isinstance(form, list):
+        return [
+            _with_numbers(f'{path}[{place}]', each, changed) for place, each in enumerate(form)
+        ]
+    return changed.get(path, form)
 
 
 def _ratio(

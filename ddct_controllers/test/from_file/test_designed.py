@@ -2,9 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Controllers in a file: read as written, refused by name, built by the registry."""
 
+import dataclasses
 import os
 import re
 
+import numpy as np
 import pytest
 from refusals import refused
 
@@ -44,9 +46,18 @@ def test_the_registry_builds_it_under_the_name_inside(write):
     assert controller_label('ls8') == 'ls8'
 
 
-def test_it_takes_no_gains(write):
-    settings = RunSettings(load_scenario('thesis', ['controllers.mine={gain: 2.0}']))
-    with refused(ParameterError, key='controllers.mine'):
+def test_its_numbers_are_options(write):
+    file = write(TEXT)
+    settings = RunSettings(load_scenario('thesis', ['controllers.mine={gain: -0.5}']))
+    changed = make_controller(file, settings).linear_model()
+    expected = LinearController(dataclasses.replace(G_C, gain=-0.5)).linear_model()
+    assert changed is not None and np.array_equal(changed.c, expected.c)
+    assert np.array_equal(changed.d, expected.d) and np.array_equal(changed.a, expected.a)
+
+
+def test_it_takes_no_other_option(write):
+    settings = RunSettings(load_scenario('thesis', ['controllers.mine={gian: 2.0}']))
+    with refused(ParameterError, key='controllers.mine.gian'):
         make_controller(write(TEXT), settings)
 
 

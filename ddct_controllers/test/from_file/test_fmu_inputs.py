@@ -69,7 +69,7 @@ def inputs_in_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
 
         def controller(file: object, unit: object, inputs: list[FmuInput], *_: object) -> Any:
             found_inputs.extend(inputs)
-            return SimpleNamespace()
+            return SimpleNamespace(code=None)
 
         monkeypatch.setattr(keys, 'FmuController', controller)
         (tmp_path / 'mine.fmu').write_bytes(b'PK')

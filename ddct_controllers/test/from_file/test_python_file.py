@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from python_controllers import PROPORTIONAL
 from refusals import refused
 
 from ddct_controllers.check.checks import FAIL, PASS, check_controller
@@ -22,25 +23,12 @@ from dataclasses import dataclass
 from ddct_controllers.interface import Command, Controller
 from ddct_plant.base.options import Option
 """
-CLASS = """
-class Mine(Controller):
-    options = {'gain': Option(0.1, 'torque per slip error', 'N m/rpm', at_least=0.0)}
-
-    def __init__(self, context):
-        self.gain = context.gains['gain']
-
-    def reset(self):
-        pass
-
-    def update(self, measurement):
-        return Command(-self.gain * measurement.slip_error_rpm)
-"""
 
 
 @pytest.fixture
 def file(tmp_path: Path) -> Path:
     path = tmp_path / 'two words.v2.py'
-    path.write_text(HEAD + CLASS)
+    path.write_text(HEAD + PROPORTIONAL)
     return path
 
 
@@ -57,7 +45,7 @@ def test_it_is_called_as_its_class_and_takes_its_options(file: Path) -> None:
 
 
 def test_it_is_identified_by_the_digest_of_its_file_and_an_edit_counts_at_once(file: Path) -> None:
-    for text in (HEAD + CLASS, (HEAD + CLASS).replace('0.1', '0.2')):
+    for text in (HEAD + PROPORTIONAL, (HEAD + PROPORTIONAL).replace('0.1', '0.2')):
         file.write_bytes(text.replace('\n', '\r\n').encode())
         made = make_controller(str(file), SETTINGS)
         digest = hashlib.sha256(file.read_bytes()).hexdigest()
@@ -68,7 +56,7 @@ def test_it_is_identified_by_the_digest_of_its_file_and_an_edit_counts_at_once(f
 def test_it_is_loaded_once_and_may_import_what_lies_beside_it(file: Path) -> None:
     beside = file.parent / 'beside_mine_7.py'
     beside.write_text('LOADED = []\n')
-    file.write_text(f'import beside_mine_7\nbeside_mine_7.LOADED.append(1)\n{HEAD}{CLASS}')
+    file.write_text(f'import beside_mine_7\nbeside_mine_7.LOADED.append(1)\n{HEAD}{PROPORTIONAL}')
     for _ in range(3):
         make_controller(str(file), SETTINGS)
     assert sys.modules['beside_mine_7'].LOADED == [1]
@@ -85,7 +73,7 @@ def test_it_is_loaded_once_and_may_import_what_lies_beside_it(file: Path) -> Non
     ids=['imported', 'other class', 'abstract', 'script'],
 )
 def test_the_class_is_the_one_controller_that_the_file_defines(file: Path, more: str) -> None:
-    file.write_text(f'{HEAD}{more}{CLASS}')
+    file.write_text(f'{HEAD}{more}{PROPORTIONAL}')
     assert controller_label(str(file)) == 'Mine'
 
 
@@ -94,7 +82,7 @@ def test_the_class_is_the_one_controller_that_the_file_defines(file: Path, more:
     [
         (HEAD, 'it defines no class of ddct_controllers.interface.Controller: write one'),
         (
-            f'{HEAD}{CLASS}{CLASS.replace("Mine", "Other")}',
+            f'{HEAD}{PROPORTIONAL}{PROPORTIONAL.replace("Mine", "Other")}',
             'it defines 2 controllers, Mine, Other: keep one in each file',
         ),
         ('import no_such_module\n', "(ModuleNotFoundError: No module named 'no_such_module', in "),
@@ -113,7 +101,7 @@ def test_a_file_without_a_controller_is_an_error_of_one_line(
 
 
 def test_a_name_of_another_controller_is_refused(file: Path) -> None:
-    file.write_text(HEAD + CLASS.replace('Mine', 'pi'))
+    file.write_text(HEAD + PROPORTIONAL.replace('Mine', 'pi'))
     with refused(ParameterError, key='name'):
         controller_spec(str(file))
 
@@ -125,7 +113,7 @@ def test_a_file_that_is_not_there_is_named(tmp_path: Path) -> None:
 
 def test_an_error_in_it_is_found_with_its_line(file: Path) -> None:
     assert {each.state for each in check_controller(str(file), SETTINGS)} <= {PASS, 'skipped'}
-    file.write_text((HEAD + CLASS).replace('-self.gain', 'self.gain'))
+    file.write_text((HEAD + PROPORTIONAL).replace('-self.gain', 'self.gain'))
     found = {each.name: each.detail for each in check_controller(str(file), SETTINGS)}
     assert f'change the sign in {file} line 14; ' in found['sign']
 
@@ -139,7 +127,7 @@ def test_an_error_in_it_is_found_with_its_line(file: Path) -> None:
     ],
 )
 def test_its_own_module_is_watched(file: Path, wrong: str, check: str, words: str) -> None:
-    text = CLASS.replace('Command(-self.gain * measurement.slip_error_rpm)', wrong)
+    text = PROPORTIONAL.replace('Command(-self.gain * measurement.slip_error_rpm)', wrong)
     file.write_text(f'import time\ncount = []\n{HEAD}{text}')
     outcomes = {each.name: each for each in check_controller(str(file), SETTINGS)}
     assert outcomes[check].state == FAIL

@@ -2,9 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The keys of a controller file for an FMU, as Simulink and Modelica tools export them."""
 
-import re
-
-from ddct_controllers.from_file.controller_file import ControllerFile, mapping
+from ddct_controllers.from_file.controller_file import ControllerFile, mapping, option_name
 from ddct_controllers.from_file.fmu.fmu_controller import FmuController
 from ddct_controllers.from_file.fmu.unit import Fmu
 from ddct_controllers.from_file.fmu.variables import (
@@ -14,6 +12,7 @@ from ddct_controllers.from_file.fmu.variables import (
     require_all_inputs,
     start_value,
 )
+from ddct_controllers.from_file.foreign.loaded import LoadedCode
 from ddct_controllers.interface import UNSTATED, Controller, ControllerContext, ControllerSpec
 from ddct_plant.base.errors import ParameterError
 
@@ -38,7 +37,7 @@ def fmu_spec(file: ControllerFile) -> ControllerSpec[Controller]:
     given = mapping('fmu.parameters', keys.get('parameters') or {})
     started = [fmu_variable(fmu, 'parameters', name) for name in given]
     options = {
-        re.sub(r'\W+', '_', variable.name).strip('_'): start_value(variable, given[variable.name])
+        option_name(variable.name): start_value(variable, given[variable.name])
         for variable in started
     }
     if len(options) < len(started):
@@ -48,11 +47,15 @@ def fmu_spec(file: ControllerFile) -> ControllerSpec[Controller]:
         )
     require_all_inputs(fmu, {each.variable.name for each in inputs} | set(given))
 
+    loaded: list[LoadedCode] = []
+
     def make(context: ControllerContext) -> Controller:
         starts = [
             (variable, context.gains[name])
             for variable, name in zip(started, options, strict=True)
         ]
-        return FmuController(file, fmu, inputs, outputs, starts)
+        controller = FmuController(file, fmu, inputs, outputs, starts)
+        loaded[:] = [controller.code]  # it stays loaded between the runs of a campaign
+        return controller
 
     return ControllerSpec(file.name, make, options, UNSTATED)

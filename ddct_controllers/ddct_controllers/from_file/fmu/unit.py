@@ -6,13 +6,19 @@ A functional mock-up unit (FMU) for co-simulation, FMI 2.0 or 3.0: its file and 
 FMPy, an optional extra, reads the file and calls the binary in it; nothing else imports it.
 """
 
-import zipfile
+import math
+import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from ddct_controllers.from_file.fmu.file_limits import names_in
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.base.timebase import PERIOD_S
+
+_IDENTIFIER = re.compile(r'[A-Za-z_]\w*', re.ASCII)
+_MOST_STEPS = 1e6
+"""Limit of the number of steps of an FMU in a period."""
 
 
 class Fmu:
@@ -23,9 +29,10 @@ class Fmu:
         self.path = path
         self.fmpy = _fmpy()
         try:
+            names = names_in(path)
             self.description = self.fmpy.read_model_description(path, validate=False)
-            with zipfile.ZipFile(path) as file:
-                names = file.namelist()
+        except ParameterError:
+            raise
         except Exception as error:
             raise ParameterError(
                 f'{path} is no FMU ({one_line(error)}): export it again'
@@ -43,7 +50,12 @@ class Fmu:
 
     def _require_binary(self, names: Sequence[str]) -> None:
         platform = self.fmpy.platform if self.is_fmi2 else self.fmpy.platform_tuple
-        identifier = self.description.coSimulation.modelIdentifier
+        identifier = self.description.coSimulation.modelIdentifier or ''
+        if not _IDENTIFIER.fullmatch(identifier):  # it is a part of the path of the binary
+            raise ParameterError(
+                f'{self.path}: its modelIdentifier is {identifier!r}: export it again, with '
+                'letters, digits and underscores'
+            )
         if f'binaries/{platform}/{identifier}{self.fmpy.sharedLibraryExtension}' in names:
             return
         parts = [name.split('/') for name in names]
@@ -59,12 +71,21 @@ class Fmu:
         stated = unit.fixedInternalStepSize or (experiment and experiment.stepSize)
         if unit.canHandleVariableCommunicationStepSize or not stated:
             return
-        step = float(stated)
-        if step > 1.5 * PERIOD_S or abs(PERIOD_S / step - round(PERIOD_S / step)) > 1e-6:
+        step = number_in(stated)
+        steps = PERIOD_S / step if step > 0.0 else math.inf
+        if not 0.5 < steps < _MOST_STEPS or abs(steps - round(steps)) > 1e-6:
             raise ParameterError(
-                f'{self.path} has a fixed step of {step:g} s: export it with {PERIOD_S} s, or a '
+                f'{self.path} has a fixed step of {stated} s: export it with {PERIOD_S} s, or a '
                 'step that goes into it'
             )
+
+
+def number_in(text: object) -> float:
+    """Return a number of the description, NaN for another text."""
+    try:
+        return float(str(text))
+    except ValueError:
+        return math.nan
 
 
 def one_line(text: object) -> str:

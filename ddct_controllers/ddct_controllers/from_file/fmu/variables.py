@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Variables of an FMU for the sections of a controller file: inputs, outputs and parameters."""
 
+import math
 import re
 from collections.abc import Mapping
 from dataclasses import replace
@@ -9,7 +10,7 @@ from operator import attrgetter
 from typing import Any
 
 from ddct_controllers.from_file.fmu.fmu_controller import CLUTCH, ENGINE, FmuInput
-from ddct_controllers.from_file.fmu.unit import Fmu
+from ddct_controllers.from_file.fmu.unit import Fmu, number_in
 from ddct_controllers.interface import Measurement
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import REQUIRED, Option, close_name
@@ -147,10 +148,22 @@ def start_value(variable: Any, value: object) -> Option:
         variable.description or 'start value in the FMU',
         variable.unit or '',
         kind=kind,
-        at_least=float(variable.min) if variable.min else None,
-        at_most=float(variable.max) if variable.max else None,
+        at_least=_end(key, 'min', variable.min),
+        at_most=_end(key, 'max', variable.max),
     )
     return replace(option, default=option.checked(key, value))
+
+
+def _end(key: str, name: str, stated: str | None) -> float | None:
+    """Return one end of a parameter's range; raise ParameterError unless it is a number."""
+    if not stated:
+        return None
+    end = number_in(stated)
+    if math.isnan(end):
+        raise ParameterError(
+            f'{key}: its {name} in the FMU is {stated!r}: export it with a number', key=key
+        )
+    return end
 
 
 def require_all_inputs(fmu: Fmu, given: set[str]) -> None:

@@ -3,13 +3,10 @@
 """Write a predictive controller and its observer as self-contained C99."""
 
 import math
-import re
-from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
-import numpy as np
-
+from ddct_controllers.c_code.folder import require_free, write_files
+from ddct_controllers.c_code.text import constants, macros, remark
 from ddct_controllers.from_file.c_library.host import HEADER as INTERFACE
 from ddct_controllers.from_file.c_library.host import TEMPLATE
 from ddct_controllers.interface import Controller
@@ -20,15 +17,12 @@ from ddct_controllers.mpc.export.controller_tables import (
 )
 from ddct_controllers.mpc.model.transmission_model import SLIP_SPEED
 from ddct_controllers.mpc.program.settings import MpcSettings
-from ddct_plant.base.errors import DdctError
-from ddct_plant.files.input_file import MOST_TEXT_BYTES, read_file
-from ddct_plant.files.output_file import write_text
 from ddct_plant.program.command_line import package_version
 from ddct_plant.scenario.settings import RunSettings
 
 HEADER, SOURCE, EXAMPLE = 'ddct_mpc.h', 'ddct_mpc.c', 'ddct_mpc_example.c'
 LIBRARY = 'ddct_mpc_library.c'
-_BRACES = str.maketrans('[]', '{}')
+_FILES = (HEADER, SOURCE, EXAMPLE, LIBRARY, INTERFACE)
 _PREFIX = 'DDCT_MPC_'
 _MARK = 'Made by design mpc --export; make it again instead of editing it.'
 
@@ -50,39 +44,9 @@ def export_controller(
     written.
     """
     predictive, observer = exportable(controller, name)
-    _require_free(folder, overwrite=overwrite)
+    require_free(folder, _FILES, _MARK, overwrite=overwrite)
     tables = controller_tables(predictive, observer)
-    texts = _texts(tables, _about(name, settings, predictive.settings))
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise DdctError(
-            f'--export {folder}: cannot be made ({error.strerror})', key='--export'
-        ) from error
-    for file, text in texts.items():
-        write_text(str(folder / file), text)
-    return [folder / file for file in texts]
-
-
-def _require_free(folder: Path, *, overwrite: bool) -> None:
-    try:
-        present = sorted(path.name for path in folder.iterdir()) if folder.exists() else []
-        if present and not overwrite:
-            raise DdctError(
-                f'--export {folder}: holds {present[0]}; choose a new folder or add --overwrite',
-                key='--export',
-            )
-        for file in {HEADER, SOURCE, EXAMPLE, LIBRARY, INTERFACE} & set(present):
-            if _MARK not in read_file(folder / file, MOST_TEXT_BYTES).decode(errors='replace'):
-                raise DdctError(
-                    f'--export {folder}: {file} is no such export; choose another folder',
-                    key='--export',
-                )
-    except OSError as error:
-        raise DdctError(
-            f'--export {folder}: cannot be read ({error.strerror}); choose another folder',
-            key='--export',
-        ) from error
+    return write_files(folder, _texts(tables, _about(name, settings, predictive.settings)))
 
 
 def _texts(tables: ControllerTables, about: list[str]) -> dict[str, str]:
@@ -135,44 +99,3 @@ def _about(name: str, settings: RunSettings, chosen: MpcSettings) -> list[str]:
 def c_part(name: str) -> str:
     """Return the text of the hand-written C in the file `name`."""
     return (Path(__file__).parent / 'c' / name).read_text(encoding='utf-8')
-
-
-def macros(values: Mapping[str, int | float], prefix: str = '') -> str:
-    """Return one `#define` per value."""
-    return '\n'.join(f'#define {prefix}{name} {_value(value)}' for name, value in values.items())
-
-
-def constants(arrays: Mapping[str, np.ndarray]) -> str:
-    """Return each vector or matrix as a `static const double` array that reads back exactly."""
-    return '\n\n'.join(_constant(name, array) for name, array in arrays.items())
-
-
-def remark(lines: list[str]) -> str:
-    """Return a comment; characters that could end it or start another are replaced."""
-    plain = (re.sub(r'[^\w .,:;()=+|/^\'-]', '_', line, flags=re.ASCII) for line in lines)
-    return '\n'.join(['/*', *(f' * {line}'.rstrip() for line in plain), ' */'])
-
-
-def _constant(name: str, array: np.ndarray) -> str:
-    sizes = ''.join(f'[{size}]' for size in array.shape)
-    rows = np.array2string(
-        np.asarray(array, dtype=float),
-        max_line_width=99,
-        separator=', ',
-        threshold=array.size + 1,  # all of them
-        formatter={'float_kind': _number},
-    )
-    return f'static const double {name}{sizes} =\n{rows.translate(_BRACES)};'
-
-
-def _value(value: int | float) -> str:
-    """Return a macro's value; a sign needs brackets, as an operator may precede it."""
-    text = str(value) if isinstance(value, int) else _number(value)
-    return f'({text})' if text.startswith('-') else text
-
-
-def _number(value: float | np.floating[Any]) -> str:
-    """Return the shortest text that reads back as the same double."""
-    if math.isinf(value):
-        return 'HUGE_VAL' if value > 0.0 else '-HUGE_VAL'
-    return repr(float(value))

@@ -4,8 +4,8 @@
 #define PERIOD_S 0.01
 #define RPM_PER_RAD_S 9.549296585513721
 
-/* N m/rpm and N m/(rpm s). */
-static const double proportional_gain = 0.1, integral_gain = 0.1;
+/* N m/rpm and N m/(rpm s). The YAML file may give global variables other values, under `parameters`. */
+double proportional_gain = 0.1, integral_gain = 0.1;
 
 typedef struct {
     double integral_rpm_s;

@@ -1,0 +1,76 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""The parameters of an FMU and of a library in C are tuned as the gains of the PI in Python."""
+
+import gc
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from small_tuning import CONTENT, made_tuning
+from support.exported_mpc import compile_c, run_settings
+from support.fmu import controller_file, skip_without_fmus
+
+from ddct_bringup.run.headless import run_headless
+from ddct_controllers.from_file.c_library import host
+from ddct_controllers.registry import controller_spec
+
+pytest.importorskip('optuna', reason='Optuna, an optional extra, is absent: make tune-extra')
+pytestmark = [pytest.mark.slow, pytest.mark.compiler]
+
+RANGES = CONTENT['parameters']
+FEW = {
+    'trials': 3,
+    'campaign': {'scenario': 'thesis', 'random': {**CONTENT['campaign']['random'], 'samples': 2}},
+}
+
+
+def fmu() -> tuple[str, list[str]]:
+    """Return a controller file with an FMU, and its names of both gains."""
+    skip_without_fmus()
+    return controller_file(2), ['pid_Kp', 'pid_Ki']
+
+
+def library() -> tuple[str, list[str]]:
+    """Return a controller file with a library in C, and its names of both gains."""
+    for name in (host.HEADER, 'my_controller.c'):
+        Path(name).write_bytes((host.TEMPLATE / name).read_bytes())
+    compile_c(Path.cwd(), '-shared', '-fPIC', 'my_controller.c', '-o', 'my_controller.so')
+    gains = '{proportional_gain: 0.2, integral_gain: 0.3}'
+    Path('in_c.yaml').write_text(
+        f'name: in_c\nc_library: {{file: my_controller.so, parameters: {gains}}}\n',
+        encoding='utf-8',
+    )
+    return 'in_c.yaml', list(RANGES)
+
+
+@pytest.mark.parametrize('written', [fmu, library])
+def test_a_foreign_controller_is_tuned_as_ours(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, written: Callable[[], tuple[str, list[str]]]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    file, names = written()
+    ranges = dict(zip(names, RANGES.values(), strict=True))
+    theirs = made_tuning(Path('theirs'), controller=file, parameters=ranges, **FEW)
+    ours = made_tuning(Path('ours'), **FEW)
+    compared = 0
+    # The first trial has the values of each file, the others those of the search.
+    for our, their in list(zip(trials(ours), trials(theirs), strict=True))[1:]:
+        assert list(our['parameters'].values()) == list(their['parameters'].values())
+        assert our['state'] == their['state']
+        if our['state'] == 'feasible':
+            assert their['objectives'] == pytest.approx(our['objectives'], rel=1e-6)
+            compared += 1
+    assert compared
+    best = str(theirs / 'best.yaml')
+    assert set(controller_spec(best).options or ()) >= set(names)
+    assert run_headless(run_settings('duration_s=1'), best).torque_request[-1] > 0.0
+    gc.collect()  # the processes of foreign code end with their controllers
+
+
+def trials(folder: Path) -> list[dict[str, Any]]:
+    """Return the trials of a folder of a tuning."""
+    found: list[dict[str, Any]] = json.loads((folder / 'trials.json').read_text(encoding='utf-8'))
+    return found
