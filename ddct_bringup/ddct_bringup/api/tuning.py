@@ -1,0 +1,98 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Tune a controller from Python."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from ddct_bringup.api.result import pandas_module
+from ddct_bringup.tuning.conduct import carry_out_tuning
+from ddct_bringup.tuning.record import TRIALS, read_entries
+from ddct_bringup.tuning.report.folder import write_tuning
+from ddct_bringup.tuning.result import FrontEntry, TuningResult
+from ddct_bringup.tuning.specification.spec import read_tuning_spec, tuning_spec_of
+from ddct_bringup.tuning.trial import TrialEntry
+from ddct_bringup.tuning.tuned_files import BEST
+from ddct_bringup.tuning.tuning import tuning_of
+from ddct_bringup.verdict.limits import packaged_limits
+from ddct_controllers.registry import controller_spec
+
+
+class TuningResults(NamedTuple):
+    """Results of a finished tuning."""
+
+    front: Any
+    """
+    pandas DataFrame with a row per trial of the front, by its number.
+
+    Columns: parameters, objectives as `development.NAME` and `held_out.NAME`, and `file`.
+    """
+    trials: Any
+    """pandas DataFrame with a row per trial, by its number: parameters, objectives, state."""
+    result: TuningResult
+    """Content of `front.json`."""
+    best: Path
+    """Controller file of the best trial."""
+
+
+def tune(
+    controller: str,
+    spec: str | Path | Mapping[str, Any],
+    out: str | Path,
+    *,
+    workers: int | None = None,
+    resume: bool = False,
+) -> TuningResults:
+    """
+    Tune a controller, by name or file, into the folder `out`, as `ddct tune` does.
+
+    `spec` is a file, the name of a packaged one, or its content as a mapping; files that a mapping
+    names are relative to the working directory.
+    """
+    pandas = pandas_module()
+    known, folder = controller_spec(controller), Path(out)
+    if isinstance(spec, Mapping):
+        given = tuning_spec_of(spec, Path.cwd(), known)
+    else:
+        given = read_tuning_spec(str(spec), known)
+    tuning = tuning_of(controller, given, packaged_limits())
+    trials = carry_out_tuning(tuning, folder, workers=workers, resume=resume)
+    result = write_tuning(tuning, folder, trials, workers=workers)
+    front = pandas.DataFrame(_front_rows(result['front'])).set_index('number')
+    tried = pandas.DataFrame(_trial_rows(read_entries(folder / TRIALS))).set_index('number')
+    return TuningResults(front, tried, result, folder / BEST)
+
+
+def _front_rows(front: Sequence[FrontEntry]) -> list[dict[str, float | str | None]]:
+    return [
+        {
+            'number': each['number'],
+            **each['parameters'],
+            **{
+                f'{name}.{key}': value
+                for name, figures in (
+                    ('development', each['development']),
+                    ('held_out', each['held_out']),
+                )
+                if figures
+                for key, value in figures['objectives'].items()
+            },
+            'file': each['file'],
+        }
+        for each in front
+    ]
+
+
+def _trial_rows(trials: Sequence[TrialEntry]) -> list[dict[str, float | str | None]]:
+    return [
+        {
+            'number': each['number'],
+            **each['parameters'],
+            **each['objectives'],
+            'state': each['state'],
+            'reason': each['reason'],
+            'runs': each['runs'],
+        }
+        for each in trials
+    ]

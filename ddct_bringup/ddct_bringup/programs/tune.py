@@ -1,0 +1,93 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Program `tune`: search the options of a controller, and write the best as a controller file."""
+
+import argparse
+import sys
+from pathlib import Path
+
+from ddct_bringup.run.options import add_workers_option
+from ddct_bringup.tuning.conduct import PROGRAM, carry_out_tuning
+from ddct_bringup.tuning.report.folder import PAGE, RESULT, write_tuning
+from ddct_bringup.tuning.report.printed import print_tuning
+from ddct_bringup.tuning.search import require_optuna
+from ddct_bringup.tuning.specification.spec import packaged_specs, read_tuning_spec
+from ddct_bringup.tuning.tuned_files import BEST
+from ddct_bringup.tuning.tuning import tuning_of
+from ddct_bringup.verdict.limits import packaged_limits
+from ddct_controllers.registry import controller_spec
+from ddct_plant.files.output_file import require_place
+from ddct_plant.program.command_line import ProgramParser, run_program, show_and_write
+from ddct_plant.program.supervision import stop_signals
+
+_EPILOG = f"""\
+examples:
+  ddct tune --controller pi --spec pi_launches --out tuned/pi      a packaged specification
+  ddct tune --controller mine.yaml --spec mine_tuning.yaml --out tuned/mine
+  ddct tune --controller mine.yaml --spec mine_tuning.yaml --out tuned/mine --resume
+  ddct compare --controllers pi,tuned/pi/{BEST} --headless --out runs/tuned
+
+SPEC has the options with their ranges, objectives, constraints and cases: docs/use/tune.md.
+DIR/{BEST} is the best as a controller file, DIR/front/ has the others of the front, DIR/{PAGE}
+shows the front, what decides, convergence, and the figures on held-out cases; DIR/{RESULT} has the
+same as JSON. After an interruption --resume computes what is missing, with the same result. It
+needs Optuna: make tune-extra.
+"""
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Run the program and return its exit code."""
+    return run_program(PROGRAM, _tune, argv)
+
+
+def _tune(argv: list[str]) -> int:
+    options = _parser().parse_args(argv)
+    require_place('--json', options.json)
+    require_optuna()
+    spec = read_tuning_spec(options.spec, controller_spec(options.controller))
+    tuning = tuning_of(options.controller, spec, packaged_limits())
+    with stop_signals() as stops:
+
+        def stopped() -> bool:
+            return bool(stops)
+
+        trials = carry_out_tuning(
+            tuning, options.out, workers=options.workers, resume=options.resume, stopped=stopped
+        )
+        result = write_tuning(
+            tuning, options.out, trials, workers=options.workers, stopped=stopped
+        )
+
+    def show() -> None:
+        print_tuning(result)
+        print(options.out / BEST)
+        print(options.out / PAGE, flush=True)
+
+    show_and_write(options.json, result, show)
+    return 0
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = ProgramParser(
+        prog=PROGRAM,
+        description='Search the options of a controller against objectives, headless.',
+        epilog=_EPILOG,
+    )
+    parser.add_argument(
+        '--controller', required=True, metavar='NAME|FILE', help='a controller or its file'
+    )
+    parser.add_argument(
+        '--spec',
+        required=True,
+        metavar='SPEC.yaml',
+        help=f'what is searched and wanted; packaged: {", ".join(packaged_specs())}',
+    )
+    parser.add_argument('--out', type=Path, metavar='DIR', required=True, help='folder for it')
+    parser.add_argument('--resume', action='store_true', help='go on with the tuning in DIR')
+    add_workers_option(parser)
+    parser.add_argument('--json', metavar='FILE', help="write the result; '-' is standard output")
+    return parser
+
+
+if __name__ == '__main__':
+    sys.exit(main())

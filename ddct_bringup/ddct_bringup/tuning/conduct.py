@@ -1,0 +1,194 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Carry out a tuning: batches of trials, ended early where that is certain, each recorded."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from ddct_bringup.campaign.conduct import RESUME, SHARDS, require_going_on
+from ddct_bringup.digests.digest_file import TUNING, Digests
+from ddct_bringup.digests.files import altered_files, require_unaltered
+from ddct_bringup.digests.writing import begin_campaign_digests, keep_digests
+from ddct_bringup.run.output_folder import (
+    MARKER,
+    locked_folders,
+    mark_folder,
+    require_ours_or_empty,
+)
+from ddct_bringup.tuning.evaluation import TrialRuns, evaluation
+from ddct_bringup.tuning.front import dominates, why_all_invalid
+from ddct_bringup.tuning.loop_quantities import update_time
+from ddct_bringup.tuning.manifest import MANIFEST, TuningManifest
+from ddct_bringup.tuning.record import batch_files, read_batch, write_batch
+from ddct_bringup.tuning.search import BATCH, Search
+from ddct_bringup.tuning.specification.development import parts_of
+from ddct_bringup.tuning.specification.goals import UPDATE_TIME
+from ddct_bringup.tuning.specification.parameters import Values
+from ddct_bringup.tuning.trial import DOMINATED, FEASIBLE, Trial
+from ddct_bringup.tuning.tuning import Tuning
+from ddct_plant.base.errors import DdctError
+from ddct_plant.program.command_line import complain
+from ddct_plant.program.progress import Progress
+
+PROGRAM = 'ddct tune'
+_HOPELESS = 2 * BATCH
+"""Number of trials after which a tuning ends if every run so far is invalid."""
+
+
+def carry_out_tuning(
+    tuning: Tuning,
+    out: Path,
+    *,
+    workers: int | None = None,
+    resume: bool = False,
+    stopped: Callable[[], bool] = lambda: False,
+) -> list[Trial]:
+    """
+    Compute the trials of a tuning into a folder and return them.
+
+    Raise DdctError for unusable arguments, another tuning in the folder, and where every run is
+    invalid; KeyboardInterrupt when `stopped()` becomes true. What is done stays, and `resume`
+    continues with it.
+    """
+    search = Search(tuning.spec, tuning.present)
+    with locked_folders(out):
+        digests = _begin(tuning, out, resume=resume)
+        with evaluation(tuning, workers, stopped) as computed:
+            return _Search(tuning, out, search, computed, digests).trials()
+
+
+def _begin(tuning: Tuning, out: Path, *, resume: bool) -> Digests:
+    """Write the manifest, or require the same one in the folder; return the folder's digests."""
+    manifest = TuningManifest.of(tuning)
+    require_ours_or_empty(out)
+    if (out / MANIFEST).exists():
+        if not resume:
+            raise DdctError(
+                f'{out} holds a tuning: go on with --resume, or choose another --out',
+                key='--resume',
+            )
+        TuningManifest.read(out).require_same(manifest, out)
+        require_unaltered(out, [MANIFEST])
+    elif resume:
+        raise DdctError('there is nothing to go on with: leave --resume out', place=out)
+    else:
+        if out.is_dir() and {each.name for each in out.iterdir()} - {MARKER, SHARDS}:
+            raise DdctError(f'{out} holds other results: choose another --out', key='--out')
+        tuning.require_sound()
+        mark_folder(out)
+        (out / SHARDS).mkdir(exist_ok=True)
+        manifest.write(out)
+    return begin_campaign_digests(out, SHARDS, one_machine=True, kind=TUNING)
+
+
+@dataclass
+class _Search:
+    """Batches of the search: those that are not recorded are computed, and their results kept."""
+
+    tuning: Tuning
+    out: Path
+    search: Search
+    computed: TrialRuns
+    digests: Digests
+    """Digests of the batches that were recorded before."""
+
+    def trials(self) -> list[Trial]:
+        """Return all trials."""
+        spec = self.tuning.spec
+        found: list[Trial] = []
+        progress = Progress('trials', spec.trials)
+        for batch, size in enumerate(batches_of(spec.trials)):
+            require_going_on(self.computed.stopped)
+            suggested = self.search.ask(size)
+            trials = self._recorded(batch)
+            if trials is None:
+                trials = computed_batch(self.tuning, self.computed, suggested, found, self._timed)
+                write_batch(self.out, batch, trials, spec, self.tuning.campaign.spec)
+                keep_digests(batch_files(self.out, batch))
+            elif {each.number: dict(each.values) for each in trials} != suggested:
+                raise DdctError(
+                    f'{self.out} has other trials than this search gives: it was altered, or '
+                    'computed with another Optuna: choose another --out',
+                    key='--out',
+                )
+            self.search.tell(trials)
+            found += trials
+            progress.update(len(found))
+            if len(found) >= _HOPELESS and (why := why_all_invalid(found)):
+                raise DdctError(f'{why}: mend the controller, or its ranges; {RESUME}')
+        progress.end()
+        return found
+
+    def _recorded(self, batch: int) -> list[Trial] | None:
+        """Return the trials of a batch that was recorded before; report one that was altered."""
+        names = [file.relative_to(self.out).as_posix() for file in batch_files(self.out, batch)]
+        if not all(name in self.digests.files for name in names):
+            return None
+        if altered := altered_files(self.out, self.digests, names):
+            complain(PROGRAM, f'{altered[0]}: altered since it was computed: it is computed again')
+            return None
+        return read_batch(self.out, batch)
+
+    def _timed(self, trial: Trial) -> Trial:
+        """Return a trial with its update time, where a constraint needs it."""
+        if not any(goal.name == UPDATE_TIME for goal in self.tuning.spec.goals):
+            return trial
+        campaign = self.tuning.with_values(trial.values)
+        measured = update_time(campaign, self.tuning.cases[0])
+        return replace(trial, further={**trial.further, **measured})
+
+
+def batches_of(trials: int) -> list[int]:
+    """Return the numbers of trials of all batches."""
+    return [min(BATCH, trials - first) for first in range(0, trials, BATCH)]
+
+
+def computed_batch(
+    tuning: Tuning,
+    computed: TrialRuns,
+    suggested: Mapping[int, Values],
+    before: Sequence[Trial],
+    timed: Callable[[Trial], Trial],
+) -> list[Trial]:
+    """
+    Return the trials of a batch; `before` are all trials of earlier batches.
+
+    After each part of the cases a trial ends if it breaks a constraint, or if one of `before` is
+    better in every objective, whatever the rest of its runs come to. So no trial of the front ends
+    early. The first trial with the present values runs in all cases, to be compared. `timed` adds
+    the update time to a trial that keeps all else.
+    """
+    spec, cases = tuning.spec, tuning.cases
+    rivals = [each.costs(spec, len(cases)) for each in before if each.state == FEASIBLE]
+    loops = computed.loops(list(suggested.values()))
+    trials = [
+        Trial(number, values, further=loop).checked(spec, len(cases))
+        for (number, values), loop in zip(suggested.items(), loops, strict=True)
+    ]
+    for part in parts_of(cases):
+        going = [each for each in trials if each.state == FEASIBLE or _is_present(tuning, each)]
+        rows = computed.rows([(each.values, case) for each in going for case in part])
+        for place, each in enumerate(going):
+            of_trial = rows[place * len(part) : (place + 1) * len(part)]
+            trials[trials.index(each)] = _ended(tuning, each.with_rows(of_trial), rivals)
+    return [
+        timed(each).checked(spec, len(cases)) if each.state == FEASIBLE else each
+        for each in trials
+    ]
+
+
+def _is_present(tuning: Tuning, trial: Trial) -> bool:
+    return trial.number == 0 and bool(tuning.present)
+
+
+def _ended(tuning: Tuning, trial: Trial, rivals: Sequence[Sequence[float]]) -> Trial:
+    """Return a trial after a part of its runs, ended where that is certain."""
+    cases = len(tuning.cases)
+    trial = trial.checked(tuning.spec, cases)
+    if trial.state != FEASIBLE or len(trial.rows) == cases:
+        return trial
+    costs = trial.costs(tuning.spec, cases)
+    if any(dominates(rival, costs) for rival in rivals) and not _is_present(tuning, trial):
+        return trial.ended(DOMINATED, 'another one is better in every objective')
+    return trial

@@ -1,0 +1,73 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""The front of a tuning, the best trial on it, and why there is none."""
+
+from collections import Counter
+from collections.abc import Sequence
+
+import numpy as np
+
+from ddct_bringup.tuning.specification.spec import TuningSpec
+from ddct_bringup.tuning.trial import FEASIBLE, INFEASIBLE, Trial
+
+
+def dominates(first: Sequence[float], second: Sequence[float]) -> bool:
+    """Return whether the first costs are nowhere above the second ones, and below in one."""
+    pairs = list(zip(first, second, strict=True))
+    return all(ours <= theirs for ours, theirs in pairs) and any(a < b for a, b in pairs)
+
+
+def front_of(trials: Sequence[Trial], spec: TuningSpec) -> list[Trial]:
+    """Return the feasible trials that no other feasible one dominates, by the first objective."""
+    costs = {
+        each.number: each.costs(spec, len(each.rows)) for each in trials if each.state == FEASIBLE
+    }
+    front = [
+        each
+        for each in trials
+        if each.number in costs
+        and not any(dominates(other, costs[each.number]) for other in costs.values())
+    ]
+    return sorted(front, key=lambda each: (costs[each.number], each.number))
+
+
+def best_of(front: Sequence[Trial], spec: TuningSpec) -> Trial:
+    """
+    Return the trial of a front that is nearest to the best value of every objective.
+
+    Each objective counts from 0, its best value on the front, to 1, its worst one there; of equals
+    the first trial is returned.
+    """
+    costs = np.array([each.costs(spec, len(each.rows)) for each in front])
+    low, high = costs.min(axis=0), costs.max(axis=0)
+    span = np.where(high > low, high - low, 1.0)
+    distances = np.round(np.linalg.norm((costs - low) / span, axis=1), 12)
+    return min(zip(distances, front, strict=True), key=lambda pair: (pair[0], pair[1].number))[1]
+
+
+def why_all_invalid(trials: Sequence[Trial]) -> str:
+    """Return the most frequent reason if every run of every trial is invalid, else nothing."""
+    rows = [row for each in trials for row in each.rows]
+    if not rows or any(row['valid'] for row in rows):
+        return ''
+    reason, _ = Counter(str(row['reason']) for row in rows).most_common(1)[0]
+    return f'every run of all {len(trials)} trials is invalid, such as: {reason}'
+
+
+def why_no_front(trials: Sequence[Trial], spec: TuningSpec) -> str:
+    """Return what most trials break, with the value that comes nearest."""
+    if why := why_all_invalid(trials):
+        return why
+    reasons = Counter(each.reason for each in trials if each.state == INFEASIBLE)
+    title, count = reasons.most_common(1)[0]
+    nearest = ''
+    for constraint in spec.constraints:
+        values = [each.estimate(constraint.goal, spec) for each in trials]
+        known = [value for value in values if value is not None]
+        if constraint.title == title and known:
+            best = min(known, key=constraint.violation)
+            nearest = f'; the nearest value is {best:.4g}'
+    return (
+        f'no trial keeps all constraints: {count} of {len(trials)} break {title}{nearest}: loosen '
+        'it, or widen the ranges'
+    )

@@ -1,0 +1,106 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""`tuning.json`: the inputs of a tuning, used to go on with it and to repeat it."""
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, fields
+from pathlib import Path
+from typing import Any
+
+from ddct_bringup.benchmark.judged import Judged
+from ddct_bringup.digests.code import code_digest
+from ddct_bringup.digests.manifests import manifest_content, require_same_inputs
+from ddct_bringup.tuning.search import require_optuna
+from ddct_bringup.tuning.specification.spec import TuningSpec, tuning_spec_of
+from ddct_bringup.tuning.tuning import Tuning
+from ddct_bringup.verdict.limits import Limits
+from ddct_controllers.registry import controller_spec
+from ddct_plant.files.output_file import write_json
+from ddct_plant.program.command_line import package_version
+
+MANIFEST = 'tuning.json'
+SCHEMA_VERSION = 1
+"""Schema version of the manifest."""
+
+
+@dataclass(frozen=True)
+class TuningManifest:
+    """Inputs of a tuning."""
+
+    schema_version: int
+    version: str
+    """Version of the packages."""
+    code_digest: str
+    optuna: str
+    """Version of Optuna."""
+    limits: Mapping[str, Any]
+    """Name, digest and schema version of the limits by which runs are judged."""
+    controller: Mapping[str, Any]
+    """Name of the controller, how it was given, and the digests of its files."""
+    campaign_digest: str
+    """Digest of the cases and of the files that they name."""
+    spec: Mapping[str, Any]
+    """Specification as given."""
+    folder: str
+    """Folder that files of the specification are relative to."""
+
+    @classmethod
+    def of(cls, tuning: Tuning) -> 'TuningManifest':
+        """Return the manifest of a tuning by this version."""
+        judged = tuning.judged
+        return cls(
+            schema_version=SCHEMA_VERSION,
+            version=package_version(),
+            code_digest=code_digest(),
+            optuna=require_optuna(),
+            limits=dict(tuning.limits.origin),
+            controller={
+                'name': judged.name,
+                'chosen': judged.chosen,
+                'folder': str(judged.folder),
+                'digests': dict(judged.digests),
+            },
+            campaign_digest=tuning.campaign.digest(),
+            spec=dict(tuning.spec.content),
+            folder=str(tuning.spec.folder),
+        )
+
+    @classmethod
+    def read(cls, out: Path) -> 'TuningManifest':
+        """Return the manifest in a folder; raise DdctError without a valid one."""
+        with manifest_content(out / MANIFEST, SCHEMA_VERSION, 'tuning') as content:
+            return cls(**{each.name: content[each.name] for each in fields(cls)})
+
+    def write(self, out: Path) -> None:
+        """Write the manifest into a folder; raise DdctError when that fails."""
+        write_json(str(out / MANIFEST), asdict(self))
+
+    def tuning(self, limits: Limits, files: Path | None = None) -> Tuning:
+        """Return the tuning; its files are in `files` if they were moved. Raise DdctError."""
+        judged = Judged(
+            self.controller['name'],
+            self.controller['chosen'],
+            files or Path(self.controller['folder']),
+            self.controller['digests'],
+        )
+        spec: TuningSpec = tuning_spec_of(
+            self.spec, files or Path(self.folder), controller_spec(judged.path)
+        )
+        return Tuning(judged, spec, limits)
+
+    def require_same(self, other: 'TuningManifest', out: Path) -> None:
+        """Raise DdctError with the first difference of another tuning from this one, in `out`."""
+        require_same_inputs(asdict(self), asdict(other), _DIFFERENCES, 'tuning', out)
+
+
+_DIFFERENCES = {
+    'schema_version': 'of another version',
+    'version': 'of another release',
+    'code_digest': 'of another release: its code is another one',
+    'optuna': 'with another version of Optuna',
+    'limits': 'by other limits',
+    'controller': 'of another controller, or its file has changed since',
+    'spec': 'with another specification',
+    'campaign_digest': 'with other cases: a file of them has changed since',
+}
+"""Meaning of another value of each key of the manifest, in the order of the checks."""

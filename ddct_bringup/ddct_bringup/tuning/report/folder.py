@@ -1,0 +1,77 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Write what comes out of the trials into the folder of a tuning."""
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from ddct_bringup.digests.code import code_digest
+from ddct_bringup.digests.writing import finish_campaign_digests
+from ddct_bringup.run.output_folder import locked_folders
+from ddct_bringup.tuning.front import best_of, front_of, why_no_front
+from ddct_bringup.tuning.held_out import (
+    compute_held_out,
+    held_out_campaign,
+    held_out_trials,
+    judged_trials,
+)
+from ddct_bringup.tuning.record import RUNS, TRIALS, rows_bytes
+from ddct_bringup.tuning.report.page import tuning_page
+from ddct_bringup.tuning.result import TuningResult, result_of
+from ddct_bringup.tuning.trial import Trial
+from ddct_bringup.tuning.tuned_files import write_tuned_files
+from ddct_bringup.tuning.tuning import Tuning
+from ddct_plant.base.errors import DdctError
+from ddct_plant.files.output_file import write_bytes, write_json, write_text
+from ddct_plant.files.yaml_text import dump_yaml
+from ddct_plant.program.command_line import package_version
+
+RESULT, PAGE = 'front.json', 'report.html'
+
+
+def write_tuning(
+    tuning: Tuning,
+    out: Path,
+    trials: Sequence[Trial],
+    *,
+    workers: int | None = None,
+    stopped: Callable[[], bool] = lambda: False,
+) -> TuningResult:
+    """
+    Write the record, the controller files, the held-out runs, the result and the page.
+
+    Raise DdctError where no trial keeps all constraints; the record is written all the same.
+    """
+    spec = tuning.spec
+    with locked_folders(out, shared=True):
+        write_json(str(out / TRIALS), [each.entry(spec) for each in trials])
+        write_bytes(str(out / RUNS), rows_bytes(trials, tuning.campaign.spec))
+        front = front_of(trials, spec)
+        if not front:
+            finish_campaign_digests(out)
+            raise DdctError(why_no_front(trials, spec))
+        judged = judged_trials(front, best_of(front, spec), trials)
+        write_tuned_files(tuning, out, judged, best_of(front, spec))
+        campaign = held_out_campaign(tuning, out, judged, code_digest())
+        compute_held_out(tuning, campaign, out, workers, stopped)
+        result = result_of(
+            tuning, trials, held_out_trials(tuning, out, judged), campaign.spec.root
+        )
+        write_json(str(out / RESULT), result)
+        entries = [each.entry(spec) for each in trials]
+        write_text(str(out / PAGE), tuning_page(result, entries, _facts(tuning)))
+        finish_campaign_digests(out)
+    return result
+
+
+def _facts(tuning: Tuning) -> dict[str, str]:
+    """Return the origin of a tuning as text by label."""
+    digests = [f'{key} {value}' for key, value in tuning.judged.digests.items()]
+    return {
+        'controller': ', '.join([tuning.judged.chosen, *digests]),
+        'development seed': str(tuning.campaign.spec.root),
+        'seed of the search': str(tuning.spec.seed),
+        'limits': f'{tuning.limits.origin.get("name")}, {tuning.limits.origin.get("digest")}',
+        'version': f'{package_version()}, code {code_digest()}',
+        'specification': dump_yaml(dict(tuning.spec.content)),
+    }

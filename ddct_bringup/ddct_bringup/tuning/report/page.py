@@ -1,0 +1,71 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""The page of a tuning."""
+
+from base64 import b64encode
+from collections.abc import Mapping, Sequence
+from itertools import combinations
+
+from markupsafe import Markup
+from matplotlib.figure import Figure
+
+from ddct_bringup.campaign_report.texts import p_text
+from ddct_bringup.report.page_parts import MARKER, number_text, page_part, page_template
+from ddct_bringup.tuning.report import texts
+from ddct_bringup.tuning.report.figures import (
+    convergence_figure,
+    front_figure,
+    sensitivity_figure,
+)
+from ddct_bringup.tuning.result import TuningResult
+from ddct_bringup.tuning.trial import TrialEntry
+from ddct_controllers.design.drawing.chart_style import chart_bytes, chart_style
+from ddct_plant.program.command_line import package_version
+
+_ROOM, _REPORT = 'ddct_bringup.tuning.report', 'ddct_bringup.report'
+_CAMPAIGN = 'ddct_bringup.campaign_report'
+
+
+def tuning_page(
+    result: TuningResult, trials: Sequence[TrialEntry], facts: Mapping[str, str]
+) -> str:
+    """Return the HTML page of a tuning; `facts` describe its origin."""
+    with chart_style():
+        fronts = [
+            (
+                f'{goals[0]["title"]} and {goals[1]["title"]}',
+                _picture(front_figure(result, trials, *at)),
+            )
+            for at in combinations(range(len(result['objectives'])), 2)
+            for goals in [[result['objectives'][place] for place in at]]
+        ]
+        convergence = {
+            goal['name']: _picture(convergence_figure(result, goal))
+            for goal in result['objectives']
+        }
+        sensitivity = {
+            goal['name']: _picture(sensitivity_figure(result, trials, goal))
+            for goal in result['objectives']
+        }
+    return page_template(_ROOM, 'tuning.html.j2').render(
+        marker=Markup(MARKER),
+        style=page_part(_REPORT, 'page.css')
+        + page_part(_CAMPAIGN, 'campaign.css')
+        + page_part(_ROOM, 'tuning.css'),
+        script=page_part(_REPORT, 'common.js'),
+        result=result,
+        fronts=fronts,
+        convergence=convergence,
+        sensitivity=sensitivity,
+        notes=list(texts.notes_of(result)),
+        texts=texts,
+        p_text=p_text,
+        number_text=number_text,
+        facts=facts,
+        version=package_version(),
+    )
+
+
+def _picture(figure: Figure) -> str:
+    """Return a figure as SVG, encoded for a data URI."""
+    return b64encode(chart_bytes(figure, 'svg')).decode()

@@ -1,0 +1,57 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Tables of a tuning for the terminal."""
+
+from collections.abc import Iterator
+
+from ddct_bringup.tuning.report.texts import goal_text, notes_of
+from ddct_bringup.tuning.result import FrontEntry, TuningResult
+from ddct_plant.base.errors import printable
+from ddct_plant.program.table import UNDEFINED, Table, print_tables
+
+
+def print_tuning(result: TuningResult) -> None:
+    """Print the front with its held-out figures, and what decides the objectives."""
+    print_tables(list(_tables(result)))
+    for note in notes_of(result):
+        print(printable(note))
+
+
+def _tables(result: TuningResult) -> Iterator[Table]:
+    goals = [*result['objectives'], *result['constraints']]
+    entries = [(_label(result, each), each) for each in result['front']]
+    if result['before']:
+        entries.append(('before', result['before']))
+    rows = [
+        (label, where, *(f'{value:g}' for value in entry['parameters'].values()), *cells)
+        for label, entry in entries
+        for where, figures in (
+            ('development', entry['development']),
+            ('held out', entry['held_out']),
+        )
+        if figures
+        for cells in [
+            [
+                goal_text(goal, figures['objectives' if goal['limit'] is None else 'constraints'])
+                for goal in goals
+            ]
+        ]
+    ]
+    headers = ('trial', 'cases', *result['parameters'], *(each['title'] for each in goals))
+    yield Table(f'Front of {result["controller"]}', headers, rows, numbers=_numbers(len(headers)))
+    effects = [
+        (goal['title'], each['parameter'], f'{each["explained"]:.2f}', f'{each["p_value"]:.3f}')
+        for goal in result['objectives']
+        for each in result['sensitivity'][goal['name']]
+    ]
+    if effects:
+        yield Table('What decides', ('objective', 'parameter', 'explains', 'p'), effects)
+
+
+def _label(result: TuningResult, entry: FrontEntry) -> str:
+    best = ' (best)' if entry['number'] == result['best'] else ''
+    return f'{entry["number"]}{best}' or UNDEFINED
+
+
+def _numbers(count: int) -> list[bool]:
+    return [place > 1 for place in range(count)]

@@ -1,0 +1,57 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Definitions and texts of a tuning for its page and the terminal."""
+
+from collections.abc import Iterator, Mapping
+
+from ddct_bringup.benchmark.gaps import OF_QUANTITIES, OF_SHARES, SUCCESS
+from ddct_bringup.report.page_parts import number_text
+from ddct_bringup.tuning.result import GoalEntry, TuningResult
+from ddct_bringup.tuning.sensitivity import FEWEST
+from ddct_bringup.tuning.specification.goals import KNOWN
+
+RULES = {
+    'development': 'The cases on which the trials ran. The search has chosen among many trials by '
+    'these very runs, so that their figures flatter.',
+    'held out': 'Cases of the same kinds whose seed follows from the digests of the tuned files '
+    'and of the release. No trial has seen them: these are the figures to expect.',
+    'front': 'Trials that keep all constraints, and that no other such trial equals in every '
+    'objective and betters in one.',
+    'best': 'The trial of the front that is nearest to the best value of every objective, each '
+    'counted from 0 to 1 over the front. The files of the others are in front/.',
+    'ended early': 'After a quarter and half of the cases a trial ends if it breaks a constraint '
+    'or another trial betters it in every objective, whatever its other runs come to. So no trial '
+    'of the front is lost.',
+    'explains': 'The share of the variance of the ranks of all trials that the parameter explains '
+    'by itself. The search tries good values more often, so that the share is that of the trials, '
+    'not of the whole range.',
+    'gap': f'{OF_SHARES} for the share of successes, {OF_QUANTITIES} for the quantities of '
+    'engaged runs; p is below 0.05 over the number of figures where the difference is beyond '
+    'chance.',
+}
+"""Definitions by term."""
+
+
+def gap_name(name: str) -> str:
+    """Return the name of a gap in texts."""
+    return 'share of successes' if name == SUCCESS else KNOWN[name].symbol
+
+
+def goal_text(goal: GoalEntry, values: Mapping[str, float | None]) -> str:
+    """Return the value of an objective or a constraint as text."""
+    return number_text(values[goal['name']], goal['form'])
+
+
+def notes_of(result: TuningResult) -> Iterator[str]:
+    """Yield what a reader should know before the tables."""
+    best = next(each for each in result['front'] if each['number'] == result['best'])
+    if best['held_out'] and not best['held_out']['keeps_constraints']:
+        yield 'the best trial keeps the constraints on development cases, not on held-out ones'
+    if any(each['differs'] for each in result['gaps']):
+        yield 'the best trial differs on held-out cases beyond chance'
+    if result['before'] is None:
+        yield 'the values from before are outside of the ranges, and were not tried'
+    if result['trials'] < FEWEST:
+        yield f'fewer than {FEWEST} trials: too few to say which parameters decide'
+    saved = result['all_runs'] - result['runs']
+    yield f'{saved} of {result["all_runs"]} runs were saved by trials that ended early'

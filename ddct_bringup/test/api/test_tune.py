@@ -1,0 +1,25 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""A tuning from Python: tables of the front and of the trials."""
+
+from pathlib import Path
+
+import pytest
+from small_tuning import CONTENT
+
+from ddct_bringup.api import run, tune
+
+pytestmark = pytest.mark.slow
+
+
+def test_the_front_and_the_trials_are_tables(tmp_path: Path) -> None:
+    pytest.importorskip('pandas', reason='an extra')
+    found = tune('pi', {**CONTENT, 'trials': 10}, tmp_path / 'out', workers=1)
+    assert list(found.trials.index) == list(range(10))
+    assert found.front.index.isin(found.trials.index).all()
+    best = found.front.loc[found.result['best']]
+    name = next(iter(CONTENT['objectives']))
+    assert best[f'development.{name}'] == found.trials.loc[best.name, name]
+    assert run(str(found.best), duration=0.7).valid
+    again = tune('pi', {**CONTENT, 'trials': 10}, tmp_path / 'out', workers=1, resume=True)
+    assert again.front.equals(found.front)

@@ -1,0 +1,14 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""A tuning that is carried out once."""
+
+from pathlib import Path
+
+import pytest
+from small_tuning import made_tuning
+
+
+@pytest.fixture(scope='session')
+def finished(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return the folder of a finished tuning, which no test changes."""
+    return made_tuning(tmp_path_factory.mktemp('tuning') / 'out')

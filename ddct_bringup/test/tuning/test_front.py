@@ -1,0 +1,63 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""The front, the best trial on it, and the reason why there is none."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import pytest
+from small_tuning import tuning
+
+from ddct_bringup.tuning.front import best_of, front_of, why_no_front
+from ddct_bringup.tuning.trial import FEASIBLE, INFEASIBLE, Trial
+
+SPEC = tuning().spec
+
+
+def trial(number: int, *values: float, state: str = FEASIBLE, **row: Any) -> Trial:
+    """Return a trial of one run with these objectives."""
+    names = [goal.name for goal in SPEC.objectives]
+    made = {'verdict_state': 'engaged', 'valid': True, 'reason': '', **row}
+    rows = [{**made, **dict(zip(names, values, strict=True))}]
+    return Trial(number, {}, rows, {}, state, 'engaged at least 0.9' if state != FEASIBLE else '')
+
+
+def numbers(trials: Sequence[Trial]) -> list[int]:
+    return [each.number for each in trials]
+
+
+def test_the_front_has_what_no_other_dominates_by_the_first_objective() -> None:
+    trials = [trial(0, 3.0, 1.0), trial(1, 1.0, 3.0), trial(2, 3.0, 3.0), trial(3, 2.0, 2.0)]
+    assert numbers(front_of(trials, SPEC)) == [1, 3, 0]
+
+
+def test_an_infeasible_trial_is_not_on_the_front_and_pushes_none_off() -> None:
+    trials = [trial(0, 3.0, 1.0), trial(1, 1.0, 0.5, state=INFEASIBLE)]
+    assert numbers(front_of(trials, SPEC)) == [0]
+
+
+def test_equal_trials_are_both_on_the_front() -> None:
+    assert numbers(front_of([trial(0, 1.0, 1.0), trial(1, 1.0, 1.0)], SPEC)) == [0, 1]
+
+
+def test_the_best_is_nearest_to_the_best_of_every_objective() -> None:
+    front = [trial(4, 1.0, 300.0), trial(5, 2.0, 120.0), trial(6, 11.0, 100.0)]
+    assert best_of(front, SPEC).number == 5
+    assert best_of(front[:1], SPEC).number == 4
+
+
+@pytest.mark.parametrize(
+    ('trials', 'words'),
+    [
+        (
+            [trial(0, 1.0, 1.0, state=INFEASIBLE, valid=False, reason='it fell over')],
+            'it fell over',
+        ),
+        (
+            [trial(0, 1.0, 1.0, state=INFEASIBLE, verdict_state='stalled')],
+            'engaged at least 0.9; the nearest value is 0',
+        ),
+    ],
+)
+def test_without_a_front_the_reason_is_named(trials: list[Trial], words: str) -> None:
+    assert words in why_no_front(trials, SPEC)

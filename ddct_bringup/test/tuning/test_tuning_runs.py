@@ -1,0 +1,262 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""A tuning gives the same front for any workers, after a kill, and to its repetition."""
+
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import pytest
+from refusals import refused
+from small_tuning import tuning
+from verified import edit_json_with_digest
+
+from ddct_bringup.api import run
+from ddct_bringup.campaign.rows import Row
+from ddct_bringup.programs.tune import main
+from ddct_bringup.tuning import conduct, search
+from ddct_bringup.tuning.conduct import carry_out_tuning, computed_batch
+from ddct_bringup.tuning.evaluation import TrialRuns
+from ddct_bringup.tuning.front import front_of
+from ddct_bringup.tuning.record import RUNS, read_batch, trials_of
+from ddct_bringup.tuning.report.folder import write_tuning
+from ddct_bringup.tuning.trial import DOMINATED, FEASIBLE, INFEASIBLE, Trial
+from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.scenario.file import load_scenario, scenario_to_yaml
+
+SAME = ('front.json', 'trials.json', RUNS, 'best.yaml', 'held_out/results.parquet')
+
+
+def bytes_of(folder: Path) -> list[bytes]:
+    return [(folder / name).read_bytes() for name in SAME]
+
+
+def written(tuned: Any, out: Path, **options: Any) -> Path:
+    write_tuning(tuned, out, carry_out_tuning(tuned, out, **options), workers=1)
+    return out
+
+
+def test_any_number_of_workers_gives_the_same_bytes(finished: Path, tmp_path: Path) -> None:
+    assert bytes_of(written(tuning(), tmp_path / 'out', workers=1)) == bytes_of(finished)
+
+
+def test_another_seed_searches_elsewhere(finished: Path, tmp_path: Path) -> None:
+    other = tuning(seed=4, trials=2)
+    trials = carry_out_tuning(other, tmp_path / 'out', workers=1)
+    known = read_batch(finished, 0)
+    assert known is not None
+    assert trials[0].values == known[0].values  # those from before
+    assert trials[1].values != known[1].values
+
+
+@pytest.mark.parametrize('place', ['rows', 'entries', 'between'])
+def test_a_killed_tuning_goes_on_to_the_same_bytes(
+    finished: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, place: str
+) -> None:
+    out, calls = tmp_path / 'out', []
+
+    def killed(*arguments: Any) -> None:
+        calls.append(arguments)
+        if len(calls) == 2:
+            if place == 'rows':  # the rows are there, their entries are not
+                (arguments[0] / 'shards' / '000001.parquet').write_bytes(b'half of a file')
+            if place == 'entries':
+                real(*arguments)
+            raise KeyboardInterrupt
+        real(*arguments)
+
+    real = conduct.write_batch
+    monkeypatch.setattr(conduct, 'write_batch', killed)
+    with pytest.raises(KeyboardInterrupt):
+        carry_out_tuning(tuning(), out, workers=1)
+    monkeypatch.undo()
+    assert bytes_of(written(tuning(), out, workers=1, resume=True)) == bytes_of(finished)
+
+
+def test_a_folder_with_a_tuning_needs_resume_and_the_same_tuning(tmp_path: Path) -> None:
+    out = tmp_path / 'out'
+    with refused(DdctError, place=str(out)):
+        carry_out_tuning(tuning(), out, resume=True)
+    carry_out_tuning(tuning(trials=1), out, workers=1)
+    with refused(DdctError, key='--resume'):
+        carry_out_tuning(tuning(trials=1), out)
+    with refused(DdctError, key='spec'):
+        carry_out_tuning(tuning(trials=2), out, resume=True)
+
+
+def _other_gain(entries: list[dict[str, Any]]) -> None:
+    entries[1]['parameters']['integral_gain'] = 0.5
+
+
+def test_an_altered_batch_is_computed_again_and_one_with_its_digest_is_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / 'out'
+    first = carry_out_tuning(tuning(trials=2), out, workers=1)
+    path = out / 'shards' / '000000.json'
+    path.write_text(path.read_text().replace('feasible', 'infeasible'))
+    again = carry_out_tuning(tuning(trials=2), out, workers=1, resume=True)
+    assert [each.state for each in again] == [each.state for each in first]
+    assert '000000.json: altered' in capsys.readouterr().err
+    edit_json_with_digest(out, 'shards/000000.json', _other_gain)
+    with refused(DdctError, key='--out'):
+        carry_out_tuning(tuning(trials=2), out, workers=1, resume=True)
+
+
+def test_no_trial_of_the_front_ends_early(finished: Path) -> None:
+    trials = trials_of(json.loads((finished / 'trials.json').read_text()), finished / RUNS)
+    tuned = tuning()
+    ended = [each for each in trials[1:] if len(each.rows) < len(tuned.cases)]
+    assert ended and FEASIBLE not in {each.state for each in ended}
+    alone = TrialRuns(tuned, 1, lambda: False)
+    whole = [_whole(tuned, alone, each) for each in trials]
+    costs = {
+        each.number: each.costs(tuned.spec, len(each.rows))
+        for each in front_of(trials, tuned.spec)
+    }
+    assert costs == {
+        each.number: each.costs(tuned.spec, len(each.rows)) for each in front_of(whole, tuned.spec)
+    }
+
+
+def test_a_trial_that_another_betters_whatever_comes_ends_after_the_first_part() -> None:
+    tuned = tuning(constraints={'engaged': {'at_least': 0.0}})
+    names = [goal.name for goal in tuned.spec.objectives]
+    row = {'verdict_state': 'engaged', **dict.fromkeys(names, 1e-6)}
+    rival = Trial(90, {}, [row] * len(tuned.cases))
+    asked = {
+        0: {'proportional_gain': 0.2, 'integral_gain': 0.5},
+        1: {'proportional_gain': 0.2, 'integral_gain': 0.5},
+    }
+    alone = TrialRuns(tuned, 1, lambda: False)
+    present, other = computed_batch(tuned, alone, asked, [rival], lambda trial: trial)
+    assert (other.state, len(other.rows)) == (DOMINATED, 1)
+    assert len(present.rows) == len(tuned.cases)
+    infeasible = Trial(91, {}, [row] * len(tuned.cases), state=INFEASIBLE)
+    _, free = computed_batch(tuned, alone, asked, [infeasible], lambda trial: trial)
+    assert len(free.rows) == len(tuned.cases)
+
+
+def _whole(tuned: Any, alone: TrialRuns, trial: Trial) -> Trial:
+    """Return a trial with all of its runs."""
+    rows: Sequence[Row] = alone.rows([(trial.values, case) for case in tuned.cases])
+    return Trial(trial.number, trial.values, rows, {}, FEASIBLE).checked(
+        tuned.spec, len(tuned.cases)
+    )
+
+
+def test_the_file_of_the_best_gives_the_runs_of_the_trial(finished: Path) -> None:
+    result = json.loads((finished / 'front.json').read_text())
+    trials = trials_of(json.loads((finished / 'trials.json').read_text()), finished / RUNS)
+    row = trials[result['best']].rows[0]
+    again = run(str(finished / 'best.yaml'), wear_gain=row['wear_gain'])
+    for name in ('peak_jerk_m_s3', 'torsion_speed_std_rpm'):
+        assert again.metrics[name] == pytest.approx(row[name], rel=1e-9)
+
+
+def test_the_seed_of_held_out_cases_follows_from_the_tuned_files(
+    finished: Path, tmp_path: Path
+) -> None:
+    seeds = {json.loads((finished / 'front.json').read_text())['held_out_seed']}
+    for name in ('a', 'b'):
+        out = written(tuning(trials=12, seed=9), tmp_path / name, workers=1)
+        seeds.add(json.loads((out / 'front.json').read_text())['held_out_seed'])
+    assert len(seeds) == 2 and tuning().campaign.spec.root not in seeds
+
+
+def test_the_result_shows_development_beside_held_out(finished: Path) -> None:
+    result: Mapping[str, Any] = json.loads((finished / 'front.json').read_text())
+    best = next(each for each in result['front'] if each['number'] == result['best'])
+    ours, theirs = best['development']['objectives'], best['held_out']['objectives']
+    assert ours.keys() == theirs.keys() and ours != theirs
+    assert {each['name'] for each in result['gaps']} == {'success', *ours}
+    assert result['before']['parameters'] == {'proportional_gain': 0.103, 'integral_gain': 0.0223}
+    assert result['before']['development']['runs'] == result['cases']
+    assert sum(result['states'].values()) == result['trials'] == 20
+    assert result['runs'] < result['all_runs']
+
+
+def test_constraints_that_no_trial_keeps_end_with_a_line(tmp_path: Path) -> None:
+    tight = tuning(
+        trials=3,
+        constraints={'engaged': {'at_least': 0.2}, 'peak_jerk_m_s3': {'at_most': 1e-6}},
+    )
+    out = tmp_path / 'out'
+    with refused(DdctError) as caught:
+        written(tight, out, workers=1)
+    assert 'peak jerk at most 1e-06' in str(caught.value)
+    assert (out / 'trials.json').exists() and not (out / 'best.yaml').exists()
+
+
+def test_the_numbers_of_a_transfer_function_are_tuned_and_its_result_is_tuned_again(
+    tmp_path: Path,
+) -> None:
+    file = tmp_path / 'mine.yaml'
+    form = 'polynomial: {num: [-0.035, -0.8, -1.1], den: [1, 8, 0]}'
+    file.write_text(f'name: mine\nunits: {{input: rpm, output: N m}}\n{form}\n')
+    changes = {
+        'parameters': {'num_0': {'low': -0.05, 'high': -0.02}},
+        'constraints': {'engaged': {'at_least': 0.0}},
+        'objectives': {'slip_rmse_rpm': {}},
+        'trials': 3,
+    }
+    out = written(tuning(str(file), **changes), tmp_path / 'out', workers=1)
+    best = json.loads((out / 'front.json').read_text())
+    assert best['before']['parameters'] == {'num_0': -0.035}
+    further = tuning(str(out / 'best.yaml'), **changes)
+    again = written(further, tmp_path / 'again', workers=1)
+    before = json.loads((again / 'front.json').read_text())['before']['parameters']
+    assert before == best['front'][0]['parameters']
+
+
+FAILING = """
+from ddct_controllers.interface import Controller
+from ddct_plant.base.options import Option
+
+
+class Failing(Controller):
+    options = {'gain': Option(0.1, 'gain')}
+
+    def reset(self):
+        pass
+
+    def update(self, measurement):
+        raise ZeroDivisionError('it fell over')
+"""
+
+
+def test_a_controller_that_always_fails_ends_with_its_reason(tmp_path: Path) -> None:
+    file = tmp_path / 'failing.py'
+    file.write_text(FAILING)
+    parameters = {'gain': {'low': 0.0, 'high': 1.0}}
+    with refused(DdctError) as caught:
+        carry_out_tuning(
+            tuning(str(file), parameters=parameters, trials=100), tmp_path / 'out', workers=1
+        )
+    assert 'it fell over' in str(caught.value) and '16 trials' in str(caught.value)
+
+
+def test_without_optuna_a_line_says_what_to_install(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def missing(name: str) -> str:
+        raise search.importlib.metadata.PackageNotFoundError(name)
+
+    monkeypatch.setattr(search.importlib.metadata, 'version', missing)
+    assert main(['--controller', 'pi', '--spec', 'pi_launches', '--out', str(tmp_path / 'o')]) == 1
+    complaint = capsys.readouterr().err
+    assert 'make tune-extra' in complaint and complaint.count('\n') == 1
+
+
+def test_options_that_scenarios_give_differently_must_be_tuned(tmp_path: Path) -> None:
+    file = tmp_path / 'other.yaml'
+    changed = load_scenario('thesis', ['controllers.pi.integral_gain=0.5'])
+    file.write_text(scenario_to_yaml(changed))
+    made = tuning(
+        folder=tmp_path,
+        parameters={'proportional_gain': {'low': 0.1, 'high': 0.2}},
+        campaign={'grid': {'scenario': ['thesis', 'other.yaml']}},
+    )
+    with refused(ParameterError, key='parameters.integral_gain'):
+        carry_out_tuning(made, tmp_path / 'out')
