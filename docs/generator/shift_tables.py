@@ -7,15 +7,19 @@ from collections.abc import Mapping, Sequence
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from ddct_bringup.floor.control_start import control_start
+from ddct_bringup.floor.floor import floor_of, floors_of_run
+from ddct_bringup.floor.lock import lock_of
 from ddct_bringup.metrics.shift.course import ShiftCourse
 from ddct_bringup.reproduction.study_run import StudyRun, study_run
+from ddct_bringup.verdict.state import SUCCESSES
 from ddct_controllers.design.drawing.chart_style import chart_style
 from ddct_controllers.design.drawing.line_styles import BLACK, BLUE, GREY, VERMILLION
 from ddct_controllers.handover.laws import HANDOVERS
 from ddct_controllers.registry import own_controller_names
 from ddct_plant.base.timebase import time_of_step
 from ddct_plant.base.units import rpm_from_rad_s
-from ddct_plant.program.table import UNDEFINED, Table
+from ddct_plant.program.table import UNDEFINED, Table, text_or_dash
 from ddct_plant.program.workers import in_processes
 from ddct_plant.scenario.file import load_scenario, scenario_names
 from ddct_plant.scenario.settings import RunSettings
@@ -39,6 +43,9 @@ _COLUMNS = {
     'on_coming_releases': ('parts again', 'd'),
 }
 """Heading and format by metric."""
+_OF_FLOOR = ('least jerk m/s^3', 'jerk /least')
+"""Headings of the least peak jerk at the lock time of a run, and of the run over it."""
+_JERK = 'peak_jerk'
 Case = tuple[str, str, str]
 """Scenario, handover, controller."""
 
@@ -81,7 +88,7 @@ def _table(title: str, key: str, cases: Mapping[Case, str]) -> Table:
     with in_processes(lambda index: shift_row(each[index]), len(each)) as found:
         rows = [(label, *row) for label, row in zip(cases.values(), found, strict=True)]
     headings = (heading for heading, _ in _COLUMNS.values())
-    return Table(title, (key, 'state', *headings), rows)
+    return Table(title, (key, 'state', *headings, *_OF_FLOOR), rows)
 
 
 def shift_row(case: Case) -> tuple[str, ...]:
@@ -90,11 +97,24 @@ def shift_row(case: Case) -> tuple[str, ...]:
     metrics = run.metrics
     return (
         run.verdict.state,
-        *(
-            UNDEFINED if metrics[key] is None else f'{metrics[key]:{form}}'
-            for key, (_, form) in _COLUMNS.items()
-        ),
+        *(text_or_dash(metrics[key], form) for key, (_, form) in _COLUMNS.items()),
+        *_least_jerk(run),
     )
+
+
+def _least_jerk(run: StudyRun) -> tuple[str, str]:
+    """
+    Return the least peak jerk of the clutch alone at the run's lock time, and the run over it.
+
+    A run that commands the engine too may be below: it has the least, and no ratio.
+    """
+    start = control_start(run.settings)
+    lock = lock_of(run.trajectory, start.step)
+    if lock is None or run.verdict.state not in SUCCESSES:
+        return UNDEFINED, UNDEFINED
+    over = floors_of_run(run.settings, [_JERK], run.trajectory, start, attain=False)[_JERK]
+    least = over.floor.least if over else floor_of(run.settings, _JERK, lock.time_s).least
+    return text_or_dash(least, '.1f'), text_or_dash(over.over_floor if over else None, '.2f')
 
 
 def _run(case: Case) -> StudyRun:

@@ -27,9 +27,9 @@ def test_the_page_has_a_row_of_every_controller_handover_and_shift():
 @pytest.mark.parametrize(
     ('table', 'key', 'case'),
     [
-        ('controllers', 'mpc3', (SCENARIO, 'model', 'mpc3')),
+        ('controllers', 'mpc3', (SCENARIO, 'adaptive', 'mpc3')),
         ('handovers', 'slip, hinf2', (SCENARIO, 'slip', 'hinf2')),
-        ('scenarios', '`upshift_hot`, ls8', ('upshift_hot', 'model', 'ls8')),
+        ('scenarios', '`upshift_hot`, ls8', ('upshift_hot', 'adaptive', 'ls8')),
     ],
 )
 def test_a_row_of_each_table_is_what_its_run_gives(table, key, case):

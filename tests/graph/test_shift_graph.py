@@ -13,6 +13,8 @@ from support.runs import LAYOUTS, bag_bytes, expected, plan, record
 from ddct_bringup.run.plan import RunPlan
 from ddct_controllers.from_file.c_library.host import TEMPLATE
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).resolve().parents[2]
 
 
@@ -42,7 +44,7 @@ def shift(
 @pytest.mark.parametrize(
     ('controller', 'handover', 'changes', 'layouts'),
     [
-        ('pi', 'timed', (), LAYOUTS),
+        ('pi', 'adaptive', (), LAYOUTS),
         ('mpc4', 'slip', ('shift.torque_cut_n_m=30', 'sensors={}'), LAYOUTS[1:]),
         (
             'mpc_preview',

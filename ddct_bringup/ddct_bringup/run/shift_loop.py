@@ -3,14 +3,38 @@
 """The closed loop of a gear shift without ROS: plant, handover, reference and controller."""
 
 import time
+from typing import NamedTuple
 
 from ddct_controllers.architecture import make_architecture
-from ddct_controllers.handover.interface import HandoverMeasurement
+from ddct_controllers.handover.interface import Handover, HandoverCommand, HandoverMeasurement
 from ddct_controllers.handover.laws import make_handover
 from ddct_controllers.interface import Controller, Measurement
 from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.whole_plant import Observation
+from ddct_plant.shift.driveline import ShiftOutputs
 from ddct_plant.shift_plant.plant import ShiftPlant, ShiftReply
 from ddct_reference.factory import make_reference
+
+
+class HandoverTick(NamedTuple):
+    """What comes before the request of the on-coming clutch at a step."""
+
+    outputs: ShiftOutputs
+    """True outputs of both sides."""
+    command: HandoverCommand
+    observation: Observation
+    """Observation of the controller."""
+
+
+def handover_tick(plant: ShiftPlant, handover: Handover, step: int) -> HandoverTick:
+    """Return the command of the handover at step k, and what the controller observes with it."""
+    outputs = plant.outputs()
+    measured, off_going_slip = plant.measured(step, outputs)
+    command = handover.update(
+        HandoverMeasurement.of_speeds(step, plant.demand(step), measured, off_going_slip)
+    )
+    observation = plant.observe(step, outputs, measured, command.torque_cut)
+    return HandoverTick(outputs, command, observation)
 
 
 class ShiftLoop:
@@ -29,21 +53,16 @@ class ShiftLoop:
 
     def reply(self, step: int) -> ShiftReply:
         """Return torques and every signal of step k; advance all but the plant."""
-        plant, outputs = self.plant, self.plant.outputs()
-        measured, off_going_slip = plant.measured(step, outputs)
-        command = self._handover.update(
-            HandoverMeasurement.of_speeds(step, plant.demand(step), measured, off_going_slip)
-        )
-        share = command.share
-        observation = plant.observe(step, outputs, command.torque_cut)
+        outputs, command, observation = handover_tick(self.plant, self._handover, step)
+        measured = observation.measured
         speeds, rates = self._reference.update(
-            step, measured.slip_speed, measured.shaft_speed, share
+            step, measured.slip_speed, measured.shaft_speed, command.share
         )
         measurement = Measurement.of_plant(step, observation, speeds, rates)
         started = time.perf_counter()
-        request = self._architecture.update(measurement, share)
+        request = self._architecture.update(measurement, command.on_coming)
         self.update_time_us = 1e6 * (time.perf_counter() - started)
-        reply = plant.reply(
+        reply = self.plant.reply(
             step,
             outputs,
             observation,
@@ -55,8 +74,7 @@ class ShiftLoop:
             slip_reference=speeds,
             slip_reference_rate=rates,
             status=request.status,
-            handover_share=share,
-            torque_cut=command.torque_cut,
+            **command.signals,
             **request.parts,
         )
         return reply

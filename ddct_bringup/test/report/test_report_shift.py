@@ -36,6 +36,8 @@ from ddct_plant.base.timebase import time_of_step
 from ddct_plant.scenario.file import ScenarioFile, load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
+pytestmark = pytest.mark.slow
+
 HANDOVERS = ('timed', 'model')
 
 

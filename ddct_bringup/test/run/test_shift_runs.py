@@ -11,9 +11,6 @@ from refusals import refused
 from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.batch.batchable import why_not_batchable
 from ddct_bringup.campaign.rows import scored_headless
-from ddct_bringup.floor.control_start import control_start
-from ddct_bringup.floor.floor import floor_of
-from ddct_bringup.metrics.vibration import jerk
 from ddct_bringup.run.execution import execute, simulate
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.run.plan import RunPlan
@@ -90,36 +87,25 @@ def test_an_observer_does_not_take_the_torque_of_the_off_going_clutch_for_wear()
     assert estimates[1] == pytest.approx(1.0, abs=0.01)
 
 
-def least_jerk_of_the_inertia_phase(lock_time_s):
-    """Return the least peak jerk in m/s^3 of runs with one clutch that lock the same slip then."""
-    changes = {
-        'gear': 2,
-        'driveline': {},
-        'equilibrium': 'full',
-        'control_start_s': 0.1,
-        'duration_s': 1.5,
-        'score_window_s': [0.1, 1.0],
-        'initial': {
-            'engine_speed_rad_s': 277.838,
-            'shaft_speed_rad_s': 161.608,
-            'clutch_phase': 'slipping',
-        },
-        'engine': {'time_s': [0.0], 'torque_n_m': [100.0]},
-    }
-    phase = RunSettings(load_scenario('launch', changes, 'stick_slip'), clutch='stick_slip')
-    return floor_of(phase, 'peak_jerk', lock_time_s).least
+def test_the_request_is_corrected_by_what_the_handover_has_measured():
+    run = run_headless(settings(wear_gain=0.75), 'ls8')
+    gain, offset = 1.0 + run.on_coming_wear_deviation, run.on_coming_torque_offset
+    planned = run.open_loop_torque + run.closed_loop_torque
+    np.testing.assert_allclose(run.torque_request, (planned - offset) / gain, atol=1e-9)
+    assert gain[-1] == pytest.approx(0.75, abs=0.05)
+    assert not run.on_coming_wear_deviation[:30].any()
 
 
-def test_a_packaged_pair_shifts_fast_without_jerk_flare_or_tie_up():
-    run = run_headless(settings(), 'torque_estimator')
-    start, first = 30, int(np.argmax(run.handover_share == 1.0))
-    locked = int(np.argmax(run.clutch_phase == PHASES.index(LOCKED)))
-    assert 0.01 * (locked - start) < 0.7
-    assert run.off_going_slip_speed[start:locked].max() < 5.0
-    braking = np.maximum(-run.off_going_transmitted_torque, 0.0)
-    assert 0.01 * (braking * run.off_going_shaft_speed).sum() < 50.0
-    least = least_jerk_of_the_inertia_phase(0.01 * (locked - first))
-    assert np.abs(jerk(run.vehicle_accel)[start:]).max() < 1.5 * least
+@pytest.mark.parametrize('controller', ['pi', 'ls8', 'mpc3', 'least_jerk'])
+def test_a_worn_clutch_shifts_as_a_new_one_with_the_handover_that_measures(controller):
+    new, worn, unknown = (
+        run_headless(settings(wear_gain=gain, handover=handover), controller)
+        for gain, handover in ((1.0, 'adaptive'), (0.75, 'adaptive'), (0.75, 'model'))
+    )
+    far, near = (
+        np.abs(run.engine_speed - new.engine_speed)[50:70].max() for run in (unknown, worn)
+    )
+    assert near < 0.4 * far
 
 
 def test_a_shift_with_exact_sensors_is_the_same_and_its_handover_needs_no_further_one():
@@ -160,11 +146,9 @@ def test_a_shift_is_simulated_step_by_step_in_a_campaign():
     assert row.valid
 
 
-def test_an_unknown_handover_and_a_floor_are_refused():
+def test_an_unknown_handover_is_refused():
     with refused(ParameterError, 'handover'):
         RunPlan(settings(handover='quick'), 'pi', 'headless')
-    with pytest.raises(ParameterError, match='gear shift'):
-        control_start(settings())
 
 
 def test_the_wear_of_either_clutch_changes_its_own_torque_alone():

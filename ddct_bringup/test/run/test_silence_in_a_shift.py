@@ -33,6 +33,7 @@ from ddct_plant.signals.topics import (
     OFF_GOING_CLUTCH_TORQUE,
     OFF_GOING_TORQUE_REQUEST,
     TORQUE_CUT,
+    TORQUE_DEMAND,
     TORQUE_REQUEST,
 )
 from ddct_plant.ticks.realtime_owner import RealtimeOwner
@@ -110,16 +111,7 @@ class RealTimeShift:
         outputs = self._driveline.outputs()
         self.outputs.append(outputs)
         true, other = outputs.driveline, outputs.off_going
-        command = self._handover.update(
-            HandoverMeasurement(
-                step,
-                self._demand(step),
-                true.engine_speed,
-                true.slip_speed,
-                other.slip_speed,
-                true.vehicle_speed,
-            )
-        )
+        command = self._command(step, outputs)
         torque = self._engine_torque(step, outputs, command)
         request = self._request(step, outputs, command, torque)
         comes = self._comes(OFF_GOING_TORQUE_REQUEST, step)
@@ -133,7 +125,7 @@ class RealTimeShift:
             HOLDING_TORQUE: self._holding.capacity(time_of_step(step)),
             OFF_GOING_CLUTCH_TORQUE: self.sides[OFF_GOING].capacities(
                 step,
-                command.off_going_request if comes else None,
+                command.off_going_request if command and comes else None,
                 other.slip_speed,
                 other.friction_work,
             ),
@@ -142,22 +134,46 @@ class RealTimeShift:
             if reply is not None and self._comes(topic, step):
                 self.owner.offer(topic.name, stamp_of_step(step), reply)
 
+    def _command(self, step: int, outputs: ShiftOutputs) -> HandoverCommand | None:
+        """Return what the handover answers, None while it waits for the demand."""
+        if not self._comes(TORQUE_DEMAND, step):
+            return None
+        true = outputs.driveline
+        return self._handover.update(
+            HandoverMeasurement(
+                step,
+                self._demand(step),
+                true.engine_speed,
+                true.slip_speed,
+                outputs.off_going.slip_speed,
+                true.vehicle_speed,
+            )
+        )
+
     def _engine_torque(
-        self, step: int, outputs: ShiftOutputs, command: HandoverCommand
+        self, step: int, outputs: ShiftOutputs, command: HandoverCommand | None
     ) -> float | None:
+        if not self._comes(ENGINE_TORQUE, step):
+            return None
         self.engine.speed = outputs.driveline.engine_speed
         torque = self.engine.tick(step)
-        if torque is None and self._comes(TORQUE_CUT, step):
+        if torque is None and command and self._comes(TORQUE_CUT, step):
             torque = self.engine.request(step, self._demand(step) - command.torque_cut)
         return torque
 
     def _request(
-        self, step: int, outputs: ShiftOutputs, command: HandoverCommand, torque: float | None
+        self,
+        step: int,
+        outputs: ShiftOutputs,
+        command: HandoverCommand | None,
+        torque: float | None,
     ) -> float | None:
-        if torque is None or not self._comes(HANDOVER_SHARE, step):
+        if command is None or torque is None or not self._comes(HANDOVER_SHARE, step):
             return None
-        now, share = outputs.driveline, command.share
-        speeds, rates = self._reference.update(step, now.slip_speed, now.shaft_speed, share)
+        now = outputs.driveline
+        speeds, rates = self._reference.update(
+            step, now.slip_speed, now.shaft_speed, command.share
+        )
         measurement = Measurement(
             step=step,
             engine_speed=now.engine_speed,
@@ -168,7 +184,7 @@ class RealTimeShift:
             slip_reference=speeds,
             slip_reference_rate=rates,
         )
-        request = self._architecture.update(measurement, share).torque
+        request = self._architecture.update(measurement, command.on_coming).torque
         return request if self._comes(TORQUE_REQUEST, step) else None
 
 
@@ -197,6 +213,10 @@ ROWS = {
     'handover': Row(
         HANDOVER, {'actuator', 'off_going/actuator', 'engine'}, {ON_COMING, OFF_GOING}
     ),
+    'engine': Row(
+        (TORQUE_DEMAND, ENGINE_TORQUE), {'actuator', 'off_going/actuator'}, {ON_COMING, OFF_GOING}
+    ),
+    'load': Row((LOAD_TORQUE, HOLDING_TORQUE), set(), set()),
     'clutch torque': Row((CLUTCH_TORQUE,), {'driveline'}, {ON_COMING}),
     'off-going clutch torque': Row((OFF_GOING_CLUTCH_TORQUE,), {'driveline'}, {OFF_GOING}),
     'both, as with two publishers': Row(

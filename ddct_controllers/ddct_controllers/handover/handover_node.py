@@ -71,7 +71,7 @@ class HandoverNode(FollowerNode):
         )
         return (
             self._cut.fill(stamp_ns, command.torque_cut),
-            self._share.fill(stamp_ns, command.share),
+            self._share.fill(stamp_ns, *command.on_coming),
             self._request.fill(stamp_ns, command.off_going_request),
         )
 

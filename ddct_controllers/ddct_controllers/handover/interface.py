@@ -5,7 +5,7 @@
 from abc import ABC, abstractmethod
 from typing import NamedTuple, Self
 
-from ddct_plant.base.timebase import steps_in, time_of_step
+from ddct_plant.base.timebase import PERIOD_S, steps_in, time_of_step
 from ddct_plant.models.load import RoadLoad
 from ddct_plant.models.static_torque import StaticTorque
 from ddct_plant.scenario.settings import RunSettings
@@ -13,7 +13,25 @@ from ddct_plant.scenario.shift_rules import gears_of, shift_of
 from ddct_plant.sensors.sensed import MeasuredSpeeds
 from ddct_plant.shift.balance import off_going_torque
 from ddct_plant.shift_plant.start import locked_request
+from ddct_plant.signals.handover_share import OnComingShare
 
+MARGIN = 1.7
+"""
+Request of the off-going clutch over the torque that it carries, in `model` and `adaptive`.
+
+The driveshaft unwinds as the wheel torque falls, and its oscillation at 18 rad/s needs up to
+20 N m more of the clutch than the rigid driveline; a worn clutch carries less than requested. Both
+matter most near the end, where the balance is small: with this margin the engine of a packaged
+shift runs ahead by less than 5 rad/s. Tie-up hardly grows with it, since it vanishes with the
+balance.
+"""
+CUT_RISE_S = 0.1
+"""
+Time in s in which a torque cut rises to its value, about twice the lag of the actuator.
+
+An engine that gives up its torque at once is ahead of the clutch, whose torque follows C_fOL with
+a lag: the wheels jerk, and feedback opens the clutch.
+"""
 CUT_FADE_RAD_S = 30.0
 """Slip speed of the on-coming clutch in rad/s below which a torque cut fades."""
 
@@ -58,6 +76,25 @@ class HandoverCommand(NamedTuple):
     """Torque request of the off-going clutch in N m."""
     torque_cut: float
     """Torque in N m that is taken off the driver's demand."""
+    wear_deviation: float = 0.0
+    """Estimate of the wear gain of the on-coming clutch less 1, which divides its requests."""
+    torque_offset: float = 0.0
+    """Estimate in N m of what it carries beyond that, which is taken off them before."""
+
+    @property
+    def on_coming(self) -> OnComingShare:
+        """What the on-coming clutch takes over."""
+        return OnComingShare(self.share, self.wear_deviation, self.torque_offset)
+
+    @property
+    def signals(self) -> dict[str, float]:
+        """Values by the names of the run's signals, but for the off-going request."""
+        return {
+            'handover_share': self.share,
+            'on_coming_wear_deviation': self.wear_deviation,
+            'on_coming_torque_offset': self.torque_offset,
+            'torque_cut': self.torque_cut,
+        }
 
 
 class Handover(ABC):
@@ -81,28 +118,37 @@ class HandoverModel:
         shift, self._gears = shift_of(scenario), gears_of(scenario)
         self._static = StaticTorque(scenario.controlled_driveline, scenario.equilibrium)
         self._road = RoadLoad(scenario.load, scenario.vehicle, scenario.slope)
-        self._cut = shift.torque_cut_n_m
+        self._cut, self._rise = shift.torque_cut_n_m, 0.0
         self.start_step = scenario.control_start_step
         """Step at which the shift starts."""
         self.steps = steps_in('shift.handover_s', shift.handover_s)
         """Number of periods of the handover."""
 
+    def load(self, now: HandoverMeasurement) -> float:
+        """Return C_load in N m of everything that resists."""
+        return self._road.torque(now.vehicle_speed, time_of_step(now.step))
+
     def on_coming(self, now: HandoverMeasurement) -> float:
         """Return C_fOL in N m, which the on-coming clutch carries at the share 1."""
-        load = self._road.torque(now.vehicle_speed, time_of_step(now.step))
+        load = self.load(now)
         shaft_speed = now.engine_speed - now.on_coming_slip
         return self._static.torque(now.demand, load, now.engine_speed, shaft_speed)
 
     def off_going(self, now: HandoverMeasurement, on_coming_torque: float = 0.0) -> float:
         """Return the torque in N m that the off-going clutch carries while it is locked."""
-        load = self._road.torque(now.vehicle_speed, time_of_step(now.step))
+        load = self.load(now)
         return off_going_torque(self._gears, now.demand, load, now.engine_speed, on_coming_torque)
+
+    def off_going_request(self, now: HandoverMeasurement, on_coming_torque: float) -> float:
+        """Return the request in N m with which the off-going clutch sticks, with `MARGIN`."""
+        return MARGIN * max(self.off_going(now, on_coming_torque), 0.0)
 
     def locked(self, now: HandoverMeasurement) -> HandoverCommand:
         """Return the command before the shift: the off-going clutch is locked with a margin."""
         return HandoverCommand(0.0, locked_request(self._scenario, self.off_going(now)), 0.0)
 
     def inertia_phase(self, now: HandoverMeasurement) -> HandoverCommand:
-        """Return the command once the off-going clutch is open; a torque cut fades to the lock."""
-        fade = min(max(now.on_coming_slip, 0.0) / CUT_FADE_RAD_S, 1.0)
+        """Return the command after the handover; a torque cut rises, and fades to the lock."""
+        self._rise = min(self._rise + PERIOD_S / CUT_RISE_S, 1.0)
+        fade = min(max(now.on_coming_slip, 0.0) / CUT_FADE_RAD_S, self._rise)
         return HandoverCommand(1.0, 0.0, fade * self._cut)

@@ -1,9 +1,10 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""The handovers `timed`, `model` and `slip`."""
+"""The handovers `timed`, `model` and `slip`, and the list of ours."""
 
 from collections.abc import Callable, Mapping
 
+from ddct_controllers.handover.adaptive import AdaptiveHandover
 from ddct_controllers.handover.interface import (
     Handover,
     HandoverCommand,
@@ -15,16 +16,6 @@ from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.scenario.shift_rules import shift_of
 
-MARGIN = 1.7
-"""
-Request of the off-going clutch over the torque that it carries, in the handover `model`.
-
-The driveshaft unwinds as the wheel torque falls, and its oscillation at 18 rad/s needs up to
-20 N m more of the clutch than the rigid driveline; a worn clutch carries less than requested. Both
-matter most near the end, where the balance is small: with this margin the engine of a packaged
-shift runs ahead by less than 5 rad/s. Tie-up hardly grows with it, since it vanishes with the
-balance.
-"""
 PROPORTIONAL, INTEGRAL = 0.3, 6.0
 """
 Gains of the handover `slip` in N m s/rad and N m/rad.
@@ -98,8 +89,7 @@ class ModelHandover(Handover):
             return self._model.locked(measurement)
         share = elapsed / self._model.steps
         on_coming = share * self._model.on_coming(measurement)
-        carried = self._model.off_going(measurement, on_coming)
-        return HandoverCommand(share, MARGIN * max(carried, 0.0), 0.0)
+        return HandoverCommand(share, self._model.off_going_request(measurement, on_coming), 0.0)
 
 
 class SlipHandover(Handover):
@@ -159,6 +149,7 @@ HANDOVERS: Mapping[str, Callable[[RunSettings], Handover]] = {
     'timed': TimedHandover,
     'slip': SlipHandover,
     'model': ModelHandover,
+    'adaptive': AdaptiveHandover,
 }
 """Handovers by name."""
 

@@ -17,6 +17,7 @@ from ddct_plant.base.errors import (
     require_number,
 )
 from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.signals.handover_share import LEAST_DEVIATION
 
 ENTRY_POINT_GROUP = 'ddct.handovers'
 """Entry point group of handovers, `name = module:Class`; the class takes a RunSettings."""
@@ -93,6 +94,10 @@ class _Checked(Handover):
             require_number(f'{where} share', command.share, at_least=0.0, at_most=1.0),
             require_number(f'{where} off_going_request', command.off_going_request),
             require_number(f'{where} torque_cut', command.torque_cut, at_least=0.0),
+            require_number(
+                f'{where} wear_deviation', command.wear_deviation, at_least=LEAST_DEVIATION
+            ),
+            require_number(f'{where} torque_offset', command.torque_offset),
         )
 
 

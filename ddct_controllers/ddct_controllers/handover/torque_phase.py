@@ -3,7 +3,6 @@
 """Measurements of observers in the torque phase of a shift, with torque of another clutch."""
 
 from ddct_controllers.interface import Measurement
-from ddct_plant.base.timebase import SUBSTEPS
 from ddct_plant.models.actuator import Actuator
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.scenario.shift_rules import gears_of
@@ -28,13 +27,12 @@ class TorquePhase:
 
     def measured(self, measurement: Measurement) -> Measurement:
         """Return the measurement of a period; called once in each period of the torque phase."""
-        nodes = self._actuator.update(max(measurement.open_loop_torque, 0.0))
         carried = off_going_torque(
             self._gears,
             measurement.engine_torque,
             measurement.load_torque,
             measurement.engine_speed,
-            sum(nodes[:-1]) / SUBSTEPS,
+            self._actuator.mean_torque(measurement.open_loop_torque),
         )
         wheel_torque = self._gears.off_going.wheel_torque(carried)
         return measurement.within(

@@ -75,5 +75,5 @@ def test_a_package_adds_one_by_an_entry_point(monkeypatch):
     for name, wrong in (('broken', 'cannot be loaded'), ('foreign', 'cannot be made')):
         with pytest.raises(DdctError, match=wrong):
             make_handover(replace(settings, handover=name))
-    with pytest.raises(DdctError, match='timed, slip, model, broken, foreign, theirs'):
+    with pytest.raises(DdctError, match='timed, slip, model, adaptive, broken, foreign, theirs'):
         make_handover(replace(settings, handover='none'))

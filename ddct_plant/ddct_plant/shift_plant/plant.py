@@ -112,14 +112,20 @@ class ShiftPlant:
         speeds = self._sensors.measure(step, true)
         return speeds, speeds.engine_speed - self._ratio * speeds.shaft_speed
 
-    def observe(self, step: int, outputs: ShiftOutputs, torque_cut: float = 0.0) -> Observation:
+    def observe(
+        self,
+        step: int,
+        outputs: ShiftOutputs,
+        measured: MeasuredSpeeds,
+        torque_cut: float = 0.0,
+    ) -> Observation:
         """
         Return the observation of a controller of the on-coming clutch at step k.
 
-        `torque_cut` in N m is taken off the driver's demand, within the engine's authority.
+        `measured` has the speeds of `measured` at this step. `torque_cut` in N m is taken off the
+        driver's demand, within the engine's authority.
         """
         true = outputs.driveline
-        measured, _ = self.measured(step, outputs)
         demand = self._engine.demand(step) - torque_cut
         if self._two_input:
             return Observation(true, measured, demand, None, demand)
@@ -168,8 +174,10 @@ class ShiftPlant:
         signals = shift_signals(outputs)
         signals.update(zip(_OF_REPLY, values, strict=True))
         if self._sensors is not None and self._estimate is not None:
-            signals |= self._sensors.measure(step, true).signals
-            signals |= self._estimate.measure(step, engine_torque).signals
+            if observation.delivered is None:
+                self._estimate.measure(step, engine_torque)
+            signals |= self._sensors.latest.signals
+            signals |= self._estimate.latest.signals
         return ShiftReply(engine_torque, load_torque, clutch, other_clutch, holding, signals)
 
     @property

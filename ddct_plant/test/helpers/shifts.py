@@ -116,7 +116,7 @@ def run(settings: RunSettings, tick: Callable[[int, ShiftPlant, Any, Any], None]
     for step in range(settings.scenario.steps + 1):
         outputs = plant.outputs()
         true = outputs.driveline
-        observation = plant.observe(step, outputs)
+        observation = plant.observe(step, outputs, outputs.driveline)
         load = true.joint_effort.wheel
         sample = Sample(
             true.slip_speed,

@@ -44,6 +44,8 @@ def test_keys_of_the_shift_are_set_like_others_and_survive_their_file():
         ('shift.torque_cut=40', 'shift.torque_cut'),
         ('shift.handover_s=0.123', 'shift.handover_s'),
         ('shift.off_going_gear=2', 'shift.off_going_gear'),
+        ('shift.off_going_gear=3', 'shift.off_going_gear'),
+        ('gear=3', 'shift.off_going_gear'),
         ('shift.preselection_s=0.5', 'shift.preselection_s'),
         ('shift.disengagement_s=0.5', 'shift.disengagement_s'),
         ('initial.engine_speed_rad_s=250', 'initial.engine_speed_rad_s'),
@@ -57,12 +59,12 @@ def test_a_bad_key_of_the_shift_is_named(override, key):
 
 @pytest.mark.parametrize(
     ('override', 'speed'),
-    [('initial.shaft_speed_rad_s=100', 171.92), ('shift.off_going_gear=3', 102.23)],
+    [('initial.shaft_speed_rad_s=100', 171.92), ('gear=4', 644.449)],
 )
 def test_the_engine_speed_follows_the_car_and_the_gear_unless_it_is_given_too(override, speed):
     shift = settings(override)
-    (line,) = shift.scenario.adjusted
-    assert line.startswith(f'initial.engine_speed_rad_s moved from 277.838 to {speed}')
+    moved = f'initial.engine_speed_rad_s moved from 277.838 to {speed}'
+    assert shift.scenario.adjusted[-1].startswith(moved)
     assert shift.scenario.initial.engine_speed_rad_s == pytest.approx(speed, abs=0.01)
     with refused(ParameterError, 'initial.engine_speed_rad_s'):
         settings(override, 'initial.engine_speed_rad_s=250')

@@ -9,13 +9,13 @@ import pytest
 from shifts import SHIFTS, run, shift_settings
 
 from ddct_plant.base.timebase import SUBSTEP_S, SUBSTEPS
-from ddct_plant.hybrid.friction_system import Forcing, Layout
+from ddct_plant.hybrid.friction_system import Forcing, IntervalLayout
 from ddct_plant.hybrid.interval_map import Event, Interval
 from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.shift.driveline import ShiftDriveline, ShiftOutputs
 from ddct_plant.shift_plant.plant import ShiftPlant, ShiftReply
 
-LAYOUT = Layout(2, 3, SUBSTEPS, (0, 1, 4))
+LAYOUT = IntervalLayout(2, 3, SUBSTEPS, (0, 1, 4))
 
 
 def square_integrals(rows: np.ndarray, states: np.ndarray, part: float) -> np.ndarray:

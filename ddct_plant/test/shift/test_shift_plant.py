@@ -78,7 +78,7 @@ def test_a_tie_up_stalls_an_engine_with_limits():
     steps = 0
     while not plant.over:
         outputs = plant.outputs()
-        observation = plant.observe(steps, outputs)
+        observation = plant.observe(steps, outputs, outputs.driveline)
         reply = plant.reply(steps, outputs, observation, 2000.0, 2000.0)
         plant.advance(reply)
         steps += 1
@@ -89,7 +89,7 @@ def test_a_tie_up_stalls_an_engine_with_limits():
 def test_a_torque_cut_is_taken_off_the_demand():
     plant = ShiftPlant(shift_settings('upshift'))
     outputs = plant.outputs()
-    observation = plant.observe(0, outputs, torque_cut=30.0)
+    observation = plant.observe(0, outputs, outputs.driveline, torque_cut=30.0)
     assert (observation.demand, observation.delivered, observation.engine_torque) == (70.0,) * 3
     reply = plant.reply(0, outputs, observation, 0.0, plant.first_request)
     assert (reply.engine_torque, reply.signals['torque_demand']) == (70.0, 100.0)
@@ -98,7 +98,7 @@ def test_a_torque_cut_is_taken_off_the_demand():
 def test_a_controller_that_commands_the_engine_gets_what_it_requests():
     plant = ShiftPlant(shift_settings('upshift'), two_input=True)
     outputs = plant.outputs()
-    observation = plant.observe(0, outputs, torque_cut=30.0)
+    observation = plant.observe(0, outputs, outputs.driveline, torque_cut=30.0)
     assert (observation.delivered, observation.engine_torque) == (None, 70.0)
     reply = plant.reply(0, outputs, observation, 0.0, plant.first_request, 82.0)
     assert reply.engine_torque == pytest.approx(82.0, rel=1e-15)
@@ -108,7 +108,7 @@ def test_an_engine_with_a_rate_gets_one_request_a_step():
     slow = content((1, 2), 20.0, 100.0, engine_authority={'slew_n_m_s': 500.0})
     plant = ShiftPlant(settings_of(slow, {'off_going_gear': 1}), two_input=True)
     outputs = plant.outputs()
-    observation = plant.observe(0, outputs)
+    observation = plant.observe(0, outputs, outputs.driveline)
     reply = plant.reply(0, outputs, observation, 0.0, plant.first_request, 60.0)
     assert reply.engine_torque == 95.0
 
@@ -119,7 +119,8 @@ def test_a_controller_reads_the_sensors_where_the_scenario_has_some():
         settings_of(content((1, 2), 20.0, 100.0, sensors=sensors), {'off_going_gear': 1})
     )
     outputs = plant.outputs()
-    observation = plant.observe(0, outputs)
+    measured, _ = plant.measured(0, outputs)
+    observation = plant.observe(0, outputs, measured)
     assert observation.true == outputs.driveline
     assert observation.measured.engine_speed != outputs.driveline.engine_speed
     reply = plant.reply(0, outputs, observation, 0.0, plant.first_request)
