@@ -4,9 +4,11 @@
 Random runs of all controllers against their floors: no run may lie below.
 
     python tests/floor/random_runs.py --runs 4000
+    python tests/floor/random_runs.py --runs 1000 --shifts
 
-takes some ten minutes. Each run is a point of the program that bounds it: its residual in all
-constraints and its distance to its floor are checked. The exit code is 1 where one fails.
+takes some ten minutes; with --shifts they are gear shifts with random handovers. Each run is a
+point of the program that bounds it: its residual in all constraints and its distance to its floor
+are checked. The exit code is 1 where one fails.
 """
 
 import argparse
@@ -14,6 +16,7 @@ import sys
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -25,6 +28,7 @@ from ddct_bringup.floor.objectives import OBJECTIVES, Signals
 from ddct_bringup.floor.point import point_of
 from ddct_bringup.floor.values import engagements_a_day, value_of
 from ddct_bringup.run.headless import run_headless
+from ddct_controllers.handover.laws import HANDOVERS
 from ddct_controllers.interface import Controller
 from ddct_controllers.registry import controller_names, make_controller
 from ddct_plant.base.errors import DdctError
@@ -41,6 +45,10 @@ SCENARIOS = (
     ('launch_gentle', 'stick_slip'),
     ('thesis', 'stick_slip'),
     ('thesis', 'linear'),
+)
+SHIFTS = tuple(
+    (name, 'stick_slip')
+    for name in ('upshift', 'upshift_2_3', 'upshift_hot', 'upshift_light', 'upshift_full')
 )
 QUICK = ('peak_jerk', 'peak_acceleration', 'mean_jerk', 'acceleration_std_m_s2')
 """Metrics whose bound takes about a tenth of a second; every tenth run has another one."""
@@ -66,15 +74,16 @@ class Outcome:
         return self.covered and (self.residual > RESIDUAL or self.below > BELOW)
 
 
-def outcomes(runs: int, seed: int, first: int = 0) -> Iterator[Outcome]:
+def outcomes(runs: int, seed: int, first: int = 0, *, shifts: bool = False) -> Iterator[Outcome]:
     """Yield the comparison of random runs from `first` on; run i depends on seed and i alone."""
     for index in range(first, runs):
-        yield outcome(np.random.default_rng((seed, index)), index)
+        yield outcome(np.random.default_rng((seed, index)), index, shifts=shifts)
 
 
-def outcome(random: np.random.Generator, index: int) -> Outcome:
-    """Return the comparison of one random run with its floor."""
-    scenario, clutch = SCENARIOS[random.integers(len(SCENARIOS))]
+def outcome(random: np.random.Generator, index: int, *, shifts: bool = False) -> Outcome:
+    """Return the comparison of one random run, or gear shift, with its floor."""
+    scenarios = SHIFTS if shifts else SCENARIOS
+    scenario, clutch = scenarios[random.integers(len(scenarios))]
     names = controller_names()
     name = names[random.integers(len(names))]
     changes = {
@@ -84,10 +93,21 @@ def outcome(random: np.random.Generator, index: int) -> Outcome:
         'actuator.delay_s': float(random.integers(5, 25)) / 1000.0,
     }
     wear = float(random.uniform(0.7, 1.3))
-    text = f'{index}: {name} in {scenario} {clutch}, wear gain {wear:.3f}, {changes}'
+    of_shift: dict[str, Any] = {}
+    if shifts:
+        changes |= random_shift(random)
+        of_shift['handover'] = list(HANDOVERS)[random.integers(len(HANDOVERS))]
+        of_shift['off_going_wear_gain'] = float(random.uniform(0.7, 1.3))
+    text = f'{index}: {name} in {scenario} {clutch}, wear gain {wear:.3f}, {changes}, {of_shift}'
     file = ScenarioFile.read(scenario)
-    settings = RunSettings(file.scenario(changes, clutch), clutch=clutch, wear_gain=wear)
     try:
+        loaded = file.scenario(changes, clutch)
+        settings = RunSettings(
+            loaded,
+            clutch=clutch,
+            wear_gain=wear,
+            **of_shift,
+        )
         controller = make_controller(name, settings)
         assert isinstance(controller, Controller)
         run = run_headless(settings, controller)
@@ -95,6 +115,8 @@ def outcome(random: np.random.Generator, index: int) -> Outcome:
     except DdctError:
         return Outcome(text, covered=False)
     lock = lock_of(run, start.step)
+    if lock is not None and start.off_going and lock.time_s <= start.off_going.open_s:
+        return Outcome(text, covered=False)
     case = None
     if lock is not None and run.steps == settings.scenario.steps:
         case = case_of_run(settings, start, lock, run)
@@ -113,7 +135,7 @@ def outcome(random: np.random.Generator, index: int) -> Outcome:
     metric = pool[random.integers(len(pool))]
     signals = Signals.of_motion(case.motion, settings.scenario, engagements_a_day())
     bound = bound_of(case, OBJECTIVES[metric], signals)
-    value = value_of(settings, metric, run, start.step)
+    value = value_of(settings, metric, run, start.scored_from)
     if bound is None or value is None:
         return Outcome(f'{text}, {metric}', covered=True, residual=residual)
     least = np.inf if bound.least is None else bound.least
@@ -121,16 +143,26 @@ def outcome(random: np.random.Generator, index: int) -> Outcome:
     return Outcome(f'{text}, {metric} {value:.6g}, least {least:.6g}', True, residual, below)
 
 
+def random_shift(random: np.random.Generator) -> dict[str, float]:
+    """Return random values of keys that only a gear shift has; every other one has a cut."""
+    return {
+        'shift.handover_s': float(random.integers(8, 30)) / 100.0,
+        'shift.handover_slip_rad_s': float(random.uniform(2.0, 8.0)),
+        'shift.torque_cut_n_m': max(float(random.uniform(-40.0, 40.0)), 0.0),
+    }
+
+
 def main() -> int:
     """Compare the runs, print what contradicts its floor, and return the exit code."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[1])
     parser.add_argument('--runs', type=int, default=4000)
     parser.add_argument('--seed', type=int, default=1)
+    parser.add_argument('--shifts', action='store_true', help='gear shifts, not launches')
     parser.add_argument('--first', type=int, default=0, help='index of the first run')
     options = parser.parse_args()
     started = time.monotonic()
     done: list[Outcome] = []
-    for each in outcomes(options.runs, options.seed, options.first):
+    for each in outcomes(options.runs, options.seed, options.first, shifts=options.shifts):
         done.append(each)
         if each.wrong:
             print(f'WRONG residual {each.residual:.3g}, below by {each.below:.3g}: {each.run}')

@@ -32,7 +32,7 @@ def main() -> int:
     os.environ['DDCT_CACHE'] = ''
     settings = RunSettings(load_scenario(options.scenario), clutch=options.clutch)
     start = control_start(settings)
-    times = usual_lock_times(settings)
+    times = usual_lock_times(settings, start)
     next(front(settings, ['peak_jerk'], times[-1:], start))  # imports
     spent = {'front': 0.0, 'runs': 0.0}
     for block in range(_BLOCKS):

@@ -3,6 +3,7 @@
 """Share of the avoidable limits that a controller kept."""
 
 from collections.abc import Iterator, Mapping
+from functools import cache
 
 import numpy as np
 
@@ -12,10 +13,15 @@ from ddct_bringup.benchmark.result_types import LimitsResult
 from ddct_bringup.campaign.keys import SCENARIO
 from ddct_bringup.campaign.rows import CRITERION
 from ddct_bringup.metrics.catalogue import CRITERIA
-from ddct_bringup.verdict.limits import Limit, Limits
+from ddct_bringup.verdict.limits import TRACTION, Limit, Limits
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import STICK_SLIP
 
-_COLUMNS = {each.key: each.metric or f'{CRITERION}{each.key}' for each in CRITERIA}
-"""Columns of the criteria by their names."""
+_COLUMNS = {
+    **{each.key: each.metric or f'{CRITERION}{each.key}' for each in CRITERIA},
+    TRACTION: f'{CRITERION}{TRACTION}',
+}
+"""Columns of the criteria by their names, and that of the traction."""
 
 
 def limits_in(
@@ -24,8 +30,8 @@ def limits_in(
     """
     Return which limits a controller kept, in the cases that `unavoidable` has.
 
-    A run that is no success keeps none. A limit counts in a case where the criterion has a value
-    for one of the controllers, and of a success where it has a value.
+    A run that is no success keeps none. The limit of a criterion or of the traction counts in a
+    case where one of the controllers has a value, and of a success where it has one itself.
     """
     success = successes_in(rows.of(controller))
     place = rows.controllers.index(controller)
@@ -52,7 +58,13 @@ def limits_in(
 def _limits_of(rows: CaseRows, case: int, limits: Limits) -> Iterator[tuple[Limit, np.ndarray]]:
     """Yield the limits of a case with the values of all controllers, (controllers,)."""
     (scenario,) = set(rows.columns[SCENARIO][:, case].tolist())
-    for name, limit in limits.of(scenario).items():
+    for name, limit in limits.of_all(scenario, _gravity(scenario)).items():
         column = rows.columns.get(_COLUMNS[name])
         if column is not None and not np.isnan(values := column[:, case]).all():
             yield limit, values
+
+
+@cache
+def _gravity(scenario: str) -> float:
+    """Return the gravity in m/s^2 in a scenario, which no case varies."""
+    return load_scenario(scenario, clutch=STICK_SLIP).vehicle.gravity_m_s2

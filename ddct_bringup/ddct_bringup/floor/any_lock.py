@@ -26,11 +26,12 @@ def lock_times(settings: RunSettings, start: Start) -> Sequence[float]:
     Return the lock times in s from control start whose floors are compared, the latest first.
 
     For a linear clutch the latest is enough: a run that keeps within the band from an earlier time
-    on does so from the latest on too.
+    on does so from the latest on too. In a gear shift the off-going clutch is open at each.
     """
     latest = (settings.scenario.steps - start.step) / 100.0 - SETTLED_S
     shares = _SHARES if settings.stick_slip else _SHARES[:1]
-    return [round(share * latest, 2) for share in shares]
+    times = [round(share * latest, 2) for share in shares]
+    return [time for time in times if not start.off_going or time > start.off_going.open_s]
 
 
 def least_at_any_lock(

@@ -16,11 +16,10 @@ from ddct_bringup.floor.program.linear_program import (
     LinearProgram,
     require_proof,
 )
+from ddct_bringup.floor.program.peak import late_peaks, peak_program
 from ddct_bringup.floor.program.quadratic import least_squares
 from ddct_bringup.floor.program.solve import solve
 
-_MOST_PEAK = 1e6
-"""Upper bound of a peak in its unit; every run is below."""
 _WINDOWS = 3
 """Number of stretches whose bounds are computed where a metric is the largest over all."""
 
@@ -50,14 +49,14 @@ def free_columns(case: Case) -> np.ndarray:
     """
     Return the mask of the variables that a solver chooses, (columns - 1,).
 
-    These are the requests and the remainders of engine and capacity. The remainder of the load is
-    small; it stays in the middle of its interval, and the certificate allows for all of the
-    interval.
+    These are the requests, the remainders of engine and capacity, and C_1 of a gear shift. The
+    remainder of the load is small; it stays in the middle of its interval, and the certificate
+    allows for all of the interval.
     """
     columns = case.motion.columns
     free = np.zeros(columns.count - 1, dtype=bool)
     free[: columns.requests] = True
-    for part in (columns.engine, columns.capacity, columns.nodes):
+    for part in (columns.engine, columns.capacity, columns.nodes, columns.off_going):
         free[part.start - 1 : part.stop - 1] = True
     return free
 
@@ -96,36 +95,36 @@ def _peak(case: Case, rows: np.ndarray, one_sided: bool) -> Bound:
     """Return the bound of the largest magnitude, or value, of `rows` (n, columns) times z."""
     inequalities = case.inequalities
     limiting, limits = inequalities.rows, inequalities.limits
-    count = case.motion.columns.count
-    both = rows if one_sided else np.vstack([rows, -rows])
-    program = LinearProgram(
-        cost=np.append(np.zeros(count - 1), 1.0),
-        constant=0.0,
-        rows=np.block(
-            [
-                [both[:, 1:], -np.ones((len(both), 1))],
-                [limiting[:, 1:], np.zeros((len(limiting), 1))],
-            ]
-        ),
-        limits=np.concatenate([-both[:, 0], limits - limiting[:, 0]]),
-        equal_rows=np.hstack([case.equations[:, 1:], np.zeros((len(case.equations), 1))]),
-        equal_values=-case.equations[:, 0],
-        low=np.append(case.motion.columns.low, 0.0),
-        high=np.append(case.motion.columns.high, _MOST_PEAK),
-        mirrored=0 if one_sided else len(rows),
+    columns = case.motion.columns
+    program = peak_program(
+        rows[:, 1:],
+        rows[:, 0],
+        limiting[:, 1:],
+        limits - limiting[:, 0],
+        case.equations[:, 1:],
+        -case.equations[:, 0],
+        columns.low,
+        columns.high,
+        one_sided=one_sided,
     )
-    free = np.append(free_columns(case), True)
-    deferred = np.concatenate([np.zeros(len(both), dtype=bool), inequalities.deferred])
-    margin = np.concatenate([np.zeros(len(both)), inequalities.margin])
-    solution = solve(program, ~free, (program.low + program.high) / 2.0, deferred, margin)
+    late = np.zeros(len(program.limits) - len(limits), dtype=bool)
+    # A free engine has peaks at any time, and a linear clutch that never locks has them too.
+    if program.mirrored and len(case.equations) and columns.engine.start == columns.engine.stop:
+        late = late_peaks(program.mirrored, case.lock.time_s)
+    solution = solve(
+        program,
+        np.append(~free_columns(case), False),
+        (program.low + program.high) / 2.0,
+        np.concatenate([late, inequalities.deferred]),
+        np.concatenate([np.zeros(len(late)), inequalities.margin]),
+    )
     require_proof(solution.certificate, program)
     if solution.point is None:
         return Bound(None, RAY, None, None, solution.certificate, program)
-    point = np.concatenate([[1.0], solution.point[:-1]])
-    value = float(np.max(both @ point))
-    least = max(solution.certificate.claim, 0.0)
+    point = np.append(1.0, solution.point[:-1])
+    value = float(np.max(rows @ point if one_sided else np.abs(rows @ point)))
     return Bound(
-        least,
+        max(solution.certificate.claim, 0.0),
         WEAK_DUALITY,
         point,
         value,

@@ -14,6 +14,10 @@ import scipy
 
 from ddct_bringup.digests.code import code_digest
 from ddct_bringup.floor.case import Case
+from ddct_bringup.floor.dynamics.capacity import CapacityRange
+from ddct_bringup.floor.dynamics.off_going import OffGoing
+from ddct_bringup.floor.dynamics.start import Start
+from ddct_bringup.floor.dynamics.tube import Tube
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.input_file import parse_json, read_text_file
 from ddct_plant.files.output_file import write_text
@@ -42,6 +46,8 @@ def digest_of(case: Case, metric: str, engagements_a_day: float, attain: bool) -
         repr(settings.scenario),
         settings.clutch,
         repr(settings.wear_gain),
+        repr(settings.off_going_wear_gain),
+        settings.handover,
         repr(case.lock.time_s),
         repr(case.limited),
         repr(case.most_request),
@@ -49,16 +55,23 @@ def digest_of(case: Case, metric: str, engagements_a_day: float, attain: bool) -
     for text in texts:
         digest.update(text.encode() + b'\0')
     for part in (case.start, case.tube, case.capacity):
-        for each in dataclasses.fields(part):
-            value = getattr(part, each.name)
-            if isinstance(value, np.ndarray):
-                digest.update(np.ascontiguousarray(value, dtype='<f8').tobytes())
-            elif isinstance(value, dict):
-                content = {key: [end.tolist() for end in ends] for key, ends in value.items()}
-                digest.update(json.dumps(content, sort_keys=True).encode())
-            else:
-                digest.update(repr(value).encode())
+        _add(digest, part)
     return digest.hexdigest()
+
+
+def _add(digest: 'hashlib._Hash', part: Start | Tube | CapacityRange | OffGoing) -> None:
+    """Add the values of all fields to a digest, also those of objects within."""
+    for each in dataclasses.fields(part):
+        value = getattr(part, each.name)
+        if isinstance(value, np.ndarray):
+            digest.update(np.ascontiguousarray(value, dtype='<f8').tobytes())
+        elif isinstance(value, dict):
+            content = {key: [end.tolist() for end in ends] for key, ends in value.items()}
+            digest.update(json.dumps(content, sort_keys=True).encode())
+        elif isinstance(value, OffGoing):
+            _add(digest, value)
+        else:
+            digest.update(repr(value).encode())
 
 
 def cached(digest: str) -> dict[str, Any] | None:

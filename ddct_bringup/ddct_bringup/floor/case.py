@@ -13,6 +13,7 @@ from ddct_bringup.floor.dynamics.engine_laws import EngineLaw, demand_law, engin
 from ddct_bringup.floor.dynamics.laws import Law, load_law
 from ddct_bringup.floor.dynamics.motion import Motion, motion_of
 from ddct_bringup.floor.dynamics.start import Start
+from ddct_bringup.floor.dynamics.torque_cut import cuts_as_usual, gives_demand
 from ddct_bringup.floor.dynamics.tube import Tube, rigid_tube
 from ddct_bringup.floor.lock import Lock
 from ddct_bringup.floor.rows import Rows, band_rows, clutch_rows, engine_rows
@@ -50,7 +51,8 @@ class Case:
             return self.near_run[0]
         if self.limited:
             return engine_law(self.settings, self.tube, self.start.step, self.start.idle_integral)
-        return demand_law(self.settings, self.start.step, len(self.tube.engine_low))
+        steps, locked = len(self.tube.engine_low), self.lock.periods
+        return demand_law(self.settings, self.start.step, steps, locked)
 
     @cached_property
     def load(self) -> Law:
@@ -122,8 +124,10 @@ def case_of_run(settings: RunSettings, start: Start, lock: Lock, run: Trajectory
     used = run.torque_request[:first]
     if not np.array_equal(np.maximum(used, 0.0), start.requests) or run.two_input:
         return None
+    if start.off_going and not (start.off_going.agrees(run) and cuts_as_usual(settings, run)):
+        return None
     end = first + lock.periods + 1
-    if not stays_within(run, first, end, start.temperature_c):
+    if not stays_within(settings, run, first, end, start.temperature_c):
         return None
     limited = not gives_demand(run, first)
     capacity = capacity_range(settings, start.temperature_c)
@@ -138,8 +142,3 @@ def case_of_run(settings: RunSettings, start: Start, lock: Lock, run: Trajectory
         capacity,
         max(MOST_REQUEST, float(run.torque_request[first:].max())),
     )
-
-
-def gives_demand(run: Trajectory, start: int) -> bool:
-    """Return whether the engine delivers the driver's demand from step `start` on."""
-    return np.array_equal(run.engine_torque[start:-1], run.torque_demand[start:-1])

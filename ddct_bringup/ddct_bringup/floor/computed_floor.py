@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.floor.bound import bound_of
 from ddct_bringup.floor.cache import cached, digest_of, store
-from ddct_bringup.floor.case import Case, gives_demand
+from ddct_bringup.floor.case import Case
+from ddct_bringup.floor.dynamics.torque_cut import gives_demand
 from ddct_bringup.floor.friction_work import least_friction_work
 from ddct_bringup.floor.objectives import Signals
 from ddct_bringup.floor.program.linear_program import CLOSED_FORM, RAY

@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """State at control start of a scenario, simulated once for all runs that start alike."""
 
+from ddct_bringup.floor.dynamics.propagators import WHEEL
 from ddct_bringup.floor.dynamics.start import Start, start_of
-from ddct_bringup.run.headless import ClosedLoop, run_loop
+from ddct_bringup.run.headless import closed_loop, run_loop
 from ddct_controllers.interface import Controller
 from ddct_controllers.registry import make_controller
 from ddct_plant.base.errors import ParameterError
@@ -20,7 +21,9 @@ def control_start(settings: RunSettings) -> Start:
     """
     Return the state at control start, which every controller of the architecture starts from.
 
-    Raise ParameterError where it depends on the controller, or the plates do not slip there.
+    In a gear shift it is that at the start of the inertia phase: until then the requests are those
+    of the handover. Raise ParameterError where it depends on the controller, or where the plates
+    do not slip there or the wheels do not turn forward.
     """
     if not settings.detailed:
         raise ParameterError(
@@ -28,12 +31,12 @@ def control_start(settings: RunSettings) -> Start:
             'control start depends on the controller: choose the architecture detailed',
             key='architecture',
         )
-    if settings.shift:
-        raise ParameterError(
-            f'scenario {settings.scenario.name} is a gear shift: a floor is of an engagement '
-            'with one clutch, and none of a shift is computed'
-        )
     start = _simulated(settings)
+    if settings.stick_slip and start.state[WHEEL] <= 0.0:
+        raise ParameterError(
+            f'scenario {settings.scenario.name}: the wheels do not turn forward at control start, '
+            'and when they break loose depends on the controller: there is no floor'
+        )
     if start.slip == 0.0:
         raise ParameterError(
             f'scenario {settings.scenario.name}: the plates do not slip at control start: there '
@@ -49,8 +52,10 @@ def _simulated(settings: RunSettings) -> Start:
             return start
     controller = make_controller(_DRIVER, settings)
     assert isinstance(controller, Controller)
-    steps = settings.scenario.control_start_step
-    start = start_of(settings, run_loop(ClosedLoop(settings, controller), steps))
+    scenario = settings.scenario
+    # When feedback starts in a shift, and when the off-going clutch is open, the run shows.
+    steps = scenario.steps if settings.shift else scenario.control_start_step
+    start = start_of(settings, run_loop(closed_loop(settings, controller), steps))
     _kept.append((settings, start))
     del _kept[:-_MOST_KEPT]
     return start

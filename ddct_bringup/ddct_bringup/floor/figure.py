@@ -22,15 +22,28 @@ _HEADROOM = 8.0
 
 
 def write_front_figure(
-    floors: Sequence[Floor], rows: Sequence[ControllerRow], title: str, path: Path
+    floors: Sequence[Floor],
+    rows: Sequence[ControllerRow],
+    title: str,
+    path: Path,
+    counted_from: str = 'control start',
 ) -> None:
     """Write the figure as PNG or SVG by the file's ending; raise DdctError where it cannot be."""
     with chart_style():
-        save_chart(front_figure(floors, rows, title), path)
+        save_chart(front_figure(floors, rows, title, counted_from), path)
 
 
-def front_figure(floors: Sequence[Floor], rows: Sequence[ControllerRow], title: str) -> Figure:
-    """Return the figure with one panel for each metric, from floors and rows of controllers."""
+def front_figure(
+    floors: Sequence[Floor],
+    rows: Sequence[ControllerRow],
+    title: str,
+    counted_from: str = 'control start',
+) -> Figure:
+    """
+    Return the figure with one panel for each metric, from floors and rows of controllers.
+
+    Lock times count from the instant that `counted_from` names.
+    """
     metrics = list(dict.fromkeys(floor.metric for floor in floors))
     drawing = Figure(figsize=(_WIDTH_IN, _PANEL_IN * len(metrics) + _MARGINS_IN))
     panels = drawing.subplots(len(metrics), sharex=True, squeeze=False)[:, 0]
@@ -38,7 +51,7 @@ def front_figure(floors: Sequence[Floor], rows: Sequence[ControllerRow], title: 
     for axes, metric in zip(panels, metrics, strict=True):
         _draw(axes, [f for f in floors if f.metric == metric], _marks(rows, metric))
         axes.set_ylabel(f'{metric.replace("_", " ")}\n{METRICS[metric]}')
-    panels[-1].set_xlabel('time from control start to the lock, s')
+    panels[-1].set_xlabel(f'time from {counted_from} to the lock, s')
     handles, labels = panels[0].get_legend_handles_labels()
     drawing.legend(handles, labels, ncols=_LEGEND_COLUMNS, loc='outside upper center')
     return drawing

@@ -41,7 +41,7 @@ def floors_at(
             f'lock time {lock_time_s:g} s: give one between 0 and {latest:g} s, when the run ends'
         )
     narrow = case_at(settings, start, lock_time_s, limited=False)
-    wide = case_at(settings, start, lock_time_s, limited=True)
+    wide = replace(narrow, limited=True)
     floors = []
     for metric in metrics:
         found = computed_floor(narrow, metric)
@@ -82,7 +82,7 @@ def floors_of_run(
     case = case_of_run(settings, start, lock, run)
     if case is None:
         return none
-    values = {metric: value_of(settings, metric, run, start.step) for metric in metrics}
+    values = {metric: value_of(settings, metric, run, start.scored_from) for metric in metrics}
     return {
         metric: None
         if value is None

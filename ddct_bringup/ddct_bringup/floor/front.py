@@ -23,9 +23,9 @@ _SHARES = (0.35, 0.95)
 """First and last lock time as shares of the time from control start to the end of the window."""
 
 
-def usual_lock_times(settings: RunSettings) -> list[float]:
+def usual_lock_times(settings: RunSettings, start: Start) -> list[float]:
     """Return lock times in s from control start, multiples of 10 ms, to the score window's end."""
-    span = window_of(settings.scenario)[1] - settings.scenario.control_start_step
+    span = window_of(settings.scenario)[1] - start.step
     steps = np.unique(np.round(np.linspace(*_SHARES, POINTS) * span)).astype(int)
     return [int(step) / 100.0 for step in steps if step > 0]
 
@@ -111,7 +111,7 @@ def controller_rows(
     for metric in metrics:
         found = over[metric]
         whole = run.steps == settings.scenario.steps
-        value = value_of(settings, metric, run, start.step) if whole else None
+        value = value_of(settings, metric, run, start.scored_from) if whole else None
         rows.append(
             {
                 'controller': controller_label(controller),

@@ -12,6 +12,7 @@ from ddct_bringup.metrics.zero_slip import LOCKED, events_of, first_lock
 from ddct_plant.base.timebase import PERIOD_S, time_of_step
 from ddct_plant.base.units import rad_s_from_rpm
 from ddct_plant.models.driveline import LOCK
+from ddct_plant.scenario.settings import RunSettings
 
 BAND_RPM, SETTLED_S = 50.0, 0.3
 """Slip within which a linear clutch counts as locked, and for how long: the rules of verdicts."""
@@ -23,7 +24,7 @@ class Lock:
     """Instant of a lock."""
 
     time_s: float
-    """Time in s from control start."""
+    """Time in s from control start, in a gear shift from the start of the inertia phase."""
 
     @property
     def periods(self) -> int:
@@ -31,11 +32,17 @@ class Lock:
         return max(math.ceil(self.time_s / PERIOD_S - 1e-7), 1)
 
 
+def counted_from(settings: RunSettings) -> str:
+    """Return the words for the instant from which lock times count."""
+    return 'the start of the inertia phase' if settings.shift else 'control start'
+
+
 def lock_of(run: Trajectory, start: int) -> Lock | None:
     """
     Return the lock of a run that locks once after step `start` and stays locked, else None.
 
-    Plates that stick lock at the exact instant, and slip one way before. A linear clutch locks
+    In a gear shift it is that of the on-coming clutch. Plates that stick lock at the exact
+    instant, and slip one way before. A linear clutch locks
     with the first sample from which the slip stays within the band to the end.
     """
     if run.steps <= start:

@@ -6,6 +6,9 @@ import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.floor.case import Case
+from ddct_bringup.floor.dynamics.off_going import effects_of_run
+from ddct_bringup.floor.dynamics.shapes import shape_effects
+from ddct_plant.scenario.shift_rules import gears_of
 
 
 def point_of(case: Case, run: Trajectory) -> np.ndarray:
@@ -25,6 +28,11 @@ def point_of(case: Case, run: Trajectory) -> np.ndarray:
         point[columns.engine] = case.engine.rest(run.engine_torque[first:], engine)[:-1]
     if run.clutch_phase is not None:
         _add_capacity(case, point, run)
+    if case.start.off_going and len(case.start.off_going.most):
+        gears, off_going = gears_of(case.settings.scenario), case.start.off_going
+        periods = range(first + off_going.known, first + off_going.periods)
+        effects = effects_of_run(case.settings, run, periods)
+        point[columns.off_going] = np.linalg.solve(shape_effects(gears), effects.T).T.ravel()
     return point
 
 

@@ -78,6 +78,14 @@ def band_rows(motion: Motion, lock: Lock) -> Rows:
     )
 
 
+def _cut_rows(motion: Motion, per_slip: float) -> np.ndarray:
+    """Return the rows of a torque cut that is at most `per_slip` times the slip at its step."""
+    rows = -per_slip * motion.slip
+    places = np.arange(len(rows))
+    rows[places, motion.columns.engine.start + 1 + places] -= 1.0
+    return np.asarray(rows)
+
+
 def engine_rows(motion: Motion, law: EngineLaw) -> Rows:
     """Return the rows of the lines over w_m between which C_m is, and of the least w_m."""
     columns = motion.columns
@@ -92,6 +100,8 @@ def engine_rows(motion: Motion, law: EngineLaw) -> Rows:
             beyond = torque - slope[:steps, np.newaxis] * speed
             beyond[:, 0] -= offset[:steps]
             rows.append(side * beyond)
+        if law.cut_per_slip:
+            rows.append(_cut_rows(motion, law.cut_per_slip))
     limits = [np.zeros(sum(len(each) for each in rows))]
     if law.least_speed is not None:
         rows.append(-motion.engine_speed[:-1])

@@ -41,8 +41,8 @@ class Floor:
     """
     Kind of the proof, its number, and what it covers.
 
-    The number is the bound that the multipliers prove by weak duality, of a Farkas ray the least
-    violation of all constraints, which is positive.
+    The number is the bound that the multipliers prove by weak duality, of a Farkas ray a positive
+    lower bound of the largest violation of a constraint.
     """
     replay_residual: float | None
     """Difference between the value of that run and its prediction, in the unit of the metric."""

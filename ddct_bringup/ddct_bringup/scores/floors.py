@@ -12,6 +12,7 @@ from ddct_bringup.floor.control_start import control_start
 from ddct_bringup.floor.dynamics.start import Start
 from ddct_bringup.floor.floor import floors_of_run
 from ddct_bringup.floor.values import METRICS, OF_STICK_SLIP, OverFloor, engagements_a_day
+from ddct_bringup.run.options import metrics_of
 from ddct_bringup.scores.scored_recording import ScoredRecording
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.verdict.limits import Limits
@@ -22,10 +23,8 @@ from ddct_bringup.verdict.verdict import (
     CriterionResult,
     verdict_with_floors,
 )
-from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.base.options import require_known
+from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import steps_in
-from ddct_plant.files.input_file import located
 from ddct_plant.scenario.settings import RunSettings
 
 USUAL, ALL, NONE = 'usual', 'all', 'none'
@@ -63,14 +62,7 @@ def floor_metrics(text: str) -> tuple[str, ...] | None:
         return None
     if text in (USUAL, ALL):
         return _USUAL if text == USUAL else tuple(METRICS)
-    names = tuple(dict.fromkeys(name.strip() for name in text.split(',') if name.strip()))
-    with located('--floors'):
-        require_known(names, METRICS, 'metric')
-    if not names:
-        raise ParameterError(
-            '--floors is empty: name a metric, usual, all or none', key='--floors'
-        )
-    return names
+    return tuple(metrics_of('--floors', text, METRICS, 'name a metric, usual, all or none'))
 
 
 def with_floors(

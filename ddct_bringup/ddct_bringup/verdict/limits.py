@@ -33,6 +33,8 @@ from ddct_plant.files.yaml_text import parse_yaml_with_lines
 SCHEMA_VERSION = 2
 """Schema version of a limits file; in version 1 a convention had no reason."""
 CONVENTION = 'convention'
+TRACTION, TRACTION_UNIT = 'traction', 'm/s^2'
+"""Name of the traction, which is judged next to the criteria, and its unit."""
 _REASONED_FROM = 2
 """First schema version in which a convention has a reason."""
 _CITATION = ('source', 'clause')
@@ -65,6 +67,18 @@ class Limits:
     """Thresholds of the states of a gear shift; the packaged ones where the file has none."""
     origin: Mapping[str, str | int] = field(compare=False)
     """Name, digest and schema version of the file, under the keys of `scores.json`."""
+
+    def of_all(self, scenario: str, gravity: float) -> dict[str, Limit]:
+        """Return the limits of criteria and traction by name, at a gravity in m/s^2."""
+        traction = self.of_traction(gravity)
+        return self.of(scenario) | ({TRACTION: traction} if traction else {})
+
+    def of_traction(self, gravity: float) -> Limit | None:
+        """Return the limit of the traction at a gravity in m/s^2; None where the file has none."""
+        if self.traction is None:
+            return None
+        largest, reason = self.traction.limit(gravity), f'{CONVENTION}: {self.traction.reason}'
+        return Limit(TRACTION, largest, TRACTION_UNIT, None, reason, convention=True)
 
     def of(self, scenario: str) -> dict[str, Limit]:
         """Return the strictest limit of each criterion for a scenario, by criterion."""

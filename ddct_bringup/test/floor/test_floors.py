@@ -102,6 +102,7 @@ def test_the_values_are_those_of_scores_and_verdict():
         ('launch', 'stick_slip', 0.5, 25.0),
         ('thesis', 'stick_slip', 0.8, 5.0),
         ('thesis', 'linear', 0.5, 2.0),
+        ('thesis', 'linear', 0.48, 2.0),
     ],
 )
 def test_the_least_peak_jerk_is_nearly_attained_by_a_run_that_locks_then(

@@ -20,6 +20,7 @@ from ddct_bringup.floor.program.linear_program import (
     proven,
     require_proof,
 )
+from ddct_bringup.floor.program.peak import late_peaks, peak_program
 from ddct_bringup.floor.program.solve import solve
 from ddct_plant.base.errors import DdctError
 
@@ -33,17 +34,9 @@ def solution_of(program):
 def least_peak(rows, offset, equal_rows, equal_values, most):
     """Return the program of the least peak |rows u + offset| with equations and a box."""
     count = rows.shape[1]
-    ones = np.ones((len(rows), 1))
-    return LinearProgram(
-        cost=np.append(np.zeros(count), 1.0),
-        constant=0.0,
-        rows=np.block([[rows, -ones], [-rows, -ones]]),
-        limits=np.concatenate([-offset, offset]),
-        equal_rows=np.hstack([equal_rows, np.zeros((len(equal_rows), 1))]),
-        equal_values=equal_values,
-        low=np.append(np.full(count, -most), 0.0),
-        high=np.append(np.full(count, most), 1e3),
-    )
+    box = np.full(count, most)
+    none = np.zeros((0, count)), np.zeros(0)
+    return peak_program(rows, offset, *none, equal_rows, equal_values, -box, box)
 
 
 def test_a_double_integrator_from_rest_to_rest_needs_four_times_the_way_over_the_time_squared():
@@ -126,6 +119,41 @@ def test_an_infeasible_program_comes_with_its_ray():
     require_proof(solution.certificate, impossible_program())
 
 
+def test_late_rows_of_a_peak_count_where_the_peak_is_late():
+    """Each request has a peak of its own: that of the last period is the highest."""
+    periods = 80
+    program = least_peak(
+        np.eye(periods), np.linspace(-1.0, 3.0, periods), np.zeros((0, periods)), np.zeros(0), 1.0
+    )
+    deferred = late_peaks(periods, 0.1)
+    assert deferred.any()
+    assert not deferred.all()
+    free = np.zeros(periods + 1, dtype=bool)
+    solution = solve(program, free, np.zeros(periods + 1), deferred)
+    assert solution.certificate.claim == pytest.approx(2.0, abs=1e-6)
+
+
+def test_without_a_point_the_multipliers_mostly_become_a_ray():
+    """Where they do not, the least violation of the program has the ray."""
+    found = 0
+    for seed in range(20):
+        program = random_program(np.random.default_rng(seed))
+        beyond = replace(
+            program,
+            rows=np.vstack([program.rows, -program.rows]),
+            limits=np.concatenate([program.limits, -program.limits - 0.5]),
+        )
+        assert solution_of(beyond).certificate.kind == RAY
+        ray = interior_point(beyond)
+        if ray is not None:
+            assert ray.point is None
+            certificate = certified(RAY, beyond, ray.rows, ray.equal)
+            assert certificate.claim > 0.0
+            require_proof(certificate, beyond)
+            found += 1
+    assert found >= 10
+
+
 def broken(certificate):
     """Yield certificates that no longer prove their claim, with words of the error."""
     yield replace(certificate, claim=certificate.claim + 1e-3), 'claims'
@@ -153,6 +181,25 @@ def test_a_ray_that_excludes_nothing_is_refused():
     with pytest.raises(DdctError, match='exclude'):
         require_proof(empty, program)
     assert certified(RAY, program, rows, np.zeros(1)).claim == 0.0
+
+
+@pytest.mark.parametrize('seed', range(20))
+def test_huge_multipliers_that_cancel_prove_nothing_by_rounding(seed):
+    """Rows and their mirror images cancel, and no bound above the cost of a point is left."""
+    random = np.random.default_rng(seed)
+    half, point = random.normal(size=(40, 30)), random.uniform(900.0, 1000.0, size=30)
+    program = LinearProgram(
+        cost=np.zeros(30),
+        constant=1.0,
+        rows=np.vstack([half, -half]),
+        limits=np.concatenate([half @ point, -half @ point]),
+        equal_rows=np.zeros((0, 30)),
+        equal_values=np.zeros(0),
+        low=np.full(30, 900.0),
+        high=np.full(30, 1000.0),
+    )
+    multipliers = np.tile(1e19 * random.uniform(size=40), 2)
+    assert proven(WEAK_DUALITY, program, multipliers, np.zeros(0)) <= 1.0
 
 
 def test_the_residual_of_a_point_is_its_farthest_violation():

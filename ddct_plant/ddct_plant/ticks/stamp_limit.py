@@ -28,17 +28,19 @@ class StampLimit:
         ticks: Collection[str],
         *,
         from_t0: bool = False,
+        shown: Callable[[str], str] = str,
         clock_ns: Callable[[], int] = time.monotonic_ns,
     ) -> None:
         """
         Limit the stamps of `ticks`, the topics that the owner of time publishes, and of replies.
 
         All other topics are replies to ticks. `clock_ns` is a steady clock in ns. With `from_t0`
-        a first tick later than t_0 is refused.
+        a first tick later than t_0 is refused. `shown` returns the name of a topic in a refusal.
         """
         self._ticks = ticks
         self._clock_ns = clock_ns
         self._from_t0 = from_t0
+        self._shown = shown
         self._first: tuple[int, int] | None = None
         """Stamp of the first tick in ns, and the clock in ns at which it was received."""
         self._lead_ns: int | None = None
@@ -55,14 +57,14 @@ class StampLimit:
         try:
             step_of_stamp(stamp_ns)
         except DdctError as error:
-            return f'{topic}: {error}'
+            return f'{self._shown(topic)}: {error}'
         now = self._clock_ns()
         is_tick = topic in self._ticks
         latest = self._latest_tick(now) if is_tick else self._latest_reply(now)
         if latest is not None and stamp_ns > latest:
             return (
-                f'{topic}: stamp {stamp_ns} ns is {(stamp_ns - latest) / 1e9:.3g} s ahead of what '
-                'can be due: stamp the message with the tick it answers'
+                f'{self._shown(topic)}: stamp {stamp_ns} ns is {(stamp_ns - latest) / 1e9:.3g} s '
+                'ahead of what can be due: stamp the message with the tick it answers'
             )
         if is_tick:
             self._note_tick(stamp_ns, now)

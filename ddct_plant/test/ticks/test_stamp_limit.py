@@ -53,6 +53,12 @@ def test_a_stamp_off_the_grid_is_refused_with_its_topic(limit, topic, stamp):
     assert limit.why(topic, stamp).startswith(f'{topic}: stamp {stamp} ns is not on the grid')
 
 
+def test_a_refusal_shows_a_topic_by_the_name_that_it_is_given():
+    limit = Limit(shown=lambda topic: f'side/{topic}')
+    for stamp in (stamp_of_step(0) + 1, stamp_of_step(50)):
+        assert limit.why(REPLY, stamp).startswith(f'side/{REPLY}: stamp {stamp} ns')
+
+
 def test_a_reply_may_be_one_step_ahead_of_the_tick_and_no_more(limit):
     assert limit.takes(REPLY, 101)
     assert not limit.takes(REPLY, 102)

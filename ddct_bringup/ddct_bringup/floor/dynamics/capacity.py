@@ -9,7 +9,7 @@ import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.models.clutch import AMBIENT_C
+from ddct_plant.models.clutch import AMBIENT_C, FrictionParameters
 from ddct_plant.scenario.settings import RunSettings
 
 COOLER_K, WARMER_K = 2.0, 10.0
@@ -71,11 +71,7 @@ def capacity_range(settings: RunSettings, temperature_c: float) -> CapacityRange
             key='friction.slip_rad_s',
         )
     coolest, hottest = temperature_c - COOLER_K, temperature_c + WARMER_K
-    inner = [t for t in friction.temperature_c if coolest < t < hottest]
-    temperatures = np.array([coolest, hottest, *inner])
-    if friction.temperature_c and np.any(
-        np.interp(temperatures, friction.temperature_c, friction.temperature_share) != 1.0
-    ):
+    if _fades(friction, coolest, hottest):
         raise ParameterError(
             f'friction.temperature_share: friction changes near {temperature_c:.0f} °C, the '
             'temperature of the facing at control start: there is no floor'
@@ -86,9 +82,30 @@ def capacity_range(settings: RunSettings, temperature_c: float) -> CapacityRange
     return CapacityRange(rest.min(), rest.max(), friction.most_n_m, positive=True)
 
 
-def stays_within(run: Trajectory, start: int, end: int, temperature_c: float) -> bool:
-    """Return whether the facing stays within the temperatures of `capacity_range`."""
+def stays_within(
+    settings: RunSettings, run: Trajectory, start: int, end: int, temperature_c: float
+) -> bool:
+    """
+    Return whether the facing stays within the temperatures of `capacity_range`.
+
+    Where neither kiss point nor friction change it may be as warm as it likes.
+    """
     if run.clutch_temperature is None:
         return True
-    warmed = run.clutch_temperature[start:end] - temperature_c
-    return bool(np.all((warmed >= -COOLER_K) & (warmed <= WARMER_K)))
+    temperatures = run.clutch_temperature[start:end]
+    coolest, hottest = float(temperatures.min()), float(temperatures.max())
+    if coolest >= temperature_c - COOLER_K and hottest <= temperature_c + WARMER_K:
+        return True
+    friction = settings.scenario.friction
+    return not friction.kiss_drift_n_m_k and not _fades(friction, coolest, hottest)
+
+
+def _fades(friction: FrictionParameters, coolest: float, hottest: float) -> bool:
+    """Return whether friction is another than that of a cold facing between two temperatures."""
+    if not friction.temperature_c:
+        return False
+    inner = [t for t in friction.temperature_c if coolest < t < hottest]
+    shares = np.interp(
+        [coolest, hottest, *inner], friction.temperature_c, friction.temperature_share
+    )
+    return bool(np.any(shares != 1.0))

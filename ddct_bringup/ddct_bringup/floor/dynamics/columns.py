@@ -8,7 +8,9 @@ import numpy as np
 
 from ddct_bringup.floor.dynamics.capacity import CapacityRange
 from ddct_bringup.floor.dynamics.laws import Law
+from ddct_bringup.floor.dynamics.off_going import OffGoing
 from ddct_bringup.floor.dynamics.propagators import NODES
+from ddct_bringup.floor.dynamics.shapes import SHAPES
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,6 +31,9 @@ class Columns:
     """Columns of what clipping adds at the nodes of C_f, NODES for each clipped period."""
     clipped: tuple[int, ...]
     """Periods after control start whose capacity is clipped."""
+    off_going: slice
+    """Columns of the off-going clutch's torque in a gear shift, SHAPES for each period in which it
+    is a variable."""
     low: np.ndarray
     high: np.ndarray
     """Intervals of all variables but the constant, (count - 1,)."""
@@ -43,6 +48,11 @@ class Columns:
         first = self.nodes.start + self.clipped.index(period) * NODES
         return slice(first, first + NODES)
 
+    def of_shapes(self, place: int) -> slice:
+        """Return the columns of C_1 in the period at a place among those with a variable C_1."""
+        first = self.off_going.start + place * SHAPES
+        return slice(first, first + SHAPES)
+
 
 def columns_of(
     requests: int,
@@ -52,6 +62,7 @@ def columns_of(
     capacity: CapacityRange,
     periods: int,
     slipping_periods: int,
+    off_going: OffGoing | None = None,
 ) -> Columns:
     """
     Return the variables of a run of `periods` from control start.
@@ -79,7 +90,12 @@ def columns_of(
         low.append(least)
         high.append(most)
     slices.append(slice(first, first + len(clipped) * NODES))
-    of_load, of_engine, of_capacity, nodes = slices
+    first += len(clipped) * NODES
+    most = np.zeros(0) if off_going is None else off_going.most.ravel()
+    low.append(-most)
+    high.append(most)
+    slices.append(slice(first, first + len(most)))
+    of_load, of_engine, of_capacity, nodes, of_off_going = slices
     return Columns(
         requests,
         of_load,
@@ -87,6 +103,7 @@ def columns_of(
         of_capacity,
         nodes,
         clipped,
+        of_off_going,
         np.concatenate(low),
         np.concatenate(high),
     )

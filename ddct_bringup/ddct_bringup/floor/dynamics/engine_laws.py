@@ -8,6 +8,7 @@ import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.floor.dynamics.laws import Law
+from ddct_bringup.floor.dynamics.torque_cut import cut_per_slip, demanded_torque, most_cut
 from ddct_bringup.floor.dynamics.tube import Tube
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.models.engine_limits import EngineLimits
@@ -46,29 +47,43 @@ class EngineLaw(Law):
     """Part of the torque that depends on speeds before; None without one."""
     least_speed: np.ndarray | None = None
     """Least w_m in rad/s at which the engine gives this torque, (n,); None where any is enough."""
+    cut_per_slip: float = 0.0
+    """Largest torque cut in N m per rad/s of slip, 0 where it does not depend on the slip."""
 
 
-def demand_law(settings: RunSettings, start: int, steps: int) -> EngineLaw:
-    """Return the law of C_m of runs in which the engine delivers the demand throughout."""
+def demand_law(
+    settings: RunSettings, start: int, steps: int, locked: int | None = None
+) -> EngineLaw:
+    """
+    Return the law of C_m of runs in which the engine delivers the demand throughout.
+
+    A handover may take a torque cut off it, which fades as the slip goes to zero, and is zero from
+    step `locked` after `start` on. With sensors it depends on what they measure.
+    """
     engine, none = make_engine(settings), np.zeros(steps)
     demand = np.array([engine.demand(start + k) for k in range(steps)])
-    limits = settings.scenario.engine_limits
-    least = None if limits is None else _least_speed(limits, demand)
-    return EngineLaw(demand, none, none, none, least_speed=least)
+    limits, most = settings.scenario.engine_limits, most_cut(settings)
+    least = None if limits is None else _least_speed(limits, demand, most)
+    cut, per_slip = np.full(steps, most), cut_per_slip(settings)
+    if per_slip:
+        cut[locked:] = 0.0
+    return EngineLaw(demand, none, -cut, none, least_speed=least, cut_per_slip=per_slip)
 
 
-def _least_speed(limits: EngineLimits, demand: np.ndarray) -> np.ndarray:
+def _least_speed(limits: EngineLimits, demand: np.ndarray, cut: float) -> np.ndarray:
     """
     Return a lower bound of w_m in rad/s for an engine that delivers demands in N m, (n,).
 
-    Below it full load is less, or idle control asks for more, whose integral is not negative.
+    Below it full load is less, or idle control asks for more, whose integral is not negative. At
+    most `cut` in N m is taken off a demand.
     """
+    reduced = np.maximum(demand - cut, 0.0)
     speeds, torques = limits.speed_rad_s, limits.full_load_n_m
     least = np.full(len(demand), limits.over_rev_rad_s)
     for i in reversed(range(len(speeds) - 1)):
         rise = torques[i + 1] - torques[i]
-        share = np.clip((demand - torques[i]) / rise, 0.0, 1.0) if rise > 0.0 else 0.0
-        reached = demand <= max(torques[i], torques[i + 1])
+        share = np.clip((reduced - torques[i]) / rise, 0.0, 1.0) if rise > 0.0 else 0.0
+        reached = reduced <= max(torques[i], torques[i + 1])
         least = np.where(reached, speeds[i] + share * (speeds[i + 1] - speeds[i]), least)
     if limits.idle_gain_n_m_s > 0.0:
         idles = np.maximum(least, limits.idle_rad_s - demand / limits.idle_gain_n_m_s)
@@ -88,7 +103,7 @@ def law_of_run(settings: RunSettings, run: Trajectory, start: int) -> EngineLaw:
     if limits is None:
         return EngineLaw(torque, slope, none, none)
     full = _full(limits, speed)
-    acts = torque != run.torque_demand[start:]
+    acts = torque != demanded_torque(run)[start:]
     on_full_load = acts & np.isclose(torque, full, rtol=1e-9)
     rise = _full(limits, speed + _STEP) - full
     slope[on_full_load] = rise[on_full_load] / _STEP
@@ -140,12 +155,14 @@ def engine_law(settings: RunSettings, tube: Tube, start: int, idle_integral: flo
     free = (high > law.offset) | (low < law.offset)
     if not free.any():
         return law
+    cut = most_cut(settings)
+    below, slope, side = _chord_below(limits, law, ends)
     return EngineLaw(
         law.offset,
         law.slope,
-        low - law.offset,
+        low - cut - law.offset,
         high - law.offset,
-        (*_full_load_lines(limits, slowest, fastest), _chord_below(limits, law, ends)),
+        (*_full_load_lines(limits, slowest, fastest), (below - cut, slope, side)),
     )
 
 

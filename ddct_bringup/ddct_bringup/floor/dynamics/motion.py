@@ -10,6 +10,7 @@ from ddct_bringup.floor.dynamics import propagators
 from ddct_bringup.floor.dynamics.capacity import CapacityRange
 from ddct_bringup.floor.dynamics.columns import Columns, columns_of
 from ddct_bringup.floor.dynamics.engine_laws import EngineLaw
+from ddct_bringup.floor.dynamics.inputs import Inputs
 from ddct_bringup.floor.dynamics.laws import Law
 from ddct_bringup.floor.dynamics.propagators import ENGINE, NODES, SHAFT, TWIST, WHEEL
 from ddct_bringup.floor.dynamics.stability import require_stable
@@ -28,7 +29,7 @@ class Motion:
     """
 
     start: int
-    """Step of control start."""
+    """Step from which metrics count: control start, also in a gear shift."""
     lock_step: int | None
     """Step that starts the period of the lock; None for a linear clutch, which does not lock."""
     sign: float
@@ -68,8 +69,13 @@ def motion_of(
     Return the signals of every run that starts at `start` and locks once, at `lock_time_s`.
 
     `lock_time_s` counts from control start; None: the clutch is linear, and slips to the end.
-    The requests are between 0 and `most_request` in N m.
+    The requests are between 0 and `most_request` in N m. Raise ParameterError for an unstable
+    model, and a lock before the off-going clutch of a gear shift is open.
     """
+    scenario = settings.scenario
+    require_stable(scenario.name, scenario.controlled_driveline, load, engine)
+    if start.off_going and lock_time_s is not None:
+        start.off_going.require_open(lock_time_s)
     return _Builder(settings, start, lock_time_s, engine, load, capacity, most_request).motion()
 
 
@@ -86,52 +92,43 @@ class _Builder:
         capacity: CapacityRange,
         most_request: float,
     ) -> None:
-        self._scenario, self._p = settings.scenario, settings.scenario.driveline
-        self._wear_gain = settings.wear_gain
+        self._scenario, self._p = settings.scenario, settings.scenario.controlled_driveline
         self._radius = settings.scenario.vehicle.wheel_radius_m
-        self._start, self._engine, self._load, self._capacity = start, engine, load, capacity
+        self._start = start
         self._periods = settings.scenario.steps - start.step
         self._sign = 1.0 if settings.stick_slip is False or start.slip >= 0.0 else -1.0
-        self._actuator = ActuatorModel.of(settings)
         self._lock = None if lock_time_s is None else divmod_period(lock_time_s)
         self._slipping_periods = self._periods if self._lock is None else self._lock[0] + 1
         self.columns = columns_of(
-            max(self._slipping_periods - self._actuator.delays[-1], 0),
+            max(self._slipping_periods - ActuatorModel.of(settings).delays[-1], 0),
             most_request,
             load,
             engine,
             capacity,
             self._periods,
             self._slipping_periods,
+            start.off_going,
         )
+        self._inputs = Inputs(settings, start, engine, load, capacity, self.columns)
 
     def motion(self) -> Motion:
-        """Return the signals; raise ParameterError for an unstable model."""
-        require_stable(self._scenario.name, self._p, self._load, self._engine)
+        """Return the signals."""
         state = np.zeros((4, self.columns.count))
         state[:, 0] = self._start.state
-        actuator = np.zeros((len(self._start.actuator), self.columns.count))
-        actuator[:, 0] = self._start.actuator
         slipping, locked = propagators.slipping(self._p), propagators.locked(self._p)
         states, loads, capacities = [state], [], []
-        integral = np.zeros(self.columns.count)
         whole = np.zeros((6 + NODES, self.columns.count))
         slip_at_lock = slip_acceleration = None
         for k in range(self._periods):
-            engine = self._torque(self._engine, self.columns.engine, k, state[ENGINE])
-            if self._engine.integral:
-                engine += self._engine.integral.share[k] * integral
-                integral = (
-                    self._engine.integral.keep[k] * integral
-                    + self._engine.integral.gain[k] * state[ENGINE]
-                )
-            load = self._torque(self._load, self.columns.load, k, state[WHEEL])
-            loads.append(load)
+            whole[:4], whole[4], whole[5] = (
+                state,
+                self._inputs.engine(k, state),
+                self._inputs.load(k, state),
+            )
+            loads.append(whole[5].copy())
             if k < self._slipping_periods:
-                nodes, actuator = self._clutch(k, actuator)
-                capacities.append(nodes)
-                np.multiply(self._sign, nodes, out=whole[6:])
-            whole[:4], whole[4], whole[5] = state, engine, load
+                capacities.append(self._inputs.clutch(k))
+                np.multiply(self._sign, capacities[-1], out=whole[6:])
             inputs = whole[4:]
             if self._lock is None or k < self._lock[0]:
                 state = slipping @ whole
@@ -145,34 +142,9 @@ class _Builder:
                 )
             else:
                 state = locked @ whole[:6]
+            self._inputs.add_off_going(k, state)
             states.append(state)
         return self._signals(states, loads, capacities, slip_at_lock, slip_acceleration)
-
-    def _torque(self, law: Law, columns: slice, k: int, speed: np.ndarray) -> np.ndarray:
-        """Return C_m or C_load over period k in N m, (columns,)."""
-        torque = law.slope[k] * speed
-        torque[0] += law.offset[k]
-        if columns.stop > columns.start:
-            torque[columns.start + k] += 1.0
-        return torque
-
-    def _clutch(self, k: int, actuator: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the capacity at the nodes of period k in N m, (11, columns), and G_a's state."""
-        in_effect = np.zeros((len(self._actuator.delays), self.columns.count))
-        for row, delay in zip(in_effect, self._actuator.delays, strict=True):
-            if k < delay:
-                row[0] = self._start.request(self._start.step + k - delay)
-            else:
-                row[1 + k - delay] = 1.0
-        values = np.vstack([actuator, in_effect])
-        nodes = self._wear_gain * (self._actuator.nodes @ values)
-        if self.columns.capacity.stop > self.columns.capacity.start:
-            nodes[:, self.columns.capacity.start + k] += 1.0
-        else:
-            nodes[:, 0] += self._capacity.low
-        if k in self.columns.clipped:
-            nodes[:, self.columns.of_nodes(k)] += np.eye(NODES)
-        return nodes, self._actuator.state_update @ values
 
     def _slip_acceleration(self, state: np.ndarray, inputs: np.ndarray) -> np.ndarray:
         assert self._lock is not None
@@ -205,7 +177,7 @@ class _Builder:
         driving[start + 1 :] = driving_acceleration(self._scenario, torque[1:])
         slipping = self._slipping_periods + (self._lock is None)
         return Motion(
-            start,
+            self._start.scored_from,
             None if self._lock is None else start + self._lock[0],
             self._sign,
             self.columns,

@@ -7,10 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.floor.dynamics.off_going import OffGoing, off_going_of
+from ddct_bringup.metrics.friction_work import friction_work
+from ddct_bringup.metrics.shift.course import ShiftCourse
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import PERIOD_S, SUBSTEPS
 from ddct_plant.models.actuator import at_rest, lifted
-from ddct_plant.scenario.initial_state import initial_state
+from ddct_plant.scenario.initial_state import initial_request
 from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
 
@@ -37,10 +40,16 @@ class ActuatorModel:
 
 @dataclass(frozen=True, eq=False)
 class Start:
-    """Signals up to control start, which are the same for every controller of `detailed`."""
+    """
+    Signals up to control start, which are the same for every controller of `detailed`.
+
+    In a gear shift these are those up to the start of the inertia phase, where feedback starts.
+    """
 
     step: int
     """Step k of control start."""
+    scored_from: int
+    """Step from which metrics count: in a gear shift its start, else `step`."""
     state: np.ndarray
     """States w_m, w_p, w_r in rad/s and theta_sr in rad there, (4,)."""
     actuator: np.ndarray
@@ -59,6 +68,10 @@ class Start:
     """Greatest integral of idle control in N m that the engine can have there."""
     temperature_c: float
     """Temperature of the facing in degrees Celsius at control start; 20 for a linear clutch."""
+    friction_work: float
+    """Friction work in J between `scored_from` and `step`, zero but in a gear shift."""
+    off_going: OffGoing | None = None
+    """Off-going clutch of a gear shift; None in any other run."""
 
     @property
     def slip(self) -> float:
@@ -72,20 +85,22 @@ class Start:
 
 def start_of(settings: RunSettings, run: Trajectory) -> Start:
     """
-    Return the state at control start of a recorded run.
+    Return the state at control start of a recorded run, in a gear shift with the share 1.
 
-    Raise ParameterError where the run ends before, or its wheels do not turn there.
+    Raise ParameterError where the run ends before.
     """
-    step = settings.scenario.control_start_step
+    scored_from = settings.scenario.control_start_step
+    step = ShiftCourse(run, scored_from).feedback_start if settings.shift else scored_from
+    if run.steps < step and settings.shift:
+        raise ParameterError(
+            f'handover {settings.handover_name}: its share of C_fOL is never 1, so that there is '
+            'no inertia phase, and no floor',
+            key='handover',
+        )
     if run.steps < step:
         raise ParameterError('the run ends before control start: there is no floor')
-    if settings.stick_slip and run.wheel_speed[step] <= 0.0:
-        raise ParameterError(
-            f'scenario {settings.scenario.name}: the wheels do not turn forward at control start, '
-            'and when they break loose depends on the controller: there is no floor'
-        )
     requests = np.maximum(run.torque_request[:step], 0.0)
-    before = max(initial_state(settings).torque_request, 0.0)
+    before = max(initial_request(settings), 0.0)
     state = np.array(
         [
             run.engine_speed[step],
@@ -97,8 +112,10 @@ def start_of(settings: RunSettings, run: Trajectory) -> Start:
     if run.clutch_phase is not None and run.slip_speed[step] == 0.0:
         state[0] = state[1]
     temperature = run.clutch_temperature
+    unforced = ActuatorModel.of(settings).delays[-1]
     return Start(
         step,
+        scored_from,
         state,
         _actuator_state(settings, requests, before),
         requests,
@@ -108,6 +125,8 @@ def start_of(settings: RunSettings, run: Trajectory) -> Start:
         driving_acceleration(settings.scenario, run.driveshaft_effort[: step + 1]),
         _idle_integral(settings, run.engine_speed[:step]),
         20.0 if temperature is None else float(temperature[step]),
+        float(friction_work(run, scored_from) - friction_work(run, step)),
+        off_going_of(settings, run, step, unforced) if settings.shift else None,
     )
 
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.floor.dynamics.start import Start
+from ddct_bringup.floor.dynamics.torque_cut import most_cut
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.models.engine_limits import LimitedEngine
 from ddct_plant.scenario.plant import holding_torque, make_engine, make_load
@@ -59,12 +60,12 @@ def rigid_tube(settings: RunSettings, start: Start, lock_time_s: float) -> Tube:
     Any other slip moves w_m between the common speed of both plates and that of a free engine.
     J_m dw_m/dt + J_eq dw_p/dt = C_m - C_load/tau whatever the clutch does, and w_m - w_p is given.
     """
-    p, scenario = settings.scenario.driveline, settings.scenario
+    p, scenario = settings.scenario.controlled_driveline, settings.scenario
     engine, load = make_engine(settings), make_load(settings)
     holding = holding_torque(settings) if settings.stick_slip else None
     limited = LimitedEngine(scenario.engine_limits) if scenario.engine_limits else None
     rest = p.shaft_inertia + p.gear.at_shaft(p.vehicle_inertia)
-    steps = scenario.steps - start.step + 1
+    steps, cut = scenario.steps - start.step + 1, most_cut(settings)
     slip = start.slip * np.maximum(1.0 - np.arange(steps) * PERIOD_S / max(lock_time_s, 1e-9), 0.0)
     momentum = p.engine_inertia * start.state[0] + rest * start.state[1]
     engines, shafts = np.empty(steps), np.empty(steps)
@@ -72,7 +73,7 @@ def rigid_tube(settings: RunSettings, start: Start, lock_time_s: float) -> Tube:
         shafts[k] = (momentum - p.engine_inertia * slip[k]) / (p.engine_inertia + rest)
         engines[k] = shafts[k] + slip[k]
         time_s = (start.step + k) * PERIOD_S
-        torque = engine.demand(start.step + k)
+        torque = engine.demand(start.step + k) - (cut if slip[k] else 0.0)
         if limited:
             torque = limited.deliver(torque, engines[k])
         speed = p.gear.wheel_speed(shafts[k])

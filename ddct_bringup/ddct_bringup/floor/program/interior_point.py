@@ -3,9 +3,9 @@
 """
 Linear programs with full matrices by a primal-dual interior-point method.
 
-It is the predictor-corrector method of Mehrotra (SIAM J. Optim. 2, 1992) with the box apart from
-the rows. The rows of a floor are full: solvers of sparse programs take several times as long. What
-it returns proves nothing; the multipliers are checked as those of any solver.
+It is the method of Mehrotra with the box apart from the rows. The rows of a floor are full:
+solvers of sparse programs take several times as long. What it returns proves nothing; the
+multipliers are checked as those of any solver.
 """
 
 from dataclasses import dataclass
@@ -13,59 +13,81 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.linalg import LinAlgError
 
-from ddct_bringup.floor.program.linear_program import WEAK_DUALITY, LinearProgram, proven
-from ddct_bringup.floor.program.newton import Iterate, Newton, weighted_square
+from ddct_bringup.floor.program.linear_program import RAY, WEAK_DUALITY, LinearProgram, proven
+from ddct_bringup.floor.program.mehrotra import LEAST_COST, Mehrotra
+from ddct_bringup.floor.program.newton import Iterate
 
 _ITERATIONS = 80
 """Iteration limit; some 20 are usual."""
-_GAP = 1e-7
-"""Largest gap between cost and bound that the multipliers prove, as a share of the cost."""
-_COARSE = 1e-4
-"""Largest gap where no proof is wanted."""
-_LEAST_COST = 1e-2
-"""Cost below which the gap is a share of this number."""
-_RESIDUAL = 1e-9
-"""Largest violation of a row, as a share of its largest number."""
-_TO_EDGE = 0.995
-"""Share of the way to the edge of the interior that a step goes."""
 _STALLED, _AT_END = 12, 2
 """Number of iterations without progress after which the method ends, and with products of zero."""
+_ROUNDING = 0.25
+"""Share of the gap of a proof below which the products count as zero: rounding is the rest."""
 _PROGRESS = 0.9
 """Share of the gap that counts as progress."""
 _ROUNDED = 1000.0
 """Multiple of the accepted gap that is allowed at the end, where rounding allows no less."""
-_EDGE, _WIDE = 0.05, 1e3
-"""Distance of the first point to the edges of its box, as a share of its width, at most this."""
+VIOLATION = 1e-5
+"""Least violation, in the units of the rows, above which a program has no point."""
+
+
+@dataclass(frozen=True)
+class _Accepted:
+    """Exactness at which the method ends."""
+
+    gap: float
+    """Largest gap between cost and bound that the multipliers prove, as a share of the cost."""
+    violation: float
+    """Largest violation of a row, as a share of its largest number."""
+
+
+_PROVEN, _COARSE = _Accepted(1e-7, 1e-9), _Accepted(1e-4, 1e-6)
 
 
 @dataclass(frozen=True, eq=False)
 class Optimum:
-    """Best point of a program, (n,), and the multipliers of its rows and equations."""
+    """
+    Best point of a program, (n,), and the multipliers of its rows and equations.
 
-    point: np.ndarray
+    Without a point the multipliers are those of a ray, which proves that there is none.
+    """
+
+    point: np.ndarray | None
     rows: np.ndarray
     equal: np.ndarray
 
 
 def interior_point(program: LinearProgram, *, proof: bool = True) -> Optimum | None:
     """
-    Return the optimum of a program; None where the method does not converge to one.
+    Return the optimum of a program, or a ray; None where the method converges to neither.
 
     Without `proof` the point is enough, and the multipliers may be off by more.
     """
     if not len(program.cost) or np.any(program.low >= program.high):
         return None
-    method = _Method(program)
-    now = nearest = method.first()
-    best, since = np.inf, 0
+    method = Mehrotra(program)
+    now = nearest = surest = method.first()
+    accepted = _PROVEN if proof else _COARSE
+    best, surest_gap, since = np.inf, np.inf, 0
     for _ in range(_ITERATIONS):
-        gap = method.unproven(now) if proof else method.gap(now) * _GAP / _COARSE
-        missing = max(method.off(now), gap)
+        cost = float(program.cost @ now.x + program.constant)
+        scale = max(abs(cost), LEAST_COST)
+        products = gap = method.products(now) / scale
+        if proof:
+            gap = (cost - proven(WEAK_DUALITY, program, now.rows, now.equal)) / scale
+            ray = _ray_of(program, now) if gap < 0.0 else None
+            if ray is not None:
+                return ray
+        missing = max(method.violation(now) / accepted.violation, gap / accepted.gap)
         if missing < _PROGRESS * best:
             best, since, nearest = missing, 0, now
+        # Rounding makes the proof worse again before the point is exact.
+        if gap < surest_gap:
+            surest_gap, surest = gap, now
         since += 1
         # With the products at zero only rounding is left, which further steps do not remove.
-        if best <= 1.0 or since > (_AT_END if method.gap(now) <= 1.0 else _STALLED):
+        at_end = products <= accepted.gap or (best <= _ROUNDED and products <= _ROUNDING * gap)
+        if best <= 1.0 or since > (_AT_END if at_end else _STALLED):
             break
         try:
             now = method.next(now)
@@ -73,120 +95,20 @@ def interior_point(program: LinearProgram, *, proof: bool = True) -> Optimum | N
             break
     if best > _ROUNDED:
         return None
-    return Optimum(nearest.x, nearest.rows, nearest.equal)
+    return Optimum(nearest.x, surest.rows, surest.equal)
 
 
-class _Method:
-    """The steps of the method for rows x + s = limits, equal_rows x = equal_values in a box."""
+def _ray_of(program: LinearProgram, now: Iterate) -> Optimum | None:
+    """
+    Return the multipliers of an iterate as a ray whose sum is 1, None where they prove nothing.
 
-    def __init__(self, program: LinearProgram) -> None:
-        self._program = program
-        self._row_scale = _largest(program.rows, program.limits)
-        self._equal_scale = _largest(program.equal_rows, program.equal_values)
-        self._width = program.high - program.low
-        self._count = len(program.limits) + 2 * len(program.cost)
-
-    def first(self) -> Iterate:
-        """Return a point inside of the box, near all rows in least squares."""
-        p = self._program
-        weights = self._row_scale**-2
-        edge = _EDGE * np.minimum(self._width, _WIDE)
-        # The middle of the box counts a little, where the rows leave a variable free.
-        pull = 1e-3 / np.minimum(self._width, _WIDE) ** 2
-        middle = p.low + np.minimum(self._width, _WIDE) / 2.0
-        normal = weighted_square(p, weights) + np.diag(pull)
-        x = np.linalg.solve(normal, p.combined(weights * p.limits) + pull * middle)
-        x = np.clip(x, p.low + edge, p.high - edge)
-        distance = p.limits - p.times(x)
-        s = (
-            np.maximum(distance, 0.1 * np.abs(distance).mean() + 1e-3)
-            if len(distance)
-            else distance
-        )
-        cost = np.abs(p.cost) @ np.minimum(self._width, np.abs(x) + 1.0)
-        mean = max(float(cost), _LEAST_COST) / self._count
-        return Iterate(
-            x, s, np.zeros(len(p.equal_values)), mean / s, mean / (x - p.low), mean / (p.high - x)
-        )
-
-    def off(self, now: Iterate) -> float:
-        """Return the factor of the violations of rows and equations above what is accepted."""
-        _, primal, equal = self._residuals(now)
-        return max(
-            float(np.max(np.abs(primal) / self._row_scale, initial=0.0)) / _RESIDUAL,
-            float(np.max(np.abs(equal) / self._equal_scale, initial=0.0)) / _RESIDUAL,
-        )
-
-    def unproven(self, now: Iterate) -> float:
-        """Return the factor of the gap between cost and proven bound above what is accepted."""
-        p = self._program
-        cost = float(p.cost @ now.x + p.constant)
-        return (cost - proven(WEAK_DUALITY, p, now.rows, now.equal)) / self._accepted(cost)
-
-    def gap(self, now: Iterate) -> float:
-        """Return the factor of the sum of the products above what is accepted."""
-        cost = float(self._program.cost @ now.x + self._program.constant)
-        return sum(float(each.sum()) for each in self._products(now)) / self._accepted(cost)
-
-    def _accepted(self, cost: float) -> float:
-        return _GAP * max(abs(cost), _LEAST_COST)
-
-    @np.errstate(divide='raise', invalid='raise', over='raise')
-    def next(self, now: Iterate) -> Iterate:
-        """
-        Return the next iterate.
-
-        Raise LinAlgError or FloatingPointError where rounding no longer allows one.
-        """
-        solver = Newton(self._program, now, *self._residuals(now))
-        products = self._products(now)
-        mean = sum(float(each.sum()) for each in products) / self._count
-        predicted = solver.direction([-each for each in products])
-        ahead = self._products(self._moved(now, predicted, 1.0))
-        share = sum(float(each.sum()) for each in ahead) / self._count / mean
-        second = (
-            predicted.s * predicted.rows,
-            predicted.x * predicted.low,
-            -predicted.x * predicted.high,
-        )
-        wanted = [
-            mean * share**3 - each - more for each, more in zip(products, second, strict=True)
-        ]
-        return self._moved(now, solver.direction(wanted), _TO_EDGE)
-
-    def _residuals(self, now: Iterate) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return what the stationarity, the rows and the equations are off by."""
-        p = self._program
-        dual = p.cost + p.combined(now.rows) + now.equal @ p.equal_rows - now.low + now.high
-        return dual, p.times(now.x) + now.s - p.limits, p.equal_rows @ now.x - p.equal_values
-
-    def _products(self, now: Iterate) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return the products of distances and multipliers of rows, lower and upper edges."""
-        p = self._program
-        return now.s * now.rows, (now.x - p.low) * now.low, (p.high - now.x) * now.high
-
-    def _moved(self, now: Iterate, by: Iterate, share: float) -> Iterate:
-        """Return the iterate moved by `share` of the way to the edge, at most the whole way."""
-        p = self._program
-        primal = min(
-            _way(now.s, by.s), _way(now.x - p.low, by.x), _way(p.high - now.x, -by.x), 1.0 / share
-        )
-        dual = min(
-            _way(now.rows, by.rows), _way(now.low, by.low), _way(now.high, by.high), 1.0 / share
-        )
-        ways = (primal, primal, dual, dual, dual, dual)
-        return Iterate(
-            *(old + share * way * new for old, way, new in zip(now, ways, by, strict=True))
-        )
-
-
-def _way(distance: np.ndarray, by: np.ndarray) -> float:
-    """Return how often a step may be made until a distance is zero."""
-    closing = by < 0.0
-    return float(np.min(-distance[closing] / by[closing], initial=np.inf))
-
-
-def _largest(rows: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Return the largest magnitude in each row and its value, (m,); 1 for rows of zeros."""
-    largest = np.maximum(np.abs(rows).max(axis=1, initial=0.0), np.abs(values))
-    return np.where(largest > 0.0, largest, 1.0)
+    Without a point the multipliers grow beyond those of the cost. A peak that is high enough keeps
+    its own rows, so that these are left out.
+    """
+    rows = now.rows.copy()
+    rows[: 2 * program.mirrored] = 0.0
+    scale = rows.sum() + np.abs(now.equal).sum()
+    if scale <= 0.0:
+        return None
+    rows, equal = rows / scale, now.equal / scale
+    return Optimum(None, rows, equal) if proven(RAY, program, rows, equal) > VIOLATION else None

@@ -124,15 +124,23 @@ def proven(kind: str, program: LinearProgram, rows: np.ndarray, equal: np.ndarra
 
     For every point of the program y (rows z - limits) + l (equal_rows z - equal_values) <= 0, so
     its cost is at least the least over the box of cost z plus this sum (weak duality). Without the
-    cost a positive least proves that there is no such point (Farkas).
+    cost a positive least proves that there is no such point (Farkas). What the sums may be off by
+    rounding is taken off: huge multipliers that should cancel prove nothing.
     """
     positive = rows > 0.0
     # A mask copies all rows.
     used = slice(None) if positive.all() else positive
     slopes = rows[used] @ program.rows[used] + equal @ program.equal_rows
+    sizes = rows @ np.abs(program.rows) + np.abs(equal) @ np.abs(program.equal_rows)
     constant = -(rows[used] @ program.limits[used]) - equal @ program.equal_values
     if kind == WEAK_DUALITY:
-        slopes = slopes + program.cost
+        slopes, sizes = slopes + program.cost, sizes + np.abs(program.cost)
         constant += program.constant
     least = np.minimum(slopes * program.low, slopes * program.high)
-    return float(constant + least.sum())
+    # A sum of n products is off by at most n u times the sum of their sizes, with u half of the
+    # distance from 1 to the next number (Higham, Accuracy and Stability of Numerical Algorithms).
+    reach = np.maximum(np.abs(program.low), np.abs(program.high))
+    summed = sizes @ reach + rows @ np.abs(program.limits) + np.abs(equal @ program.equal_values)
+    terms = len(rows) + len(equal) + len(slopes)
+    rounding = terms * np.finfo(float).eps / 2.0 * summed
+    return float(constant + least.sum() - rounding)

@@ -53,14 +53,15 @@ class Newton:
         # The transpose of a symmetric matrix has the order that LAPACK takes without a copy.
         self._factor = cho_factor(matrix.T, lower=True, overwrite_a=True, check_finite=False)
         self._of_equations = np.column_stack(
-            [self._solved(row) for row in program.equal_rows] or [np.zeros((len(now.x), 0))]
+            [self._solved(row, refined=True) for row in program.equal_rows]
+            or [np.zeros((len(now.x), 0))]
         )
 
-    def _solved(self, right: np.ndarray) -> np.ndarray:
-        """Return the solution of the reduced system, refined, for a right-hand side (n,)."""
+    def _solved(self, right: np.ndarray, *, refined: bool) -> np.ndarray:
+        """Return the solution of the reduced system for a right-hand side (n,)."""
         p = self._program
         x, rest = np.zeros(len(right)), right
-        for step in range(_REFINED):
+        for step in range(_REFINED if refined else 1):
             if step:
                 left = p.combined(self._weights * p.times(x)) + self._box * x
                 rest = right - left
@@ -68,14 +69,18 @@ class Newton:
             x = x + self._scale * found
         return x
 
-    def direction(self, wanted: list[np.ndarray]) -> Iterate:
-        """Return the direction that changes the products by what is wanted, in first order."""
+    def direction(self, wanted: list[np.ndarray], *, refined: bool = True) -> Iterate:
+        """
+        Return the direction that changes the products by what is wanted, in first order.
+
+        One that is only a prediction need not be `refined`.
+        """
         p, now = self._program, self._now
         dual, primal, equal = self._residuals
         rows, low, high = wanted
         right = -dual - p.combined(rows / now.s + self._weights * primal)
         right += low / self._to_low - high / self._to_high
-        x = self._solved(right)
+        x = self._solved(right, refined=refined)
         y = np.zeros(0)
         if len(p.equal_values):
             y = np.linalg.solve(p.equal_rows @ self._of_equations, p.equal_rows @ x + equal)

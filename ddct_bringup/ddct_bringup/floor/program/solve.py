@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ddct_bringup.floor.program.highs import highs
-from ddct_bringup.floor.program.interior_point import interior_point
+from ddct_bringup.floor.program.interior_point import VIOLATION, Optimum, interior_point
 from ddct_bringup.floor.program.linear_program import (
     RAY,
     WEAK_DUALITY,
@@ -19,20 +19,11 @@ from ddct_plant.base.errors import DdctError
 
 _EXCEEDED = 1e-3
 """Largest distance of a point outside of a deferred row, in the unit of the row."""
+_PEAK_EXCEEDED = 1e-7
+"""Largest distance of a point outside of a deferred row of a peak, as a share of the peak."""
 _ROUNDS = 4
 """Number of times that deferred rows are added to a program."""
-_VIOLATION = 1e-5
-"""Least violation, in the units of the rows, above which a program has no point."""
 _MOST_VIOLATION = 1e6
-
-
-@dataclass(frozen=True, eq=False)
-class _Found:
-    """Best point with its multipliers; without a point they are those of a ray."""
-
-    point: np.ndarray | None
-    rows: np.ndarray
-    equal: np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,7 +87,7 @@ def _attempt(
     margin: np.ndarray | float,
     *,
     proof: bool = True,
-) -> tuple[_Found, np.ndarray]:
+) -> tuple[Optimum, np.ndarray]:
     """
     Return what was found, and the mask of the rows used (m,).
 
@@ -111,16 +102,22 @@ def _attempt(
         whole = _without(whole, kept, values[kept])
     used = ~deferred
     # Within its margin a point still keeps the limit itself.
-    tolerance = np.maximum(margin, _EXCEEDED)
+    tolerance = np.maximum(margin, _EXCEEDED) * np.ones(len(used))
     for _ in range(_ROUNDS):
-        rows = replace(whole, rows=whole.rows[used], limits=whole.limits[used])
-        found = _optimum(rows, proof=proof)
+        part = replace(
+            whole,
+            rows=whole.rows[used],
+            limits=whole.limits[used],
+            mirrored=int(used[: whole.mirrored].sum()),
+        )
+        found = _optimum(part, proof=proof)
         if found.point is None:
             break
-        exceeded = (whole.rows @ found.point - whole.limits > tolerance) & ~used
+        tolerance[: 2 * whole.mirrored] = _PEAK_EXCEEDED * max(found.point[-1], 1e-2)
+        exceeded = (whole.times(found.point) - whole.limits > tolerance) & ~used
         if not exceeded.any():
             break
-        had, used = used, used | exceeded
+        had, used = used, used | _with_mirrored(exceeded, whole.mirrored)
     else:
         used = had
     if found.point is not None:
@@ -128,6 +125,12 @@ def _attempt(
         point[free] = found.point
         found = replace(found, point=point)
     return found, used
+
+
+def _with_mirrored(mask: np.ndarray, count: int) -> np.ndarray:
+    """Return the mask of rows (m,) with the mirror images of each."""
+    either = mask[:count] | mask[count : 2 * count]
+    return np.concatenate([either, either, mask[2 * count :]])
 
 
 def _without(program: LinearProgram, kept: np.ndarray, values: np.ndarray) -> LinearProgram:
@@ -148,17 +151,17 @@ def _without(program: LinearProgram, kept: np.ndarray, values: np.ndarray) -> Li
     )
 
 
-def _optimum(program: LinearProgram, *, proof: bool) -> _Found:
+def _optimum(program: LinearProgram, *, proof: bool) -> Optimum:
     """Return the optimum of a program, or the ray where it has no point."""
     best = interior_point(program, proof=proof)
     if best is None:
         rows, equal = _ray(program)
-        if certified(RAY, program, rows, equal).claim > _VIOLATION:
-            return _Found(None, rows, equal)
+        if certified(RAY, program, rows, equal).claim > VIOLATION:
+            return Optimum(None, rows, equal)
         best = highs(program)
         if best is None:
-            return _Found(None, rows, equal)
-    return _Found(best.point, best.rows, best.equal)
+            return Optimum(None, rows, equal)
+    return best
 
 
 def _ray(program: LinearProgram) -> tuple[np.ndarray, np.ndarray]:

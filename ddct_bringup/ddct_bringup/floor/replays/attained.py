@@ -9,10 +9,11 @@ import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.floor.bound import Bound
-from ddct_bringup.floor.case import Case, gives_demand
+from ddct_bringup.floor.case import Case
 from ddct_bringup.floor.dynamics.engine_laws import law_of_run
 from ddct_bringup.floor.dynamics.laws import load_of_run
 from ddct_bringup.floor.dynamics.start import driving_acceleration
+from ddct_bringup.floor.dynamics.torque_cut import gives_demand
 from ddct_bringup.floor.lock import lock_of
 from ddct_bringup.floor.objectives import Objective, Signals, window_of
 from ddct_bringup.floor.point import point_of
@@ -70,7 +71,7 @@ def replays_of(
     columns = case.motion.columns
     near, fixed = case, np.concatenate([[1.0], (columns.low + columns.high) / 2.0])
     best, last, before, failed, needed = None, begin, math.inf, 0, None
-    if last is None and case.limited:
+    if last is None and (case.limited or case.start.off_going):
         last = replayed(case, usual_requests(case)[: columns.requests])
     if last is not None and last.steps == whole:
         near = _near(case, last)
@@ -88,29 +89,30 @@ def replays_of(
         predicted = fixed.copy()
         predicted[1 : 1 + columns.requests] = requests
         value = objective.value(
-            signals_of_run(case.start.step, signals.engagements_a_day, case.settings.scenario, run)
+            signals_of_run(
+                case.start.scored_from, signals.engagements_a_day, case.settings.scenario, run
+            )
         )
         locks = _locks(case, run)
         if not case.limited and not gives_demand(run, case.start.step):
             break
-        expected = _predicted(objective, signals, predicted)
-        near = _near(case, run)
-        now = point_of(near, run)
-        # The mean, as the next replay would otherwise go as far to the other side.
-        fixed = (fixed + now) / 2.0 if len(fixed) == len(now) else now
         if not locks or value is None:
             failed += 1
             if failed > _FAILURES:
                 break
-            continue
-        result = Attained(value, expected, run)
-        if best is None or result.value < best.value:
-            best = result
-        # A further replay helps only while the plant still moves away from the prediction.
-        settled = abs(result.value - before) <= _NEAR * abs(result.value)
-        before = result.value
-        if settled or abs(result.value - result.predicted) <= _NEAR * abs(result.value):
-            break
+        else:
+            result = Attained(value, _predicted(objective, signals, predicted), run)
+            if best is None or result.value < best.value:
+                best = result
+            # A further replay helps only while the plant still moves away from the prediction.
+            settled = abs(result.value - before) <= _NEAR * abs(result.value)
+            before = result.value
+            if settled or abs(result.value - result.predicted) <= _NEAR * abs(result.value):
+                break
+        near = _near(case, run)
+        now = point_of(near, run)
+        # The mean, as the next replay would otherwise go as far to the other side.
+        fixed = (fixed + now) / 2.0 if len(fixed) == len(now) else now
     return Replays(best, last)
 
 
@@ -131,7 +133,7 @@ def _locks(case: Case, run: Trajectory) -> bool:
 def signals_of_run(
     start: int, engagements_a_day: float, scenario: Scenario, run: Trajectory
 ) -> Signals:
-    """Return the signals of a run, whose control starts at step `start`."""
+    """Return the signals of a run whose metrics count from step `start`."""
     slopes = [
         event.slip_acceleration
         for events in (run.phase_events or ())[start + 1 :]

@@ -10,7 +10,7 @@ from ddct_bringup.floor.bound import Bound
 from ddct_bringup.floor.case import Case
 from ddct_bringup.floor.dynamics.engine_laws import demand_law
 from ddct_bringup.floor.objectives import Objective, Peak, Signals
-from ddct_bringup.floor.program.linear_program import LinearProgram
+from ddct_bringup.floor.program.peak import late_peaks, peak_program
 from ddct_bringup.floor.program.quadratic import least_squares
 from ddct_bringup.floor.program.solve import best_point
 from ddct_bringup.floor.replays.replay import usual_requests
@@ -23,7 +23,6 @@ CLOSING_RAD_S2, CLOSING_SHARE = 50.0, 0.25
 Slower, and the plates might part again; each replay that has failed adds as much."""
 _AWAY = 2.0
 """Largest distance of requests from the usual ones, as a share of the largest of these."""
-_MOST_PEAK = 1e6
 _QUADRATIC = 1e-3
 """Curvature that keeps the requests of a quadratic program near the usual ones."""
 _AT_LOCK = 3
@@ -80,7 +79,7 @@ def requests_near(
     if isinstance(objective, Peak):
         if needed is not None:
             choice = replace(choice, deferred=choice.deferred & ~needed)
-        return _least_peak(choice, rows[:, used], rows @ given)
+        return _least_peak(choice, rows[:, used], rows @ given, case.lock.time_s)
     weights = objective.weights(signals)
     if objective.sliding:
         first = bound.stretch
@@ -147,28 +146,23 @@ def _kept_speed(case: Case) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _least_peak(
-    choice: _Choice, rows: np.ndarray, offset: np.ndarray
+    choice: _Choice, rows: np.ndarray, offset: np.ndarray, lock_time_s: float
 ) -> tuple[np.ndarray | None, np.ndarray]:
     """
     Return requests with the least peak |rows u + offset|, and the rows of `choice` it needed.
 
     Requests that hardly matter are those in the middle of the box, the usual ones.
     """
-    count = rows.shape[1]
-    one = np.ones((len(rows), 1))
-    program = LinearProgram(
-        cost=np.append(np.zeros(count), 1.0),
-        constant=0.0,
-        rows=np.block(
-            [[rows, -one], [-rows, -one], [choice.rows, np.zeros((len(choice.rows), 1))]]
-        ),
-        limits=np.concatenate([-offset, offset, choice.limits]),
-        equal_rows=np.hstack([choice.equal_rows, np.zeros((len(choice.equal_rows), 1))]),
-        equal_values=choice.equal_values,
-        low=np.append(choice.low, 0.0),
-        high=np.append(choice.high, _MOST_PEAK),
-        mirrored=len(rows),
+    program = peak_program(
+        rows,
+        offset,
+        choice.rows,
+        choice.limits,
+        choice.equal_rows,
+        choice.equal_values,
+        choice.low,
+        choice.high,
     )
-    always = np.zeros(2 * len(rows), dtype=bool)
-    point, used = best_point(program, np.append(always, choice.deferred))
-    return None if point is None else point[:count], used[len(always) :]
+    late = late_peaks(len(rows), lock_time_s)
+    point, used = best_point(program, np.append(late, choice.deferred))
+    return None if point is None else point[:-1], used[len(late) :]
