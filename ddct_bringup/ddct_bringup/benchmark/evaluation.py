@@ -22,8 +22,8 @@ from ddct_bringup.benchmark.result_types import (
     Evaluation,
     KeyEffect,
     QuantityResult,
+    RunShare,
     ScenarioResult,
-    Share,
 )
 from ddct_bringup.campaign.keys import SCENARIO
 from ddct_bringup.campaign_report.evaluated_quantities import QUANTITIES
@@ -41,7 +41,7 @@ from ddct_bringup.verdict.state import INVALID, STATES
 from ddct_plant.program.table import Quantity
 
 
-def states_in(columns: Columns) -> dict[str, Share]:
+def states_in(columns: Columns) -> dict[str, RunShare]:
     """Return the share of each state that occurred, those of another version last."""
     valid = outcomes_in(columns) != INVALID
     states = np.where(valid, columns['verdict_state'], INVALID)

@@ -7,6 +7,7 @@ Both sets are random samples of the same cases, so that an honest controller dif
 """
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 import scipy
@@ -22,9 +23,9 @@ SUCCESS = 'success'
 OF_SHARES, OF_QUANTITIES = "Fisher's exact test", 'Mann-Whitney test'
 
 
-def gaps_of(development: Columns, held_out: Columns) -> list[Gap]:
+def gaps_of(development: Columns, held_out: Columns, *, names: Sequence[str] = MAIN) -> list[Gap]:
     """
-    Return the gap of the share of successes, and those of the main quantities of engaged runs.
+    Return the gap of the share of successes, and those of quantities of engaged runs.
 
     With m figures each is tested at 5 %/m (Bonferroni), so that an honest controller is marked in
     at most 5 % of the benchmarks.
@@ -32,7 +33,7 @@ def gaps_of(development: Columns, held_out: Columns) -> list[Gap]:
     tested: dict[str, tuple[float | None, float | None]] = {
         SUCCESS: _gap_of_shares(successes_in(development), successes_in(held_out))
     }
-    for name in MAIN:
+    for name in names:
         tested[name] = _gap_of_values(_engaged(development, name), _engaged(held_out, name))
     return [
         {

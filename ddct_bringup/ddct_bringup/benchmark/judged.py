@@ -16,6 +16,7 @@ from ddct_controllers.registry import (
     controller_spec,
     own_controller_names,
 )
+from ddct_plant.base.errors import ParameterError, require_name
 
 _SEEDS = 2**31
 """Number of seeds that a campaign can have."""
@@ -33,6 +34,10 @@ class Judged:
     """Folder of the controller file; the current one for a controller without a file."""
     digests: Mapping[str, str]
     """SHA-256 of the files that it is made of, or of the package that has it, by their key."""
+
+    def __post_init__(self) -> None:
+        """Raise ParameterError for names with a folder, as in an altered manifest."""
+        require_no_path(self.name, self.chosen)
 
     @classmethod
     def of(cls, chosen: str) -> 'Judged':
@@ -64,8 +69,22 @@ class Judged:
         content = {'controller': sorted(self.digests.items()), 'release': release}
         if not is_controller_file(self.chosen):
             content['name'] = self.name
-        digest = hashlib.sha256(json.dumps(content, sort_keys=True).encode()).digest()
-        return int.from_bytes(digest[:8], 'little') % _SEEDS
+        return seed_of(content)
+
+
+def require_no_path(name: str, chosen: str) -> None:
+    """Raise ParameterError unless the name and the file's name are parts of a path, not paths."""
+    require_name('controllers.name', name)
+    if Path(chosen).name != chosen:
+        raise ParameterError(
+            f'controllers.chosen is {chosen!r}: it must have no folder', key='controllers.chosen'
+        )
+
+
+def seed_of(content: Mapping[str, object]) -> int:
+    """Return the seed of held-out cases that follows from digests, as nested mappings of JSON."""
+    digest = hashlib.sha256(json.dumps(content, sort_keys=True).encode()).digest()
+    return int.from_bytes(digest[:8], 'little') % _SEEDS
 
 
 def _package_digests(name: str) -> dict[str, str]:

@@ -8,11 +8,10 @@ from pathlib import Path
 from typing import Any
 
 from ddct_bringup.benchmark.cases import Cases
-from ddct_bringup.benchmark.judged import Judged
+from ddct_bringup.benchmark.judged import Judged, require_no_path
 from ddct_bringup.digests.code import code_digest
+from ddct_bringup.digests.manifests import manifest_content, require_same_inputs
 from ddct_bringup.verdict.limits import packaged_limits
-from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.files.input_file import parse_json, read_text_file, require_schema_version
 from ddct_plant.files.output_file import write_json
 from ddct_plant.program.command_line import package_version
 
@@ -32,6 +31,10 @@ class JudgedEntry:
     digests: Mapping[str, str]
     """SHA-256 of the files that it is made of, or of its package, by their key."""
     held_out_seed: int
+
+    def __post_init__(self) -> None:
+        """Raise ParameterError for a name that is no part of a path: a manifest may be altered."""
+        require_no_path(self.name, self.chosen)
 
     @classmethod
     def of(cls, judged: Judged, release: str, judge_seed: int | None) -> 'JudgedEntry':
@@ -78,19 +81,10 @@ class BenchmarkManifest:
     @classmethod
     def read(cls, out: Path) -> 'BenchmarkManifest':
         """Return the manifest in a folder; raise DdctError without a valid one."""
-        path = out / MANIFEST
-        try:
-            content = parse_json(read_text_file(path))
-            require_schema_version(content, SCHEMA_VERSION)
+        with manifest_content(out / MANIFEST, SCHEMA_VERSION, 'benchmark') as content:
             entries = [JudgedEntry(**each) for each in content['controllers']]
             known = {each.name: content[each.name] for each in fields(cls)}
             return cls(**{**known, 'controllers': entries})
-        except FileNotFoundError as error:
-            raise DdctError(
-                f'{out}: no {MANIFEST} in it: give the folder of a benchmark'
-            ) from error
-        except (OSError, ParameterError, LookupError, TypeError, AttributeError) as error:
-            raise DdctError(f'{path}: cannot be read ({error})') from error
 
     def write(self, out: Path) -> None:
         """Write the manifest into a folder; raise DdctError when that fails."""
@@ -103,16 +97,10 @@ class BenchmarkManifest:
 
     def require_same(self, other: 'BenchmarkManifest', out: Path) -> None:
         """Raise DdctError with the first difference of another benchmark from this one, in out."""
-        ours, theirs = asdict(self), asdict(other)
-        for key, what in _PARTS.items():
-            if ours[key] != theirs[key]:
-                raise DdctError(
-                    f'{out} holds a benchmark {what}: finish it as it was started, or choose '
-                    'another --out'
-                )
+        require_same_inputs(asdict(self), asdict(other), _DIFFERENCES, 'benchmark', out)
 
 
-_PARTS = {
+_DIFFERENCES = {
     'schema_version': 'of another version',
     'version': 'of another release',
     'code_digest': 'of another release: its code is another one',

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from ddct_bringup.benchmark.case_rows import CASE
-from ddct_bringup.benchmark.result_types import Share, Spread
+from ddct_bringup.benchmark.result_types import RunShare, ValueSpread
 from ddct_bringup.campaign_report.statistics import outcome
 from ddct_bringup.campaign_report.statistics.spread import spread_of
 from ddct_bringup.verdict.state import SUCCESSES
@@ -16,7 +16,7 @@ Columns = Mapping[str, np.ndarray]
 """Columns of one controller by name, (cases,) each."""
 
 
-def share_of(runs: int, among: int) -> Share:
+def share_of(runs: int, among: int) -> RunShare:
     """Return a share of runs with its Clopper-Pearson interval; None of no runs."""
     found = outcome.Share(runs, 0, among)
     return {
@@ -36,7 +36,7 @@ def successes_in(columns: Columns) -> np.ndarray:
     return np.isin(outcomes_in(columns), SUCCESSES)
 
 
-def spread_in(columns: Columns, values: np.ndarray) -> Spread:
+def spread_in(columns: Columns, values: np.ndarray) -> ValueSpread:
     """Return the distribution of (cases,) values over the engaged runs that have one."""
     found = spread_of(values, outcomes_in(columns))
     place = found.worst_engaged

@@ -25,12 +25,13 @@ from ddct_bringup.benchmark.unavoidable import unavoidable_limits
 from ddct_bringup.campaign.columns import CONTROLLER, SEED
 from ddct_bringup.campaign.conduct import carry_out
 from ddct_bringup.campaign.manifest import MANIFEST, Manifest
+from ddct_bringup.campaign.rows import CRITERION
 from ddct_bringup.campaign.spec import CampaignSpec
 from ddct_bringup.campaign_report.evaluated_quantities import QUANTITIES
 from ddct_bringup.campaign_report.reading import read_table
 from ddct_bringup.digests.code import code_digest
 from ddct_bringup.scores.csv_text import OVER_FLOOR
-from ddct_bringup.verdict.limits import packaged_limits
+from ddct_bringup.verdict.limits import TRACTION, packaged_limits
 from ddct_controllers.registry import own_controller_names
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.input_file import parse_json
@@ -82,7 +83,8 @@ def columns_kept(spec: CampaignSpec) -> list[str]:
     grid = [key for key, values in spec.grid.items() if len(values) > 1]
     quantities = [each.key for each in QUANTITIES]
     floors = [f'{OVER_FLOOR}{name}' for name in spec.floors]
-    return [CONTROLLER, SEED, *grid, *varied, *_VERDICT, *quantities, *floors]
+    traction = f'{CRITERION}{TRACTION}'
+    return [CONTROLLER, SEED, *grid, *varied, *_VERDICT, *quantities, traction, *floors]
 
 
 def release_rows(folder: Traversable | Path) -> ReleaseRows:

@@ -7,7 +7,7 @@ from typing import TypedDict
 from ddct_bringup.campaign_report.summary_types import PairSummary, Quantiles, Reason
 
 
-class Share(TypedDict):
+class RunShare(TypedDict):
     """Number of runs, their share among all runs of the set, 0 to 1, and its interval."""
 
     runs: int
@@ -22,26 +22,26 @@ class WorstCase(TypedDict):
     case: int | None
 
 
-class Spread(Quantiles):
+class ValueSpread(Quantiles):
     """Distribution over the engaged runs that have a value."""
 
     with_value: int
     worst: WorstCase
 
 
-class QuantityResult(Spread):
+class QuantityResult(ValueSpread):
     """Distribution of one metric or criterion, and of its ratio to the floor."""
 
     name: str
     unit: str
-    over_floor: Spread | None
+    over_floor: ValueSpread | None
     """Value over the least at the run's own lock instant; null for a quantity without floors."""
 
 
 class ScenarioResult(TypedDict):
     """Result of a controller in one scenario."""
 
-    success: Share
+    success: RunShare
     quantities: list[QuantityResult]
     """Main quantities only."""
 
@@ -58,7 +58,7 @@ class LimitsResult(TypedDict):
     kept: int
     share: float | None
     """Share of the avoidable limits that were kept."""
-    all_kept: Share
+    all_kept: RunShare
     """Runs that kept all avoidable limits, among those in cases with floors."""
 
 
@@ -88,9 +88,9 @@ class Evaluation(TypedDict):
 
     controller: str
     runs: int
-    success: Share
+    success: RunShare
     """Runs that are engaged or nearly engaged."""
-    states: dict[str, Share]
+    states: dict[str, RunShare]
     """Every state that occurred, `invalid` included."""
     scenarios: dict[str, ScenarioResult]
     reasons: list[Reason]
@@ -107,7 +107,7 @@ class BoardRow(TypedDict):
 
     controller: str
     judged: bool
-    success: Share
+    success: RunShare
     limits: LimitsResult
     medians: dict[str, float | None]
     """

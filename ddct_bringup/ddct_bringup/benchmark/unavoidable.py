@@ -48,10 +48,11 @@ def unavoidable_limits(
 
 
 def unavoidable_in(settings: RunSettings, limits: Limits) -> list[str]:
-    """Return the criteria whose limits no controller can keep; raise DdctError without floors."""
-    start = control_start(settings)
+    """Return the names of limits that no controller can keep; raise DdctError without floors."""
+    start, scenario = control_start(settings), settings.scenario
+    gravity = scenario.vehicle.gravity_m_s2
     return [
         name
-        for name, limit in limits.of(settings.scenario.name).items()
+        for name, limit in limits.of_all(scenario.name, gravity).items()
         if name in METRICS and least_at_any_lock(settings, name, start, limit.value)
     ]

@@ -15,7 +15,7 @@ from ddct_bringup.benchmark.cases import Cases
 from ddct_bringup.benchmark.judged import Judged
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.run.timing_and_failure import TIMING_FILE, RunTiming
-from ddct_controllers.registry import make_controller
+from ddct_controllers.registry import Chosen, make_controller
 from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError
 from ddct_plant.files.input_file import parse_json, read_text_file
 from ddct_plant.files.output_file import write_json
@@ -37,7 +37,7 @@ class UpdateTime(TypedDict, total=False):
     pi_update_time_median_us: float
 
 
-class UpdateTimes(TypedDict):
+class UpdateTimesFile(TypedDict):
     """Content of the file: the controller of the denominator, and the update times by name."""
 
     reference: str
@@ -50,11 +50,11 @@ def write_update_times(judged: Sequence[Judged], cases: Cases, out: Path) -> Non
         return
     settings = cases.planned.run(0).settings
     found = {each.name: _update_time(each, settings) for each in judged}
-    content: UpdateTimes = {'reference': REFERENCE, 'controllers': found}
+    content: UpdateTimesFile = {'reference': REFERENCE, 'controllers': found}
     write_json(str(out / TIMING_FILE), content)
 
 
-def read_update_times(out: Path) -> UpdateTimes:
+def read_update_times(out: Path) -> UpdateTimesFile:
     """Return the content of the file in a folder; raise DdctError for one that is damaged."""
     content = parse_json(read_text_file(out / TIMING_FILE))
     times = content.get('controllers') if isinstance(content, dict) else None
@@ -65,7 +65,16 @@ def read_update_times(out: Path) -> UpdateTimes:
             f'{out / TIMING_FILE}: it has no update times: delete it, and the same command '
             'measures them again'
         )
-    return cast(UpdateTimes, content)
+    return cast(UpdateTimesFile, content)
+
+
+def median_ratio(chosen: Chosen, reference: str, settings: RunSettings) -> float:
+    """Return the ratio of two controllers' update times, the median over runs in turn."""
+    ratios = []
+    for _ in range(_ROUNDS):
+        other = _median_us(reference, settings)
+        ratios.append(_median_us(chosen, settings) / other)
+    return statistics.median(ratios)
 
 
 def _update_time(judged: Judged, settings: RunSettings) -> UpdateTime:
@@ -87,7 +96,7 @@ def _update_time(judged: Judged, settings: RunSettings) -> UpdateTime:
     }
 
 
-def _median_us(chosen: str, settings: RunSettings) -> float:
+def _median_us(chosen: Chosen, settings: RunSettings) -> float:
     timing = RunTiming()
     run_headless(settings, make_controller(chosen, settings), timing)
     return statistics.median(timing.update_times_us)

@@ -15,6 +15,7 @@ from ddct_bringup.benchmark.report.printed import print_result
 from ddct_bringup.benchmark.result_types import Result
 from ddct_bringup.benchmark.update_times import read_update_times, write_update_times
 from ddct_bringup.campaign.rows import require_suitable
+from ddct_bringup.run.options import add_workers_option
 from ddct_controllers.registry import controller_spec
 from ddct_plant.base.errors import DdctError, ParameterError, printable
 from ddct_plant.base.options import Option
@@ -126,9 +127,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument(
         '--seed', type=int, metavar='N', help='held-out cases of a judge; the result has a mark'
     )
-    parser.add_argument(
-        '--workers', type=int, metavar='N', help='processes here; default: one for each core'
-    )
+    add_workers_option(parser)
     parser.add_argument('--json', metavar='FILE', help="write the result; '-' is standard output")
     return parser
 

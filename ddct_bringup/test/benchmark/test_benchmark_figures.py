@@ -32,6 +32,7 @@ def rows_of(**controllers: dict[str, Any]) -> CaseRows:
         **dict.fromkeys(MAIN, 1.0),
         'criterion.weighted_acceleration': 0.3,
         'criterion.judder': 5.0,
+        'criterion.traction': 4.0,
         'over_floor.peak_jerk': np.nan,
     }
     names = tuple(controllers)
@@ -80,13 +81,27 @@ def test_limits_that_nobody_can_keep_are_left_out_and_a_failed_run_keeps_none() 
         ours={'criterion.judder': [5.0, 7.0, 5.0, 5.0, np.nan, 5.0]},
         other={'verdict_state': ['stalled'] + ['engaged'] * 5},
     )
-    unavoidable = {0: ['weighted_acceleration'], 1: [], 4: []}
+    unavoidable = {0: ['weighted_acceleration', 'traction'], 1: ['traction'], 4: ['traction']}
     ours, other = evaluations_of(rows, unavoidable, packaged_limits(), ['wear_gain'], 'ours')
     # Case 0: judder. Case 1: both, judder is beyond. Case 4: it is not defined.
     assert (ours['limits']['kept'], ours['limits']['avoidable']) == (3, 4)
     assert ours['limits']['all_kept']['runs'] == 2
     assert (other['limits']['kept'], other['limits']['avoidable']) == (4, 5)
-    assert ours['limits']['unavoidable'] == 1
+    assert ours['limits']['unavoidable'] == 4
+
+
+def test_the_limit_of_the_traction_is_kept_or_not_as_those_of_criteria() -> None:
+    rows = rows_of(
+        ours={'criterion.traction': [6.0, 4.0, 6.0, 4.0, np.nan, 6.0]},
+        other={'verdict_state': ['engaged', 'stalled'] + ['engaged'] * 4},
+    )
+    unavoidable = {case: ['weighted_acceleration', 'judder'] for case in (0, 1, 4)}
+    unavoidable[5] = [*unavoidable[0], 'traction']
+    ours, other = evaluations_of(rows, unavoidable, packaged_limits(), ['wear_gain'], 'ours')
+    # Case 0 is beyond, case 1 within; in case 4 it is not defined, in case 5 nobody could keep it.
+    assert (ours['limits']['kept'], ours['limits']['avoidable']) == (1, 2)
+    assert (other['limits']['kept'], other['limits']['avoidable']) == (2, 3)
+    assert ours['limits']['all_kept']['runs'] == 3
 
 
 def test_an_invalid_run_is_no_success_and_has_a_state_of_its_own() -> None:

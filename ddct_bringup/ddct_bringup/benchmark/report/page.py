@@ -11,7 +11,7 @@ from ddct_bringup.benchmark.result_types import (
     Result,
     ScenarioResult,
 )
-from ddct_bringup.benchmark.update_times import UpdateTimes
+from ddct_bringup.benchmark.update_times import UpdateTimesFile
 from ddct_bringup.campaign_report import texts as campaign_texts
 from ddct_bringup.campaign_report.evaluated_quantities import QUANTITIES
 from ddct_bringup.campaign_report.printed_summary import MAIN
@@ -30,7 +30,7 @@ RATIO_FORM = '.2f'
 """Format of a ratio to the least."""
 
 
-def benchmark_page(result: Result, update_times: UpdateTimes) -> str:
+def benchmark_page(result: Result, update_times: UpdateTimesFile) -> str:
     """
     Return the HTML page of a benchmark.
 

@@ -5,8 +5,8 @@
 from collections.abc import Iterator
 
 from ddct_bringup.benchmark.report import texts
-from ddct_bringup.benchmark.result_types import Evaluation, JudgedResult, Result, Share
-from ddct_bringup.benchmark.update_times import UpdateTimes
+from ddct_bringup.benchmark.result_types import Evaluation, JudgedResult, Result, RunShare
+from ddct_bringup.benchmark.update_times import UpdateTimesFile
 from ddct_bringup.campaign_report.printed_summary import MAIN
 from ddct_bringup.campaign_report.texts import interval_text, p_text, share_text
 from ddct_bringup.metrics.catalogue import METRICS
@@ -16,7 +16,7 @@ from ddct_plant.program.table import UNDEFINED, Table, print_tables, text_or_das
 _TITLES = 'development', '95 % interval', 'held out', '95 % interval'
 
 
-def print_result(result: Result, update_times: UpdateTimes) -> None:
+def print_result(result: Result, update_times: UpdateTimesFile) -> None:
     """Print the main tables of a benchmark; the page has all."""
     for judged in result['controllers']:
         if judged['development'] and judged['held_out']:
@@ -66,7 +66,7 @@ def _tables(
     )
 
 
-def _share_cells(share: Share) -> tuple[str, str]:
+def _share_cells(share: RunShare) -> tuple[str, str]:
     return share_text(share['share']), interval_text(share['interval'])
 
 

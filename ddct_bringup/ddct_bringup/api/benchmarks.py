@@ -1,0 +1,75 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Judge controllers on the benchmark from Python."""
+
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from ddct_bringup.api.result import pandas_module
+from ddct_bringup.benchmark.cases import Cases
+from ddct_bringup.benchmark.conduct import DEVELOPMENT, HELD_OUT, Options, carry_out_benchmark
+from ddct_bringup.benchmark.judged import Judged
+from ddct_bringup.benchmark.report.folder import PAGE, write_result
+from ddct_bringup.benchmark.result_types import Evaluation, Result
+from ddct_bringup.benchmark.update_times import write_update_times
+from ddct_bringup.campaign.rows import require_suitable
+from ddct_controllers.registry import controller_spec
+from ddct_plant.base.errors import DdctError
+
+
+class BenchmarkResults(NamedTuple):
+    """Results of a finished benchmark of one controller."""
+
+    table: Any
+    """
+    pandas DataFrame with a row per controller: the judged one, then those that run beside it.
+
+    Columns for the sets `development` and `held_out`: `SET.success`, the share of successful
+    engagements, 0 to 1, and `SET.limits_kept`, the share of the avoidable limits that were kept.
+    """
+    result: Result
+    """Content of `result.json`."""
+    page: Path
+    """Path of the page `report.html`."""
+
+
+def benchmark(
+    controller: str,
+    out: str | Path,
+    *,
+    quick: bool = False,
+    seed: int | None = None,
+    workers: int | None = None,
+) -> BenchmarkResults:
+    """
+    Judge a controller, by name or file, into the folder `out`, as `ddct benchmark` does.
+
+    `quick` runs a tenth of the cases. `seed` is that of a judge for the held-out cases. What is
+    done stays in the folder, and another call goes on with it. Raise DdctError for a controller
+    that cannot be judged.
+    """
+    pandas = pandas_module()
+    cases, folder = Cases.packaged(quick=quick), Path(out)
+    require_suitable(controller_spec(controller), cases.planned.run(0).settings)
+    judged = [Judged.of(controller)]
+    failed = carry_out_benchmark(judged, cases, folder, seed, Options(workers))
+    for name, reason in failed.items():
+        raise DdctError(f'{name}: {reason}')
+    write_update_times(judged, cases, folder)
+    result = write_result(folder, failed)
+    (found,) = result['controllers']
+    columns = {
+        f'{part}.{name}': share
+        for part, each in ((DEVELOPMENT, found['development']), (HELD_OUT, found['held_out']))
+        for name, share in _shares(each or []).items()
+    }
+    table = pandas.DataFrame(columns).rename_axis('controller')
+    return BenchmarkResults(table, result, folder / PAGE)
+
+
+def _shares(controllers: list[Evaluation]) -> dict[str, dict[str, float | None]]:
+    """Return the two shares by controller."""
+    return {
+        'success': {each['controller']: each['success']['share'] for each in controllers},
+        'limits_kept': {each['controller']: each['limits']['share'] for each in controllers},
+    }

@@ -1,0 +1,46 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""A benchmark from Python is that of the program, as a table."""
+
+import json
+from pathlib import Path
+
+import pytest
+from small_benchmark import judge, use_small_release
+
+from ddct_bringup.api import DdctError, benchmark
+from ddct_bringup.benchmark.report.folder import RESULT
+
+pytestmark = pytest.mark.slow
+GAIN = """\
+name: gain
+units: {input: rpm, output: N m}
+polynomial: {num: [-0.1], den: [1.0]}
+discretisation: hold
+"""
+
+
+def test_the_table_has_the_shares_of_the_result_that_the_program_writes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip('pandas', reason='an extra')
+    use_small_release(tmp_path, monkeypatch)
+    (tmp_path / 'gain.yaml').write_text(GAIN, encoding='utf-8')
+    found = benchmark(str(tmp_path / 'gain.yaml'), tmp_path / 'mine', workers=1)
+    assert judge(tmp_path / 'same', str(tmp_path / 'gain.yaml')) == 0
+    written = (tmp_path / 'same' / RESULT).read_text(encoding='utf-8')
+    assert json.loads(json.dumps(found.result)) == json.loads(written)
+    assert list(found.table.index) == ['gain', 'pi', 'ls8']
+    (judged,) = found.result['controllers']
+    for part in ('development', 'held_out'):
+        for each in judged[part]:
+            row = found.table.loc[each['controller']]
+            assert row[f'{part}.success'] == each['success']['share']
+            assert row[f'{part}.limits_kept'] == each['limits']['share']
+    assert found.page.is_file()
+
+
+def test_an_unknown_controller_is_refused_before_a_folder_is_made(tmp_path: Path) -> None:
+    with pytest.raises(DdctError, match='nobody'):
+        benchmark('nobody', tmp_path / 'out')
+    assert not (tmp_path / 'out').exists()
