@@ -17,8 +17,8 @@ from ddct_plant.files.output_file import write_text
 DIGESTS = 'digests.json'
 SCHEMA_VERSION = 1
 """Schema version of `digests.json`."""
-RUNS, CAMPAIGN, BENCHMARK = 'runs', 'campaign', 'benchmark'
-"""Kinds of folders: one bag or several with their scores, a campaign, and a benchmark."""
+RUNS, CAMPAIGN, BENCHMARK, TUNING = 'runs', 'campaign', 'benchmark', 'tuning'
+"""Kinds of folders: one bag or several with their scores, a campaign, a benchmark, a tuning."""
 _MOST_BYTES = 50_000_000
 """Largest size of `digests.json` in bytes; a campaign has a thousandth of that."""
 

@@ -2,11 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Compare the files of a folder with their digests."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-from ddct_bringup.digests.digest_file import DIGESTS, Digests, file_digest
+from ddct_bringup.digests.digest_file import DIGESTS, Digests, file_digest, read_digests
 from ddct_bringup.run.output_folder import SUFFIX
+from ddct_plant.base.errors import DdctError
 
 SAME, ALTERED, MISSING, UNLISTED = 'same', 'altered', 'missing', 'unlisted'
 """States of a file: as its digest, with other bytes, absent, and without a digest."""
@@ -49,6 +51,33 @@ def file_states(folder: Path, digests: Digests) -> list[FileState]:
         FileState(name, _state(there.get(name), digests.files.get(name)))
         for name in sorted({*there, *digests.files})
     ]
+
+
+def altered_files(folder: Path, digests: Digests, names: Iterable[str]) -> list[str]:
+    """Return those of the files, by their path in the folder, that exist and are altered."""
+    return [
+        name
+        for name in names
+        if name in digests.files
+        and (folder / name).exists()
+        and _state(folder / name, digests.files[name]) == ALTERED
+    ]
+
+
+def require_unaltered(folder: Path, names: Iterable[str]) -> None:
+    """
+    Raise DdctError for a file that is not as its digest; `names` are paths in the folder.
+
+    A folder without `digests.json`, of an earlier version, is not checked.
+    """
+    if not (folder / DIGESTS).exists():
+        return
+    if altered := altered_files(folder, read_digests(folder), names):
+        raise DdctError(
+            f'its bytes are not those that were written (see {DIGESTS}): put the original back',
+            key=altered[0],
+            place=folder / altered[0],
+        )
 
 
 def _state(path: Path | None, digest: str | None) -> str:

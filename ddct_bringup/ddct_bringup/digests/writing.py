@@ -41,19 +41,27 @@ def write_run_digests(folder: Path, plans: Mapping[str, RunPlan]) -> None:
     Digests(SCHEMA_VERSION, RUNS, files, this_environment(), runs).write(folder)
 
 
-def begin_campaign_digests(folder: Path, *, one_machine: bool) -> None:
+def begin_campaign_digests(
+    folder: Path, shards: str, *, one_machine: bool, kind: str = CAMPAIGN
+) -> Digests:
     """
-    Write the digests of a campaign that begins or is resumed.
+    Write the digests of a campaign, or another `kind`, that begins or is resumed; return them.
 
-    The kind of processor is that of this one only if all rows are computed on `one_machine` and
-    none before on another. Raise DdctError when the file cannot be read or written.
+    Those of its files in the folder `shards` stay as they were when each was written. The kind of
+    processor is that of this one only if all rows are computed on `one_machine` and none before on
+    another. Raise DdctError when the file cannot be read or written.
     """
     here = this_environment()
-    known = read_digests(folder).environment if (folder / DIGESTS).exists() else None
-    resumed = any(folder.glob('shards/*'))
-    if not one_machine or (resumed and known != here):
+    known = read_digests(folder) if (folder / DIGESTS).exists() else None
+    resumed = any((folder / shards).glob('*'))
+    if not one_machine or (resumed and (known is None or known.environment != here)):
         here = replace(here, processor=None)
-    Digests(SCHEMA_VERSION, CAMPAIGN, digests_of_files(folder), here).write(folder)
+    found = digests_of_files(folder)
+    files = {name: each for name, each in found.items() if not name.startswith(f'{shards}/')}
+    digests = Digests(SCHEMA_VERSION, kind, dict(known.files) if known else {}, here)
+    digests = digests.with_files(files)
+    digests.write(folder)
+    return digests
 
 
 def finish_campaign_digests(folder: Path) -> None:

@@ -2,10 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Repeat the runs of a campaign, and compare rows, shards, manifest and summary."""
 
-from collections.abc import Iterator
-from dataclasses import asdict
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, dataclass
 from itertools import islice
 from pathlib import Path
+from typing import Any
 
 import pyarrow as pa
 
@@ -18,12 +19,14 @@ from ddct_bringup.campaign.scored import ScoredRow, scored_runs
 from ddct_bringup.campaign_report.folder import SUMMARY
 from ddct_bringup.campaign_report.reading import read_table, results_of
 from ddct_bringup.campaign_report.summary import summary_of
-from ddct_bringup.verification.comparison import Comparison, plain_json
+from ddct_bringup.verification.comparison import BOUND, Comparison, plain_json
 from ddct_bringup.verification.request import VerificationRequest
 from ddct_bringup.verification.result import RepetitionResult
+from ddct_bringup.verification.rounding_bound import LARGEST, bound_of_row
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.input_file import parse_json, read_text_file
 from ddct_plant.program.progress import Progress
+from ddct_plant.program.workers import in_processes
 
 _MOST_BYTES = 100_000_000
 """Largest size of `summary.json` in bytes."""
@@ -73,30 +76,54 @@ def _verified_rows(
 ) -> Iterator[RepetitionResult]:
     """Yield the result of the rows of each controller, computed by worker processes."""
     schema = schema_of(campaign.spec)
+    compared: list[tuple[str, Comparison, dict[int, RowPair]]] = []
     progress = Progress('runs', campaign.runs)
     with scored_runs(
         campaign, request.limits, workers=request.workers, floors=campaign.spec.floors
     ) as found:
         for number, label in enumerate(campaign.labels):
             first = number * campaign.cases
-            comparison = Comparison()
+            comparison, beyond = Comparison(), dict[int, RowPair]()
             for start in range(first, first + campaign.cases, _TOGETHER):
                 count = min(_TOGETHER, first + campaign.cases - start)
-                repeated = list(islice(found, count))
-                _compare_rows(comparison, table.slice(start, count), schema, repeated)
+                for pair in _pairs(table.slice(start, count), schema, list(islice(found, count))):
+                    if pair.amplified and not request.same_environment:
+                        beyond[pair.index] = pair
+                    else:
+                        pair.compare(comparison, BOUND)
                 progress.update(start + count)
             name = f'{label}: rows {first} to {first + campaign.cases - 1}'
-            yield RepetitionResult.of(name, comparison, same_environment=request.same_environment)
+            compared.append((name, comparison, beyond))
     progress.end()
+    for name, comparison, beyond in compared:
+        for index, bound in _bounds(request, campaign, list(beyond)):
+            beyond[index].compare(comparison, bound)
+        yield RepetitionResult.of(name, comparison, same_environment=request.same_environment)
 
 
-def _compare_rows(
-    comparison: Comparison,
-    recorded: pa.Table,
-    schema: pa.Schema,
-    repeated: list[ScoredRow],
-) -> None:
-    """Compare the columns of rows; a file of another version may lack some."""
+@dataclass(frozen=True)
+class RowPair:
+    """A recorded row and its repetition, in the columns that both have."""
+
+    index: int
+    values: Mapping[str, tuple[Any, Any]]
+    """Recorded and repeated value by column."""
+
+    def compare(self, comparison: Comparison, bound: float) -> None:
+        """Add all columns to a comparison."""
+        for name, (ours, theirs) in self.values.items():
+            comparison.add({'row': self.index, 'signal': name}, ours, theirs, bound)
+
+    @property
+    def amplified(self) -> bool:
+        """Whether it is beyond `BOUND`, by so little that rounding may be the cause."""
+        alone = Comparison()
+        self.compare(alone, BOUND)
+        return BOUND < alone.largest <= LARGEST
+
+
+def _pairs(recorded: pa.Table, schema: pa.Schema, repeated: list[ScoredRow]) -> Iterator[RowPair]:
+    """Yield the pairs of rows; a file of another version may lack some columns."""
     rows = [each.row() for each in repeated]
     columns = {}
     for field in schema:
@@ -104,8 +131,21 @@ def _compare_rows(
             again = arrow_column(field.type, [row[field.name] for row in rows]).to_pylist()
             columns[field.name] = (recorded[field.name].to_pylist(), again)
     for place, row in enumerate(rows):
-        for name, (ours, theirs) in columns.items():
-            comparison.add({'row': row[INDEX], 'signal': name}, ours[place], theirs[place])
+        values = {name: (ours[place], again[place]) for name, (ours, again) in columns.items()}
+        yield RowPair(row[INDEX], values)
+
+
+def _bounds(
+    request: VerificationRequest, campaign: Campaign, indices: list[int]
+) -> Iterator[tuple[int, float]]:
+    """Yield the index of each of some rows with its bound, computed by worker processes."""
+
+    def bound(place: int) -> float:
+        (run,) = campaign.planned(indices[place], indices[place] + 1)
+        return bound_of_row(run, request.limits)
+
+    with in_processes(bound, len(indices), request.workers, chunk=1) as found:
+        yield from zip(indices, found, strict=True)
 
 
 def _verified_shards(request: VerificationRequest, table: pa.Table) -> RepetitionResult:

@@ -56,12 +56,17 @@ class Comparison:
     """First difference beyond the bound."""
     largest: float = 0.0
     """Largest difference, relative as BOUND; infinite for values that are no numbers."""
+    bound: float = BOUND
+    """Bound of values that have none of their own."""
+    used: float = BOUND
+    """Largest bound that a difference made necessary."""
 
-    def add(self, place: Place, recorded: Any, repeated: Any) -> None:
-        """Compare two values: numbers, texts, or None."""
+    def add(self, place: Place, recorded: Any, repeated: Any, bound: float | None = None) -> None:
+        """Compare two values: numbers, texts, or None; `bound` may be that of a run."""
         deviation = deviation_of(recorded, repeated)
         if deviation is not None:
-            self._note(deviation, Difference(place, recorded, repeated))
+            difference = Difference(place, recorded, repeated)
+            self._note(deviation, difference, self.bound if bound is None else bound)
 
     def add_nested(self, key: str, recorded: Any, repeated: Any) -> None:
         """Compare two values of JSON, whose place is a dotted key."""
@@ -85,10 +90,10 @@ class Comparison:
         found = [
             each
             for name in (*ours, *(name for name in theirs if name not in ours))
-            for each in _signal_differences(name, ours.get(name), theirs.get(name))
+            for each in _signal_differences(name, ours.get(name), theirs.get(name), self.bound)
         ]
         for deviation, difference in sorted(found, key=lambda each: each[1].place['step']):
-            self._note(deviation, difference)
+            self._note(deviation, difference, self.bound)
 
     def state(self, *, same_environment: bool) -> str:
         """Return the state: with the same code, versions and processor only equal bits count."""
@@ -102,15 +107,17 @@ class Comparison:
             return None
         return self.bits if same_environment else self.beyond
 
-    def _note(self, deviation: float, difference: Difference) -> None:
+    def _note(self, deviation: float, difference: Difference, bound: float) -> None:
         self.largest = max(self.largest, deviation)
         self.bits = self.bits or difference
         if deviation > BOUND:
+            self.used = max(self.used, bound)
+        if deviation > bound:
             self.beyond = self.beyond or difference
 
 
 def _signal_differences(
-    name: str, recorded: Any, repeated: Any
+    name: str, recorded: Any, repeated: Any, bound: float
 ) -> Iterator[tuple[float, Difference]]:
     """Yield the first difference of a signal, the first beyond the bound, and the largest one."""
     ours, theirs = _form(recorded), _form(repeated)
@@ -119,7 +126,7 @@ def _signal_differences(
         return
     steps = min(len(recorded), len(repeated))
     deviations = deviations_of(recorded[:steps], repeated[:steps])
-    places = [*np.flatnonzero(deviations >= 0.0)[:1], *np.flatnonzero(deviations > BOUND)[:1]]
+    places = [*np.flatnonzero(deviations >= 0.0)[:1], *np.flatnonzero(deviations > bound)[:1]]
     for step in (*places, *([deviations.argmax()] if places else [])):
         values = (recorded[step], repeated[step])
         yield float(deviations[step]), Difference({'signal': name, 'step': int(step)}, *values)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ddct_bringup.verification.comparison import (
+    BOUND,
     DIFFERENT,
     DIGEST_ONLY,
     Comparison,
@@ -27,13 +28,16 @@ class RepetitionResult:
     """Largest difference, relative as `BOUND`; 0 for equal bits."""
     note: str = ''
     """Reason why it was not repeated."""
+    bound: float = BOUND
+    """Bound that was used where bits may differ: BOUND, or that of a run which amplifies them."""
 
     @classmethod
     def of(cls, run: str, comparison: Comparison, *, same_environment: bool) -> 'RepetitionResult':
         """Return the result of a comparison."""
         first = comparison.first(same_environment=same_environment)
         state = comparison.state(same_environment=same_environment)
-        return cls(run, state, first.entry() if first else None, comparison.largest)
+        entry = first.entry() if first else None
+        return cls(run, state, entry, comparison.largest, bound=comparison.used)
 
     @classmethod
     def failed(cls, run: str, reason: object) -> 'RepetitionResult':
@@ -54,6 +58,7 @@ class RepetitionResult:
             'first_difference': self.first_difference,
             'largest_difference': largest,
             'note': self.note,
+            'bound': self.bound,
         }
 
     @property

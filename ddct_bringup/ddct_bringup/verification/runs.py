@@ -17,12 +17,14 @@ from ddct_bringup.digests.digest_file import RunDigests
 from ddct_bringup.digests.writing import ITSELF
 from ddct_bringup.report.evidence import FREQUENCY_FILE
 from ddct_bringup.run.execution import simulate
+from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.run.timing_and_failure import NOTE_FILE, failed_run
 from ddct_bringup.scores.bags import bag_name, find_bags
-from ddct_bringup.verification.comparison import SAME_BITS, Comparison, plain_json
+from ddct_bringup.verification.comparison import BOUND, SAME_BITS, Comparison, plain_json
 from ddct_bringup.verification.repetition import plan_of
 from ddct_bringup.verification.request import VerificationRequest
 from ddct_bringup.verification.result import RepetitionResult
+from ddct_bringup.verification.rounding_bound import LARGEST, bound_of_run
 from ddct_bringup.verification.scores import SCORES, verified_frequency, verified_scores
 from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError
 from ddct_plant.files.input_file import parse_json, read_text_file
@@ -75,8 +77,8 @@ def _verified_bag(request: VerificationRequest, bag: Path, name: str) -> Repetit
 def _verified_recording(
     request: VerificationRequest, recording: Recording, name: str, digests: RunDigests
 ) -> RepetitionResult:
-    comparison = Comparison()
     plan = plan_of(request, recording, digests)
+    comparison = Comparison()
     if request.same_code:
         comparison.add(
             {'key': 'scenario'}, digests.scenario, scenario_digest(plan.settings.scenario)
@@ -86,10 +88,22 @@ def _verified_recording(
     except FOREIGN_FAILURES as error:
         return RepetitionResult.failed(name, f'its repetition fails: {error}')
     _compare_descriptions(comparison, recording, repeated, same_code=request.same_code)
-    comparison.add_trajectories(recording.trajectory, repeated.trajectory)
+    _compare_signals(comparison, recording, repeated, None if request.same_environment else plan)
     if request.same_code and comparison.state(same_environment=True) == SAME_BITS:
         _compare_bytes(comparison, recording, repeated)
     return RepetitionResult.of(name, comparison, same_environment=request.same_environment)
+
+
+def _compare_signals(
+    comparison: Comparison, recording: Recording, repeated: Recording, plan: RunPlan | None
+) -> None:
+    """Compare all signals; with a plan, those beyond the bound by that of the run."""
+    ours, theirs = recording.trajectory, repeated.trajectory
+    alone = Comparison()
+    alone.add_trajectories(ours, theirs)
+    if plan is not None and BOUND < alone.largest <= LARGEST:
+        comparison.bound = bound_of_run(plan)
+    comparison.add_trajectories(ours, theirs)
 
 
 def _verified_failure(

@@ -19,7 +19,7 @@ from ddct_plant.program.table import Table, print_table
 
 _WORDS = {
     SAME_BITS: 'same bits',
-    SAME_WITHIN: f'same within {BOUND:g}',
+    SAME_WITHIN: 'same within',
     DIFFERENT: 'different',
     DIGEST_ONLY: 'digest only',
 }
@@ -31,7 +31,7 @@ def print_verification(found: Verification) -> None:
     """Print the runs of a folder as a table, the bound that was used, and whether all is same."""
     folder = printable(found.request.folder)
     if found.runs:
-        rows = [(run.run, _WORDS[run.state], _detail(run)) for run in found.runs]
+        rows = [(run.run, _word(run), _detail(run)) for run in found.runs]
         print_table(Table(f'{folder}, repeated', ('run', 'state', 'detail'), rows))
     if found.repeated:
         print(_bound(found))
@@ -59,6 +59,13 @@ def complaints(found: Verification) -> Iterator[str]:
             yield f'{folder}: {run.run}: {_detail(run)}'
 
 
+def _word(run: RepetitionResult) -> str:
+    """Return the state of a run in words, with its bound where that was needed."""
+    return (
+        f'{_WORDS[run.state]} {run.bound:.1g}' if run.state == SAME_WITHIN else _WORDS[run.state]
+    )
+
+
 def _bound(found: Verification) -> str:
     request = found.request
     if request.same_environment:
@@ -66,8 +73,16 @@ def _bound(found: Verification) -> str:
     differences = printable('; '.join(request.environment_differences))
     return (
         f'The result was made with {differences}. Other code or processors may round '
-        f'otherwise: the bound is {BOUND:g} of the largest value.'
+        f'otherwise: the bound is {BOUND:g} of the largest value.{_measured(found)}'
     )
+
+
+def _measured(found: Verification) -> str:
+    runs = [run.run for run in found.runs if run.bound > BOUND]
+    if not runs:
+        return ''
+    names = printable(', '.join(runs))
+    return f' These amplify rounding, and have a larger one that was measured: {names}.'
 
 
 def _detail(run: RepetitionResult) -> str:

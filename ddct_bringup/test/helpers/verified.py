@@ -3,7 +3,10 @@
 """Results to verify: runs and a campaign, and edits of them together with their digests."""
 
 import json
+import os
 import shutil
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -34,6 +37,21 @@ class Mine(Controller):
     def update(self, measurement):
         return Command(-0.1 * measurement.slip_error_rpm)
 """
+RIPPLED = """\
+import math
+
+from ddct_bringup.api import Command, Controller
+
+
+class Rippled(Controller):
+    def reset(self):
+        pass
+
+    def update(self, measurement):
+        error = measurement.slip_error_rpm
+        return Command(-0.05 * error + {ripple_n_m} * math.sin(1e10 * error))
+"""
+"""Controller whose torque has a ripple that depends on the last bits of the error."""
 
 
 def make_runs(out: Path, controllers: str = 'pi,mpc3', *options: str) -> Path:
@@ -91,3 +109,17 @@ def verified(
 def states(document: dict[str, Any]) -> dict[str, str]:
     """Return the states of the runs by name."""
     return {run['run']: run['state'] for run in document['runs']}
+
+
+def verified_on_other_kernels(folder: Path) -> subprocess.CompletedProcess[str]:
+    """Verify a folder in a process with other kernels of OpenBLAS."""
+    if 'kernels of numpy' not in read_digests(folder).environment.processor:
+        pytest.skip('numpy has no OpenBLAS of its own here')
+    path = ':'.join(sys.path)
+    return subprocess.run(
+        [sys.executable, '-m', verify.__name__, str(folder), '--json', '-'],
+        env={**os.environ, 'OPENBLAS_CORETYPE': 'Prescott', 'PYTHONPATH': path},
+        capture_output=True,
+        text=True,
+        check=False,
+    )

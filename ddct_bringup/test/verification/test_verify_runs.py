@@ -3,16 +3,14 @@
 """`verify` repeats the runs of a folder; an edit with its digest is found by the repetition."""
 
 import json
-import os
 import re
-import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
 import pytest
 from verified import (
     CONTROLLER,
+    RIPPLED,
     copied,
     edit_json_with_digest,
     edit_with_digest,
@@ -20,6 +18,7 @@ from verified import (
     make_runs,
     states,
     verified,
+    verified_on_other_kernels,
 )
 
 from ddct_bringup.bag.reader import read_bag
@@ -142,41 +141,60 @@ def test_a_margin_edited_with_its_digest_is_found(
     assert (code, states(document)['frequency.json']) == (1, 'different')
 
 
-def _rewrite_bag(folder: Path, **custom_data: str) -> None:
-    """Write a bag anew with other custom data, or with another slip at step 60, and its digest."""
+def _rewrite_bag(folder: Path, timeout_s: str = '', **custom_data: str) -> None:
+    """
+    Write a bag anew with its digest, and with other custom data, or another slip at step 60.
+
+    With `timeout_s` it has another parameter of the actuator instead.
+    """
     recording = read_bag(folder)
-    if not custom_data:
+    nodes = dict(recording.run_info)
+    if timeout_s:
+        nodes['/actuator'] = {**nodes['/actuator'], 'request_timeout_s': timeout_s}
+    elif not custom_data:
         recording.trajectory.slip_speed[60] += 1e-6
     data = {**recording.custom_data, **custom_data}
     recording.path.unlink()
     (folder / 'metadata.yaml').unlink()
-    write_trajectory(recording.trajectory, folder, 'pi', data, recording.run_info)
+    write_trajectory(recording.trajectory, folder, 'pi', data, nodes)
     read_digests(folder).with_files(digests_of_files(folder)).write(folder)
 
 
-@pytest.mark.parametrize(
-    ('changed', 'place'),
-    [
-        ({}, {'signal': 'slip_speed', 'step': 60}),
-        ({'seed': '4'}, {'key': 'run_info./actuator.seed'}),
-        ({'wear_gain': '1.1'}, {'key': 'run_info./actuator.wear_gain'}),
-    ],
-)
-def test_a_signal_or_setting_of_a_bag_edited_with_its_digest_is_found(
-    runs: Path,
-    tmp_path: Path,
-    capfd: pytest.CaptureFixture[str],
-    changed: dict[str, str],
-    place: dict[str, Any],
+def test_a_signal_of_a_bag_edited_with_its_digest_is_found(
+    runs: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
+    folder = copied(runs / 'pi', tmp_path / 'pi')
+    _rewrite_bag(folder)
+    code, document, _ = verified(folder, capfd)
+    (run,) = document['runs']
+    assert (code, run['state']) == (1, 'different')
+    first = run['first_difference']
+    assert (first['signal'], first['step']) == ('slip_speed', 60)
+    assert first['recorded'] != first['repeated']
+
+
+def test_a_parameter_of_a_node_edited_with_its_digest_is_found(
+    runs: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    folder = copied(runs / 'pi', tmp_path / 'pi')
+    _rewrite_bag(folder, timeout_s='9.0')
+    code, document, _ = verified(folder, capfd)
+    (run,) = document['runs']
+    assert (code, run['state']) == (1, 'different')
+    assert run['first_difference']['key'] == 'run_info./actuator.request_timeout_s'
+
+
+@pytest.mark.parametrize('changed', [{'seed': '4'}, {'wear_gain': '1.1'}])
+def test_a_setting_of_a_bag_edited_with_its_digest_is_found(
+    runs: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str], changed: dict[str, str]
+) -> None:
+    """The nodes' parameters in the bag contradict it, so that it is not repeated."""
     folder = copied(runs / 'pi', tmp_path / 'pi')
     _rewrite_bag(folder, **changed)
     code, document, _ = verified(folder, capfd)
     (run,) = document['runs']
     assert (code, run['state']) == (1, 'different')
-    first = run['first_difference']
-    assert place.items() <= first.items()
-    assert first['recorded'] != first['repeated']
+    assert next(iter(changed)) in run['first_difference']['reason']
 
 
 def test_metadata_edited_with_its_digest_is_found(
@@ -192,17 +210,25 @@ def test_metadata_edited_with_its_digest_is_found(
     assert document['runs'][0]['first_difference']['file'] == 'metadata.yaml'
 
 
-def test_other_kernels_of_linear_algebra_are_named_with_the_bound(runs: Path) -> None:
-    if 'kernels of numpy' not in read_digests(runs).environment.processor:
-        pytest.skip('numpy has no OpenBLAS of its own here')
-    path = ':'.join(sys.path)
-    done = subprocess.run(
-        [sys.executable, '-m', verify.__name__, str(runs), '--json', '-'],
-        env={**os.environ, 'OPENBLAS_CORETYPE': 'Prescott', 'PYTHONPATH': path},
-        capture_output=True,
-        text=True,
-        check=False,
+@pytest.mark.parametrize(
+    ('ripple_n_m', 'code', 'state'), [(1e-6, 0, 'same_within'), (10.0, 1, 'different')]
+)
+def test_a_run_that_amplifies_rounding_has_a_bound_of_its_own(
+    ripple_n_m: float, code: int, state: str, tmp_path: Path
+) -> None:
+    file = tmp_path / 'rippled.py'
+    file.write_text(RIPPLED.format(ripple_n_m=ripple_n_m), encoding='utf-8')
+    done = verified_on_other_kernels(
+        make_bag(tmp_path / 'runs', '--controller', str(file)) / 'Rippled'
     )
+    assert done.returncode == code, done.stderr
+    (run, *_) = json.loads(done.stdout)['runs']
+    assert (run['state'], run['bound'] > 1e-9) == (state, code == 0)
+    assert run['largest_difference'] > 1e-9
+
+
+def test_other_kernels_of_linear_algebra_are_named_with_the_bound(runs: Path) -> None:
+    done = verified_on_other_kernels(runs)
     assert (done.returncode, done.stderr) == (0, '')
     document = json.loads(done.stdout)
     assert document['bound'] == 1e-9
@@ -228,10 +254,13 @@ def test_a_controller_file_is_found_beside_the_folder_or_by_its_option(
     assert 'mine.py is gone: put it back, or name its folder with --files' in errors
     assert verified(elsewhere, capfd, '--files', str(tmp_path / 'moved'))[0] == 0
     changed = tmp_path / 'moved' / 'mine.py'
-    changed.write_text(CONTROLLER.replace('0.1', '0.2'), encoding='utf-8')
+    ran = tmp_path / 'ran'
+    other = f'{CONTROLLER}\nopen({str(ran)!r}, "w").close()\n'
+    changed.write_text(other, encoding='utf-8')
     code, _, errors = verified(moved, capfd)
     assert code == 1
     assert 'has changed since: put the old one back' in errors
+    assert not ran.exists(), 'code of another file has run'
 
 
 def test_a_run_that_failed_fails_again_with_the_same_reason(
