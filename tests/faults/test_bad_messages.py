@@ -54,8 +54,16 @@ def _no_velocity(message: JointState) -> None:
     message.velocity = []
 
 
+def _long_effort(message: JointState) -> None:
+    message.effort = [0.0] * 1000
+
+
 def _reference(message: JointTrajectory) -> None:
     message.points[0].velocities[0] = math.nan
+
+
+def _other_joint(message: JointTrajectory) -> None:
+    message.joint_names = ['wheel']
 
 
 def _no_reference(message: JointTrajectory) -> None:
@@ -72,6 +80,10 @@ def _five_points(message: JointTrajectory) -> None:
 
 def _no_effort(message: JointTrajectory) -> None:
     message.points[10].effort = []
+
+
+def _two_efforts(message: JointTrajectory) -> None:
+    message.points[10].effort = [1.0, 2.0]
 
 
 def _off_grid(message: Any) -> None:
@@ -93,6 +105,7 @@ CASES: dict[str, tuple[str, type, str, Spoil, list[str]]] = {
     'clutch torque nan': ('driveline', TRAJECTORY, 'clutch/torque', _point(math.nan), ['nan']),
     'clutch torque short': ('driveline', TRAJECTORY, 'clutch/torque', _five_points, ['5 points']),
     'clutch torque empty': ('driveline', TRAJECTORY, 'clutch/torque', _no_effort, ['effort']),
+    'two efforts': ('clutch', TRAJECTORY, 'actuator/torque', _two_efforts, ['and no more']),
     'actuator torque': ('clutch', TRAJECTORY, 'actuator/torque', _point(-math.inf), ['-inf']),
     'request nan': ('actuator', TORQUE, 'clutch/torque_request', _torque(math.nan), ['nan']),
     'speed for the load': ('load', TWIST, 'vehicle/twist', _vehicle_speed, ['-inf']),
@@ -100,9 +113,17 @@ CASES: dict[str, tuple[str, type, str, Spoil, list[str]]] = {
     'speed nan': ('controller', JointState, 'driveline/joint_states', _joint_speed, ['nan']),
     'joint order': ('controller', JointState, 'driveline/joint_states', _joint_order, ['order']),
     'no velocity': ('controller', JointState, 'driveline/joint_states', _no_velocity, ['0 vel']),
+    'long effort': (
+        'controller',
+        JointState,
+        'driveline/joint_states',
+        _long_effort,
+        ['1000 numbers in effort'],
+    ),
     'speed for control': ('controller', TWIST, 'vehicle/twist', _vehicle_speed, ['-inf']),
     'torque for control': ('controller', TORQUE, 'engine/torque', _torque(math.nan), ['nan']),
     'reference nan': ('controller', TRAJECTORY, 'clutch/slip_reference', _reference, ['nan']),
+    'other joint': ('controller', TRAJECTORY, 'clutch/slip_reference', _other_joint, ['wheel']),
     'no rate': ('controller', TRAJECTORY, 'clutch/slip_reference', _no_rate, ['acceleration']),
     'no preview': (
         'controller',
@@ -118,7 +139,8 @@ def _graph_with_tampering(
     graph: InProcessGraph, reader: str, message_type: type, topic: str, spoil: Spoil
 ) -> InProcessGraph:
     graph.add(reader, cli_args=tampered_remap(topic))
-    graph.add_other(Tamperer(message_type, topic, spoil, FROM_STEP, context=graph.context))
+    where = {'context': graph.context, 'namespace': reader.rpartition('/')[0] or None}
+    graph.add_other(Tamperer(message_type, topic, spoil, FROM_STEP, **where))
     graph.add_all()
     return graph
 
@@ -155,6 +177,25 @@ def test_a_bad_stamp_ends_a_follower_with_its_topic(
     assert node == 'clutch'
     for word in ('actuator/torque', *words):
         assert word in complaint
+
+
+@pytest.mark.parametrize(
+    ('reader', 'message_type', 'topic', 'spoil'),
+    [
+        ('off_going/clutch', TRAJECTORY, 'actuator/torque', _two_efforts),
+        ('off_going/clutch', TRAJECTORY, 'actuator/torque', _off_grid),
+        ('off_going/actuator', TORQUE, 'clutch/torque_request', _torque(-math.inf)),
+        ('off_going/actuator', TORQUE, 'clutch/torque_request', _skip),
+    ],
+)
+def test_a_node_of_the_off_going_side_names_its_topic_as_the_graph_does(
+    graph_of: GraphOf, reader: str, message_type: type, topic: str, spoil: Spoil
+) -> None:
+    graph = graph_of(plan('pi', scenario='upshift', clutch='stick_slip'))
+    _graph_with_tampering(graph, reader, message_type, topic, spoil)
+    node, complaint = graph.first_failure()
+    assert node == reader
+    assert f'off_going/{topic}' in complaint
 
 
 def test_the_driveline_waits_in_vain_for_the_right_stamp(graph_of: GraphOf) -> None:

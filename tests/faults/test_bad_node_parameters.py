@@ -66,7 +66,7 @@ CASES: dict[str, tuple[str, list[str], list[str]]] = {
 
 def test_every_wrong_parameter_is_named(programs: Programs) -> None:
     started: dict[str, Program] = {
-        case: programs.start_module(module, '--ros-args', *arguments)
+        case: programs.fork(module, '--ros-args', *arguments)
         for case, (module, arguments, _) in CASES.items()
     }
     for case, program in started.items():
@@ -79,8 +79,7 @@ def test_every_wrong_parameter_is_named(programs: Programs) -> None:
 def test_an_argument_in_front_of_those_for_ros_is_refused(programs: Programs) -> None:
     wrong = ('--foo', 'two_input:=true')
     started = [
-        programs.start_module(ENGINE, argument, '--ros-args', '-p', 'seed:=1')
-        for argument in wrong
+        programs.fork(ENGINE, argument, '--ros-args', '-p', 'seed:=1') for argument in wrong
     ]
     for argument, program in zip(wrong, started, strict=True):
         assert program.wait() == 1
@@ -97,7 +96,7 @@ def test_a_parameter_file_may_hold_sections_of_other_nodes(
         '/**/driveline: {ros__parameters: {duration: 1.0}}\n',
         encoding='utf-8',
     )
-    program = programs.start_module(ENGINE, '--ros-args', '--params-file', str(file))
+    program = programs.fork(ENGINE, '--ros-args', '--params-file', str(file))
     assert program.wait() == 1
     assert_one_line(program.errors(), 'engine', 'wear_gain', '-1.0')
 

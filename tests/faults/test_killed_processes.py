@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Killed and interrupted processes: a reason, no process left, no partial result as complete."""
 
-import fcntl
 import os
 import signal
 from collections.abc import Iterable
@@ -13,6 +12,7 @@ import pytest
 from support.complaints import assert_one_line
 from support.processes import START_S, Program, Programs, node_of, processes_left
 from support.runs import expected, plan
+from support.shared_memory import has_owner
 from support.waiting import wait_until
 
 from ddct_bringup.bag.reader import read_bag
@@ -99,7 +99,7 @@ def test_an_interrupted_bringup_stops_its_nodes_and_keeps_what_was_recorded(
 ) -> None:
     bringup = _running(programs, tmp_path / 'runs', *layout)
     bringup.send(number)
-    assert bringup.wait(20.0) == 130
+    assert bringup.wait(20.0) == 128 + number
     assert not processes_left()
     recorded = f'what was recorded is in {tmp_path / "runs" / "ls8.partial"}'
     assert_one_line(bringup.errors(), 'ddct bringup', 'interrupted', recorded)
@@ -160,29 +160,18 @@ def _left_without_owner(segments: Iterable[str], there: set[str]) -> set[str]:
     machine may have taken one over since its owner was killed.
     """
     left = {segment for segment in segments if any(segment in name for name in there)}
-    return {segment for segment in left if not _has_owner(segment)}
-
-
-def _has_owner(segment: str) -> bool:
-    try:
-        with (SHARED_MEMORY / f'{segment}_el').open() as lock:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        return True
-    except FileNotFoundError:
-        return False
-    return False
+    return {segment for segment in left if not has_owner(segment)}
 
 
 def test_bringup_removes_the_shared_memory_of_its_own_dead_nodes_and_no_others(
     programs: Programs, tmp_path: Path
 ) -> None:
-    live = programs.start_node(
-        'ddct_plant.nodes.load_node', {}, env={**os.environ, 'ROS_DOMAIN_ID': '0'}
+    live = programs.start_module(
+        'ddct_plant.nodes.load_node', env={**os.environ, 'ROS_DOMAIN_ID': '0'}
     )
     # In a domain of its own: the middleware of a node in its domain would clean up after it.
-    dead = programs.start_node(
-        'ddct_plant.nodes.load_node', {}, env={**os.environ, 'ROS_DOMAIN_ID': '101'}
+    dead = programs.start_module(
+        'ddct_plant.nodes.load_node', env={**os.environ, 'ROS_DOMAIN_ID': '101'}
     )
     left = _segments(programs, dead)
     # The middleware itself takes over the port of a dead node.

@@ -11,6 +11,7 @@ from support.complaints import assert_one_line
 from support.third_party import install
 
 from ddct_bringup.programs import bringup
+from ddct_bringup.run.output_folder import MARKER
 
 SHORT = ['--headless', '--duration', '0.7']
 
@@ -59,6 +60,33 @@ def test_a_file_or_link_in_the_place_of_the_folder_is_never_touched(
     assert file.read_text(encoding='utf-8') == 'mine'
     assert link.is_symlink()
     assert not any(folder.iterdir())
+
+
+@pytest.mark.parametrize('overwrite', [[], ['--overwrite']], ids=['plain', 'overwrite'])
+@pytest.mark.parametrize('place', ['', 'pi', 'pi.partial'])
+def test_nothing_is_written_through_a_marker_that_is_a_link(
+    capfd: pytest.CaptureFixture[str], tmp_path: Path, place: str, overwrite: list[str]
+) -> None:
+    mine, out = tmp_path / 'mine', tmp_path / 'runs'
+    mine.write_text('three years of work', encoding='utf-8')
+    (out / place).mkdir(parents=True)
+    (out / MARKER).touch()
+    (out / place / MARKER).unlink(missing_ok=True)
+    (out / place / MARKER).symlink_to(mine)
+    assert _run(out, *SHORT, *overwrite) == 1
+    assert_one_line(capfd.readouterr().err, 'ddct bringup', str(out / place), 'not ours')
+    assert mine.read_text(encoding='utf-8') == 'three years of work'
+    assert (out / place / MARKER).is_symlink()
+
+
+def test_a_marker_that_is_there_is_not_written_again(tmp_path: Path) -> None:
+    """It may be a second name of another file."""
+    mine, out = tmp_path / 'mine', tmp_path / 'runs'
+    mine.write_text('three years of work', encoding='utf-8')
+    out.mkdir()
+    (out / MARKER).hardlink_to(mine)
+    assert _run(out, *SHORT) == 0
+    assert mine.read_text(encoding='utf-8') == 'three years of work'
 
 
 def test_an_earlier_result_stays_without_overwrite(

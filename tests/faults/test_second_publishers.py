@@ -24,6 +24,7 @@ from ddct_plant.signals.topics import (
     OFF_GOING_CLUTCH_TORQUE,
     SHIFT_TOPICS,
     TOPICS,
+    VEHICLE_ACCEL,
 )
 from ddct_plant.ticks.realtime_owner import RealtimeOwner
 
@@ -195,3 +196,21 @@ def test_a_killed_node_that_is_still_in_the_graph_is_no_second_publisher(
     graph.run()
     assert graph.nodes['driveline'].count_publishers('load/torque') == 2, 'it was forgotten'
     assert read_bag(graph.folder).trajectory.sha256() == expected(run).sha256()
+
+
+@pytest.mark.usefixtures('checked_often')
+def test_a_driveline_that_is_closed_in_doubt_ends_its_check_quietly(graph_of: GraphOf) -> None:
+    """In one process its timers run on, while the other nodes are closed."""
+    graph = graph_of(plan(duration_s=600.0))
+    stranger = Node('stranger', context=graph.context)
+    graph.add_other(stranger)
+    stranger.create_publisher(VEHICLE_ACCEL.message_class, VEHICLE_ACCEL.name, RECORDER_QOS)
+    graph.add_all()
+    check: Any = _driveline(graph)._sole_publishers
+    graph.spin_until(lambda: bool(check._probes), 'a topic with a second publisher')
+    checks: list[bool] = []
+    in_doubt = check._in_doubt
+    check._in_doubt = lambda: checks.append(in_doubt())
+    _driveline(graph).close()
+    graph.spin_until(lambda: len(checks) >= 3, 'three more checks')
+    assert not any(checks)

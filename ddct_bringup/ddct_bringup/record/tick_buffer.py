@@ -43,7 +43,7 @@ class TickBuffer:
     """Number of messages that arrived too late; real time only."""
     _next_step: int = 0
     _pending: dict[int, Tick] = field(default_factory=dict)
-    _last: Tick = field(default_factory=dict)
+    _last: tuple[int, Tick] = field(default_factory=lambda: (-1, {}))
 
     def offer(self, topic: str, stamp_ns: int, cdr: bytes) -> list[tuple[int, Tick]]:
         """Add one message; return the (step, tick) pairs that can now be written, in order."""
@@ -104,7 +104,7 @@ class TickBuffer:
             if len(tick) < len(self.topics) and (self.wait_for_all or step > give_up_step):
                 break
             ready.append((step, self._pending.pop(step)))
-            self._last = tick
+            self._last = (step, tick)
             self._next_step = step + 1
         return ready
 
@@ -115,10 +115,12 @@ class TickBuffer:
         return self._next_step == step
 
     def _check_repeat(self, step: int, topic: str, cdr: bytes) -> None:
-        if topic not in self._last or step < self._next_step - 1:
+        # The steps before the next one may have been skipped, and are not the last tick then.
+        last_step, last = self._last
+        if step != last_step or topic not in last:
             self.dropped += not self.wait_for_all
             return
-        self._require_same(topic, self._last[topic], cdr, step)
+        self._require_same(topic, last[topic], cdr, step)
 
     def _require_same(self, topic: str, first: bytes, second: bytes, step: int) -> None:
         if first != second and not self.same(topic, first, second):

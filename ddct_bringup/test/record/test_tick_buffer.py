@@ -97,6 +97,15 @@ def test_a_step_of_which_nothing_came_is_passed_over(realtime):
     assert ready == [(step, 'ab') for step in range(2, 1 + GIVE_UP_AFTER_STEPS)]
 
 
+def test_a_late_message_of_a_step_that_was_passed_over_is_dropped_and_no_sign_of_two_nodes(
+    realtime,
+):
+    realtime.offer('a', 0, b'one')
+    assert realtime.offer('b', 1 + GIVE_UP_AFTER_STEPS, b'far') == [(0, 'a')]
+    assert realtime.offer('a', 1, b'two') == []
+    assert realtime.buffer.dropped == 1
+
+
 def test_how_far_a_stamp_lies_ahead_costs_no_time(realtime):
     realtime.whole(0)
     realtime.offer('a', 1)

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Join the inputs of a node on their stamp; does not depend on ROS."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from enum import Enum, auto
 
@@ -42,6 +42,8 @@ class StampJoin:
     """Names of the input topics, the trigger first."""
     allow_gaps: bool = False
     """Whether steps may be missing between two complete stamps, as in real time."""
+    shown: Callable[[str], str] = str
+    """Function that returns the name of a topic in errors."""
     last_step: int = -1
     """Step of the last complete stamp, -1 before the first one."""
     _waiting: dict[int, dict[str, object]] = field(default_factory=dict)
@@ -51,7 +53,8 @@ class StampJoin:
         try:
             step = step_of_stamp(stamp_ns)
         except DdctError as error:
-            raise DdctError(f'{topic}: {error}', key=topic) from error
+            name = self.shown(topic)
+            raise DdctError(f'{name}: {error}', key=name) from error
         if step <= self.last_step:
             again = step == self.last_step and topic == self.topics[0]
             return JoinResult.REPEAT if again else JoinResult.IGNORE
@@ -73,21 +76,23 @@ class StampJoin:
         if len(self._waiting) < MOST_WAITING:
             return
         if not self.allow_gaps:
+            name = self.shown(topic)
             raise DdctError(
-                f'{topic}: step {step} came while {len(self._waiting)} others wait for the rest '
+                f'{name}: step {step} came while {len(self._waiting)} others wait for the rest '
                 f'of their inputs and step {self.last_step + 1} is due: check what publishes '
-                f'{" and ".join(self.topics)}',
-                key=topic,
+                f'{" and ".join(map(self.shown, self.topics))}',
+                key=name,
             )
         del self._waiting[min(self._waiting)]
 
     def _accept(self, step: int) -> None:
         expected = self.last_step + 1
         if step != expected and not self.allow_gaps:
+            name = self.shown(self.topics[0])
             raise DdctError(
-                f'{self.topics[0]}: step {step} came where step {expected} was due: this node '
-                'missed a part of the run, start the graph again with every node in it',
-                key=self.topics[0],
+                f'{name}: step {step} came where step {expected} was due: this node missed a part '
+                'of the run, start the graph again with every node in it',
+                key=name,
             )
         self.last_step = step
         if len(self._waiting) > 1:

@@ -6,8 +6,9 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from ddct_plant.base.errors import DdctError
-from ddct_plant.base.timebase import PERIOD_S, stamp_of_step, time_of_step
+from ddct_plant.base.timebase import PERIOD_NS, PERIOD_S, START_NS, stamp_of_step, time_of_step
 from ddct_plant.fail_safe.guarded_clutch import GuardedClutch
+from ddct_plant.ticks.durations import TickDurations
 from ddct_plant.ticks.tick_owner import Reply, TickOwner
 
 RECORDER_PATIENCE_S = 2.0
@@ -32,12 +33,14 @@ class RealtimeOwner(TickOwner):
         self._on_started = on_started
         self.missed_replies = dict.fromkeys(self._plan.torques, 0)
         self.worst_lateness_s = 0.0
+        self.durations = TickDurations(self._clock)
         self._held: dict[str, Reply] = {}
         self._silent_since: dict[str, int] = dict.fromkeys(self._plan.torques, 0)
         self._clutches = {
             topic: GuardedClutch(self._plan.fail_safe) for topic in self._plan.clutches
         }
         self._started_at: float | None = None
+        self._due = 0.0
 
     @property
     def safe_clutches(self) -> list[str]:
@@ -54,7 +57,14 @@ class RealtimeOwner(TickOwner):
             if now < due:
                 return
             self.worst_lateness_s = max(self.worst_lateness_s, now - due)
+            self._due = due
             self._take_step()
+
+    def offer(self, topic: str, stamp_ns: int, reply: Reply) -> None:
+        """Add one reply, and note how long that of a clutch took."""
+        if topic in self._clutches and self._started_at is not None:
+            self.durations.answer((stamp_ns - START_NS) // PERIOD_NS)
+        super().offer(topic, stamp_ns, reply)
 
     def watch(self) -> None:
         """Check the timeouts of the first and the last tick; the ones between never wait."""
@@ -66,6 +76,11 @@ class RealtimeOwner(TickOwner):
             self._finish(None)
         else:
             super().watch()
+
+    def _open(self, step: int) -> None:
+        if self._started_at is not None:
+            self.durations.publish(step, self._clock() - self._due)
+        super()._open(step)
 
     def _awaited_at(self, step: int) -> tuple[str, ...]:
         if step not in (0, self.last_step):

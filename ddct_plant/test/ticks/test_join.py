@@ -81,6 +81,18 @@ def test_in_lock_step_stamps_that_wait_without_end_are_an_error():
         offer(join, 'b', MOST_WAITING)
 
 
+def test_errors_show_topics_by_the_names_that_they_are_given():
+    join = StampJoin(['a', 'b'], shown=lambda topic: f'side/{topic}')
+    with refused(DdctError, 'side/a'):
+        join.offer('a', stamp_of_step(0) + 1, None)
+    for step in range(1, 1 + MOST_WAITING):
+        offer(join, 'b', step)
+    with pytest.raises(DdctError, match=r'^side/b: .* publishes side/a and side/b$'):
+        offer(join, 'b', 1 + MOST_WAITING)
+    with refused(DdctError, 'side/a'):
+        offer(join, 'a', 1)
+
+
 def test_where_gaps_are_allowed_the_oldest_stamp_that_waits_is_given_up():
     join = StampJoin(['a', 'b'], allow_gaps=True)
     for step in range(MOST_WAITING + 1):

@@ -1,0 +1,58 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""A run with all nodes in this process, so that a fault can begin at an exact step."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from faults.campaign.case import Case, Observed
+from support.in_process_graph import InProcessGraph
+
+from ddct_plant.graph import sole_publishers
+
+PATIENCE_S = 10.0
+"""Wall time in s that the driveline waits for an answer here; 60 s for users."""
+WITHIN_S = 60.0
+"""Wall time in s after which a run counts as hung."""
+CHECK_S = 0.03
+"""Period in s of the check for second publishers here; 0.2 s for users."""
+
+
+def graph_run(
+    case: Case, folder: Path, arrange: Callable[[InProcessGraph, Observed], object]
+) -> Observed:
+    """Record the run of a case; `arrange(graph, seen)` prepares its fault before it begins."""
+    seen, run = Observed(fault_step=case.begin), case.run
+    before, sole_publishers.CHECK_S = sole_publishers.CHECK_S, CHECK_S
+    try:
+        with InProcessGraph(run, folder) as graph:
+            graph.parameters['driveline']['answer_timeout_s'] = PATIENCE_S
+            kept = arrange(graph, seen)
+            graph.add_all()
+            seen.error = _spin(graph)
+            del kept
+        seen.read(folder, run)
+    finally:
+        sole_publishers.CHECK_S = before
+    return seen
+
+
+def _spin(graph: Any) -> str:
+    """Spin until the run is over; return the error of the first node that failed, or ''."""
+
+    def over() -> bool:
+        return bool(graph.failures()) or graph.nodes['driveline'].done.done()
+
+    try:
+        graph._spin_until(over, 'the end of the run', WITHIN_S)
+    except AssertionError:
+        return f'the run hangs at step {graph.nodes["driveline"].owner.step}'
+    except Exception as error:  # what no node turns into an error of its own is a finding
+        return f'traceback: {error!r}'
+    errors = [f'{name}: {error}' for name, error in graph.failures().items()]
+    try:
+        graph.finish()
+    except AssertionError:
+        errors += [f'{name}: {error}' for name, error in graph.failures().items()]
+    return errors[0] if errors else ''

@@ -1,0 +1,87 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Each node ends and is started again, at once and without its memory."""
+
+from collections.abc import Iterator
+from functools import partial
+from pathlib import Path
+
+from faults.campaign.case import (
+    CLUTCHES,
+    INSTANTS,
+    MODES,
+    RUNS_ON,
+    SAME,
+    Case,
+    Observed,
+    either,
+    named,
+)
+from faults.campaign.graph_runs import graph_run
+from rclpy.clock import Clock, ClockType
+from rclpy.node import Node
+from rosgraph_msgs.msg import Clock as ClockMessage
+from support.in_process_graph import InProcessGraph
+
+from ddct_bringup.processes.graph_nodes import nodes_of
+from ddct_plant.base.timebase import step_of_stamp
+from ddct_plant.graph.qos import RECORDER_QOS
+from ddct_plant.signals.message_kind import stamp_ns
+
+AGAIN = either(RUNS_ON, named('carries two different messages'))
+"""A node without memory that answers the stamp of its predecessor again may answer otherwise."""
+
+
+class Restarter(Node):
+    """Node that replaces another one of the graph at a step."""
+
+    def __init__(self, graph: InProcessGraph, path: str, step: int) -> None:
+        """Replace the node `path` at the first tick from `step` on."""
+        super().__init__('restarter', context=graph.context)
+        self._graph, self._path, self._step = graph, path, step
+        self.create_subscription(ClockMessage, '/clock', self._on_clock, RECORDER_QOS)
+
+    def _on_clock(self, message: ClockMessage) -> None:
+        if self._step < 0 or step_of_stamp(stamp_ns(message)) < self._step:
+            return
+        self._step = -1
+        # From a timer: nodes come and go between the callbacks of others.
+        self._timer = self.create_timer(
+            0.0, self._restart, clock=Clock(clock_type=ClockType.STEADY_TIME)
+        )
+
+    def _restart(self) -> None:
+        self._timer.cancel()
+        self._graph.remove(self._path)
+        self._graph.add(self._path)
+
+
+def restart(path: str, case: Case, folder: Path) -> Observed:
+    """Record a run in which a node is started again."""
+
+    def arrange(graph: InProcessGraph, _: Observed) -> None:
+        graph.add_other(Restarter(graph, path, case.begin))
+
+    return graph_run(case, folder, arrange)
+
+
+def cases() -> Iterator[Case]:
+    """Yield each node at each instant in lock-step, and in the middle in real time."""
+    missed, silent = named('came where step'), named('no ', ' for stamp')
+    for clutches in CLUTCHES:
+        for mode in MODES:
+            for instant in INSTANTS if mode == 'lockstep' else ['middle']:
+                for spec in nodes_of(shift=clutches == 2):
+                    if clutches == 2 and spec in nodes_of(shift=False):
+                        continue
+                    stated = missed if mode == 'lockstep' else AGAIN
+                    if spec.path in ('driveline', 'recorder'):
+                        stated = either(missed, silent, named('nothing was recorded'))
+                    elif mode == 'realtime' and spec.name == 'actuator':
+                        # It ends when requests reach it earlier than ticks, for too long.
+                        stated = either(AGAIN, named('/clock'))
+                    if instant == 'start':
+                        stated = either(SAME, stated)
+                    attempt = partial(restart, spec.path)
+                    common = (spec.path, instant, mode, clutches)
+                    yield Case('node restarted', *common, stated, attempt)

@@ -1,0 +1,41 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""One reader, given inputs that reach new code: `fuzz.guided READER SECONDS SEED FOLDER`."""
+
+import sys
+from pathlib import Path
+
+import atheris
+
+with atheris.instrument_imports(
+    include=['ddct_plant', 'ddct_bringup', 'ddct_controllers', 'mcap']
+):
+    from fuzz.loop import CORPUS, bounded_time, keep
+    from fuzz.readers import readers
+
+
+def main() -> None:
+    """Run until the time is over or an input is a finding, which is kept."""
+    name, seconds, seed, place = sys.argv[1:]
+    folder = Path(place)
+    reader = readers(folder)[name]
+    seeds = folder / 'seeds'
+    seeds.mkdir()
+    for number, data in enumerate(reader.seeds):
+        (seeds / str(number)).write_bytes(data)
+
+    def one(data: bytes) -> None:
+        with bounded_time():
+            what = reader.finding(data, folder / 'work')
+        if what:
+            keep(data, CORPUS / name)
+            raise AssertionError(what)
+
+    limits = [f'-max_total_time={float(seconds):.0f}', '-rss_limit_mb=3000', '-max_len=200000']
+    start = [f'-artifact_prefix={folder}/', f'-seed={int(seed) + 1}', str(seeds)]
+    atheris.Setup([sys.argv[0], *limits, *start], one)
+    atheris.Fuzz()
+
+
+if __name__ == '__main__':
+    main()
