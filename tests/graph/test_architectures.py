@@ -11,6 +11,8 @@ from ddct_bringup.run.plan import RunPlan
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import ARCHITECTURES, RunSettings
 
+pytestmark = pytest.mark.slow
+
 SCENARIO = load_scenario('thesis', ['duration_s=0.8', 'reference.reference_end_s=0.75'])
 
 

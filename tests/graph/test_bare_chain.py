@@ -6,6 +6,7 @@ import json
 import sys
 from pathlib import Path
 
+from soak.sides import chain as paced_chain
 from support.processes import Program, Programs
 
 CHAIN = Path(__file__).parents[1] / 'bench' / 'peers' / 'bare_chain.py'
@@ -29,3 +30,15 @@ def test_all_nodes_in_one_process_do_their_steps(programs: Programs) -> None:
     chain = _start(programs, 'all', '10')
     assert chain.wait() == 0, chain.errors()
     assert json.loads(chain.output())['step_s'] > 0.0
+
+
+def test_the_paced_chain_measures_every_tick() -> None:
+    with paced_chain(100) as chain:
+        result = chain.result()
+    assert result['steps'] == 100
+    assert 0 <= result['missed_steps'] <= 100
+    counted = {name: sum(each['counts'].values()) for name, each in result['durations'].items()}
+    assert 0 < counted['jitter'] < counted['lateness'] <= 100
+    assert 0 < counted['latency'] <= 100
+    if not result['missed_steps']:
+        assert counted == {'lateness': 100, 'jitter': 99, 'latency': 99}

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Graphs on one machine are separate, and a namespace changes nothing."""
 
-import os
 from pathlib import Path
 
+import pytest
 from support.in_process_graph import GraphOf
 from support.processes import Programs
 from support.runs import bag_bytes, expected, plan
@@ -13,16 +13,15 @@ from ddct_bringup.bag.reader import read_bag
 
 
 def test_two_bringups_at_once_receive_nothing_from_each_other(
-    programs: Programs, tmp_path: Path
+    programs: Programs, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    environment = {name: value for name, value in os.environ.items() if name != 'ROS_DOMAIN_ID'}
+    monkeypatch.delenv('ROS_DOMAIN_ID')
     out = tmp_path / 'runs'
     started = [
-        programs.start_module(
+        programs.fork(
             'ddct_bringup.programs.bringup',
             *('--controller', controller, '--duration', '3.0', '--single-process'),
             *('--out', str(out)),
-            env=environment,
         )
         for controller in ('ls8', 'pi')
     ]

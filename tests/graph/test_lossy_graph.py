@@ -10,6 +10,7 @@ import time
 from pathlib import Path
 
 import pytest
+from support.hops import inputs_of
 from support.in_process_graph import GraphOf, InProcessGraph
 from support.processes import node_of
 from support.relay import Relay, lossy_remaps
@@ -19,67 +20,19 @@ from support.waiting import wait_until
 from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.processes.graph_nodes import nodes_of
 from ddct_bringup.run.plan import RunPlan
-from ddct_plant.signals.signal import RunKind
-from ddct_plant.signals.topics import TOPICS, recorded_topics
+from ddct_plant.signals.topics import TOPICS
 
-INPUTS = {
-    'engine': ['driveline/joint_states'],
-    'load': ['vehicle/twist'],
-    'clutch': ['actuator/torque'],
-    'actuator': ['clutch/torque_request'],
-    'reference': ['clutch/slip'],
-    'controller': [
-        'driveline/joint_states',
-        'vehicle/twist',
-        'engine/torque',
-        'clutch/slip_reference',
-    ],
-    'driveline': ['engine/torque', 'load/torque', 'clutch/torque', 'recorder/ack'],
-    'recorder': [
-        topic.name
-        for topic in recorded_topics(RunKind())
-        if topic.every_tick and topic.name != 'recorder/ack'
-    ],
-}
-"""Every message of the loop on its way to a node."""
+pytestmark = pytest.mark.slow
 
 
 def _type_of(topic: str) -> type:
     return next(each.message_class for each in TOPICS if each.name == topic)
 
 
-def _inputs(run: RunPlan) -> dict[str, list[str]]:
-    """Return the topics that each node of a run reads, by its full name within the graph."""
-    if not run.settings.shift:
-        return INPUTS
-    share = 'clutch/handover_share'
-    sticking = ['clutch/slip', 'clutch/phase']
-    return {
-        'load': INPUTS['load'],
-        'actuator': INPUTS['actuator'],
-        'engine': [*INPUTS['engine'], 'engine/torque_cut'],
-        'clutch': [*INPUTS['clutch'], *sticking],
-        'reference': [*INPUTS['reference'], share],
-        'controller': [*INPUTS['controller'], share],
-        'handover': [
-            *('driveline/joint_states', 'clutch/slip', 'off_going/clutch/slip', 'vehicle/twist'),
-            'engine/torque_demand',
-        ],
-        'off_going/actuator': ['off_going/clutch/torque_request'],
-        'off_going/clutch': [f'off_going/{topic}' for topic in ('actuator/torque', *sticking)],
-        'driveline': [*INPUTS['driveline'], 'load/holding_torque', 'off_going/clutch/torque'],
-        'recorder': [
-            topic.name
-            for topic in recorded_topics(run.settings.kind())
-            if topic.every_tick and topic.name != 'recorder/ack'
-        ],
-    }
-
-
 def _add_lossy(graph: InProcessGraph, run: RunPlan, lost: float, doubled: float) -> list[Relay]:
     relays = []
     for spec in nodes_of(shift=run.settings.shift):
-        topics = _inputs(run)[spec.path]
+        topics = inputs_of(run)[spec.path]
         graph.add(spec.path, cli_args=lossy_remaps(spec.path, topics))
         for topic in topics:
             relays.append(

@@ -3,30 +3,34 @@
 """Nodes started by hand, one program each, without bringup: any order gives the same run."""
 
 import random
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
+import pytest
 from support.observer import Observing
-from support.processes import START_S, Program, Programs
+from support.processes import START_S, Program, Programs, ros_arguments
 from support.runs import bag_bytes, expected, plan, record
 from support.waiting import wait_until
 
 from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.processes.graph_nodes import GRAPH_NODES
 
+pytestmark = pytest.mark.slow
+
 RUN = plan(layout='headless', duration_s=3.0)
 """Run of nodes whose only parameter is the controller `ls8`."""
+Start = Callable[[str, Mapping[str, object]], Program]
 MODULES = {spec.name: spec.module for spec in GRAPH_NODES}
 
 
-def _start(programs: Programs, names: Sequence[str], bag: Path | None) -> dict[str, Program]:
+def _start(start: Start, names: Sequence[str], bag: Path | None) -> dict[str, Program]:
     """Start nodes with the defaults of bringup, a controller and a recorder if `bag` is given."""
     own: dict[str, dict[str, object]] = {
         'controller': {'controller': 'ls8'},
         'driveline': {'require_recorder': bag is not None},
         'recorder': {'out': bag, 'name': 'ls8'},
     }
-    return {name: programs.start_node(MODULES[name], own.get(name, {})) for name in names}
+    return {name: start(MODULES[name], own.get(name, {})) for name in names}
 
 
 def _finish(nodes: dict[str, Program]) -> None:
@@ -42,7 +46,11 @@ def test_nodes_in_random_order_leave_the_bag_that_bringup_leaves(
 ) -> None:
     names = list(MODULES)
     random.Random(1).shuffle(names)
-    _finish(_start(programs, names, tmp_path / 'by_hand'))
+
+    def start(module: str, parameters: Mapping[str, object]) -> Program:
+        return programs.start_module(module, *ros_arguments(parameters))
+
+    _finish(_start(start, names, tmp_path / 'by_hand'))
     record(RUN, tmp_path / 'by_bringup')
     assert bag_bytes(tmp_path / 'by_hand') == bag_bytes(tmp_path / 'by_bringup')
 
@@ -52,11 +60,11 @@ def test_a_driveline_that_starts_long_before_the_others_waits_for_them(
 ) -> None:
     bag = tmp_path / 'bag'
     with Observing() as observing:
-        nodes = _start(programs, ['driveline'], bag)
+        nodes = _start(programs.start_node, ['driveline'], bag)
         ticks = observing.observer.joints
         wait_until(lambda: observing.listen() and 0 in ticks, 'the first tick', START_S)
     others = [name for name in MODULES if name not in ('driveline', 'recorder')]
-    nodes |= _start(programs, [*others, 'recorder'], bag)
+    nodes |= _start(programs.start_node, [*others, 'recorder'], bag)
     _finish(nodes)
     assert read_bag(bag).trajectory.sha256() == expected(RUN).sha256()
 
@@ -66,10 +74,10 @@ def test_nodes_without_a_recorder_run_the_same_trajectory(programs: Programs) ->
     random.Random(2).shuffle(names)
     with Observing() as observing:
         # The run must not be over before the observer, for which no node waits, has joined it.
-        nodes = _start(programs, [*names[:3], 'driveline', *names[3:-1]], None)
+        nodes = _start(programs.start_node, [*names[:3], 'driveline', *names[3:-1]], None)
         ticks = observing.observer.joints
         wait_until(lambda: observing.listen() and 0 in ticks, 'the first tick', START_S)
-        nodes |= _start(programs, names[-1:], None)
+        nodes |= _start(programs.start_node, names[-1:], None)
         driveline = nodes['driveline'].process
         wait_until(lambda: observing.listen() and driveline.poll() is not None, 'the end', START_S)
         observing.listen()

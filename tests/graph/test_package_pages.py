@@ -14,10 +14,11 @@ from support.runs import plan
 
 from ddct_bringup.processes.graph_nodes import NODE_PROGRAMS, nodes_of
 from ddct_plant.base.options import options_of
+from ddct_plant.program.scheduling import Scheduling
 from ddct_plant.scenario.settings import RunSettings
 
 PACKAGES = ('ddct_plant', 'ddct_reference', 'ddct_controllers', 'ddct_bringup')
-SHARED = {'scenario', *options_of(RunSettings)}
+SHARED = {'scenario', *options_of(RunSettings), *options_of(Scheduling)}
 OF_ROS = {'/rosout', '/parameter_events', '/run_info'}
 WITH_TARGET = (
     'reference.shape=engine_speed_target',

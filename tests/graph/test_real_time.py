@@ -3,6 +3,8 @@
 """Real time: 100 Hz on the wall clock, the trajectory of lock-step where no step was missed."""
 
 import json
+import random
+from collections.abc import Collection
 from pathlib import Path
 from typing import Any
 
@@ -14,13 +16,28 @@ from support.runs import expected, plan, record
 
 from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.bag.recording import Recording
+from ddct_bringup.run.execution import recording_in_memory
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.scores.scored_recording import score_recording
 from ddct_bringup.scores.validity import MISS_TOLERANCE
 from ddct_bringup.verdict.limits import packaged_limits
+from ddct_plant.base.timebase import step_of_stamp
+from ddct_plant.signals.topics import CLUTCH_TORQUE
+from ddct_plant.ticks.realtime_owner import RealtimeOwner
+
+pytestmark = pytest.mark.slow
 
 NEAR = 0.1
 """Largest difference of the slip speed from lock-step with a few missed steps, of its peak."""
+SLIP_PHASE = range(60, 170)
+"""Steps from control start to the end of the score window of `thesis`."""
+PEAKS = ('peak_jerk_m_s3', 'lockup_slip_acceleration_rad_s2')
+"""Metrics of a single instant."""
+OTHERS = (
+    *('engagement_time_s', 'torsion_speed_std_rpm', 'acceleration_std_m_s2', 'slip_rmse_rpm'),
+    *('slip_final_rpm', 'friction_energy_j', 'vdv_m_s1_75', 'torque_total_variation_n_m'),
+)
+"""Metrics of many instants, and times."""
 
 
 def _timing(folder: Path) -> dict[str, Any]:
@@ -83,3 +100,49 @@ def test_wall_clock_figures_are_recorded_in_real_time_only(tmp_path: Path) -> No
         run = plan(layout='single-process', mode=mode, duration_s=0.5)
         counts = record(run, tmp_path / mode).counts
         assert topics & {topic for topic, count in counts.items() if count} == recorded
+
+
+def _lose(owner: RealtimeOwner, steps: Collection[int]) -> None:
+    """Lose the clutch torques that answer the ticks of these steps, and wait for none of them."""
+    offer, missing = owner.offer, owner.missing
+
+    def lossy_offer(topic: str, stamp_ns: int, reply: Any) -> None:
+        if topic != CLUTCH_TORQUE.name or step_of_stamp(stamp_ns) not in steps:
+            offer(topic, stamp_ns, reply)
+
+    def others_missing() -> list[str]:
+        lost = [CLUTCH_TORQUE.name] if owner.step in steps else []
+        return [topic for topic in missing() if topic not in lost]
+
+    owner.offer, owner.missing = lossy_offer, others_missing  # type: ignore[method-assign]
+
+
+@pytest.mark.parametrize(
+    ('controller', 'tolerance', 'of_peaks'),
+    [('pi', 0.01, 0.15), ('lqi', 0.01, 0.15), ('mpc3', 0.01, 0.15), ('mpc4', 0.2, 0.2)],
+)
+def test_scores_with_as_many_misses_as_a_valid_run_may_have_are_near_those_of_lock_step(
+    graph_of: GraphOf, controller: str, tolerance: float, of_peaks: float
+) -> None:
+    run = plan(controller, mode='realtime', duration_s=3.0)
+    graph = graph_of(run)
+    graph.add_all()
+    most = round(MISS_TOLERANCE * run.steps)
+    _lose(realtime_owner(graph), random.Random(2).sample(SLIP_PHASE, most))
+    PatientClock(realtime_owner(graph))
+    graph.run(60)
+    found = score_recording(read_bag(graph.folder), 'bag', packaged_limits()).scores
+    lockstep = recording_in_memory(
+        plan(controller, duration_s=3.0).settings, controller, expected(run)
+    )
+    wanted = score_recording(lockstep, 'bag', packaged_limits()).scores
+    assert found.valid
+    assert found.metrics['missed_steps'] == most
+    assert found.verdict.state == wanted.verdict.state
+    for names, bound in ((OTHERS, tolerance), (PEAKS, of_peaks)):
+        defined = [name for name in names if wanted.metrics[name] is not None]
+        assert {name: found.metrics[name] for name in defined} == pytest.approx(
+            {name: wanted.metrics[name] for name in defined}, rel=bound
+        )
+        assert all(found.metrics[name] is None for name in names if name not in defined)
+    assert found.metrics != wanted.metrics, 'the misses change something'

@@ -28,6 +28,8 @@ from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.signals.message_kind import stamp_ns
 from ddct_plant.signals.topics import ENGINE_REQUEST, ENGINE_TORQUE, JOINT_STATES
 
+pytestmark = pytest.mark.slow
+
 SLEW_N_M_S = 500.0
 LITTLE_SLEW = f'engine_authority.slew_n_m_s={SLEW_N_M_S}'
 TIMEOUT_STEPS = round(REQUEST_TIMEOUT_S / PERIOD_S)

@@ -18,6 +18,16 @@ from ddct_bringup.processes.warm_parent import WarmParent
 from ddct_bringup.run.execution import execute
 from ddct_bringup.run.plan import RunPlan
 
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture
+def parent() -> WarmParent:
+    """Return the warm parent of all tests."""
+    shared = shared_parent()
+    assert shared is not None
+    return shared
+
 
 def _run(run: RunPlan, folder: Path, parent: WarmParent | None = None) -> dict[str, bytes]:
     folder.mkdir(parents=True)
@@ -26,7 +36,7 @@ def _run(run: RunPlan, folder: Path, parent: WarmParent | None = None) -> dict[s
 
 
 def test_the_runs_of_one_warm_parent_leave_the_same_bytes_as_runs_without_a_graph(
-    tmp_path: Path,
+    tmp_path: Path, parent: WarmParent
 ) -> None:
     runs: tuple[tuple[str, dict[str, Any]], ...] = (
         ('pi', {}),
@@ -35,39 +45,36 @@ def test_the_runs_of_one_warm_parent_leave_the_same_bytes_as_runs_without_a_grap
         ('mpc3', {'seed': 3}),
         ('pi', {}),
     )
-    with WarmParent() as parent:
-        for number, (controller, options) in enumerate(runs):
-            warm = _run(plan(controller, **options), tmp_path / f'{number}', parent)
-            alone = _run(plan(controller, 'headless', **options), tmp_path / f'{number} headless')
-            assert warm == alone, (number, controller)
+    for number, (controller, options) in enumerate(runs):
+        warm = _run(plan(controller, **options), tmp_path / f'{number}', parent)
+        alone = _run(plan(controller, 'headless', **options), tmp_path / f'{number} headless')
+        assert warm == alone, (number, controller)
 
 
-def test_the_warm_parent_itself_never_joins_a_graph(tmp_path: Path) -> None:
-    with WarmParent() as parent:
-        _run(plan(), tmp_path / 'run', parent)
-        tasks = Path(f'/proc/{parent.process.pid}/task').iterdir()
-        names = {(task / 'comm').read_text().strip() for task in tasks}
-        assert not {name for name in names if name.startswith('dds')}
-        assert not segments_of(parent.process.pid)
+def test_the_warm_parent_itself_never_joins_a_graph(tmp_path: Path, parent: WarmParent) -> None:
+    _run(plan(), tmp_path / 'run', parent)
+    tasks = Path(f'/proc/{parent.process.pid}/task').iterdir()
+    names = {(task / 'comm').read_text().strip() for task in tasks}
+    assert not {name for name in names if name.startswith('dds')}
+    assert not segments_of(parent.process.pid)
 
 
 def test_each_run_has_its_own_domain_and_folder_of_logs(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, parent: WarmParent, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     logs = []
-    with WarmParent() as parent:
-        for number, domain in enumerate(('41', '42')):
-            monkeypatch.setenv('ROS_LOG_DIR', str(tmp_path / f'logs{number}'))
-            # Two graphs in one domain would exchange messages; here the earlier one is over.
-            monkeypatch.setenv('ROS_DOMAIN_ID', domain)
-            _run(plan(), tmp_path / f'run{number}', parent)
-            logs.append(sorted((tmp_path / f'logs{number}').iterdir()))
+    for number, domain in enumerate(('41', '42')):
+        monkeypatch.setenv('ROS_LOG_DIR', str(tmp_path / f'logs{number}'))
+        # Two graphs in one domain would exchange messages; here the earlier one is over.
+        monkeypatch.setenv('ROS_DOMAIN_ID', domain)
+        _run(plan(), tmp_path / f'run{number}', parent)
+        logs.append(sorted((tmp_path / f'logs{number}').iterdir()))
     assert [len(each) for each in logs] == [8, 8], 'one of each node'
 
 
-def test_a_node_that_the_parent_of_all_tests_forked_is_found_when_it_stays() -> None:
-    parent = shared_parent()
-    assert parent is not None
+def test_a_node_that_the_parent_of_all_tests_forked_is_found_when_it_stays(
+    parent: WarmParent,
+) -> None:
     (node,) = parent.start([Job('ddct_plant.nodes.load_node')])
     wait_until(lambda: 'load_node' in processes_left().get(node.pid, ''), 'the node')
     assert parent.process.pid not in processes_left()

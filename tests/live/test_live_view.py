@@ -13,7 +13,7 @@ from support.runs import SHORT_S, bag_bytes, plan, record
 from support.waiting import wait_until
 from viewer import Viewer, address_in
 
-from ddct_bringup.bag.file.message_definitions import load_definition
+from ddct_plant.bag_file.message_definitions import load_definition
 from ddct_plant.base.timebase import START_NS
 from ddct_plant.signals.message_kind import stamp_ns
 from ddct_plant.signals.signal import RunKind

@@ -4,6 +4,7 @@
 
 import os
 import re
+import signal
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -116,6 +117,24 @@ def test_a_program_that_cannot_be_imported_is_one_line(
     assert ddct.main(['extra']) == 1
     error = capsys.readouterr().err
     assert error == "ddct: extra cannot start: No module named 'nowhere': install what it needs\n"
+
+
+@pytest.mark.parametrize('after', ["raise ImportError('no module')", 'def main(): return 0'])
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_during_imports_is_no_missing_package(
+    after: str,
+    number: signal.Signals,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """Modules in C report an interruption as a failed import, or drop it."""
+    code = f'import os\ntry:\n    os.kill(os.getpid(), {number:d})\nexcept BaseException: pass\n'
+    install_program(tmp_path, f'{code}{after}\n')
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.delitem(sys.modules, 'extra_program', raising=False)
+    assert ddct.main(['extra']) == 128 + number
+    assert capsys.readouterr().err == 'ddct: interrupted\n'
 
 
 @pytest.mark.parametrize('name', ['rclpy', 'rcl_interfaces'])

@@ -22,6 +22,7 @@ from ddct_bringup.programs.score import main as score
 from ddct_bringup.report.evidence import FREQUENCY_FILE
 from ddct_bringup.thesis.predictions import predicted_range
 from ddct_bringup.verdict.limits import load_limits
+from ddct_plant.program.command_line import package_version
 from ddct_plant.scenario.settings import RunSettings
 
 NO_FLOORS = ('--floors', 'none')
@@ -107,7 +108,13 @@ def test_the_header_lists_the_changes_of_the_packaged_scenario(page: Path, tmp_p
 
 def test_the_page_has_its_origin(page: Path) -> None:
     text = read(page).text
-    for told in ('thesis', '0.1.0', 'halfshaft_stiffness: 6716.3112', 'detailed', 'lockstep'):
+    for told in (
+        'thesis',
+        package_version(),
+        'halfshaft_stiffness: 6716.3112',
+        'detailed',
+        'lockstep',
+    ):
         assert told in text
     assert 'gains.proportional_gain = 0.103' in text
 

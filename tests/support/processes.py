@@ -12,8 +12,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from ddct_bringup.processes.forked_process import ForkedProcess
 from ddct_bringup.processes.graph_nodes import NodeSpec
-from support.shared_parent import TEST_ID, is_shared
+from ddct_bringup.processes.jobs import Job
+from support.shared_parent import TEST_ID, is_shared, shared_parent
 from support.waiting import wait_until
 
 START_S = 60.0
@@ -24,7 +26,7 @@ START_S = 60.0
 class Program:
     """Running program and the files of its output."""
 
-    process: subprocess.Popen[bytes]
+    process: subprocess.Popen[bytes] | ForkedProcess
     stdout: Path
     stderr: Path
 
@@ -40,7 +42,7 @@ class Program:
         """Stop it as Ctrl-C in its terminal would and require that it ends with code 0."""
         os.killpg(self.process.pid, signal.SIGINT)
         code = self.wait()
-        assert code == 0, f'{self.process.args!r}: code {code} after SIGINT: {self.errors()}'
+        assert code == 0, f'{self.process.pid}: code {code} after SIGINT: {self.errors()}'
 
     def output(self) -> str:
         """Return its standard output so far."""
@@ -61,9 +63,7 @@ class Programs:
 
     def start(self, command: Sequence[str], **options: Any) -> Program:
         """Start a command; `options` are those of Popen."""
-        self._logs.mkdir(exist_ok=True)
-        stem = self._logs / str(len(self._started))
-        out, err = stem.with_suffix('.out'), stem.with_suffix('.err')
+        out, err = self._log('out'), self._log('err')
         with out.open('wb') as stdout, err.open('wb') as stderr:
             process = subprocess.Popen(
                 list(command),
@@ -73,17 +73,38 @@ class Programs:
                 start_new_session=True,
                 **options,
             )
-        program = Program(process, out, err)
-        self._started.append(program)
-        return program
+        return self._add(Program(process, out, err))
+
+    def fork(self, module: str, *arguments: str) -> Program:
+        """
+        Start `main` of a module as a fork of the warm parent of all tests: without its imports.
+
+        Both streams of output are in one file. It differs in nothing else from `start_module`,
+        which takes its place where a fork is not possible.
+        """
+        parent = shared_parent()
+        if parent is None:
+            return self.start_module(module, *arguments)
+        printed = self._log('out')
+        with printed.open('wb') as output:
+            (process,) = parent.start([Job(module, arguments, output=output.fileno())])
+        return self._add(Program(process, printed, printed))
 
     def start_module(self, module: str, *arguments: str, **options: Any) -> Program:
         """Start `python -m module` with the Python that runs the tests."""
         return self.start([sys.executable, '-m', module, *arguments], **options)
 
-    def start_node(self, module: str, parameters: Mapping[str, object], **options: Any) -> Program:
+    def start_node(self, module: str, parameters: Mapping[str, object]) -> Program:
         """Start a node by hand, with these ROS parameters."""
-        return self.start_module(module, *ros_arguments(parameters), **options)
+        return self.fork(module, *ros_arguments(parameters))
+
+    def _log(self, suffix: str) -> Path:
+        self._logs.mkdir(exist_ok=True)
+        return self._logs / f'{len(self._started)}.{suffix}'
+
+    def _add(self, program: Program) -> Program:
+        self._started.append(program)
+        return program
 
     def kill(self) -> None:
         """Kill and reap the programs that still run."""

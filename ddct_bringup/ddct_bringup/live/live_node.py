@@ -8,10 +8,11 @@ from typing import Any
 
 from rclpy.serialization import deserialize_message
 
-from ddct_bringup.bag.file.cdr import stamp_of_cdr
 from ddct_bringup.bag.run_info import run_info_order
+from ddct_bringup.live.handshake import Admission
 from ddct_bringup.live.server import LiveServer
 from ddct_bringup.processes.live_process import ALL_TOPICS_RECEIVED, VIEWER_SUBSCRIBED
+from ddct_plant.bag_file.cdr import stamp_of_cdr
 from ddct_plant.base.timebase import START_NS
 from ddct_plant.graph.node import GraphNode
 from ddct_plant.graph.node_names import name_in_graph
@@ -41,9 +42,13 @@ class LiveNode(GraphNode):
     """
 
     def __init__(
-        self, host: str, port: int, print_line: Callable[[str], None] = print, **kwargs: Any
+        self,
+        admission: Admission,
+        port: int,
+        print_line: Callable[[str], None] = print,
+        **kwargs: Any,
     ) -> None:
-        """Serve on `host` and `port`; `print_line` prints for the user. Raise DdctError."""
+        """Serve on a port of `admission.host`; `print_line` is for the user. Raise DdctError."""
         super().__init__('live', **kwargs)
         self._print = print_line
         self._stamp_ns = self._sent_ns = START_NS
@@ -53,7 +58,7 @@ class LiveNode(GraphNode):
         self._not_received = tick_topics - {RECORDER_ACK}
         # Number of views, counted in a thread of the server; those that got time and run_info.
         self._views = self._views_timed = self._views_latched = 0
-        self._server = LiveServer(host, port, self._on_view)
+        self._server = LiveServer(admission, port, self._on_view, print_line)
         self._domain = self.context.get_domain_id()
         print_line(f'serving the graph of ROS domain {self._domain} at {self._server.url}')
         self._subscribe(latched=True)

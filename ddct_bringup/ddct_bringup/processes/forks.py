@@ -101,7 +101,7 @@ def _become(job: JobText, index: int, request: ForkRequest, descriptors: list[in
         # Without this byte the supervisor or the warm parent has ended, or has cancelled the job.
         if os.read(descriptors[1], 1) == GO:
             if not job['outlives']:
-                end_with_parent()
+                end_with_parent(request['supervisor'])
             if os.getppid() == request['supervisor']:
                 _take_over(job, request['environment'], index, descriptors)
                 code = exit_code(lambda: importlib.import_module(job['module']).main())

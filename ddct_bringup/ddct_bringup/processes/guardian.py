@@ -73,7 +73,8 @@ def guard(pids: Iterable[str]) -> None:
         if not _ends(node, deadline - time.monotonic()):
             _send(node, signal.SIGKILL)
             _ends(node, _KILLED_S)
-            remove_segments(segments[node])
+        # A node that ended with an error may leave them too; those in use are locked.
+        remove_segments(segments[node])
 
 
 def _send(node: int, number: signal.Signals) -> None:

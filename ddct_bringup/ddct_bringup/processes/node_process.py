@@ -125,10 +125,11 @@ class NodeProcess(Child):
             self.process.send_signal(signal.SIGCONT)
 
     def tidy(self) -> None:
-        """Write the log of an ended node, and remove the shared memory that a killed one left."""
+        """Write the log of an ended node, and remove the shared memory that it left."""
         with contextlib.suppress(OSError):
             self.log.write_bytes(self.printed())
-        if self.process.returncode is not None and self.process.returncode < 0:
+        # A killed node leaves its segments, and one that ended with an error may leave its own.
+        if self.process.returncode:
             remove_segments(self._segments)
 
     def close(self) -> None:

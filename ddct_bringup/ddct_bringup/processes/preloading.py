@@ -4,6 +4,8 @@
 
 import contextlib
 import importlib
+import sys
+from collections.abc import Iterator
 
 from ddct_bringup.processes.graph_nodes import NODE_PROGRAMS
 
@@ -14,8 +16,6 @@ _LATER = (
     'importlib.resources.readers',
     'rclpy.experimental.events_executor',
     'scipy.linalg',
-    'scipy.optimize',
-    'type_description_interfaces.msg',
 )
 """Modules that this project's nodes import only when they need them."""
 _SERVICES = (
@@ -27,6 +27,10 @@ _SERVICES = (
     'SetParametersAtomically',
 )
 """Parameter services that each node offers."""
+_DESCRIPTIONS = 'type_description_interfaces.srv'
+"""Package of another service that each node offers."""
+_GENERATOR = 'rosidl_generator_py'
+"""Package that loads the libraries of messages, and that also imports what generates them."""
 
 
 def preload() -> None:
@@ -39,8 +43,30 @@ def preload() -> None:
         # The node itself reports a missing package.
         with contextlib.suppress(ImportError):
             importlib.import_module(module)
-    with contextlib.suppress(ImportError):
+    with contextlib.suppress(ImportError), _without_generator():
         _load_messages()
+    with contextlib.suppress(ImportError):
+        importlib.import_module('ddct_plant.graph.rare_warnings').find_sources()
+
+
+@contextlib.contextmanager
+def _without_generator() -> Iterator[None]:
+    """
+    Import the loader of message libraries as where the generator of messages is not installed.
+
+    The generator's parsers take as long as numpy, and no node generates messages. A later import
+    of the package has all of it.
+    """
+    generator = f'{_GENERATOR}.generate_py_impl'
+    if _GENERATOR in sys.modules:
+        yield
+        return
+    sys.modules[generator] = None  # type: ignore[assignment]
+    try:
+        yield
+    finally:
+        for module in (generator, _GENERATOR):
+            sys.modules.pop(module, None)
 
 
 def _load_messages() -> None:
@@ -53,5 +79,8 @@ def _load_messages() -> None:
     classes = [topic.message_class for topic in all_topics()]
     classes += [rcl_interfaces.msg.Log, rcl_interfaces.msg.ParameterEvent]
     classes += [getattr(rcl_interfaces.srv, name) for name in _SERVICES]
+    # Of rclpy, in versions of ROS that have it.
+    with contextlib.suppress(ImportError):
+        classes.append(importlib.import_module(_DESCRIPTIONS).GetTypeDescription)
     for each in classes:
         check_for_type_support(each)

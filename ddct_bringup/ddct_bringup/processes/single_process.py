@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Run all nodes of the graph in this process, on one executor."""
 
+import gc
 import importlib
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
@@ -14,6 +15,7 @@ from ddct_plant.base.errors import DdctError
 from ddct_plant.graph.arguments import init_ros
 from ddct_plant.graph.node import GraphNode
 from ddct_plant.graph.spin import end_of, finish_node, make_executor, spin_until
+from ddct_plant.program.scheduling import scheduling_restored
 
 
 def run_single_process(
@@ -31,13 +33,16 @@ def run_single_process(
     init_ros([], context)
     nodes: list[GraphNode] = []
     try:
-        for spec in specs:
-            nodes.append(_build(spec, parameters, context))
-        _spin(nodes, context, stopped)
+        with scheduling_restored():
+            for spec in specs:
+                nodes.append(_build(spec, parameters, context))
+            _spin(nodes, context, stopped)
     finally:
-        for node in nodes:
-            node.destroy_node()
+        while nodes:
+            nodes.pop(0).destroy_node()
         context.try_shutdown()
+        # Nodes refer to one another, and compiled code of others runs until its node is collected.
+        gc.collect()
 
 
 def _build(

@@ -47,6 +47,7 @@ class WarmParent:
         self._channel, theirs = socket.socketpair()
         # In memory: the reason of a failure must survive a full disk.
         self._printed = os.fdopen(os.memfd_create('warm_parent'), 'rb')
+        ours = os.getpid()
         self.process = subprocess.Popen(
             # -P: a file of the current folder must not hide a module of the same name.
             [
@@ -57,7 +58,7 @@ class WarmParent:
             stdout=self._printed,
             stderr=subprocess.STDOUT,
             start_new_session=True,
-            preexec_fn=lambda: end_with_parent(signal.SIGKILL),
+            preexec_fn=lambda: end_with_parent(ours, signal.SIGKILL),
             pass_fds=[theirs.fileno()],
             # Its numerics must have no threads when it forks; nodes get our environment.
             env={'OPENBLAS_NUM_THREADS': '1', **os.environ},

@@ -12,7 +12,7 @@ from pathlib import Path
 from ddct_bringup.processes.live_process import DEFAULT_PORT, live_view
 from ddct_bringup.processes.warm_parent import WarmParent
 from ddct_bringup.run.execution import parent_for, print_logs_with_warnings, run_with_progress
-from ddct_bringup.run.options import add_run_options, print_choices
+from ddct_bringup.run.options import add_run_options, print_choices, scheduling_of
 from ddct_bringup.run.output_folder import StagedFolder, run_folder
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.run.run_base import settings_of
@@ -59,7 +59,7 @@ def _bringup(argv: list[str]) -> int:
     with parent_for(options.layout) as parent:
         limits, metrics = load_limits(options.limits), floor_metrics(options.floors)
         settings = settings_of(options, [controller_label(options.controller)])
-        plan = RunPlan(settings, options.controller, options.layout)
+        plan = RunPlan(settings, options.controller, options.layout, scheduling_of(options))
         if options.live is not None and plan.layout != 'processes':
             raise ParameterError(f'--live shows a process per node: drop it or --{plan.layout}')
         with run_folder(options.out, plan.name, overwrite=options.overwrite) as folder:

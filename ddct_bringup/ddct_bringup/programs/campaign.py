@@ -7,16 +7,16 @@ import sys
 from pathlib import Path
 
 from ddct_bringup.campaign.campaign import Campaign
-from ddct_bringup.campaign.conduct import carry_out
+from ddct_bringup.campaign.conduct import PROGRAM, carry_out
 from ddct_bringup.campaign.spec import read_spec
 from ddct_bringup.campaign_report.folder import PAGE, write_campaign_page
 from ddct_bringup.campaign_report.printed_summary import print_summary
 from ddct_bringup.programs import campaign_folder
+from ddct_bringup.run.options import add_workers_option
 from ddct_bringup.verdict.limits import add_limits_option, load_limits
 from ddct_plant.program.command_line import ProgramParser, run_program, run_subcommands
 from ddct_plant.program.supervision import stop_signals
 
-PROGRAM = 'ddct campaign'
 _COMMANDS = ('replay', 'show')
 """Subcommands for the folder of a campaign."""
 
@@ -74,9 +74,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument('--out', type=Path, metavar='DIR', required=True, help='folder for it')
     parser.add_argument('--resume', action='store_true', help='go on with the campaign in DIR')
     where = parser.add_mutually_exclusive_group()
-    where.add_argument(
-        '--workers', type=int, metavar='N', help='processes here; default: one for each core'
-    )
+    add_workers_option(where)
     where.add_argument('--scheduler', metavar='ADDRESS', help='compute on this Dask cluster')
     add_limits_option(parser)
     return parser

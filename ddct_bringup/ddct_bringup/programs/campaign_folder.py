@@ -20,14 +20,15 @@ from ddct_bringup.campaign.columns import (
     read_row,
 )
 from ddct_bringup.campaign.conduct import RESULTS
-from ddct_bringup.campaign.manifest import Manifest
+from ddct_bringup.campaign.manifest import MANIFEST, Manifest
 from ddct_bringup.campaign.rows import SERIAL, result_row
-from ddct_bringup.campaign_report.distributions_figure import require_picture, write_distributions
+from ddct_bringup.campaign_report.distributions_figure import write_distributions
 from ddct_bringup.campaign_report.folder import PAGE, SUMMARY, scenario_of, write_campaign_page
 from ddct_bringup.campaign_report.printed_summary import print_summary
 from ddct_bringup.campaign_report.reading import read_table, results_of
 from ddct_bringup.campaign_report.texts import RULES
 from ddct_bringup.digests.code import code_digest
+from ddct_bringup.digests.files import require_unaltered
 from ddct_bringup.digests.writing import keep_digests
 from ddct_bringup.run.execution import run_with_progress
 from ddct_bringup.run.options import add_layout_options
@@ -37,7 +38,15 @@ from ddct_bringup.scores.scored_recording import run_and_score
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.verdict.limits import Limits, add_limits_option, load_limits
 from ddct_plant.base.errors import DdctError, printable
-from ddct_plant.files.output_file import STDOUT, require_place, write_json, write_text
+from ddct_plant.files.csv_table import plain_cell
+from ddct_plant.files.output_file import (
+    STDOUT,
+    require_one_for_stdout,
+    require_picture,
+    require_place,
+    write_json,
+    write_text,
+)
 from ddct_plant.program.command_line import ProgramParser, complain
 
 _REPLAY = 'ddct campaign replay'
@@ -99,6 +108,7 @@ def _replay(options: argparse.Namespace) -> int:
     limits = load_limits(options.limits)
     manifest.require_limits(limits, options.folder)
     campaign = manifest.campaign(options.folder)
+    require_unaltered(options.folder, (MANIFEST, RESULTS))
     row = read_row(options.folder / RESULTS, options.index)
     if manifest.code_digest != code_digest():
         complain(_REPLAY, f'the campaign is of {manifest.code}, this is another code')
@@ -139,12 +149,10 @@ def _made_again(
 
 
 def _show(options: argparse.Namespace) -> int:
-    if options.json == STDOUT and options.csv == STDOUT:
-        raise DdctError('--json - and --csv - both want standard output: give one a file')
-    for option in ('json', 'csv', 'figure'):
+    require_one_for_stdout(options.json, options.csv)
+    for option in ('json', 'csv'):
         require_place(f'--{option}', getattr(options, option))
-    if options.figure:
-        require_picture(options.figure)
+    require_picture('--figure', options.figure)
     summary = write_campaign_page(options.folder)
     if options.json:
         write_json(options.json, summary)
@@ -167,7 +175,7 @@ def _csv(folder: Path) -> str:
     table = read_table(folder, Manifest.read(folder))
     for place, field in enumerate(table.schema):
         if pa.types.is_string(field.type):
-            words = [printable(each) for each in table[field.name].to_pylist()]
+            words = [plain_cell(printable(each)) for each in table[field.name].to_pylist()]
             table = table.set_column(place, field, pa.array(words, field.type))
     sink = pa.BufferOutputStream()
     arrow_csv.write_csv(table, sink)

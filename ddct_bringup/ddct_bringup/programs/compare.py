@@ -21,6 +21,7 @@ from ddct_bringup.run.options import (
     controllers_of,
     print_choices,
     print_computed_from,
+    scheduling_of,
 )
 from ddct_bringup.run.output_folder import StagedFolder, locked_folders, mark_folder
 from ddct_bringup.run.plan import RunPlan
@@ -79,7 +80,8 @@ def _compare(argv: list[str]) -> int:
         settings = settings_of(options, [controller_label(name) for name in names])
         if options.controllers == ALL:
             names = working_controllers(settings, partial(complain, PROGRAM))
-        plans = [RunPlan(settings, name, options.layout) for name in names]
+        scheduling = scheduling_of(options)
+        plans = [RunPlan(settings, name, options.layout, scheduling) for name in names]
         with (
             locked_folders(options.out),
             StagedFolder(options.out, overwrite=options.overwrite) as folder,

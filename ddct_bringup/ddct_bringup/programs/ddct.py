@@ -17,6 +17,7 @@ from ddct_plant.base.errors import DdctError
 from ddct_plant.base.options import close_name
 from ddct_plant.graph.domain import require_ros
 from ddct_plant.program.command_line import ProgramParser, run_program
+from ddct_plant.program.supervision import interrupted_by
 
 PROGRAM = 'ddct'
 GROUP = 'ddct.programs'
@@ -70,11 +71,16 @@ def _ddct(argv: list[str]) -> int:
 def _load(point: EntryPoint) -> Callable[[], int]:
     """Import a program; raise DdctError where a package that it needs is not installed."""
     try:
-        return point.load()
+        loaded = point.load()
     except ImportError as error:
+        if interrupted_by():  # some modules report any failure in them as one of an import
+            raise KeyboardInterrupt from error
         if error.name in _FIRST_OF_ROS:
             require_ros()
         raise DdctError(f'{point.name} cannot start: {error}: install what it needs') from error
+    if interrupted_by():  # a module has dropped it
+        raise KeyboardInterrupt
+    return loaded
 
 
 def _listing(known: dict[str, EntryPoint]) -> str:

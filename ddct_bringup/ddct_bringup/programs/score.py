@@ -98,20 +98,23 @@ def _scored(
     stems = signal_file_stems(bags) if folders else {}
     columns = load_columns(options.columns) if options.columns else None
     for bag, folder in with_progress(bags, len(bags), 'scoring'):
+        recording = None
         try:
             recording = _read(bag, options, columns)
             name = bag_name(bag, folder)
             for line in recording.custom_data.get('adjusted', '').splitlines():
                 complain(PROGRAM, f'{name}: {line}')
-            for ending, target in folders.items():
-                write_signals(target, f'{stems[bag]}.{ending}', recording)
-                written.append(target / f'{stems[bag]}.{ending}')
             scored = score_recording(recording, name, limits)
             runs.append(with_floors(scored, metrics, limits).scores)
         except DdctError as error:
             unreadable = unreadable_run(bag, error, relative_to=folder)
             complain(PROGRAM, unreadable.reason)
             runs.append(unreadable)
+        if recording is None:
+            continue
+        for ending, target in folders.items():  # a full disk is no fault of the bag
+            write_signals(target, f'{stems[bag]}.{ending}', recording)
+            written.append(target / f'{stems[bag]}.{ending}')
     return runs
 
 

@@ -17,6 +17,7 @@ from ddct_bringup.run.options import (
     add_controllers_option,
     add_settings_options,
     controllers_of,
+    metrics_of,
     print_choices,
 )
 from ddct_bringup.run.run_base import base_of
@@ -32,21 +33,19 @@ from ddct_bringup.sweep.sweep import (
 from ddct_bringup.verdict.limits import add_limits_option, load_limits
 from ddct_controllers.registry import controller_label, working_controllers
 from ddct_plant.base.errors import ParameterError, printable
-from ddct_plant.base.options import require_known
-from ddct_plant.files.input_file import located
 from ddct_plant.files.output_file import (
     STDOUT,
     require_one_for_stdout,
+    require_picture,
     require_place,
     write_json,
     write_text,
 )
 from ddct_plant.program.command_line import ProgramParser, complain, run_program
 from ddct_plant.program.progress import with_progress
-from ddct_plant.program.table import Quantity, drawn_by_rich
+from ddct_plant.program.table import drawn_by_rich
 
 PROGRAM = 'ddct sweep'
-_PICTURES = ('.png', '.svg')
 _MOST_DRAWN = 2
 _EPILOG = """\
 examples:
@@ -73,7 +72,7 @@ def _sweep(argv: list[str]) -> int:
         return 0
     if not options.over:
         raise ParameterError('--over is missing: give KEY=START:STOP:COUNT')
-    metrics = _metrics(options.metrics)
+    metrics = [METRICS[name] for name in metrics_of('--metrics', options.metrics, METRICS)]
     require_one_for_stdout(options.json, options.csv)
     require_place('--json', options.json)
     require_place('--csv', options.csv)
@@ -122,23 +121,12 @@ def _carried_out(sweep: Sweep) -> list[ScoredRow]:
     return done
 
 
-def _metrics(text: str) -> list[Quantity]:
-    names = [name.strip() for name in text.split(',') if name.strip()]
-    with located('--metrics'):
-        require_known(names, METRICS, 'metric')
-    if not names:
-        raise ParameterError('--metrics is empty: name at least one')
-    return [METRICS[name] for name in dict.fromkeys(names)]
-
-
 def _require_picture(target: str, keys: int) -> None:
     if keys > _MOST_DRAWN:
         raise ParameterError(
             f'--figure draws over one or two keys, not {keys}: leave it out, or an --over'
         )
-    if Path(target).suffix not in _PICTURES:
-        raise ParameterError(f'--figure {target}: name a file that ends in .png or .svg')
-    require_place('--figure', target)
+    require_picture('--figure', target)
 
 
 def _parser() -> argparse.ArgumentParser:

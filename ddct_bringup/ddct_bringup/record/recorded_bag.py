@@ -9,12 +9,12 @@ from pathlib import Path
 
 from rclpy.serialization import serialize_message
 
-from ddct_bringup.bag.file.cdr import stamp_of_cdr
 from ddct_bringup.bag.run_info import run_info_topic
 from ddct_bringup.bag.writer import BagWriter, new_bag
 from ddct_bringup.record.run_info_collector import RunInfoCollector
 from ddct_bringup.record.tick_buffer import Tick
 from ddct_bringup.run.description import custom_data
+from ddct_plant.bag_file.cdr import stamp_of_cdr
 from ddct_plant.base.timebase import START_NS, stamp_of_step
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.signals.signal import RunKind

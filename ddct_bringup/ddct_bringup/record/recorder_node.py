@@ -7,14 +7,14 @@ from typing import Any, ClassVar
 
 from rclpy.serialization import deserialize_message, serialize_message
 
-from ddct_bringup.bag.file.cdr import CdrNormaliser, stamp_of_cdr
-from ddct_bringup.bag.file.message_definitions import load_definition
 from ddct_bringup.bag.run_info import RUN_INFO_TOPICS
 from ddct_bringup.record.parameters import declare_parameters
 from ddct_bringup.record.recorded_bag import RecordedBag
 from ddct_bringup.record.run_info_collector import RunInfoCollector
 from ddct_bringup.record.tick_buffer import TickBuffer, TwoMessagesError
 from ddct_bringup.record.wall_clock_facts import WallClockFacts
+from ddct_plant.bag_file.cdr import CdrNormaliser, stamp_of_cdr
+from ddct_plant.bag_file.message_definitions import load_definition
 from ddct_plant.base.errors import DdctError
 from ddct_plant.graph.node import GraphNode
 from ddct_plant.graph.node_names import StatusName, name_in_graph

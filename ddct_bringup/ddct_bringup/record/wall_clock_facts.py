@@ -40,6 +40,7 @@ class WallClockFacts:
             late_messages=facts.late_messages + late,
             worst_lateness_us=facts.worst_lateness_us,
             safe_states=facts.safe_states,
+            durations=facts.durations,
             update_times_us=self._update_times_us,
             refused_messages=refused,
             wall_time_s=wall_time_s,

@@ -153,8 +153,16 @@ def test_a_node_that_ignores_signals_is_killed_at_the_end_of_the_ladder_and_name
     nodes.__exit__()
 
 
-def test_the_shared_memory_of_a_node_that_begins_late_and_is_killed_is_removed(
-    processes, monkeypatch, tmp_path
+@pytest.mark.parametrize(
+    ('end', 'words'),
+    [
+        ('os.kill(os.getpid(), signal.SIGKILL)', 'was killed by SIGKILL'),
+        ('os._exit(1)', 'ended with code 1'),
+    ],
+    ids=['killed', 'failed'],
+)
+def test_the_shared_memory_of_a_node_that_begins_late_and_is_killed_or_fails_is_removed(
+    processes, monkeypatch, tmp_path, end, words
 ):
     monkeypatch.setattr(shared_memory, 'SHARED_MEMORY', tmp_path)
     for name, period_s in (('CHECK_PERIOD_S', 60.0), ('STARTING_S', 0.1)):
@@ -166,10 +174,10 @@ def test_the_shared_memory_of_a_node_that_begins_late_and_is_killed_is_removed(
         f"lock = open({str(lock)!r}, 'w')\n"
         'beat()\n'
         'time.sleep(0.5)\n'
-        'os.kill(os.getpid(), signal.SIGKILL)\n'
+        f'{end}\n'
     )
     reason = wait_as_supervisor(processes(driveline=text))
-    assert reason.startswith('node driveline was killed by SIGKILL')
+    assert reason.startswith(f'node driveline {words}')
     assert not lock.exists()
 
 
@@ -269,6 +277,30 @@ def test_the_guardian_kills_nodes_that_ignore_the_end_of_their_supervisor(tmp_pa
     )
     subprocess.run([sys.executable, '-c', guard], check=True, timeout=WITHIN_S)
     assert deaf.wait(WITHIN_S) == -signal.SIGKILL
+
+
+def test_the_guardian_removes_the_shared_memory_of_a_node_that_ends_by_itself(tmp_path):
+    lock = tmp_path / 'fastrtps_1_el'
+    node = subprocess.Popen(
+        [sys.executable, '-c', f'lock = open({str(lock)!r}, "w"); input()'],
+        stdin=subprocess.PIPE,
+    )
+    wait_until(lock.exists)
+    guard = (
+        'import pathlib, sys\n'
+        'from ddct_bringup.processes import guardian, shared_memory\n'
+        f'shared_memory.SHARED_MEMORY = pathlib.Path({str(tmp_path)!r})\n'
+        'found = guardian.segments_of\n'
+        'guardian.segments_of = lambda pid: [found(pid), print(flush=True)][0]\n'
+        f'guardian.guard(["{node.pid}"])'
+    )
+    guarding = subprocess.Popen([sys.executable, '-c', guard], stdout=subprocess.PIPE)
+    guarding.stdout.readline()
+    assert lock.exists()
+    node.communicate(b'\n')
+    assert guarding.wait(WITHIN_S) == 0
+    guarding.stdout.close()
+    assert not lock.exists()
 
 
 @pytest.fixture

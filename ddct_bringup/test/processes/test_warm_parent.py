@@ -20,6 +20,7 @@ from ddct_bringup.processes.jobs import Job
 from ddct_bringup.processes.node_process import Child
 from ddct_bringup.processes.warm_parent import WarmParent
 from ddct_plant.base.errors import DdctError
+from ddct_plant.graph.domain import own_domain
 
 pytestmark = pytest.mark.slow
 
@@ -348,3 +349,22 @@ def test_we_take_no_orphans_but_those(run: Run) -> None:
     )
     parent_of_orphan = int(orphan.stdout.rpartition(b')')[2].split()[1])
     assert parent_of_orphan != os.getpid()
+
+
+def test_a_node_imports_no_generator_of_messages_and_can_import_all_of_it(
+    run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip('rclpy')
+    monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
+    with own_domain():
+        child = run(
+            'import sys, rclpy\n'
+            'def main():\n'
+            '    rclpy.init()\n'
+            '    rclpy.create_node("alone").destroy_node()\n'
+            '    print({"em", "lark", "rosidl_generator_py"} & set(sys.modules))\n'
+            '    rclpy.shutdown()\n'
+            '    from rosidl_generator_py import generate_py\n'
+            '    print(generate_py.__name__)\n'
+        )
+    assert child.output_text().splitlines() == ['set()', 'generate_py']

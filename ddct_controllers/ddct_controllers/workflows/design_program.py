@@ -4,6 +4,7 @@
 
 from ddct_controllers.workflows import (
     h_infinity_command,
+    least_jerk_command,
     loop_shaping_command,
     margins_command,
     mpc_command,
@@ -12,7 +13,14 @@ from ddct_controllers.workflows import (
 from ddct_plant.program.command_line import ProgramParser, run_subcommands
 
 PROGRAM = 'ddct design'
-_COMMANDS = (loop_shaping_command, h_infinity_command, mpc_command, margins_command, plant_command)
+_COMMANDS = (
+    loop_shaping_command,
+    h_infinity_command,
+    mpc_command,
+    least_jerk_command,
+    margins_command,
+    plant_command,
+)
 
 _DESCRIPTION = 'Design controllers, and check them in the loop as it runs.'
 _EPILOG = """\
@@ -21,6 +29,7 @@ examples:
   ddct design loop-shaping --rise-time 0.6 --overshoot 14 --name mine --out designs
   ddct design h-infinity                                   Chapter 3, step by step
   ddct design mpc --export control_unit --controller mpc3  C for a control unit
+  ddct design least-jerk --export control_unit             C of least_jerk
   ddct design margins --controller all                     the sampled loop with hold and delay
   ddct design plant --export plant.m                       the plant's equations and numbers
 

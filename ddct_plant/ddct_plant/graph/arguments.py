@@ -12,7 +12,7 @@ from rclpy.signals import SignalHandlerOptions
 
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.base.options import require_known
-from ddct_plant.graph.domain import require_domain
+from ddct_plant.graph.domain import discover_locally, require_domain, require_ros
 from ddct_plant.graph.node import GraphNode
 from ddct_plant.graph.qos import QOS_OVERRIDES
 
@@ -41,9 +41,12 @@ def init_ros(arguments: Sequence[str] | None, context: Context | None = None) ->
     """
     Initialise rclpy, or one context of it, with the arguments; None takes the command line's.
 
-    Raise DdctError for an argument or environment variable that rclpy refuses.
+    Raise DdctError for an argument or environment variable that rclpy refuses, and for a request
+    of security that the middleware does not have.
     """
+    require_ros()
     require_domain()
+    discover_locally()
     try:
         rclpy.init(
             args=None if arguments is None else list(arguments),

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from ddct_plant.base.errors import DdctError
+from ddct_plant.graph.security import require_security_if_asked
 
 LAST_DOMAIN = 232
 """Highest ROS_DOMAIN_ID: beyond it DDS has no ports, and ends the process without a message."""
@@ -22,12 +23,17 @@ so the last domain is not used again at once."""
 
 
 def require_ros() -> None:
-    """Raise DdctError where ROS is not installed; headless runs and scores do not need it."""
+    """
+    Raise DdctError where ROS is not installed, or lacks the security that is requested.
+
+    Headless runs and scores do not need it.
+    """
     if importlib.util.find_spec('rclpy') is None:
         raise DdctError(
             'the graph and its nodes need ROS 2, and its package rclpy is not installed: run '
             'headless, or set ROS up as docs/use/setup.md tells'
         )
+    require_security_if_asked()
 
 
 def require_domain() -> int | None:
@@ -40,6 +46,15 @@ def require_domain() -> int | None:
     return int(text)
 
 
+def discover_locally() -> None:
+    """
+    Let nodes of this process and its children find those of this machine alone.
+
+    A setting of the user wins: also ROS_LOCALHOST_ONLY, which ROS reads before the other.
+    """
+    os.environ.setdefault('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
+
+
 @contextmanager
 def own_domain() -> Iterator[int]:
     """
@@ -47,7 +62,7 @@ def own_domain() -> Iterator[int]:
 
     A ROS_DOMAIN_ID that the user has set is respected; otherwise a free one is reserved.
     """
-    os.environ.setdefault('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
+    discover_locally()
     given = require_domain()
     if given is not None:
         yield given

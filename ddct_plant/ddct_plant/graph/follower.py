@@ -14,7 +14,8 @@ from ddct_plant.graph.output import Output
 from ddct_plant.graph.sole_publishers import publishers_of
 from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import CLOCK, tick_names
-from ddct_plant.ticks.join import JoinResult, StampJoin
+from ddct_plant.ticks.join import StampJoin
+from ddct_plant.ticks.replies import StampReplies
 from ddct_plant.ticks.stamp_limit import StampLimit
 
 Reply = Sequence[Output]
@@ -40,11 +41,14 @@ class FollowerNode(GraphNode):
         Values are read by `Topic.read`, or by the function that `readers` has for a topic.
         """
         lockstep = self.settings.lockstep
-        self.join = StampJoin([topic.name for topic in inputs], allow_gaps=not lockstep)
+        names = [topic.name for topic in inputs]
+        self.join = StampJoin(names, allow_gaps=not lockstep, shown=self.shown)
         if not lockstep:
-            self.limit = StampLimit(tick_names())
+            self.limit = StampLimit(tick_names(), shown=self.shown)
+        self.replies = StampReplies(
+            self.join, self._answer, self.publish_reply, self._on_second_publisher
+        )
         self._reply: Reply = ()
-        self._answered: Any = None
         self._disputed = False
         for topic in inputs:
             read = (readers or {}).get(topic)
@@ -62,21 +66,10 @@ class FollowerNode(GraphNode):
         """Handle a tick in real time, after the other callbacks of its topic; may be repeated."""
 
     def _receive(self, topic: str, stamp: int, values: Any) -> None:
-        if self._disputed:
-            return
-        result = self.join.offer(topic, stamp, values)
-        if result is JoinResult.COMPLETE:
-            self._answer(stamp)
-            self.publish_reply()
-        elif result is JoinResult.REPEAT:
-            if values != self._answered:
-                self._on_second_publisher(topic, stamp)
-            else:
-                self.publish_reply()
+        if not self._disputed:
+            self.replies.receive(topic, stamp, values)
 
-    def _answer(self, stamp: int) -> None:
-        step, inputs = self.join.take()
-        self._answered = inputs[self.join.topics[0]]
+    def _answer(self, step: int, stamp: int, inputs: dict[str, Any]) -> None:
         try:
             self._reply = self.answer(step, stamp, inputs)
         except DdctError as error:
@@ -84,14 +77,15 @@ class FollowerNode(GraphNode):
 
     def _on_second_publisher(self, topic: str, stamp: int) -> None:
         """Raise DdctError in lock-step; in real time ignore both publishers from now on."""
+        shown = self.shown(topic)
         error = DdctError(
-            f'{topic} carries two different messages for stamp {stamp} ns, publishers: '
+            f'{shown} carries two different messages for stamp {stamp} ns, publishers: '
             f'{publishers_of(self, topic)}: stop one, or use another ROS_DOMAIN_ID'
         )
         if self.settings.lockstep:
             raise error
         self._disputed = True
-        self.get_logger().error(f'{error}; {topic} counts as missing from now on')
+        self.get_logger().error(f'{error}; {shown} counts as missing from now on')
 
     def publish_reply(self) -> None:
         """Publish the reply to the last stamp, again if it was published before."""

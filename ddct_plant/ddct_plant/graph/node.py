@@ -3,6 +3,7 @@
 """Base of every node: settings, run information, subscriptions, and the end of the node."""
 
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Any, ClassVar
 
 from rclpy.clock import Clock, ClockType
@@ -13,6 +14,7 @@ from rclpy.timer import Timer
 
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import stamp_of_step
+from ddct_plant.graph.node_names import topic_in_graph
 from ddct_plant.graph.node_reports import run_info_pairs
 from ddct_plant.graph.output import Output
 from ddct_plant.graph.qos import (
@@ -23,7 +25,8 @@ from ddct_plant.graph.qos import (
     overriding_options,
     own_copy,
 )
-from ddct_plant.graph.settings import declare_settings
+from ddct_plant.graph.rare_warnings import RareWarnings, find_sources
+from ddct_plant.graph.settings import declare_scheduling, declare_settings
 from ddct_plant.signals.message_kind import stamp_ns
 from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import (
@@ -54,6 +57,11 @@ class GraphNode(Node):
         """Declare the shared parameters; raise ParameterError when one cannot be used."""
         super().__init__(name, **kwargs)
         self.settings = declare_settings(self, self.DEFAULTS)
+        # Before anything is made that may start a process, which then has the same.
+        declare_scheduling(self, lockstep=self.settings.lockstep).apply()
+        self._warnings = RareWarnings(self)
+        if not self.settings.lockstep:
+            find_sources()
         self.limit: StampLimit | None = None
         """Limit of plausible stamps in real time; None in lock-step."""
         self.refused = 0
@@ -81,7 +89,7 @@ class GraphNode(Node):
         Values are read by `Topic.read`, or by `read`, which raises DdctError for bad ones. In
         lock-step a bad message ends the node; in real time it counts as missing.
         """
-        values_of = read or topic.read
+        values_of = read or partial(topic.read, shown=self.shown(topic.name))
 
         def receive(message: Any) -> None:
             stamp = stamp_ns(message)
@@ -106,13 +114,13 @@ class GraphNode(Node):
             self._refuse(reason)
         return not reason
 
+    def shown(self, topic: str) -> str:
+        """Return the name in the graph, for errors, of what this node calls `topic`."""
+        return topic_in_graph(topic, self.get_namespace())
+
     def _refuse(self, reason: str) -> None:
         self.refused += 1
-        self.get_logger().warning(
-            f'{reason} (counts as missing; {self.refused} so far)',
-            throttle_duration_sec=1.0,
-            throttle_time_source_type=self.get_clock(),
-        )
+        self._warnings.warn(f'{reason} (counts as missing; {self.refused} so far)')
 
     def subscribe_messages(
         self,
@@ -130,7 +138,7 @@ class GraphNode(Node):
         """
         guarded = self.guarded(receive)
         qos = RECORDER_LATCHED_QOS if topic.latched else qos
-        with named_override_errors(topic.name):
+        with named_override_errors(self.shown(topic.name)):
             self.create_subscription(
                 topic.message_class,
                 topic.name,

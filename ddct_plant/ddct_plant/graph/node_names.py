@@ -4,10 +4,12 @@
 Names of nodes in `run_info`, diagnostics, bags and scores: full ones, as '/off_going/actuator'.
 
 A bag has nodes and topics as if its graph were in no namespace, so that one recorded in
-'/car7/powertrain' has the same bytes as one in '/'.
+'/car7/powertrain' has the same bytes as one in '/'. Errors name topics in the same way.
 """
 
 from typing import NamedTuple
+
+from ddct_plant.shift.roles import OFF_GOING
 
 
 def name_in_graph(node: str, namespace: str = '/') -> str:
@@ -20,6 +22,18 @@ def name_in_graph(node: str, namespace: str = '/') -> str:
     if not node.startswith('/'):
         return f'/{node}'
     return f'/{node.removeprefix(namespace.rstrip("/") + "/").removeprefix("/")}'
+
+
+def topic_in_graph(topic: str, namespace: str) -> str:
+    """
+    Return the name of a topic in the namespace of its graph, as in the table of the topics.
+
+    `topic` is the name that a node in `namespace` uses. Only the nodes of the off-going side are
+    in a namespace within that of the graph.
+    """
+    if topic.startswith('/') or namespace.rpartition('/')[2] != OFF_GOING:
+        return topic
+    return f'{OFF_GOING}/{topic}'
 
 
 class StatusName(NamedTuple):

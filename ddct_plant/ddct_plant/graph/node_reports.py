@@ -7,9 +7,11 @@ Reports of nodes about themselves and about a run: pairs of key and text, and th
 in graphs only. No ROS is needed here.
 """
 
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
+from ddct_plant.base.errors import DdctError, require_number
 from ddct_plant.fail_safe.request_watch import (
     CLUTCH_TIMEOUT_S,
     REQUEST_TIMEOUT_S,
@@ -19,6 +21,8 @@ from ddct_plant.program.command_line import package_version
 from ddct_plant.scenario.file import scenario_digest
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.shift.roles import OFF_GOING, ON_COMING
+from ddct_plant.signals.topics import CONTROLLER_TIMING
+from ddct_plant.ticks.durations import DurationHistogram
 
 Pairs = dict[str, str]
 """Texts by key."""
@@ -35,6 +39,7 @@ SAFE_STATE = ': safe state'
 _SINCE = 'since_ns'
 _UPDATE_TIMES = 'update_times_us'
 _LATENESS = 'worst_tick_lateness_us'
+_HISTOGRAM = 'histogram '
 
 
 def run_info_pairs(settings: RunSettings, own: Mapping[str, str] | None = None) -> Pairs:
@@ -148,6 +153,8 @@ class TickCounts:
     """Largest lateness of a step, us; None in lock-step."""
     missed_replies: Mapping[str, int] = field(default_factory=dict)
     """Number of missing replies by topic; empty in lock-step."""
+    durations: Mapping[str, DurationHistogram] = field(default_factory=dict)
+    """Histograms of `TickDurations` by name; empty in lock-step."""
 
     def pairs(self) -> list[tuple[str, str]]:
         """Return the pairs of the status."""
@@ -156,14 +163,22 @@ class TickCounts:
         pairs = [(key, str(count)) for key, count in counts.items()]
         if self.worst_lateness_us is not None:
             pairs.append((_LATENESS, f'{self.worst_lateness_us:.0f}'))
+        pairs += [(_HISTOGRAM + name, each.text()) for name, each in self.durations.items()]
         return pairs
 
     @classmethod
     def of(cls, pairs: Mapping[str, str]) -> 'TickCounts':
         """Return the counts in the pairs of a status; raise KeyError or ValueError."""
         lateness = float(pairs[_LATENESS]) if _LATENESS in pairs else None
-        steps, resends, missed_steps, late_messages = (int(pairs[key]) for key in _COUNTS)
-        return cls(steps, resends, missed_steps, late_messages, lateness)
+        if lateness is not None and not 0.0 <= lateness < math.inf:
+            raise ValueError(f'{_LATENESS} is {lateness}')
+        steps, resends, missed_steps, late_messages = (_count(pairs, key) for key in _COUNTS)
+        durations = {
+            key.removeprefix(_HISTOGRAM): DurationHistogram.of(text)
+            for key, text in pairs.items()
+            if key.startswith(_HISTOGRAM)
+        }
+        return cls(steps, resends, missed_steps, late_messages, lateness, durations=durations)
 
 
 _COUNTS = ('steps', 'resends', 'missed_steps', 'late_messages')
@@ -176,7 +191,15 @@ def safe_state_pairs(since_ns: int, why: str) -> list[tuple[str, str]]:
 
 def safe_state_since(pairs: Mapping[str, str]) -> int:
     """Return the stamp in ns at which a safe state began; raise KeyError or ValueError."""
-    return int(pairs[_SINCE])
+    return _count(pairs, _SINCE)
+
+
+def _count(pairs: Mapping[str, str], key: str) -> int:
+    """Return a count, or a stamp in ns; raise KeyError or ValueError."""
+    value = int(pairs[key])
+    if not 0 <= value < 2**63:
+        raise ValueError(f'{key} is {value}')
+    return value
 
 
 def timing_pairs(update_times_us: Iterable[float]) -> list[tuple[str, str]]:
@@ -185,5 +208,17 @@ def timing_pairs(update_times_us: Iterable[float]) -> list[tuple[str, str]]:
 
 
 def update_times(pairs: Mapping[str, str]) -> list[float]:
-    """Return the update times in us in the pairs of `controller/timing`; raise ValueError."""
-    return [float(time) for time in pairs.get(_UPDATE_TIMES, '').split()]
+    """
+    Return the update times in us in the pairs of `controller/timing`.
+
+    Raise DdctError for one that is no number, not finite or below zero.
+    """
+    name = f'{CONTROLLER_TIMING.name} {_UPDATE_TIMES}'
+    times = []
+    for text in pairs.get(_UPDATE_TIMES, '').split():
+        try:
+            time = float(text)
+        except ValueError:
+            raise DdctError(f'{name} has {text!r}: give numbers in us', key=name) from None
+        times.append(require_number(name, time, unit='us', at_least=0.0))
+    return times

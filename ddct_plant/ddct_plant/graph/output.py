@@ -8,7 +8,7 @@ from rclpy.node import Node
 from rclpy.publisher import Publisher
 
 from ddct_plant.base.timebase import STEPS_PER_S
-from ddct_plant.graph.node_names import StatusName
+from ddct_plant.graph.node_names import StatusName, topic_in_graph
 from ddct_plant.graph.node_reports import SAFE_STATE, safe_state_pairs
 from ddct_plant.graph.qos import (
     LATCHED_QOS,
@@ -24,7 +24,7 @@ from ddct_plant.signals.topics import DIAGNOSTICS
 def create_publisher(node: Node, topic: Topic) -> Publisher:
     """Return a publisher of a topic; raise ParameterError for an unusable override of its QoS."""
     qos = LATCHED_QOS if topic.latched else LOOP_QOS
-    with named_override_errors(topic.name):
+    with named_override_errors(topic_in_graph(topic.name, node.get_namespace())):
         return node.create_publisher(
             topic.message_class,
             topic.name,

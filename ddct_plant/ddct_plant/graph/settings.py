@@ -13,6 +13,7 @@ from rclpy.node import Node
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import Option, options_of
 from ddct_plant.fail_safe.request_watch import FailSafeSettings
+from ddct_plant.program.scheduling import Scheduling
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.shift.roles import OFF_GOING, ON_COMING, ROLES
@@ -38,6 +39,18 @@ def declare_settings(node: Node, defaults: Mapping[str, Any]) -> RunSettings:
     for line in scenario.adjusted:
         node.get_logger().info(line)
     return RunSettings(scenario, **values)
+
+
+def declare_scheduling(node: Node, *, lockstep: bool) -> Scheduling:
+    """
+    Declare how the kernel treats the process of a node in real time, and return it.
+
+    Raise ParameterError for a bad value, and for one that is given in lock-step.
+    """
+    options = options_of(Scheduling).items()
+    scheduling = Scheduling(**{name: declare(node, name, each) for name, each in options})
+    scheduling.require_mode(lockstep=lockstep)
+    return scheduling
 
 
 def declare_role(node: Node, settings: RunSettings) -> str:

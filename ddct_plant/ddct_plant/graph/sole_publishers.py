@@ -26,13 +26,22 @@ receive nothing, does not take silence for proof.
 """
 OPEN_S = 1.0
 """Time in s that a real-time run goes on with a second publisher, with an open clutch."""
+NAMING_S = 2.0
+"""
+Time in s for which an error in lock-step waits for the name of a node.
+
+Names come after topics. In real time nothing waits: the clutch opens at once.
+"""
+_UNKNOWN = '_NODE_NAME_UNKNOWN_'
+"""Name in rmw of a node whose topics are known before its name."""
+_UNNAMED = 'one that the middleware has not named yet'
 
 
 def publishers_of(node: Node, topic: str) -> str:
     """Return the names of all publishers of a topic of `node` in the ROS graph."""
     shown = node.get_publishers_info_by_topic(node.resolve_topic_name(topic))
     names = sorted(f'{each.node_namespace.rstrip("/")}/{each.node_name}' for each in shown)
-    return ' and '.join(names)
+    return ' and '.join(_UNNAMED if _UNKNOWN in name else name for name in names)
 
 
 class _Probe:
@@ -77,10 +86,12 @@ class SolePublishers:
             for topic in all_topics()
             if topic.every_tick
         }
+        self._types = {topic.name: topic.type for topic in all_topics()}
         self._repeat = repeat
         self._listener: Node | None = None
         self._probes: dict[str, _Probe] = {}
         self._at_end = False
+        self._proved_at: float | None = None
         node.every(CHECK_S, self._on_timer)
 
     def finish(self, error: DdctError | None = None) -> None:
@@ -92,7 +103,9 @@ class SolePublishers:
             self._node.finish(error or self.found)
 
     def close(self) -> None:
-        """End the subscriptions."""
+        """End the check and its subscriptions; timers of the node may still run."""
+        self._topics = {}
+        self._probes.clear()
         if self._listener is not None:
             self._listener.destroy_node()
 
@@ -105,31 +118,48 @@ class SolePublishers:
                 self._node.finish()
 
     def _in_doubt(self) -> bool:
-        """Return whether the graph lists a second publisher for less than `PROOF_S`."""
+        """Return whether a second publisher is neither excluded nor proved and named."""
         count = self._node.count_publishers
+        proved = {}
         for topic, name in self._topics.items():
             if count(name) > 1:
-                self._listen(topic, name)
+                if complaint := self._listen(topic, name):
+                    proved[topic] = complaint
             elif topic in self._probes:
                 self._listening().destroy_subscription(self._probes.pop(topic).subscription)
+        if proved and self.found is None:
+            self._end(*next(iter(proved.items())))
         if self.found is not None:
             return False
-        return any(probe.listened_s < PROOF_S for probe in self._probes.values())
+        return bool(proved) or any(each.listened_s < PROOF_S for each in self._probes.values())
 
-    def _listen(self, topic: str, name: str) -> None:
+    def _listen(self, topic: str, name: str) -> str | None:
+        """Return what is wrong with the publishers of a topic, None before it is proved."""
         if topic not in self._probes:
             shown = self._node.get_publishers_info_by_topic(name)
-            self._probes[topic] = _Probe(self._listening(), name, shown[0].topic_type)
-        if self._probes[topic].two_alive() and self.found is None:
-            self.found = DdctError(
-                f'{topic} has two live publishers, of the nodes '
-                f'{publishers_of(self._node, topic)}: stop one, or use another ROS_DOMAIN_ID'
-            )
-            if self._node.settings.lockstep:
-                self._node.finish(self.found)
-            else:
-                self._node.get_logger().error(f'{self.found}: opening the clutch')
-                self._node.every(OPEN_S, lambda: self._node.finish(self.found))
+            ours = self._types[topic]
+            if other := sorted({each.topic_type for each in shown} - {ours}):
+                return f'is published as {other[0]} too, not as {ours} alone, by'
+            self._probes[topic] = _Probe(self._listening(), name, ours)
+        return 'has two live publishers, of' if self._probes[topic].two_alive() else None
+
+    def _end(self, topic: str, complaint: str) -> None:
+        """End the node, in real time with an open clutch before that."""
+        publishers = publishers_of(self._node, topic)
+        lockstep, now = self._node.settings.lockstep, time.monotonic()
+        if self._proved_at is None:
+            self._proved_at = now
+        if lockstep and _UNNAMED in publishers and now - self._proved_at < NAMING_S:
+            return
+        self.found = error = DdctError(
+            f'{topic} {complaint} the nodes {publishers}: stop one, or use another ROS_DOMAIN_ID',
+            key=topic,
+        )
+        if lockstep:
+            self._node.finish(error)
+        else:
+            self._node.get_logger().error(f'{error}: opening the clutch')
+            self._node.every(OPEN_S, lambda: self._node.finish(error))
 
     def _listening(self) -> Node:
         if self._listener is None:

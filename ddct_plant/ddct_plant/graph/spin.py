@@ -3,6 +3,7 @@
 """Run one node, or several in one process, until they are done or a signal stops them."""
 
 import gc
+import itertools
 import sys
 import traceback
 from collections.abc import Callable, Iterator, Sequence
@@ -29,8 +30,8 @@ SLICE_S = 0.1
 """Period in s at which signals are checked, and the longest spin of the executor."""
 
 
-_GARBAGE_THRESHOLD = 50_000
-"""Number of new objects between two garbage collections; Python's default is 700."""
+_CHECKS_PER_COLLECTION = 10
+"""Number of checks of signals for one collection of a generation's elders, as in Python."""
 LAST_SLICE_S = 0.03
 """Time in s that a stopped node still receives messages that are on their way."""
 
@@ -48,9 +49,11 @@ def end_of(nodes: Sequence[GraphNode], stopped: Callable[[], bool]) -> Future:
     """
     Return a future that is set once any of the nodes is done or `stopped()` is true.
 
-    A timer checks `stopped`: a busy EventsExecutor does not return at its timeout.
+    A timer checks `stopped`, because a busy EventsExecutor does not return at its timeout, and
+    collects garbage.
     """
     over: Future = Future()
+    checks = itertools.count(1)
 
     def end(*_: object) -> None:
         if not over.done():
@@ -58,7 +61,13 @@ def end_of(nodes: Sequence[GraphNode], stopped: Callable[[], bool]) -> Future:
 
     for node in nodes:
         node.done.add_done_callback(end)
-    nodes[0].create_timer(SLICE_S, lambda: end() if stopped() else None, clock=STEADY)
+
+    def check() -> None:
+        gc.collect(_generation_of(next(checks)))
+        if stopped():
+            end()
+
+    nodes[0].create_timer(SLICE_S, check, clock=STEADY)
     return over
 
 
@@ -68,27 +77,36 @@ def spin_until(executor: Executor, over: Future) -> None:
 
     Jazzy's EventsExecutor spins without end at full load when it is called without a timeout.
     """
-    with _rare_garbage_collection():
+    with _garbage_collected_by_timer():
         while not over.done():
             executor.spin_until_future_complete(over, SLICE_S)
 
 
 @contextmanager
-def _rare_garbage_collection() -> Iterator[None]:
+def _garbage_collected_by_timer() -> Iterator[None]:
     """
-    Collect garbage less often, to interrupt the loop less often, and undo that at the end.
+    Let no allocation start a garbage collection, and undo that at the end.
 
-    Objects of the start stay for the whole run, and messages contain no reference cycles.
+    Objects of the start stay for the whole run, and messages contain no reference cycles: the
+    timer of `end_of` has little to collect, mostly between two ticks.
     """
-    before = gc.get_threshold()
+    enabled = gc.isenabled()
     gc.collect()
     gc.freeze()
-    gc.set_threshold(_GARBAGE_THRESHOLD)
+    gc.disable()
     try:
         yield
     finally:
-        gc.set_threshold(*before)
+        if enabled:
+            gc.enable()
         gc.unfreeze()
+
+
+def _generation_of(check: int) -> int:
+    """Return the oldest generation of objects that is collected at a check, counted from 1."""
+    if check % _CHECKS_PER_COLLECTION**2 == 0:
+        return 2
+    return int(check % _CHECKS_PER_COLLECTION == 0)
 
 
 def finish_node(executor: Executor, node: GraphNode) -> None:

@@ -46,6 +46,7 @@ class ActuatorNode(FollowerNode):
             side_actuator(self.settings, role), first_request(self.settings, role), fail_safe
         )
         self._torque = Output(self, ACTUATOR_TORQUE)
+        self._request = self.shown(REQUEST)
         self._requests_without_clock = 0
         self.publish_run_info({**role_info(self.settings, role), **actuator_info(fail_safe)})
         self.follow(TORQUE_REQUEST)
@@ -69,8 +70,8 @@ class ActuatorNode(FollowerNode):
             self._requests_without_clock += 1
             if self._actuator.watch.too_long(0, 1 + self._requests_without_clock):
                 raise DdctError(
-                    f'at stamp {stamp} ns: {REQUEST} comes without {CLOCK.name}, by which the '
-                    f'fail-safe sees that requests stop: publish {CLOCK.name} '
+                    f'at stamp {stamp} ns: {self._request} comes without {CLOCK.name}, by '
+                    f'which the fail-safe sees that requests stop: publish {CLOCK.name} '
                     '(rosgraph_msgs/Clock) with the stamp of every tick'
                 )
         return true
@@ -80,7 +81,9 @@ class ActuatorNode(FollowerNode):
         torques = self._actuator.tick(step)
         if torques is None:
             return
-        self._safe_state.publish(step, stamp, f'no {REQUEST} for too long: opening the clutch')
+        self._safe_state.publish(
+            step, stamp, f'no {self._request} for too long: opening the clutch'
+        )
         self._torque.fill(stamp, torques).publish()
 
 

@@ -157,7 +157,12 @@ class DrivelineNode(GraphNode):
         if not isinstance(owner, RealtimeOwner):
             return counts
         lateness_us = 1e6 * owner.worst_lateness_s
-        return replace(counts, worst_lateness_us=lateness_us, missed_replies=owner.missed_replies)
+        return replace(
+            counts,
+            worst_lateness_us=lateness_us,
+            missed_replies=owner.missed_replies,
+            durations=owner.durations.histograms,
+        )
 
 
 def main() -> int:

@@ -14,11 +14,12 @@ from typing import Any, NoReturn
 
 from ddct_plant.base.errors import DdctError, printable
 from ddct_plant.files.output_file import STDOUT, write_json
+from ddct_plant.program.supervision import interrupted_by, interruptible
 
 USAGE = 2
 """Exit code after invalid options, as in argparse."""
 INTERRUPTED = 130
-"""Exit code after SIGINT, as in shells."""
+"""Exit code after SIGINT, as in shells; after another signal n it is 128 + n."""
 PIPE_CLOSED = 141
 """Exit code after the reader of standard output has closed it, as in shells for SIGPIPE."""
 _ADVICE = {
@@ -65,11 +66,17 @@ def run_program(
 
     `argv` is without the program's name; None takes it from the command line. A DdctError is
     printed on standard error as `<name>: <text>` and gives 1, and so is an error of the operating
-    system, such as a name that is too long, a full disk or a full standard output.
+    system, such as a name that is too long, a full disk or a full standard output. SIGINT and
+    SIGTERM are printed as a line too, and give 128 and their number.
     """
+    with interruptible():
+        return _run_program(name, main_function, sys.argv[1:] if argv is None else argv)
+
+
+def _run_program(name: str, main_function: Callable[[list[str]], int], argv: list[str]) -> int:
     try:
         try:
-            return main_function(sys.argv[1:] if argv is None else argv)
+            return main_function(argv)
         finally:  # argparse ends the program itself after --help
             _flush()
     except DdctError as error:
@@ -77,7 +84,7 @@ def run_program(
         return 1
     except KeyboardInterrupt as error:
         complain(name, str(error) or 'interrupted')
-        return INTERRUPTED
+        return 128 + interrupted_by() if interrupted_by() else INTERRUPTED
     except BrokenPipeError:
         _drop_output()
         return PIPE_CLOSED

@@ -10,7 +10,8 @@ node, and its announced exit code.
 import ctypes
 import os
 import signal
-from collections.abc import Callable, Iterator
+import threading
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from typing import Any
 
@@ -23,12 +24,60 @@ _SET_PARENT_DEATH_SIGNAL = 1
 _SET_TAKES_ORPHANS, _GET_TAKES_ORPHANS = 36, 37
 
 
+_interruptions: list[int] = []
+"""Signals that were received since `interruptible` began."""
+
+
+@contextmanager
+def interruptible() -> Iterator[None]:
+    """
+    Raise KeyboardInterrupt at either signal; `interrupted_by` then returns which one it was.
+
+    An ignored signal stays ignored, as SIGINT is in the background of a shell. Outside of the main
+    thread, which alone may set handlers, this does nothing.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    _interruptions.clear()
+    kept = [number for number in _CAUGHT if signal.getsignal(number) != signal.SIG_IGN]
+    with _handled(_interrupt, kept):
+        yield
+
+
+def interrupted_by() -> int:
+    """Return the first signal that was received since `interruptible` began, 0 for none."""
+    return next(iter(_interruptions), 0)
+
+
+def _interrupt(caught: int, _frame: object) -> None:
+    _interruptions.append(caught)
+    raise KeyboardInterrupt
+
+
 @contextmanager
 def stop_signals() -> Iterator[list[int]]:
     """Yield the list of received signals; the handlers from before are restored at the end."""
     received: list[int] = []
-    with _handled(lambda caught, _frame: received.append(caught)):
+
+    def note(caught: int, _frame: object) -> None:
+        received.append(caught)
+        _interruptions.append(caught)
+
+    with _handled(note):
         yield received
+
+
+@contextmanager
+def deferred_signals() -> Iterator[None]:
+    """Handle a signal that is received within at the end, by the handler from before."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    with stop_signals() as received:
+        yield
+    for number in received[:1]:
+        signal.raise_signal(number)
 
 
 @contextmanager
@@ -38,9 +87,16 @@ def ends_at_once() -> Iterator[None]:
         yield
 
 
-def end_with_parent(by: signal.Signals = signal.SIGTERM) -> None:
-    """Let the kernel send this process the signal `by` when its parent ends (Linux)."""
+def end_with_parent(parent: int, by: signal.Signals = signal.SIGTERM) -> None:
+    """
+    Let the kernel send this process the signal `by` when its parent ends (Linux).
+
+    `parent` is its process id. Where it has ended already, this process gets the signal at once:
+    the kernel sends none for an end before this call.
+    """
     ctypes.CDLL(None).prctl(_SET_PARENT_DEATH_SIGNAL, by)
+    if os.getppid() != parent:
+        os.kill(os.getpid(), by)
 
 
 @contextmanager
@@ -57,8 +113,10 @@ def adopting_orphans() -> Iterator[None]:
 
 
 @contextmanager
-def _handled(by: Callable[[int, Any], Any] | signal.Handlers) -> Iterator[None]:
-    before = {number: signal.signal(number, by) for number in _CAUGHT}
+def _handled(
+    by: Callable[[int, Any], Any] | signal.Handlers, numbers: Iterable[signal.Signals] = _CAUGHT
+) -> Iterator[None]:
+    before = {number: signal.signal(number, by) for number in numbers}
     try:
         yield
     finally:

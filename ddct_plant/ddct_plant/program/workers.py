@@ -13,14 +13,14 @@ import multiprocessing
 import os
 import signal
 from collections.abc import Callable, Iterator
-from concurrent.futures import Executor, ProcessPoolExecutor
+from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import Any, TypeVar
 
 from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.program.supervision import end_with_parent
+from ddct_plant.program.supervision import deferred_signals, end_with_parent
 
 _SET_THREADS = (
     'openblas_set_num_threads',
@@ -38,11 +38,12 @@ Result = TypeVar('Result')
 class WorkerPool:
     """Processes of this machine, each with one numerics thread; `count` at once."""
 
-    def __init__(self, count: int | None = None, work: Callable[[int], Any] | None = None) -> None:
+    def __init__(self, count: int | None = None, work: Callable[[Any], Any] | None = None) -> None:
         """
         Use `count` workers, by default one per core; raise ParameterError for less than one.
 
-        `work` is the function of `in_processes`; without it work is submitted to `executor`.
+        `work` is the function of `in_processes` and `submit`; without it work is submitted to
+        `executor`.
         """
         self.count = worker_count(count)
         self._work = work
@@ -52,23 +53,37 @@ class WorkerPool:
         """Return a new pool; a former pool has broken."""
         self.close()
         context = multiprocessing.get_context('fork')
-        self._pool = ProcessPoolExecutor(self.count, context, _begin, (self._work,))
+        self._not_ours = {*multiprocessing.active_children()}
+        self._pool = ProcessPoolExecutor(self.count, context, _begin, (os.getpid(), self._work))
         return self._pool
+
+    def submit(self, argument: Any) -> 'Future[Any]':
+        """Return the future of `work(argument)`; processes start with the first call and last."""
+        pool = self._pool or self.executor()
+        return pool.submit(_result, argument)
 
     def require_alive(self) -> None:
         """Do nothing: a pool whose processes die breaks without a check."""
 
     def close(self) -> None:
-        """Kill the processes; unfinished results are lost."""
+        """
+        Kill the processes; unfinished results are lost.
+
+        A second Ctrl-C waits until they have ended: at its end Python waits for all of them.
+        """
         if self._pool is None:
             return
-        processes = list((self._pool._processes or {}).values())
-        self._pool.shutdown(wait=False, cancel_futures=True)
-        for process in processes:
-            process.kill()
-        for process in processes:
-            process.join()
-        self._pool = None
+        with deferred_signals():
+            # The pool does not know one whose start was interrupted.
+            processes = {*multiprocessing.active_children()} - self._not_ours
+            self._pool.shutdown(wait=False, cancel_futures=True)
+            for process in processes:
+                process.kill()
+            for process in processes:
+                # The pool's own thread may take the exit status first: join() then returns early.
+                while process.is_alive():
+                    process.join(0.01)
+            self._pool = None
 
 
 def worker_count(count: int | None) -> int:
@@ -91,7 +106,7 @@ def in_processes(
 
     `workers` is the number of processes, by default that of the cores; 1 means this process.
     `chunk` is the number of results that a worker sends together. Only results are passed between
-    processes, so `work` may be any function. Taking a result raises DdctError when a worker was
+    processes, so `work` may be any function. The block ends with DdctError when a worker was
     killed.
     """
     workers = min(worker_count(workers), count)
@@ -100,30 +115,27 @@ def in_processes(
         return
     with closing(WorkerPool(workers, work)) as pool:
         chunk = chunk or max(1, min(_LARGEST_CHUNK, count // (_CHUNKS_EACH * workers)))
-        yield _or_reason(pool.executor().map(_result, range(count), chunksize=chunk))
+        # A worker may die while work is handed out, or while the caller takes a result.
+        try:
+            yield pool.executor().map(_result, range(count), chunksize=chunk)
+        except BrokenProcessPool as error:
+            raise DdctError(
+                'a process that simulates was killed: free some memory if it ran out, and start '
+                'again'
+            ) from error
 
 
-def _or_reason(results: Iterator[Result]) -> Iterator[Result]:
-    """Yield the results; raise DdctError with the reason when a worker was killed."""
-    try:
-        yield from results
-    except BrokenProcessPool as error:
-        raise DdctError(
-            'a process that simulates was killed: free some memory if it ran out, and start again'
-        ) from error
-
-
-_work: Callable[[int], Any] | None = None
+_work: Callable[[Any], Any] | None = None
 """Function that a forked worker computes."""
 
 
-def _begin(work: Callable[[int], Any] | None) -> None:
-    """Prepare a worker: it ignores Ctrl-C, and is killed when the program ends."""
+def _begin(parent: int, work: Callable[[Any], Any] | None) -> None:
+    """Prepare a worker: it ignores Ctrl-C, and is killed when the program `parent` ends."""
     global _work
     _work = work
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
-    end_with_parent(signal.SIGKILL)
+    end_with_parent(parent, signal.SIGKILL)
     # Collecting what the program has imported would take as long as many runs, and copy it.
     gc.freeze()
     one_numeric_thread()
@@ -143,7 +155,7 @@ def one_numeric_thread() -> None:
                 getattr(library, function)(1)
 
 
-def _result(index: int) -> Any:
+def _result(argument: Any) -> Any:
     """Return the result of a worker's function; the function is there since the fork."""
     assert _work is not None
-    return _work(index)
+    return _work(argument)

@@ -29,6 +29,9 @@ class Sum(follower.FollowerNode):
     def subscribe_values(self, *_: Any) -> None:
         """Subscribe to nothing: the tests pass messages in."""
 
+    def get_namespace(self) -> str:
+        return '/off_going'
+
     def answer(self, step: int, stamp_ns: int, inputs: dict[str, Any]) -> follower.Reply:
         self.answers.append(inputs[TRIGGER] + inputs[OTHER])
         return ()
@@ -53,7 +56,13 @@ def test_the_same_tick_again_is_answered_again_and_not_computed_again(node):
 
 
 def test_another_tick_of_the_same_stamp_is_a_second_publisher(node):
-    """The messages of the tick alone are compared, whatever the value of the other input is."""
-    with pytest.raises(DdctError, match=f'{TRIGGER} carries two different messages .* /two: stop'):
+    """
+    The messages of the tick alone are compared, whatever the value of the other input is.
+
+    The error names the topic as the graph does.
+    """
+    with pytest.raises(
+        DdctError, match=f'^off_going/{TRIGGER} carries two different messages .* /two: stop'
+    ):
         node._receive(TRIGGER, stamp_of_step(0), 4.0)
     assert node.published == 1

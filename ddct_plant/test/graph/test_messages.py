@@ -14,6 +14,7 @@ import diagnostic_msgs.msg as rclpy_diagnostics  # noqa: E402
 from ddct_plant.base.errors import DdctError  # noqa: E402
 from ddct_plant.base.timebase import stamp_of_step  # noqa: E402
 from ddct_plant.signals import topics  # noqa: E402
+from ddct_plant.signals.handover_share import WHOLE  # noqa: E402
 from ddct_plant.signals.message_kind import NS_PER_S, Scalar, stamp_ns  # noqa: E402
 from ddct_plant.signals.tables import sensors  # noqa: E402
 from ddct_plant.signals.tables.rows import JOINTS  # noqa: E402
@@ -97,10 +98,49 @@ def test_the_off_going_shaft_has_angle_speed_and_torque_and_its_name():
         topic.values(message)
 
 
-def test_a_share_of_the_handover_is_within_zero_and_one():
-    for share in (-0.1, 1.1, math.nan):
-        with refused(DdctError, key='clutch/handover_share'):
-            topics.HANDOVER_SHARE.read(topics.HANDOVER_SHARE.message(STAMP, share))
+@pytest.mark.parametrize('topic', [topics.OFF_GOING_JOINT_STATES, topics.TORQUE_PARTS])
+@pytest.mark.parametrize('change', [lambda row: [*row, 0.0], lambda row: row[:-1]])
+def test_named_values_need_one_number_for_each_name(topic, change):
+    message = topic.message(STAMP, 1.0, 2.0, 3.0)
+    assert topic.values(message) == (1.0, 2.0, 3.0)
+    message.effort = change(list(message.effort))
+    with pytest.raises(DdctError, match=f'has {len(message.effort)} numbers in effort'):
+        topic.values(message)
+
+
+def test_a_torque_whose_name_comes_twice_is_refused():
+    message = topics.TORQUE_PARTS.message(STAMP, 1.0, 2.0, 3.0)
+    message.name, message.effort = [*message.name, 'closing'], [*message.effort, 4.0]
+    with pytest.raises(DdctError, match='a name comes twice'):
+        topics.TORQUE_PARTS.values(message)
+
+
+@pytest.mark.parametrize(
+    'values',
+    [
+        (-0.1, 0.0, 0.0),
+        (1.1, 0.0, 0.0),
+        (math.nan, 0.0, 0.0),
+        (0.5, -0.95, 0.0),
+        (0.5, math.inf, 0.0),
+        (0.5, 0.0, math.nan),
+    ],
+)
+def test_a_share_of_the_handover_out_of_its_bounds_is_refused(values):
+    with refused(DdctError, key='clutch/handover_share'):
+        topics.HANDOVER_SHARE.read(topics.HANDOVER_SHARE.message(STAMP, *values))
+
+
+def test_a_share_comes_with_what_is_known_of_the_clutch():
+    message = topics.HANDOVER_SHARE.message(STAMP, 0.5, -0.2, 8.0)
+    assert topics.HANDOVER_SHARE.values(message) == (0.5, -0.2, 8.0)
+    assert topics.HANDOVER_SHARE.read(message).request(80.0) == pytest.approx(90.0)
+
+
+def test_a_share_alone_corrects_no_request():
+    """As a node of a third party publishes it that knows of nothing else."""
+    message = topics.HANDOVER_SHARE.message(STAMP, 1.0, 0.0, 0.0)
+    assert topics.HANDOVER_SHARE.read(message) == WHOLE
 
 
 def test_a_lost_sample_is_a_stale_status_of_its_name():
@@ -147,7 +187,7 @@ def test_the_parts_of_the_request_are_numbers_by_name():
     }
     message.name = ['closing', 'open_loop', 'closed_loop']
     assert topic.values(message) == (-1.0 / 3.0, 0.0, 0.1)
-    message.name = ['closing', 'open_loop']
+    message.name, message.effort = ['closing', 'open_loop'], [0.1, 0.0]
     with pytest.raises(LookupError, match='closed_loop'):
         topic.values(message)
 

@@ -4,7 +4,7 @@
 
 import pytest
 
-from ddct_plant.graph.node_names import StatusName, name_in_graph
+from ddct_plant.graph.node_names import StatusName, name_in_graph, topic_in_graph
 
 
 @pytest.mark.parametrize(
@@ -22,6 +22,21 @@ from ddct_plant.graph.node_names import StatusName, name_in_graph
 )
 def test_a_name_is_relative_to_the_namespace_of_its_graph(node, namespace, expected):
     assert name_in_graph(node, namespace) == expected
+
+
+@pytest.mark.parametrize(
+    ('topic', 'namespace', 'expected'),
+    [
+        ('clutch/torque', '/', 'clutch/torque'),
+        ('clutch/torque', '/car7/powertrain', 'clutch/torque'),
+        ('clutch/torque', '/off_going', 'off_going/clutch/torque'),
+        ('clutch/torque', '/car7/off_going', 'off_going/clutch/torque'),
+        ('clutch/torque', '/not_off_going', 'clutch/torque'),
+        ('/clock', '/off_going', '/clock'),
+    ],
+)
+def test_a_topic_is_relative_to_the_namespace_of_the_graph_of_its_node(topic, namespace, expected):
+    assert topic_in_graph(topic, namespace) == expected
 
 
 def test_the_name_of_a_status_is_its_node_and_what_it_describes():

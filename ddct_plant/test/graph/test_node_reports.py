@@ -20,6 +20,7 @@ from ddct_plant.graph.node_reports import (
 )
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.ticks.durations import DurationHistogram
 
 ROOT = Path(__file__).resolve().parents[3]
 KEYS = {'since_ns', 'worst_tick_lateness_us'}
@@ -42,6 +43,21 @@ def test_no_other_module_spells_the_keys_of_reports() -> None:
 def test_counts_are_read_as_they_were_written(lateness_us: float | None) -> None:
     counts = TickCounts(300, 1, 2, 3, lateness_us)
     assert TickCounts.of(dict(counts.pairs())) == counts
+
+
+def test_durations_are_read_as_they_were_written() -> None:
+    histogram = DurationHistogram()
+    for duration_s in (1e-7, 3e-4, 3.01e-4, 2.0):
+        histogram.add(duration_s)
+    counts = TickCounts(300, 1, 2, 3, 250.0, durations={'latency': histogram})
+    assert TickCounts.of(dict(counts.pairs())) == counts
+
+
+@pytest.mark.parametrize('text', ['', 'nan', '-1.0', '1.0 5', '1.0 5:0', '1.0 -1:2', '1.0 999:1'])
+def test_impossible_durations_are_an_error(text: str) -> None:
+    pairs = dict(TickCounts(300, 1, 2, 3, 250.0).pairs()) | {'histogram latency': text}
+    with pytest.raises(ValueError):
+        TickCounts.of(pairs)
 
 
 def test_missing_replies_come_between_the_counts_and_the_lateness() -> None:

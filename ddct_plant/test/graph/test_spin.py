@@ -1,8 +1,9 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""A spinning node restores the settings of the garbage collector when it ends."""
+"""A spinning node collects garbage from a timer alone, and as before when it ends."""
 
 import gc
+import weakref
 from typing import Any
 
 import pytest
@@ -11,7 +12,7 @@ pytest.importorskip('rclpy')
 
 from rclpy.task import Future  # noqa: E402
 
-from ddct_plant.graph.spin import spin_until  # noqa: E402
+from ddct_plant.graph.spin import end_of, spin_until  # noqa: E402
 
 
 class FakeExecutor:
@@ -20,10 +21,10 @@ class FakeExecutor:
     def __init__(self, fails=False):
         self.fails = fails
         self.frozen = 0
-        self.threshold: tuple[int, ...] = ()
+        self.enabled = True
 
     def spin_until_future_complete(self, over, _timeout):
-        self.frozen, self.threshold = gc.get_freeze_count(), gc.get_threshold()
+        self.frozen, self.enabled = gc.get_freeze_count(), gc.isenabled()
         if self.fails:
             raise RuntimeError('no more')
         over.set_result(None)
@@ -31,12 +32,50 @@ class FakeExecutor:
 
 @pytest.mark.parametrize('fails', [False, True])
 def test_the_garbage_collector_is_set_for_the_run_and_then_as_before(fails):
-    before = gc.get_threshold(), gc.get_freeze_count()
+    before = gc.isenabled(), gc.get_freeze_count()
     executor: Any = FakeExecutor(fails)
     try:
         spin_until(executor, Future())
     except RuntimeError:
         assert fails
     assert executor.frozen > before[1]
-    assert executor.threshold[0] > before[0][0]
-    assert (gc.get_threshold(), gc.get_freeze_count()) == before
+    assert before[0] and not executor.enabled
+    assert (gc.isenabled(), gc.get_freeze_count()) == before
+
+
+class FakeNode:
+    """Node whose timer is called by the test."""
+
+    def __init__(self) -> None:
+        self.done = Future()
+        self.check: Any = None
+
+    def create_timer(self, _period: float, callback: Any, **_options: Any) -> None:
+        self.check = callback
+
+
+class Cycle:
+    """Object that refers to itself."""
+
+    def __init__(self) -> None:
+        self.itself = self
+
+
+@pytest.mark.parametrize(('survived', 'checks'), [(0, 1), (1, 10), (2, 100)])
+def test_the_timer_collects_garbage_of_every_age(survived: int, checks: int) -> None:
+    node: Any = FakeNode()
+    end_of([node], lambda: False)
+    gc.disable()
+    try:
+        cycle = Cycle()
+        for generation in range(survived):
+            gc.collect(generation)
+        seen = weakref.ref(cycle)
+        del cycle
+        for _ in range(checks - 1):
+            node.check()
+        assert (seen() is None) == (survived == 0 and checks > 1)
+        node.check()
+        assert seen() is None
+    finally:
+        gc.enable()

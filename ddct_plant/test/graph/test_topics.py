@@ -43,6 +43,8 @@ def test_signals_are_numbers_then_text_then_what_only_some_runs_have():
         'sensed_slip_held',
         'sensed_vehicle_held',
         'handover_share',
+        'on_coming_wear_deviation',
+        'on_coming_torque_offset',
         'off_going_torque_request',
         'torque_cut',
         'sensed_engine_torque',

@@ -3,6 +3,7 @@
 """Exit codes of programs, and the one-line error message for a user's mistake."""
 
 import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -39,6 +40,14 @@ def test_a_mistake_is_one_line_with_the_programs_name(kind, capsys):
 def test_an_interrupt_gives_130(capsys):
     assert run_program('x', raising(KeyboardInterrupt()), []) == 130
     assert capsys.readouterr().err == 'x: interrupted\n'
+
+
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_outside_of_a_run_is_one_line_and_its_exit_code(number, capsys):
+    before = signal.getsignal(number)
+    assert run_program('x', lambda _: os.kill(os.getpid(), number), []) == 128 + number
+    assert capsys.readouterr().err == 'x: interrupted\n'
+    assert signal.getsignal(number) == before
 
 
 def test_a_fault_of_the_program_keeps_its_traceback():

@@ -1,13 +1,19 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Signals are caught for as long as work lasts, and not a moment longer."""
+"""Signals are caught for as long as work lasts, and not a moment longer; so are lost parents."""
 
 import os
 import signal
 
 import pytest
 
-from ddct_plant.program.supervision import stop_signals
+from ddct_plant.program.supervision import (
+    deferred_signals,
+    end_with_parent,
+    interrupted_by,
+    interruptible,
+    stop_signals,
+)
 
 
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
@@ -22,3 +28,43 @@ def test_a_signal_is_noted_and_its_handler_comes_back(number):
         assert (stops, calls) == ([number], ['before'])
     finally:
         signal.signal(number, before)
+
+
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
+def test_a_deferred_signal_interrupts_at_the_end(number):
+    reached = []
+    before = signal.signal(number, lambda *_: reached.append('before'))
+    try:
+        with interruptible(), pytest.raises(KeyboardInterrupt), deferred_signals():
+            os.kill(os.getpid(), number)
+            reached.append('end')
+    finally:
+        signal.signal(number, before)
+    assert reached == ['end']
+    assert interrupted_by() == number
+
+
+def test_a_signal_that_was_ignored_stays_ignored():
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        with interruptible():
+            os.kill(os.getpid(), signal.SIGINT)
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+def test_a_process_whose_parent_has_ended_before_ends_too():
+    """The kernel sends no death signal for an end before the process has asked for one."""
+    reader, writer = os.pipe()
+    if not (parent := os.fork()):
+        ours = os.getpid()
+        if not os.fork():
+            while os.getppid() == ours:
+                pass
+            end_with_parent(ours, signal.SIGKILL)
+            os.write(writer, b'alive')
+        os._exit(0)
+    os.close(writer)
+    os.waitpid(parent, 0)
+    with os.fdopen(reader, 'rb') as pipe:
+        assert pipe.read() == b'', 'it has gone on as an orphan'

@@ -2,8 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Work shared among processes has the results of one process; a killed worker is reported."""
 
+import multiprocessing
 import os
 import signal
+import time
+from multiprocessing.process import BaseProcess
 
 import pytest
 
@@ -28,3 +31,29 @@ def test_a_killed_worker_is_reported_in_a_line():
         in_processes(lambda _: os.kill(os.getpid(), signal.SIGKILL), 2, 2) as results,
     ):
         list(results)
+
+
+def test_ctrl_c_while_workers_are_ended_leaves_none(monkeypatch):
+    kill = BaseProcess.kill
+
+    def interrupted(process):
+        os.kill(os.getpid(), signal.SIGINT)
+        kill(process)
+
+    # More than once: two threads wait for the same processes, and either may be the first.
+    for _ in range(20):
+        with (
+            monkeypatch.context() as patch,
+            pytest.raises(KeyboardInterrupt),
+            in_processes(lambda _: time.sleep(60.0), 4, 2),
+        ):
+            patch.setattr(BaseProcess, 'kill', interrupted)
+        assert not multiprocessing.active_children()
+
+
+def test_a_worker_whose_start_was_interrupted_is_ended_too():
+    with in_processes(lambda _: time.sleep(60.0), 4, 2):
+        # The pool does not know it: Ctrl-C came between its fork and the entry in the pool's list.
+        multiprocessing.get_context('fork').Process(target=time.sleep, args=(60.0,)).start()
+        assert len(multiprocessing.active_children()) == 3
+    assert not multiprocessing.active_children()
