@@ -9,6 +9,7 @@ from xml.etree import ElementTree
 from setuptools import find_packages, setup
 
 PACKAGE = 'ddct_bringup'
+VERSION = ElementTree.parse('package.xml').findtext('version')
 PROGRAMS = [
     'benchmark = ddct_bringup.programs.benchmark:main',
     'bringup = ddct_bringup.programs.bringup:main',
@@ -21,6 +22,7 @@ PROGRAMS = [
     'report = ddct_bringup.programs.report:main',
     'score = ddct_bringup.programs.score:main',
     'sweep = ddct_bringup.programs.sweep:main',
+    'tune = ddct_bringup.programs.tune:main',
     'verify = ddct_bringup.programs.verify:main',
 ]
 DDCT = 'ddct = ddct_bringup.programs.ddct:main'
@@ -33,15 +35,17 @@ colcon puts all scripts into lib/<package>/, where `ros2 run` finds them, and bi
 
 setup(
     name=PACKAGE,
-    version=ElementTree.parse('package.xml').findtext('version'),
+    version=VERSION,
     packages=find_packages(exclude=['test']),
     package_data={
-        f'{PACKAGE}.bag.file': ['*.yaml'],
+        PACKAGE: ['py.typed'],
         f'{PACKAGE}.benchmark': ['packaged/*'],
         f'{PACKAGE}.benchmark.report': ['*.j2', '*.css', '*.js'],
         f'{PACKAGE}.campaign_report': ['*.j2', '*.css', '*.js'],
         f'{PACKAGE}.report': ['*.j2', '*.css', '*.js'],
         f'{PACKAGE}.thesis': ['admissible_scenarios/*'],
+        f'{PACKAGE}.tuning': ['packaged/*'],
+        f'{PACKAGE}.tuning.report': ['*.j2', '*.css'],
         f'{PACKAGE}.verdict': ['*.yaml'],
         f'{PACKAGE}.reproduction.numbers': ['chapters/*.yaml'],
     },
@@ -53,6 +57,9 @@ setup(
         *([] if WHEEL else [('bin', ['bin/ddct'])]),
     ],
     install_requires=[
+        f'ddct_plant=={VERSION}',
+        f'ddct_reference=={VERSION}',
+        f'ddct_controllers=={VERSION}',
         'setuptools',
         'bokeh',
         'jinja2',
@@ -64,19 +71,26 @@ setup(
         'pyarrow',
         'rich',
         'scipy',
-        'zstandard',
     ],
     extras_require={
         'dask': ['distributed'],
         'live': ['foxglove-sdk'],
         'pandas': ['pandas'],
         'test': ['pytest'],
+        'tune': ['optuna'],
     },
     zip_safe=False,
     maintainer='DDCT team',
-    maintainer_email='maintainers@ddct.invalid',
     description='The programs that run, record, score and compare engagements.',
     license='Apache-2.0',
+    classifiers=[
+        'Intended Audience :: Science/Research',
+        'Operating System :: POSIX :: Linux',
+        'Programming Language :: Python :: 3',
+        'Topic :: Scientific/Engineering',
+        'Typing :: Typed',
+    ],
+    python_requires='>=3.11',
     entry_points={
         'console_scripts': [DDCT] if WHEEL else [DDCT, *PROGRAMS],
         'ddct.programs': PROGRAMS,

@@ -9,6 +9,7 @@ from xml.etree import ElementTree
 from setuptools import find_packages, setup
 
 PACKAGE = 'ddct_controllers'
+VERSION = ElementTree.parse('package.xml').findtext('version')
 PROGRAMS = [
     'check-controller = ddct_controllers.check.program:main',
     'controller = ddct_controllers.controller_node:main',
@@ -21,11 +22,12 @@ WHEEL = not {'bdist_wheel', 'dist_info', 'editable_wheel'}.isdisjoint(sys.argv)
 
 setup(
     name=PACKAGE,
-    version=ElementTree.parse('package.xml').findtext('version'),
+    version=VERSION,
     packages=find_packages(exclude=['test']),
     package_data={
         PACKAGE: [
-            *('mpc/export/c/*.c', 'mpc/export/c/*.h'),
+            'py.typed',
+            *('mpc/export/c/*.c', 'mpc/export/c/*.h', 'least_jerk/export/c/*.c'),
             'template/files/*.in',
             *(f'from_file/c_library/template/*.{end}' for end in ('c', 'h', 'yaml')),
         ]
@@ -36,6 +38,7 @@ setup(
         (f'share/{PACKAGE}/config', sorted(glob('config/*.yaml'))),
     ],
     install_requires=[
+        f'ddct_plant=={VERSION}',
         'setuptools',
         'cffi',
         'control',
@@ -48,8 +51,15 @@ setup(
     extras_require={'test': ['pytest'], 'lmi': ['clarabel'], 'fmu': ['fmpy']},
     zip_safe=False,
     maintainer='DDCT team',
-    maintainer_email='maintainers@ddct.invalid',
     description='The controllers and their node.',
     license='Apache-2.0',
+    classifiers=[
+        'Intended Audience :: Science/Research',
+        'Operating System :: POSIX :: Linux',
+        'Programming Language :: Python :: 3',
+        'Topic :: Scientific/Engineering',
+        'Typing :: Typed',
+    ],
+    python_requires='>=3.11',
     entry_points={'console_scripts': [] if WHEEL else PROGRAMS, 'ddct.programs': PROGRAMS},
 )

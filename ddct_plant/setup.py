@@ -9,6 +9,7 @@ from xml.etree import ElementTree
 from setuptools import find_packages, setup
 
 PACKAGE = 'ddct_plant'
+VERSION = ElementTree.parse('package.xml').findtext('version')
 PROGRAMS = [
     'actuator = ddct_plant.nodes.actuator_node:main',
     'clutch = ddct_plant.nodes.clutch_node:main',
@@ -22,9 +23,9 @@ WHEEL = not {'bdist_wheel', 'dist_info', 'editable_wheel'}.isdisjoint(sys.argv)
 
 setup(
     name=PACKAGE,
-    version=ElementTree.parse('package.xml').findtext('version'),
+    version=VERSION,
     packages=find_packages(exclude=['test']),
-    package_data={PACKAGE: ['scenario/packaged/*.yaml']},
+    package_data={PACKAGE: ['py.typed', 'bag_file/*.yaml', 'scenario/packaged/*.yaml']},
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{PACKAGE}']),
         (f'share/{PACKAGE}', ['package.xml']),
@@ -32,18 +33,27 @@ setup(
     ],
     install_requires=[
         'setuptools',
+        'lz4',
         'mcap',
         'mcap-ros2-support',
         'numpy',
         'pyyaml',
         'rich',
         'scipy',
+        'zstandard',
     ],
     extras_require={'test': ['pytest']},
     zip_safe=False,
     maintainer='DDCT team',
-    maintainer_email='maintainers@ddct.invalid',
     description='The plant: its nodes, the identification and the scenarios.',
     license='Apache-2.0',
+    classifiers=[
+        'Intended Audience :: Science/Research',
+        'Operating System :: POSIX :: Linux',
+        'Programming Language :: Python :: 3',
+        'Topic :: Scientific/Engineering',
+        'Typing :: Typed',
+    ],
+    python_requires='>=3.11',
     entry_points={'console_scripts': [] if WHEEL else PROGRAMS, 'ddct.programs': PROGRAMS},
 )

@@ -9,6 +9,7 @@ from xml.etree import ElementTree
 from setuptools import find_packages, setup
 
 PACKAGE = 'ddct_reference'
+VERSION = ElementTree.parse('package.xml').findtext('version')
 PROGRAMS = [
     'reference = ddct_reference.reference_node:main',
 ]
@@ -17,19 +18,30 @@ WHEEL = not {'bdist_wheel', 'dist_info', 'editable_wheel'}.isdisjoint(sys.argv)
 
 setup(
     name=PACKAGE,
-    version=ElementTree.parse('package.xml').findtext('version'),
+    version=VERSION,
     packages=find_packages(exclude=['test']),
+    package_data={PACKAGE: ['py.typed']},
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{PACKAGE}']),
         (f'share/{PACKAGE}', ['package.xml']),
         (f'share/{PACKAGE}/config', sorted(glob('config/*.yaml'))),
     ],
-    install_requires=['setuptools'],
+    install_requires=[
+        f'ddct_plant=={VERSION}',
+        'setuptools',
+    ],
     extras_require={'test': ['pytest']},
     zip_safe=False,
     maintainer='DDCT team',
-    maintainer_email='maintainers@ddct.invalid',
     description='The slip reference and its node.',
     license='Apache-2.0',
+    classifiers=[
+        'Intended Audience :: Science/Research',
+        'Operating System :: POSIX :: Linux',
+        'Programming Language :: Python :: 3',
+        'Topic :: Scientific/Engineering',
+        'Typing :: Typed',
+    ],
+    python_requires='>=3.11',
     entry_points={'console_scripts': [] if WHEEL else PROGRAMS, 'ddct.programs': PROGRAMS},
 )

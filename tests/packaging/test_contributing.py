@@ -6,6 +6,7 @@ import re
 from pathlib import Path
 
 import pytest
+import yaml
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = (ROOT / 'CONTRIBUTING.md').read_text(encoding='utf-8')
@@ -21,3 +22,10 @@ def test_every_path_is_there() -> None:
 @pytest.mark.parametrize('thing', ['topic', 'controller', 'scenario', 'number of the thesis'])
 def test_the_page_has_a_row_for_each_thing_to_add(thing: str) -> None:
     assert re.search(rf'^\| an? {thing} \|', PAGE, re.MULTILINE)
+
+
+def test_the_workflow_runs_the_checks_of_this_page_on_each_python() -> None:
+    workflow = yaml.safe_load((ROOT / '.github/workflows/check.yml').read_text(encoding='utf-8'))
+    job = workflow['jobs']['check']
+    assert job['steps'][-1]['run'] == '.ci/run'
+    assert job['strategy']['matrix']['python'] == ['3.11', '3.12', '3.13']

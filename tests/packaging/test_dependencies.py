@@ -4,11 +4,14 @@
 
 import ast
 import re
+import runpy
 import sys
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
+from typing import Any
 
 import pytest
+import setuptools
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = ('ddct_plant', 'ddct_reference', 'ddct_controllers', 'ddct_bringup')
@@ -27,11 +30,13 @@ FROM_PYPI = {
     'fmpy': ('fmpy', None),
     'foxglove': ('foxglove-sdk', None),
     'jinja2': ('jinja2', 'python3-jinja2'),
+    'lz4': ('lz4', None),
     'markupsafe': ('markupsafe', None),
     'matplotlib': ('matplotlib', 'python3-matplotlib'),
     'mcap': ('mcap', None),
     'mcap_ros2': ('mcap-ros2-support', 'mcap-ros2-support'),
     'numpy': ('numpy', 'python3-numpy'),
+    'optuna': ('optuna', None),
     'osqp': ('osqp', None),
     'pandas': ('pandas', 'python3-pandas'),
     'pyarrow': ('pyarrow', None),
@@ -69,20 +74,22 @@ def declared_to_ros(package: str) -> set[str]:
     return {element.text for element in tree.iter('exec_depend') if element.text}
 
 
+def setup_of(package: str) -> dict[str, Any]:
+    """Return what a package's setup.py hands to setuptools."""
+    given: dict[str, Any] = {}
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(setuptools, 'setup', lambda **options: given.update(options))
+        patch.chdir(ROOT / package)
+        runpy.run_path('setup.py')
+    return given
+
+
 def declared_to_pip(package: str) -> tuple[set[str], set[str]]:
     """Return what a package's setup.py requires, and what it has as extras for its users."""
-    tree = ast.parse((ROOT / package / 'setup.py').read_text(encoding='utf-8'))
-    call = next(
-        node
-        for node in ast.walk(tree)
-        if isinstance(node, ast.Call)
-        and isinstance(node.func, ast.Name)
-        and node.func.id == 'setup'
-    )
-    options = {option.arg: option.value for option in call.keywords}
-    required = set(ast.literal_eval(options['install_requires'])) - {'setuptools'}
-    extras = ast.literal_eval(options['extras_require'])
-    return required, {name for key, names in extras.items() if key != 'test' for name in names}
+    given = setup_of(package)
+    extras = given['extras_require'].items()
+    required = set(given['install_requires']) - {'setuptools'}
+    return required, {name for key, names in extras if key != 'test' for name in names}
 
 
 def test_every_module_that_is_imported_is_in_one_of_the_tables() -> None:
@@ -110,10 +117,13 @@ def implied_by_ros(package: str) -> set[str]:
 
 
 @pytest.mark.parametrize('package', PACKAGES)
-def test_setup_py_requires_exactly_what_is_imported_from_pypi(package: str) -> None:
+def test_setup_py_requires_exactly_what_is_imported(package: str) -> None:
+    """Our own packages are required in the very same version."""
+    version = setup_of(package)['version']
     modules = imported(package) | NOT_IMPORTED.get(package, set())
+    own = {f'{each}=={version}' for each in modules if each in PACKAGES}
     required, extras = declared_to_pip(package)
-    assert required | extras == {FROM_PYPI[each][0] for each in modules if each in FROM_PYPI}
+    assert required | extras == own | {FROM_PYPI[each][0] for each in modules if each in FROM_PYPI}
     assert not required & extras
 
 
@@ -130,7 +140,9 @@ def without_key(module: str) -> set[str]:
 
 
 def test_the_requirements_of_the_wheel_path_name_all_of_it() -> None:
-    files = [ROOT / name for name in ('requirements.in', 'requirements-fmu.in')]
+    files = [
+        ROOT / name for name in ('requirements.in', 'requirements-fmu.in', 'requirements-tune.in')
+    ]
     lines = [line for file in files for line in file.read_text(encoding='utf-8').splitlines()]
     names = {re.split(r'[\[<=\s#]', line, maxsplit=1)[0] for line in lines}
     assert {name for name, _ in FROM_PYPI.values()} <= names

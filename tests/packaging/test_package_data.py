@@ -2,30 +2,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """What pip installs of a package holds every file that its code reads."""
 
-import runpy
 from fnmatch import fnmatch
 from pathlib import Path
-from typing import Any
 
 import pytest
-import setuptools
-from test_dependencies import PACKAGES, ROOT
-
-
-def setup_of(package: str, monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
-    """Return what a package's setup.py hands to setuptools."""
-    given: dict[str, Any] = {}
-    monkeypatch.setattr(setuptools, 'setup', lambda **options: given.update(options))
-    monkeypatch.chdir(ROOT / package)
-    runpy.run_path('setup.py')
-    return given
+from test_dependencies import PACKAGES, ROOT, setup_of
 
 
 @pytest.mark.parametrize('package', PACKAGES)
 def test_every_file_beside_the_code_is_package_data(
     package: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    given = setup_of(package, monkeypatch)
+    monkeypatch.chdir(ROOT / package)
+    given = setup_of(package)
     patterns = [
         f'{name.replace(".", "/")}/{pattern}'
         for name, each in given.get('package_data', {}).items()
@@ -39,13 +28,11 @@ def test_every_file_beside_the_code_is_package_data(
 
 
 @pytest.mark.parametrize('package', PACKAGES)
-def test_every_folder_of_modules_is_a_package(
-    package: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_every_folder_of_modules_is_a_package(package: str) -> None:
     folders = {
         path.parent.as_posix().replace('/', '.')
         for path in Path(ROOT / package, package).rglob('*.py')
     }
     prefix = (ROOT / package).as_posix().replace('/', '.') + '.'
-    installed = setup_of(package, monkeypatch)['packages']
+    installed = setup_of(package)['packages']
     assert {folder.removeprefix(prefix) for folder in folders} == set(installed)

@@ -10,6 +10,7 @@ import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 import pytest
+import yaml
 
 from ddct_plant.graph.node_reports import run_info_pairs
 from ddct_plant.scenario.file import load_scenario
@@ -65,3 +66,10 @@ def test_every_program_prints_the_version(module: str, capsys: pytest.CaptureFix
 def test_nodes_publish_the_version_on_run_info() -> None:
     pairs = dict(run_info_pairs(RunSettings(load_scenario('thesis'))))
     assert pairs['version'] == version_of('ddct_plant')
+
+
+def test_the_citation_has_the_version_and_the_thesis_of_the_readme() -> None:
+    citation = yaml.safe_load((ROOT / 'CITATION.cff').read_text(encoding='utf-8'))
+    assert citation['version'] == version_of(PACKAGES[0])
+    (thesis,) = citation['references']
+    assert f'*{thesis["title"]}*' in (ROOT / 'README.md').read_text(encoding='utf-8')

@@ -68,7 +68,8 @@ def required(names: Iterable[str]) -> set[str]:
 def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return a folder of packages as pip would fill it for the four of ours."""
     folder = tmp_path_factory.mktemp('site')
-    for name in required({each for package in PACKAGES for each in declared_to_pip(package)[0]}):
+    declared = {each for package in PACKAGES for each in declared_to_pip(package)[0]}
+    for name in required({each for each in declared if not each.startswith(PACKAGES)}):
         distribution = importlib.metadata.distribution(name)
         if distribution.files is None:
             pytest.skip(f'{name} has no list of files: it was not installed by pip')
