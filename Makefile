@@ -2,7 +2,8 @@
 SHELL := /bin/bash
 .SHELLFLAGS := -e -o pipefail -c
 .DELETE_ON_ERROR:
-.PHONY: help setup demo docs fmu test test-fast mutants lint bench benchmark-rows lock clean
+.PHONY: help setup demo docs fmu tune-extra sbom test test-fast mutants lint fuzz faults bench soak loaded-runs benchmark-rows release \
+    site lock clean
 
 ifneq ($(words $(CURDIR)),1)
 $(error colcon fails in a folder with a space in its path, move the repository: $(CURDIR))
@@ -20,7 +21,7 @@ BIN := .venv/bin
 SOURCED := . install/setup.bash;
 VENV_MADE := .venv/.made
 WORKSPACE_BUILT := install/.built
-EXTRAS_INSTALLED := .venv/.bench .venv/.fmu
+EXTRAS_INSTALLED := .venv/.bench .venv/.fmu .venv/.fuzz .venv/.site .venv/.test .venv/.tune
 BUILD_INPUTS := $(wildcard ddct_*/package.xml ddct_*/setup.* ddct_*/bin ddct_*/config ddct_*/foxglove)
 
 PYTHONS := $(or $(PYTHON),python3.13 python3.12 python3.11 python3)
@@ -29,7 +30,8 @@ NEEDED_AT_RUN := bokeh, control, daqp, jinja2, matplotlib, osqp, scipy.signal, y
     diagnostic_msgs.msg, geometry_msgs.msg, rosgraph_msgs.msg, sensor_msgs.msg, trajectory_msgs.msg
 
 help:
-	@echo 'make setup | fmu | demo | test | test-fast | mutants | lint | docs | bench | clean   (see docs/use/setup.md)'
+	@echo 'make setup | fmu | tune-extra | demo | test | test-fast | mutants | fuzz | faults | lint | docs | bench | soak | loaded-runs | sbom | release | site | clean' \
+	    '(see docs/use/setup.md)'
 
 setup: $(WORKSPACE_BUILT)
 
@@ -72,6 +74,9 @@ demo: setup
 # What runs a controller that is an FMU.
 fmu: setup .venv/.fmu
 
+# What `ddct tune` searches with.
+tune-extra: setup .venv/.tune
+
 # Both runs always take place. A package whose tests colcon did not find counts as a failure.
 TEST_FOLDERS := $(wildcard ddct_*/test tests)
 TOTAL := /pytest.xml: [1-9]/ { ran++ } \
@@ -79,11 +84,13 @@ TOTAL := /pytest.xml: [1-9]/ { ran++ } \
         $$2 - failed - $$8, failed, $$8 } \
     END { if (ran < folders) print "make: tests ran in " ran + 0 " of the folders: $(TEST_FOLDERS)"; \
         exit failed || ran < folders }
-test: fmu
+test: fmu tune-extra .venv/.site .venv/.test
 	@rm -rf build/*/pytest.xml; status=0; $(SOURCED) \
 	$(BIN)/colcon test --executor sequential --event-handlers console_cohesion+ \
-	    --return-code-on-test-failure --pytest-args ' -n2' ' --dist=loadfile' || status=1; \
-	$(BIN)/python -m pytest tests -n 2 --dist loadfile --junit-xml=build/tests/pytest.xml || status=1; \
+	    --return-code-on-test-failure --pytest-args ' -n2' ' --dist=loadfile' ' --no-loadscope-reorder' \
+	    || status=1; \
+	$(BIN)/python -m pytest tests -n 2 --dist loadfile --no-loadscope-reorder \
+	    --junit-xml=build/tests/pytest.xml || status=1; \
 	$(BIN)/colcon test-result --all | awk -v folders=$(words $(TEST_FOLDERS)) '$(TOTAL)' \
 	    || status=1; \
 	exit $$status
@@ -94,16 +101,31 @@ benchmark-rows: setup
 	@$(SOURCED) $(BIN)/python -m ddct_bringup.benchmark.release
 
 # Pure tests; the markers are described in pyproject.toml.
-test-fast: setup
+test-fast: setup .venv/.tune
 	@$(SOURCED) $(BIN)/python -m pytest -q -n 2 --dist loadfile \
 	    -m 'not (graph or browser or compiler or slow)' $(TEST_FOLDERS)
 
 # MUTANTS='--claim TEXT' or files of tests/mutants try only those.
-mutants: fmu
+mutants: fmu tune-extra .venv/.test
 	@$(SOURCED) $(BIN)/python tests/mutants/run.py $(MUTANTS)
 
-# Tables, charts and diagrams of the pages, minutes; KINDS='options plant' writes only those.
-docs: setup
+# Damaged inputs for every reader, minutes: SECONDS for each, first at random, then guided by what code they reach.
+# READERS='bag log' tries only those. An input that a reader fails on is kept in tests/fuzz/corpus, where the suite tries it.
+SECONDS := 20
+fuzz: fmu .venv/.fuzz
+	@$(SOURCED) export PYTHONPATH="$(CURDIR)/tests:$$PYTHONPATH"; status=0; \
+	$(BIN)/python -P -m fuzz --seconds $(SECONDS) $(READERS) || status=1; \
+	$(BIN)/python -P -m fuzz --seconds $(SECONDS) --guided $(READERS) || status=1; \
+	exit $$status
+
+# Every fault of the campaign on the real graph, half an hour: CASES='killed lockstep' tries only those with these words.
+# JSON=docs/examples/faults.json renews the records of docs/develop/faults.md, MISSING=1 adds those that it lacks; then make docs KINDS=faults.
+faults: setup
+	@$(SOURCED) PYTHONPATH="$(CURDIR)/tests:$$PYTHONPATH" $(BIN)/python -P -m faults.campaign \
+	    $(if $(JSON),--json '$(JSON)') $(if $(MISSING),--missing) $(CASES)
+
+# Tables, charts and diagrams of the pages, and the notebooks, minutes; KINDS='options plant' writes only those.
+docs: setup .venv/.test
 	@$(SOURCED) $(BIN)/python docs/generate.py $(KINDS)
 
 lint: $(VENV_MADE)
@@ -114,6 +136,10 @@ lint: $(VENV_MADE)
 	$(BIN)/python tests/mutants/run.py --check || status=1; \
 	exit $$status
 
+# What is installed, and what the wheels bundle, as CycloneDX JSON; needs no network.
+sbom: setup
+	@$(SOURCED) $(BIN)/python tests/release/sbom.py build/sbom.cdx.json
+
 # Added to the environment that is there; a second sync would break it.
 $(EXTRAS_INSTALLED): .venv/.%: requirements-%.txt $(VENV_MADE)
 	@$(BIN)/uv pip install --quiet --python $(BIN)/python --require-hashes -r $<
@@ -122,11 +148,31 @@ $(EXTRAS_INSTALLED): .venv/.%: requirements-%.txt $(VENV_MADE)
 # Ratios to references measured in turn: BASE=REV adds that commit, WHAT='graph suite' chooses by name.
 # A peer that cannot be installed is not measured.
 bench: setup
-	@$(MAKE) --no-print-directory --silent .venv/.bench \
-	    || echo 'make: without requirements-bench.txt its peers are not measured' >&2
+	@$(MAKE) --no-print-directory --silent .venv/.bench .venv/.test \
+	    || echo 'make: without requirements-bench.txt and -test.txt their peers are not measured' >&2
 	@$(SOURCED) PYTHONPATH="$(CURDIR)/tests:$$PYTHONPATH" $(BIN)/python -P -m bench $(WHAT) \
 	    $(if $(BASE),--base '$(BASE)') $(if $(ROUNDS),--rounds '$(ROUNDS)') \
 	    $(if $(JSON),--json '$(JSON)')
+
+# The graph in real time beside a bare chain, MINUTES for each of CONDITIONS (idle, busy, preferred); JSON=FILE is the record.
+MINUTES := 10
+soak: setup
+	@$(SOURCED) PYTHONPATH="$(CURDIR)/tests:$$PYTHONPATH" $(BIN)/python -P -m soak \
+	    --minutes $(MINUTES) $(if $(JSON),--json '$(JSON)') $(CONDITIONS)
+
+# Lock-step runs of the graph on busy cores, RUNS of them: each must have the hash of the headless loop.
+RUNS := 1000
+loaded-runs: setup
+	@$(SOURCED) PYTHONPATH="$(CURDIR)/tests:$$PYTHONPATH" $(BIN)/python -P -m soak.loaded_runs --runs $(RUNS)
+
+# sdists and wheels in dist/, once they have passed a trial in an empty environment without ROS.
+# MAINTAINER=name@domain is the address in their package.xml.
+release: setup
+	@PYTHONPATH=tests $(BIN)/python -P -m release --out dist $(if $(MAINTAINER),--maintainer '$(MAINTAINER)')
+
+# The documentation as one folder that opens from disk, with search and a reference: site/index.html.
+site: setup .venv/.site
+	@$(SOURCED) PYTHONPATH="$(CURDIR)/docs:$$PYTHONPATH" $(BIN)/python -P -m website
 
 # One numpy and one scipy for all three Pythons, so that figures do not depend on the Python.
 COMPILE := $(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes \
@@ -135,6 +181,10 @@ lock: $(VENV_MADE)
 	@$(COMPILE) requirements.in -o requirements.txt
 	@$(COMPILE) requirements-bench.in -c requirements.txt -o requirements-bench.txt
 	@$(COMPILE) requirements-fmu.in -c requirements.txt -o requirements-fmu.txt
+	@$(COMPILE) requirements-test.in -c requirements.txt -o requirements-test.txt
+	@$(COMPILE) requirements-tune.in -c requirements.txt -o requirements-tune.txt
+	@$(COMPILE) requirements-site.in -c requirements.txt -o requirements-site.txt
+	@$(COMPILE) requirements-fuzz.in -c requirements.txt -o requirements-fuzz.txt
 	@echo uv | $(COMPILE) - -o requirements-uv.txt
 
 clean:

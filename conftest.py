@@ -1,17 +1,21 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Keep the floors that tests compute out of the user's cache: one folder for the session."""
+"""Keep floors out of the user's cache, let Ctrl-C work, and let the slow files begin first."""
 
 import os
 import shutil
+import signal
 import tempfile
 from pathlib import Path
 
 import pytest
 
-from ddct_bringup.floor.cache import VARIABLE
-
+VARIABLE = 'DDCT_CACHE'
+"""That of `ddct_bringup.floor.cache`, whose import would delay the start of the workers."""
 _FOLDER = pytest.StashKey[Path]()
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    # So it is in the background of a shell, and the programs that tests start would inherit it.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -25,3 +29,14 @@ def pytest_unconfigure(config: pytest.Config) -> None:
     """Remove the folder."""
     if _FOLDER in config.stash:
         shutil.rmtree(config.stash[_FOLDER], ignore_errors=True)
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """
+    Put the files with slow tests first, so that none is left to one worker at the end.
+
+    That needs `--no-loadscope-reorder`: else pytest-xdist begins with the files of most tests.
+    """
+    slow = {item.path for item in items if item.get_closest_marker('slow')}
+    items.sort(key=lambda item: item.path not in slow)

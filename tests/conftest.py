@@ -25,9 +25,6 @@ MARKERS = dict.fromkeys(
 )
 MARKERS |= dict.fromkeys(('export', 'fmu'), 'compiler')
 """What the tests of a folder need, beyond Python."""
-if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
-    # So it is in the background of a shell, and the programs that tests start would inherit it.
-    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def pytest_itemcollected(item: pytest.Item) -> None:

@@ -17,6 +17,7 @@ from ddct_plant.base.timebase import time_of_step
 from ddct_plant.models.load import RoadLoad
 from ddct_plant.models.static_torque import StaticTorque
 from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.signals.handover_share import WHOLE, OnComingShare
 
 _FEEDBACK_OFF = Command(0.0)
 
@@ -25,7 +26,11 @@ class TorqueRequest(NamedTuple):
     """Clutch torque request for one period, before saturation, and its parts."""
 
     torque: float
-    """Sum of open loop and feedback in N m; the actuator cuts it off below zero."""
+    """
+    Sum of open loop and feedback in N m; the actuator cuts it off below zero.
+
+    In a shift it is corrected by what the handover knows of the on-coming clutch.
+    """
     status: Status
     """Pairs for `controller/status`: feedback, saturation, then the controller's own."""
     open_loop: float
@@ -84,13 +89,15 @@ class Architecture:
         self._torque_phase = torque_phase
         self._last_request = self._engine_deviation = 0.0
 
-    def update(self, measurement: Measurement, share: float = 1.0) -> TorqueRequest:
+    def update(self, measurement: Measurement, on_coming: OnComingShare = WHOLE) -> TorqueRequest:
         """
         Return the request for the period that starts at the measurement's step.
 
-        `share` is that of the open loop that the on-coming clutch of a shift carries; below 1
-        feedback is off.
+        `on_coming` has the share of the open loop that the on-coming clutch of a shift carries;
+        below 1 feedback is off. What is known of the clutch corrects the request, and the
+        controller has a clutch as requested.
         """
+        share = on_coming.share
         load_torque = self._load.torque(measurement.vehicle_speed, time_of_step(measurement.step))
         open_loop = share * self._open_loop(measurement, load_torque)
         on = measurement.step >= self._start_step and share == 1.0
@@ -108,11 +115,12 @@ class Architecture:
         torque = self._last_request = open_loop + command.clutch_torque
         if on and command.engine_torque is not None:
             self._engine_deviation = command.engine_torque - measurement.engine_torque
+        request = on_coming.request(torque)
         return TorqueRequest(
-            torque,
+            request,
             (
                 ('feedback', 'on' if on else 'held off'),
-                ('saturated', 'true' if torque < 0.0 else 'false'),
+                ('saturated', 'true' if request < 0.0 else 'false'),
                 *closing,
                 *command.status,
             ),

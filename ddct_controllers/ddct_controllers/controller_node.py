@@ -20,6 +20,7 @@ from ddct_plant.graph.node_reports import controller_info, timing_pairs
 from ddct_plant.graph.output import Output
 from ddct_plant.graph.settings import declare
 from ddct_plant.graph.spin import run_node
+from ddct_plant.signals.handover_share import WHOLE
 from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import (
     CONTROLLER_STATUS,
@@ -88,7 +89,7 @@ class ControllerNode(FollowerNode):
         """Return the request for the period of step k and its parts."""
         measurement = self._measure(step, inputs)
         started = time.perf_counter()
-        request = self._architecture.update(measurement, inputs.get(HANDOVER_SHARE.name, 1.0))
+        request = self._architecture.update(measurement, inputs.get(HANDOVER_SHARE.name, WHOLE))
         self._update_times_us.append(1e6 * (time.perf_counter() - started))
         if len(self._update_times_us) == TIMING_BATCH:
             self._publish_timing(step)

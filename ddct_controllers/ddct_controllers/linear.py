@@ -139,11 +139,10 @@ def linear_spec(
     name: str,
     controller: LinearSystem,
     discretisation: str | None = None,
-    computed_from: str = UNSTATED,
 ) -> ControllerSpec[Controller]:
     """Return the specification of a linear controller called `name`, without options."""
     return ControllerSpec(
-        name, lambda context: LinearController(controller, discretisation), {}, computed_from
+        name, lambda context: LinearController(controller, discretisation), {}, UNSTATED
     )
 
 

@@ -2,6 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Controllers that the thesis prints as transfer functions, in N m per rpm of slip error."""
 
+from dataclasses import replace
+
+from ddct_controllers.interface import THESIS, Controller, ControllerContext, ControllerSpec
+from ddct_controllers.linear import LinearController
+from ddct_plant.base.options import Option
 from ddct_plant.linear.lti import FactoredTransferFunction
 
 
@@ -64,3 +69,13 @@ H_INFINITY_CONTROLLERS = {
 
 PRINTED_CONTROLLERS = {**LOOP_SHAPING_CONTROLLERS, **H_INFINITY_CONTROLLERS}
 """Transfer functions of all printed controllers by registry name."""
+
+
+def printed_spec(name: str, g_c: FactoredTransferFunction) -> ControllerSpec[Controller]:
+    """Return the specification of a printed controller; its gain is its option."""
+
+    def make(context: ControllerContext) -> Controller:
+        return LinearController(replace(g_c, gain=context.gains['gain']))
+
+    options = {'gain': Option(g_c.gain, 'gain before the factors of the printed G_c(s)')}
+    return ControllerSpec(name, make, options, THESIS)

@@ -11,14 +11,14 @@ from ddct_controllers.factories import factory_spec
 from ddct_controllers.from_file.controller_file import is_controller_file
 from ddct_controllers.from_file.kinds import load_spec
 from ddct_controllers.interface import (
-    THESIS,
     Controller,
     ControllerContext,
     ControllerSpec,
 )
-from ddct_controllers.linear import PI, LinearController, linear_spec
+from ddct_controllers.least_jerk.controller import SPEC as LEAST_JERK
+from ddct_controllers.linear import PI, LinearController
 from ddct_controllers.mpc.variants import PREDICTIVE
-from ddct_controllers.printed import PRINTED_CONTROLLERS
+from ddct_controllers.printed import PRINTED_CONTROLLERS, printed_spec
 from ddct_controllers.state_of_art.controllers import STATE_OF_ART
 from ddct_controllers.synthesised import SYNTHESISED, synthesised_design
 from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError, ParameterError, require_name
@@ -43,13 +43,11 @@ def _synthesised(name: str, context: ControllerContext) -> Controller:
 
 _OWN: Mapping[str, ControllerSpec[Controller]] = {
     'pi': PI,
-    **{
-        name: linear_spec(name, g_c, computed_from=THESIS)
-        for name, g_c in PRINTED_CONTROLLERS.items()
-    },
+    **{name: printed_spec(name, g_c) for name, g_c in PRINTED_CONTROLLERS.items()},
     **{name: ControllerSpec(name, partial(_synthesised, name), {}) for name in SYNTHESISED},
     **PREDICTIVE,
     **STATE_OF_ART,
+    LEAST_JERK.name: LEAST_JERK,
 }
 """Specifications of the controllers in this package, by name."""
 
@@ -131,7 +129,7 @@ def controller_spec(chosen: Chosen) -> ControllerSpec[Controller]:
     if isinstance(chosen, ControllerSpec):
         return chosen
     if is_controller_file(chosen):
-        spec = load_spec(chosen)
+        spec = load_spec(chosen, controller_spec)
         if spec.name in controller_names():
             raise ParameterError(
                 f'the name {spec.name!r} is taken by another controller; change it in the file',

@@ -5,6 +5,7 @@
 import importlib.metadata
 from typing import Any, ClassVar
 
+import numpy as np
 import pytest
 from refusals import refused
 
@@ -82,10 +83,13 @@ def test_a_file_of_another_kind_leads_to_those_that_are_needed(name):
         make_controller(name, SETTINGS)
 
 
-def test_a_printed_controller_takes_no_gains():
-    settings = RunSettings(load_scenario('thesis', ['controllers.ls8={gain: 2.0}']))
-    with refused(ParameterError, key='controllers.ls8'):
-        make_controller('ls8', settings)
+def test_the_gain_of_a_printed_controller_is_its_only_option():
+    settings = RunSettings(load_scenario('thesis', ['controllers.ls8={gain: -0.028936}']))
+    twice, once = make_controller('ls8', settings), make_controller('ls8', SETTINGS)
+    assert np.allclose(twice.linear_model().c, 2.0 * once.linear_model().c, rtol=1e-12)
+    wrong = RunSettings(load_scenario('thesis', ['controllers.ls8={pole: 2.0}']))
+    with refused(ParameterError, key='controllers.ls8.pole'):
+        make_controller('ls8', wrong)
 
 
 def test_a_third_partys_controller_is_listed_and_built(add_entry_point):

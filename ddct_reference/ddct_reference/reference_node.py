@@ -11,6 +11,7 @@ from ddct_plant.graph.node_reports import reference_info
 from ddct_plant.graph.output import Output
 from ddct_plant.graph.settings import declare
 from ddct_plant.graph.spin import run_node
+from ddct_plant.signals.handover_share import WHOLE
 from ddct_plant.signals.topics import HANDOVER_SHARE, SLIP_REFERENCE, measurement_topics
 from ddct_reference.factory import make_reference
 
@@ -51,7 +52,7 @@ class ReferenceNode(FollowerNode):
             step,
             inputs[self._measured_topics.slip.name],
             shaft_speed,
-            inputs.get(HANDOVER_SHARE.name, 1.0),
+            inputs.get(HANDOVER_SHARE.name, WHOLE).share,
         )
         return (self._output.fill(stamp_ns, speeds, rates),)
 

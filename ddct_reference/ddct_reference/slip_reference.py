@@ -7,6 +7,7 @@ import sys
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 
+from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_reference.descent import Descent
 
@@ -40,10 +41,15 @@ class SlipReference(ABC):
 
         `slip_speed` is w_d in rad/s at step k, `shaft_speed` w_p, which only a reference that
         `follows_shaft` uses. The rate is that of the coming period. `share` is that of C_fOL on
-        the on-coming clutch of a shift: below 1 the reference equals w_d.
+        the on-coming clutch of a shift: below 1 the reference equals w_d. Raise DdctError where
+        it falls below 1 again.
         """
         if share < 1.0:
-            self.start_step = NEVER
+            if self.start_step != NEVER:
+                raise DdctError(
+                    f'handover share {share:g} at step {step}, after the share 1 of step '
+                    f'{self.start_step}: a handover keeps the share 1, mend its code'
+                )
         elif self.start_step == NEVER:
             self.start_step = step
         return self._ahead(step, slip_speed, shaft_speed)

@@ -5,6 +5,7 @@
 import numpy as np
 import pytest
 
+from ddct_plant.base.errors import DdctError
 from ddct_plant.scenario.control import REFERENCE_SHAPES
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import ARCHITECTURES, RunSettings
@@ -144,7 +145,7 @@ def test_the_stored_reference_does_not_depend_on_the_wear_of_the_run():
 
 @pytest.mark.parametrize('shape', ['ramp', 'engine_speed_target'])
 @pytest.mark.parametrize('preview_steps', [0, 3])
-def test_in_a_shift_it_follows_the_slip_until_the_share_is_one_and_again_below_it(
+def test_in_a_shift_it_follows_the_slip_until_the_share_is_one_and_refuses_a_lower_one_then(
     shape, preview_steps
 ):
     changes = {
@@ -162,4 +163,5 @@ def test_in_a_shift_it_follows_the_slip_until_the_share_is_one_and_again_below_i
     first, _ = reference.update(3, 52.5, 150.0)
     second, _ = reference.update(4, 99.0, 150.0)
     assert (first[0], second[0]) == pytest.approx((52.5, 51.5))
-    assert reference.update(5, 60.0, 150.0, 0.9)[0][0] == 60.0
+    with pytest.raises(DdctError, match='share 0.9 at step 5'):
+        reference.update(5, 60.0, 150.0, 0.9)

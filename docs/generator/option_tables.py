@@ -11,6 +11,7 @@ from ddct_controllers.mpc.program.settings import program_options
 from ddct_controllers.registry import controller_spec
 from ddct_plant.base.option import OPTION_HEADERS, option_rows
 from ddct_plant.base.options import OptionGroup, Options, group_of, options_of
+from ddct_plant.program.scheduling import Scheduling
 from ddct_plant.program.table import Table
 from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
@@ -63,6 +64,7 @@ _OF_EVERY_MPC = tuple(program_options(BASIS.settings()))
 TABLES = {
     'scenario': _scenario(),
     'run': _without_source(RunSettings),
+    'scheduling': _without_source(Scheduling),
     'measured_run': _without_source(MeasuredKeys, MeasuredKeys.prefix),
     'pi': _controllers('pi'),
     'mpc': _controllers('mpc1', 'mpc2', 'mpc3', 'mpc_preview'),
@@ -76,5 +78,6 @@ TABLES = {
     'torque_estimator': _controllers('torque_estimator'),
     'pedal_mpc': _controllers('pedal_mpc'),
     'lqi': _controllers('lqi'),
+    'least_jerk': _controllers('least_jerk'),
 }
 """Tables by their name in the marks of the pages."""

@@ -12,11 +12,12 @@ from ddct_bringup.processes.graph_nodes import NODE_PROGRAMS
 from ddct_plant.base.options import options_of
 from ddct_plant.graph.arguments import init_ros
 from ddct_plant.graph.node import GraphNode
+from ddct_plant.program.scheduling import Scheduling
 from ddct_plant.program.table import Table
 from ddct_plant.scenario.settings import RunSettings
 
 HEADERS = ('parameter', 'default', 'meaning')
-SHARED = {'scenario', *options_of(RunSettings)}
+SHARED = {'scenario', *options_of(RunSettings), *options_of(Scheduling)}
 """Names of the parameters that every node has."""
 OF_CONTROLLER = 'gains.'
 """Prefix of the parameters that differ with the chosen controller."""

@@ -21,6 +21,7 @@ from ddct_bringup.thesis.table_5_1 import ROW_OF, TABLE_METRICS
 from ddct_bringup.verdict.state import ENGAGED, INVALID, NOT_ENGAGED
 from ddct_controllers.registry import own_controller_names
 from ddct_plant.base.errors import DdctError
+from ddct_plant.program.table import UNDEFINED
 from generator.cells import fill_cells
 from generator.pages import DOCS, rows_of, shown_tables
 from generator.robustness_map import kept_maps
@@ -31,7 +32,10 @@ _WORN = '1.3'
 _SHORT = dict(zip(TABLE_METRICS, ('t_a', 'w_sr', 'a_x'), strict=True))
 _FORMS = dict(zip(TABLE_METRICS, ('.2f', '.2f', '.3f'), strict=True))
 _SHIFT_TIME, _JERK = 'shift time s', 'peak jerk m/s^3'
+_LEAST, _OVER = 'least jerk m/s^3', 'jerk /least'
 """Headings of columns of the tables of gear shifts."""
+_PAIR = 'torque_estimator'
+"""Controller that shifts fast without much jerk with the handover `model`."""
 _QUICK_S = 0.7
 """Shift time in s below which a shift counts as quick in a sentence."""
 _MARKED = re.compile(r'(<!-- result: (\w+) -->)(.*?)(<!-- end -->)', re.DOTALL)
@@ -151,9 +155,34 @@ def _shifts() -> dict[str, str]:
         'shifts_quick': ', '.join(map(_time_and_jerk, quick)) or 'none',
         'shifts_quick_flare': f'{max(float(row["flare rad/s"]) for row in quick):.1f}',
         'shifts_quick_tie_up': f'{max(float(row["tie-up J"]) for row in quick):.0f}',
+        'shifts_nearest': _nearest(engaged),
+        'shifts_quick_nearest': _nearest(quick),
+        **_pair(rows),
+        'shifts_hot_tie_up': _between(_tie_ups_of('upshift_hot'), '.0f'),
         'shifts_quickest': _time_and_jerk(min(of_thesis, key=lambda row: float(row[_SHIFT_TIME]))),
         'shifts_smoothest': _time_and_jerk(min(of_thesis, key=lambda row: float(row[_JERK]))),
     }
+
+
+def _tie_ups_of(scenario: str) -> list[float]:
+    """Return the tie-up work in J of the runs of a scenario in the table of shifts."""
+    table = shown_tables('shifts')['scenarios']
+    column = table.splitlines()[0][2:-2].split(' | ').index('tie-up J')
+    return [float(row[column]) for row in rows_of(table) if row[0].startswith(f'`{scenario}`')]
+
+
+def _nearest(rows: Sequence[Mapping[str, str]]) -> str:
+    """Return the controller whose peak jerk is nearest to the least, with the ratio."""
+    nearest = min(
+        (row for row in rows if row[_OVER] != UNDEFINED), key=lambda row: float(row[_OVER])
+    )
+    return f'`{nearest["controller"]}` ({nearest[_OVER]})'
+
+
+def _pair(rows: Sequence[Mapping[str, str]]) -> dict[str, str]:
+    """Return the peak jerk of the pair that shifts fast without much of it, beside the least."""
+    (row,) = (row for row in rows if row['controller'] == _PAIR)
+    return {'shifts_pair_jerk': row[_JERK], 'shifts_pair_least': row[_LEAST]}
 
 
 def _between(values: Sequence[float], form: str) -> str:

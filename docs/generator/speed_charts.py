@@ -31,7 +31,12 @@ MARKERS = 'os^Dvx'
 def draw_speed(machines: Sequence[MachineHistory], digest: str, picture: Path = PICTURE) -> None:
     """Draw the picture with the digest of the history in it."""
     with chart_style():
-        save_chart(speed_figure(machines), picture)
+        save_measured(speed_figure(machines), digest, picture)
+
+
+def save_measured(figure: Figure, digest: str, picture: Path) -> None:
+    """Save a chart of something measured, with the digest of its record in it."""
+    save_chart(figure, picture)
     with Image.open(picture) as image:
         metadata = PngInfo()
         metadata.add_text(DRAWN_FROM, digest)

@@ -39,8 +39,12 @@ from ddct_plant.linear.sampling import discretise_zoh
 from ddct_plant.program.table import Table
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
+from generator.benchmark_tables import benchmark_tables
+from generator.fault_tables import fault_tables
 from generator.feedforward_tables import feedforward_tables
+from generator.floor_tables import floor_tables
 from generator.launch_table import launch_table
+from generator.least_jerk_tables import least_jerk_tables
 from generator.option_tables import TABLES as OPTION_TABLES
 from generator.pages import DOCS
 from generator.robustness_charts import draw_robustness
@@ -49,9 +53,11 @@ from generator.robustness_tables import robustness_tables
 from generator.score_tables import score_tables
 from generator.sensor_table import sensor_table
 from generator.shift_tables import shift_tables
-from generator.speed_charts import draw_speed
+from generator.soak_tables import digest_of_record, record_of, soak_figure, soak_tables
+from generator.speed_charts import draw_speed, save_measured
 from generator.speed_history import digest_of, histories, speed_tables
 from generator.study_charts import save_study_chart
+from generator.tuning_tables import tuning_tables
 
 
 def calibration_tables() -> Mapping[str, Table]:
@@ -141,6 +147,23 @@ def speed_tables_and_charts() -> Mapping[str, Table]:
     return speed_tables(machines)
 
 
+def soak_tables_and_chart() -> Mapping[str, Table]:
+    """Return the tables of the record of `make soak`, and draw its chart."""
+    record = record_of()
+    with chart_style():
+        picture = DOCS / 'images' / 'real_time.png'
+        save_measured(soak_figure(record), digest_of_record(), picture)
+    return soak_tables(record)
+
+
+def tables_of_missing_messages() -> Mapping[str, Table]:
+    """Return what nodes do when a message is missing, with the times of the code."""
+    # Only here: the recorder needs ROS, which the other tables do without.
+    from generator.missing_tables import missing_tables
+
+    return missing_tables()
+
+
 def _drawn() -> dict[ThesisFigure, str]:
     with chart_style():
         return {figure: figure.draw()[1] for figure in collect_figures()}
@@ -158,12 +181,19 @@ TABLES: Mapping[str, Callable[[], Mapping[str, Table]]] = {
     'calibration': calibration_tables,
     'robustness': robustness_tables_and_charts,
     'launches': lambda: {'new_clutch': launch_table()},
+    'floors': floor_tables,
+    'least-jerk': least_jerk_tables,
+    'benchmark': benchmark_tables,
     'sensors': lambda: {'in_thesis': sensor_table()},
     'shifts': shift_tables,
+    'tuning': tuning_tables,
+    'faults': fault_tables,
     'numbers': lambda: page_tables(judge(thesis_numbers(), compute(SOURCES))),
     'figures': lambda: figure_tables(_drawn()),
     'studies': studies_and_charts,
     'speed': speed_tables_and_charts,
+    'soak': soak_tables_and_chart,
+    'missing': tables_of_missing_messages,
 }
 """
 Functions by kind, quick ones first; `studies` takes minutes, `numbers` and `figures` some ten

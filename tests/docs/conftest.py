@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
+from release.trial import example_of_readme
 from support.documented import ROOT, blocks
 
 from ddct_bringup.run import execution
@@ -62,6 +63,7 @@ def workplace(install: Path, tmp_path: Path) -> Path:
         shutil.copytree(ROOT / folder, tmp_path / folder)
     (tmp_path / 'install').symlink_to(install)
     install_example(tmp_path / 'site')
+    (tmp_path / 'mine.py').write_text(example_of_readme(), encoding='utf-8')
     shutil.copy(tmp_path / 'site' / 'my_package' / 'control.py', tmp_path / 'proportional.py')
     return tmp_path
 

@@ -24,11 +24,16 @@ NOT_RUN_HERE = {
     'ddct new-controller': 'takes a name that is free; tests/conformance runs it and what follows',
     'ddct compare --controllers pi,mine.yaml': 'needs an FMU; tests/fmu gives it one',
     'python -m pip': 'would change the environment of the tests',
+    'jupyter lab': 'serves until Ctrl-C; test_notebooks.py executes the notebooks',
     'python3 -m venv': 'tests/packaging/test_without_ros.py runs what pip would install',
     '. my-env': 'nothing is installed there by the tests',
     'ddct bringup --mode realtime --controller ls8 --live': (
         'waits for a viewer; tests/live gives it one'
     ),
+    'ddct bringup --mode realtime --realtime-priority': (
+        'needs a permission; tests/graph/test_scheduling_of_nodes.py does it where there is one'
+    ),
+    'make soak': 'takes minutes',
     'ddct live': 'serves until Ctrl-C; tests/live stops it',
     'ddct clutch --ros-args -p qos_overrides': (
         'serves until Ctrl-C; tests/graph/test_qos_overrides.py stops it'
@@ -39,6 +44,8 @@ NOT_RUN_HERE = {
     'python docs/robustness.py': 'takes the folders of those campaigns',
     'ddct benchmark': 'takes minutes; ddct_bringup/test/benchmark runs a small one',
     'ddct verify results/mine': 'needs that benchmark',
+    'ddct tune': 'takes minutes; ddct_bringup/test/tuning runs small ones',
+    'ddct compare --controllers pi,tuned/pi/best.yaml': 'needs that tuning',
     'ddct reproduce calibration': 'takes minutes; a test runs it with --quick',
 }
 """First words of commands and why no test runs them."""

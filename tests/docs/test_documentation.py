@@ -13,6 +13,8 @@ from support.documented import PAGES, ROOT, blocks, links
 from ddct_bringup.programs import compare
 from ddct_bringup.thesis.table_5_1 import PREDICTED, THESIS_TABLE
 
+pytestmark = pytest.mark.slow
+
 PREDICTED_ROWS = [row.controller for row in THESIS_TABLE if row.use == PREDICTED]
 WITHIN_S = 240.0
 CLICKS = 3

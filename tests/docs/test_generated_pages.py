@@ -2,19 +2,24 @@
 # SPDX-License-Identifier: Apache-2.0
 """What is generated in the pages is what the code gives; long tables have tests of their own."""
 
+import json
 import re
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 import pytest
 from generator.block_diagrams import drawings
+from generator.fault_tables import fault_tables
 from generator.launch_table import launch_table
 from generator.option_tables import TABLES as OPTION_TABLES
 from generator.pages import DOCS, as_markdown, fill_pages, marked_pages, shown_tables
 from generator.score_tables import score_tables
 from generator.sensor_table import sensor_table
 from generator.tables import TABLES as COMPUTED
+from generator.tuning_tables import FOLDER, tuning_tables
 
+from ddct_bringup.tuning.specification.spec import read_tuning_spec
+from ddct_controllers.registry import controller_spec
 from ddct_plant.base.errors import DdctError
 from ddct_plant.program.table import Table
 
@@ -87,6 +92,26 @@ def test_the_table_of_launches_is_what_the_scenarios_give() -> None:
 def test_the_table_of_sensors_is_what_its_runs_give() -> None:
     computed = as_markdown({'in_thesis': sensor_table()})
     assert shown_tables('sensors') == computed, 'run: make docs KINDS=sensors'
+
+
+def test_the_tables_of_the_fault_campaign_are_those_of_its_records() -> None:
+    assert shown_tables('faults') == as_markdown(fault_tables()), 'run: make docs KINDS=faults'
+
+
+def test_the_tables_of_tunings_are_those_of_the_kept_results() -> None:
+    assert shown_tables('tuning') == as_markdown(tuning_tables()), 'run: make docs KINDS=tuning'
+
+
+@pytest.mark.parametrize(('name', 'controller'), [('pi_launches', 'pi'), ('mpc_thesis', 'mpc3')])
+def test_the_kept_results_are_of_the_packaged_specifications(name: str, controller: str) -> None:
+    result = json.loads((FOLDER / f'{name}.json').read_text(encoding='utf-8'))
+    spec = read_tuning_spec(name, controller_spec(controller))
+    ranges = {each.name: (each.low, each.high) for each in spec.parameters}
+    kept = {key: (each['low'], each['high']) for key, each in result['parameters'].items()}
+    assert (result['controller'], result['trials'], kept) == (controller, spec.trials, ranges)
+    titles = [each['title'] for each in (*result['objectives'], *result['constraints'])]
+    limits = [each.title for each in spec.constraints]
+    assert titles == [*(each.title for each in spec.objectives), *limits]
 
 
 def test_the_diagrams_are_what_the_program_draws() -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from support.documented import PAGES, ROOT, links
 
-READ = (*PAGES, ROOT / 'CONTRIBUTING.md')
+READ = (*PAGES, ROOT / 'CONTRIBUTING.md', ROOT / 'QUALITY_DECLARATION.md', ROOT / 'SECURITY.md')
 FENCED = re.compile(r'^(```+).*?^\1$', re.DOTALL | re.MULTILINE)
 LINK = re.compile(r'\]\(([^)#\s]*)#([^)\s]+)\)')
 EACH_PAGE = pytest.mark.parametrize('page', READ, ids=lambda page: str(page.relative_to(ROOT)))

@@ -20,7 +20,7 @@ AGAIN = 'run: make docs KINDS=results'
 _TABLE = re.compile(r'<!-- ([\w-]+): \w+ -->\n(.*?)<!-- end -->', re.DOTALL)
 _GENERATED = re.compile(r'<!-- (?:cell|result): .+? -->.*?<!-- end -->|```.*?```|`.*?`', re.DOTALL)
 _NUMBER = re.compile(r'(?<![\w.])\d+\.\d+(?![\w.])')
-NO_RESULTS = {'options', 'parameters', 'plant', 'scores', 'speed'}
+NO_RESULTS = {'options', 'parameters', 'plant', 'scores', 'missing', 'soak', 'speed'}
 """Kinds of tables without results of runs or designs."""
 OF_THE_PLANT = {'0.145', '2.93', '5.344', '9.34', '82.23', '339.4'}
 """Numbers of the printed plant and its modes that sentences have too."""
@@ -53,6 +53,16 @@ def repeated_by_hand(text: str) -> list[str]:
         for number in _NUMBER.findall(sentences)
         if cells[number] == 1 and len(number.replace('.', '').lstrip('0')) > 2
     ]
+
+
+def test_no_line_begins_with_a_mark_as_that_would_end_the_paragraph() -> None:
+    begun = [
+        (page.name, line)
+        for page in PAGES
+        for line in page.read_text(encoding='utf-8').splitlines()
+        if re.match(r' *<!-- (result|cell): ', line)
+    ]
+    assert begun == []
 
 
 def test_every_result_in_a_sentence_is_what_its_tables_and_runs_give() -> None:

@@ -15,6 +15,8 @@ from documented_commands import (
 )
 from support.documented import Block
 
+pytestmark = pytest.mark.slow
+
 BLOCKS = [block for block in SHELL_BLOCKS if in_this_process(block) and not is_design(block)]
 
 

@@ -36,5 +36,3 @@ def test_every_state_and_every_word_on_limits_is_on_the_page() -> None:
     page = USE / 'metrics_and_symbols.md'
     assert named(page, 'States') == list(STATES)
     assert sorted(named(page, 'Words on limits')) == sorted(WORDS)
-    readme = (ROOT / 'README.md').read_text(encoding='utf-8')
-    assert all(f'`{word}`' in readme for word in (*STATES, *WORDS))

@@ -12,6 +12,8 @@ import pytest
 from documented_commands import NOT_RUN_HERE, SHELL_BLOCKS, commands_of, in_this_process, label
 from support.documented import Block
 
+pytestmark = pytest.mark.slow
+
 WITHIN_S = 240.0
 TOO_BUSY = 'steps held a torque for want of a reply'
 """What `bringup` says of a real-time run that does not count."""

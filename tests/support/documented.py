@@ -12,7 +12,9 @@ PAGES = (ROOT / 'README.md', *sorted((ROOT / 'docs').rglob('*.md')))
 _FENCE = re.compile(r'^(```+)(\w*)\n(.*?)^\1$', re.DOTALL | re.MULTILINE)
 _INDENTED = re.compile(r'(?:^    .*\n)+', re.MULTILINE)
 _LINK = re.compile(r'\[[^\]]*\]\(([^)#\s]+)[^)]*\)')
-_COMMAND = re.compile(r'^(ddct |ros2|make|\.|colcon|sudo|rosdep|python3?|cc|cp|git|pip) ?\S')
+_COMMAND = re.compile(
+    r'^(ddct |ros2|make|\.|colcon|sudo|rosdep|python3?|cc|cp|git|pip|jupyter) ?\S'
+)
 
 
 @dataclass(frozen=True)

@@ -12,14 +12,20 @@ import subprocess
 import sys
 import tempfile
 import zipfile
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
 
 import pytest
 
 SOURCE = Path(__file__).parents[1] / 'fmu' / 'pi_unit.c'
 EVENTS = 'PI_UNIT_EVENTS'
 """Environment variable with the file into which the FMU writes when it is made and freed."""
+LOAD_FAULT = 'PI_UNIT_LOAD_FAULT'
+"""Environment variable with the number of a fault that the FMU has when it is instantiated."""
+EXIT, ABORT, CRASH, LOOP = 5, 6, 7, 8
+"""Numbers of the faults that end, or stop, the process of the FMU."""
 VERSIONS = (2, 3)
 PLATFORMS = {2: 'linux64', 3: 'x86_64-linux'}
 CONTROLLER = """\
@@ -64,7 +70,7 @@ _VARIABLES = (
     _Variable('pid.Kp', 4, _REAL, 'parameter', '0.1', more='min="0"'),
     _Variable('pid.Ki', 5, _REAL, 'parameter', '0.1'),
     _Variable('fault_time', 6, _REAL, 'parameter', '0', 's'),
-    _Variable('fault', 20, _INT, 'parameter', '0', more='min="0" max="4"'),
+    _Variable('fault', 20, _INT, 'parameter', '0', more='min="0" max="8"'),
     _Variable('order', 21, _ENUM, 'parameter', '1', more='declaredType="Order"'),
     _Variable('inverted', 30, ('Boolean', 'Boolean'), 'parameter', 'false'),
     _Variable('remark', 31, ('String', 'String'), 'parameter', 'nothing'),
@@ -72,18 +78,26 @@ _VARIABLES = (
 
 
 def write_fmu(
-    path: Path, version: int, *changes: tuple[str, str], platform: str = '', interface: str = ''
+    path: Path,
+    version: int,
+    *changes: tuple[str, str],
+    platform: str = '',
+    interface: str = '',
+    more: Mapping[str, bytes] = MappingProxyType({}),
 ) -> Path:
     """
     Write the PI as an FMU, its description changed by (old, new) texts.
 
-    `platform` is the name of the binary's folder where it differs from this machine's.
+    `platform` is the name of the binary's folder where it differs from this machine's; `more` are
+    further files by name.
     """
-    text = _description(version, interface or 'CoSimulation')
+    text = description(version, interface or 'CoSimulation')
     for old, new in changes:
         assert old in text, old
         text = text.replace(old, new)
-    with zipfile.ZipFile(path, 'w') as file:
+    with zipfile.ZipFile(path, 'w', zipfile.ZIP_DEFLATED) as file:
+        for name, content in more.items():
+            file.writestr(name, content)
         file.writestr('modelDescription.xml', text)
         file.writestr('resources/read.me', 'nothing')
         file.writestr(f'binaries/{platform or PLATFORMS[version]}/pi.so', _binary(version))
@@ -103,7 +117,8 @@ def _binary(version: int) -> bytes:
         return output.read_bytes()
 
 
-def _description(version: int, interface: str) -> str:
+def description(version: int, interface: str = 'CoSimulation') -> str:
+    """Return the description of the FMU."""
     token = {2: 'guid', 3: 'instantiationToken'}[version]
     items = '<Item name="euler" value="1"/><Item name="trapezoidal" value="2"/>'
     order = {

@@ -3,6 +3,8 @@
 """
 The stable interface for scripts and notebooks: run, judge, tabulate and draw; docs/use/python.md.
 
+The shortest example::
+
     from ddct_bringup.api import run
     print(run('pi', wear_gain=0.7).metrics['engagement_time_s'])
 
@@ -10,10 +12,13 @@ Arguments have the names of the options of `ddct bringup`. An invalid one raises
 subclass `ParameterError`. Nothing is printed; scenario values that were adjusted give a warning.
 """
 
+from ddct_bringup.api.benchmarks import BenchmarkResults, benchmark
 from ddct_bringup.api.campaigns import CampaignResults, campaign, read_campaign, sweep
-from ddct_bringup.api.figures import figure
+from ddct_bringup.api.figures import ThesisDrawing, campaign_figure, figure, thesis_figure
 from ddct_bringup.api.result import Run, table
 from ddct_bringup.api.run_and_load import compare, load, run
+from ddct_bringup.api.thesis import ThesisNumbers, beside_thesis, table_5_2, thesis_numbers
+from ddct_bringup.api.tuning import TuningResults, tune
 from ddct_bringup.scores.document import read_scores
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_controllers.interface import Command, Controller, ControllerContext, Measurement
@@ -23,6 +28,7 @@ from ddct_plant.base.options import Option
 from ddct_plant.scenario.file import scenario_names
 
 __all__ = [
+    'BenchmarkResults',
     'CampaignResults',
     'Command',
     'Controller',
@@ -33,7 +39,13 @@ __all__ = [
     'ParameterError',
     'Run',
     'ScoredRun',
+    'ThesisDrawing',
+    'ThesisNumbers',
+    'TuningResults',
+    'benchmark',
+    'beside_thesis',
     'campaign',
+    'campaign_figure',
     'compare',
     'controller_names',
     'figure',
@@ -44,4 +56,8 @@ __all__ = [
     'scenario_names',
     'sweep',
     'table',
+    'table_5_2',
+    'thesis_figure',
+    'thesis_numbers',
+    'tune',
 ]

@@ -1,15 +1,22 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Draw runs as matplotlib figures."""
+"""Draw runs, campaigns and the figures of the thesis with matplotlib."""
 
 from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import NamedTuple
 
 from matplotlib.figure import Figure
 
 from ddct_bringup.api.result import Run, as_runs
+from ddct_bringup.campaign.manifest import Manifest
+from ddct_bringup.campaign_report.distributions_figure import distributions_figure
+from ddct_bringup.campaign_report.folder import scenario_of
+from ddct_bringup.campaign_report.reading import read_table, results_of
 from ddct_bringup.report.chart_signals import ChartSignal
 from ddct_bringup.report.charts import chart_signals_of
 from ddct_bringup.report.run_labels import common_conditions, run_labels, varied_conditions
+from ddct_bringup.reproduction.figures.command import collect_figures, require_drawn
 from ddct_controllers.design.drawing.chart_style import chart_style, controllers_text, headed
 from ddct_controllers.design.drawing.charts import label_time_axis
 from ddct_controllers.design.drawing.line_looks import looks_of
@@ -49,6 +56,40 @@ def figure(
                 axes.plot(each.trajectory.time_s, values, label=label, **look_style(look))
             label_time_axis(axes, f'{key}, {quantity.unit}', (0.0, end_s))
     return drawing
+
+
+def campaign_figure(folder: str | Path) -> Figure:
+    """
+    Return the distributions of a finished campaign: a chart per metric, a curve per controller.
+
+    A curve is the share of the valid runs that engaged with at most the value. Raise DdctError for
+    a folder without a finished campaign.
+    """
+    manifest = Manifest.read(Path(folder))
+    results = results_of(manifest, read_table(Path(folder), manifest))
+    with chart_style():
+        return distributions_figure(results, scenario_of(manifest))
+
+
+class ThesisDrawing(NamedTuple):
+    """One figure of the thesis, drawn again."""
+
+    figure: Figure
+    remark: str
+    """What agrees with the thesis and what does not, as in docs/thesis/figures.md."""
+
+
+def thesis_figure(number: str) -> ThesisDrawing:
+    """
+    Draw a figure of the thesis again, such as '2.26'.
+
+    Raise ParameterError for a figure that the thesis does not have, or that cannot be drawn.
+    """
+    require_drawn(number)
+    figures = {each.number: each for each in collect_figures()}
+    require_known([number], figures, 'figure of the thesis')
+    with chart_style():
+        return ThesisDrawing(*figures[number].draw())
 
 
 def _title(runs: Sequence[Run]) -> str:

@@ -12,15 +12,64 @@ from pathlib import Path
 
 import numpy as np
 import pyarrow as pa
+import pyarrow.compute as compute
 import pyarrow.parquet as parquet
 
+from ddct_plant.files.input_file import read_file
+
+MOST_BYTES = 4_000_000_000
+"""Largest size of a Parquet file in bytes; a million rows have a twentieth of that."""
+MOST_ROWS_PER_BYTE = 10
+"""Most rows per byte of a file; rows that differ in their index alone have one."""
+MOST_COLUMNS = 2000
+"""Most columns of a file."""
+MOST_TEXT_BYTES = 500_000_000
+"""Largest size of all texts of a file in bytes; a million rows have a fifth of that."""
 _NUMBERS = {pa.int64(): np.int64, pa.float64(): np.float64}
 
 
 def read_parquet(path: Path) -> pa.Table:
-    """Return all rows of a Parquet file; raise OSError or ArrowException where that fails."""
-    with parquet.ParquetFile(path) as file:
-        return file.read()
+    """
+    Return all rows of a Parquet file.
+
+    Raise OSError or ArrowException where that fails, ArrowException also for a small file that
+    would fill the memory: runs of equal values take next to no bytes in it.
+    """
+    data = read_file(path, MOST_BYTES)
+    try:
+        return _table_of(data)
+    except UnicodeDecodeError as error:
+        raise pa.ArrowInvalid(f'its names are no text ({error})') from error
+
+
+def _table_of(data: bytes) -> pa.Table:
+    with parquet.ParquetFile(pa.BufferReader(data)) as file:
+        rows, columns = file.metadata.num_rows, file.metadata.num_columns
+        if rows > MOST_ROWS_PER_BYTE * len(data) or columns > MOST_COLUMNS:
+            raise pa.ArrowInvalid(
+                f'{len(data)} bytes cannot have {rows} rows of {columns} columns'
+            )
+        texts = [field.name for field in file.schema_arrow if pa.types.is_string(field.type)]
+    # As dictionaries, texts take no more memory than they have in the file.
+    with parquet.ParquetFile(pa.BufferReader(data), read_dictionary=texts) as file:
+        return _without_dictionaries(file.read())
+
+
+def _without_dictionaries(table: pa.Table) -> pa.Table:
+    """Return a table with its texts in full; raise ArrowException where they are too large."""
+    size = 0
+    for place, field in enumerate(table.schema):
+        if not pa.types.is_dictionary(field.type):
+            continue
+        for chunk in table[place].chunks:
+            lengths = compute.binary_length(chunk.dictionary).take(chunk.indices)
+            size += compute.sum(lengths).as_py() or 0
+        if size > MOST_TEXT_BYTES:
+            raise pa.ArrowInvalid(f'its texts have more than {MOST_TEXT_BYTES} bytes')
+        chunks = [chunk.dictionary_decode() for chunk in table[place].chunks]
+        column = pa.chunked_array(chunks, field.type.value_type)
+        table = table.set_column(place, field.with_type(field.type.value_type), column)
+    return table
 
 
 def arrow_column(kind: pa.DataType, values: Sequence[object]) -> pa.Array:
@@ -36,7 +85,7 @@ def arrow_column(kind: pa.DataType, values: Sequence[object]) -> pa.Array:
         filled = [0 if value is None else value for value in values] if nulls else values
         buffers = [nulls, pa.py_buffer(np.array(filled, dtype=_NUMBERS[kind]))]
     elif pa.types.is_boolean(kind):
-        buffers = [nulls, _bits(np.array([bool(value) for value in values]))]
+        buffers = [nulls, _bits(np.array([bool(value) for value in values], dtype=bool))]
     else:
         texts = [_text(value).encode() for value in values]
         ends = np.cumsum([0, *map(len, texts)], dtype=np.int32)

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pyarrow as pa
+import pyarrow.compute as compute
 import pyarrow.parquet as parquet
 
 from ddct_bringup.campaign.arrow_columns import arrow_column, read_parquet
@@ -67,15 +68,6 @@ def shard_bytes(schema: pa.Schema, rows: Sequence[Row]) -> bytes:
     return sink.getvalue().to_pybytes()
 
 
-def contains_rows(path: Path, schema: pa.Schema, first: int, last: int) -> bool:
-    """Return whether a file is complete, with the rows `first` to `last`, `last` excluded."""
-    try:
-        table = read_parquet(path)
-    except (OSError, pa.ArrowException):
-        return False
-    return table.schema.equals(schema) and table[INDEX].to_pylist() == list(range(first, last))
-
-
 def merge(
     shards: Sequence[Path], shard_size: int, schema: pa.Schema, target: Path, advice: str
 ) -> None:
@@ -105,8 +97,9 @@ def merge(
 def read_row(results: Path, index: int) -> dict[str, Any]:
     """Return one row by column name; raise DdctError for a missing file or row."""
     try:
-        rows = parquet.read_table(results, filters=[(INDEX, '=', index)]).to_pylist()
-    except (OSError, pa.ArrowException) as error:
+        table = read_parquet(results)
+        rows = table.filter(compute.equal(table[INDEX], index)).to_pylist()
+    except (OSError, LookupError, ValueError, pa.ArrowException) as error:
         raise DdctError(f'{results}: cannot be read ({error}): finish the campaign') from error
     if not rows:
         raise DdctError(f'{results}: it has no row {index}')

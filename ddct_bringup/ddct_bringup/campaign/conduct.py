@@ -9,7 +9,7 @@ from itertools import islice
 from pathlib import Path
 
 from ddct_bringup.campaign.campaign import Campaign
-from ddct_bringup.campaign.columns import contains_rows, merge, schema_of
+from ddct_bringup.campaign.columns import merge, schema_of
 from ddct_bringup.campaign.executors import Workers, workers_of
 from ddct_bringup.campaign.manifest import MANIFEST, Manifest
 from ddct_bringup.campaign.shards import (
@@ -18,7 +18,13 @@ from ddct_bringup.campaign.shards import (
     each_controller_first,
     timed_shard,
 )
-from ddct_bringup.digests.writing import begin_campaign_digests, finish_campaign_digests
+from ddct_bringup.digests.digest_file import Digests
+from ddct_bringup.digests.files import altered_files, require_unaltered
+from ddct_bringup.digests.writing import (
+    begin_campaign_digests,
+    finish_campaign_digests,
+    keep_digests,
+)
 from ddct_bringup.run.output_folder import (
     MARKER,
     locked_folders,
@@ -28,10 +34,12 @@ from ddct_bringup.run.output_folder import (
 from ddct_bringup.verdict.limits import Limits
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.output_file import write_bytes
+from ddct_plant.program.command_line import complain
 from ddct_plant.program.progress import Progress
 
 RESULTS = 'results.parquet'
 SHARDS = 'shards'
+PROGRAM = 'ddct campaign'
 RESUME = 'what is done stays: go on with --resume'
 _AHEAD = 2
 """Number of shards queued per worker, so that none waits for the next."""
@@ -59,21 +67,34 @@ def carry_out(
     """
     with locked_folders(out), workers_of(workers, scheduler) as ready:
         manifest = _begin(campaign, limits, out, resume=resume, stopped=stopped)
-        begin_campaign_digests(out, one_machine=scheduler is None)
-        schema = schema_of(campaign.spec)
+        digests = begin_campaign_digests(out, SHARDS, one_machine=scheduler is None)
         shards = _shards(campaign, limits, manifest, out)
-        missing = {
-            file: job
-            for file, job in shards.items()
-            if not contains_rows(file, schema, job.first, job.last)
-        }
+        missing = {file: job for file, job in shards.items() if not _is_done(file, out, digests)}
         done = manifest.runs - sum(job.last - job.first for job in missing.values())
         progress = Progress('runs', manifest.runs, done=done)
         conduct = _Conduct(ready, progress, stopped, TimeLeft(campaign.cases))
         conduct.compute(missing, done)
+        require_unaltered(out, [file.relative_to(out).as_posix() for file in shards])
+        schema = schema_of(campaign.spec)
         merge([*shards], manifest.shard_size, schema, out / RESULTS, RESUME)
         finish_campaign_digests(out)
     return out / RESULTS
+
+
+def _is_done(file: Path, out: Path, digests: Digests) -> bool:
+    """
+    Return whether a shard was written before; report one that was altered since.
+
+    Its digest, kept when it was written, says that it has its rows: a campaign is resumed with the
+    same manifest only.
+    """
+    name = file.relative_to(out).as_posix()
+    if name not in digests.files or not file.exists():
+        return False
+    if altered_files(out, digests, [name]):
+        complain(PROGRAM, f'{file}: altered since it was computed: it is computed again')
+        return False
+    return True
 
 
 def _begin(
@@ -90,6 +111,7 @@ def _begin(
                 key='--resume',
             )
         known.require_same(manifest, out)
+        require_unaltered(out, [MANIFEST])
         return known
     if resume:
         raise DdctError('there is nothing to go on with: leave --resume out', place=out)
@@ -171,6 +193,7 @@ class _Conduct:
                 file = running.pop(future)
                 rows, seconds = _result(future, shards[file])
                 write_bytes(str(file), rows, RESUME)
+                keep_digests([file])
                 self.time_left.add(shards[file], seconds)
                 yield file
 

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Executors that compute shards: processes of this machine, or a Dask cluster."""
 
+import math
 import time
 from collections.abc import Iterator
 from concurrent.futures import Executor
@@ -14,6 +15,8 @@ CONNECT_S = 10.0
 """Longest time in s for the connection to a scheduler."""
 LOST_S = 30.0
 """Longest time in s without any worker in a cluster."""
+REFRESH_S = 1.0
+"""Time in s for which the list of workers serves: the scheduler computes it for each request."""
 
 
 class DaskWorkers:
@@ -37,12 +40,13 @@ class DaskWorkers:
             ) from error
         self._address = address
         self._lost_since: float | None = None
+        self._threads: list[int] = []
+        self._read_at = -math.inf
 
     @property
     def count(self) -> int:
         """Number of threads of all workers."""
-        workers = self._client.scheduler_info(n_workers=-1)['workers'].values()
-        return sum(worker['nthreads'] for worker in workers) or 1
+        return sum(self._threads_of_workers()) or 1
 
     def executor(self) -> Executor:
         """Return an executor of the cluster; the task of a failed worker goes to another one."""
@@ -52,13 +56,21 @@ class DaskWorkers:
         """Raise DdctError when the scheduler is gone, or has had no worker for `LOST_S`."""
         if self._client.status != 'running':
             raise DdctError(f'--scheduler {self._address}: the scheduler has gone')
-        if self._client.scheduler_info(n_workers=-1)['workers']:
+        if self._threads_of_workers():
             self._lost_since = None
             return
         now = time.monotonic()
         self._lost_since = now if self._lost_since is None else self._lost_since
         if now - self._lost_since > LOST_S:
             raise DdctError(f'--scheduler {self._address}: it has no worker: start one')
+
+    def _threads_of_workers(self) -> list[int]:
+        """Return the number of threads of each worker."""
+        now = time.monotonic()
+        if now - self._read_at >= REFRESH_S:
+            workers = self._client.scheduler_info(n_workers=-1)['workers'].values()
+            self._threads, self._read_at = [worker['nthreads'] for worker in workers], now
+        return self._threads
 
     def close(self) -> None:
         """Disconnect; the cluster drops tasks that have not started."""

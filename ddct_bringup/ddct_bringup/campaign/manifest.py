@@ -12,16 +12,26 @@ from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.scored import are_linear
 from ddct_bringup.campaign.spec import CampaignSpec, spec_of
 from ddct_bringup.digests.code import code_digest
+from ddct_bringup.digests.manifests import manifest_content
 from ddct_bringup.run.description import short_commit, source_commit
 from ddct_bringup.verdict.limits import Limits
 from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.files.input_file import parse_json, read_text_file, require_schema_version
 from ddct_plant.files.output_file import write_json
 from ddct_plant.program.command_line import package_version
 
 MANIFEST = 'manifest.json'
 SCHEMA_VERSION = 1
 """Schema version of the manifest."""
+MOST_ROWS = 10_000_000
+"""Most runs of a campaign that is read; a million take an hour on many cores."""
+_TEXTS = ('version', 'commit', 'code_digest', 'spec_digest', 'folder')
+"""Keys of texts."""
+_NUMBERS = (
+    ('root_seed', 0, 2**31 - 1),
+    ('runs', 1, MOST_ROWS),
+    ('shard_size', 1, MOST_ROWS),
+)
+"""Keys of whole numbers, with the least and the most."""
 _MOST_RUNS = 2000
 """Largest number of runs in a shard."""
 _LEAST_SHARDS = 50
@@ -78,19 +88,26 @@ class Manifest:
     @classmethod
     def read(cls, out: Path) -> 'Manifest':
         """Return the manifest in a campaign's folder; raise DdctError without a valid one."""
-        path = out / MANIFEST
-        try:
-            content = parse_json(read_text_file(path))
-            require_schema_version(content, SCHEMA_VERSION)
-            if not isinstance(content['spec'], dict):
-                raise ParameterError('its specification is no group of keys')
-            return cls(**{field.name: content[field.name] for field in fields(cls)})
-        except FileNotFoundError as error:
-            raise DdctError(
-                f'no {MANIFEST} in it: give the folder of a campaign', place=out
-            ) from error
-        except (OSError, ParameterError, LookupError, TypeError, AttributeError) as error:
-            raise DdctError(f'cannot be read ({error})', place=path) from error
+        with manifest_content(out / MANIFEST, SCHEMA_VERSION, 'campaign') as content:
+            manifest = cls(**{field.name: content[field.name] for field in fields(cls)})
+            manifest._require_types()
+            return manifest
+
+    def _require_types(self) -> None:
+        """Raise ParameterError for a value of another type, or beyond the bounds of campaigns."""
+        for name in _TEXTS:
+            if not isinstance(getattr(self, name), str):
+                raise ParameterError(f'{name} is no text', key=name)
+        for name, least, most in _NUMBERS:
+            value = getattr(self, name)
+            if type(value) is not int or not least <= value <= most:
+                raise ParameterError(f'{name} is {value!r}, not {least} to {most}', key=name)
+        _require_group('limits', self.limits)
+        _require_group('spec', self.spec)
+        _require_group('spec.grid', self.spec.get('grid') or {})
+        random = self.spec.get('random') or {}
+        _require_group('spec.random', random)
+        _require_group('spec.random.vary', random.get('vary') or {})
 
     def write(self, out: Path) -> None:
         """Write the manifest to a campaign's folder; raise DdctError when that fails."""
@@ -160,6 +177,11 @@ def _shard_size(campaign: Campaign) -> int:
     if size < MOST_RUNS and runs >= _MANY_LINEAR_RUNS and are_linear(campaign):
         return max(size, min(MOST_RUNS, -(-runs // _LEAST_LINEAR_SHARDS)))
     return size
+
+
+def _require_group(key: str, value: object) -> None:
+    if not isinstance(value, dict):
+        raise ParameterError(f'{key} is no group of keys', key=key)
 
 
 def _keys(group: Any) -> tuple[str, ...]:

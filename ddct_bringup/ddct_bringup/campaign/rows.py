@@ -16,7 +16,7 @@ from ddct_bringup.scores.csv_text import OVER_FLOOR
 from ddct_bringup.scores.floors import scores_with_ratios
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.scores.scoring import run_without_score, score_run
-from ddct_bringup.verdict.limits import Limits
+from ddct_bringup.verdict.limits import TRACTION, Limits
 from ddct_controllers.architecture import make_architecture
 from ddct_controllers.registry import Chosen, controller_label, make_controller
 from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError, ParameterError, printable
@@ -31,8 +31,9 @@ SERIAL, VECTORISED = 'serial', 'vectorised'
 METRIC_COLUMNS = tuple(metric.key for metric in (*TABLE_5_1, *FURTHER))
 """Metrics of `scores.json` that are equal in every repetition of a run."""
 CRITERION = 'criterion.'
-"""Prefix of the column of a criterion."""
-CRITERION_COLUMNS = tuple(f'{CRITERION}{each.key}' for each in CRITERIA)
+"""Prefix of the column of a criterion, and of the traction."""
+_JUDGED = (*(each.key for each in CRITERIA), TRACTION)
+CRITERION_COLUMNS = tuple(f'{CRITERION}{name}' for name in _JUDGED)
 
 
 def require_suitable(controller: Chosen, settings: RunSettings) -> None:
@@ -74,7 +75,7 @@ def scored_headless(
 
 def result_row(run: ScoredRun, varied: Mapping[str, Any], path: str = SERIAL) -> Row:
     """Return a run as one row: controller, path, varied values, metrics, verdict, criteria."""
-    criteria = run.verdict.values
+    judged = {each.name: each.value for each in run.verdict.results}
     return {
         CONTROLLER: run.controller,
         PATH: path,
@@ -84,6 +85,6 @@ def result_row(run: ScoredRun, varied: Mapping[str, Any], path: str = SERIAL) ->
         'reason': run.reason,
         'verdict_state': run.verdict.state,
         'verdict_limits': run.verdict.limits,
-        **{f'{CRITERION}{each.key}': criteria.get(each.key) for each in CRITERIA},
+        **{f'{CRITERION}{name}': judged.get(name) for name in _JUDGED},
         **{f'{OVER_FLOOR}{name}': ratio for name, ratio in run.over_floor.items()},
     }

@@ -2,11 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """A set of runs by index: every controller in every case, where a case is a point with samples."""
 
+import copy
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 from math import prod
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
@@ -143,6 +144,12 @@ class RunSet:
             return ImpossibleRow(index, controller, varied, given.get(SEED, 0), named)
         has_floors = self.has_floors(index % self.cases)
         return PlannedRow(index, controller, varied, settings, has_floors)
+
+    def with_common(self, values: Mapping[str, Any]) -> Self:
+        """Return the same runs with further values for all of them, by key."""
+        again = copy.copy(self)
+        again.common = {**self.common, **values}
+        return again
 
     def placed(self, key: str, value: Any) -> Any:
         """Return a value; if it names a file, its path."""

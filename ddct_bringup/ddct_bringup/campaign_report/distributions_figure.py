@@ -16,10 +16,8 @@ from ddct_bringup.verdict.state import ENGAGED, INVALID
 from ddct_controllers.design.drawing.chart_style import chart_style, save_chart
 from ddct_controllers.design.drawing.line_looks import looks_of
 from ddct_controllers.design.drawing.line_styles import LineStyle, look_style
-from ddct_plant.base.errors import ParameterError
 from ddct_plant.program.table import Quantity
 
-PICTURES = ('.png', '.svg')
 _DRAWN = (
     *(quantity.key for quantity in TABLE_5_1),
     *('slip_rmse_rpm', 'peak_jerk_m_s3', 'friction_energy_j'),
@@ -33,12 +31,6 @@ _MOST_TICKS = 5
 """Largest number of ticks of an x axis, so that the labels of large values do not overlap."""
 _MOST_STEPS = 500
 """Largest number of steps of a curve: more cannot be distinguished."""
-
-
-def require_picture(target: str) -> None:
-    """Raise ParameterError unless the extension of a file is that of a picture."""
-    if Path(target).suffix not in PICTURES:
-        raise ParameterError(f'--figure {target}: name a file that ends in .png or .svg')
 
 
 def write_distributions(results: Results, scenario: str, path: Path) -> None:

@@ -12,13 +12,17 @@ from ddct_bringup.campaign_report.summary_types import (
     QuantitySummary,
     Summary,
 )
-from ddct_bringup.metrics.catalogue import METRICS, TABLE_5_1
+from ddct_bringup.metrics.catalogue import METRICS, OF_SHIFT, TABLE_5_1
 from ddct_plant.base.errors import printable
 from ddct_plant.program.table import UNDEFINED, Table, print_tables, text_or_dash
 
 Entry = TypeVar('Entry')
-MAIN = (*(metric.key for metric in TABLE_5_1), 'peak_jerk_m_s3', 'friction_energy_j')
-"""Main metrics, whose differences and distributions are shown."""
+MAIN = (
+    *(metric.key for metric in TABLE_5_1),
+    *('peak_jerk_m_s3', 'friction_energy_j'),
+    *(metric.key for metric in OF_SHIFT if metric.column),
+)
+"""Main metrics, whose differences are shown, those of gear shifts where the runs have them."""
 
 
 def summary_tables(summary: Summary) -> list[Table]:

@@ -11,9 +11,10 @@ from ddct_bringup.campaign.arrow_columns import numpy_column, read_parquet
 from ddct_bringup.campaign.columns import COMPARED, CONTROLLER, INDEX, PATH, SCHEMA_VERSION
 from ddct_bringup.campaign.conduct import RESULTS
 from ddct_bringup.campaign.keys import COMMON, SCENARIO, option_of
-from ddct_bringup.campaign.manifest import Manifest
+from ddct_bringup.campaign.manifest import MANIFEST, Manifest
 from ddct_bringup.campaign.spec import CampaignSpec
 from ddct_bringup.campaign_report.results import OtherVersion, Results
+from ddct_bringup.digests.files import require_unaltered
 from ddct_bringup.scores.csv_text import OVER_FLOOR
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.files.input_file import SCHEMA_KEY, require_schema_version
@@ -34,9 +35,11 @@ def read_table(folder: Path, manifest: Manifest) -> pa.Table:
     rows, or without a required column.
     """
     path = folder / RESULTS
+    require_unaltered(folder, (MANIFEST, RESULTS))
     try:
         table = read_parquet(path)
         metadata = table.schema.metadata or {}
+        _require_single(table)
         require_schema_version(
             {SCHEMA_KEY: int(metadata.get(SCHEMA_KEY.encode(), 0))}, SCHEMA_VERSION
         )
@@ -49,6 +52,7 @@ def read_table(folder: Path, manifest: Manifest) -> pa.Table:
     except (OSError, ValueError, pa.ArrowException) as error:
         why = next(iter(str(error).splitlines()), type(error).__name__)
         raise DdctError(f'{path}: it is damaged ({why}): {_RESUME_ADVICE}') from error
+    _require_types(table, path)
     for name in (*REQUIRED, *manifest.grid, *manifest.random):
         if name not in table.column_names:
             raise DdctError(f'it has no column {name}: {_RESUME_ADVICE}', place=path)
@@ -58,6 +62,23 @@ def read_table(folder: Path, manifest: Manifest) -> pa.Table:
             f'{_RESUME_ADVICE}'
         )
     return table
+
+
+def _require_types(table: pa.Table, path: Path) -> None:
+    """Raise DdctError for a required column of another type."""
+    for name, kind in ((CONTROLLER, 'string'), ('verdict_state', 'string'), ('valid', 'bool')):
+        if name in table.column_names and str(table.schema.field(name).type) != kind:
+            raise DdctError(f'its column {name} is no {kind}: {_RESUME_ADVICE}', place=path)
+
+
+def _require_single(table: pa.Table) -> None:
+    """Raise ValueError for a column that is there twice, or is not of one of our types."""
+    for field in table.schema:
+        if table.column_names.count(field.name) > 1:
+            raise ValueError(f'the column {field.name} is there twice')
+        kinds = (pa.types.is_string, pa.types.is_boolean, pa.types.is_int64, pa.types.is_float64)
+        if not any(is_kind(field.type) for is_kind in kinds):
+            raise ValueError(f'the column {field.name} is of type {field.type}')
 
 
 def results_of(manifest: Manifest, table: pa.Table) -> Results:

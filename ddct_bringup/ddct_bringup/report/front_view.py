@@ -12,6 +12,7 @@ from ddct_bringup.floor.control_start import control_start
 from ddct_bringup.floor.dynamics.start import Start
 from ddct_bringup.floor.floor import floors_of_run
 from ddct_bringup.floor.front import least_values, usual_lock_times
+from ddct_bringup.floor.lock import counted_from
 from ddct_bringup.floor.values import OverFloor
 from ddct_bringup.report.page_parts import value_text
 from ddct_bringup.report.pareto import round_numbers
@@ -43,6 +44,8 @@ class FrontPoint:
 class FrontView:
     """Data of the drawing; places are shares of its width and height, 0 to 1."""
 
+    counted_from: str
+    """Words for the instant from which lock times count."""
     covers: str
     """Runs that the least is proven for."""
     line: tuple[tuple[float, float], ...]
@@ -79,7 +82,7 @@ def _drawn(settings: RunSettings, runs: Mapping[int, ScoredRecording]) -> FrontV
     start = control_start(settings)
     found = {index: over for index, run in runs.items() if (over := _over(settings, start, run))}
     limited = any(over.floor.certificate['covers'] == LIMITS for over in found.values())
-    usual = usual_lock_times(settings)
+    usual = usual_lock_times(settings, start)
     latest = max(over.floor.lock_time_s for over in found.values())
     times = np.round(np.linspace(usual[0], max(usual[-1], latest), _POINTS), 2).tolist()
     floors = [
@@ -93,6 +96,7 @@ def _drawn(settings: RunSettings, runs: Mapping[int, ScoredRecording]) -> FrontV
     across = (0.0, right + 0.05 * right)
     top = _HEADROOM * max(over.value for over in found.values())
     return FrontView(
+        counted_from=counted_from(settings),
         covers=floors[0].certificate['covers'],
         line=tuple(
             (_share(floor.lock_time_s, *across), min(_share(floor.least or 0.0, 0.0, top), 1.0))
@@ -103,7 +107,7 @@ def _drawn(settings: RunSettings, runs: Mapping[int, ScoredRecording]) -> FrontV
                 index,
                 _share(over.floor.lock_time_s, *across),
                 _share(over.value, 0.0, top),
-                f'lock {over.floor.lock_time_s:.3f} s after control start, '
+                f'lock {over.floor.lock_time_s:.3f} s after {counted_from(settings)}, '
                 f'{value_text(over.value)} m/s³, least {value_text(over.floor.least)} m/s³',
             )
             for index, over in found.items()

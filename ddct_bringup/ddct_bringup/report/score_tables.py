@@ -10,7 +10,8 @@ from ddct_bringup.report.page_parts import number_text, value_text
 from ddct_bringup.scores.scored_recording import ScoredRecording
 from ddct_bringup.thesis.predictions import predicted_range
 from ddct_bringup.thesis.table_5_1 import PREDICTED, ThesisRow, is_thesis_run, thesis_row
-from ddct_bringup.verdict.verdict import NO_LIMIT, TRACTION, CriterionResult
+from ddct_bringup.verdict.limits import TRACTION
+from ddct_bringup.verdict.verdict import NO_LIMIT, CriterionResult
 from ddct_plant.program.table import Quantity
 
 _NO_PHASES = 'a log does not tell when the plates were locked'

@@ -4,7 +4,7 @@
 
 import argparse
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import TextIO
 
 from ddct_controllers.interface import UNSTATED, Controller, ControllerSpec
@@ -16,8 +16,10 @@ from ddct_controllers.registry import (
 )
 from ddct_plant.base.errors import DdctError, ParameterError, printable
 from ddct_plant.base.option import OPTION_HEADERS, option_rows
-from ddct_plant.base.options import Option, options_of
+from ddct_plant.base.options import Option, options_of, require_known
+from ddct_plant.files.input_file import located
 from ddct_plant.models.clutch import CLUTCHES
+from ddct_plant.program.scheduling import Scheduling
 from ddct_plant.program.table import Table, print_table
 from ddct_plant.scenario.file import scenario_names
 from ddct_plant.scenario.options import add_option, add_scenario_options
@@ -49,6 +51,7 @@ def add_run_options(parser: argparse.ArgumentParser) -> None:
     """Add the options that describe a run and its process layout to a program's parser."""
     add_settings_options(parser)
     add_layout_options(parser)
+    add_scheduling_options(parser)
     parser.add_argument('--overwrite', action='store_true', help='replace an earlier result')
 
 
@@ -66,6 +69,28 @@ def add_layout_options(parser: argparse.ArgumentParser) -> None:
     layout.add_argument(
         '--headless', action='store_const', const='headless', dest='layout', help='no ROS graph'
     )
+
+
+def add_workers_option(parser: argparse._ActionsContainer) -> None:
+    """Add --workers to a parser or to a group of one."""
+    parser.add_argument(
+        '--workers', type=int, metavar='N', help='processes here; default: one for each core'
+    )
+
+
+def add_scheduling_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `Scheduling` to a program's parser; `scheduling_of` reads them."""
+    described = options_of(Scheduling)
+    add_option(parser, 'realtime_priority', described['realtime_priority'])
+    parser.add_argument(
+        '--lock-memory', action='store_true', help=described['lock_memory'].meaning
+    )
+    parser.add_argument('--cpus', default='', metavar='LIST', help=described['cpus'].meaning)
+
+
+def scheduling_of(options: argparse.Namespace) -> Scheduling:
+    """Return what the options of `add_scheduling_options` ask for; raise ParameterError."""
+    return Scheduling(**{name: getattr(options, name) for name in options_of(Scheduling)})
 
 
 def add_controllers_option(parser: argparse.ArgumentParser) -> None:
@@ -94,6 +119,22 @@ def controllers_of(text: str) -> list[str]:
         if labels.count(label) > 1:
             raise ParameterError(f'--controllers names {label} twice: name each once')
     return names
+
+
+def metrics_of(
+    option: str, text: str, known: Iterable[str], advice: str = 'name at least one'
+) -> list[str]:
+    """
+    Return the metrics in the value of an option, each once.
+
+    Raise ParameterError for none, and for an unknown one.
+    """
+    names = [name.strip() for name in text.split(',') if name.strip()]
+    with located(option):
+        require_known(names, known, 'metric')
+    if not names:
+        raise ParameterError(f'{option} is empty: {advice}', key=option)
+    return list(dict.fromkeys(names))
 
 
 def print_choices() -> None:

@@ -6,6 +6,7 @@ import errno
 import fcntl
 import os
 import shutil
+import stat
 import tempfile
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
@@ -97,7 +98,7 @@ def require_ours_or_empty(folder: Path) -> None:
         )
     if folder.exists() and not folder.is_dir():
         raise DdctError(f'{folder} is not a folder: choose another --out', key='--out')
-    if not is_empty(folder) and not (folder / MARKER).is_file():
+    if not is_empty(folder) and not is_ours(folder):
         raise DdctError(
             f'{folder} holds files that are not ours (no {MARKER} in it): choose another --out',
             key='--out',
@@ -115,7 +116,9 @@ def mark_folder(folder: Path) -> None:
     require_ours_or_empty(folder)
     with _io_errors_named(folder, 'written'):
         folder.mkdir(parents=True, exist_ok=True)
-        (folder / MARKER).write_text(_MARKER_TEXT, encoding='utf-8')
+        # Not over one that is there: as a link it may be any file.
+        with suppress(FileExistsError), (folder / MARKER).open('x', encoding='utf-8') as marker:
+            marker.write(_MARKER_TEXT)
 
 
 @contextmanager
@@ -156,9 +159,9 @@ def run_folder(out: Path, name: str, *, overwrite: bool) -> Iterator[StagedFolde
 
 
 def is_ours(folder: Path) -> bool:
-    """Return whether these programs wrote the folder."""
+    """Return whether these programs wrote the folder; they make no symbolic links."""
     with suppress(OSError):
-        return (folder / MARKER).is_file()
+        return stat.S_ISREG((folder / MARKER).lstat().st_mode)
     return False
 
 

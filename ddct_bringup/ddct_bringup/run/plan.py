@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Plan of one run: settings, controller, process layout and node parameters."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from ddct_bringup.processes.graph_nodes import ANSWER_TIMEOUT_S, nodes_of
@@ -13,6 +13,7 @@ from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import options_of
 from ddct_plant.files.yaml_text import dump_yaml
 from ddct_plant.graph.domain import require_domain, require_ros
+from ddct_plant.program.scheduling import Scheduling
 from ddct_plant.scenario.file import scenario_to_yaml
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.shift.roles import OFF_GOING
@@ -27,9 +28,13 @@ class RunPlan:
     """Controller to run; in a graph a name of the registry or the path of a controller file."""
     layout: str = 'processes'
     """Process layout: 'processes', one per node; 'single-process'; or 'headless', without ROS."""
+    scheduling: Scheduling = field(default_factory=Scheduling)
+    """How the kernel treats the nodes of a real-time run."""
 
     def __post_init__(self) -> None:
         """Raise DdctError for a plan that would fail in the graph."""
+        self.scheduling.require_mode(lockstep=self.settings.lockstep)
+        self.scheduling.require_permitted()
         make_architecture(self.settings, make_controller(self.controller, self.settings))
         if self.settings.shift:
             make_handover(self.settings)
@@ -72,8 +77,15 @@ class RunPlan:
                     name: option.kind(getattr(self.settings, name))
                     for name, option in options_of(RunSettings).items()
                 },
+                # Only these: an empty text is no value on the command line of a node.
+                **self.scheduling.chosen,
             },
-            'recorder': {'out': str(folder), 'name': self.name, 'two_input': two_input},
+            'recorder': {
+                **{'out': str(folder), 'name': self.name, 'two_input': two_input},
+                # No step waits for it, so it comes after the others; but before usual programs, as
+                # it has locks of the middleware for which the others wait.
+                'realtime_priority': max(self.scheduling.realtime_priority - 1, 0),
+            },
             'engine': {'two_input': two_input},
             'reference': {'preview_steps': controller.preview_steps},
             'controller': {'controller': self.controller},

@@ -6,6 +6,7 @@ import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
+from typing import Any
 
 from ddct_bringup.bag.realtime_facts import RealtimeCounts
 from ddct_bringup.bag.run_facts import RunFacts
@@ -13,12 +14,13 @@ from ddct_plant.base.errors import DdctError, printable, require_number
 from ddct_plant.files.input_file import parse_json, read_text_file
 from ddct_plant.files.output_file import write_json, write_text
 from ddct_plant.graph.node_names import name_in_graph
+from ddct_plant.ticks.durations import DurationHistogram, checked
 
 TIMING_FILE = 'timing.json'
 NOTE_FILE = 'failed_run.json'
 _ADVICE = 'choose another output folder'
-MOST_BYTES = 50_000_000
-"""Largest size of `timing.json` in bytes; an hour's run has an eighth of that."""
+MOST_BYTES = 10_000_000
+"""Largest size of `timing.json` in bytes; an hour's run has six tenths of that."""
 
 
 @dataclass
@@ -63,10 +65,13 @@ def read_timing(folder: Path) -> RunTiming | None:
                 name_in_graph(node): _count('safe_states', stamp)
                 for node, stamp in values.get('safe_states', {}).items()
             },
+            durations={
+                str(name): _histogram(each) for name, each in values.get('durations', {}).items()
+            },
             wall_time_s=_at_least_0('wall_time_s', values['wall_time_s']),
             steps=_count('steps', values['steps']),
         )
-    except (DdctError, LookupError, TypeError, AttributeError) as error:
+    except (DdctError, LookupError, TypeError, AttributeError, ValueError) as error:
         raise DdctError(
             f'not the timing of a run ({error!r}): delete it to score without', place=path
         ) from error
@@ -78,6 +83,11 @@ def _at_least_0(name: str, value: object) -> float:
 
 def _count(name: str, value: object) -> int:
     return int(_at_least_0(name, value))
+
+
+def _histogram(values: Mapping[str, Any]) -> DurationHistogram:
+    counts = {int(place): _count('counts', count) for place, count in values['counts'].items()}
+    return checked(_at_least_0('largest_us', values['largest_us']), counts)
 
 
 @dataclass(frozen=True)

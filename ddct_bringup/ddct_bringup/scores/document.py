@@ -10,8 +10,8 @@ from typing import Any
 from ddct_bringup.bag.run_facts import RunConditions, RunFacts
 from ddct_bringup.metrics.catalogue import CRITERIA, METRICS
 from ddct_bringup.scores.scored_run import ScoredRun
-from ddct_bringup.verdict.limits import Limits
-from ddct_bringup.verdict.verdict import NO_LIMIT, TRACTION, CriterionResult, Verdict
+from ddct_bringup.verdict.limits import TRACTION, Limits
+from ddct_bringup.verdict.verdict import NO_LIMIT, CriterionResult, Verdict
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.input_file import parse_json, read_text_file
 

@@ -6,7 +6,6 @@ import re
 from collections.abc import Mapping
 from pathlib import Path
 
-from ddct_bringup.bag.file.records import salvage_records
 from ddct_bringup.bag.recording import Recording
 from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.trajectory import Trajectory
@@ -23,6 +22,7 @@ from ddct_bringup.verdict.limits import Limits
 from ddct_bringup.verdict.shift_state import state_of_shift
 from ddct_bringup.verdict.state import INVALID, slip_state
 from ddct_bringup.verdict.verdict import UNREADABLE, Verdict, judged_traction, verdict_of
+from ddct_plant.bag_file.records import salvage_records
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import steps_in
 from ddct_plant.files.input_file import mcap_of

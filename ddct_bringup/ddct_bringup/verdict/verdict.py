@@ -7,15 +7,12 @@ from dataclasses import dataclass, replace
 
 from ddct_bringup.metrics.catalogue import CRITERIA
 from ddct_bringup.metrics.plant import JudgedPlant
-from ddct_bringup.verdict.limits import CONVENTION, Limit, Limits
+from ddct_bringup.verdict.limits import TRACTION, TRACTION_UNIT, Limit, Limits
 from ddct_bringup.verdict.state import INVALID, SUCCESSES
 
 WITHIN, BEYOND, NO_LIMIT, FAILED = 'within', 'beyond', 'no_limit', 'failed'
 UNAVOIDABLE = 'unavoidable'
 """State of a criterion whose limit no controller can keep in the scenario, and of such a run."""
-TRACTION = 'traction'
-"""Name of the traction, which is judged next to the criteria."""
-_TRACTION_UNIT = 'm/s^2'
 
 
 @dataclass(frozen=True)
@@ -161,12 +158,8 @@ def judged_traction(
     value: float | int | None, plant: JudgedPlant | None, limits: Limits
 ) -> CriterionResult:
     """Return the largest driving force over the mass, and its limit for the driven axle."""
-    rule = limits.traction
-    if rule is None or plant is None:
-        return criterion_result(TRACTION, _TRACTION_UNIT, value, None)
-    largest, reason = rule.limit(plant.gravity), f'{CONVENTION}: {rule.reason}'
-    limit = Limit(TRACTION, largest, _TRACTION_UNIT, None, reason, convention=True)
-    return criterion_result(TRACTION, _TRACTION_UNIT, value, limit)
+    limit = None if plant is None else limits.of_traction(plant.gravity)
+    return criterion_result(TRACTION, TRACTION_UNIT, value, limit)
 
 
 def criterion_result(

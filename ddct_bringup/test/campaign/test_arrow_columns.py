@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Columns of results are those of pyarrow, without the import of pandas."""
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -11,6 +12,7 @@ import pyarrow as pa
 import pyarrow.parquet as parquet
 import pytest
 
+from ddct_bringup.campaign import arrow_columns
 from ddct_bringup.campaign.arrow_columns import arrow_column, numpy_column, read_parquet
 
 COLUMNS: dict[str, tuple[pa.DataType, list[object]]] = {
@@ -73,3 +75,25 @@ def test_a_worker_writes_and_a_page_reads_rows_without_pandas_or_scipy_stats(
         [sys.executable, '-c', code, str(tmp_path / 'out')], capture_output=True, check=False
     )
     assert done.returncode == 0, done.stderr.decode()
+
+
+@pytest.mark.parametrize('kind', ['rows', 'texts'])
+def test_a_small_file_that_would_fill_the_memory_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, kind: str
+) -> None:
+    file = tmp_path / 'results.parquet'
+    if kind == 'rows':
+        table = pa.table({'index': pa.array(np.zeros(2_000_000, dtype=np.int64))})
+    else:
+        monkeypatch.setattr(arrow_columns, 'MOST_TEXT_BYTES', 1_000_000)
+        table = pa.table({'reason': ['x' * 10_000] * 1000})
+    parquet.write_table(table, file, compression='zstd')
+    assert file.stat().st_size < 50_000
+    with pytest.raises(pa.ArrowInvalid):
+        read_parquet(file)
+
+
+def test_a_pipe_is_not_waited_for(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / 'results.parquet')
+    with pytest.raises(OSError, match='it is a pipe'):
+        read_parquet(tmp_path / 'results.parquet')

@@ -163,10 +163,10 @@ def test_a_run_that_cannot_be_built_is_named_and_does_not_end_the_others() -> No
 
 
 def test_a_controller_that_does_not_suit_the_run_is_refused_before_the_first_run() -> None:
-    made = campaign(grid={'controllers.ls8.gain': [1.0, 2.0]})
+    made = campaign(grid={'controllers.ls8.width': [1.0, 2.0]})
     with pytest.raises(ParameterError) as caught:
         made.require_sound()
-    assert caught.value.key == 'controllers.ls8'
+    assert caught.value.key == 'controllers.ls8.width'
 
 
 def test_two_controllers_of_one_name_are_refused(tmp_path: Path) -> None:

@@ -3,12 +3,15 @@
 """A campaign gives the same bytes on any workers, and an interruption loses nothing."""
 
 import errno
+import json
+import shutil
 from collections.abc import Callable, Iterator
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
+import pyarrow as pa
 import pyarrow.parquet as parquet
 import pytest
 from in_this_process import OneByOne, in_this_process
@@ -22,6 +25,7 @@ from ddct_bringup.campaign.manifest import MANIFEST, Manifest
 from ddct_bringup.campaign.rows import METRIC_COLUMNS
 from ddct_bringup.campaign.scored import Scorer
 from ddct_bringup.campaign.spec import spec_of
+from ddct_bringup.campaign_report.reading import read_table
 from ddct_bringup.digests.code import code_digest
 from ddct_bringup.digests.digest_file import DIGESTS
 from ddct_bringup.run.output_folder import locked_folders
@@ -268,6 +272,84 @@ def test_a_damaged_manifest_is_reported(tmp_path: Path) -> None:
     (tmp_path / MANIFEST).write_text('{"schema_version": 1}', encoding='utf-8')
     with pytest.raises(DdctError, match='manifest.json: cannot be read'):
         Manifest.read(tmp_path)
+
+
+@pytest.mark.parametrize(
+    'changes',
+    [
+        {'runs': 10**12},
+        {'runs': '8'},
+        {'runs': True},
+        {'shard_size': 0},
+        {'root_seed': None},
+        {'commit': 3},
+        {'limits': []},
+        {'spec': 'text'},
+        {'spec': {'grid': [1]}},
+        {'spec': {'random': 'text'}},
+        {'spec': {'random': {'vary': ['gear']}}},
+    ],
+)
+def test_a_manifest_with_a_value_of_another_type_is_refused(
+    whole: Path, tmp_path: Path, changes: dict[str, Any]
+) -> None:
+    content = json.loads((whole / MANIFEST).read_text(encoding='utf-8'))
+    (tmp_path / MANIFEST).write_text(json.dumps({**content, **changes}), encoding='utf-8')
+    with refused(DdctError, place=MANIFEST):
+        Manifest.read(tmp_path)
+
+
+def flip(file: Path, place: int) -> None:
+    """Flip one bit of a file."""
+    data = bytearray(file.read_bytes())
+    data[place] ^= 4
+    file.write_bytes(data)
+
+
+def test_a_damaged_edited_or_lost_shard_is_computed_again(
+    whole: Path, tmp_path: Path, use, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = shutil.copytree(whole, tmp_path / 'out')
+    shard_files = sorted((out / SHARDS).iterdir())
+    flip(shard_files[1], 200)
+    table = parquet.read_table(shard_files[3])
+    edited = table.set_column(
+        table.column_names.index('wear_gain'), 'wear_gain', pa.array([0.75] * len(table))
+    )
+    parquet.write_table(edited.cast(table.schema), shard_files[3])
+    shard_files[5].unlink()
+    (out / RESULTS).unlink()
+    workers = use(OneByOne())
+    assert carried_out(out, resume=True) == (whole / RESULTS).read_bytes()
+    assert sorted(workers.computed) == [1, 3, 5]
+    errors = capsys.readouterr().err
+    assert all(str(shard_files[number]) in errors for number in (1, 3))
+
+
+def test_a_shard_without_its_digest_is_computed_again(whole: Path, tmp_path: Path, use) -> None:
+    out = shutil.copytree(whole, tmp_path / 'out')
+    (out / DIGESTS).unlink()
+    workers = use(OneByOne())
+    assert carried_out(out, resume=True) == (whole / RESULTS).read_bytes()
+    assert sorted(workers.computed) == list(range(RUNS))
+
+
+def test_a_manifest_that_was_edited_is_not_resumed(whole: Path, tmp_path: Path) -> None:
+    out = shutil.copytree(whole, tmp_path / 'out')
+    file = out / MANIFEST
+    file.write_text(file.read_text(encoding='utf-8') + ' ', encoding='utf-8')
+    with refused(DdctError, MANIFEST, place=MANIFEST):
+        carried_out(out, resume=True)
+
+
+@pytest.mark.parametrize('name', [MANIFEST, RESULTS])
+def test_altered_files_of_a_campaign_are_not_read(whole: Path, tmp_path: Path, name: str) -> None:
+    out = shutil.copytree(whole, tmp_path / 'out')
+    manifest = Manifest.read(out)
+    assert len(read_table(out, manifest)) == RUNS
+    flip(out / name, 300)
+    with refused(DdctError, name, place=name):
+        read_table(out, manifest)
 
 
 def test_what_is_linear_is_computed_at_once_and_all_else_step_by_step(

@@ -18,6 +18,8 @@ from ddct_bringup.campaign_report.reading import nominal_values
 from ddct_bringup.programs.campaign import main
 from ddct_bringup.verdict.state import ENGAGED, INVALID
 
+pytestmark = pytest.mark.slow
+
 RANDOM = {
     'controllers': ['pi'],
     'random': {

@@ -20,6 +20,8 @@ from ddct_controllers.design.drawing.line_looks import LineLook
 from ddct_plant.models.driveline import PhaseEvent
 from ddct_plant.signals.topics import SHIFT_TOPICS, all_signals
 
+pytestmark = pytest.mark.slow
+
 STEPS = 20
 RPM = 30.0 / math.pi
 WIDTHS = {

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from refusals import refused
 
-from ddct_bringup.run.output_folder import MARKER, StagedFolder
+from ddct_bringup.run.output_folder import MARKER, StagedFolder, is_ours, mark_folder
 from ddct_plant.base.errors import DdctError
 
 
@@ -63,3 +63,15 @@ def test_an_old_result_is_put_back_when_the_new_one_cannot_take_its_place(tmp_pa
         folder.commit()
     assert files(tmp_path / 'runs') == {'bag': 'old'}
     assert sorted(path.name for path in tmp_path.iterdir()) == ['gone', 'runs']
+
+
+def test_a_marker_that_is_a_link_is_neither_followed_nor_taken_for_ours(tmp_path: Path) -> None:
+    target = tmp_path / 'precious'
+    target.write_text('mine', encoding='utf-8')
+    folder = tmp_path / 'out'
+    folder.mkdir()
+    (folder / MARKER).symlink_to(target)
+    assert not is_ours(folder)
+    with refused(DdctError, '--out'):
+        mark_folder(folder)
+    assert target.read_text(encoding='utf-8') == 'mine'

@@ -11,6 +11,8 @@ from labelled_runs import labelled_runs
 
 from ddct_bringup.verdict.state import ENGAGED, NEARLY_ENGAGED
 
+pytestmark = pytest.mark.slow
+
 PAGE = Path(__file__).resolve().parents[3] / 'docs' / 'use' / 'verdict_by_eye.md'
 AGREED = {
     'development': (45, 47),

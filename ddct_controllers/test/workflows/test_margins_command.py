@@ -3,6 +3,8 @@
 """Program `design margins`: its table, its JSON, its page, and its errors."""
 
 import argparse
+import contextlib
+import io
 import json
 import re
 
@@ -13,6 +15,7 @@ from generator.pages import shown_tables
 from ddct_controllers.interface import Command, Controller
 from ddct_controllers.registry import controller_names
 from ddct_controllers.workflows import evidence, margins_command
+from ddct_controllers.workflows.evidence_types import ControllerEntry
 from ddct_plant.linear.lti import StateSpace
 from ddct_plant.program.command_line import run_program
 
@@ -57,6 +60,16 @@ def stub(monkeypatch):
     return install
 
 
+@pytest.fixture(scope='module')
+def hinf2() -> ControllerEntry:
+    """Return the evidence of Hinf2 in the thesis's scenario, as the program writes it."""
+    printed = io.StringIO()
+    with contextlib.redirect_stdout(printed):
+        assert run('--controller', 'hinf2', '--json', '-') == 0
+    (entry,) = json.loads(printed.getvalue())['controllers']
+    return entry
+
+
 def test_the_page_shows_what_the_program_prints(capsys):
     """The page agrees to one unit of the last digit; update it by: make docs KINDS=margins."""
     assert run() == 0
@@ -87,10 +100,9 @@ def test_json_has_nominal_wear_and_corner_quantities_and_is_alone(capsys):
     assert set(worst['factors']) == set(document['conditions']['corner_parameters'])
 
 
-def test_the_stable_wear_gains_end_where_the_loop_becomes_unstable(capsys):
+def test_the_stable_wear_gains_end_where_the_loop_becomes_unstable(hinf2, capsys):
     """For Hinf2 that is 1.45; printed with the table of a wear gain on either side."""
-    run('--controller', 'hinf2', '--json', '-')
-    stable = json.loads(capsys.readouterr().out)['controllers'][0]['stable_wear_gain']
+    stable = hinf2['stable_wear_gain']
     assert stable['lowest'] == 0.0
     assert stable['highest'] == pytest.approx(1.4505, abs=0.001)
     for factor, answer in ((0.999, 'yes'), (1.001, 'no')):
@@ -137,9 +149,10 @@ def test_the_actuator_is_the_scenarios(capsys):
 
 
 @pytest.mark.parametrize('delay_ms', [23, 25])
-def test_the_delay_margin_is_the_additional_delay_that_makes_a_loop_unstable(delay_ms, capsys):
-    run('--controller', 'hinf2', '--json', '-')
-    margin = json.loads(capsys.readouterr().out)['controllers'][0]['nominal']['delay_margin_s']
+def test_the_delay_margin_is_the_additional_delay_that_makes_a_loop_unstable(
+    delay_ms, hinf2, capsys
+):
+    margin = hinf2['nominal']['delay_margin_s']
     assert 0.013 < margin < 0.015
     run('--controller', 'hinf2', '--set', f'actuator.delay_s={1e-3 * delay_ms:g}')
     stable = 1e-3 * delay_ms < 0.01 + margin

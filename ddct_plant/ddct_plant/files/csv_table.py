@@ -5,6 +5,7 @@
 import csv
 import io
 import math
+import re
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,16 +21,31 @@ from ddct_plant.files.input_file import any_text, read_file
 COMMENT = '#'
 """First character of a comment line."""
 _DELIMITERS = ',;\t'
+_FORMULA = ('=', '@', '+', '-', '\t', '\r')
+"""First characters of a formula in a spreadsheet."""
+_NUMBER = re.compile(r'[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?')
+_BLOCK_CHARACTERS = 1_000_000
 _EMPTY = ('', 'nan')
 
 
 def csv_text(names: Iterable[str], rows: Iterable[Sequence[Any]]) -> str:
-    """Return the text of a CSV file with a header of names and the rows."""
+    """
+    Return the text of a CSV file with a header of names and the rows.
+
+    A text that a spreadsheet would compute gets an apostrophe before it.
+    """
     text = io.StringIO()
     writer = csv.writer(text, lineterminator='\n')
-    writer.writerow(names)
-    writer.writerows(rows)
+    writer.writerow([plain_cell(name) for name in names])
+    writer.writerows([plain_cell(cell) for cell in row] for row in rows)
     return text.getvalue()
+
+
+def plain_cell(cell: Any) -> Any:
+    """Return a cell that a spreadsheet takes for text or a number, and never for a formula."""
+    if not isinstance(cell, str) or not cell.startswith(_FORMULA) or _NUMBER.fullmatch(cell):
+        return cell
+    return f"'{cell}"
 
 
 @dataclass(frozen=True)
@@ -64,32 +80,49 @@ def read_csv(
     decimal mark. Columns in `date_times` have dates with times, which become s since the first
     row. Raise ParameterError that names the file, and line and column where possible.
     """
-    rows = _rows(_text(path, most_bytes))
-    _, header = next(rows, (0, []))
+    blocks = _blocks(path, _text(path, most_bytes))
+    _, (header,) = next(blocks, ([0], [[]]))
     if not header:
         raise ParameterError('it is empty: give a header and rows of numbers', place=path)
     places = {name: _column(path, header, name) for name in names}
-    cells: dict[str, list[Any]] = {name: [] for name in places}
+    parts: dict[str, list[np.ndarray]] = {name: [] for name in places}
+    instants: dict[str, list[Instant | None]] = {name: [] for name in date_times}
     lines: list[int] = []
-    for line, row in rows:
-        if len(lines) == most_rows:
-            raise ParameterError(
-                f'more than {most_rows} rows: give fewer', place=f'{path}: line {line}'
-            )
-        if len(row) != len(header):
-            raise ParameterError(
-                f'{len(row)} cells, while the header has {len(header)}: mend the row',
-                place=f'{path}: line {line}',
-            )
-        lines.append(line)
+    for numbers, rows in blocks:
+        _require_rows(path, numbers, rows, len(header), most_rows - len(lines))
+        lines += numbers
+        columns = list(zip(*rows, strict=True))
         for name, place in places.items():
-            read = _instant if name in date_times else _number
-            cells[name].append(read(path, line, name, row[place]))
+            if name in instants:
+                found = zip(numbers, columns[place], strict=True)
+                instants[name] += [_instant(path, line, name, cell) for line, cell in found]
+            else:
+                parts[name].append(_numbers(path, numbers, name, columns[place]))
     if not lines:
         raise ParameterError('no row of numbers below the header: give at least one', place=path)
-    for name in cells.keys() & set(date_times):
-        cells[name] = _seconds(path, lines, name, cells[name])
-    return CsvTable(path, np.array(lines), {name: np.array(each) for name, each in cells.items()})
+    values = {
+        name: np.array(_seconds(path, lines, name, instants[name]))
+        if name in instants
+        else np.concatenate(parts[name])
+        for name in places
+    }
+    return CsvTable(path, np.array(lines), values)
+
+
+def _require_rows(
+    path: Path, numbers: Sequence[int], rows: Sequence[Sequence[str]], width: int, most: int
+) -> None:
+    """Raise ParameterError for more than `most` rows, or one of another width than the header."""
+    if len(rows) > most:
+        raise ParameterError(
+            'it has too many rows: give fewer', place=f'{path}: line {numbers[most]}'
+        )
+    for line, row in zip(numbers, rows, strict=True):
+        if len(row) != width:
+            raise ParameterError(
+                f'{len(row)} cells, while the header has {width}: mend the row',
+                place=f'{path}: line {line}',
+            )
 
 
 def _text(path: Path, most_bytes: int) -> str:
@@ -101,18 +134,52 @@ def _text(path: Path, most_bytes: int) -> str:
         raise error.at(path) from error
 
 
-def _rows(text: str) -> Iterator[tuple[int, list[str]]]:
-    """Yield line number and cells of each row, decimal commas as dots; the header first."""
+def _blocks(path: Path, text: str) -> Iterator[tuple[list[int], list[list[str]]]]:
+    """
+    Yield line numbers and cells of many rows at once, decimal commas as dots.
+
+    The first block is the header alone.
+    """
     delimiter = ''
-    for line, content in enumerate(text.splitlines(), 1):
-        if not content.strip() or content.lstrip().startswith(COMMENT):
-            continue
-        first = not delimiter
-        delimiter = delimiter or max(_DELIMITERS, key=content.count)
-        cells = [cell.strip() for cell in next(csv.reader([content], delimiter=delimiter))]
-        if delimiter != ',' and not first:
-            cells = [cell.replace(',', '.') for cell in cells]
-        yield line, cells
+    for number, content in _lines(text):
+        kept = [
+            (line, each)
+            for line, each in enumerate(content, number)
+            if each.strip() and not each.lstrip().startswith(COMMENT)
+        ]
+        if kept and not delimiter:
+            line, first = kept.pop(0)
+            delimiter = max(_DELIMITERS, key=first.count)
+            yield [line], [_cells(path, line, first, delimiter)]
+        if kept:
+            decimal_comma = delimiter != ','
+            rows = [_cells(path, line, each, delimiter, decimal_comma) for line, each in kept]
+            yield [line for line, _ in kept], rows
+
+
+def _lines(text: str) -> Iterator[tuple[int, list[str]]]:
+    """Yield blocks of lines with the number of the first of each: all lines fill the memory."""
+    start, number = 0, 1
+    while start < len(text):
+        end = text.find('\n', start + _BLOCK_CHARACTERS) + 1 or len(text)
+        lines = text[start:end].splitlines()
+        yield number, lines
+        start, number = end, number + len(lines)
+
+
+def _cells(
+    path: Path, line: int, text: str, delimiter: str, decimal_comma: bool = False
+) -> list[str]:
+    if '"' not in text:
+        cells = (text.replace(',', '.') if decimal_comma else text).split(delimiter)
+        return [cell.strip() for cell in cells]
+    try:
+        cells = next(csv.reader([text], delimiter=delimiter))
+    except csv.Error as error:
+        raise ParameterError(
+            f'it is no row of CSV ({error})', place=f'{path}: line {line}'
+        ) from error
+    return [cell.strip().replace(',', '.') if decimal_comma else cell.strip() for cell in cells]
 
 
 def _column(path: Path, header: list[str], name: str) -> int:
@@ -147,6 +214,18 @@ def _seconds(
                 place=_place(path, line, column),
             )
     return seconds_since_first(instants)
+
+
+def _numbers(path: Path, lines: Sequence[int], column: str, cells: Sequence[str]) -> np.ndarray:
+    """Return the numbers in cells, (n,), NaN for an empty one."""
+    try:
+        numbers = np.array([float(cell) for cell in cells])
+        if np.isfinite(numbers).all():
+            return numbers
+    except ValueError:
+        pass
+    found = zip(lines, cells, strict=True)
+    return np.array([_number(path, line, column, cell) for line, cell in found])
 
 
 def _number(path: Path, line: int, column: str, cell: str) -> float:

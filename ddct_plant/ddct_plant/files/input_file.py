@@ -15,6 +15,8 @@ import re
 import stat
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from functools import partial
+from itertools import islice
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -22,6 +24,7 @@ from ddct_plant.base.errors import DdctError, ParameterError
 
 MOST_TEXT_BYTES = 1_000_000
 """Largest size in bytes of a scenario, controller or page: hundreds of times the usual one."""
+_BLOCK_BYTES = 1_000_000
 _KINDS = {
     stat.S_IFDIR: 'a folder',
     stat.S_IFIFO: 'a pipe',
@@ -52,8 +55,10 @@ def read_file(path: Path, most_bytes: int) -> bytes:
         what = _KINDS.get(kind, 'no file')
         raise OSError(errno.EINVAL, f'it is {what}: give a regular file', str(path))
     with os.fdopen(descriptor, 'rb') as file:
-        # Some files of the system have a size of 0 and are not empty.
-        data = file.read(most_bytes + 1) if status.st_size <= most_bytes else b''
+        # In blocks, as some files of the system have a size of 0 and are not empty.
+        blocks = iter(partial(file.read, _BLOCK_BYTES), b'')
+        most_blocks = most_bytes // _BLOCK_BYTES + 1 if status.st_size <= most_bytes else 0
+        data = b''.join(islice(blocks, most_blocks))
     if max(len(data), status.st_size) > most_bytes:
         raise OSError(errno.EFBIG, f'it is larger than {most_bytes} bytes', str(path))
     return data

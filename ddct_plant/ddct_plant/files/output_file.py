@@ -9,11 +9,12 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from ddct_plant.base.errors import DdctError
+from ddct_plant.base.errors import DdctError, ParameterError
 
 STDOUT = '-'
 """File name for standard output."""
 _ADVICE = 'give another file'
+_PICTURES = ('.png', '.svg')
 
 
 def require_place(option: str, target: str | None) -> None:
@@ -28,6 +29,15 @@ def require_place(option: str, target: str | None) -> None:
     replaced = path.is_file() or not path.exists()
     if not os.access(path.parent if replaced else path, os.W_OK):
         raise DdctError(f'{option} {target}: cannot be written: choose another place', key=option)
+
+
+def require_picture(option: str, target: str | None) -> None:
+    """Raise DdctError, before long work, where no picture can be written to `target`."""
+    if target and Path(target).suffix not in _PICTURES:
+        raise ParameterError(
+            f'{option} {target}: name a file that ends in .png or .svg', key=option
+        )
+    require_place(option, target)
 
 
 def require_one_for_stdout(json_target: str | None, csv_target: str | None) -> None:

@@ -85,7 +85,7 @@ def require_capacities(element: int, kinetic: Values, static: Values) -> None:
             )
 
 
-class Layout:
+class IntervalLayout:
     """
     Positions of inputs u (m) and capacities c (N) of an interval, in a flat list of each.
 
@@ -134,7 +134,9 @@ class Layout:
 class Forcing:
     """Inputs w = [u, c] over an interval, for any mode."""
 
-    def __init__(self, layout: Layout, inputs: Values, kinetic: Values, static: Values) -> None:
+    def __init__(
+        self, layout: IntervalLayout, inputs: Values, kinetic: Values, static: Values
+    ) -> None:
         """Use the flat values of u and of both kinds of capacities."""
         self.layout = layout
         self._inputs, self._kinetic, self._static = inputs, kinetic, static

@@ -11,7 +11,13 @@ from math import isfinite
 import numpy as np
 
 from ddct_plant.base.errors import DdctError, ParameterError, require_number
-from ddct_plant.hybrid.friction_system import Forcing, FrictionSystem, Layout, Signs, Values
+from ddct_plant.hybrid.friction_system import (
+    Forcing,
+    FrictionSystem,
+    IntervalLayout,
+    Signs,
+    Values,
+)
 from ddct_plant.hybrid.interval_map import Event, Interval, IntervalMap
 from ddct_plant.hybrid.mode_choice import choose_mode
 from ddct_plant.hybrid.mode_flow import Course, ModeFlow
@@ -45,7 +51,7 @@ class HybridIntegrator:
         self.system = system
         self.piece_s = require_number('piece_s', piece_s, above=0.0)
         count = int(require_number('pieces', pieces, at_least=1))
-        self._layout = Layout(system.b.shape[1], system.elements, count, held)
+        self._layout = IntervalLayout(system.b.shape[1], system.elements, count, held)
         # A third faster than numpy, which inspects every value before it makes an array.
         self._pack = struct.Struct(f'{len(system.a) + self._layout.width}d').pack
         modes = product((-1, 0, 1), repeat=system.elements)

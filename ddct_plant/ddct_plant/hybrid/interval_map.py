@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ddct_plant.hybrid.friction_system import Layout, Signs, Values
+from ddct_plant.hybrid.friction_system import IntervalLayout, Signs, Values
 from ddct_plant.hybrid.mode_flow import ModeFlow
 from ddct_plant.hybrid.polynomials import linear_weights
 
@@ -52,7 +52,7 @@ class Interval:
 
 class IntervalMap:
     """
-    Linear map of one mode over an interval, from v = [x, *u, *c] (see `Layout`) to its end.
+    Linear map of one mode over an interval from v = [x, *u, *c], see `IntervalLayout`, to its end.
 
     Between two nodes a guard's Bernstein coefficients may be below the straight line. This
     shortfall is a matrix times v. Its singular value decomposition reduces it to few numbers
@@ -60,7 +60,7 @@ class IntervalMap:
     than the sum of |z|.
     """
 
-    def __init__(self, flow: ModeFlow, piece_s: float, layout: Layout) -> None:
+    def __init__(self, flow: ModeFlow, piece_s: float, layout: IntervalLayout) -> None:
         self._pieces, self._states, self._signs = layout.pieces, flow.states, flow.signs
         starts = _piece_starts(flow, layout)
         ends = flow.end @ starts
@@ -137,7 +137,7 @@ def _product(matrix: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
     return lambda v: np.concatenate([block.dot(v) for block in blocks])
 
 
-def _piece_starts(flow: ModeFlow, layout: Layout) -> np.ndarray:
+def _piece_starts(flow: ModeFlow, layout: IntervalLayout) -> np.ndarray:
     """Return the linear maps (P, y, v) from v to y at the start of each piece."""
     states, inputs = flow.states, flow.inputs
     starts = np.zeros((layout.pieces, states + 2 * inputs, states + layout.width))

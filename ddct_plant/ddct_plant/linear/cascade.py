@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ddct_plant.base.errors import ParameterError
+from ddct_plant.linear.assignment import least_cost_columns
 
 Factor = float | tuple[float, float]
 """Factor of a transfer function: a number a is (s + a), a pair (b, c) is (s^2 + b s + c)."""
@@ -69,25 +70,17 @@ def _frequency(section: _Polynomial) -> float:
 def _paired(
     zeros: Sequence[_Polynomial], poles: Sequence[_Polynomial]
 ) -> list[tuple[_Polynomial, _Polynomial]]:
-    if not zeros:
-        return [((1.0,), pole) for pole in poles]
-    # Only here: nodes without such a transfer function need not wait for this slow import.
-    from scipy.optimize import linear_sum_assignment
-
     forbidden = 1e6
-    distance = np.array(
+    distances = [
         [
-            [
-                abs(math.log(_frequency(zero) / _frequency(pole)))
-                if len(zero) <= len(pole)
-                else forbidden
-                for pole in poles
-            ]
-            for zero in zeros
+            abs(math.log(_frequency(zero) / _frequency(pole)))
+            if len(zero) <= len(pole)
+            else forbidden
+            for pole in poles
         ]
-    ).reshape(len(zeros), len(poles))
-    rows, columns = linear_sum_assignment(distance)
-    chosen = {column: zeros[row] for row, column in zip(rows, columns, strict=True)}
+        for zero in zeros
+    ]
+    chosen = dict(zip(least_cost_columns(distances), zeros, strict=True))
     return [(chosen.get(index, (1.0,)), pole) for index, pole in enumerate(poles)]
 
 

@@ -2,17 +2,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """Signals of a recorded bag as a car's own sensors would measure them."""
 
+import math
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from mcap.exceptions import McapError
-from mcap.reader import make_reader
-from mcap_ros2.decoder import DecoderFactory
 
+from ddct_plant.bag_file.decoding import decoded_messages
+from ddct_plant.bag_file.records import BagRecords, read_records
 from ddct_plant.base.errors import DdctError
-from ddct_plant.base.timebase import START_NS, SUBSTEP_NS, SUBSTEPS
+from ddct_plant.base.timebase import START_NS, SUBSTEP_NS, SUBSTEPS, stamp_of_step, step_of_stamp
+from ddct_plant.files.input_file import located
 from ddct_plant.measured.columns import QUANTITIES
 from ddct_plant.signals.topics import (
     CLUTCH_PHASE,
@@ -40,19 +41,20 @@ def read_bag_signals(bag: Path) -> tuple[np.ndarray, dict[str, np.ndarray]]:
     Speeds, C_m and A_x are sampled every 10 ms. C_f is sampled every 1 ms with the linear clutch;
     with the stick-slip clutch it is the transmitted torque just before each tick. C_load is
     omitted, because no car measures it. In a run with sensors the signals are the true ones, too.
-    Raise DdctError for a file that is no recording of this project.
+    Raise DdctError for a file that is no recording of this project or is damaged, and for a value
+    that is missing, given twice or not finite.
     """
-    try:
-        rows = _signal_rows(bag)
-    except (McapError, OSError, ValueError, LookupError, AttributeError) as error:
-        raise DdctError(f'{bag}: cannot be read as a bag ({error}): repair it first') from error
-    if not rows['joint_speed'] or not rows['engine_torque']:
-        raise DdctError(f'{bag}: no {JOINT_STATES.resolved_name}: not a recording of this project')
-    by_stamp = {name: _at_ticks(rows, QUANTITIES[name].signal) for name in _MEASURED}
-    if not rows['clutch_phase']:
-        by_stamp['clutch_torque'] = _within_periods(
-            rows['clutch_torque'], max(rows['joint_speed'])
-        )
+    records = read_records(bag)
+    with located(str(bag)):
+        rows = _signal_rows(records)
+        by_stamp = {name: _at_ticks(rows, QUANTITIES[name].signal) for name in _MEASURED}
+        if not rows['clutch_phase']:
+            by_stamp['clutch_torque'] = _within_periods(
+                rows['clutch_torque'], max(rows['joint_speed'])
+            )
+        for name, found in by_stamp.items():
+            if not all(map(math.isfinite, found.values())):
+                raise DdctError(f'{name} has a value that is not finite: record the run again')
     stamps = sorted(set().union(*by_stamp.values()))
     signals = {
         name: np.array([found.get(stamp, np.nan) for stamp in stamps])
@@ -77,17 +79,36 @@ def _within_periods(rows: _Rows, last: int) -> dict[int, float]:
     }
 
 
-def _signal_rows(bag: Path) -> dict[str, dict[int, Any]]:
+def _signal_rows(records: BagRecords) -> dict[str, dict[int, Any]]:
     """Return the values of the messages, by signal and by stamp in ns."""
-    topics = {topic.resolved_name: topic for topic in _TOPICS}
     rows: dict[str, dict[int, Any]] = {
         signal.name: {} for topic in _TOPICS for signal in topic.signals
     }
-    with bag.open('rb') as file:
-        reader = make_reader(file, decoder_factories=[DecoderFactory()])
-        for _, channel, message, decoded in reader.iter_decoded_messages(list(topics)):
-            topic = topics[channel.topic]
+    for topic, stamp, message in decoded_messages(records, _TOPICS):
+        first = topic.signals[0].name
+        if stamp in rows[first]:
+            raise DdctError(f'{topic.resolved_name} has two messages at {stamp} ns')
+        try:
             # The linear clutch has the first of its two signals only.
-            for signal, values in zip(topic.signals, topic.values(decoded), strict=False):
-                rows[signal.name][message.log_time] = values
+            for signal, values in zip(topic.signals, topic.values(message), strict=False):
+                rows[signal.name][stamp] = values
+        except (LookupError, AttributeError, ValueError, TypeError) as error:
+            raise DdctError(
+                f'{topic.resolved_name}: a message lacks a value ({error})',
+                key=topic.resolved_name,
+            ) from error
+    for topic in _TOPICS:
+        found = rows[topic.signals[0].name]
+        if topic is not CLUTCH_PHASE and not found:
+            raise DdctError(
+                f'no {topic.resolved_name}: not a recording of this project',
+                key=topic.resolved_name,
+            )
+    last = step_of_stamp(max(rows['joint_speed']))
+    missing = [step for step in range(last + 1) if stamp_of_step(step) not in rows['joint_speed']]
+    if missing:
+        raise DdctError(
+            f'{JOINT_STATES.resolved_name} has no message at step {missing[0]}',
+            key=JOINT_STATES.resolved_name,
+        )
     return rows

@@ -80,7 +80,8 @@ def read_log(path: Path, columns: ColumnMap, needed: Sequence[str] = ()) -> Meas
     try:
         if path.suffix == '.mcap' or path.is_dir():
             bag = mcap_of(path)
-            log = MeasuredLog(path, _digest(bag), *read_bag_signals(bag), OWN_HELD)
+            signals = read_bag_signals(bag)  # first, because it refuses what is no file
+            log = MeasuredLog(path, _digest(bag), *signals, OWN_HELD)
         else:
             log = _read_csv_log(path, columns, needed)
     except ParameterError as error:
@@ -140,4 +141,5 @@ def _require_speed(table: CsvTable, columns: ColumnMap, name: str, values: np.nd
 
 
 def _digest(path: Path) -> str:
-    return hashlib.sha256(path.read_bytes()).hexdigest()[:16]
+    with path.open('rb') as file:
+        return hashlib.file_digest(file, 'sha256').hexdigest()[:16]

@@ -93,6 +93,10 @@ class Actuator:
         values[: -self._inputs] = self._state_update @ values
         return nodes
 
+    def mean_torque(self, request: float) -> float:
+        """Return the mean torque of a period in N m, and accept a request, as `update` does."""
+        return float(sum(self.update(request)[:-1])) / SUBSTEPS
+
 
 def at_rest(model: StateSpace, request: float) -> np.ndarray:
     """Return the steady state (n,) of G_a for a request in N m."""

@@ -41,9 +41,9 @@ class RunSettings(OptionGroup):
         replace(WEAR_GAIN, meaning='wear gain of the off-going clutch, in a gear shift only')
     )
     handover: str = option(
-        'model',
+        'adaptive',
         'how the torque goes from the off-going to the on-coming clutch, in a gear shift only: '
-        'timed, slip, model, one of another package, or a Python file',
+        'timed, slip, model, adaptive, one of another package, or a Python file',
     )
 
     def __post_init__(self) -> None:

@@ -164,8 +164,10 @@ class WholePlant:
             **clutch.signals,
         }
         if self._sensors is not None and self._estimate is not None:
-            signals |= self._sensors.measure(step, outputs).signals
-            signals |= self._estimate.measure(step, engine_torque).signals
+            if observation.delivered is None:
+                self._estimate.measure(step, engine_torque)
+            signals |= self._sensors.latest.signals
+            signals |= self._estimate.latest.signals
         return PlantReply(engine_torque, load_torque, clutch.torques, signals)
 
     @property

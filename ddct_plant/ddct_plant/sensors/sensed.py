@@ -128,6 +128,11 @@ class Sensors(ABC, Generic[Truth, Measured]):
             self._measured = self._take(truth)
         return self._measured
 
+    @property
+    def latest(self) -> Measured:
+        """Measurement at the latest measured step."""
+        return self._measured
+
     @abstractmethod
     def _take(self, truth: Truth) -> Measured:
         """Return the measurement of the next step."""

@@ -45,7 +45,7 @@ class Joints(MessageKind):
         return tuple(getattr(message, field) for field in self.fields)
 
     def read(self, topic: str, message: Any) -> Any:
-        """Return the speeds by joint; raise DdctError unless each joint has a finite one."""
+        """Return the speeds by joint; raise DdctError unless each joint has one finite speed."""
         return self._by_joint(*finite_values(topic, self._speeds(topic, message)))
 
     @cached_property
@@ -61,6 +61,13 @@ class Joints(MessageKind):
                 f'it needs one velocity for each of {names}, in this order',
                 key=topic,
             )
+        for field in ('position', 'effort'):
+            if len(getattr(message, field)) not in (0, len(names)):
+                raise DdctError(
+                    f'{topic} has {len(getattr(message, field))} numbers in {field}: '
+                    f'it needs none, or one for each of {names}',
+                    key=topic,
+                )
         return message.velocity
 
 
@@ -82,9 +89,10 @@ class OneShaft(MessageKind):
         return fill
 
     def values(self, message: Any) -> tuple[float, float, float]:
-        """Return angle, speed and torque; raise DdctError for another joint."""
+        """Return angle, speed and torque; raise DdctError for another joint or further numbers."""
         if list(message.name) != [self.name]:
             raise DdctError(f'the joints are {", ".join(message.name)}, not {self.name}')
+        require_one_each(message, ('position', 'velocity', 'effort'))
         return message.position[0], message.velocity[0], message.effort[0]
 
 
@@ -104,6 +112,23 @@ class NamedTorques(MessageKind):
         return fill
 
     def values(self, message: Any) -> tuple[float, ...]:
-        """Return the torques in N m; raise LookupError where a name or an effort is missing."""
-        torques = dict(zip(message.name, message.effort, strict=False))
+        """
+        Return the torques in N m.
+
+        Raise DdctError unless each name has one effort, and LookupError where a name is missing.
+        """
+        require_one_each(message, ('effort',))
+        torques = dict(zip(message.name, message.effort, strict=True))
+        if len(torques) != len(message.name):
+            raise DdctError(f'a name comes twice among {", ".join(message.name)}')
         return tuple(torques[name] for name in self.names)
+
+
+def require_one_each(message: Any, fields: Sequence[str]) -> None:
+    """Raise DdctError unless these fields of a JointState have one number for each name."""
+    for field in fields:
+        if len(numbers := getattr(message, field)) != len(message.name):
+            raise DdctError(
+                f'a message has {len(numbers)} numbers in {field}: it needs one for each of '
+                f'{list(message.name)}'
+            )

@@ -67,6 +67,12 @@ class Points(MessageKind):
             for joint in joints
         )
 
+    def _one_each(self, points: Sequence[Any], joints: int) -> bool:
+        """Return whether each point has one number per field and joint."""
+        return all(
+            len(getattr(point, field)) == joints for field in self.fields for point in points
+        )
+
 
 @dataclass(frozen=True)
 class TorqueRows(Points):
@@ -90,16 +96,13 @@ class TorqueRows(Points):
                 f'needs {", ".join(needed)}; start every node with the same clutch',
                 key=topic,
             )
-        try:
-            values = self.values(message)
-        except IndexError:
-            values = ()
-        if not values or len(values[0]) != self.count:
+        points = message.points
+        if len(points) != self.count or not self._one_each(points, joints):
             raise DdctError(
-                f'{topic} has {len(message.points)} points: it needs {self.count}, '
-                '1 ms apart, each with an effort'
+                f'{topic} has {len(points)} points: it needs {self.count}, '
+                '1 ms apart, each with an effort for each joint and no more'
             )
-        rows = [finite_values(topic, row) for row in values]
+        rows = [finite_values(topic, row) for row in self.values(message)]
         try:
             if joints > 1:
                 require_capacities(0, *rows)
@@ -121,8 +124,15 @@ class PreviewPoints(Points):
         """
         Return speeds and rates, (preview_steps + 1,) each.
 
-        Raise DdctError for a value that is not finite or a preview that is too short.
+        Raise DdctError for another joint, a value that is not finite or a preview that is too
+        short.
         """
+        if tuple(message.joint_names) != self.joints:
+            raise DdctError(
+                f'{topic} has the joints {", ".join(message.joint_names) or "(none)"}: it needs '
+                f'{", ".join(self.joints)}',
+                key=topic,
+            )
         if len(message.points) <= preview_steps:
             raise DdctError(
                 f'{topic} has {len(message.points)} points and the controller needs '
@@ -130,9 +140,8 @@ class PreviewPoints(Points):
                 f'--ros-args -p preview_steps:={preview_steps}',
                 key=topic,
             )
-        try:
-            speeds, rates = self.values(message)
-        except IndexError:
-            raise DdctError(f'{topic}: each point needs a velocity and an acceleration') from None
+        if not self._one_each(message.points, 1):
+            raise DdctError(f'{topic}: each point needs one velocity and one acceleration')
+        speeds, rates = self.values(message)
         last = preview_steps + 1
         return finite_values(topic, speeds[:last]), finite_values(topic, rates[:last])

@@ -42,7 +42,9 @@ class Status(MessageKind):
         return (tuple((pair.key, pair.value) for pair in message.status[0].values),)
 
     def read(self, topic: str, message: Any) -> tuple[str, dict[str, str]]:
-        """Return the name of the status, and the pairs."""
+        """Return the name of the status, and the pairs; raise DdctError without a status."""
+        if not message.status:
+            raise DdctError(f'{topic} has no status: it needs one, with pairs', key=topic)
         return message.status[0].name, dict(*self.values(message))
 
 

@@ -81,6 +81,10 @@ class Topic:
         """Return the values of `signals` in a message, unchecked."""
         return self.kind.values(message)
 
-    def read(self, message: Any, **options: Any) -> Any:
-        """Return the values for a node; raise DdctError for values unfit for the loop."""
-        return self.kind.read(self.name, message, **options)
+    def read(self, message: Any, *, shown: str = '', **options: Any) -> Any:
+        """
+        Return the values for a node; raise DdctError for values unfit for the loop.
+
+        The error names the topic `shown`, where the node is in a namespace, or else `name`.
+        """
+        return self.kind.read(shown or self.name, message, **options)

@@ -2,11 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """CSV of any tool: encodings, ends of lines, decimal commas, dates with times of day."""
 
+import csv
+
 import numpy as np
 import pytest
 
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.files.csv_table import read_csv
+from ddct_plant.files.csv_table import csv_text, read_csv
 
 TEXT = 'Zeit;Öl °C\n0,5;80,25\n1,5;81,5\n'
 
@@ -85,3 +87,15 @@ def test_a_date_that_could_mean_two_things_is_refused_with_its_place(tmp_path, c
 def test_the_error_on_a_date_in_place_of_a_number_names_the_unit_for_dates(tmp_path):
     with pytest.raises(ParameterError, match='is a date and time: in the column map .* iso8601'):
         read(tmp_path / 'a.csv', 't;v\n2026-05-01T10:00:00;1\n', ['t'])
+
+
+@pytest.mark.parametrize('text', ['=1+1', '@SUM(A1)', '+cmd', '-2+3', '\t=1', '=-1.5'])
+def test_a_spreadsheet_computes_no_text(text):
+    assert next(csv.reader([csv_text([text], []).strip('\n')])) == [f"'{text}"]
+    assert list(csv.reader(csv_text(['a'], [[text]]).splitlines()))[1] == [f"'{text}"]
+
+
+@pytest.mark.parametrize('cell', [-1.5, 3, '-1.5', '+2e-3', 'plain', None, ''])
+def test_numbers_and_plain_texts_stay_as_they_are(cell):
+    text = '' if cell is None else str(cell)
+    assert list(csv.reader(csv_text(['a', 'b'], [[cell, 1]]).splitlines()))[1] == [text, '1']

@@ -15,6 +15,7 @@ from bench.comparisons import (
     shift,
     start_up,
     synthesis,
+    tuning,
     verdict,
 )
 from bench.skeleton.comparison import comparisons_in
@@ -33,6 +34,7 @@ ALL = [
         synthesis,
         verdict,
         campaign,
+        tuning,
         report_page,
         base,
     )

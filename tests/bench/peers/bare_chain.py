@@ -175,7 +175,7 @@ class BareNode(Node):
         for topic in inputs:
             kind = type(messages[topic])
             qos = RECORDER_QOS if raw else LOOP_QOS
-            self.create_subscription(kind, topic, self._receive, qos, raw=raw)
+            self.create_subscription(kind, topic, self.receiver(topic), qos, raw=raw)
         self._match_timer = self.create_timer(POLL_S, self._announce_when_ready)
 
     def _announce_when_ready(self) -> None:
@@ -195,6 +195,10 @@ class BareNode(Node):
         if matched and all(each.get_publisher_count() == 1 for each in self.subscriptions):
             self._match_timer.cancel()
             self.create_publisher(Header, f'{READY}/{self._name}', 1)
+
+    def receiver(self, topic: str) -> Callable[[Any], None]:
+        """Return the callback of a topic; all topics count alike."""
+        return self._receive
 
     def _receive(self, _: Any) -> None:
         self._received += 1

@@ -31,8 +31,8 @@ def record_of(
     """
     return {
         'time': time.strftime('%Y-%m-%dT%H:%MZ', time.gmtime()),
-        'commit': _git('rev-parse', 'HEAD')[:10],
-        'changed': bool(_git('status', '--porcelain', '--untracked-files=no')),
+        'commit': git('rev-parse', 'HEAD')[:10],
+        'changed': bool(git('status', '--porcelain', '--untracked-files=no')),
         'base': base[:10],
         'rounds': rounds,
         'load': round(load, 1),
@@ -76,7 +76,8 @@ def _rounded(ratio: float) -> float:
     return float(f'{ratio:.4g}')
 
 
-def _git(*arguments: str) -> str:
+def git(*arguments: str) -> str:
+    """Return what git prints in this repository; empty without one."""
     done = subprocess.run(
         ['git', '-C', str(ROOT), *arguments], capture_output=True, text=True, check=False
     )

@@ -92,7 +92,7 @@ def effects_of(values: Mapping[str, np.ndarray], failed: np.ndarray) -> list[Eff
     random = np.random.default_rng(_SEED)
     tables = {key: _parts(each, failed) for key, each in values.items()}
     chances = {key: _chance(random, parts) for key, parts in tables.items()}
-    corrected = _holm(chances)
+    corrected = holm(chances)
     found = [
         Effect(key, *_explained_with_interval(random, parts), corrected[key], parts)
         for key, parts in tables.items()
@@ -168,7 +168,7 @@ def _explained_with_interval(
     return min(max(explained, 0.0), 1.0), (float(ends[0]), float(ends[1]))
 
 
-def _holm(chances: Mapping[str, float]) -> dict[str, float]:
+def holm(chances: Mapping[str, float]) -> dict[str, float]:
     """Return p-values by key corrected for their number (Holm 1979)."""
     corrected: dict[str, float] = {}
     largest = 0.0

@@ -119,10 +119,15 @@ def _own(controllers: str | None) -> list[str]:
 def _chosen(only: str, numbers: set[str]) -> set[str]:
     chosen = {number.strip() for number in only.split(',')}
     for number in sorted(chosen - numbers):
-        if number in NOT_DRAWN:
-            raise ParameterError(f'figure {number} is not drawn: {NOT_DRAWN[number]}')
+        require_drawn(number)
         raise ParameterError(f'--only: the thesis has no figure {number!r}; write 2.10,3.5')
     return chosen
+
+
+def require_drawn(number: str) -> None:
+    """Raise ParameterError for a figure of the thesis that cannot be drawn, with the reason."""
+    if number in NOT_DRAWN:
+        raise ParameterError(f'figure {number} is not drawn: {NOT_DRAWN[number]}')
 
 
 def _make_room(folder: Path, files: list[Path], overwrite: bool) -> None:

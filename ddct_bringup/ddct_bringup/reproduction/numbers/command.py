@@ -82,7 +82,7 @@ def run(options: argparse.Namespace) -> int:
         show_and_write(options.json, {'numbers': numbers}, lambda: _print(rows))
     elif options.json:
         write_json(options.json, {'numbers': numbers})
-    _require_all(rows)
+    require_all(rows)
     return 0
 
 
@@ -113,7 +113,8 @@ def _print(rows: Sequence[GateRow]) -> None:
     print_tables((*tables.values(), *last))
 
 
-def _require_all(rows: Sequence[GateRow]) -> None:
+def require_all(rows: Sequence[GateRow]) -> None:
+    """Raise DdctError when a claim of the gate fails."""
     broken = [
         f'{row.number.section}, {row.number.item}: {row.complaint}'
         for row in rows

@@ -4,6 +4,7 @@
 
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 from ddct_bringup.reproduction.numbers.thesis_number import Finding
 from ddct_bringup.reproduction.studies.study import FINER_WEAR_GAINS, Study
@@ -21,6 +22,40 @@ from ddct_bringup.reproduction.values.orders import (
 from ddct_bringup.verdict.state import NOT_ENGAGED, SUCCESSES
 from ddct_plant.models.clutch import CLUTCHES
 from ddct_plant.scenario.settings import RunSettings
+
+
+@dataclass(frozen=True)
+class RatedRow:
+    """One run of Table 5.2: its values, the ratings that follow, and the printed ones."""
+
+    clutch: str
+    wear_gain: float
+    """Wear gain K_usura."""
+    controller: str
+    slip_end_rad_s: float
+    """Magnitude of w_d at the end of the score window in rad/s."""
+    torsion_speed_std_rpm: float
+    """Standard deviation of w_sr in rpm."""
+    acceleration_std_m_s2: float
+    """Standard deviation of A_x in m/s^2."""
+    state: str
+    """State of the run in its verdict."""
+    slip_rating: str
+    """Rating of w_d by the rule of `ratings_of`; the next two are those of w_sr and A_x."""
+    torsion_rating: str
+    acceleration_rating: str
+    slip_printed: str | None
+    """Printed rating of w_d; None at a wear gain that the thesis does not rate."""
+    slip_holds: bool | None
+    """Whether our runs confirm it."""
+    oscillations_printed: str | None
+    """Printed rating of w_sr and A_x, which is one word for both."""
+    oscillations_hold: bool | None
+
+    @property
+    def sigmas(self) -> tuple[float, float]:
+        """Standard deviations of w_sr in rpm and of A_x in m/s^2."""
+        return self.torsion_speed_std_rpm, self.acceleration_std_m_s2
 
 
 def table_5_2_in_numbers() -> Study:
@@ -47,26 +82,46 @@ def table_5_2_in_numbers() -> Study:
 
 def rows_of(clutch: str, wear_gain: float) -> list[tuple[str, ...]]:
     """Return the rows of the table for a clutch and a wear gain, one for each controller."""
+    return [
+        (
+            row.clutch,
+            f'{row.wear_gain:g}',
+            row.controller,
+            *(f'{value:.3g}' for value in (row.slip_end_rad_s, *row.sigmas)),
+            row.state,
+            *(row.slip_rating, row.torsion_rating, row.acceleration_rating),
+            _printed(row.slip_printed, row.slip_holds),
+            _printed(row.oscillations_printed, row.oscillations_hold),
+        )
+        for row in rated_rows(clutch, wear_gain)
+    ]
+
+
+def rated_rows(clutch: str, wear_gain: float) -> list[RatedRow]:
+    """Return the rated runs of the table's controllers with a clutch and a wear gain."""
     settings = RunSettings(THESIS_SCENARIO, WORN_ARCHITECTURE, clutch=clutch, wear_gain=wear_gain)
     runs = {name: study_run(settings, name) for name in SLIP_RATINGS}
     states = {name: run.verdict.state for name, run in runs.items()}
-    rows = rows_of_table_5_2(runs)
-    ranked = [_with_states(row, states) for row in rows]
-    words = [ratings_of(row) for row in ranked]
-    printed = judge_table_5_2(wear_gain, ranked) if wear_gain in WORN else {}
+    slips, torsion, acceleration = rows_of_table_5_2(runs)
+    ranked = [_with_states(row, states) for row in (slips, torsion, acceleration)]
+    slip_words, torsion_words, acceleration_words = (ratings_of(row) for row in ranked)
+    judged = judge_table_5_2(wear_gain, ranked) if wear_gain in WORN else {}
     return [
-        (
+        RatedRow(
             clutch,
-            f'{wear_gain:g}',
+            wear_gain,
             name,
-            *(f'{row[name]:.3g}' for row in rows),
+            slips[name],
+            torsion[name],
+            acceleration[name],
             states[name],
-            *(row[name] for row in words),
-            _printed(printed.get(f'5.2 {name} w_d {wear_gain:g}'), SLIP_RATINGS[name]),
-            _printed(
-                printed.get(f'5.2 {name} w_sr {wear_gain:g}'),
-                OSCILLATION_RATINGS.get(wear_gain, {}).get(name, ''),
-            ),
+            slip_words[name],
+            torsion_words[name],
+            acceleration_words[name],
+            slip_printed=SLIP_RATINGS[name] if judged else None,
+            slip_holds=_holds(judged, f'5.2 {name} w_d {wear_gain:g}'),
+            oscillations_printed=OSCILLATION_RATINGS.get(wear_gain, {}).get(name),
+            oscillations_hold=_holds(judged, f'5.2 {name} w_sr {wear_gain:g}'),
         )
         for name in SLIP_RATINGS
     ]
@@ -80,8 +135,11 @@ def _with_states(row: Row, states: Mapping[str, str]) -> Row:
     }
 
 
-def _printed(finding: Finding | None, word: str) -> str:
+def _holds(judged: Mapping[str, Finding], name: str) -> bool | None:
+    finding = judged.get(name)
+    return None if finding is None else finding.holds
+
+
+def _printed(word: str | None, holds: bool | None) -> str:
     """Return the printed rating and whether it holds; a dash where the thesis prints none."""
-    if finding is None:
-        return '-'
-    return f'{word}: {"holds" if finding.holds else "does not hold"}'
+    return '-' if word is None else f'{word}: {"holds" if holds else "does not hold"}'

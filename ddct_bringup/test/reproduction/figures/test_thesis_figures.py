@@ -24,8 +24,8 @@ from ddct_controllers.design.analysis.step_response import step_response
 from ddct_controllers.design.drawing.chart_style import typeset
 from ddct_controllers.design.drawing.nichols import nichols_curve
 from ddct_controllers.design.loop_shaping.specifications import rise_time_crossover_product
-from ddct_controllers.from_file.kinds import load_spec
 from ddct_controllers.printed import PRINTED_CONTROLLERS
+from ddct_controllers.registry import controller_spec
 from ddct_plant.linear.lti import FactoredTransferFunction
 
 TRANSFER_FUNCTION = Path(__file__).parents[4] / 'docs' / 'templates' / 'transfer_function.yaml'
@@ -211,7 +211,7 @@ def test_command_writes_pictures_and_a_page_that_links_them(tmp_path, capsys):
 def test_command_draws_a_controller_of_ones_own_into_the_figures_of_runs(tmp_path, capsys):
     own = tmp_path / 'gentle.yaml'
     own.write_text(TRANSFER_FUNCTION.read_text(encoding='utf-8'), encoding='utf-8')
-    name = load_spec(str(own)).name
+    name = controller_spec(str(own)).name
     chosen = ('--only', '4.8', '--controllers', f'{own},pi')
     assert run_command('--out', tmp_path / 'new', *chosen) == 0
     rows = list(csv.reader((tmp_path / 'new' / 'figure_4_8.csv').read_text().splitlines()))

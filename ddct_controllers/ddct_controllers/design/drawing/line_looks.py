@@ -43,7 +43,7 @@ _PACKAGED = (
     ('ls1', 'ls4', 'ls5', 'ls6', 'ls7', 'ls9'),
     ('hinf2', 'ls2', 'mpc1', 'hinf3', 'ls3', 'mpc2'),
     ('hinf_thesis', 'mpc_torsion', 'hinf_fitted', 'mpc_offset_free', 'mpc_wear', 'hinf_sampled'),
-    ('torque_estimator', 'mpc4_wear', 'decoupled_pid', 'mpc_preview', 'pedal_mpc'),
+    ('torque_estimator', 'mpc4_wear', 'decoupled_pid', 'mpc_preview', 'pedal_mpc', 'least_jerk'),
 )
 """
 The packaged controllers: a row for each of `DASHES`, a column for each colour.

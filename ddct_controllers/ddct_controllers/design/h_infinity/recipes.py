@@ -30,6 +30,12 @@ class HinfWeights:
     """Level of the controller over the optimum; 1 where the thesis too stopped and cleaned."""
 
 
+NEAR_OPTIMUM = 1.0002
+"""
+Level, over the optimum, at which the fastest pole is still so fast that it is cleaned.
+
+At the optimum itself a controller has 7 digits, and would be another one on each processor.
+"""
 _THESIS = HinfWeights(
     SensitivityWeight(low_frequency_gain=0.15, peak=THESIS_SPECIFICATIONS.sensitivity_peak),
     ComplementaryWeight(peak=THESIS_SPECIFICATIONS.complementary_peak, corner_rad_s=28.0),
@@ -43,7 +49,7 @@ RECIPES = {
         _THESIS,
         sensitivity=replace(_THESIS.sensitivity, low_frequency_gain=0.35),
         complementary=replace(_THESIS.complementary, damping=1.0),
-        back_off=1.0,
+        back_off=NEAR_OPTIMUM,
     ),
     'sampled': replace(
         _THESIS,

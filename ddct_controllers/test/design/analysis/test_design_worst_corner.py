@@ -3,6 +3,7 @@
 """No corner, wear gain of the range, or point inside the corners is worse than the worst one."""
 
 import itertools
+from functools import cache
 from types import SimpleNamespace
 from typing import Any
 
@@ -17,6 +18,7 @@ from ddct_controllers.design.analysis.worst_corner import (
     PARAMETER_SPREAD,
     WEAR_GAINS,
     PlantCorners,
+    WorstCorner,
     plant_corners,
     worst_corner,
 )
@@ -37,6 +39,11 @@ def corners() -> PlantCorners:
 
 def sampled(name: str) -> StateSpace:
     return discretise_zoh(PRINTED_CONTROLLERS[name].to_state_space(), PERIOD_S)
+
+
+@cache
+def worst_of(name: str) -> WorstCorner:
+    return worst_corner(sampled(name), plant_corners())
 
 
 def test_there_is_a_corner_for_every_combination_of_the_seven_parameters(corners):
@@ -69,8 +76,7 @@ def test_the_corners_of_one_plant_are_computed_once_and_those_of_another_anew():
 
 @pytest.mark.parametrize('name', ['ls1', 'ls8', 'hinf1', 'hinf3'])
 def test_its_sensitivity_peak_is_that_of_its_loop(name, corners):
-    controller = sampled(name)
-    found = worst_corner(controller, corners)
+    controller, found = sampled(name), worst_of(name)
     loop = sampled_loop(controller, corners.parameters[found.index], found.wear_gain)
     assert found.sensitivity_peak == pytest.approx(loop_margins(loop).sensitivity_peak, rel=1e-6)
 
@@ -78,8 +84,7 @@ def test_its_sensitivity_peak_is_that_of_its_loop(name, corners):
 @pytest.mark.parametrize('name', ['ls1', 'ls8', 'hinf1'])
 def test_no_corner_and_wear_gain_is_worse(name, corners):
     """Every eighth corner and four wear gains are tried."""
-    controller = sampled(name)
-    worst = worst_corner(controller, corners).sensitivity_peak
+    controller, worst = sampled(name), worst_of(name).sensitivity_peak
     for parameters, gain in itertools.product(corners.parameters[::8], (0.7, 0.9, 1.1, 1.3)):
         margins = loop_margins(sampled_loop(controller, parameters, gain))
         assert margins.stable
@@ -93,8 +98,7 @@ def test_nothing_inside_the_corners_is_worse(name, corners):
 
     That is no proof: the worst driveline need not be at a corner.
     """
-    controller = sampled(name)
-    worst = worst_corner(controller, corners).sensitivity_peak
+    controller, worst = sampled(name), worst_of(name).sensitivity_peak
     values, random = IDENTIFIED_DRIVELINE.values(), np.random.default_rng(1)
     for _ in range(100):
         factors = random.uniform(1.0 - PARAMETER_SPREAD, 1.0 + PARAMETER_SPREAD, 7)
@@ -110,8 +114,7 @@ def test_nothing_inside_the_corners_is_worse(name, corners):
 
 @pytest.mark.parametrize('name', ['ls2', 'ls9', 'hinf2'])
 def test_unstable_corners_are_those_with_an_unstable_pole_at_some_wear_gain(name, corners):
-    controller = sampled(name)
-    found = worst_corner(controller, corners)
+    controller, found = sampled(name), worst_of(name)
     unstable = sum(
         not all(
             closed_loop_stable(sampled_loop(controller, parameters, gain))
@@ -151,6 +154,6 @@ def test_a_loop_unstable_only_between_the_ends_of_the_wear_range_counts(gain, un
     assert worst_corner(controller, one_corner).unstable_corners == unstable
 
 
-def test_the_least_damping_of_the_mode_turns_negative_where_it_grows(corners):
-    assert worst_corner(sampled('ls9'), corners).least_mode_damping < 0.0
-    assert worst_corner(sampled('ls1'), corners).least_mode_damping > 0.4
+def test_the_least_damping_of_the_mode_turns_negative_where_it_grows():
+    assert worst_of('ls9').least_mode_damping < 0.0
+    assert worst_of('ls1').least_mode_damping > 0.4

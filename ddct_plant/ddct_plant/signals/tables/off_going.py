@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Topics of a gear shift alone: those of the handover and of the off-going side."""
 
+from ddct_plant.signals.handover_share import ShareVector
 from ddct_plant.signals.joints import OneShaft
 from ddct_plant.signals.message_kind import Scalar
 from ddct_plant.signals.signal import Signal
@@ -54,9 +55,13 @@ OFF_GOING_PHASE = Topic(
 )
 HANDOVER_SHARE = Topic(
     'clutch/handover_share',
-    Scalar('geometry_msgs/msg/Vector3Stamped', 'vector.x', at_least=0.0, at_most=1.0),
+    ShareVector('geometry_msgs/msg/Vector3Stamped'),
     'handover',
-    (Signal('handover_share', '1', 'of C_fOL, which the on-coming clutch carries; 1: feedback'),),
+    (
+        Signal('handover_share', '1', 'of C_fOL, which the on-coming clutch carries; 1: feedback'),
+        Signal('on_coming_wear_deviation', '1', 'estimate of its wear gain less 1'),
+        Signal('on_coming_torque_offset', 'N m', 'estimate of what it carries beyond that gain'),
+    ),
     CLUTCH_LINK,
     when=if_shift,
 )

@@ -4,6 +4,7 @@
 
 import builtins
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -36,6 +37,7 @@ from ddct_controllers.design.loop_shaping.specifications import (
 )
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
+from ddct_plant.models.parameters import DrivelineParameters
 
 PRINTED = make_weights('thesis')
 W_1, W_2 = PRINTED.sensitivity.shifted(), PRINTED.complementary.transfer_function()
@@ -155,6 +157,18 @@ def test_one_percent_above_the_optimum_the_fast_pole_is_gone():
     )
     assert at_optimum > 1e5
     assert above < 300.0
+
+
+def test_the_level_does_not_depend_on_the_last_bits_of_the_plant():
+    """Norms near the optimum do, in their 7th digit, and the gain changes by 100 times that."""
+    driveline = DrivelineParameters()
+    gains = []
+    for number in range(4):
+        inertia = driveline.engine_inertia * (1.0 + number * 2.0**-50)
+        changed = replace(driveline, engine_inertia=inertia)
+        gains.append(design_h_infinity(PRINTED, changed).cleaned.gain)
+    assert len(set(gains)) > 1
+    assert gains == pytest.approx([gains[0]] * 4, rel=1e-8)
 
 
 def test_feedthrough_of_the_plant_is_taken_into_account():

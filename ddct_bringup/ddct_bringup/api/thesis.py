@@ -1,0 +1,104 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""The printed values of the thesis beside ours, as pandas DataFrames."""
+
+from collections.abc import Iterable
+from dataclasses import asdict
+from typing import Any, NamedTuple
+
+from ddct_bringup.api.result import Run, as_runs, pandas_module
+from ddct_bringup.reproduction.numbers.command import SOURCES, compute, require_all
+from ddct_bringup.reproduction.numbers.gate import OUTCOMES, judge
+from ddct_bringup.reproduction.numbers.gate_tables import count_facts
+from ddct_bringup.reproduction.numbers.number_files import thesis_numbers as listed_numbers
+from ddct_bringup.reproduction.studies.table_5_2 import rated_rows
+from ddct_bringup.reproduction.values.orders import WORN
+from ddct_bringup.thesis.predictions import predicted_range
+from ddct_bringup.thesis.table_5_1 import PREDICTED, TABLE_METRICS, is_thesis_run, thesis_row
+from ddct_plant.base.options import require_known
+from ddct_plant.models.clutch import CLUTCHES
+
+THESIS = 'thesis.'
+"""Prefix of the column of a printed value."""
+RANGE = 'range.'
+"""Prefix of the column of a predicted range."""
+HIT = 'hit.'
+"""Prefix of the column that says whether a prediction is near the print."""
+
+
+class ThesisNumbers(NamedTuple):
+    """Every number that the thesis prints beside ours, and the counts of the outcomes."""
+
+    table: Any
+    """
+    pandas DataFrame with a row per printed number, in the order of the sections.
+
+    Columns: `section`, `item`, `printed`, `computed`, `unit`, `tolerance`, `verdict`, `hit`,
+    `group`, `reason` as in `ddct reproduce numbers --json`, and `outcome`.
+    """
+    facts: Any
+    """pandas DataFrame by outcome: the number of `entries`, and of distinct `facts` in them."""
+
+
+def thesis_numbers() -> ThesisNumbers:
+    """
+    Compute every printed number of the thesis and compare it with the print, in seconds.
+
+    The outcomes are those of docs/thesis/thesis_gate.md. Raise DdctError when a claim of that
+    page does not hold.
+    """
+    pandas = pandas_module()
+    rows = judge(listed_numbers(), compute(SOURCES))
+    require_all(rows)
+    table = pandas.DataFrame([{**row.as_dict(), 'outcome': row.outcome} for row in rows])
+    counts = {
+        'entries': table['outcome'].value_counts(),
+        'facts': pandas.Series(dict(count_facts(rows))),
+    }
+    facts = pandas.DataFrame(counts, index=list(OUTCOMES)).fillna(0).astype(int)
+    return ThesisNumbers(table, facts.rename_axis('outcome'))
+
+
+def beside_thesis(runs: Run | Iterable[Run]) -> Any:
+    """
+    Return a pandas DataFrame with a row per run: the values of Table 5.1, computed and printed.
+
+    Columns by metric: the metric itself, `thesis.METRIC` as printed, and for a predicted row
+    `range.METRIC`, the text of its range over other scenarios that fit as well, and `hit.METRIC`,
+    whether it is within the tolerance. `use` is `calibrated` or `predicted`. All but the metrics
+    are None for a run without a row in the table, or of other conditions than the thesis's.
+    """
+    shown = as_runs(runs)
+    return pandas_module().DataFrame([_row(each) for each in shown], index=_labels(shown))
+
+
+def table_5_2(clutch: str = 'linear') -> Any:
+    """
+    Run Table 5.2 of the thesis with a clutch, `linear` or `stick_slip`; return a DataFrame.
+
+    A row per wear gain and controller has the values, the state, our ratings, the printed ones,
+    and whether our runs confirm these. Raise ParameterError for another clutch.
+    """
+    require_known([clutch], CLUTCHES, 'clutch')
+    rows = [asdict(row) for gain in WORN for row in rated_rows(clutch, gain)]
+    return pandas_module().DataFrame(rows).set_index(['wear_gain', 'controller'])
+
+
+def _labels(runs: list[Run]) -> Any:
+    return pandas_module().Index([each.controller for each in runs], name='controller')
+
+
+def _row(run: Run) -> dict[str, object]:
+    """Return the columns of one run."""
+    settings = run.recording.settings
+    compared = settings is not None and is_thesis_run(settings)
+    printed = thesis_row(run.controller) if compared else None
+    columns: dict[str, object] = {'use': printed.use if printed else None}
+    for name in TABLE_METRICS:
+        value = run.metrics[name]
+        columns[name] = value
+        columns[f'{THESIS}{name}'] = printed.printed_values()[name] if printed else None
+        predicted = printed is not None and printed.use == PREDICTED
+        columns[f'{RANGE}{name}'] = predicted_range(run.controller, name) if predicted else None
+        columns[f'{HIT}{name}'] = printed.hit(name, value) if printed and predicted else None
+    return columns

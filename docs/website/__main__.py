@@ -1,0 +1,43 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Build the documentation site into a folder that opens from disk: `make site`."""
+
+import argparse
+import shutil
+import sys
+import tempfile
+from pathlib import Path
+
+from sphinx.cmd.build import build_main
+
+from website.staging import ROOT, stage
+
+
+def build(out: Path) -> int:
+    """Build the site into a folder, which is replaced; return the exit code of Sphinx."""
+    with tempfile.TemporaryDirectory(prefix='ddct_site_') as made:
+        source, html = Path(made, 'source'), Path(made, 'html')
+        stage(source)
+        settings = str(Path(__file__).parent)
+        code = build_main(
+            ['-q', '-W', '--keep-going', '-b', 'html', '-c', settings, str(source), str(html)]
+        )
+        if code == 0:
+            shutil.rmtree(out, ignore_errors=True)
+            shutil.copytree(html, out, ignore=shutil.ignore_patterns('.doctrees', '.buildinfo'))
+            (out / 'COLCON_IGNORE').touch()  # a page may link to a copy of a package.xml
+    return code
+
+
+def main() -> int:
+    """Build, and name the page to open."""
+    parser = argparse.ArgumentParser(prog='make site', description=__doc__)
+    parser.add_argument('--out', type=Path, default=ROOT / 'site', help='folder of the site')
+    out = parser.parse_args().out
+    code = build(out)
+    print(f'open {out / "index.html"}' if code == 0 else 'the site has warnings: see above')
+    return code
+
+
+if __name__ == '__main__':
+    sys.exit(main())

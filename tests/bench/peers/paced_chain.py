@@ -1,0 +1,122 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""
+The bare chain at 100 Hz on a steady clock: the floor of a real-time run, for `make soak`.
+
+Run one node per process with `python paced_chain.py NODE STEPS`. The driveline publishes a tick
+every 10 ms, whether or not the one before is answered, and prints what it measured as JSON. The
+nodes only count their messages, so none may be lost: it skips ticks, which count as missed, while
+more than `MOST_OUTSTANDING` are unanswered, fewer than the depth of the queues.
+"""
+
+import json
+import sys
+import time
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+import rclpy
+from bench.peers.bare_chain import (
+    EXAMPLES,
+    PATIENCE_S,
+    BareDriveline,
+    BareNode,
+    spin_driveline,
+    wiring_with,
+)
+from rclpy.task import Future
+
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.graph.node import STEADY
+from ddct_plant.graph.spin import SLICE_S, make_executor
+from ddct_plant.ticks.durations import TickDurations
+
+MOST_OUTSTANDING = 8
+"""Most ticks without an answer at which another one is published."""
+ACK = 'recorder/ack'
+"""Topic that ends no tick: in real time nobody waits for the recorder."""
+
+
+class PacedDriveline(BareDriveline):
+    """Driveline that publishes a tick every period from the first answer on."""
+
+    def __init__(self, steps: int) -> None:
+        wiring = wiring_with()
+        self._answers = dict.fromkeys(wiring['driveline'][0], 0)
+        super().__init__(steps, wiring, EXAMPLES)
+        self.durations = TickDurations(time.monotonic)
+        self.missed = 0
+        self._sent = 0
+        self._grid_from: float | None = None
+
+    def receiver(self, topic: str) -> Callable[[Any], None]:
+        """Return the callback of a topic: replies are counted by topic."""
+        return partial(self._answer, topic)
+
+    def send(self) -> None:
+        """Publish a tick."""
+        self._sent += 1
+        super().send()
+
+    def _answered(self) -> int:
+        return min(count for topic, count in self._answers.items() if topic != ACK)
+
+    def _answer(self, topic: str, _: Any) -> None:
+        self._answers[topic] += 1
+        if topic == 'clutch/torque':
+            self.durations.answer(self._answers[topic] - 1)
+        if self._grid_from is None and self._answered() == 1:
+            self._grid_from = time.monotonic()
+            self.create_timer(PERIOD_S, self._tick, clock=STEADY)
+
+    def _tick(self) -> None:
+        assert self._grid_from is not None
+        while self.left:
+            late_s = time.monotonic() - self._grid_from - (self._steps - self.left + 1) * PERIOD_S
+            if late_s < 0.0:
+                return
+            self.left -= 1
+            outstanding = self._sent - self._answered()
+            self.missed += outstanding > 0
+            if outstanding <= MOST_OUTSTANDING:
+                self.durations.publish(self._sent, late_s)
+                self.send()
+        if not self.done.done():
+            self.done.set_result(None)
+
+    def result(self) -> dict[str, Any]:
+        """Return what was measured, as JSON."""
+        return {
+            'steps': self._steps,
+            'missed_steps': self.missed,
+            'durations': {
+                name: {'largest_us': each.largest_us, 'counts': each.counts}
+                for name, each in self.durations.histograms.items()
+            },
+        }
+
+
+def main() -> None:
+    """Run the node of the command line until the driveline has done its steps."""
+    name, steps = sys.argv[1], int(sys.argv[2])
+    rclpy.init()
+    is_owner = name == 'driveline'
+    node = PacedDriveline(steps) if is_owner else BareNode(name, wiring_with(), EXAMPLES)
+    executor = make_executor()
+    executor.add_node(node)
+    try:
+        if isinstance(node, PacedDriveline):
+            spin_driveline(executor, node, PATIENCE_S)
+            print(json.dumps(node.result()), flush=True)
+        # Without an end: to leave the executor after each message would take longer than the hop.
+        endless: Future = Future()
+        while not isinstance(node, PacedDriveline):
+            executor.spin_until_future_complete(endless, SLICE_S)
+    except (KeyboardInterrupt, rclpy.executors.ExternalShutdownException):
+        pass
+    rclpy.try_shutdown()
+
+
+if __name__ == '__main__':
+    main()
