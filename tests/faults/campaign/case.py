@@ -17,6 +17,8 @@ from ddct_plant.base.timebase import time_of_step
 MODES = ('lockstep', 'realtime')
 SHORT, IN_REAL_TIME, LONG = 100, 160, 400
 """Steps of a run; in real time a fault of half a second must be over before the end."""
+ENDED_BY_FAULT = 3000
+"""Steps of a run in lock-step that its fault ends: it must not be over before the fault."""
 INSTANTS = ('start', 'middle', 'end')
 MIDDLE = 68
 """Step at which a fault in the middle begins; control begins at step 60, or 30 in the shift."""

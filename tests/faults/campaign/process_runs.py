@@ -15,6 +15,7 @@ from typing import Any
 import rclpy
 from faults.campaign.case import (
     CLUTCHES,
+    ENDED_BY_FAULT,
     IN_REAL_TIME,
     INSTANTS,
     LONG,
@@ -208,7 +209,9 @@ def _after_pause(node: str, instant: str, mode: str) -> Stated:
 def cases() -> Iterator[Case]:
     """Yield the nodes killed, paused and stopped; with two clutches a part of the product."""
     for clutches, mode, instant in product(CLUTCHES, MODES, INSTANTS):
-        steps = LONG if mode == 'lockstep' else IN_REAL_TIME
+        lockstep = mode == 'lockstep'
+        pause_steps = LONG if lockstep else IN_REAL_TIME
+        end_steps = ENDED_BY_FAULT if lockstep else IN_REAL_TIME
         for spec in nodes_of(shift=clutches == 2):
             node, common = spec.path, (instant, mode, clutches)
             # What also one clutch has is tried with two in the middle of lock-step alone.
@@ -216,9 +219,9 @@ def cases() -> Iterator[Case]:
             if known and (mode, instant) != ('lockstep', 'middle'):
                 continue
             killed = named(f'node {node} was killed by SIGKILL')
-            yield Case('node killed', node, *common, killed, kill, steps)
+            yield Case('node killed', node, *common, killed, kill, end_steps)
             paused = _after_pause(node, instant, mode)
-            yield Case('node stopped for 0.5 s', node, *common, paused, pause, steps)
+            yield Case('node stopped for 0.5 s', node, *common, paused, pause, pause_steps)
             if not known and (clutches == 1 or instant == 'middle'):
                 stopped = _after_stop(node, instant, mode)
-                yield Case('node stopped for good', node, *common, stopped, stop, steps)
+                yield Case('node stopped for good', node, *common, stopped, stop, end_steps)

@@ -15,6 +15,7 @@ from typing import Any
 
 from faults.campaign.case import (
     CLUTCHES,
+    ENDED_BY_FAULT,
     INSTANTS,
     LONG,
     RUNS_ON,
@@ -201,7 +202,8 @@ def cases() -> Iterator[Case]:
     for clutches in CLUTCHES:
         for mode, instant in [*(('lockstep', each) for each in INSTANTS), ('realtime', 'middle')]:
             common = ('bringup', instant, mode, clutches)
-            yield Case('killed by SIGKILL', *common, KILLED, kill_bringup, LONG)
+            steps = ENDED_BY_FAULT if mode == 'lockstep' else LONG
+            yield Case('killed by SIGKILL', *common, KILLED, kill_bringup, steps)
         lockstep = ('bringup', '', 'lockstep', clutches)
         full = named('No space left on device')
         yield Case('full disk', *lockstep, full, on_a_full_disk, 2000)
