@@ -17,6 +17,7 @@ from ddct_bringup.processes.shared_memory import segments_of
 from ddct_bringup.processes.warm_parent import WarmParent
 from ddct_bringup.run.execution import execute
 from ddct_bringup.run.plan import RunPlan
+from ddct_plant.graph.domain import own_domain
 
 pytestmark = pytest.mark.slow
 
@@ -62,13 +63,15 @@ def test_the_warm_parent_itself_never_joins_a_graph(tmp_path: Path, parent: Warm
 def test_each_run_has_its_own_domain_and_folder_of_logs(
     tmp_path: Path, parent: WarmParent, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    logs = []
-    for number, domain in enumerate(('41', '42')):
+    logs, domains = [], []
+    monkeypatch.delenv('ROS_DOMAIN_ID')
+    for number in range(2):
         monkeypatch.setenv('ROS_LOG_DIR', str(tmp_path / f'logs{number}'))
-        # Two graphs in one domain would exchange messages; here the earlier one is over.
-        monkeypatch.setenv('ROS_DOMAIN_ID', domain)
-        _run(plan(), tmp_path / f'run{number}', parent)
+        with own_domain() as domain:
+            _run(plan(), tmp_path / f'run{number}', parent)
+        domains.append(domain)
         logs.append(sorted((tmp_path / f'logs{number}').iterdir()))
+    assert domains[0] != domains[1]
     assert [len(each) for each in logs] == [8, 8], 'one of each node'
 
 
