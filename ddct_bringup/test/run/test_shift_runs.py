@@ -96,6 +96,14 @@ def test_the_request_is_corrected_by_what_the_handover_has_measured():
     assert not run.on_coming_wear_deviation[:30].any()
 
 
+@pytest.mark.parametrize('wear_gain', [0.75, 1.0, 1.25])
+def test_late_sensors_hardly_move_what_the_handover_measures(wear_gain):
+    """V_x comes 10 ms after w_m; taken for the present one it moves the gain by 7 to 17 %."""
+    late = 'sensors.engine_speed.delay_s=0.01', 'sensors.vehicle_speed.delay_s=0.02'
+    run = run_headless(settings(*late, wear_gain=wear_gain), 'ls8')
+    assert 1.0 + run.on_coming_wear_deviation[-1] == pytest.approx(wear_gain, abs=0.04)
+
+
 @pytest.mark.parametrize('controller', ['pi', 'ls8', 'mpc3', 'least_jerk'])
 def test_a_worn_clutch_shifts_as_a_new_one_with_the_handover_that_measures(controller):
     new, worn, unknown = (

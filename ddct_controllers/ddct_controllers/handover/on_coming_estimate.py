@@ -11,8 +11,8 @@ from ddct_plant.shift.gear_pair import GearPair
 
 SPEED_NOISE_RAD_S = 0.1
 """Standard deviation of the measured w_m."""
-WHEEL_NOISE_RAD_S = 0.1
-"""Standard deviation of the speed of the wheels out of V_x, which is coarse and late."""
+WHEEL_NOISE_RAD_S = 0.05
+"""Standard deviation of the speed of the wheels out of V_x, twice that of a coarse V_x."""
 ENGINE_TORQUE_NOISE_N_M = 1.0
 """Standard deviation of C_m per period."""
 LOAD_DRIFT_N_M = 2.0
@@ -21,7 +21,7 @@ FIRST_TWIST_RAD = 0.3
 """Standard deviation of the first twist of the half-shafts."""
 FIRST_LOAD_N_M = 100.0
 """Standard deviation of the error of C_load at the first step."""
-FIRST_GAIN = 0.2
+FIRST_GAIN = 0.3
 """Standard deviation of the wear gain from 1."""
 FIRST_OFFSET_N_M = 10.0
 """Standard deviation of the offset, which the kiss point of a hot clutch makes."""
@@ -44,11 +44,12 @@ class OnComingEstimate:
     speeds, so C_2 = g f + d - g t df/dt follows from w_m: f is the mean torque of the actuator's
     model, g the wear gain, d an offset, and t the delay of the torque in w_m. The states are
     w_g, w_r, theta, the error of C_load, g, d and g t. f is known, so the filter is linear with
-    known coefficients that change with time.
+    known coefficients that change with time. All of them are those of the time of the measured
+    w_m. Where V_x is late by T more, it is compared with w_r - T dw_r/dt.
     """
 
-    def __init__(self, gears: GearPair, delay_s: float) -> None:
-        """Sample the model of the gears; w_m is measured with a delay of `delay_s` seconds."""
+    def __init__(self, gears: GearPair, delay_s: float, vehicle_delay_s: float) -> None:
+        """Sample the model of the gears; w_m and V_x are measured with these delays in s."""
         self._delay_s = delay_s
         p, off_going, on_coming = gears.on_coming, gears.off_going, gears.on_coming.gear
         # Inertia and damping of the shafts at the wheels, per unit at a shaft.
@@ -64,6 +65,10 @@ class OnComingEstimate:
         of_engine, of_clutch = off_going.wheel_torque(1.0), on_coming.wheel_torque(1.0)
         b[_ENGINE, :2] = of_engine / inertia, (of_clutch - of_engine) / inertia
         b[_WHEEL, 2] = -1.0 / vehicle
+        later_s = vehicle_delay_s - delay_s
+        self._measured = np.eye(2, 7)
+        self._measured[1, :4] -= later_s * a[_WHEEL]
+        self._measured_load = -later_s * b[_WHEEL, 2]
         self._step, self._held = hold_inputs(a, b, PERIOD_S)
         self._gear, self._stiffness = off_going, stiffness
         by_engine = ENGINE_TORQUE_NOISE_N_M * self._held[:, 0]
@@ -73,7 +78,7 @@ class OnComingEstimate:
         self._noise = np.diag(
             [off_going.wheel_speed(SPEED_NOISE_RAD_S) ** 2, WHEEL_NOISE_RAD_S**2]
         )
-        self._actuator, self._torque = Actuator(0.0), 0.0
+        self._actuator, self._torque, self._load = Actuator(0.0), 0.0, 0.0
         self._states, self._spread = np.zeros(7), np.zeros((7, 7))
 
     @property
@@ -103,7 +108,7 @@ class OnComingEstimate:
         step[:4, _GAIN] = by_torque * torque
         step[:4, _OFFSET] = by_torque if torque > CARRIES_FROM_N_M else 0.0
         step[:4, _DELAY] = by_torque * (self._torque - torque) / PERIOD_S
-        self._torque = torque
+        self._torque, self._load = torque, torques[1]
         states = step @ self._states
         states[:4] += self._held[:, 0] * torques[0] + self._held[:, 2] * torques[1]
         self._states = states
@@ -112,9 +117,11 @@ class OnComingEstimate:
     def correct(self, engine_speed: float, wheel_speed: float) -> None:
         """Take w_m and the wheel speed in rad/s; the off-going clutch is locked."""
         states, spread = self._states, self._spread
-        # The first two states are measured.
-        error = np.array([self._gear.wheel_speed(engine_speed), wheel_speed]) - states[:2]
-        share = np.linalg.solve(spread[:2, :2] + self._noise, spread[:2]).T
+        measured = np.array([self._gear.wheel_speed(engine_speed), wheel_speed])
+        error = measured - self._measured @ states
+        error[1] -= self._measured_load * self._load
+        by_states = self._measured @ spread
+        share = np.linalg.solve(by_states @ self._measured.T + self._noise, by_states).T
         self._states = states + share @ error
-        spread = spread - share @ spread[:2]
+        spread = spread - share @ by_states
         self._spread = 0.5 * (spread + spread.T)

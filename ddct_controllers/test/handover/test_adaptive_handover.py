@@ -8,14 +8,15 @@ import pytest
 from handed_over import Tick, flare, shift, tie_up_work
 from shifts import shift_settings
 
-from ddct_controllers.handover.adaptive import RESERVE, AdaptiveHandover
+from ddct_controllers.handover import adaptive
+from ddct_controllers.handover.adaptive import RESERVE, RESERVE_FADES_S, AdaptiveHandover
 from ddct_controllers.handover.interface import (
     Handover,
     HandoverCommand,
     HandoverMeasurement,
 )
-from ddct_controllers.handover.on_coming_estimate import _GAIN as GAIN
 from ddct_controllers.handover.on_coming_estimate import MOST_GAIN
+from ddct_plant.base.timebase import steps_in
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.signals.handover_share import WHOLE, OnComingShare
@@ -32,8 +33,8 @@ def worn(scenario: str, wear_gain: float) -> RunSettings:
 
 
 def carried_over_requested(ticks: list[Tick], settings: RunSettings) -> float:
-    """Return what the on-coming clutch carries over what it is meant to, at the opening."""
-    on_coming = ticks[HANDED_OVER].command.on_coming
+    """Return what the on-coming clutch carries over what it is meant to, without the reserve."""
+    on_coming = ticks[-1].command.on_coming
     meant = 100.0
     return settings.wear_gain * on_coming.request(meant) / meant
 
@@ -59,26 +60,27 @@ def test_a_worn_clutch_flares_and_ties_up_without_the_measurement():
     assert tie_up_work(shift(worn('upshift_full', 1.3), 'model')) > 60.0
 
 
-def test_the_kiss_point_of_a_hot_clutch_is_found():
-    """Both clutches carry 18 N m more than requested."""
+def test_the_kiss_point_of_a_hot_clutch_is_found(monkeypatch):
+    """Both clutches carry 18 N m more than requested; the reserve would add to them."""
+    monkeypatch.setattr(adaptive, 'RESERVE', 0.0)
     hot = shift_settings('upshift_hot')
     ticks = shift(hot, 'adaptive')
     assert ticks[HANDED_OVER].command.torque_offset > 9.0
     assert tie_up_work(ticks) < 0.6 * tie_up_work(shift(hot, 'model'))
 
 
-def test_the_reserve_is_the_standard_deviation_of_the_wear_gain():
+def test_the_reserve_fades_after_the_handover():
     settings = shift_settings('upshift')
-    law = AdaptiveHandover(settings)
-    shift(settings, 'adaptive', law=law)
-    variance = law._estimate._spread[GAIN, GAIN]
-    assert pytest.approx(variance**0.5, abs=0.02) == RESERVE
-
-
-def test_the_estimate_stays_after_the_handover():
-    ticks = shift(worn('upshift', 0.8), 'adaptive')
-    known = {tick.command.on_coming for tick in ticks[HANDED_OVER:]}
-    assert len(known) == 1
+    ticks = shift(settings, 'adaptive')
+    faded = HANDED_OVER + steps_in('RESERVE_FADES_S', RESERVE_FADES_S)
+    gains = [1.0 + tick.command.wear_deviation for tick in ticks[HANDED_OVER:]]
+    estimate = gains[-1]
+    assert gains[0] == pytest.approx((1.0 - RESERVE) * estimate)
+    assert gains[: faded - HANDED_OVER + 1] == sorted(gains[: faded - HANDED_OVER + 1])
+    assert set(gains[faded - HANDED_OVER :]) == {estimate}
+    assert {tick.command.torque_offset for tick in ticks[HANDED_OVER:]} == {
+        ticks[-1].command.torque_offset
+    }
 
 
 def test_a_longer_handover_finds_the_wear_better():
