@@ -31,7 +31,7 @@ from generator.benchmark_tables import CASE_HEADERS, case_cells
 from generator.distance_table import distance_table
 from generator.repeated_cases import handover_table, parted_table
 
-SCENARIOS = ('launch', 'launch_hill', 'launch_gentle', 'thesis', 'upshift')
+SCENARIOS = ('launch', 'launch_hill', 'launch_gentle', 'thesis', 'upshift', 'tip_in')
 WEAR_GAINS = (0.7, 1.0, 1.3)
 DELAY_S = 0.015
 """Delay of the actuator in the runs without an ingredient; the controller assumes 10 ms."""
@@ -67,6 +67,7 @@ VARIANTS = (
     Variant('the slow correction of the way down', {}, {'CORRECTION': 1e9}),
     Variant('most of the correction by the measured slip', {'observer_rad_s': 0.5}),
     Variant('the filter of the measured slip', {'observer_rad_s': 30.0}),
+    Variant('the engine torque after the demand', {'demand_periods': 0.0}),
 )
 """Variants in the order of the table."""
 _MODULES = (actuator_model, controller, demand_trend, torque_estimate, torque_plan)

@@ -11,7 +11,7 @@ from generator.repeated_cases import (
     HIGHEST_N_M,
     Constant,
     handover_row,
-    parted_cases,
+    locked_cases,
     parted_rows,
 )
 
@@ -69,7 +69,7 @@ def test_the_states_of_shifts_with_another_handover_are_those_of_the_page() -> N
 
 def test_the_highest_request_leaves_no_clutch_more_to_give() -> None:
     """So a bound with it holds for every request."""
-    (run, *_) = parted_cases()
+    (run, *_) = locked_cases()
     torques = [
         run_headless(run.settings, Constant(request)).clutch_torque.tobytes()
         for request in (HIGHEST_N_M, 1000.0 * HIGHEST_N_M)

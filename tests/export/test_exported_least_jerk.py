@@ -3,6 +3,7 @@
 """`least_jerk` as C: the same bits as in Python, in every packaged scenario."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -24,10 +25,12 @@ COMPILE = ('-O2', '-ffp-contract=off', '-shared', '-fPIC', 'ddct_least_jerk.c', 
 SCENARIOS = Cases.packaged().whole.values_of('scenario')
 
 
-def settings_of(scenario: str, wear_gain: float = 1.0, clutch: str = 'stick_slip') -> RunSettings:
-    """Return a run with the sensors of the benchmark."""
+def settings_of(
+    scenario: str, wear_gain: float = 1.0, clutch: str = 'stick_slip', **changes: Any
+) -> RunSettings:
+    """Return a run with the sensors of the benchmark, and sections of the scenario changed."""
     (sensors,) = Cases.packaged().content['grid']['sensors']
-    changed = load_scenario(scenario, {'sensors': sensors}, clutch)
+    changed = load_scenario(scenario, {'sensors': sensors, **changes}, clutch)
     return RunSettings(changed, clutch=clutch, wear_gain=wear_gain, seed=3)
 
 
@@ -86,8 +89,8 @@ def random_measurement(random: np.random.Generator, step: int) -> Measurement:
     )
 
 
-def answers(controller: Controller, seed: int) -> list[float]:
-    """Return the torques of an episode in N m; in some steps feedback is off."""
+def answers(controller: Controller, seed: int) -> list[tuple[float, float | None]]:
+    """Return clutch and engine torques of an episode in N m; in some steps feedback is off."""
     random = np.random.default_rng(seed)
     controller.reset()
     torques = []
@@ -96,7 +99,8 @@ def answers(controller: Controller, seed: int) -> list[float]:
         if random.random() < 0.1 or step < 5:
             controller.hold(measurement)
         else:
-            torques.append(controller.update(measurement).clutch_torque)
+            command = controller.update(measurement)
+            torques.append((command.clutch_torque, command.engine_torque))
     return torques
 
 
@@ -107,6 +111,21 @@ def test_any_measurements_give_the_bits_of_python(tmp_path, scenario):
     copy = make_controller(in_c(settings, tmp_path), settings)
     for seed in range(20):
         assert answers(copy, seed) == answers(original, seed)
+
+
+@pytest.mark.parametrize(
+    'authority',
+    [{}, {'deviation_n_m': 40.0, 'slew_n_m_s': 900.0, 'lag_s': 0.03, 'maximum_torque_n_m': 200.0}],
+    ids=['full', 'limited'],
+)
+def test_the_shaped_demand_has_the_bits_of_python(tmp_path, authority):
+    settings = settings_of('tip_in', engine_authority=authority)
+    original = make_controller(SPEC, settings)
+    copy = make_controller(in_c(settings, tmp_path), settings)
+    for seed in range(10):
+        found = answers(copy, seed)
+        assert found == answers(original, seed)
+        assert all(engine is not None for _, engine in found)
 
 
 def test_a_measurement_that_is_no_number_ends_the_run_as_in_python(tmp_path):

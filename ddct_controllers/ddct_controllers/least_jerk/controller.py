@@ -15,6 +15,7 @@ from ddct_controllers.least_jerk.design import LeastJerkDesign
 from ddct_controllers.least_jerk.lock import CLOSED, SLIPPING, LockPhases
 from ddct_controllers.least_jerk.options import LeastJerkOptions
 from ddct_controllers.least_jerk.plan import time_left
+from ddct_controllers.least_jerk.shaped_demand import ShapedDemand
 from ddct_controllers.least_jerk.torque_plan import TorquePlan
 from ddct_controllers.measurement import measured_speeds
 from ddct_plant.base.timebase import PERIOD_S
@@ -26,6 +27,8 @@ SLIPPING_RAD_S = 1.0
 """Slip from which the engine's torque balance has the whole torque that the clutch can carry."""
 STANDING_RAD_S = 1.0
 """Speed of the primary shaft below which the car may be held by its brake."""
+OPENING_STEPS = 6
+"""Number of periods with feedback in which an off-going clutch still carries some torque."""
 PARTED_SHARE, PARTED_N_M = 1.2, 10.0
 """Torque of plates that have parted, over that of constant slip, and beyond it in N m."""
 
@@ -52,14 +55,18 @@ class LeastJerk(Controller):
         self._clutch, self._slip, self._guard = design.clutch(), design.slip(), design.guard()
         self._plan = TorquePlan(design.limits)
         self._demand, self._lock = DemandTrend(), LockPhases()
+        self._engine = ShapedDemand(design.shaping_steps, design.authority)
+        self.commands_engine = design.shaping_steps > 0
         self.reset()
 
     def reset(self) -> None:
         """Clear every estimate and the plan."""
         self._actuator.reset(self.design.initial_request)
-        for part in (self._clutch, self._slip, self._demand, self._lock, self._plan):
+        parts = self._clutch, self._slip, self._demand, self._lock, self._plan, self._engine
+        for part in parts:
             part.reset()
         self._started = self._on = False
+        self._opening = OPENING_STEPS if self._shifts else 0
         self._torque = self._torque_before = self.design.initial_request
         self._engine_torque = 0.0
         self._plan.start(self.design.initial_request)
@@ -67,6 +74,7 @@ class LeastJerk(Controller):
     def hold(self, measurement: Measurement) -> None:
         """Follow the plant under the open-loop torque, which keeps locked plates closed."""
         m = measurement
+        self._engine.hold(m.engine_torque)
         self._observe(m, learns=not self._shifts and not self._on)
         if self._on:
             self._lock.phase = CLOSED
@@ -78,13 +86,17 @@ class LeastJerk(Controller):
         self._plan.start(self._clutch.applied(max(request - noise, 0.0)))
 
     def update(self, measurement: Measurement) -> Command:
-        """Return the request of the coming period less the open loop."""
-        self._observe(measurement, learns=self._lock.phase == SLIPPING)
+        """Return the request of the coming period less the open loop, and that of the engine."""
+        measurement, engine_request = self._engine.update(
+            measurement, closed=self._lock.phase == CLOSED
+        )
+        self._observe(measurement, learns=self._lock.phase == SLIPPING and not self._opening)
+        self._opening = max(self._opening - 1, 0)
         slip, plan, lock = measurement.slip_speed, self._plan, self._lock
         if not self._on:
             self._on = True
             if self._shifts:
-                plan.start(self._clutch.applied(self._actuator.request))
+                plan.start(self._constant_slip(measurement, self._demand.level))
             if self._sticks:
                 lock.start(slip)
         elif self._sticks and lock.update(slip):
@@ -106,6 +118,7 @@ class LeastJerk(Controller):
                 ('torque_offset_n_m', repr(self._clutch.offset)),
                 ('planned_rate_n_m_s', repr(plan.rate)),
             ),
+            engine_request,
         )
 
     def _constant_slip(self, measurement: Measurement, engine_torque: float) -> float:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from ddct_controllers.interface import ControllerContext
 from ddct_controllers.least_jerk.engine_guard import EngineGuard, SpeedRange
 from ddct_controllers.least_jerk.options import LeastJerkOptions
+from ddct_controllers.least_jerk.shaped_demand import shaping_steps, starts_locked
 from ddct_controllers.least_jerk.slip_estimate import RigidSlip, twist_of
 from ddct_controllers.least_jerk.torque_estimate import (
     APPLIED_SHARE,
@@ -17,6 +18,7 @@ from ddct_controllers.least_jerk.torque_estimate import (
 from ddct_controllers.least_jerk.torque_plan import PlanLimits
 from ddct_plant.base.options import with_values
 from ddct_plant.models.clutch import LINEAR
+from ddct_plant.models.engine import EngineAuthority
 from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.models.static_torque import StaticTorque
 from ddct_plant.scenario.initial_state import initial_request
@@ -38,6 +40,10 @@ class LeastJerkDesign:
     """Whether the run is a gear shift."""
     initial_request: float
     """Request in N m before the first measurement."""
+    authority: EngineAuthority
+    """Authority over the engine torque."""
+    shaping_steps: int
+    """Number of steps over which C_m follows the demand; 0 where the driver has the engine."""
 
     @classmethod
     def of(cls, context: ControllerContext) -> 'LeastJerkDesign':
@@ -65,6 +71,10 @@ class LeastJerkDesign:
             sticks=sticks,
             shifts=bool(settings.shift),
             initial_request=initial_request(settings),
+            authority=scenario.engine_authority,
+            shaping_steps=shaping_steps(driveline, options.demand_periods)
+            if starts_locked(settings)
+            else 0,
         )
 
     def clutch(self) -> CarriedTorque:

@@ -81,3 +81,10 @@ class LeastJerkOptions(OptionGroup):
         at_least=0.05,
         at_most=2.0,
     )
+    demand_periods: float = option(
+        1.0,
+        'periods of the locked driveline over which the engine torque follows the demand, in a '
+        'run that starts with locked plates; 0 leaves the engine to the driver',
+        at_least=0.0,
+        at_most=3.0,
+    )

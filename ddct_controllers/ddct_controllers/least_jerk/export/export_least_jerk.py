@@ -18,7 +18,7 @@ from ddct_plant.scenario.settings import RunSettings
 SOURCE, FILE = 'ddct_least_jerk.c', 'least_jerk_in_c.yaml'
 _FILES = (SOURCE, INTERFACE, FILE)
 _MARK = 'Made by design least-jerk --export; make it again instead of editing it.'
-_PARTS = ('estimates.c', 'plan.c', 'controller.c')
+_PARTS = ('estimates.c', 'plan.c', 'engine.c', 'controller.c')
 """Files of the hand-written C, in the order of their use."""
 
 

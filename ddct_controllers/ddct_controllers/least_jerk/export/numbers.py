@@ -10,6 +10,7 @@ from ddct_controllers.least_jerk import (
     engine_guard,
     lock,
     plan,
+    shaped_demand,
     slip_estimate,
     torque_estimate,
     torque_plan,
@@ -30,6 +31,7 @@ def macros_of(design: LeastJerkDesign) -> dict[str, int | float]:
         **_estimates(design),
         **_plan(design),
         **_guard(design),
+        **_engine(design),
         **_lock(),
     }
 
@@ -84,6 +86,7 @@ def _estimates(design: LeastJerkDesign) -> dict[str, int | float]:
         'TORQUE_RATE_SHARE': slip_estimate.TORQUE_RATE_SHARE,
         'SLIPPING_SPEED': controller.SLIPPING_RAD_S,
         'STANDING_SPEED': controller.STANDING_RAD_S,
+        'OPENING_STEPS': controller.OPENING_STEPS,
         'LONGEST': demand_trend.LONGEST,
         'AFTER_DRIFT': demand_trend.AFTER_DRIFT,
         'AFTER_STEP': demand_trend.AFTER_STEP,
@@ -123,6 +126,19 @@ def _guard(design: LeastJerkDesign) -> dict[str, int | float]:
         'MOST_TORQUE': design.options.most_torque_n_m,
         'MOST_DIP': engine_guard.MOST_DIP_RAD_S,
         'LEAST_RATE': engine_guard.LEAST_RATE_N_M_S,
+    }
+
+
+def _engine(design: LeastJerkDesign) -> dict[str, int | float]:
+    authority = design.authority
+    return {
+        'SHAPING_STEPS': design.shaping_steps,
+        'WAIT_STEPS': shaped_demand.WAIT_STEPS,
+        'MOST_DEVIATION': authority.deviation_n_m,
+        'MOST_CHANGE': authority.slew_n_m_s * PERIOD_S,
+        'LAG_SHARE': authority.lag_share,
+        'LEAST_ENGINE_TORQUE': authority.minimum_torque_n_m,
+        'MOST_ENGINE_TORQUE': authority.maximum_torque_n_m,
     }
 
 

@@ -8,11 +8,14 @@ typedef struct {
     rigid_slip slip;
     demand_trend demand;
     torque_plan plan;
+#if SHAPING_STEPS
+    shaped_demand engine;
+#endif
     double torque, torque_before, engine_torque;
-    int phase, count, started, on;
+    int phase, count, opening, started, on;
 } least_jerk;
 
-const ddct_description ddct_controller = DDCT_DESCRIPTION(least_jerk, 0, 0);
+const ddct_description ddct_controller = DDCT_DESCRIPTION(least_jerk, 0, SHAPING_STEPS > 0);
 
 static int usable(double value)
 {
@@ -55,9 +58,13 @@ void ddct_controller_reset(void *state)
     s->plan.rate = 0.0;
     s->plan.falling = 0;
     plan_start(&s->plan, INITIAL_REQUEST);
+#if SHAPING_STEPS
+    shaped_reset(&s->engine);
+#endif
     s->torque = s->torque_before = INITIAL_REQUEST;
     s->engine_torque = 0.0;
     s->phase = SLIPPING;
+    s->opening = SHIFTS ? OPENING_STEPS : 0;
     s->count = s->started = s->on = 0;
 }
 
@@ -159,6 +166,9 @@ int32_t ddct_controller_hold(void *state, const ddct_measurement *m)
     if (!all_usable(m)) {
         return -1;
     }
+#if SHAPING_STEPS
+    shaped_hold(&s->engine, m->engine_torque);
+#endif
     observe(s, m, !SHIFTS && !s->on);
     if (s->on) {
         s->phase = CLOSED;
@@ -179,13 +189,19 @@ int32_t ddct_controller_update(void *state, const ddct_measurement *m, ddct_comm
     if (!all_usable(m)) {
         return -1;
     }
-    observe(s, m, s->phase == SLIPPING);
+#if SHAPING_STEPS
+    ddct_measurement driven = *m;
+    driven.engine_torque = shaped_update(&s->engine, m->engine_torque, s->phase == CLOSED);
+    command->engine_torque = s->engine.mean;
+    m = &driven;
+#endif
+    observe(s, m, s->phase == SLIPPING && !s->opening);
+    s->opening = s->opening > 0 ? s->opening - 1 : 0;
     const double slip = m->engine_speed - m->shaft_speed;
     if (!s->on) {
         s->on = 1;
         if (SHIFTS) {
-            plan_start(&s->plan, s->clutch.applied_gain * s->model.request
-                                     + s->clutch.applied_offset);
+            plan_start(&s->plan, constant_slip(m, s->demand.level));
         }
         if (STICKS) {
             s->phase = size_of(slip) < AT_START_SPEED ? CLOSED : SLIPPING;
