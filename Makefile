@@ -78,6 +78,7 @@ fmu: setup .venv/.fmu
 tune-extra: setup .venv/.tune
 
 # Both runs always take place. A package whose tests colcon did not find counts as a failure.
+# Without the empty variable colcon forbids bytecode files, and each process would compile its imports.
 TEST_FOLDERS := $(wildcard ddct_*/test tests)
 TOTAL := /pytest.xml: [1-9]/ { ran++ } \
     /^Summary:/ { failed = $$4 + $$6; printf "Total: %d passed, %d failed, %d skipped\n", \
@@ -86,7 +87,7 @@ TOTAL := /pytest.xml: [1-9]/ { ran++ } \
         exit failed || ran < folders }
 test: fmu tune-extra .venv/.site .venv/.test
 	@rm -rf build/*/pytest.xml; status=0; $(SOURCED) \
-	$(BIN)/colcon test --executor sequential --event-handlers console_cohesion+ \
+	PYTHONDONTWRITEBYTECODE= $(BIN)/colcon test --executor sequential --event-handlers console_cohesion+ \
 	    --return-code-on-test-failure --pytest-args ' -n2' ' --dist=loadfile' ' --no-loadscope-reorder' \
 	    || status=1; \
 	$(BIN)/python -m pytest tests -n 2 --dist loadfile --no-loadscope-reorder \
