@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Whole shifts in closed loop against an integration by another method, with tight tolerances."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -20,6 +21,10 @@ from ddct_plant.shift_plant.sides import OPEN_BELOW
 from ddct_plant.shift_plant.start import shift_start
 
 TOLERANCE = 1e-12
+State = Sequence[float] | np.ndarray
+"""The states as numbers of Python, or as the integrator passes them."""
+Pair = tuple[float, float]
+"""A number of the on-coming and of the off-going clutch."""
 NEAR = 1e-9
 """Slip in rad/s that counts as zero at an event."""
 
@@ -37,52 +42,49 @@ class Independent:
         start = shift_start(settings)
         self.parameters = scenario.driveline
         gears = scenario.driveline.gear, gears_of(scenario).off_going
-        self.ratios = np.array([gear.total_ratio for gear in gears])
+        self.ratios = [gear.total_ratio for gear in gears]
+        self.squares = sum(ratio**2 for ratio in self.ratios)
+        self.gear_inertia = self.parameters.shaft_inertia * self.squares
         self.state = np.array(
             [start.engine_speed, start.wheel_speed, start.wheel_speed, start.twist]
         )
         self.signs = [1, 0]
         self.load = 0.0
-        self.capacities = np.zeros((2, SUBSTEPS + 1))
+        self.capacities = [[0.0] * (SUBSTEPS + 1)] * 2
 
-    def slips(self, state: np.ndarray) -> np.ndarray:
-        return state[0] - self.ratios * state[1]
+    def slip(self, i: int, state: State) -> float:
+        return state[0] - self.ratios[i] * state[1]
 
-    def torques(self, time: float, state: np.ndarray, engine: float, load: float) -> np.ndarray:
+    def limit(self, i: int, time: float) -> float:
+        """Return the capacity of a clutch, which is linear between the nodes of the period."""
+        piece = min(int(time / SUBSTEP_S), SUBSTEPS - 1)
+        before, after = self.capacities[i][piece : piece + 2]
+        return before + (time / SUBSTEP_S - piece) * (after - before)
+
+    def torques(self, time: float, state: State, engine: float, load: float) -> Pair:
         """Return the torques of both clutches at a time in the period."""
-        nodes = SUBSTEP_S * np.arange(SUBSTEPS + 1)
-        limits = [np.interp(time, nodes, each) for each in self.capacities]
-        found = np.array(
-            [sign * limit for sign, limit in zip(self.signs, limits, strict=True)], dtype=float
-        )
+        on, off = (sign and sign * self.limit(i, time) for i, sign in enumerate(self.signs))
         if 0 not in self.signs:
-            return found
+            return on, off
         stuck = self.signs.index(0)
-        free = self.slope_of(state, found, engine, load)
-        p, ratio = self.parameters, self.ratios[stuck]
-        mobility = 1.0 / p.engine_inertia + ratio**2 / self.gear_inertia
-        found[stuck] = (free[0] - ratio * free[1]) / mobility
-        return found
+        free = self.slope_of(state, (on, off), engine, load)
+        ratio = self.ratios[stuck]
+        mobility = 1.0 / self.parameters.engine_inertia + ratio**2 / self.gear_inertia
+        torque = (free[0] - ratio * free[1]) / mobility
+        return (torque, off) if stuck == 0 else (on, torque)
 
-    @property
-    def gear_inertia(self) -> float:
-        return self.parameters.shaft_inertia * float(self.ratios @ self.ratios)
-
-    def slope_of(
-        self, state: np.ndarray, torques: np.ndarray, engine: float, load: float
-    ) -> np.ndarray:
-        p, squares = self.parameters, float(self.ratios @ self.ratios)
+    def slope_of(self, state: State, torques: Pair, engine: float, load: float) -> list[float]:
+        # In numbers of Python: arrays of two or four take several times as long.
+        p = self.parameters
         speed, gear, wheel, twist = state
         shaft = p.halfshaft_damping * (gear - wheel) + p.halfshaft_stiffness * twist
-        return np.array(
-            [
-                (engine - p.engine_damping * speed - torques.sum()) / p.engine_inertia,
-                (self.ratios @ torques - shaft - p.shaft_damping * squares * gear)
-                / self.gear_inertia,
-                (shaft - load) / p.vehicle_inertia,
-                gear - wheel,
-            ]
-        )
+        driving = self.ratios[0] * torques[0] + self.ratios[1] * torques[1]
+        return [
+            (engine - p.engine_damping * speed - sum(torques)) / p.engine_inertia,
+            (driving - shaft - p.shaft_damping * self.squares * gear) / self.gear_inertia,
+            (shaft - load) / p.vehicle_inertia,
+            gear - wheel,
+        ]
 
     def advance(self, engine: float, load: float) -> None:
         """Integrate 10 ms, piece by piece between the nodes of the capacities."""
@@ -92,18 +94,16 @@ class Independent:
                 now = self._to_event(now, end, engine, load)
 
     def _to_event(self, now: float, end: float, engine: float, load: float) -> float:
-        def slope(time: float, state: np.ndarray) -> np.ndarray:
-            return self.slope_of(state, self.torques(time, state, engine, load), engine, load)
-
-        nodes = SUBSTEP_S * np.arange(SUBSTEPS + 1)
+        def slope(time: float, state: np.ndarray) -> list[float]:
+            now = state.tolist()
+            return self.slope_of(now, self.torques(time, now, engine, load), engine, load)
 
         def guard(i: int) -> Any:
             def slipping(time: float, state: np.ndarray) -> float:
-                return self.signs[i] * self.slips(state)[i]
+                return self.signs[i] * self.slip(i, state)
 
             def sticking(time: float, state: np.ndarray) -> float:
-                limit = float(np.interp(time, nodes, self.capacities[i]))
-                return limit - abs(self.torques(time, state, engine, load)[i])
+                return self.limit(i, time) - abs(self.torques(time, state, engine, load)[i])
 
             found: Any = slipping if self.signs[i] else sticking
             found.terminal, found.direction = True, -1.0
@@ -133,10 +133,10 @@ class Independent:
             self.signs[which] = 1 if torque > 0.0 else -1
             return
         before = self.signs[which]
-        assert abs(self.slips(self.state)[which]) < NEAR
+        assert abs(self.slip(which, self.state)) < NEAR
         self.signs[which] = 0
-        limit = float(np.interp(time, SUBSTEP_S * np.arange(SUBSTEPS + 1), self.capacities[which]))
-        if abs(self.torques(time, self.state, engine, load)[which]) > limit:
+        torque = self.torques(time, self.state, engine, load)[which]
+        if abs(torque) > self.limit(which, time):
             self.signs[which] = -before
 
 
@@ -153,13 +153,13 @@ def shift_by_the_other_method(settings: RunSettings) -> np.ndarray:
     speeds = [other.state[:3]]
     resisting = road.torque(other.state[2] * scenario.vehicle.wheel_radius_m) + holding.capacity(0)
     for step in range(scenario.steps):
-        slip = 0.0 if other.signs[0] == 0 else float(other.slips(other.state)[0])
+        slip = 0.0 if other.signs[0] == 0 else float(other.slip(0, other.state))
         shaft = float(other.ratios[0] * other.state[1])
         sample = Sample(slip, float(other.state[0]), shaft, engine, resisting)
         requests = law.requests(step, sample)
         nodes = [each.update(x) for each, x in zip(actuators, requests, strict=True)]
         pressed = np.array(nodes)
-        other.capacities = np.where(pressed > OPEN_BELOW, np.minimum(pressed, 350.0), 0.0)
+        other.capacities = np.where(pressed > OPEN_BELOW, np.minimum(pressed, 350.0), 0.0).tolist()
         vehicle_speed = float(other.state[2]) * scenario.vehicle.wheel_radius_m
         resisting = road.torque(vehicle_speed) + holding.capacity(step * PERIOD_S)
         other.advance(engine, resisting)
