@@ -17,7 +17,7 @@ from ddct_bringup.reproduction.calibration.parameters import (
     ROWS,
     values_of,
 )
-from ddct_bringup.reproduction.calibration.problem import Problem, fit, row_values
+from ddct_bringup.reproduction.calibration.problem import Fit, Problem, fit, row_values
 from ddct_bringup.reproduction.calibration.record import check_frozen
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.thesis.table_5_1 import PREDICTED, THESIS_TABLE, thesis_row
@@ -30,6 +30,12 @@ pytestmark = pytest.mark.slow
 SCENARIO = load_scenario('thesis')
 PROBLEM = Problem(SCENARIO.score_window_s[1])
 VALUES = np.array(values_of(SCENARIO))
+
+
+@pytest.fixture(scope='module')
+def optimum() -> Fit:
+    """Return the fit from the frozen scenario."""
+    return fit(PROBLEM, VALUES)
 
 
 def quiet(text: str) -> None:
@@ -84,8 +90,8 @@ def test_pi_gains_move_no_row_but_their_own():
     assert np.max(np.abs(after[6:] - before[6:])) > 0.5
 
 
-def test_weakest_direction_moves_no_residual():
-    change = 10.0 * identifiability(fit(PROBLEM, VALUES)).weakest
+def test_weakest_direction_moves_no_residual(optimum):
+    change = 10.0 * identifiability(optimum).weakest
     assert change[0] == pytest.approx(10.0)
     assert change[1] == pytest.approx(10.0, rel=0.1)
     difference = PROBLEM.residuals(VALUES + change) - PROBLEM.residuals(VALUES)
@@ -99,8 +105,7 @@ def test_same_rise_of_torque_by_another_path_does_move_residuals():
     assert np.max(np.abs(difference)) > 0.2
 
 
-def test_standard_deviation_of_the_svd_agrees_with_the_normal_equations():
-    optimum = fit(PROBLEM, VALUES)
+def test_standard_deviation_of_the_svd_agrees_with_the_normal_equations(optimum):
     analysis = identifiability(optimum)
     jacobian = PROBLEM.jacobian(optimum.values)
     variance = np.sum(optimum.residuals**2) / (9 - 7)
@@ -109,9 +114,8 @@ def test_standard_deviation_of_the_svd_agrees_with_the_normal_equations():
     assert analysis.std == pytest.approx(np.sqrt(np.diag(covariance)) * RANGE, rel=1e-6)
 
 
-def test_standard_error_of_a_function_is_that_of_the_normal_equations():
+def test_standard_error_of_a_function_is_that_of_the_normal_equations(optimum):
     """The function is the slope of C_m, compared with the covariance and a difference quotient."""
-    optimum = fit(PROBLEM, VALUES)
     values = np.array(optimum.values)
 
     def rate(at: np.ndarray) -> float:
