@@ -74,8 +74,11 @@ def _load_messages() -> None:
     import rcl_interfaces.srv
     from rclpy.type_support import check_for_type_support
 
+    from ddct_plant.bag_file.message_definitions import load_definition
     from ddct_plant.signals.topics import all_topics
 
+    for topic in all_topics():
+        load_definition(topic.type)
     classes = [topic.message_class for topic in all_topics()]
     classes += [rcl_interfaces.msg.Log, rcl_interfaces.msg.ParameterEvent]
     classes += [getattr(rcl_interfaces.srv, name) for name in _SERVICES]

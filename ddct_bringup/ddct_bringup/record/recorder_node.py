@@ -23,6 +23,7 @@ from ddct_plant.graph.output import create_publisher
 from ddct_plant.graph.qos import RECORDER_QOS
 from ddct_plant.graph.sole_publishers import publishers_of
 from ddct_plant.graph.spin import run_node
+from ddct_plant.graph.wire import serialiser
 from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import (
     CONTROLLER_TIMING,
@@ -78,7 +79,7 @@ class RecorderNode(GraphNode):
             self.limit = StampLimit(tick_names(), from_t0=True)
         self._wall_clock = WallClockFacts()
         self._ack = create_publisher(self, RECORDER_ACK)
-        self._write_ack = RECORDER_ACK.writer()
+        self._serialise_ack = serialiser(RECORDER_ACK)
         self._acknowledged = 0
         self._second_node: DdctError | None = None
         self._subscribe_all()
@@ -174,7 +175,7 @@ class RecorderNode(GraphNode):
 
     def _acknowledge(self, stamp: int) -> bytes:
         """Publish the acknowledgement of a tick and return it, serialised."""
-        ack = serialize_message(self._write_ack(stamp))
+        ack = self._serialise_ack(stamp)
         self._ack.publish(ack)
         self._acknowledged = stamp
         return ack

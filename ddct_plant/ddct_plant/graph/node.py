@@ -12,6 +12,7 @@ from rclpy.qos import QoSProfile
 from rclpy.task import Future
 from rclpy.timer import Timer
 
+from ddct_plant.bag_file.cdr import stamp_of_cdr
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import stamp_of_step
 from ddct_plant.graph.node_names import topic_in_graph
@@ -27,7 +28,7 @@ from ddct_plant.graph.qos import (
 )
 from ddct_plant.graph.rare_warnings import RareWarnings, find_sources
 from ddct_plant.graph.settings import declare_scheduling, declare_settings
-from ddct_plant.signals.message_kind import stamp_ns
+from ddct_plant.graph.wire import decoder
 from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import (
     RUN_INFO,
@@ -90,22 +91,25 @@ class GraphNode(Node):
         lock-step a bad message ends the node; in real time it counts as missing.
         """
         values_of = read or partial(topic.read, shown=self.shown(topic.name))
+        decode = decoder(topic)
 
-        def receive(message: Any) -> None:
-            stamp = stamp_ns(message)
+        def receive(cdr: bytes) -> None:
+            try:
+                message = decode(cdr)
+            except (DdctError, UnicodeDecodeError) as error:
+                self._reject(self.shown(topic.name), error)
+                return
+            stamp = stamp_of_cdr(cdr)
             if not self.admits(topic.name, stamp):
                 return
             try:
                 values = values_of(message)
             except DdctError as error:
-                reason = f'at stamp {stamp} ns: {error}'
-                if self.settings.lockstep:
-                    raise DdctError(reason) from error
-                self._refuse(reason)
+                self._reject(f'at stamp {stamp} ns', error)
             else:
                 take(stamp, values)
 
-        self.subscribe_messages(topic, receive)
+        self.subscribe_messages(topic, receive, raw=True)
 
     def admits(self, topic: str, stamp: int) -> bool:
         """Return whether a stamp is plausible; a refused message counts as missing."""
@@ -117,6 +121,13 @@ class GraphNode(Node):
     def shown(self, topic: str) -> str:
         """Return the name in the graph, for errors, of what this node calls `topic`."""
         return topic_in_graph(topic, self.get_namespace())
+
+    def _reject(self, where: str, error: Exception) -> None:
+        """Raise an error about a bad message in lock-step; in real time the message is missing."""
+        reason = f'{where}: {error}'
+        if self.settings.lockstep:
+            raise DdctError(reason) from error
+        self._refuse(reason)
 
     def _refuse(self, reason: str) -> None:
         self.refused += 1

@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Publishers of the table's topics, and the report of a node's safe state."""
 
+from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 from rclpy.node import Node
@@ -17,6 +19,7 @@ from ddct_plant.graph.qos import (
     overriding_options,
     own_copy,
 )
+from ddct_plant.graph.wire import serialiser
 from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import DIAGNOSTICS
 
@@ -34,20 +37,29 @@ def create_publisher(node: Node, topic: Topic) -> Publisher:
 
 
 class Output:
-    """Publisher of a topic, with one message that is filled anew for every tick."""
+    """
+    Publisher of a topic, with its message of the present tick.
+
+    The message is serialised when it is published, so that no node waits for the serialisation of
+    what is published after its own input.
+    """
 
     def __init__(self, node: Node, topic: Topic) -> None:
         self._publisher = create_publisher(node, topic)
-        self._write = topic.writer()
-        self._message: Any = None
+        self._serialise = serialiser(topic)
+        self._filled: Callable[[], bytes] = bytes
+        self._message: bytes | None = None
 
     def fill(self, stamp: int, *values: Any, **options: Any) -> 'Output':
-        """Fill the message with a stamp in ns and the topic's values; return this output."""
-        self._message = self._write(stamp, *values, **options)
+        """Take a stamp in ns and the topic's values for the message; return this output."""
+        self._filled = partial(self._serialise, stamp, *values, **options)
+        self._message = None
         return self
 
     def publish(self) -> None:
         """Publish the message with the values of the last `fill`."""
+        if self._message is None:
+            self._message = self._filled()
         self._publisher.publish(self._message)
 
 

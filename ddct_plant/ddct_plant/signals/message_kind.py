@@ -14,7 +14,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from operator import attrgetter
-from typing import Any
+from typing import Any, ClassVar
 
 from ddct_plant.base.errors import require_finite, require_number
 
@@ -51,6 +51,8 @@ def _time_of(message: Any) -> Any:
 class MessageKind:
     """Adapter for one message type; this base carries the stamp only."""
 
+    numbers_alone: ClassVar[bool] = True
+    """Whether the values are numbers, or rows of them: always as many, and all float64."""
     type: str
     """Name of the message type, such as 'sensor_msgs/msg/JointState'."""
 

@@ -59,19 +59,20 @@ class Points(MessageKind):
 
     def values(self, message: Any) -> tuple[list[float], ...]:
         """Return a row of numbers per field and joint; raise IndexError where one is missing."""
-        points = message.points
-        joints = range(len(message.joint_names))
+        return self._rows(self._columns(message.points), len(message.joint_names))
+
+    def _columns(self, points: Sequence[Any]) -> list[list[Sequence[float]]]:
+        """Return for each field the numbers of each point, one for each joint."""
+        return [[getattr(point, field) for point in points] for field in self.fields]
+
+    def _rows(self, columns: Sequence[Any], joints: int) -> tuple[list[float], ...]:
         return tuple(
-            [getattr(point, field)[joint] for point in points]
-            for field in self.fields
-            for joint in joints
+            [numbers[joint] for numbers in column] for column in columns for joint in range(joints)
         )
 
-    def _one_each(self, points: Sequence[Any], joints: int) -> bool:
+    def _one_each(self, columns: Sequence[Any], joints: int) -> bool:
         """Return whether each point has one number per field and joint."""
-        return all(
-            len(getattr(point, field)) == joints for field in self.fields for point in points
-        )
+        return all(len(numbers) == joints for column in columns for numbers in column)
 
 
 @dataclass(frozen=True)
@@ -97,12 +98,13 @@ class TorqueRows(Points):
                 key=topic,
             )
         points = message.points
-        if len(points) != self.count or not self._one_each(points, joints):
+        columns = self._columns(points)
+        if len(points) != self.count or not self._one_each(columns, joints):
             raise DdctError(
                 f'{topic} has {len(points)} points: it needs {self.count}, '
                 '1 ms apart, each with an effort for each joint and no more'
             )
-        rows = [finite_values(topic, row) for row in self.values(message)]
+        rows = [finite_values(topic, row) for row in self._rows(columns, joints)]
         try:
             if joints > 1:
                 require_capacities(0, *rows)
@@ -133,15 +135,17 @@ class PreviewPoints(Points):
                 f'{", ".join(self.joints)}',
                 key=topic,
             )
-        if len(message.points) <= preview_steps:
+        points = message.points
+        if len(points) <= preview_steps:
             raise DdctError(
-                f'{topic} has {len(message.points)} points and the controller needs '
+                f'{topic} has {len(points)} points and the controller needs '
                 f'{preview_steps + 1}: start the reference with '
                 f'--ros-args -p preview_steps:={preview_steps}',
                 key=topic,
             )
-        if not self._one_each(message.points, 1):
+        columns = self._columns(points)
+        if not self._one_each(columns, 1):
             raise DdctError(f'{topic}: each point needs one velocity and one acceleration')
-        speeds, rates = self.values(message)
+        speeds, rates = self._rows(columns, 1)
         last = preview_steps + 1
         return finite_values(topic, speeds[:last]), finite_values(topic, rates[:last])

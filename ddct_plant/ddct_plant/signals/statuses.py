@@ -15,6 +15,7 @@ from ddct_plant.signals.message_kind import ClassOf, MessageKind
 class Status(MessageKind):
     """Adapter for a DiagnosticArray with one status: its name and (key, value) pairs."""
 
+    numbers_alone: ClassVar[bool] = False
     name: str = ''
     """Name of the status, where it is constant."""
 
@@ -61,6 +62,7 @@ class SampleFlags(MessageKind):
     of a message is the flag, 1 or 0, of one sample, or a row of flags of several.
     """
 
+    numbers_alone: ClassVar[bool] = False
     names: tuple[tuple[str, ...], ...]
     """Names of the statuses by value; a value with several names is a row of flags."""
 
@@ -103,6 +105,7 @@ class PhaseReport(MessageKind):
     Each event has one pair of kind and time, and one pair of its slip acceleration after it.
     """
 
+    numbers_alone: ClassVar[bool] = False
     _WORK: ClassVar[str] = 'friction_work_j'
     _ACCELERATION: ClassVar[str] = 'slip_acceleration_rad_s2'
 
