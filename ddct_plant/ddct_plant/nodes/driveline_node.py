@@ -51,8 +51,8 @@ SENSED = sorted(
 )
 """Topics of a tick that carry measurements of the sensors and their flags, the slip first."""
 TICK = (
-    *(CLOCK, *SENSED, SLIP, OFF_GOING_SLIP, CLUTCH_PHASE, OFF_GOING_PHASE),
-    *(JOINT_STATES, VEHICLE_SPEED, VEHICLE_ACCEL, OFF_GOING_JOINT_STATES),
+    *(*SENSED, SLIP, OFF_GOING_SLIP, JOINT_STATES, CLUTCH_PHASE, OFF_GOING_PHASE),
+    *(VEHICLE_SPEED, CLOCK, VEHICLE_ACCEL, OFF_GOING_JOINT_STATES),
 )
 """Topics of a tick, in the order of publication: the slip has the longest way round the loop."""
 WATCH_PERIOD_S = 0.02

@@ -32,7 +32,7 @@ from ddct_plant.signals.signal import RunKind
 from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import recorded_topics
 
-TICK = ('/clock', 'clutch/slip', 'driveline/joint_states', 'vehicle/twist', 'vehicle/accel')
+TICK = ('clutch/slip', 'driveline/joint_states', 'vehicle/twist', '/clock', 'vehicle/accel')
 STATUS = tuple((f'a_key_of_the_status_{i}', '123.4567890123456') for i in range(4))
 POINTS = [1.0] * 11
 
