@@ -87,14 +87,15 @@ class TickDurations:
     Durations of the ticks of a real-time run, measured where time is owned.
 
     `lateness` is the time by which a tick is published after it is due, `jitter` the difference
-    of a period from 10 ms, and `latency` the time from the publication of a tick to the arrival of
-    the torque of a clutch that answers it, however late.
+    of a period from its nominal length, and `latency` the time from the publication of a tick to
+    the arrival of the torque of a clutch that answers it, however late.
     """
 
-    def __init__(self, clock: Callable[[], float]) -> None:
-        """Measure by a steady clock in s."""
+    def __init__(self, clock: Callable[[], float], period_s: float = PERIOD_S) -> None:
+        """Measure ticks with a period in s by a steady clock in s."""
         self.histograms = {name: DurationHistogram() for name in ('lateness', 'jitter', 'latency')}
         self._clock = clock
+        self._period_s = period_s
         self._sent: list[tuple[int, float]] = [(-1, 0.0)] * _REMEMBERED
 
     def publish(self, step: int, late_s: float) -> None:
@@ -102,7 +103,7 @@ class TickDurations:
         now = self._clock()
         before, sent_at = self._sent[(step - 1) % _REMEMBERED]
         if before == step - 1:
-            self.histograms['jitter'].add(abs(now - sent_at - PERIOD_S))
+            self.histograms['jitter'].add(abs(now - sent_at - self._period_s))
         self.histograms['lateness'].add(late_s)
         self._sent[step % _REMEMBERED] = step, now
 

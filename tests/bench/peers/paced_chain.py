@@ -1,10 +1,11 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
 """
-The bare chain at 100 Hz on a steady clock: the floor of a real-time run, for `make soak`.
+The bare chain at 99.9 Hz on a steady clock: the floor of a real-time run, for `make soak`.
 
 Run one node per process with `python paced_chain.py NODE STEPS`. The driveline publishes a tick
-every 10 ms, whether or not the one before is answered, and prints what it measured as JSON. The
+every 10.01 ms, whether or not the one before is answered, and prints what it measured as JSON. So
+each side meets every phase of the other's ticks once in 10 s, and neither has the better one. The
 nodes only count their messages, so none may be lost: it skips ticks, which count as missed, while
 more than `MOST_OUTSTANDING` are unanswered, fewer than the depth of the queues.
 """
@@ -32,6 +33,8 @@ from ddct_plant.graph.node import STEADY
 from ddct_plant.graph.spin import SLICE_S, make_executor
 from ddct_plant.ticks.durations import TickDurations
 
+PACE_S = 1.001 * PERIOD_S
+"""Period of the ticks, s."""
 MOST_OUTSTANDING = 8
 """Most ticks without an answer at which another one is published."""
 ACK = 'recorder/ack'
@@ -45,7 +48,7 @@ class PacedDriveline(BareDriveline):
         wiring = wiring_with()
         self._answers = dict.fromkeys(wiring['driveline'][0], 0)
         super().__init__(steps, wiring, EXAMPLES)
-        self.durations = TickDurations(time.monotonic)
+        self.durations = TickDurations(time.monotonic, PACE_S)
         self.missed = 0
         self._sent = 0
         self._grid_from: float | None = None
@@ -68,12 +71,12 @@ class PacedDriveline(BareDriveline):
             self.durations.answer(self._answers[topic] - 1)
         if self._grid_from is None and self._answered() == 1:
             self._grid_from = time.monotonic()
-            self.create_timer(PERIOD_S, self._tick, clock=STEADY)
+            self.create_timer(PACE_S, self._tick, clock=STEADY)
 
     def _tick(self) -> None:
         assert self._grid_from is not None
         while self.left:
-            late_s = time.monotonic() - self._grid_from - (self._steps - self.left + 1) * PERIOD_S
+            late_s = time.monotonic() - self._grid_from - (self._steps - self.left + 1) * PACE_S
             if late_s < 0.0:
                 return
             self.left -= 1
