@@ -21,8 +21,8 @@ FIRST_TWIST_RAD = 0.3
 """Standard deviation of the first twist of the half-shafts."""
 FIRST_LOAD_N_M = 100.0
 """Standard deviation of the error of C_load at the first step."""
-FIRST_GAIN = 0.3
-"""Standard deviation of the wear gain from 1."""
+FIRST_GAIN = 1.0
+"""Standard deviation of the wear gain from 1: so wide that the estimate does not lean to 1."""
 FIRST_OFFSET_N_M = 10.0
 """Standard deviation of the offset, which the kiss point of a hot clutch makes."""
 DELAY_SPREAD_S = 0.005
