@@ -13,6 +13,12 @@ AT_START_RAD_S = 1.0
 """Size of the measured slip of plates that count as locked when feedback starts."""
 PARTED_RAD_S = 2.5
 """Size of the measured slip of plates that have parted again."""
+PARTED_STEPS = 3
+"""
+Number of samples in turn beyond `PARTED_RAD_S` after which plates count as parted.
+
+In second gear a shaft gains up to 1.7 rad/s in a period, so two lost samples look like more slip.
+"""
 DWELL_STEPS = 2
 """Number of samples within `LOCKED_RAD_S` after which the request begins to rise."""
 CONFIRMING_STEPS = 10
@@ -41,21 +47,22 @@ class LockPhases:
         """Start slipping."""
         self.phase = SLIPPING
         """Present phase."""
-        self._count = 0
+        self._count = self._apart = 0
 
     def start(self, slip: float) -> None:
         """Begin with feedback at a measured slip in rad/s."""
         self.phase = CLOSED if abs(slip) < AT_START_RAD_S else SLIPPING
-        self._count = 0
+        self._count = self._apart = 0
 
     def update(self, slip: float) -> bool:
         """Take the measured slip in rad/s; return whether locked plates have parted."""
         if self.phase == SLIPPING:
             self._count = self._count + 1 if abs(slip) < LOCKED_RAD_S else 0
             if self._count >= DWELL_STEPS:
-                self.phase, self._count = CONFIRMING, 0
+                self.phase, self._count, self._apart = CONFIRMING, 0, 0
             return False
-        if abs(slip) > PARTED_RAD_S:
+        self._apart = self._apart + 1 if abs(slip) > PARTED_RAD_S else 0
+        if self._apart >= PARTED_STEPS:
             self.phase, self._count = SLIPPING, 0
             return True
         if self.phase == CONFIRMING:

@@ -10,6 +10,7 @@ from ddct_controllers.least_jerk.lock import (
     CONFIRMING_STEPS,
     DWELL_STEPS,
     MOST_REQUEST_N_M,
+    PARTED_STEPS,
     SLIPPING,
     LockPhases,
 )
@@ -44,8 +45,15 @@ def test_noise_of_locked_plates_does_not_open_it_and_a_parting_does():
     lock = locked()
     assert not lock.update(1.0)
     assert lock.phase == CLOSED
-    assert lock.update(3.0)
+    assert [lock.update(3.0) for _ in range(PARTED_STEPS)] == [False] * (PARTED_STEPS - 1) + [True]
     assert lock.phase == SLIPPING
+
+
+def test_two_lost_samples_of_a_speed_do_not_open_it():
+    """A car that gains 1.7 rad/s in a period, with w_m as it was before."""
+    lock = locked()
+    assert not any(lock.update(slip) for slip in 5 * (0.1, -1.7, -3.4, 0.0))
+    assert lock.phase == CLOSED
 
 
 @pytest.mark.parametrize(('slip', 'phase'), [(0.5, CLOSED), (1.5, SLIPPING)])

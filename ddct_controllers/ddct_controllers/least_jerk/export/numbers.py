@@ -147,6 +147,7 @@ def _lock() -> dict[str, int | float]:
         'LOCKED_SPEED': lock.LOCKED_RAD_S,
         'AT_START_SPEED': lock.AT_START_RAD_S,
         'PARTED_SPEED': lock.PARTED_RAD_S,
+        'PARTED_STEPS': lock.PARTED_STEPS,
         'DWELL_STEPS': lock.DWELL_STEPS,
         'CONFIRMING_STEPS': lock.CONFIRMING_STEPS,
         'CLOSING_RATE': lock.CLOSING_RATE_N_M_S,

@@ -12,7 +12,7 @@ typedef struct {
     shaped_demand engine;
 #endif
     double torque, torque_before, engine_torque;
-    int phase, count, opening, started, on;
+    int phase, count, apart, opening, started, on;
 } least_jerk;
 
 const ddct_description ddct_controller = DDCT_DESCRIPTION(least_jerk, 0, SHAPING_STEPS > 0);
@@ -65,7 +65,7 @@ void ddct_controller_reset(void *state)
     s->engine_torque = 0.0;
     s->phase = SLIPPING;
     s->opening = SHIFTS ? OPENING_STEPS : 0;
-    s->count = s->started = s->on = 0;
+    s->count = s->apart = s->started = s->on = 0;
 }
 
 /* Update every estimate with the measurement and what was requested before. */
@@ -113,11 +113,12 @@ static int lock_update(least_jerk *s, double slip)
         s->count = size_of(slip) < LOCKED_SPEED ? s->count + 1 : 0;
         if (s->count >= DWELL_STEPS) {
             s->phase = CONFIRMING;
-            s->count = 0;
+            s->count = s->apart = 0;
         }
         return 0;
     }
-    if (size_of(slip) > PARTED_SPEED) {
+    s->apart = size_of(slip) > PARTED_SPEED ? s->apart + 1 : 0;
+    if (s->apart >= PARTED_STEPS) {
         s->phase = SLIPPING;
         s->count = 0;
         return 1;
@@ -205,7 +206,7 @@ int32_t ddct_controller_update(void *state, const ddct_measurement *m, ddct_comm
         }
         if (STICKS) {
             s->phase = size_of(slip) < AT_START_SPEED ? CLOSED : SLIPPING;
-            s->count = 0;
+            s->count = s->apart = 0;
         }
     } else if (STICKS && lock_update(s, slip)) {
         part(s, m);
