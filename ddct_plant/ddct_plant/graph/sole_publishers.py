@@ -19,11 +19,13 @@ CHECK_S = 0.2
 """Period in s of the check, and of repeated requests for the last replies at a doubtful end."""
 PROOF_S = 1.0
 """
-Time in s for which a second publisher in the graph keeps a run from ending without an error.
+Time in s with messages that excludes a second live publisher of a topic that the graph lists.
 
-Between two checks at most `CHECK_S` counts, so that a process that could not run, and could
-receive nothing, does not take silence for proof.
+Between two checks at most `CHECK_S` counts, and nothing where no message arrived: neither a
+process that could not run nor the wait for the first tick excludes anything.
 """
+SILENCE_S = 5.0
+"""Time in s without any message, though replies are requested, after which a run may end too."""
 OPEN_S = 1.0
 """Time in s that a real-time run goes on with a second publisher, with an open clutch."""
 NAMING_S = 2.0
@@ -48,22 +50,31 @@ class _Probe:
     """Reader of the sequence numbers of one topic, which an executor does not pass on."""
 
     def __init__(self, node: Node, topic: str, type_name: str) -> None:
-        self.listened_s = 0.0
-        """Time in s for which messages could arrive."""
+        self._with_messages_s = 0.0
+        self._silence_s = 0.0
         self._checked_at = time.monotonic()
         self.subscription: Subscription = node.create_subscription(
             ros_class(type_name), topic, lambda _: None, RECORDER_QOS, raw=True
         )
         self._watch = SequenceWatch()
 
+    @property
+    def excludes_two(self) -> bool:
+        """Whether two live publishers would have been detected by now."""
+        return self._with_messages_s >= PROOF_S or self._silence_s >= SILENCE_S
+
     def two_alive(self) -> bool:
         """Take the messages that have arrived; return whether two publishers sent them."""
         now = time.monotonic()
-        self.listened_s += min(now - self._checked_at, CHECK_S)
+        passed_s = min(now - self._checked_at, CHECK_S)
         self._checked_at = now
+        self._silence_s += passed_s
         handle, message_type = self.subscription.handle, self.subscription.msg_type
         while (taken := handle.take_message(message_type, True)) is not None:
             self._watch.note(taken[1]['publication_sequence_number'])
+            self._silence_s = 0.0
+        if not self._silence_s:
+            self._with_messages_s += passed_s
         return self._watch.two_alive
 
 
@@ -131,7 +142,7 @@ class SolePublishers:
             self._end(*next(iter(proved.items())))
         if self.found is not None:
             return False
-        return bool(proved) or any(each.listened_s < PROOF_S for each in self._probes.values())
+        return bool(proved) or not all(each.excludes_two for each in self._probes.values())
 
     def _listen(self, topic: str, name: str) -> str | None:
         """Return what is wrong with the publishers of a topic, None before it is proved."""
