@@ -4,6 +4,7 @@
 
 import time
 from collections.abc import Callable
+from functools import partial
 
 from rclpy.node import Node
 from rclpy.subscription import Subscription
@@ -32,7 +33,8 @@ NAMING_S = 2.0
 """
 Time in s for which an error in lock-step waits for the name of a node.
 
-Names come after topics. In real time nothing waits: the clutch opens at once.
+Names come after topics. In real time nothing waits: the clutch opens at once, and the error that
+ends the node `OPEN_S` later has the names.
 """
 _UNKNOWN = '_NODE_NAME_UNKNOWN_'
 """Name in rmw of a node whose topics are known before its name."""
@@ -156,21 +158,28 @@ class SolePublishers:
 
     def _end(self, topic: str, complaint: str) -> None:
         """End the node, in real time with an open clutch before that."""
-        publishers = publishers_of(self._node, topic)
         lockstep, now = self._node.settings.lockstep, time.monotonic()
+        error = self._error(topic, complaint)
         if self._proved_at is None:
             self._proved_at = now
-        if lockstep and _UNNAMED in publishers and now - self._proved_at < NAMING_S:
+        unnamed = _UNNAMED in str(error)
+        if lockstep and unnamed and now - self._proved_at < NAMING_S:
             return
-        self.found = error = DdctError(
-            f'{topic} {complaint} the nodes {publishers}: stop one, or use another ROS_DOMAIN_ID',
-            key=topic,
-        )
+        self.found = error
         if lockstep:
             self._node.finish(error)
         else:
             self._node.get_logger().error(f'{error}: opening the clutch')
-            self._node.every(OPEN_S, lambda: self._node.finish(error))
+            later = partial(self._error, topic, complaint) if unnamed else lambda: error
+            self._node.every(OPEN_S, lambda: self._node.finish(later()))
+
+    def _error(self, topic: str, complaint: str) -> DdctError:
+        """Return the error with the names that the middleware knows by now."""
+        return DdctError(
+            f'{topic} {complaint} the nodes {publishers_of(self._node, topic)}: stop one, or use'
+            ' another ROS_DOMAIN_ID',
+            key=topic,
+        )
 
     def _listening(self) -> Node:
         if self._listener is None:
