@@ -59,8 +59,8 @@ class RequestWatch:
         return self._last_step is not None
 
     def request(self, step: int) -> None:
-        """Note the request of `step`."""
-        self._last_step = step
+        """Note the request of `step`, which may be late."""
+        self._last_step = step if self._last_step is None else max(step, self._last_step)
 
     def tick(self, step: int) -> bool:
         """Return at the start of `step` whether requests have stopped."""

@@ -46,6 +46,13 @@ def test_a_request_restarts_the_timeout():
     assert watch.tick(101)
 
 
+def test_a_late_request_does_not_shorten_the_timeout():
+    watch = RequestWatch(0.05)
+    watch.request(10)
+    watch.request(7)
+    assert [watch.tick(step) for step in (15, 16)] == [False, True]
+
+
 @pytest.mark.parametrize('since', [0, 1, 77])
 def test_every_timeout_in_hundredths_of_a_second_trips_one_step_after_it(since):
     for hundredths in range(1, 1001):

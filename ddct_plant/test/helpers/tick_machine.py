@@ -96,7 +96,7 @@ class TickMachine(RuleBasedStateMachine):
         self.dead.add(self.node_at(pick))
 
 
-def require_of_schedules(machine: type[TickMachine], rules: int) -> None:
+def require_of_schedules(machine: type[RuleBasedStateMachine], rules: int) -> None:
     """Require what a machine states of 150 schedules of at most `rules` rules, always the same."""
     run_state_machine_as_test(
         machine,
