@@ -11,7 +11,7 @@ import pytest
 from ddct_bringup.processes.warm_parent import WarmParent
 
 
-@pytest.fixture(scope='session')
+@pytest.fixture(scope='module')
 def stubs(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     """
     Return the folder of the programs, on the path of every process that the tests start.
@@ -25,8 +25,8 @@ def stubs(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
         yield folder
 
 
-@pytest.fixture(scope='session')
+@pytest.fixture(scope='module')
 def parent(stubs: Path) -> Iterator[WarmParent]:
-    """Return a warm parent for all tests."""
+    """Return a warm parent for all tests of a module."""
     with WarmParent() as started:
         yield started
