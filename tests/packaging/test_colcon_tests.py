@@ -22,9 +22,9 @@ def test_colcon_knows_that_the_tests_of_a_package_need_pytest(package: str) -> N
 
 @pytest.mark.graph
 def test_colcon_runs_the_tests_of_a_package(tmp_path: Path) -> None:
-    colcon = Path(sys.executable).with_name('colcon')
-    program = [colcon, '--log-base', tmp_path / 'log', 'test', '--packages-select', SMALLEST]
-    results = ['--test-result-base', tmp_path / 'results', '--return-code-on-test-failure']
+    colcon = str(Path(sys.executable).with_name('colcon'))
+    program = [colcon, '--log-base', str(tmp_path / 'log'), 'test', '--packages-select', SMALLEST]
+    results = ['--test-result-base', str(tmp_path / 'results'), '--return-code-on-test-failure']
     done = subprocess.run([*program, *results], cwd=ROOT, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr
     (report,) = (tmp_path / 'results').rglob('pytest.xml')

@@ -19,7 +19,7 @@ from ddct_plant.scenario.settings import RunSettings
 
 pytestmark = pytest.mark.slow
 
-QUICK = ('jerk_m_s3=60', 'latest_s=0')
+QUICK = ('jerk_m_s3=60', 'latest_s=0', 'least_s=0', 'rise_s=0.01')
 LAUNCHES = ('launch', 'launch_hill', 'launch_hot', 'launch_gentle')
 
 
@@ -47,7 +47,10 @@ def test_it_locks_and_stays_locked(scenario, wear_gain):
     assert run.slip_speed[first:].max() < 1.0
 
 
-@pytest.mark.parametrize(('scenario', 'ratio'), [('launch', 1.35), ('launch_hot', 1.5)])
+@pytest.mark.parametrize(
+    ('scenario', 'ratio'),
+    [('launch', 1.35), ('launch_hot', 1.5), ('thesis', 1.5), ('upshift_light', 1.5)],
+)
 def test_its_peak_jerk_is_near_the_least_of_its_own_lock_time(scenario, ratio):
     settings, run = run_of(scenario)
     start = settings.scenario.control_start_step

@@ -55,12 +55,15 @@ class LeastJerkDesign:
         wheel_torque = driveline.vehicle_inertia / scenario.vehicle.wheel_radius_m
         limits = PlanLimits(
             easy_rate=options.jerk_m_s3 * driveline.gear.shaft_torque(wheel_torque),
+            rise_s=options.rise_s,
             latest_s=options.latest_s,
+            least_s=options.least_s,
             bandwidth_rad_s=options.bandwidth_rad_s,
             end_s=options.end_s,
             twist=twist_of(driveline),
             smoothing_s=options.smoothing_s,
             sticks=sticks,
+            hurries=not sticks or starts_locked(settings),
         )
         return cls(
             options=options,

@@ -19,9 +19,25 @@ class LeastJerkOptions(OptionGroup):
         above=0.0,
         at_most=100.0,
     )
+    rise_s: float = option(
+        0.3,
+        'least time in which the planned torque would change by all of that of constant slip, so '
+        'that a light demand changes it slowly',
+        's',
+        at_least=0.01,
+        at_most=10.0,
+    )
     latest_s: float = option(
         0.6,
         'how much later than the reference ends the lock may be for less jerk',
+        's',
+        at_least=0.0,
+        at_most=10.0,
+    )
+    least_s: float = option(
+        0.8,
+        'time that a plan takes at least from the start of feedback, so that a small slip does '
+        'not change the torque quickly',
         's',
         at_least=0.0,
         at_most=10.0,

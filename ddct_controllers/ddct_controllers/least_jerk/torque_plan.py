@@ -30,8 +30,12 @@ class PlanLimits:
 
     easy_rate: float
     """Rate in N m/s at which the torque changes unless that takes too long."""
+    rise_s: float
+    """Least time in s in which the torque would change by all of that of constant slip."""
     latest_s: float
     """Time in s by which the lock may be later than the reference ends."""
+    least_s: float
+    """Time in s that a plan takes at least."""
     bandwidth_rad_s: float
     """Bandwidth of the last part of the way down, before `MOST_BAND` limits it."""
     end_s: float
@@ -42,6 +46,8 @@ class PlanLimits:
     """Time constant of the low-pass behind the plan."""
     sticks: bool
     """Whether the plates can lock; else the slip may pass zero."""
+    hurries: bool
+    """Whether neither `rise_s` nor `least_s` holds, as the plates are to be locked already."""
 
     @property
     def band(self) -> float:
@@ -75,10 +81,13 @@ class TorquePlan:
         """Take a torque in N m as planned and smoothed."""
         self.torque = self.smoothed = torque
         self._needed = math.nan
+        self._hurries = self._limits.hurries
+        self._least_s = self._limits.least_s
 
     def part(self, torque: float) -> None:
         """Start anew from a torque in N m after plates have parted."""
         self.start(torque)
+        self._hurries = True
         self._falling = False
 
     def smooth(self, share: float) -> None:
@@ -93,7 +102,12 @@ class TorquePlan:
         constant slip then, `left_s` the time in s from then until the slip shall be zero.
         """
         surplus = self.torque - needed
-        self._choose_rate(momentum, surplus, left_s)
+        easy_rate = self._limits.easy_rate
+        if not self._hurries:
+            easy_rate = min(easy_rate, max(needed, 0.0) / self._limits.rise_s)
+            left_s = max(left_s, self._least_s)
+            self._least_s -= PERIOD_S
+        self._choose_rate(momentum, surplus, left_s, easy_rate)
         final = self._final(momentum)
         aim = needed + final
         if not self._falling and self.torque >= aim:
@@ -121,7 +135,9 @@ class TorquePlan:
     def _meets(self, momentum: float) -> bool:
         return self._limits.sticks and self._twisted(momentum) <= 0.0
 
-    def _choose_rate(self, momentum: float, surplus: float, left_s: float) -> None:
+    def _choose_rate(
+        self, momentum: float, surplus: float, left_s: float, easy_rate: float
+    ) -> None:
         """Choose the rate of a plan that still rises."""
         limits = self._limits
         least = LEAST_SHARE * limits.easy_rate
@@ -139,7 +155,7 @@ class TorquePlan:
         late = least_rate(twisted, surplus, left_s + limits.latest_s)
         in_time = least_rate(twisted, surplus, left_s)
         least = max(least, self._way_down(momentum, surplus))
-        self.rate = max(min(max(limits.easy_rate, late), in_time), least)
+        self.rate = max(min(max(easy_rate, late), in_time), least)
 
     def _way_down(self, momentum: float, surplus: float) -> float:
         """Return the rate in N m/s of a fall from a surplus in N m that ends with the slip."""

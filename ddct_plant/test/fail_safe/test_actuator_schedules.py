@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The fail-safe of the actuator under arbitrary schedules of requests and ticks."""
 
+import pytest
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, rule
 from tick_machine import require_of_schedules
@@ -102,5 +103,6 @@ class ActuatorMachine(RuleBasedStateMachine):
             assert self.guarded.watch.stopped == self.opens
 
 
+@pytest.mark.slow
 def test_the_actuator_holds_opens_and_stays_open_whatever_the_schedule() -> None:
     require_of_schedules(ActuatorMachine, rules=30)

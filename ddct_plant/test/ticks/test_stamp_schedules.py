@@ -4,6 +4,7 @@
 
 from collections import deque
 
+import pytest
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, precondition, rule
 from tick_machine import INDEX, require_of_schedules
@@ -94,5 +95,6 @@ class StampMachine(RuleBasedStateMachine):
         assert not self.accepts(REPLY, self.due + 1 + ahead)
 
 
+@pytest.mark.slow
 def test_true_stamps_are_accepted_and_false_ones_refused_whatever_the_schedule() -> None:
     require_of_schedules(StampMachine, rules=40)

@@ -101,6 +101,9 @@ def _plan(design: LeastJerkDesign) -> dict[str, int | float]:
     return {
         'EASY_RATE': limits.easy_rate,
         'LATEST': limits.latest_s,
+        'RISE': limits.rise_s,
+        'LEAST_TIME': limits.least_s,
+        'HURRIES': int(limits.hurries),
         'BAND': limits.band,
         'END': limits.end_s,
         'TWIST': limits.twist,

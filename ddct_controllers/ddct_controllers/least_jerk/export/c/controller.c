@@ -138,6 +138,7 @@ static void part(least_jerk *s, const ddct_measurement *m)
     const double held = carried(&s->clutch, s->model.request);
     const double needed = size_of(constant_slip(m, s->demand.level));
     plan_start(&s->plan, smaller(held, PARTED_SHARE * needed + PARTED_TORQUE));
+    s->plan.hurries = 1;
     s->plan.falling = 0;
 }
 

@@ -33,8 +33,8 @@ static double time_left(double speed, double rate)
 
 /* The planned torque, the same behind its low-pass, and the rate of the plan. */
 typedef struct {
-    double torque, smoothed, rate, needed;
-    int falling, has_needed;
+    double torque, smoothed, rate, needed, least_time;
+    int falling, has_needed, hurries;
 } torque_plan;
 
 static void plan_start(torque_plan *s, double torque)
@@ -42,6 +42,8 @@ static void plan_start(torque_plan *s, double torque)
     s->torque = s->smoothed = torque;
     s->needed = 0.0;
     s->has_needed = 0;
+    s->least_time = LEAST_TIME;
+    s->hurries = HURRIES;
 }
 
 /* J_r w_d at the rate of the way down, for J_r s. */
@@ -70,7 +72,8 @@ static double way_down(const torque_plan *s, double momentum, double surplus)
     return surplus * surplus / (2.0 * twisted);
 }
 
-static void choose_rate(torque_plan *s, double momentum, double surplus, double left)
+static void choose_rate(torque_plan *s, double momentum, double surplus, double left,
+                        double easy_rate)
 {
     double least = LEAST_SHARE * EASY_RATE;
     if (!STICKS) {
@@ -93,7 +96,7 @@ static void choose_rate(torque_plan *s, double momentum, double surplus, double 
     const double late = least_rate(twisted, surplus, left + LATEST);
     const double in_time = least_rate(twisted, surplus, left);
     least = larger(least, way_down(s, momentum, surplus));
-    s->rate = larger(smaller(larger(EASY_RATE, late), in_time), least);
+    s->rate = larger(smaller(larger(easy_rate, late), in_time), least);
 }
 
 /* Follow the way down; errors are corrected the slower, the longer it still takes. */
@@ -113,7 +116,13 @@ static void plan_fall(torque_plan *s, double momentum, double needed, double fin
 static void plan_move(torque_plan *s, double momentum, double needed, double left)
 {
     const double surplus = s->torque - needed;
-    choose_rate(s, momentum, surplus, left);
+    double easy_rate = EASY_RATE;
+    if (!s->hurries) {
+        easy_rate = smaller(easy_rate, larger(needed, 0.0) / RISE);
+        left = larger(left, s->least_time);
+        s->least_time -= PERIOD;
+    }
+    choose_rate(s, momentum, surplus, left, easy_rate);
     const double final = final_of(s, momentum), aim = needed + final;
     if (!s->falling && s->torque >= aim) {
         s->falling = 1;
