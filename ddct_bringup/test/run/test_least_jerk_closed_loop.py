@@ -108,6 +108,30 @@ def test_sensor_noise_moves_the_torque_of_a_gentle_launch_little():
         assert np.abs(jerk(run.vehicle_accel)[after_its_start:]).max() < 1.0
 
 
+@pytest.mark.parametrize('wear_gain', [0.75, 0.85])
+def test_plates_that_slip_in_a_tip_in_are_locked_without_delay(wear_gain):
+    """A worn clutch does not carry the torque of the start."""
+    _, run = run_of('tip_in', wear_gain)
+    start = 30
+    assert not locked(run)[start]
+    first = start + int(np.argmax(locked(run)[start:]))
+    assert first < start + 60
+    assert locked(run)[first:].all()
+
+
+def test_a_late_actuator_does_not_leave_a_light_shift_slipping():
+    """Plates of a held-out case approached within 2 rad/s, and slipped for 0.4 s more."""
+    (sensors,) = Cases.packaged().content['grid']['sensors']
+    late = {'sensors': sensors, 'actuator.delay_s': 0.02, 'vehicle.mass_kg': 1531.0}
+    made = load_scenario('upshift_light', late, 'stick_slip')
+    settings = RunSettings(made, wear_gain=0.811, clutch='stick_slip', seed=89582887)
+    run = run_headless(settings, SPEC)
+    start = made.control_start_step
+    first = start + int(np.argmax(locked(run)[start:]))
+    assert locked(run)[first:].all()
+    assert 0.9 < 0.01 * (first - start) < 1.4
+
+
 def test_plates_that_are_locked_at_control_start_get_more_torque_at_once():
     _, run = run_of('tip_in')
     assert locked(run)[30:60].all()

@@ -50,7 +50,7 @@ class LeastJerkOptions(OptionGroup):
         at_most=15.0,
     )
     end_s: float = option(
-        0.02,
+        0.03,
         'time for which the surplus torque, with which the plates meet, would still fall',
         's',
         at_least=0.0,

@@ -147,7 +147,7 @@ class TorquePlan:
             momentum, surplus, least = sign * momentum, sign * surplus, limits.easy_rate
         elif self._falling:
             if surplus < MISSED * self._final(momentum):
-                self._falling = False
+                self._falling, self._hurries = False, True
             elif (steeper := self._way_down(momentum, surplus)) > CATCH_UP * self.rate:
                 self.rate = steeper
             return

@@ -84,6 +84,7 @@ static void choose_rate(torque_plan *s, double momentum, double surplus, double 
     } else if (s->falling) {
         if (surplus < MISSED * final_of(s, momentum)) {
             s->falling = 0;
+            s->hurries = 1;
         } else {
             const double steeper = way_down(s, momentum, surplus);
             if (steeper > CATCH_UP * s->rate) {
