@@ -31,7 +31,10 @@ from generator.benchmark_tables import CASE_HEADERS, case_cells
 from generator.distance_table import distance_table
 from generator.repeated_cases import handover_table, parted_table
 
-SCENARIOS = ('launch', 'launch_hill', 'launch_gentle', 'thesis', 'upshift', 'tip_in')
+SCENARIOS = (
+    *('launch', 'launch_hill', 'launch_gentle', 'thesis'),
+    *('upshift', 'upshift_light', 'tip_in'),
+)
 WEAR_GAINS = (0.7, 1.0, 1.3)
 DELAY_S = 0.015
 """Delay of the actuator in the runs without an ingredient; the controller assumes 10 ms."""
@@ -62,6 +65,7 @@ VARIANTS = (
     Variant('the low-pass of that estimate', {}, {'APPLIED_SHARE': 1.0}),
     Variant('the prediction over the lag of the actuator', {}, {'AHEAD': 0, 'LAG_S': 0.0}),
     Variant('more time than the reference gives', {'latest_s': 0.0}),
+    Variant('more time for a light demand and a small slip', {'rise_s': 0.01, 'least_s': 0.0}),
     Variant('the low-pass of the planned torque', {'smoothing_s': 0.0}),
     Variant('the trend of the demand, but for its last values', {}, {'LONGEST': 12}),
     Variant('the slow correction of the way down', {}, {'CORRECTION': 1e9}),
