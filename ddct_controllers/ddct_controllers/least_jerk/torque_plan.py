@@ -116,7 +116,7 @@ class TorquePlan:
             self.torque += min(aim - self.torque, PERIOD_S * self.rate)
         elif self._meets(momentum) and surplus <= final + GENTLE_S * self.rate:
             # The plates meet gently by the time at which this acts: begin to close them.
-            self.torque += PERIOD_S * self.rate
+            self.torque += PERIOD_S * self.rate + max(self._rise_to(needed), 0.0)
         else:
             self._fall(momentum, needed, final)
         self._needed = needed
@@ -124,13 +124,15 @@ class TorquePlan:
     def _fall(self, momentum: float, needed: float, final: float) -> None:
         """Follow the way down; errors are corrected the slower, the longer it still takes."""
         surplus = self.torque - needed
-        change = self._final(momentum - PERIOD_S * surplus) - final
-        if not math.isnan(self._needed):
-            change += needed - self._needed
+        change = self._final(momentum - PERIOD_S * surplus) - final + self._rise_to(needed)
         share = min(CORRECTION * PERIOD_S * self.rate / max(final, 1e-9), 1.0)
         change += share * (final - surplus)
         most = PERIOD_S * self.rate * CATCH_UP
         self.torque += min(max(change, -most), most)
+
+    def _rise_to(self, needed: float) -> float:
+        """Return by how much the torque of constant slip has risen since the last period, N m."""
+        return 0.0 if math.isnan(self._needed) else needed - self._needed
 
     def _meets(self, momentum: float) -> bool:
         return self._limits.sticks and self._twisted(momentum) <= 0.0

@@ -100,14 +100,16 @@ static void choose_rate(torque_plan *s, double momentum, double surplus, double 
     s->rate = larger(smaller(larger(easy_rate, late), in_time), least);
 }
 
+static double rise_to(const torque_plan *s, double needed)
+{
+    return s->has_needed ? needed - s->needed : 0.0;
+}
+
 /* Follow the way down; errors are corrected the slower, the longer it still takes. */
 static void plan_fall(torque_plan *s, double momentum, double needed, double final)
 {
     const double surplus = s->torque - needed;
-    double change = final_of(s, momentum - PERIOD * surplus) - final;
-    if (s->has_needed) {
-        change += needed - s->needed;
-    }
+    double change = final_of(s, momentum - PERIOD * surplus) - final + rise_to(s, needed);
     const double share = smaller(CORRECTION * PERIOD * s->rate / larger(final, 1e-9), 1.0);
     change += share * (final - surplus);
     const double most = PERIOD * s->rate * CATCH_UP;
@@ -131,7 +133,7 @@ static void plan_move(torque_plan *s, double momentum, double needed, double lef
     if (!s->falling) {
         s->torque += smaller(aim - s->torque, PERIOD * s->rate);
     } else if (STICKS && twisted_of(s, momentum) <= 0.0 && surplus <= final + GENTLE * s->rate) {
-        s->torque += PERIOD * s->rate;
+        s->torque += PERIOD * s->rate + larger(rise_to(s, needed), 0.0);
     } else {
         plan_fall(s, momentum, needed, final);
     }
