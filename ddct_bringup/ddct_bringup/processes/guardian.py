@@ -5,7 +5,8 @@ Process that survives a killed supervisor and ends the nodes left behind.
 
 The kernel sends such nodes SIGTERM (`end_with_parent`), but a stopped node does not receive it and
 a hung one does not react. The guardian sends SIGCONT, so that a recorder can finish its bag, and
-kills nodes that still run `PATIENCE_S` later.
+kills nodes that still run `PATIENCE_S` later. It looks for their shared memory while they run: a
+node that is about to end may be gone before the guardian knows of the end of the supervisor.
 """
 
 import contextlib
@@ -14,7 +15,7 @@ import select
 import signal
 import sys
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator, Mapping
 
 from ddct_bringup.processes.jobs import Job
 from ddct_bringup.processes.shared_memory import remove_segments, segments_of
@@ -23,6 +24,8 @@ from ddct_bringup.processes.warm_parent import WarmParent
 PATIENCE_S = 10.0
 """Wall time for nodes to end by themselves after the end of their supervisor, s."""
 _KILLED_S = 2.0
+LOOK_S = 0.25
+"""Period in s at which nodes that have just started are looked at for their shared memory."""
 
 
 class Guardian:
@@ -55,17 +58,26 @@ class Guardian:
 
 def main() -> None:
     """Guard the processes whose ids come on standard input."""
-    guard(sys.stdin)
+    guard(_lines(sys.stdin.fileno()))
 
 
-def guard(pids: Iterable[str]) -> None:
-    """Read process ids until the stream ends with the supervisor; then end those nodes."""
+def guard(lines: Iterable[str]) -> None:
+    """
+    Read process ids until the lines end with the supervisor; then end those nodes.
+
+    At an empty line, look for the shared memory of the nodes.
+    """
     nodes: dict[int, int] = {}
-    for pid in map(int, pids):
+    segments = _Segments(nodes)
+    for line in lines:
+        if not line:
+            if not segments.settled:
+                segments.look()
+            continue
         with contextlib.suppress(OSError):
             # The descriptor identifies the process even if its id is used again.
-            nodes[os.pidfd_open(pid)] = pid
-    segments = {node: segments_of(pid) for node, pid in nodes.items()}
+            nodes[os.pidfd_open(int(line))] = int(line)
+    segments.look()
     for node in nodes:
         _send(node, signal.SIGCONT)
     deadline = time.monotonic() + PATIENCE_S
@@ -74,7 +86,45 @@ def guard(pids: Iterable[str]) -> None:
             _send(node, signal.SIGKILL)
             _ends(node, _KILLED_S)
         # A node that ended with an error may leave them too; those in use are locked.
-        remove_segments(segments[node])
+        remove_segments(segments.of[node])
+
+
+class _Segments:
+    """Shared memory of nodes, by the descriptors of their processes."""
+
+    def __init__(self, nodes: Mapping[int, int]) -> None:
+        """Look at nodes, which map descriptors to process ids and may grow."""
+        self._nodes = nodes
+        self._same = False
+        self.of: dict[int, set[str]] = {}
+        """Segments that a node has had, by its descriptor."""
+
+    @property
+    def settled(self) -> bool:
+        """Whether every node has some, and none had more at the last look."""
+        return self._same and all(self.of.get(node) for node in self._nodes)
+
+    def look(self) -> None:
+        """Add what the nodes have by now."""
+        before = {node: set(segments) for node, segments in self.of.items()}
+        for node, pid in self._nodes.items():
+            self.of.setdefault(node, set()).update(segments_of(pid))
+        self._same = self.of == before
+
+
+def _lines(descriptor: int) -> Iterator[str]:
+    """Yield the lines of a stream until it ends, and an empty one whenever none came for long."""
+    rest = b''
+    while True:
+        ready, _, _ = select.select([descriptor], [], [], LOOK_S)
+        if not ready:
+            yield ''
+            continue
+        content = os.read(descriptor, 4096)
+        if not content:
+            return
+        *lines, rest = (rest + content).split(b'\n')
+        yield from (line.decode() for line in lines)
 
 
 def _send(node: int, number: signal.Signals) -> None:

@@ -112,9 +112,13 @@ class NodeProcess(Child):
 
     def hang_summary(self) -> str:
         """Return one line that the pulse has been missing for too long; empty while it has not."""
-        if self._without_pulse_s <= self._limit_s:
+        return self.silence(self._limit_s)
+
+    def silence(self, longer_than_s: float) -> str:
+        """Return one line that the pulse has been missing for longer than that; else empty."""
+        if self._without_pulse_s <= longer_than_s:
             return ''
-        return f'node {self.name} has shown no sign of life for {self._limit_s:g} s'
+        return f'node {self.name} has shown no sign of life for {longer_than_s:g} s'
 
     def send(self, number: signal.Signals) -> None:
         """Send a signal, and SIGCONT, to a node that has not ended; SIGKILL marks it as hung."""

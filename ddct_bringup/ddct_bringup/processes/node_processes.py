@@ -24,6 +24,9 @@ Shorter period, s, until so long after the first pulse of the last node: nodes m
 memory then, and what was not found before a node is killed is not removed.
 """
 
+SILENT_S = 2.0
+"""Time in s without a pulse from which a node may be what one that has failed waited for."""
+
 
 class NodeProcesses:
     """Processes of one graph; as a context manager it always stops them."""
@@ -106,7 +109,8 @@ class NodeProcesses:
             if any(node.name != may_end or node.code != 0 for node in ended):
                 # The cause is a node that was killed or failed; others may have ended after it.
                 cause = min(ended, key=lambda node: (node.code == 0, node.name == 'driveline'))
-                raise DdctError(f'{cause.exit_summary()}; its log is {cause.log}')
+                also = self._silences(cause)
+                raise DdctError(f'{cause.exit_summary()}{also}; its log is {cause.log}')
             if done:
                 return
             if self._stopped():
@@ -119,6 +123,11 @@ class NodeProcesses:
                 self._check(now - checked_at)
                 checked_at = now
             time.sleep(POLL_S)
+
+    def _silences(self, cause: NodeProcess) -> str:
+        """Return which nodes were silent when another ended; it may only have waited for them."""
+        silences = [node.silence(SILENT_S) for node in self._nodes if node.running]
+        return ''.join(f', and {each}' for each in silences if each and cause.code)
 
     def _check(self, elapsed_s: float) -> None:
         for node in self._nodes:

@@ -119,6 +119,21 @@ def test_nodes_are_watched_while_something_else_is_waited_for(processes, monkeyp
     nodes.__exit__()
 
 
+def test_a_node_that_was_silent_when_another_failed_is_named_too(processes, monkeypatch):
+    monkeypatch.setattr(node_processes, 'SILENT_S', 0.2)
+    nodes = processes(
+        driveline='signal.signal(signal.SIGINT, lambda *_: sys.exit(1))\nrun()\n', load=OBEDIENT
+    )
+    nodes._check(0.0)
+    nodes._nodes[1].process.send_signal(signal.SIGSTOP)
+    nodes.wait_until(lambda: nodes._nodes[1].silence(0.2) != '', WITHIN_S)
+    nodes._nodes[0].process.send_signal(signal.SIGINT)
+    words = 'node driveline ended with code 1.*, and node load has shown no sign of life for 0.2 s'
+    with pytest.raises(DdctError, match=f'^{words}; its log is'):
+        nodes.wait_until(lambda: False, WITHIN_S)
+    nodes.__exit__()
+
+
 def test_a_wait_ends_with_its_condition_or_its_time(processes):
     nodes = processes(driveline=OBEDIENT)
     results = iter([False, False, True])
@@ -301,6 +316,34 @@ def test_the_guardian_removes_the_shared_memory_of_a_node_that_ends_by_itself(tm
     assert guarding.wait(WITHIN_S) == 0
     guarding.stdout.close()
     assert not lock.exists()
+
+
+def test_the_guardian_removes_the_shared_memory_of_a_node_that_is_gone_before(tmp_path):
+    """A node that leaves the graph may be gone before the guardian knows of it."""
+    lock = tmp_path / 'fastrtps_1_el'
+    node = subprocess.Popen(
+        [sys.executable, '-c', f'lock = open({str(lock)!r}, "w"); input()'],
+        stdin=subprocess.PIPE,
+    )
+    wait_until(lock.exists)
+    guard = (
+        'import pathlib, sys\n'
+        'from ddct_bringup.processes import guardian, shared_memory\n'
+        f'shared_memory.SHARED_MEMORY = pathlib.Path({str(tmp_path)!r})\n'
+        'def lines():\n'
+        f'    yield from ["{node.pid}", ""]\n'
+        '    print(flush=True)\n'
+        '    input()\n'
+        'guardian.guard(lines())\n'
+    )
+    guarding = subprocess.Popen(
+        [sys.executable, '-c', guard], stdin=subprocess.PIPE, stdout=subprocess.PIPE
+    )
+    guarding.stdout.readline()
+    node.communicate(b'\n')
+    assert lock.exists()
+    guarding.communicate(b'\n', timeout=WITHIN_S)
+    assert (guarding.returncode, lock.exists()) == (0, False)
 
 
 @pytest.fixture
