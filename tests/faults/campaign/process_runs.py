@@ -198,9 +198,17 @@ def _after_stop(node: str, instant: str, mode: str) -> Stated:
     return either(silent, by_pulse, RUNS_ON)
 
 
+GAP = Stated(
+    'the recording is refused with the first message that the recorder lost',
+    lambda seen: not seen.error and ' has no message at step ' in seen.refusal,
+)
+
+
 def _after_pause(node: str, instant: str, mode: str) -> Stated:
     if mode == 'lockstep':
         return SAME
+    if node == 'recorder':
+        return either(RUNS_ON, GAP)
     if instant == 'middle' and node in OPENS:
         return safe_state(*OPENS[node], within_s=WITHIN_S)
     return RUNS_ON
