@@ -111,6 +111,11 @@ RUNS_ON = Stated(
     lambda seen: not seen.error and seen.steps >= 0 and _no_false_result(seen),
 )
 
+REFUSED = Stated(
+    'a recording that is refused with the topic and the stamp of a lost message',
+    lambda seen: not seen.error and 'has no message at step' in seen.refusal,
+)
+
 
 def named(*words: str) -> Stated:
     """Return the outcome that the run ends with an error with all of these words."""

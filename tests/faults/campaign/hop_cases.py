@@ -8,7 +8,17 @@ from itertools import product
 from pathlib import Path
 from typing import Any
 
-from faults.campaign.case import CLUTCHES, RUNS_ON, SAME, Case, Observed, Stated, either, run_of
+from faults.campaign.case import (
+    CLUTCHES,
+    REFUSED,
+    RUNS_ON,
+    SAME,
+    Case,
+    Observed,
+    Stated,
+    either,
+    run_of,
+)
 from faults.campaign.graph_runs import graph_run
 from rclpy.clock import Clock, ClockType
 from support.hops import inputs_of
@@ -24,11 +34,6 @@ DISTURBED_STEPS = 2
 LATE_S = 0.15
 """Delay in s of a late message: more than the time after which a tick is sent again."""
 HOW = ('dropped', 'delayed', 'doubled', 'reordered')
-
-REFUSED = Stated(
-    'a recording that is refused with the topic and the stamp of a lost message',
-    lambda seen: not seen.error and 'has no message at step' in seen.refusal,
-)
 
 
 class FaultyHop(Relay):

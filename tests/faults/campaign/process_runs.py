@@ -20,6 +20,7 @@ from faults.campaign.case import (
     INSTANTS,
     LONG,
     MODES,
+    REFUSED,
     RUNS_ON,
     SAME,
     Case,
@@ -198,17 +199,11 @@ def _after_stop(node: str, instant: str, mode: str) -> Stated:
     return either(silent, by_pulse, RUNS_ON)
 
 
-GAP = Stated(
-    'the recording is refused with the first message that the recorder lost',
-    lambda seen: not seen.error and ' has no message at step ' in seen.refusal,
-)
-
-
 def _after_pause(node: str, instant: str, mode: str) -> Stated:
     if mode == 'lockstep':
         return SAME
     if node == 'recorder':
-        return either(RUNS_ON, GAP)
+        return either(RUNS_ON, REFUSED)
     if instant == 'middle' and node in OPENS:
         return safe_state(*OPENS[node], within_s=WITHIN_S)
     return RUNS_ON
