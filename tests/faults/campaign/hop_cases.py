@@ -15,7 +15,6 @@ from faults.campaign.case import (
     SAME,
     Case,
     Observed,
-    Stated,
     either,
     run_of,
 )
