@@ -80,7 +80,8 @@ def test_nodes_without_a_recorder_run_the_same_trajectory(programs: Programs) ->
         nodes |= _start(programs.start_node, names[-1:], None)
         driveline = nodes['driveline'].process
         wait_until(lambda: observing.listen() and driveline.poll() is not None, 'the end', START_S)
-        observing.listen()
+        replies = observing.observer.clutch_torque
+        wait_until(lambda: observing.listen() and RUN.steps in replies, 'the last reply', START_S)
         _finish(nodes)
         observing.observer.require_same(expected(RUN))
         assert len(observing.observer.joints) > 50

@@ -109,7 +109,7 @@ class NodeProcesses:
             if any(node.name != may_end or node.code != 0 for node in ended):
                 # The cause is a node that was killed or failed; others may have ended after it.
                 cause = min(ended, key=lambda node: (node.code == 0, node.name == 'driveline'))
-                also = self._silences(cause)
+                also = self._silences() if cause.code else ''
                 raise DdctError(f'{cause.exit_summary()}{also}; its log is {cause.log}')
             if done:
                 return
@@ -124,10 +124,10 @@ class NodeProcesses:
                 checked_at = now
             time.sleep(POLL_S)
 
-    def _silences(self, cause: NodeProcess) -> str:
-        """Return which nodes were silent when another ended; it may only have waited for them."""
+    def _silences(self) -> str:
+        """Return which nodes are silent; another that failed may only have waited for them."""
         silences = [node.silence(SILENT_S) for node in self._nodes if node.running]
-        return ''.join(f', and {each}' for each in silences if each and cause.code)
+        return ''.join(f', and {each}' for each in silences if each)
 
     def _check(self, elapsed_s: float) -> None:
         for node in self._nodes:

@@ -294,52 +294,55 @@ def test_the_guardian_kills_nodes_that_ignore_the_end_of_their_supervisor(tmp_pa
     assert deaf.wait(WITHIN_S) == -signal.SIGKILL
 
 
-def test_the_guardian_removes_the_shared_memory_of_a_node_that_ends_by_itself(tmp_path):
+def guarded_node(tmp_path, guard):
+    """
+    Start a node that holds shared memory, and a guardian that runs the lines `guard` of Python.
+
+    Return both once the guardian has printed a line, and the lock of the memory. `pid` in `guard`
+    is the id of the node.
+    """
     lock = tmp_path / 'fastrtps_1_el'
     node = subprocess.Popen(
         [sys.executable, '-c', f'lock = open({str(lock)!r}, "w"); input()'],
         stdin=subprocess.PIPE,
     )
     wait_until(lock.exists)
-    guard = (
+    program = (
         'import pathlib, sys\n'
         'from ddct_bringup.processes import guardian, shared_memory\n'
         f'shared_memory.SHARED_MEMORY = pathlib.Path({str(tmp_path)!r})\n'
-        'found = guardian.segments_of\n'
-        'guardian.segments_of = lambda pid: [found(pid), print(flush=True)][0]\n'
-        f'guardian.guard(["{node.pid}"])'
+        f'pid = "{node.pid}"\n'
     )
-    guarding = subprocess.Popen([sys.executable, '-c', guard], stdout=subprocess.PIPE)
+    guarding = subprocess.Popen(
+        [sys.executable, '-c', program + guard], stdin=subprocess.PIPE, stdout=subprocess.PIPE
+    )
     guarding.stdout.readline()
     assert lock.exists()
+    return node, guarding, lock
+
+
+def test_the_guardian_removes_the_shared_memory_of_a_node_that_ends_by_itself(tmp_path):
+    guard = (
+        'found = guardian.segments_of\n'
+        'guardian.segments_of = lambda pid: [found(pid), print(flush=True)][0]\n'
+        'guardian.guard([pid])'
+    )
+    node, guarding, lock = guarded_node(tmp_path, guard)
     node.communicate(b'\n')
-    assert guarding.wait(WITHIN_S) == 0
-    guarding.stdout.close()
-    assert not lock.exists()
+    guarding.communicate(timeout=WITHIN_S)
+    assert (guarding.returncode, lock.exists()) == (0, False)
 
 
 def test_the_guardian_removes_the_shared_memory_of_a_node_that_is_gone_before(tmp_path):
     """A node that leaves the graph may be gone before the guardian knows of it."""
-    lock = tmp_path / 'fastrtps_1_el'
-    node = subprocess.Popen(
-        [sys.executable, '-c', f'lock = open({str(lock)!r}, "w"); input()'],
-        stdin=subprocess.PIPE,
-    )
-    wait_until(lock.exists)
     guard = (
-        'import pathlib, sys\n'
-        'from ddct_bringup.processes import guardian, shared_memory\n'
-        f'shared_memory.SHARED_MEMORY = pathlib.Path({str(tmp_path)!r})\n'
         'def lines():\n'
-        f'    yield from ["{node.pid}", ""]\n'
+        '    yield from [pid, ""]\n'
         '    print(flush=True)\n'
         '    input()\n'
         'guardian.guard(lines())\n'
     )
-    guarding = subprocess.Popen(
-        [sys.executable, '-c', guard], stdin=subprocess.PIPE, stdout=subprocess.PIPE
-    )
-    guarding.stdout.readline()
+    node, guarding, lock = guarded_node(tmp_path, guard)
     node.communicate(b'\n')
     assert lock.exists()
     guarding.communicate(b'\n', timeout=WITHIN_S)

@@ -4,7 +4,6 @@
 
 import time
 from collections.abc import Callable
-from functools import partial
 
 from rclpy.node import Node
 from rclpy.subscription import Subscription
@@ -170,8 +169,10 @@ class SolePublishers:
             self._node.finish(error)
         else:
             self._node.get_logger().error(f'{error}: opening the clutch')
-            later = partial(self._error, topic, complaint) if unnamed else lambda: error
-            self._node.every(OPEN_S, lambda: self._node.finish(later()))
+            self._node.every(
+                OPEN_S,
+                lambda: self._node.finish(self._error(topic, complaint) if unnamed else error),
+            )
 
     def _error(self, topic: str, complaint: str) -> DdctError:
         """Return the error with the names that the middleware knows by now."""
