@@ -19,6 +19,7 @@ from generator.pages import DOCS
 
 RECORD = DOCS / 'use' / 'real_time.json'
 """Record that `make soak` writes."""
+_TICKS_MS = (1, 2, 5, 10, 20, 50, 100, 200)
 PERCENTS = (50.0, 99.0, 99.9, 100.0)
 SIDES = {'graph': 'the graph', 'chain': 'the bare chain'}
 DURATIONS = ('latency', 'lateness', 'jitter')
@@ -107,7 +108,7 @@ def soak_figure(record: Record) -> Figure:
     measured = record['measured']
     figure = Figure(figsize=(5.0 * len(measured), 4.2), layout='constrained')
     figure.suptitle('Share of ticks whose latency is longer')
-    panels = figure.subplots(1, len(measured), squeeze=False).flat
+    panels = figure.subplots(1, len(measured), squeeze=False, sharex=True, sharey=True).flat
     for axes, each in zip(panels, measured, strict=True):
         _draw(axes, each)
     return figure
@@ -123,6 +124,8 @@ def _draw(axes: Axes, measured: Record) -> None:
     axes.axvline(10.0, color='0.5', linestyle=':', label='period')
     axes.set_xscale('log')
     axes.set_yscale('log')
+    axes.set_xticks(_TICKS_MS, [f'{tick}' for tick in _TICKS_MS])
+    axes.minorticks_off()
     axes.set_xlabel('latency in ms')
     axes.set_title(measured['what'], fontsize='medium')
     axes.legend()
