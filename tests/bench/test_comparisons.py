@@ -13,6 +13,7 @@ from bench.__main__ import choose
 from bench.comparisons import ALL
 from bench.comparisons.graph import CHAIN
 from bench.comparisons.start_up import WARM_PARENT
+from bench.comparisons.suite import passed_in
 from bench.peers.numpy_loop import numpy_loop_s
 from bench.skeleton.comparison import Bench, Comparison
 from bench.skeleton.rounds import NOT_MEASURED, measure
@@ -46,7 +47,7 @@ def test_the_bounds_are_those_of_the_project() -> None:
     start_up = _found('start-up of the graph')
     assert start_up.bound_of('one run, to its first tick') == pytest.approx(1 / 3)
     assert start_up.bound_of('a further run, processor time') is None
-    assert _found('suite: make test').bound_of('') == 0.8
+    assert _found('suite: make test').bound_of('tests that both pass') == 0.8
 
 
 def test_the_tests_of_two_versions_run_only_where_they_are_named() -> None:
@@ -80,32 +81,80 @@ def test_a_missing_piece_is_not_measured(
     assert result.reason.startswith(reason)
 
 
-def _with_make(folder: Path, test: str) -> Workspace:
-    """Return a workspace whose tests are the command `test`."""
+def _with_tests(folder: Path, **tests: str) -> Workspace:
+    """Return a workspace whose `make test` runs one file with these tests, by their names."""
     folder.mkdir()
-    (folder / 'Makefile').write_text(f'.PHONY: fmu test\nfmu:\ntest:\n\t@{test}\n')
+    lines = [f'def test_{name}():\n    {body}\n' for name, body in tests.items()]
+    (folder / 'test_all.py').write_text('import time\n' + '\n'.join(lines))
+    (folder / 'pytest.ini').write_text('[pytest]\n')
+    command = f'{sys.executable} -m pytest -q -p no:cacheprovider test_all.py'
+    (folder / 'Makefile').write_text(f'.PHONY: test\ntest:\n\t@{command}\n')
     return Workspace(folder)
+
+
+def test_the_tests_that_both_versions_pass_are_compared(tmp_path: Path) -> None:
+    quick, slow = 'time.sleep(0.01)', 'time.sleep(0.5)'
+    ours = _with_tests(tmp_path / 'ours', both=quick, broken=slow, new=slow)
+    base = _with_tests(tmp_path / 'base', both=slow, broken='raise ValueError', gone=slow)
+    bench = Bench(ours, base)
+    shared, whole = measure(_found('suite: make test'), bench, 1)
+    assert (shared.name, shared.bound, shared.outcome) == (
+        'suite: make test: tests that both pass', 0.8, 'met',
+    )  # fmt: skip
+    assert shared.median < 0.5 < 0.8 < whole.median
+    assert whole.bound is None
 
 
 def test_the_bound_of_the_tests_applies_only_beside_a_base_without_the_warm_parent(
     tmp_path: Path,
 ) -> None:
     assert (ROOT / WARM_PARENT).exists()
-    bench = Bench(_with_make(tmp_path / 'ours', ':'), _with_make(tmp_path / 'base', 'sleep 0.2'))
-    (result,) = measure(_found('suite: make test'), bench, 2)
-    assert (result.bound, result.outcome) == (0.8, 'met')
-    warm_parent = tmp_path / 'base' / WARM_PARENT
+    base = _with_tests(tmp_path / 'base', one='time.sleep(0.01)')
+    warm_parent = base.folder / WARM_PARENT
     warm_parent.parent.mkdir(parents=True)
     warm_parent.touch()
-    (result,) = measure(_found('suite: make test'), bench, 1)
-    assert (result.bound, len(result.ratios)) == (None, 1)
+    bench = Bench(_with_tests(tmp_path / 'ours', one='pass'), base)
+    shared, _ = measure(_found('suite: make test'), bench, 1)
+    assert (shared.bound, len(shared.ratios)) == (None, 1)
 
 
-def test_the_time_of_tests_that_fail_is_no_figure(tmp_path: Path) -> None:
-    bench = Bench(_with_make(tmp_path / 'ours', ':'), _with_make(tmp_path / 'base', 'false'))
+@pytest.mark.parametrize(
+    ('ours', 'base', 'outcome', 'reason'),
+    [
+        ({'one': 'raise ValueError'}, {'one': 'pass'}, 'FAILED', 'ProgramError: make test ended'),
+        ({'one': 'pass'}, {'other': 'pass'}, NOT_MEASURED, 'no test that both versions pass'),
+    ],
+)
+def test_tests_that_fail_or_that_only_one_version_has_give_no_figure(
+    tmp_path: Path, ours: dict[str, str], base: dict[str, str], outcome: str, reason: str
+) -> None:
+    sides = _with_tests(tmp_path / 'ours', **ours), _with_tests(tmp_path / 'base', **base)
+    (result,) = measure(_found('suite: make test'), Bench(*sides), 1)
+    assert result.outcome == outcome
+    assert result.reason.startswith(reason)
+
+
+def test_the_tests_of_a_session_of_colcon_have_the_name_of_their_package(tmp_path: Path) -> None:
+    """So an older version runs those of a package, in its folder."""
+    cases = """\
+<testsuites><testsuite>
+<testcase classname="test.models.test_clutch" name="test_a" time="0.5"/>
+<testcase classname="test.models.test_clutch" name="test_b" time="1"><failure/></testcase>
+<testcase classname="test.models.test_clutch" name="test_c" time="0"><skipped/></testcase>
+</testsuite></testsuites>
+"""
+    result = tmp_path / 'ddct_plant' / 'pytest.xml'
+    result.parent.mkdir()
+    result.write_text(cases)
+    assert dict(passed_in(result)) == {'ddct_plant.test.models.test_clutch::test_a': 0.5}
+
+
+def test_a_base_that_cannot_run_its_tests_has_none_that_both_pass(tmp_path: Path) -> None:
+    base = _with_tests(tmp_path / 'base', one='pass')
+    (base.folder / 'Makefile').write_text('test:\n\t@false\n')
+    bench = Bench(_with_tests(tmp_path / 'ours', one='pass'), base)
     (result,) = measure(_found('suite: make test'), bench, 1)
-    assert result.outcome == 'FAILED'
-    assert result.reason.startswith('ProgramError: make test ended with code 2')
+    assert result.outcome == NOT_MEASURED
 
 
 def test_a_batch_of_numpy_runs_costs_less_than_as_many_loops() -> None:

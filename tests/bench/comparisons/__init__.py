@@ -14,6 +14,7 @@ from bench.comparisons import (
     report_page,
     shift,
     start_up,
+    suite,
     synthesis,
     tuning,
     verdict,
@@ -37,6 +38,7 @@ ALL = [
         tuning,
         report_page,
         base,
+        suite,
     )
     for each in comparisons_in(module)
 ]

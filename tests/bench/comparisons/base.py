@@ -1,10 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""
-Programs of this version beside those of the base commit; both run as a user runs them.
-
-The tests of both versions take tens of minutes, so they are measured by name only.
-"""
+"""Programs of this version beside those of the base commit; both run as a user runs them."""
 
 import tempfile
 from collections.abc import Callable, Iterator
@@ -12,9 +8,9 @@ from pathlib import Path
 
 from bench.comparisons.campaign import run_s
 from bench.comparisons.graph import SINGLE, graph_s, timing_of
-from bench.comparisons.start_up import BASE, WARM_PARENT
+from bench.comparisons.start_up import BASE
 from bench.skeleton.comparison import Bench, Comparison, Sides, comparison
-from bench.skeleton.workspace import Workspace, clean_environment, run_to_end, wall_s
+from bench.skeleton.workspace import Workspace
 
 
 def _beside_the_base(name: str, cost: Callable[[Workspace], float]) -> Comparison:
@@ -60,27 +56,3 @@ BESIDE_THE_BASE = (
         lambda place: run_s(place, 'mpc3', 'stick_slip', 50),
     ),
 )
-
-
-def _tests(name: str, target: str) -> Comparison:
-    @comparison(name, BASE, at_most=0.8, only_by_name=True)
-    def sides(bench: Bench) -> Iterator[Sides]:
-        """Wall time of a target of make that runs tests, all of which must pass."""
-        base = bench.require_base()
-        # The bound is that of the change to a warm parent.
-        before = not (base.folder / WARM_PARENT).exists()
-        # Not warmed up, but both must be set up.
-        for each in (bench.ours, base):
-            make('fmu', each)()
-        yield Sides(make(target, bench.ours), make(target, base), bounded=before, warm_up=False)
-
-    return sides
-
-
-def make(target: str, workspace: Workspace) -> Callable[[], float]:
-    """Return a function that makes a target and returns the wall time in s."""
-    command = ['make', target]
-    return lambda: wall_s(lambda: run_to_end(command, workspace.folder, clean_environment()))
-
-
-TESTS = (_tests('suite: make test', 'test'), _tests('suite: make test-fast', 'test-fast'))

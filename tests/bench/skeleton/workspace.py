@@ -9,7 +9,7 @@ import signal
 import subprocess
 import tempfile
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import cached_property
@@ -65,13 +65,6 @@ class Workspace:
         before, started = _children_s(), time.monotonic()
         output = run_to_end(command, self.folder, self.environment)
         return Cost(output, time.monotonic() - started, _children_s() - before)
-
-
-def wall_s(task: Callable[[], object]) -> float:
-    """Return the wall time of a task in s."""
-    before = time.monotonic()
-    task()
-    return time.monotonic() - before
 
 
 def clean_environment() -> dict[str, str]:
