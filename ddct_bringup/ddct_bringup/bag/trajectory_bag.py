@@ -17,8 +17,10 @@ from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.run_info import run_info_order, run_info_topic
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.bag.writer import new_bag
+from ddct_plant.bag_file.cdr_numbers import with_numbers
 from ddct_plant.bag_file.message_definitions import load_definition
 from ddct_plant.base.timebase import START_NS, stamp_of_step
+from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import RUN_INFO, recorded_topics
 
 _ZEROS = b'\x00\x01' + bytes(510)
@@ -50,16 +52,26 @@ def write_trajectory(
             message = write_info(START_NS, run_info[node].items(), name=node)
             bag.write(run_info_topic(node).name, START_NS, serialise_info(message))
         writers = [
-            (topic, topic.writer(plain_class), serialiser(topic.type), topic.signals_in(run))
+            (topic.name, message_serialiser(topic), topic.signals_in(run))
             for topic in topics
             if topic.every_tick
         ]
         for k in range(trajectory.steps + 1):
             stamp = stamp_of_step(k)
-            for topic, write, serialise, signals in writers:
+            for topic_name, serialise, signals in writers:
                 values = (trajectory.signals[signal.name][k] for signal in signals)
-                bag.write(topic.name, stamp, serialise(write(stamp, *values)))
+                bag.write(topic_name, stamp, serialise(stamp, *values))
     return bag.path
+
+
+def message_serialiser(topic: Topic) -> Callable[..., bytes]:
+    """Return a function `serialise(stamp_ns, *values)` for messages of a topic."""
+    write, by_fields = topic.writer(plain_class), serialiser(topic.type)
+
+    def serialise(stamp_ns: int, *values: Any) -> bytes:
+        return by_fields(write(stamp_ns, *values))
+
+    return with_numbers(serialise) if topic.kind.numbers_alone else serialise
 
 
 @cache

@@ -63,5 +63,22 @@ class NumberMessage:
         return [number for row in values for number in row] if self._rows else values
 
 
+def with_numbers(serialise: Callable[..., bytes]) -> Callable[..., bytes]:
+    """
+    Return a function with the bytes of `serialise(stamp_ns, *values)`, called for the first alone.
+
+    All messages have as many numbers as the first one, and the same texts.
+    """
+    message: NumberMessage | None = None
+
+    def filled(stamp_ns: int, *values: Any) -> bytes:
+        nonlocal message
+        if message is None:
+            message = NumberMessage(serialise, values)
+        return message.filled(stamp_ns, values)
+
+    return filled
+
+
 def _is_row(value: Any) -> bool:
     return hasattr(value, '__len__')

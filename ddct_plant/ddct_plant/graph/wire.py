@@ -13,7 +13,7 @@ from typing import Any
 from rclpy.serialization import serialize_message
 
 from ddct_plant.bag_file.cdr import CdrDecoder
-from ddct_plant.bag_file.cdr_numbers import NumberMessage
+from ddct_plant.bag_file.cdr_numbers import with_numbers
 from ddct_plant.bag_file.message_definitions import load_definition
 from ddct_plant.signals.topic import Topic
 
@@ -25,17 +25,7 @@ def serialiser(topic: Topic) -> Callable[..., bytes]:
     def by_ros(stamp: int, *values: Any, **options: Any) -> bytes:
         return serialize_message(write(stamp, *values, **options))
 
-    if not topic.kind.numbers_alone:
-        return by_ros
-    message: NumberMessage | None = None
-
-    def by_numbers(stamp: int, *values: Any) -> bytes:
-        nonlocal message
-        if message is None:
-            message = NumberMessage(by_ros, values)
-        return message.filled(stamp, values)
-
-    return by_numbers
+    return with_numbers(by_ros) if topic.kind.numbers_alone else by_ros
 
 
 def decoder(topic: Topic) -> CdrDecoder:
