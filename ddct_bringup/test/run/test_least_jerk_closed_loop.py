@@ -9,7 +9,8 @@ import pytest
 
 from ddct_bringup.benchmark.cases import Cases
 from ddct_bringup.floor.floor import floor_of
-from ddct_bringup.metrics.vibration import jerk
+from ddct_bringup.floor.objectives import window_of
+from ddct_bringup.metrics.vibration import jerk, strongest_stretch, weighted_acceleration
 from ddct_bringup.run.headless import run_headless
 from ddct_controllers.interface import Command, Controller
 from ddct_controllers.least_jerk.controller import NAME, SPEC
@@ -129,7 +130,23 @@ def test_a_late_actuator_does_not_leave_a_light_shift_slipping():
     start = made.control_start_step
     first = start + int(np.argmax(locked(run)[start:]))
     assert locked(run)[first:].all()
-    assert 0.9 < 0.01 * (first - start) < 1.4
+    assert 1.2 < 0.01 * (first - start) < 1.6
+
+
+def weighted(settings, run):
+    """Return the largest weighted r.m.s. acceleration of a shift in m/s^2, as the criterion."""
+    first, last = window_of(settings.scenario)
+    return strongest_stretch(weighted_acceleration(run.vehicle_accel)[first:], last - first)[0]
+
+
+@pytest.mark.parametrize('scenario', ['upshift', 'upshift_hot', 'upshift_light', 'upshift_2_3'])
+def test_torque_that_rises_fast_after_the_torque_phase_adds_comfort_and_no_peak_jerk(scenario):
+    settings, run = run_of(scenario)
+    _, evenly = run_of(scenario, 1.0, f'controllers.{NAME}.refill_s=10')
+    assert weighted(settings, run) < 0.315
+    assert weighted(settings, run) < 0.98 * weighted(settings, evenly)
+    peaks = (np.abs(jerk(each.vehicle_accel)[30:]).max() for each in (run, evenly))
+    assert next(peaks) < 1.1 * next(peaks)
 
 
 def test_plates_that_are_locked_at_control_start_get_more_torque_at_once():

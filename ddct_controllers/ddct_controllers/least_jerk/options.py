@@ -27,6 +27,15 @@ class LeastJerkOptions(OptionGroup):
         at_least=0.01,
         at_most=10.0,
     )
+    refill_s: float = option(
+        0.25,
+        'time in which the planned torque would rise by all of that of constant slip once the '
+        'torque phase of a gear shift has taken torque from the car; it rises no slower than it '
+        'falls',
+        's',
+        at_least=0.05,
+        at_most=10.0,
+    )
     latest_s: float = option(
         0.6,
         'how much later than the reference ends the lock may be for less jerk',
@@ -42,6 +51,7 @@ class LeastJerkOptions(OptionGroup):
         at_least=0.0,
         at_most=10.0,
     )
+    shift_s: float = option(1.1, 'that time in a gear shift', 's', at_least=0.0, at_most=10.0)
     bandwidth_rad_s: float = option(
         12.0,
         'bandwidth of the feedback of the last rad/s of slip',

@@ -32,6 +32,23 @@ def least_rate(momentum: float, surplus: float, time_s: float) -> float:
     return (half + math.sqrt(half * half + kept * kept)) / (time_s * time_s)
 
 
+def falling_rate(momentum: float, surplus: float, time_s: float, rising: float) -> float:
+    """
+    Return the rate in N m/s of the fall after a rise at `rising` in N m/s, as in `least_rate`.
+
+    With the rise at U for t_1 the integral of y is (y_0 t_1 + (y_0 + U t_1) T)/2 = J_r s, so
+    t_1 = (2 J_r s - y_0 T)/(y_0 + U T) and R = (y_0 + U t_1)/(T - t_1). It is the least rate where
+    U is less than that, or nothing is left to rise.
+    """
+    time_s = max(time_s, SHORTEST_S)
+    least = least_rate(momentum, surplus, time_s)
+    missing = 2.0 * max(momentum, 0.0) - surplus * time_s
+    if rising <= least or surplus < 0.0 or missing <= 0.0:
+        return least
+    rise_s = missing / (surplus + rising * time_s)
+    return (surplus + rising * rise_s) / (time_s - rise_s)
+
+
 def final_surplus(momentum: float, rate: float, bandwidth_rad_s: float, end: float) -> float:
     """
     Return the surplus in N m from which a fall at `rate` in N m/s ends the slip at `end` in N m.

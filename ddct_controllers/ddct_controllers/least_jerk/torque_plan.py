@@ -5,7 +5,7 @@
 import math
 from dataclasses import dataclass
 
-from ddct_controllers.least_jerk.plan import final_surplus, least_rate
+from ddct_controllers.least_jerk.plan import falling_rate, final_surplus
 from ddct_plant.base.timebase import PERIOD_S
 
 LEAST_SHARE = 0.05
@@ -18,6 +18,12 @@ GENTLE_S = 0.06
 """Time of the fall that may be missing where the plates meet, for them to be closed from there."""
 MISSED = 0.3
 """Share of the planned surplus below which the torque rises again."""
+OPENING, REFILLING = 3, 6
+"""
+Periods of feedback in a gear shift before the torque rises faster, and until it does so fully.
+
+The off-going clutch opens meanwhile, which jerks too.
+"""
 MOST_BAND = 0.7
 """
 Highest bandwidth over the frequency at which the twist of the half-shafts undoes the feedback.
@@ -32,6 +38,12 @@ class PlanLimits:
     """Rate in N m/s at which the torque changes unless that takes too long."""
     rise_s: float
     """Least time in s in which the torque would change by all of that of constant slip."""
+    refill_per_s: float
+    """
+    Rate at which the torque rises after a torque phase, over the torque of constant slip, in 1/s.
+
+    It rises no slower than it falls, so 0 where it rises as it falls.
+    """
     latest_s: float
     """Time in s by which the lock may be later than the reference ends."""
     least_s: float
@@ -47,7 +59,9 @@ class PlanLimits:
     sticks: bool
     """Whether the plates can lock; else the slip may pass zero."""
     hurries: bool
-    """Whether neither `rise_s` nor `least_s` holds, as the plates are to be locked already."""
+    """
+    Whether `rise_s`, `refill_per_s` and `least_s` do not hold: plates are to be locked already.
+    """
 
     @property
     def band(self) -> float:
@@ -58,6 +72,8 @@ class PlanLimits:
 class TorquePlan:
     """
     A torque that rises at a constant rate, and then falls at it until slip and surplus are zero.
+
+    After the torque phase of a gear shift it rises faster than it falls.
 
     `torque` is the planned one, `smoothed` the same behind the low-pass that requests follow.
     """
@@ -73,7 +89,7 @@ class TorquePlan:
     def reset(self) -> None:
         """Clear the plan."""
         self.rate = 0.0
-        """Rate of the plan in N m/s."""
+        """Rate of the plan in N m/s, that of its fall where both differ."""
         self._falling = False
         self.start(0.0)
 
@@ -83,6 +99,7 @@ class TorquePlan:
         self._needed = math.nan
         self._hurries = self._limits.hurries
         self._least_s = self._limits.least_s
+        self._moves = 0
 
     def part(self, torque: float) -> None:
         """Start anew from a torque in N m after plates have parted."""
@@ -102,18 +119,22 @@ class TorquePlan:
         constant slip then, `left_s` the time in s from then until the slip shall be zero.
         """
         surplus = self.torque - needed
-        easy_rate = self._limits.easy_rate
+        easy_rate, refilling = self._limits.easy_rate, 0.0
         if not self._hurries:
             easy_rate = min(easy_rate, max(needed, 0.0) / self._limits.rise_s)
+            refilling = max(needed, 0.0) * self._limits.refill_per_s
             left_s = max(left_s, self._least_s)
             self._least_s -= PERIOD_S
-        self._choose_rate(momentum, surplus, left_s, easy_rate)
+        self._choose_rate(momentum, surplus, left_s, easy_rate, refilling)
+        share = min(max((self._moves - OPENING) / REFILLING, 0.0), 1.0)
+        self._moves += 1
         final = self._final(momentum)
         aim = needed + final
         if not self._falling and self.torque >= aim:
             self._falling = True
         if not self._falling:
-            self.torque += min(aim - self.torque, PERIOD_S * self.rate)
+            rising = self.rate + share * max(refilling - self.rate, 0.0)
+            self.torque += min(aim - self.torque, PERIOD_S * rising)
         elif self._meets(momentum) and surplus <= final + GENTLE_S * self.rate:
             # The plates meet gently by the time at which this acts: begin to close them.
             self.torque += PERIOD_S * self.rate + max(self._rise_to(needed), 0.0)
@@ -138,9 +159,9 @@ class TorquePlan:
         return self._limits.sticks and self._twisted(momentum) <= 0.0
 
     def _choose_rate(
-        self, momentum: float, surplus: float, left_s: float, easy_rate: float
+        self, momentum: float, surplus: float, left_s: float, easy_rate: float, refilling: float
     ) -> None:
-        """Choose the rate of a plan that still rises."""
+        """Choose the rate of a plan that still rises, at `refilling` in N m/s if that is more."""
         limits = self._limits
         least = LEAST_SHARE * limits.easy_rate
         if not limits.sticks:
@@ -154,8 +175,8 @@ class TorquePlan:
                 self.rate = steeper
             return
         twisted = self._twisted(momentum)
-        late = least_rate(twisted, surplus, left_s + limits.latest_s)
-        in_time = least_rate(twisted, surplus, left_s)
+        late = falling_rate(twisted, surplus, left_s + limits.latest_s, refilling)
+        in_time = falling_rate(twisted, surplus, left_s, refilling)
         least = max(least, self._way_down(momentum, surplus))
         self.rate = max(min(max(easy_rate, late), in_time), least)
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import scipy
 
-from ddct_controllers.least_jerk.plan import SHORTEST_S, final_surplus, least_rate
+from ddct_controllers.least_jerk.plan import SHORTEST_S, falling_rate, final_surplus, least_rate
 
 STEPS = 400
 
@@ -43,6 +43,32 @@ def test_no_request_has_a_smaller_rate(momentum, surplus, time_s):
 
 def test_a_time_that_has_passed_is_the_shortest_one():
     assert least_rate(5.0, 1.0, -1.0) == least_rate(5.0, 1.0, SHORTEST_S)
+
+
+@pytest.mark.parametrize(('momentum', 'surplus'), [(20.0, 0.0), (11.4, 12.0)])
+@pytest.mark.parametrize('faster', [1.5, 4.0, 30.0])
+def test_a_fall_after_a_faster_rise_ends_slip_and_surplus_together(momentum, surplus, faster):
+    time_s, steps = 0.9, 90_000
+    rising = faster * least_rate(momentum, surplus, time_s)
+    falling = falling_rate(momentum, surplus, time_s, rising)
+    # It rises until what is left of the time is what the fall takes.
+    rise_s = (falling * time_s - surplus) / (rising + falling)
+    times = (np.arange(steps) + 0.5) * time_s / steps
+    y = surplus + np.where(
+        times < rise_s, rising * times, rising * rise_s - falling * (times - rise_s)
+    )
+    assert y[-1] == pytest.approx(0.0, abs=0.01)
+    assert y.mean() * time_s == pytest.approx(momentum, rel=1e-4)
+    assert falling < least_rate(momentum, surplus, time_s)
+
+
+@pytest.mark.parametrize(
+    ('surplus', 'rising'), [(0.0, 0.0), (0.0, 80.0), (-10.0, 1e4), (200.0, 1e4)]
+)
+def test_the_rise_is_no_slower_than_the_fall_and_none_where_too_much_torque_is_there(
+    surplus, rising
+):
+    assert falling_rate(20.0, surplus, 0.9, rising) == least_rate(20.0, surplus, 0.9)
 
 
 @pytest.mark.parametrize(('end', 'band'), [(3.0, 9.0), (20.0, 9.0), (0.0, 5.0)])

@@ -9,6 +9,19 @@ static double least_rate(double momentum, double surplus, double time_s)
     return (half + sqrt(half * half + kept * kept)) / (time_s * time_s);
 }
 
+/* Rate of the fall after a rise at `rising`; the least rate where nothing is left to rise. */
+static double falling_rate(double momentum, double surplus, double time_s, double rising)
+{
+    time_s = larger(time_s, SHORTEST);
+    const double least = least_rate(momentum, surplus, time_s);
+    const double missing = 2.0 * larger(momentum, 0.0) - surplus * time_s;
+    if (rising <= least || surplus < 0.0 || missing <= 0.0) {
+        return least;
+    }
+    const double rise = missing / (surplus + rising * time_s);
+    return (surplus + rising * rise) / (time_s - rise);
+}
+
 /* Surplus from which a fall at `rate` ends the slip at the surplus `end`. */
 static double final_surplus(double momentum, double rate, double end)
 {
@@ -34,7 +47,7 @@ static double time_left(double speed, double rate)
 /* The planned torque, the same behind its low-pass, and the rate of the plan. */
 typedef struct {
     double torque, smoothed, rate, needed, least_time;
-    int falling, has_needed, hurries;
+    int falling, has_needed, hurries, moves;
 } torque_plan;
 
 static void plan_start(torque_plan *s, double torque)
@@ -44,6 +57,7 @@ static void plan_start(torque_plan *s, double torque)
     s->has_needed = 0;
     s->least_time = LEAST_TIME;
     s->hurries = HURRIES;
+    s->moves = 0;
 }
 
 /* J_r w_d at the rate of the way down, for J_r s. */
@@ -73,7 +87,7 @@ static double way_down(const torque_plan *s, double momentum, double surplus)
 }
 
 static void choose_rate(torque_plan *s, double momentum, double surplus, double left,
-                        double easy_rate)
+                        double easy_rate, double refilling)
 {
     double least = LEAST_SHARE * EASY_RATE;
     if (!STICKS) {
@@ -94,8 +108,8 @@ static void choose_rate(torque_plan *s, double momentum, double surplus, double 
         return;
     }
     const double twisted = twisted_of(s, momentum);
-    const double late = least_rate(twisted, surplus, left + LATEST);
-    const double in_time = least_rate(twisted, surplus, left);
+    const double late = falling_rate(twisted, surplus, left + LATEST, refilling);
+    const double in_time = falling_rate(twisted, surplus, left, refilling);
     least = larger(least, way_down(s, momentum, surplus));
     s->rate = larger(smaller(larger(easy_rate, late), in_time), least);
 }
@@ -119,19 +133,23 @@ static void plan_fall(torque_plan *s, double momentum, double needed, double fin
 static void plan_move(torque_plan *s, double momentum, double needed, double left)
 {
     const double surplus = s->torque - needed;
-    double easy_rate = EASY_RATE;
+    double easy_rate = EASY_RATE, refilling = 0.0;
     if (!s->hurries) {
         easy_rate = smaller(easy_rate, larger(needed, 0.0) / RISE);
+        refilling = larger(needed, 0.0) * REFILL;
         left = larger(left, s->least_time);
         s->least_time -= PERIOD;
     }
-    choose_rate(s, momentum, surplus, left, easy_rate);
+    choose_rate(s, momentum, surplus, left, easy_rate, refilling);
+    const double share = smaller(larger((double)(s->moves - OPENING) / REFILLING, 0.0), 1.0);
+    s->moves += 1;
     const double final = final_of(s, momentum), aim = needed + final;
     if (!s->falling && s->torque >= aim) {
         s->falling = 1;
     }
     if (!s->falling) {
-        s->torque += smaller(aim - s->torque, PERIOD * s->rate);
+        const double rising = s->rate + share * larger(refilling - s->rate, 0.0);
+        s->torque += smaller(aim - s->torque, PERIOD * rising);
     } else if (STICKS && twisted_of(s, momentum) <= 0.0 && surplus <= final + GENTLE * s->rate) {
         s->torque += PERIOD * s->rate + larger(rise_to(s, needed), 0.0);
     } else {
