@@ -134,19 +134,20 @@ def test_tests_that_fail_or_that_only_one_version_has_give_no_figure(
     assert result.reason.startswith(reason)
 
 
-def test_the_tests_of_a_session_of_colcon_have_the_name_of_their_package(tmp_path: Path) -> None:
-    """So an older version runs those of a package, in its folder."""
-    cases = """\
+def test_the_tests_of_a_session_of_colcon_have_the_names_of_one_session(tmp_path: Path) -> None:
+    """An older version runs those of a package so, and their names begin with the package."""
+    of_a_package = 'testcase classname="ddct_plant.ddct_plant.test.test_clutch" time="0.5"'
+    cases = f"""\
 <testsuites><testsuite>
-<testcase classname="test.models.test_clutch" name="test_a" time="0.5"/>
-<testcase classname="test.models.test_clutch" name="test_b" time="1"><failure/></testcase>
-<testcase classname="test.models.test_clutch" name="test_c" time="0"><skipped/></testcase>
+<{of_a_package} name="test_a"/>
+<{of_a_package} name="test_b"><failure/></testcase>
+<{of_a_package} name="test_c"><skipped/></testcase>
 </testsuite></testsuites>
 """
     result = tmp_path / 'ddct_plant' / 'pytest.xml'
     result.parent.mkdir()
     result.write_text(cases)
-    assert dict(passed_in(result)) == {'ddct_plant.test.models.test_clutch::test_a': 0.5}
+    assert dict(passed_in(result)) == {'ddct_plant.test.test_clutch::test_a': 0.5}
 
 
 def test_a_base_that_cannot_run_its_tests_has_none_that_both_pass(tmp_path: Path) -> None:

@@ -77,6 +77,6 @@ def passed_in(result: Path) -> Iterator[tuple[str, float]]:
     package = result.parent.name
     for case in ElementTree.parse(result).iter('testcase'):
         if len(case) == 0:  # neither failed nor skipped
-            module = case.get('classname', '')
-            place = f'{package}.{module}' if module.startswith('test.') else module
+            # colcon puts the name of the package before it.
+            place = case.get('classname', '').replace(f'{package}.{package}.', f'{package}.')
             yield f'{place}::{case.get("name")}', float(case.get('time', 0))
