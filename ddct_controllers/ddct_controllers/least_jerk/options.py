@@ -108,7 +108,7 @@ class LeastJerkOptions(OptionGroup):
         at_most=2.0,
     )
     demand_periods: float = option(
-        1.0,
+        2.0,
         'periods of the locked driveline over which the engine torque follows the demand, in a '
         'run that starts with locked plates; 0 leaves the engine to the driver',
         at_least=0.0,
