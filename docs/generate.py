@@ -6,7 +6,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from generator.block_diagrams import drawings
+from generator.drawings.block_diagrams import drawings
 from generator.notebooks import write_notebooks
 from generator.pages import DOCS, fill_pages
 from generator.results import fill_results, results

@@ -5,7 +5,7 @@
 import sys
 
 from generator.pages import fill_pages
-from generator.robustness_map import keep
+from generator.robustness.robustness_map import keep
 from generator.tables import TABLES
 
 KIND = 'robustness'

@@ -24,7 +24,7 @@ from ddct_plant.base.errors import DdctError
 from ddct_plant.program.table import UNDEFINED
 from generator.cells import fill_cells
 from generator.pages import DOCS, rows_of, shown_tables
-from generator.robustness_map import kept_maps
+from generator.robustness.robustness_map import kept_maps
 
 HOLDS = ': holds'
 """End of a word of Table 5.2 that our runs confirm."""

@@ -39,24 +39,24 @@ from ddct_plant.linear.sampling import discretise_zoh
 from ddct_plant.program.table import Table
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
-from generator.benchmark_tables import benchmark_tables
+from generator.drawings.study_charts import save_study_chart
 from generator.fault_tables import fault_tables
-from generator.feedforward_tables import feedforward_tables
-from generator.floor_tables import floor_tables
-from generator.launch_table import launch_table
-from generator.least_jerk_tables import least_jerk_tables
+from generator.least_jerk.least_jerk_tables import least_jerk_tables
 from generator.option_tables import TABLES as OPTION_TABLES
 from generator.pages import DOCS
-from generator.robustness_charts import draw_robustness
-from generator.robustness_map import kept_maps
-from generator.robustness_tables import robustness_tables
+from generator.robustness.robustness_charts import draw_robustness
+from generator.robustness.robustness_map import kept_maps
+from generator.robustness.robustness_tables import robustness_tables
+from generator.runs.benchmark_tables import benchmark_tables
+from generator.runs.feedforward_tables import feedforward_tables
+from generator.runs.floor_tables import floor_tables
+from generator.runs.launch_table import launch_table
+from generator.runs.shift_tables import shift_tables
 from generator.score_tables import score_tables
 from generator.sensor_table import sensor_table
-from generator.shift_tables import shift_tables
-from generator.soak_tables import digest_of_record, record_of, soak_figure, soak_tables
-from generator.speed_charts import draw_speed, save_measured
-from generator.speed_history import digest_of, histories, speed_tables
-from generator.study_charts import save_study_chart
+from generator.speed.soak_tables import digest_of_record, record_of, soak_figure, soak_tables
+from generator.speed.speed_charts import draw_speed, save_measured
+from generator.speed.speed_history import digest_of, histories, speed_tables
 from generator.tuning_tables import tuning_tables
 
 

@@ -3,17 +3,17 @@
 """The pages show the rows of the release: of every packaged controller, failures included."""
 
 import pytest
-from generator.benchmark_tables import benchmark_tables, dominated_by
-from generator.distance_table import over_the_least
-from generator.least_jerk_tables import development_rows
-from generator.pages import as_markdown, rows_of, shown_tables
-from generator.repeated_cases import (
+from generator.least_jerk.distance_table import over_the_least
+from generator.least_jerk.least_jerk_tables import development_rows
+from generator.least_jerk.repeated_cases import (
     HIGHEST_N_M,
     Constant,
     handover_row,
     locked_cases,
     parted_rows,
 )
+from generator.pages import as_markdown, rows_of, shown_tables
+from generator.runs.benchmark_tables import benchmark_tables, dominated_by
 
 from ddct_bringup.benchmark.case_rows import CaseRows
 from ddct_bringup.benchmark.cases import packaged_folder

@@ -3,9 +3,9 @@
 """Rows of the pages of engagements are what the runs give; they have all rows and all charts."""
 
 import pytest
+from generator.drawings.study_charts import drawn_curves, samples
 from generator.pages import DOCS, shown_tables
 from generator.pages import rows_of as rows_of_table
-from generator.study_charts import drawn_curves, samples
 
 from ddct_bringup.reproduction.studies import engagements
 from ddct_bringup.reproduction.studies.table_5_2 import rows_of

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The page of the floors has the gaps that its scenarios have."""
 
-from generator.floor_tables import CASES, gap_row
 from generator.pages import rows_of, shown_tables
+from generator.runs.floor_tables import CASES, gap_row
 
 SHOWN = rows_of(shown_tables('floors')['gaps'])
 MAKE = 'run: make docs KINDS=floors'

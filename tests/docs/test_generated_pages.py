@@ -8,11 +8,11 @@ import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 import pytest
-from generator.block_diagrams import drawings
+from generator.drawings.block_diagrams import drawings
 from generator.fault_tables import fault_tables
-from generator.launch_table import launch_table
 from generator.option_tables import TABLES as OPTION_TABLES
 from generator.pages import DOCS, as_markdown, fill_pages, marked_pages, shown_tables
+from generator.runs.launch_table import launch_table
 from generator.score_tables import score_tables
 from generator.sensor_table import sensor_table
 from generator.tables import TABLES as COMPUTED

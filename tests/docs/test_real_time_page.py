@@ -6,8 +6,14 @@ from typing import Any
 
 import pytest
 from generator.pages import DOCS, as_markdown, shown_tables
-from generator.soak_tables import RECORD, digest_of_record, record_of, soak_figure, soak_tables
-from generator.speed_charts import DRAWN_FROM
+from generator.speed.soak_tables import (
+    RECORD,
+    digest_of_record,
+    record_of,
+    soak_figure,
+    soak_tables,
+)
+from generator.speed.speed_charts import DRAWN_FROM
 from PIL import Image
 from soak.__main__ import RECORD as WRITTEN
 

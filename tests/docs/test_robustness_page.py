@@ -8,9 +8,9 @@ from itertools import product
 import numpy as np
 import pytest
 from generator.pages import DOCS, as_markdown, shown_tables
-from generator.robustness_charts import DRAWN_FROM, LABELS, pictures, robustness_figure
-from generator.robustness_map import LETTERS, RECORD, SPECS, StateMap, kept_maps
-from generator.robustness_tables import NOMINAL_DELAY_S, ranges_text, robustness_tables
+from generator.robustness.robustness_charts import DRAWN_FROM, LABELS, pictures, robustness_figure
+from generator.robustness.robustness_map import LETTERS, RECORD, SPECS, StateMap, kept_maps
+from generator.robustness.robustness_tables import NOMINAL_DELAY_S, ranges_text, robustness_tables
 from PIL import Image
 
 from ddct_bringup.campaign.campaign import Campaign

@@ -3,9 +3,16 @@
 """Rows and picture of the page of gear shifts are what the runs give."""
 
 import pytest
+from generator.drawings.study_charts import curves_of, drawn_curves
 from generator.pages import DOCS, rows_of, shown_tables
-from generator.shift_tables import CHART, SCENARIO, SOME, phases_chart, shift_row, shift_scenarios
-from generator.study_charts import curves_of, drawn_curves
+from generator.runs.shift_tables import (
+    CHART,
+    SCENARIO,
+    SOME,
+    phases_chart,
+    shift_row,
+    shift_scenarios,
+)
 
 from ddct_controllers.design.drawing.chart_style import chart_style
 from ddct_controllers.handover.laws import HANDOVERS

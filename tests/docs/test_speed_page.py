@@ -14,8 +14,8 @@ from bench.skeleton.machine import Machine
 from bench.skeleton.rounds import Result, measure
 from bench.skeleton.workspace import ROOT, Workspace
 from generator.pages import DOCS, as_markdown, shown_tables
-from generator.speed_charts import DRAWN_FROM, PANELS, PICTURE, speed_figure
-from generator.speed_history import HISTORY, digest_of, histories, speed_tables
+from generator.speed.speed_charts import DRAWN_FROM, PANELS, PICTURE, speed_figure
+from generator.speed.speed_history import HISTORY, digest_of, histories, speed_tables
 from PIL import Image
 
 AGAIN = 'run: make docs KINDS=speed'

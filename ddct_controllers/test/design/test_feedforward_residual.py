@@ -5,14 +5,14 @@
 from dataclasses import replace
 
 import numpy as np
-from generator.feedforward_tables import (
+from generator.pages import as_markdown, shown_tables
+from generator.runs.feedforward_tables import (
     DRIVELINE,
     STATIC,
     engine_residual,
     load_residual,
     residuals,
 )
-from generator.pages import as_markdown, shown_tables
 
 from ddct_controllers.design.feedforward import design_feedforward
 

@@ -5,8 +5,8 @@
 import re
 
 import pytest
-from generator.feedforward_tables import DRIVELINE, NEARLY_EXACT, controllers, weights
 from generator.pages import DOCS, as_markdown, shown_tables
+from generator.runs.feedforward_tables import DRIVELINE, NEARLY_EXACT, controllers, weights
 
 from ddct_controllers.design.feedforward import TORQUE_RATE_WEIGHT, design_feedforward
 from ddct_plant.models.static_torque import constant_slip_torque

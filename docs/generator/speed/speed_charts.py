@@ -12,7 +12,7 @@ from PIL.PngImagePlugin import PngInfo
 
 from ddct_controllers.design.drawing.chart_style import chart_style, save_chart
 from generator.pages import DOCS
-from generator.speed_history import MachineHistory
+from generator.speed.speed_history import MachineHistory
 
 DRAWN_FROM = 'Drawn from'
 """Metadata key of the digest of the history in a picture."""

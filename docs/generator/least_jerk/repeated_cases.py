@@ -27,7 +27,7 @@ from ddct_controllers.least_jerk.controller import NAME
 from ddct_plant.program.table import Table
 from ddct_plant.program.workers import in_processes
 from ddct_plant.scenario.settings import RunSettings
-from generator.shift_tables import shift_scenarios
+from generator.runs.shift_tables import shift_scenarios
 
 LOCKED_AT_START = 'tip_in'
 """Scenario whose plates are locked at control start."""

@@ -9,7 +9,7 @@ from itertools import product
 from ddct_bringup.reproduction.values.orders import SLIP_RATINGS, WORN
 from ddct_bringup.verdict.state import ENGAGED, INVALID, NEARLY_ENGAGED, RUNAWAY
 from ddct_plant.program.table import UNDEFINED, Table
-from generator.robustness_map import ARCHITECTURE, WEAR, StateMap
+from generator.robustness.robustness_map import ARCHITECTURE, WEAR, StateMap
 
 NOMINAL_DELAY_S = 0.01
 PLANTS = {'linear': 'linear', 'stick_slip': 'stick-slip'}

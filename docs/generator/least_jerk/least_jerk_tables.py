@@ -27,9 +27,9 @@ from ddct_plant.models.driveline import LOCK, LOCKED, PHASES, RELEASE
 from ddct_plant.program.table import Table
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
-from generator.benchmark_tables import CASE_HEADERS, case_cells
-from generator.distance_table import distance_table
-from generator.repeated_cases import handover_table, parted_table
+from generator.least_jerk.distance_table import distance_table
+from generator.least_jerk.repeated_cases import handover_table, parted_table
+from generator.runs.benchmark_tables import CASE_HEADERS, case_cells
 
 SCENARIOS = (
     *('launch', 'launch_hill', 'launch_gentle', 'thesis'),

@@ -16,8 +16,8 @@ from ddct_bringup.sweep.state_map import draw_states, edges_of, state_legend
 from ddct_controllers.design.drawing.chart_style import chart_style, save_chart
 from ddct_controllers.design.drawing.line_styles import BLACK
 from generator.pages import DOCS
-from generator.robustness_map import ARCHITECTURE, WEAR, StateMap
-from generator.robustness_tables import PLANTS
+from generator.robustness.robustness_map import ARCHITECTURE, WEAR, StateMap
+from generator.robustness.robustness_tables import PLANTS
 
 DRAWN_FROM = 'Drawn from'
 """Metadata key of the digest of the map in a picture."""
