@@ -5,6 +5,7 @@
 import pytest
 from generator.least_jerk.distance_table import over_the_least
 from generator.least_jerk.least_jerk_tables import development_rows
+from generator.least_jerk.price_of_limits import PLANS, price_row
 from generator.least_jerk.repeated_cases import (
     HIGHEST_N_M,
     Constant,
@@ -83,6 +84,12 @@ def test_the_distance_from_the_least_is_that_of_a_run() -> None:
         assert shown[f'`{scenario}`'][0] == over_the_least(scenario, {}), (
             'run: make docs KINDS=least-jerk'
         )
+
+
+@pytest.mark.parametrize('place', [0, len(PLANS) - 1])
+def test_the_price_of_lower_limits_is_that_of_runs(place: int) -> None:
+    shown = [tuple(row) for row in rows_of(shown_tables('least-jerk')['price'])]
+    assert shown[place] == price_row(PLANS[place]), 'run: make docs KINDS=least-jerk'
 
 
 def test_the_page_of_least_jerk_has_its_rows() -> None:

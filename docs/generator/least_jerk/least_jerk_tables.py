@@ -28,6 +28,7 @@ from ddct_plant.program.table import Table
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 from generator.least_jerk.distance_table import distance_table
+from generator.least_jerk.price_of_limits import price_table
 from generator.least_jerk.repeated_cases import handover_table, parted_table
 from generator.runs.benchmark_tables import CASE_HEADERS, case_cells
 
@@ -65,7 +66,11 @@ VARIANTS = (
     Variant('the low-pass of that estimate', {}, {'APPLIED_SHARE': 1.0}),
     Variant('the prediction over the lag of the actuator', {}, {'AHEAD': 0, 'LAG_S': 0.0}),
     Variant('more time than the reference gives', {'latest_s': 0.0}),
-    Variant('more time for a light demand and a small slip', {'rise_s': 0.01, 'least_s': 0.0}),
+    Variant(
+        'more time for a light demand and a small slip',
+        {'rise_s': 0.01, 'least_s': 0.0, 'shift_s': 0.0},
+    ),
+    Variant('the faster rise after a torque phase', {'refill_s': 10.0}),
     Variant('the low-pass of the planned torque', {'smoothing_s': 0.0}),
     Variant('the trend of the demand, but for its last values', {}, {'LONGEST': 12}),
     Variant('the slow correction of the way down', {}, {'CORRECTION': 1e9}),
@@ -85,6 +90,7 @@ def least_jerk_tables() -> Mapping[str, Table]:
         'unavoidable': parted_table(),
         'handovers': handover_table(),
         'distance': distance_table(),
+        'price': price_table(),
         'ingredients': Table('What each ingredient brings', _HEADERS, rows),
         'table_5_1': Table('Beside Table 5.1', _ROW_HEADERS, list(_table_5_1())),
     }

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.benchmark.cases import Cases, packaged_folder
 from ddct_bringup.benchmark.release import release_rows
 from ddct_bringup.campaign.keys import SCENARIO
@@ -83,7 +84,8 @@ def locked_cases() -> list[PlannedRow]:
 
 def parts(settings: RunSettings) -> bool:
     """Return whether locked plates part with the highest request."""
-    results = _scored(settings, Constant(HIGHEST_N_M)).verdict.results
+    run = run_headless(settings, Constant(HIGHEST_N_M))
+    results = scored(settings, run).verdict.results
     values = {each.name: each.value for each in results}
     return bool((values[_RELEASES] or 0.0) > 0.0)
 
@@ -101,7 +103,7 @@ def handover_row(handover: str) -> tuple[str, ...]:
 
     def state(index: int) -> str:
         settings = replace(runs[index].settings, handover=handover)
-        return _scored(settings, NAME).verdict.state
+        return scored(settings, run_headless(settings, NAME)).verdict.state
 
     with in_processes(state, len(runs)) as states:
         counts = Counter(states)
@@ -118,6 +120,7 @@ def _planned(chosen: np.ndarray) -> Iterator[PlannedRow]:
         yield run
 
 
-def _scored(settings: RunSettings, controller: str | Controller) -> ScoredRun:
-    recording = recording_in_memory(settings, 'again', run_headless(settings, controller))
+def scored(settings: RunSettings, run: Trajectory) -> ScoredRun:
+    """Return the scores of a run by the packaged limits."""
+    recording = recording_in_memory(settings, 'again', run)
     return score_run(recording, 'again', packaged_limits(), RunTiming())
