@@ -20,7 +20,7 @@ from ddct_plant.scenario.settings import RunSettings
 
 pytestmark = pytest.mark.slow
 
-QUICK = ('jerk_m_s3=60', 'latest_s=0', 'least_s=0', 'rise_s=0.01')
+QUICK = ('jerk_m_s3=60', 'latest_s=0', 'least_s=0')
 LAUNCHES = ('launch', 'launch_hill', 'launch_hot', 'launch_gentle')
 
 

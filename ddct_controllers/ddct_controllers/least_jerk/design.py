@@ -55,7 +55,6 @@ class LeastJerkDesign:
         wheel_torque = driveline.vehicle_inertia / scenario.vehicle.wheel_radius_m
         limits = PlanLimits(
             easy_rate=options.jerk_m_s3 * driveline.gear.shaft_torque(wheel_torque),
-            rise_s=options.rise_s,
             refill_per_s=1.0 / options.refill_s if settings.shift else 0.0,
             latest_s=options.latest_s,
             least_s=options.shift_s if settings.shift else options.least_s,

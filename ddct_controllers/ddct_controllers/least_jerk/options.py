@@ -19,14 +19,6 @@ class LeastJerkOptions(OptionGroup):
         above=0.0,
         at_most=100.0,
     )
-    rise_s: float = option(
-        0.3,
-        'least time in which the planned torque would change by all of that of constant slip, so '
-        'that a light demand changes it slowly',
-        's',
-        at_least=0.01,
-        at_most=10.0,
-    )
     refill_s: float = option(
         0.25,
         'time in which the planned torque would rise by all of that of constant slip once the '

@@ -36,8 +36,6 @@ class PlanLimits:
 
     easy_rate: float
     """Rate in N m/s at which the torque changes unless that takes too long."""
-    rise_s: float
-    """Least time in s in which the torque would change by all of that of constant slip."""
     refill_per_s: float
     """
     Rate at which the torque rises after a torque phase, over the torque of constant slip, in 1/s.
@@ -60,7 +58,7 @@ class PlanLimits:
     """Whether the plates can lock; else the slip may pass zero."""
     hurries: bool
     """
-    Whether `rise_s`, `refill_per_s` and `least_s` do not hold: plates are to be locked already.
+    Whether `refill_per_s` and `least_s` do not hold, as the plates are to be locked already.
     """
 
     @property
@@ -119,13 +117,12 @@ class TorquePlan:
         constant slip then, `left_s` the time in s from then until the slip shall be zero.
         """
         surplus = self.torque - needed
-        easy_rate, refilling = self._limits.easy_rate, 0.0
+        refilling = 0.0
         if not self._hurries:
-            easy_rate = min(easy_rate, max(needed, 0.0) / self._limits.rise_s)
             refilling = max(needed, 0.0) * self._limits.refill_per_s
             left_s = max(left_s, self._least_s)
             self._least_s -= PERIOD_S
-        self._choose_rate(momentum, surplus, left_s, easy_rate, refilling)
+        self._choose_rate(momentum, surplus, left_s, refilling)
         share = min(max((self._moves - OPENING) / REFILLING, 0.0), 1.0)
         self._moves += 1
         final = self._final(momentum)
@@ -159,7 +156,7 @@ class TorquePlan:
         return self._limits.sticks and self._twisted(momentum) <= 0.0
 
     def _choose_rate(
-        self, momentum: float, surplus: float, left_s: float, easy_rate: float, refilling: float
+        self, momentum: float, surplus: float, left_s: float, refilling: float
     ) -> None:
         """Choose the rate of a plan that still rises, at `refilling` in N m/s if that is more."""
         limits = self._limits
@@ -178,7 +175,7 @@ class TorquePlan:
         late = falling_rate(twisted, surplus, left_s + limits.latest_s, refilling)
         in_time = falling_rate(twisted, surplus, left_s, refilling)
         least = max(least, self._way_down(momentum, surplus))
-        self.rate = max(min(max(easy_rate, late), in_time), least)
+        self.rate = max(min(max(limits.easy_rate, late), in_time), least)
 
     def _way_down(self, momentum: float, surplus: float) -> float:
         """Return the rate in N m/s of a fall from a surplus in N m that ends with the slip."""

@@ -67,8 +67,8 @@ VARIANTS = (
     Variant('the prediction over the lag of the actuator', {}, {'AHEAD': 0, 'LAG_S': 0.0}),
     Variant('more time than the reference gives', {'latest_s': 0.0}),
     Variant(
-        'more time for a light demand and a small slip',
-        {'rise_s': 0.01, 'least_s': 0.0, 'shift_s': 0.0},
+        'more time for a small slip',
+        {'least_s': 0.0, 'shift_s': 0.0},
     ),
     Variant('the faster rise after a torque phase', {'refill_s': 10.0}),
     Variant('the low-pass of the planned torque', {'smoothing_s': 0.0}),

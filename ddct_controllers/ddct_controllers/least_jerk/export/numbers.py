@@ -101,7 +101,6 @@ def _plan(design: LeastJerkDesign) -> dict[str, int | float]:
     return {
         'EASY_RATE': limits.easy_rate,
         'LATEST': limits.latest_s,
-        'RISE': limits.rise_s,
         'REFILL': limits.refill_per_s,
         'OPENING': torque_plan.OPENING,
         'REFILLING': torque_plan.REFILLING,

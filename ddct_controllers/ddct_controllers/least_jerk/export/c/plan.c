@@ -87,7 +87,7 @@ static double way_down(const torque_plan *s, double momentum, double surplus)
 }
 
 static void choose_rate(torque_plan *s, double momentum, double surplus, double left,
-                        double easy_rate, double refilling)
+                        double refilling)
 {
     double least = LEAST_SHARE * EASY_RATE;
     if (!STICKS) {
@@ -111,7 +111,7 @@ static void choose_rate(torque_plan *s, double momentum, double surplus, double 
     const double late = falling_rate(twisted, surplus, left + LATEST, refilling);
     const double in_time = falling_rate(twisted, surplus, left, refilling);
     least = larger(least, way_down(s, momentum, surplus));
-    s->rate = larger(smaller(larger(easy_rate, late), in_time), least);
+    s->rate = larger(smaller(larger(EASY_RATE, late), in_time), least);
 }
 
 static double rise_to(const torque_plan *s, double needed)
@@ -133,14 +133,13 @@ static void plan_fall(torque_plan *s, double momentum, double needed, double fin
 static void plan_move(torque_plan *s, double momentum, double needed, double left)
 {
     const double surplus = s->torque - needed;
-    double easy_rate = EASY_RATE, refilling = 0.0;
+    double refilling = 0.0;
     if (!s->hurries) {
-        easy_rate = smaller(easy_rate, larger(needed, 0.0) / RISE);
         refilling = larger(needed, 0.0) * REFILL;
         left = larger(left, s->least_time);
         s->least_time -= PERIOD;
     }
-    choose_rate(s, momentum, surplus, left, easy_rate, refilling);
+    choose_rate(s, momentum, surplus, left, refilling);
     const double share = smaller(larger((double)(s->moves - OPENING) / REFILLING, 0.0), 1.0);
     s->moves += 1;
     const double final = final_of(s, momentum), aim = needed + final;
