@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from ddct_controllers.interface import ControllerContext
 from ddct_controllers.least_jerk.engine_guard import EngineGuard, SpeedRange
 from ddct_controllers.least_jerk.options import LeastJerkOptions
+from ddct_controllers.least_jerk.plan import PlanLimits
 from ddct_controllers.least_jerk.shaped_demand import shaping_steps, starts_locked
 from ddct_controllers.least_jerk.slip_estimate import RigidSlip, twist_of
 from ddct_controllers.least_jerk.torque_estimate import (
@@ -15,7 +16,6 @@ from ddct_controllers.least_jerk.torque_estimate import (
     CarriedTorque,
     TorqueNoise,
 )
-from ddct_controllers.least_jerk.torque_plan import PlanLimits
 from ddct_plant.base.options import with_values
 from ddct_plant.models.clutch import LINEAR
 from ddct_plant.models.engine import EngineAuthority

@@ -3,9 +3,8 @@
 """The planned torque of slipping plates, moved by a period at a time."""
 
 import math
-from dataclasses import dataclass
 
-from ddct_controllers.least_jerk.plan import falling_rate, final_surplus
+from ddct_controllers.least_jerk.plan import PlanLimits, falling_rate, final_surplus
 from ddct_plant.base.timebase import PERIOD_S
 
 LEAST_SHARE = 0.05
@@ -24,47 +23,6 @@ Periods of feedback in a gear shift before the torque rises faster, and until it
 
 The off-going clutch opens meanwhile, which jerks too.
 """
-MOST_BAND = 0.7
-"""
-Highest bandwidth over the frequency at which the twist of the half-shafts undoes the feedback.
-"""
-
-
-@dataclass(frozen=True)
-class PlanLimits:
-    """What bounds a plan, constant over a run."""
-
-    easy_rate: float
-    """Rate in N m/s at which the torque changes unless that takes too long."""
-    refill_per_s: float
-    """
-    Rate at which the torque rises after a torque phase, over the torque of constant slip, in 1/s.
-
-    It rises no slower than it falls, so 0 where it rises as it falls.
-    """
-    latest_s: float
-    """Time in s by which the lock may be later than the reference ends."""
-    least_s: float
-    """Time in s that a plan takes at least."""
-    bandwidth_rad_s: float
-    """Bandwidth of the last part of the way down, before `MOST_BAND` limits it."""
-    end_s: float
-    """Time in s for which the surplus at the lock would still fall."""
-    twist: float
-    """J_r w_d of a rigid car beyond that of the measured one, in N m s per N m/s."""
-    smoothing_s: float
-    """Time constant of the low-pass behind the plan."""
-    sticks: bool
-    """Whether the plates can lock; else the slip may pass zero."""
-    hurries: bool
-    """
-    Whether `refill_per_s` and `least_s` do not hold, as the plates are to be locked already.
-    """
-
-    @property
-    def band(self) -> float:
-        """Bandwidth in rad/s of the last part of the way down."""
-        return min(self.bandwidth_rad_s, MOST_BAND / math.sqrt(self.twist))
 
 
 class TorquePlan:

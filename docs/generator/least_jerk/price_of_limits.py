@@ -9,6 +9,7 @@ from unittest.mock import patch
 
 from ddct_bringup.floor.floor import floors_of_run
 from ddct_bringup.run.headless import run_headless
+from ddct_bringup.verdict.limits import TRACTION
 from ddct_controllers.least_jerk import torque_plan
 from ddct_controllers.least_jerk.controller import NAME
 from ddct_plant.base.errors import DdctError
@@ -24,12 +25,13 @@ _CRITERIA = (
     ('peak_jerk', '.1f'),
     (WEIGHTED, '.3f'),
     ('daily_vibration_dose', '.1f'),
+    (TRACTION, '.2f'),
     ('friction_work_over_least', '.1f'),
 )
 _HEADERS = (
     *('scenario', 'plan', 'state', 'time to lock s', 'peak jerk m/s^3'),
-    *('weighted acceleration m/s^2', 'daily dose m/s^1.75', 'friction work over the least'),
-    'least weighted acceleration for that time',
+    *('weighted acceleration m/s^2', 'daily dose m/s^1.75', 'traction m/s^2'),
+    *('friction work over the least', 'least weighted acceleration for that time'),
 )
 SLOWER = {'jerk_m_s3': 2.0, 'latest_s': 1.2, 'least_s': 1.6}
 SLOWEST = {'jerk_m_s3': 1.5, 'latest_s': 1.6, 'least_s': 2.0}
