@@ -106,8 +106,8 @@ class LeastJerk(Controller):
         else:
             # The locked clutch transmits more as the demand rises.
             rate = max(plan.rate, self.design.limits.easy_rate) + max(self._rise(measurement), 0.0)
-            plan.torque = lock.torque(plan.torque, rate, self._clutch.gain)
-        plan.smooth(1.0 if lock.phase == CLOSED else plan.share)
+            plan.torque = lock.torque(max(plan.torque, plan.smoothed), rate, self._clutch.gain)
+        plan.smooth(plan.share if lock.phase == SLIPPING else 1.0)
         request = self._clutch.request(plan.smoothed)
         self._advance(measurement, request)
         return Command(

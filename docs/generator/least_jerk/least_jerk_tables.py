@@ -7,14 +7,13 @@ from contextlib import ExitStack
 from dataclasses import dataclass, field
 from unittest.mock import patch
 
-import numpy as np
-
 from ddct_bringup.benchmark.cases import Cases, packaged_folder
 from ddct_bringup.benchmark.release import release_rows
-from ddct_bringup.metrics.vibration import jerk
 from ddct_bringup.reproduction.study_run import thesis_run
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.thesis.table_5_1 import ROW_OF, TABLE_METRICS
+from ddct_bringup.verdict.state import ENGAGED
+from ddct_bringup.verdict.verdict import Verdict
 from ddct_controllers.least_jerk import (
     actuator_model,
     controller,
@@ -23,13 +22,12 @@ from ddct_controllers.least_jerk import (
     torque_plan,
 )
 from ddct_controllers.least_jerk.controller import NAME
-from ddct_plant.models.driveline import LOCK, LOCKED, PHASES, RELEASE
 from ddct_plant.program.table import Table
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 from generator.least_jerk.distance_table import distance_table
 from generator.least_jerk.price_of_limits import price_table
-from generator.least_jerk.repeated_cases import handover_table, parted_table
+from generator.least_jerk.repeated_cases import handover_table, parted_table, scored
 from generator.runs.benchmark_tables import CASE_HEADERS, case_cells
 
 SCENARIOS = (
@@ -39,7 +37,13 @@ SCENARIOS = (
 WEAR_GAINS = (0.7, 1.0, 1.3)
 DELAY_S = 0.015
 """Delay of the actuator in the runs without an ingredient; the controller assumes 10 ms."""
-_HEADERS = ('without', 'locked runs', 'releases', *(f'`{name}`' for name in SCENARIOS))
+SHIFT = 'upshift'
+"""Scenario with a column for its weighted acceleration."""
+RELEASES, PEAK_JERK, WEIGHTED = 'releases_after_lock', 'peak_jerk', 'weighted_acceleration'
+_HEADERS = (
+    *('without', 'engaged runs', 'releases', *(f'`{name}`' for name in SCENARIOS)),
+    f'`{SHIFT}`, weighted',
+)
 _CASE_HEADERS = ('scenario', *CASE_HEADERS)
 _ROW_HEADERS = ('controller', 't_a s', 'std w_sr rpm', 'std A_x m/s^2')
 _FORMS = ('.2f', '.2f', '.3f')
@@ -115,28 +119,24 @@ def _row(variant: Variant) -> tuple[str, ...]:
             for name, value in variant.constants.items():
                 if hasattr(module, name):
                     changed.enter_context(patch.object(module, name, value))
-        found = [_runs(name, variant.options) for name in SCENARIOS]
-    locked = sum(run.locked for runs in found for run in runs)
-    releases = sum(run.releases for runs in found for run in runs)
-    jerks = (max(run.peak_jerk for run in runs) for runs in found)
-    among = len(SCENARIOS) * len(WEAR_GAINS)
+        found = {name: _verdicts(name, variant.options) for name in SCENARIOS}
+    runs = [run for runs in found.values() for run in runs]
+    releases = sum(run.values[RELEASES] or 0.0 for run in runs)
     return (
         variant.label,
-        f'{locked} of {among}',
-        str(releases),
-        *(f'{value:.1f}' for value in jerks),
+        f'{sum(run.state == ENGAGED for run in runs)} of {len(runs)}',
+        f'{releases:.0f}',
+        *(f'{_highest(each, PEAK_JERK):.1f}' for each in found.values()),
+        f'{_highest(found[SHIFT], WEIGHTED):.3f}',
     )
 
 
-@dataclass(frozen=True)
-class _Run:
-    locked: bool
-    releases: int
-    peak_jerk: float
+def _highest(runs: Sequence[Verdict], criterion: str) -> float:
+    return max(run.values[criterion] or 0.0 for run in runs)
 
 
-def _runs(name: str, options: Mapping[str, float]) -> list[_Run]:
-    """Return the runs of a scenario with the sensors of the benchmark, one for each wear gain."""
+def _verdicts(name: str, options: Mapping[str, float]) -> list[Verdict]:
+    """Return those of runs with the sensors of the benchmark, one for each wear gain."""
     (sensors,) = Cases.packaged().content['grid']['sensors']
     changes = {
         'sensors': sensors,
@@ -144,24 +144,10 @@ def _runs(name: str, options: Mapping[str, float]) -> list[_Run]:
         **{f'controllers.{NAME}.{key}': value for key, value in options.items()},
     }
     scenario = load_scenario(name, changes, 'stick_slip')
-    return [
-        _run(RunSettings(scenario, clutch='stick_slip', wear_gain=gain, seed=1))
-        for gain in WEAR_GAINS
+    worn = [
+        RunSettings(scenario, clutch='stick_slip', wear_gain=gain, seed=1) for gain in WEAR_GAINS
     ]
-
-
-def _run(settings: RunSettings) -> _Run:
-    run = run_headless(settings, NAME)
-    start = settings.scenario.control_start_step
-    assert run.phase_events is not None
-    events = [event.kind for step in run.phase_events[start:] for event in step]
-    first = events.index(LOCK) if LOCK in events else 0
-    assert run.clutch_phase is not None
-    return _Run(
-        bool(run.clutch_phase[-1] == PHASES.index(LOCKED)),
-        events[first:].count(RELEASE),
-        float(np.abs(jerk(run.vehicle_accel)[start:]).max()),
-    )
+    return [scored(settings, run_headless(settings, NAME)).verdict for settings in worn]
 
 
 def _table_5_1() -> Sequence[tuple[str, ...]]:

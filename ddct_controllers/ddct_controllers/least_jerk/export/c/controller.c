@@ -212,16 +212,17 @@ int32_t ddct_controller_update(void *state, const ddct_measurement *m, ddct_comm
     } else if (STICKS && lock_update(s, slip)) {
         part(s, m);
     }
+    const double before = larger(s->plan.torque, s->plan.smoothed);
     if (s->phase == SLIPPING) {
         move(s, m);
     } else if (s->phase == CONFIRMING) {
         const double rate = larger(s->plan.rate, EASY_RATE) + larger(rise_of(s, m), 0.0);
-        s->plan.torque += PERIOD * rate;
+        s->plan.torque = before + PERIOD * rate;
     } else {
-        const double more = s->plan.torque + PERIOD * CLOSING_RATE;
+        const double more = before + PERIOD * CLOSING_RATE;
         s->plan.torque = smaller(more, MOST_REQUEST * s->clutch.gain);
     }
-    const double share = s->phase == CLOSED ? 1.0 : SMOOTHING_SHARE;
+    const double share = s->phase == SLIPPING ? SMOOTHING_SHARE : 1.0;
     s->plan.smoothed += share * (s->plan.torque - s->plan.smoothed);
     const double request =
         larger((s->plan.smoothed - s->clutch.applied_offset) / s->clutch.applied_gain, 0.0);
