@@ -64,10 +64,20 @@ def main() -> int:
 
 
 def choose(comparisons: list[Comparison], words: list[str]) -> list[Comparison]:
-    """Return the comparisons whose name has one of the words; without words the usual ones."""
+    """
+    Return the comparisons whose name has one of the words; without words the usual ones.
+
+    A word that is a whole name chooses that one alone.
+    """
     if not words:
         return [each for each in comparisons if not each.only_by_name]
-    return [each for each in comparisons if any(word in each.name for word in words)]
+    whole = {each.name for each in comparisons}.intersection(words)
+    parts = [word for word in words if word not in whole]
+    return [
+        each
+        for each in comparisons
+        if each.name in whole or any(word in each.name for word in parts)
+    ]
 
 
 def measure_all(comparisons: list[Comparison], bench: Bench, rounds: int) -> list[Result]:

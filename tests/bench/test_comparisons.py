@@ -56,6 +56,8 @@ def test_the_tests_of_two_versions_run_only_where_they_are_named() -> None:
     assert [each.name for each in choose(ALL, ['suite'])] == [
         'suite: make test', 'suite: make test-fast',
     ]  # fmt: skip
+    (alone,) = choose(ALL, ['suite: make test'])
+    assert alone.name == 'suite: make test'
 
 
 @pytest.mark.parametrize(
