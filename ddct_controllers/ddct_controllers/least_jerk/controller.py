@@ -188,7 +188,7 @@ class LeastJerk(Controller):
             speeds = measurement.engine_speed, measurement.shaft_speed
             earliest_s = self._guard.earliest_s(speeds, demand.level, needed, plan.rate)
             left_s = max(left_s, min(earliest_s, left_s + options.latest_s))
-        plan.move(momentum, needed + rise * ahead_s - error, left_s - ahead_s)
+        plan.move(momentum, needed + rise * ahead_s - error, left_s - ahead_s, rise)
         engine_torque = demand.level + demand.rate * ahead_s
         plan.torque = self._guard.bounded(plan.torque, measurement.engine_speed, engine_torque)
 

@@ -53,6 +53,7 @@ class TorquePlan:
         """Take a torque in N m as planned and smoothed."""
         self.torque = self.smoothed = torque
         self._needed = math.nan
+        self._rise = 0.0
         self._hurries = self._limits.hurries
         self._least_s = self._limits.least_s
         self._moves = 0
@@ -67,13 +68,15 @@ class TorquePlan:
         """Let the low-pass follow the planned torque by a share."""
         self.smoothed += share * (self.torque - self.smoothed)
 
-    def move(self, momentum: float, needed: float, left_s: float) -> None:
+    def move(self, momentum: float, needed: float, left_s: float, rise: float = 0.0) -> None:
         """
         Move the planned torque by a period.
 
         `momentum` is J_r s in N m s when a new request acts, `needed` the torque in N m of
-        constant slip then, `left_s` the time in s from then until the slip shall be zero.
+        constant slip then, `left_s` the time in s from then until the slip shall be zero, and
+        `rise` the rate in N m/s at which the torque of constant slip rises with the demand.
         """
+        self._rise = max(rise, 0.0)
         surplus = self.torque - needed
         refilling = 0.0
         if not self._hurries:
@@ -160,5 +163,6 @@ class TorquePlan:
         twisted = self._twisted(momentum)
         if not self._limits.sticks:
             return final_surplus(twisted, self.rate, self._band, 0.0)
-        end = self._limits.end_s * self.rate
+        # Where the demand rises, plates that meet late have to carry more.
+        end = self._limits.end_s * (self.rate + self._rise)
         return final_surplus(max(twisted, 0.0), self.rate, self._band, end)

@@ -157,7 +157,7 @@ static void move(least_jerk *s, const ddct_measurement *m)
             earliest(m->engine_speed, m->shaft_speed, level, needed, s->plan.rate);
         left = larger(left, smaller(least, left + LATEST));
     }
-    plan_move(&s->plan, momentum, needed + rise * ahead - error, left - ahead);
+    plan_move(&s->plan, momentum, needed + rise * ahead - error, left - ahead, rise);
     const double engine_torque = level + s->demand.rate * ahead;
     s->plan.torque = guarded(s->plan.torque, m->engine_speed, engine_torque);
 }

@@ -46,14 +46,14 @@ static double time_left(double speed, double rate)
 
 /* The planned torque, the same behind its low-pass, and the rate of the plan. */
 typedef struct {
-    double torque, smoothed, rate, needed, least_time;
+    double torque, smoothed, rate, needed, rise, least_time;
     int falling, has_needed, hurries, moves;
 } torque_plan;
 
 static void plan_start(torque_plan *s, double torque)
 {
     s->torque = s->smoothed = torque;
-    s->needed = 0.0;
+    s->needed = s->rise = 0.0;
     s->has_needed = 0;
     s->least_time = LEAST_TIME;
     s->hurries = HURRIES;
@@ -73,7 +73,7 @@ static double final_of(const torque_plan *s, double momentum)
     if (!STICKS) {
         return final_surplus(twisted, s->rate, 0.0);
     }
-    return final_surplus(larger(twisted, 0.0), s->rate, END * s->rate);
+    return final_surplus(larger(twisted, 0.0), s->rate, END * (s->rate + s->rise));
 }
 
 static double way_down(const torque_plan *s, double momentum, double surplus)
@@ -130,8 +130,9 @@ static void plan_fall(torque_plan *s, double momentum, double needed, double fin
     s->torque += smaller(larger(change, -most), most);
 }
 
-static void plan_move(torque_plan *s, double momentum, double needed, double left)
+static void plan_move(torque_plan *s, double momentum, double needed, double left, double rise)
 {
+    s->rise = larger(rise, 0.0);
     const double surplus = s->torque - needed;
     double refilling = 0.0;
     if (!s->hurries) {
