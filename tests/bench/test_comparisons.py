@@ -43,6 +43,7 @@ def test_the_bounds_are_those_of_the_project() -> None:
     }
     assert _found('headless step of a shift').bound_of('') == 1.6
     assert _found('headless step of PI', 'blocks').bound_of('') == pytest.approx(1 / 3)
+    assert _found('least_jerk in upshift, update').bound_of('median') == 2
     assert _found('campaign on two Dask workers').bound_of('') == pytest.approx(1 / 1.6)
     start_up = _found('start-up of the graph')
     assert start_up.bound_of('one run, to its first tick') == pytest.approx(1 / 3)
