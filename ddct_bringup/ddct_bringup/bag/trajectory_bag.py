@@ -17,7 +17,7 @@ from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.run_info import run_info_order, run_info_topic
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.bag.writer import new_bag
-from ddct_plant.bag_file.cdr_numbers import with_numbers
+from ddct_plant.bag_file.cdr_numbers import message_serialiser
 from ddct_plant.bag_file.message_definitions import load_definition
 from ddct_plant.base.timebase import START_NS, stamp_of_step
 from ddct_plant.signals.topic import Topic
@@ -47,12 +47,12 @@ def write_trajectory(
     )
     topics = recorded_topics(run)
     with new_bag(folder, name, topics, custom_data) as bag:
-        write_info, serialise_info = RUN_INFO.writer(plain_class), serialiser(RUN_INFO.type)
+        info_of = _of_topic(RUN_INFO)
         for node in run_info_order(run_info):
-            message = write_info(START_NS, run_info[node].items(), name=node)
-            bag.write(run_info_topic(node).name, START_NS, serialise_info(message))
+            info = info_of(START_NS, run_info[node].items(), name=node)
+            bag.write(run_info_topic(node).name, START_NS, info)
         writers = [
-            (topic.name, message_serialiser(topic), topic.signals_in(run))
+            (topic.name, _of_topic(topic), topic.signals_in(run))
             for topic in topics
             if topic.every_tick
         ]
@@ -64,14 +64,9 @@ def write_trajectory(
     return bag.path
 
 
-def message_serialiser(topic: Topic) -> Callable[..., bytes]:
-    """Return a function `serialise(stamp_ns, *values)` for messages of a topic."""
-    write, by_fields = topic.writer(plain_class), serialiser(topic.type)
-
-    def serialise(stamp_ns: int, *values: Any) -> bytes:
-        return by_fields(write(stamp_ns, *values))
-
-    return with_numbers(serialise) if topic.kind.numbers_alone else serialise
+def _of_topic(topic: Topic) -> Callable[..., bytes]:
+    """Return a function `serialise(stamp_ns, *values, **options)` for messages of a topic."""
+    return message_serialiser(topic.kind, topic.writer(plain_class), serialiser(topic.type))
 
 
 @cache

@@ -12,7 +12,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from ddct_plant.bag_file.cdr_walk import BODY
-from ddct_plant.signals.message_kind import NS_PER_S
+from ddct_plant.signals.message_kind import NS_PER_S, MessageKind, Write
 
 _STAMP = 'iI'
 """Layout of the stamp, with which the body of every type begins."""
@@ -63,12 +63,21 @@ class NumberMessage:
         return [number for row in values for number in row] if self._rows else values
 
 
-def with_numbers(serialise: Callable[..., bytes]) -> Callable[..., bytes]:
+def message_serialiser(
+    kind: MessageKind, write: Write, by_fields: Callable[[Any], bytes]
+) -> Callable[..., bytes]:
     """
-    Return a function with the bytes of `serialise(stamp_ns, *values)`, called for the first alone.
+    Return a function `serialise(stamp_ns, *values, **options)` for messages of a kind.
 
-    All messages have as many numbers as the first one, and the same texts.
+    `write` fills a message, and `by_fields` serialises it. Where all values are numbers that is
+    done for the first message alone: the others have as many numbers, and the same texts.
     """
+
+    def serialise(stamp_ns: int, *values: Any, **options: Any) -> bytes:
+        return by_fields(write(stamp_ns, *values, **options))
+
+    if not kind.numbers_alone:
+        return serialise
     message: NumberMessage | None = None
 
     def filled(stamp_ns: int, *values: Any) -> bytes:

@@ -8,24 +8,18 @@ and to publish one takes half as long again. To decode or fill the bytes here ta
 """
 
 from collections.abc import Callable
-from typing import Any
 
 from rclpy.serialization import serialize_message
 
 from ddct_plant.bag_file.cdr import CdrDecoder
-from ddct_plant.bag_file.cdr_numbers import with_numbers
+from ddct_plant.bag_file.cdr_numbers import message_serialiser
 from ddct_plant.bag_file.message_definitions import load_definition
 from ddct_plant.signals.topic import Topic
 
 
 def serialiser(topic: Topic) -> Callable[..., bytes]:
     """Return a function `serialise(stamp_ns, *values, **options)` for messages of a topic."""
-    write = topic.writer()
-
-    def by_ros(stamp: int, *values: Any, **options: Any) -> bytes:
-        return serialize_message(write(stamp, *values, **options))
-
-    return with_numbers(by_ros) if topic.kind.numbers_alone else by_ros
+    return message_serialiser(topic.kind, topic.writer(), serialize_message)
 
 
 def decoder(topic: Topic) -> CdrDecoder:
