@@ -89,7 +89,7 @@ def test_the_distance_from_the_least_is_that_of_a_run() -> None:
 @pytest.mark.parametrize('place', [0, len(PLANS) - 1])
 def test_the_price_of_lower_limits_is_that_of_runs(place: int) -> None:
     shown = [tuple(row) for row in rows_of(shown_tables('least-jerk')['price'])]
-    assert shown[place] == price_row(PLANS[place]), 'run: make docs KINDS=least-jerk'
+    assert shown[place] == price_row(*PLANS[place]), 'run: make docs KINDS=least-jerk'
 
 
 def test_the_page_of_least_jerk_has_its_rows() -> None:

@@ -43,7 +43,13 @@ class LeastJerkOptions(OptionGroup):
         at_least=0.0,
         at_most=10.0,
     )
-    shift_s: float = option(1.1, 'that time in a gear shift', 's', at_least=0.0, at_most=10.0)
+    shift_s: float = option(
+        1.1,
+        'time that the plan of a gear shift takes at least from the start of feedback',
+        's',
+        at_least=0.0,
+        at_most=10.0,
+    )
     bandwidth_rad_s: float = option(
         12.0,
         'bandwidth of the feedback of the last rad/s of slip',

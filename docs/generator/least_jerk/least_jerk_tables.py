@@ -3,9 +3,6 @@
 """Tables of `least_jerk`: development cases, ingredients, and its row beside Table 5.1."""
 
 from collections.abc import Mapping, Sequence
-from contextlib import ExitStack
-from dataclasses import dataclass, field
-from unittest.mock import patch
 
 from ddct_bringup.benchmark.cases import Cases, packaged_folder
 from ddct_bringup.benchmark.release import release_rows
@@ -14,13 +11,6 @@ from ddct_bringup.run.headless import run_headless
 from ddct_bringup.thesis.table_5_1 import ROW_OF, TABLE_METRICS
 from ddct_bringup.verdict.state import ENGAGED
 from ddct_bringup.verdict.verdict import Verdict
-from ddct_controllers.least_jerk import (
-    actuator_model,
-    controller,
-    demand_trend,
-    torque_estimate,
-    torque_plan,
-)
 from ddct_controllers.least_jerk.controller import NAME
 from ddct_plant.program.table import Table
 from ddct_plant.scenario.file import load_scenario
@@ -28,6 +18,7 @@ from ddct_plant.scenario.settings import RunSettings
 from generator.least_jerk.distance_table import distance_table
 from generator.least_jerk.price_of_limits import price_table
 from generator.least_jerk.repeated_cases import handover_table, parted_table, scored
+from generator.least_jerk.variants import Variant
 from generator.runs.benchmark_tables import CASE_HEADERS, case_cells
 
 SCENARIOS = (
@@ -47,17 +38,6 @@ _HEADERS = (
 _CASE_HEADERS = ('scenario', *CASE_HEADERS)
 _ROW_HEADERS = ('controller', 't_a s', 'std w_sr rpm', 'std A_x m/s^2')
 _FORMS = ('.2f', '.2f', '.3f')
-
-
-@dataclass(frozen=True)
-class Variant:
-    """The controller without one ingredient."""
-
-    label: str
-    options: Mapping[str, float] = field(default_factory=dict)
-    """Options of the scenario's section."""
-    constants: Mapping[str, float] = field(default_factory=dict)
-    """Constants of the modules below, by name."""
 
 
 VARIANTS = (
@@ -83,7 +63,6 @@ VARIANTS = (
     Variant('the engine torque after the demand', {'demand_periods': 0.0}),
 )
 """Variants in the order of the table."""
-_MODULES = (actuator_model, controller, demand_trend, torque_estimate, torque_plan)
 
 
 def least_jerk_tables() -> Mapping[str, Table]:
@@ -114,12 +93,8 @@ def development_rows() -> list[tuple[str, ...]]:
 
 
 def _row(variant: Variant) -> tuple[str, ...]:
-    with ExitStack() as changed:
-        for module in _MODULES:
-            for name, value in variant.constants.items():
-                if hasattr(module, name):
-                    changed.enter_context(patch.object(module, name, value))
-        found = {name: _verdicts(name, variant.options) for name in SCENARIOS}
+    with variant.constants_changed():
+        found = {name: _verdicts(name, variant) for name in SCENARIOS}
     runs = [run for runs in found.values() for run in runs]
     releases = sum(run.values[RELEASES] or 0.0 for run in runs)
     return (
@@ -135,14 +110,10 @@ def _highest(runs: Sequence[Verdict], criterion: str) -> float:
     return max(run.values[criterion] or 0.0 for run in runs)
 
 
-def _verdicts(name: str, options: Mapping[str, float]) -> list[Verdict]:
+def _verdicts(name: str, variant: Variant) -> list[Verdict]:
     """Return those of runs with the sensors of the benchmark, one for each wear gain."""
     (sensors,) = Cases.packaged().content['grid']['sensors']
-    changes = {
-        'sensors': sensors,
-        'actuator.delay_s': DELAY_S,
-        **{f'controllers.{NAME}.{key}': value for key, value in options.items()},
-    }
+    changes = {'sensors': sensors, 'actuator.delay_s': DELAY_S, **variant.changes}
     scenario = load_scenario(name, changes, 'stick_slip')
     worn = [
         RunSettings(scenario, clutch='stick_slip', wear_gain=gain, seed=1) for gain in WEAR_GAINS

@@ -23,8 +23,8 @@ from ddct_plant.program.table import UNDEFINED, Table, text_or_dash
 from ddct_plant.program.workers import in_processes
 from ddct_plant.scenario.file import load_scenario, scenario_names
 from ddct_plant.scenario.settings import RunSettings
-from generator.pages import DOCS
 from generator.drawings.study_charts import save_study_chart
+from generator.pages import DOCS
 
 SCENARIO, SHOWN = 'upshift', 'ls8'
 """Scenario of the table of all controllers, and the controller of the chart."""
