@@ -104,7 +104,7 @@ class LeastJerk(Controller):
         if lock.phase == SLIPPING:
             self._move(measurement)
         else:
-            # The locked clutch transmits more as the demand rises.
+            # The locked clutch transmits more as the demand rises; it begins with what it carries.
             rate = max(plan.rate, self.design.limits.easy_rate) + max(self._rise(measurement), 0.0)
             plan.torque = lock.torque(max(plan.torque, plan.smoothed), rate, self._clutch.gain)
         plan.smooth(plan.share if lock.phase == SLIPPING else 1.0)

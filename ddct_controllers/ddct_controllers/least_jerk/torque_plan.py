@@ -68,7 +68,7 @@ class TorquePlan:
         """Let the low-pass follow the planned torque by a share."""
         self.smoothed += share * (self.torque - self.smoothed)
 
-    def move(self, momentum: float, needed: float, left_s: float, rise: float = 0.0) -> None:
+    def move(self, momentum: float, needed: float, left_s: float, rise: float) -> None:
         """
         Move the planned torque by a period.
 

@@ -32,7 +32,7 @@ def _tests(name: str, target: str) -> Comparison:
             lambda: _passed_s(base, target, failures=True),
             bounded=before,
             warm_up=False,
-            ratios=shared_and_whole,
+            ratios=_shared_and_whole,
         )
 
     return sides
@@ -41,7 +41,7 @@ def _tests(name: str, target: str) -> Comparison:
 TESTS = (_tests('suite: make test', 'test'), _tests('suite: make test-fast', 'test-fast'))
 
 
-def shared_and_whole(
+def _shared_and_whole(
     ours: Mapping[str, float], reference: Mapping[str, float]
 ) -> Mapping[str, float]:
     """Return the ratios of the summed times; raise NotMeasured where no test is in both."""
@@ -68,7 +68,7 @@ def _passed_s(workspace: Workspace, target: str, *, failures: bool = False) -> M
         except ProgramError:
             if not failures:
                 raise
-        results = [*filter(Path.exists, [result]), *build.glob('*/pytest.xml')]
+        results = [*Path(folder).glob('pytest.xml'), *build.glob('*/pytest.xml')]
         return {test: time_s for each in results for test, time_s in passed_in(each)}
 
 
