@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ddct_bringup.floor.dynamics.motion import Motion
-from ddct_bringup.metrics.mean_motion import jerk_means
-from ddct_bringup.metrics.vibration import jerk, strongest_stretch, weighted_acceleration
+from ddct_bringup.metrics.signals.mean_motion import jerk_means
+from ddct_bringup.metrics.signals.vibration import jerk, strongest_stretch, weighted_acceleration
 from ddct_bringup.verdict.limits import TRACTION
 from ddct_plant.base.timebase import PERIOD_S, steps_in
 from ddct_plant.base.units import rpm_from_rad_s

@@ -7,9 +7,13 @@ import math
 import numpy as np
 
 from ddct_bringup.metrics.engagement import Engagement, Values
-from ddct_bringup.metrics.mean_motion import mean_acceleration, mean_jerk, mean_negative_jerk
 from ddct_bringup.metrics.metric import NO_WINDOW, Metric, criterion
-from ddct_bringup.metrics.vibration import jerk
+from ddct_bringup.metrics.signals.mean_motion import (
+    mean_acceleration,
+    mean_jerk,
+    mean_negative_jerk,
+)
+from ddct_bringup.metrics.signals.vibration import jerk
 
 VDV_WEIGHTING = 'W_d of ISO 2631-1 (x axis), bilinear at 100 Hz, without its 100 Hz upper limit'
 """

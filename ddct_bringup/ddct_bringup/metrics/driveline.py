@@ -4,7 +4,7 @@
 
 from ddct_bringup.bag.measured_run import TORSION
 from ddct_bringup.metrics.metric import criterion
-from ddct_bringup.metrics.vibration import SHORTEST_JUDDER_S, torque_dip
+from ddct_bringup.metrics.signals.vibration import SHORTEST_JUDDER_S, torque_dip
 
 _NOT_TOGETHER = 'the plates never came together after control start'
 

@@ -12,7 +12,7 @@ from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.metrics.lockup import Lockup
 from ddct_bringup.metrics.plant import JudgedPlant
 from ddct_bringup.metrics.shift.course import ShiftCourse
-from ddct_bringup.metrics.vibration import (
+from ddct_bringup.metrics.signals.vibration import (
     SHORTEST_JUDDER_S,
     judder_of,
     shuffle_of,

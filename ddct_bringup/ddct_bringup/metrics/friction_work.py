@@ -3,11 +3,10 @@
 """Friction work of an engagement relative to the minimum for a rigid car."""
 
 import numpy as np
-import scipy
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.metrics.plant import JudgedPlant
-from ddct_plant.base.timebase import PERIOD_S
+from ddct_bringup.metrics.signals.integrals import integral
 from ddct_plant.base.units import rad_s_from_rpm
 
 LEAST_SLIP_RPM = 50.0
@@ -47,6 +46,4 @@ def friction_work(trajectory: Trajectory, start: int = 0) -> np.ndarray:
         # The work recorded at a step is that of the period before; at step 0 it is zero.
         return np.sum(trajectory.friction_work[..., start + 1 if start else 0 :], axis=-1)
     torque = trajectory.primary_shaft_effort[..., start:]
-    return scipy.integrate.trapezoid(
-        np.abs(torque * trajectory.slip_speed[..., start:]), dx=PERIOD_S
-    )
+    return integral(np.abs(torque * trajectory.slip_speed[..., start:]))

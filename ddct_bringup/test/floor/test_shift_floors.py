@@ -18,7 +18,7 @@ from ddct_bringup.floor.lock import lock_of
 from ddct_bringup.floor.point import point_of
 from ddct_bringup.floor.values import METRICS, value_of
 from ddct_bringup.metrics.shift.course import ShiftCourse
-from ddct_bringup.metrics.vibration import jerk
+from ddct_bringup.metrics.signals.vibration import jerk
 from ddct_bringup.run.execution import recording_in_memory
 from ddct_bringup.run.headless import closed_loop, run_headless, run_loop
 from ddct_bringup.scores.scoring import score_run

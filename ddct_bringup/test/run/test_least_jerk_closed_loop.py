@@ -10,7 +10,7 @@ import pytest
 from ddct_bringup.benchmark.cases import Cases
 from ddct_bringup.floor.floor import floor_of
 from ddct_bringup.floor.values import value_of
-from ddct_bringup.metrics.vibration import jerk
+from ddct_bringup.metrics.signals.vibration import jerk
 from ddct_bringup.run.headless import run_headless
 from ddct_controllers.interface import Command, Controller
 from ddct_controllers.least_jerk.controller import NAME, SPEC

@@ -5,7 +5,7 @@
 import numpy as np
 import pytest
 
-from ddct_bringup.metrics.vibration import jerk, vibration_dose, weighted_acceleration
+from ddct_bringup.metrics.signals.vibration import jerk, vibration_dose, weighted_acceleration
 
 TIME = np.arange(4001) / 100.0
 

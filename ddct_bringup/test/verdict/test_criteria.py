@@ -12,8 +12,8 @@ from scipy.signal import butter, sosfiltfilt
 from ddct_bringup.metrics.catalogue import CRITERION_UNITS
 from ddct_bringup.metrics.engagement import Engagement
 from ddct_bringup.metrics.plant import JudgedPlant
+from ddct_bringup.metrics.signals.vibration import weighted_acceleration
 from ddct_bringup.metrics.values import compute_metrics, criteria_of, existing, metrics_of
-from ddct_bringup.metrics.vibration import weighted_acceleration
 from ddct_bringup.verdict.limits import limits_of_text, packaged_limits
 from ddct_bringup.verdict.state import STATES
 from ddct_bringup.verdict.verdict import verdict_of

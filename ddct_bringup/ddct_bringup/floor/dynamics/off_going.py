@@ -5,12 +5,12 @@
 from dataclasses import dataclass
 
 import numpy as np
-import scipy
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.floor.dynamics import propagators
 from ddct_bringup.floor.dynamics.capacity import COOLER_K, WARMER_K
 from ddct_bringup.floor.dynamics.shapes import most_shapes
+from ddct_bringup.metrics.signals.integrals import integral
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import PERIOD_S, SUBSTEP_S
 from ddct_plant.models.clutch import FrictionClutch
@@ -109,7 +109,7 @@ def off_going_of(settings: RunSettings, run: Trajectory, step: int, unforced: in
         temperature,
         effects_of_run(settings, run, range(step, step + known)),
         most_shapes(gears_of(settings.scenario), capacity[known:periods]),
-        float(scipy.integrate.trapezoid(capacity, dx=SUBSTEP_S).sum()),
+        float(integral(capacity, dx=SUBSTEP_S).sum()),
     )
 
 

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-import scipy
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.metrics.lockup import Lockup, step_at
+from ddct_bringup.metrics.signals.integrals import integral
 from ddct_bringup.metrics.zero_slip import LOCKED
-from ddct_plant.base.timebase import PERIOD_S, time_of_step
+from ddct_plant.base.timebase import time_of_step
 from ddct_plant.models.driveline import LOCK, RELEASE, PhaseEvent
 
 
@@ -131,7 +131,7 @@ class ShiftCourse:
         smaller = np.minimum(np.abs(off_going), np.abs(on_coming))
         opposing = np.where(off_going * on_coming < 0.0, smaller, 0.0)
         power = opposing * np.abs(run.off_going_shaft_speed - run.primary_shaft_speed)
-        return float(scipy.integrate.trapezoid(power[self.start :], dx=PERIOD_S))
+        return float(integral(power[self.start :]))
 
     def events(self, kind: str, *, off_going: bool) -> int | None:
         """Return the number of locks or releases of a clutch from the start of the shift on."""

@@ -8,21 +8,25 @@ are oscillations of driveline and car.
 """
 
 import math
-from functools import cache
 
 import numpy as np
-import scipy
 
+from ddct_bringup.metrics.signals.filters import (
+    BAND_HZ,
+    BAND_PASS,
+    LOW_PASS,
+    WEIGHTING,
+    filtered,
+    forward_and_backward,
+)
+from ddct_bringup.metrics.signals.integrals import integral, running_integral
 from ddct_plant.base.timebase import PERIOD_S, STEPS_PER_S
 
-JERK_CUTOFF_HZ = 20.0
-_JERK_FILTER_ORDER = 2
-"""Order of the Butterworth filter, which runs forward and backward once each."""
-JUDDER_BAND_HZ = (2.0, 20.0)
-BAND_PASS_ORDER = 2
-_PADDING = 3 * (2 * BAND_PASS_ORDER + 1)
-"""Number of samples that `sosfiltfilt` adds at each end of an interval."""
-SHORTEST_JUDDER_S = 1.0 / JUDDER_BAND_HZ[0]
+_LOW_PASS_PADDING = 9
+"""Number of samples that the jerk's filter adds at each end, that of `scipy.signal.filtfilt`."""
+_BAND_PASS_PADDING = 15
+"""Number of samples that the judder's filter adds, that of `scipy.signal.sosfiltfilt`."""
+SHORTEST_JUDDER_S = 1.0 / BAND_HZ[0]
 """
 Shortest slipping time in s for which a judder is computed: 51 samples.
 
@@ -40,49 +44,23 @@ def jerk(acceleration: np.ndarray) -> np.ndarray:
     point-symmetric about its end values: a slope continues, and a constant gives no jerk. Fewer
     than 10 samples give an empty array.
     """
-    padding = 3 * (_JERK_FILTER_ORDER + 1)
-    if acceleration.shape[-1] <= padding:
+    samples = acceleration.shape[-1]
+    if samples <= _LOW_PASS_PADDING:
         return np.empty((*acceleration.shape[:-1], 0))
-    return np.diff(scipy.signal.filtfilt(*_low_pass(), acceleration, padlen=padding)) / PERIOD_S
-
-
-@cache
-def _low_pass() -> tuple[np.ndarray, np.ndarray]:
-    return scipy.signal.butter(_JERK_FILTER_ORDER, JERK_CUTOFF_HZ, fs=1.0 / PERIOD_S)
+    rows = acceleration.reshape(-1, samples)
+    first = np.zeros((len(rows), 1), dtype=int)
+    smooth = forward_and_backward(LOW_PASS, rows, first, first + samples, _LOW_PASS_PADDING)
+    return np.diff(smooth.reshape(acceleration.shape)) / PERIOD_S
 
 
 def weighted_acceleration(acceleration: np.ndarray) -> np.ndarray:
     """Return the (..., n) acceleration in m/s^2 weighted by W_d, initially in steady state."""
-    sos = _weighting()
-    return scipy.signal.sosfilt(sos, acceleration, zi=at_rest(sos, acceleration[..., :1]))[0]
-
-
-def at_rest(sos: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Return the states (sections, ..., 2) of a filter in steady state at values (..., 1)."""
-    states = scipy.signal.sosfilt_zi(sos)
-    return states.reshape(len(sos), *(1,) * (values.ndim - 1), 2) * values
-
-
-@cache
-def _weighting() -> np.ndarray:
-    """
-    Return the weighting W_d as second-order sections for 100 Hz.
-
-    ISO 2631-1 gives W_d as a second-order high-pass at 0.4 Hz with Q = 1/sqrt(2), and (1 + s/w3) /
-    (1 + s/(Q4 w4) + (s/w4)^2) with w3 = w4 = 2 pi 2.0 rad/s and Q4 = 0.63.
-    """
-    high_pass = 2.0 * np.pi * 0.4
-    corner, quality = 2.0 * np.pi * 2.0, 0.63
-    sections = [
-        ([1.0, 0.0, 0.0], [1.0, np.sqrt(2.0) * high_pass, high_pass**2]),
-        ([1.0 / corner, 1.0], [1.0 / corner**2, 1.0 / (quality * corner), 1.0]),
-    ]
-    return np.vstack([np.hstack(_digital(*section)) for section in sections])
+    return filtered(WEIGHTING, acceleration)
 
 
 def vibration_dose(weighted: np.ndarray) -> np.ndarray:
     """Return the vibration dose value, the fourth root of the integral of a^4, in m/s^1.75."""
-    return scipy.integrate.trapezoid(_fourth_power(weighted), dx=PERIOD_S) ** 0.25
+    return integral(_fourth_power(weighted)) ** 0.25
 
 
 def strongest_stretch(weighted: np.ndarray, periods: int) -> tuple[np.ndarray, np.ndarray]:
@@ -94,9 +72,7 @@ def strongest_stretch(weighted: np.ndarray, periods: int) -> tuple[np.ndarray, n
     """
     before = np.zeros((*weighted.shape[:-1], 1))
     squares = np.cumsum(np.concatenate([before, weighted**2], axis=-1), axis=-1)
-    fourths = scipy.integrate.cumulative_trapezoid(
-        _fourth_power(weighted), dx=PERIOD_S, initial=0.0
-    )
+    fourths = running_integral(_fourth_power(weighted))
     means = (squares[..., periods + 1 :] - squares[..., : -periods - 1]) / (periods + 1)
     doses = fourths[..., periods:] - fourths[..., :-periods]
     return np.sqrt(np.max(means, axis=-1)), np.max(doses, axis=-1) ** 0.25
@@ -105,20 +81,6 @@ def strongest_stretch(weighted: np.ndarray, periods: int) -> tuple[np.ndarray, n
 def _fourth_power(values: np.ndarray) -> np.ndarray:
     """Return a^4 by two multiplications; numpy's power of 4 takes many times as long."""
     return np.square(np.square(values))
-
-
-def _digital(numerator: list[float], denominator: list[float]) -> tuple[np.ndarray, np.ndarray]:
-    """Return the digital section of an analogue one; each polynomial has three coefficients."""
-    b, a = scipy.signal.bilinear(numerator, denominator, fs=1.0 / PERIOD_S)
-    return np.pad(b, (0, 3 - len(b))), np.pad(a, (0, 3 - len(a)))
-
-
-@cache
-def band_pass() -> np.ndarray:
-    """Return the Butterworth band-pass of the judder as second-order sections."""
-    return scipy.signal.butter(
-        BAND_PASS_ORDER, JUDDER_BAND_HZ, 'bandpass', fs=STEPS_PER_S, output='sos'
-    )
 
 
 def judder_of(torsion_speed: np.ndarray, first: np.ndarray, after: np.ndarray) -> np.ndarray:
@@ -134,40 +96,17 @@ def judder_of(torsion_speed: np.ndarray, first: np.ndarray, after: np.ndarray) -
     long = (length - 1) * PERIOD_S >= SHORTEST_JUDDER_S
     found = np.full(len(rows), math.nan)
     if long.any():
-        filtered = _band_passed(rows[long], begins[long, np.newaxis], length[long, np.newaxis])
+        passed = forward_and_backward(
+            BAND_PASS,
+            rows[long],
+            begins[long, np.newaxis],
+            length[long, np.newaxis],
+            _BAND_PASS_PADDING,
+        )
         # Each mean is that of its own samples alone, so it does not depend on other runs.
-        means = [np.mean(row[:n] ** 2) for row, n in zip(filtered, length[long], strict=True)]
+        means = [np.mean(row[:n] ** 2) for row, n in zip(passed, length[long], strict=True)]
         found[long] = np.sqrt(means)
     return found.reshape(np.shape(first))
-
-
-def _band_passed(values: np.ndarray, first: np.ndarray, length: np.ndarray) -> np.ndarray:
-    """
-    Return values[r, first[r]:first[r] + length[r]] after `sosfiltfilt` with the band-pass.
-
-    `first` and `length` are (R, 1), each length above `_PADDING`. Each interval is shifted to the
-    start of its row, so that one call filters all; samples after an interval do not count.
-    """
-    sos = band_pass()
-    place = np.arange(values.shape[-1] + 2 * _PADDING)
-    padded = _padded(values, first, length, place - _PADDING)
-    forward = scipy.signal.sosfilt(sos, padded, zi=at_rest(sos, padded[:, :1]))[0]
-    turned = np.maximum(length + 2 * _PADDING - 1 - place, 0)
-    backward = np.take_along_axis(forward, turned, axis=-1)
-    filtered = scipy.signal.sosfilt(sos, backward, zi=at_rest(sos, backward[:, :1]))[0]
-    return np.take_along_axis(filtered, np.maximum(turned - _PADDING, 0), axis=-1)
-
-
-def _padded(
-    values: np.ndarray, first: np.ndarray, length: np.ndarray, sample: np.ndarray
-) -> np.ndarray:
-    """Return the intervals with point-symmetric extensions about their end values."""
-    last = length - 1
-    turned = np.where(sample > last, 2 * last - sample, np.abs(sample))
-    mirrored = np.take_along_axis(values, first + np.clip(turned, 0, last), axis=-1)
-    ends = np.take_along_axis(values, first + np.where(sample < 0, 0, last), axis=-1)
-    beyond = (sample < 0) | (sample > last)
-    return np.where(beyond, 2.0 * ends - mirrored, mirrored)
 
 
 def shuffle_of(torsion_speed: np.ndarray, start: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

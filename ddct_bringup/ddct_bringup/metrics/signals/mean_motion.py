@@ -3,9 +3,9 @@
 """Means of acceleration over 2 s and of jerk over 1 s; ISO 15622 limits such means."""
 
 import numpy as np
-import scipy
 
-from ddct_plant.base.timebase import PERIOD_S, STEPS_PER_S
+from ddct_bringup.metrics.signals.integrals import running_integral
+from ddct_plant.base.timebase import STEPS_PER_S
 
 MEAN_S = 2.0
 """Averaging time of the acceleration in s."""
@@ -16,7 +16,7 @@ def mean_acceleration(acceleration: np.ndarray) -> np.ndarray | None:
     samples = round(MEAN_S * STEPS_PER_S)
     if acceleration.shape[-1] <= samples:
         return None
-    speed = scipy.integrate.cumulative_trapezoid(acceleration, dx=PERIOD_S, initial=0.0)
+    speed = running_integral(acceleration)
     gains = speed[..., samples:] - speed[..., :-samples]
     return np.max(gains, axis=-1) / MEAN_S
 

@@ -1,0 +1,108 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""The filters of the metrics have the coefficients and the bits of scipy.signal."""
+
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+import scipy
+
+from ddct_bringup.metrics.signals import filters
+from ddct_bringup.metrics.signals.vibration import jerk, judder_of, weighted_acceleration
+from ddct_plant.base.timebase import PERIOD_S
+
+RATE_HZ = 1.0 / PERIOD_S
+SIGNALS = np.cumsum(np.random.default_rng(2).standard_normal((3, 400)), axis=1)
+
+
+def analogue_weighting():
+    high_pass, corner, quality = 2.0 * np.pi * 0.4, 2.0 * np.pi * 2.0, 0.63
+    yield [1.0, 0.0, 0.0], [1.0, np.sqrt(2.0) * high_pass, high_pass**2]
+    yield [1.0 / corner, 1.0], [1.0 / corner**2, 1.0 / (quality * corner), 1.0]
+
+
+EXPECTED = {
+    'LOW_PASS': [scipy.signal.butter(2, 20.0, fs=RATE_HZ)],
+    'BAND_PASS': [
+        (section[:3], section[3:])
+        for section in scipy.signal.butter(
+            2, filters.BAND_HZ, 'bandpass', fs=RATE_HZ, output='sos'
+        )
+    ],
+    'WEIGHTING': [scipy.signal.bilinear(*section, fs=RATE_HZ) for section in analogue_weighting()],
+}
+
+
+@pytest.mark.parametrize('name', EXPECTED)
+def test_coefficients_and_states_are_those_of_scipy(name):
+    expected = [
+        [*numerator, *denominator[1:], *scipy.signal.lfilter_zi(numerator, denominator)]
+        for numerator, denominator in EXPECTED[name]
+    ]
+    assert getattr(filters, name) == pytest.approx(np.array(expected), rel=1e-14)
+
+
+@pytest.mark.parametrize('name', EXPECTED)
+@pytest.mark.parametrize('signals', [SIGNALS, SIGNALS[0], SIGNALS[:, :1], SIGNALS[np.newaxis]])
+def test_both_means_give_the_same_bits(name, signals):
+    for section in getattr(filters, name):
+        one, other = (apply(section, signals) for apply in (filters.by_steps, filters.by_scipy))
+        assert one.shape == other.shape
+        assert one.tobytes() == other.tobytes()
+
+
+def test_jerk_is_that_of_filtfilt():
+    smooth = scipy.signal.filtfilt(*EXPECTED['LOW_PASS'][0], SIGNALS)
+    assert jerk(SIGNALS) == pytest.approx(np.diff(smooth) / PERIOD_S, rel=1e-10, abs=1e-10)
+
+
+def test_weighting_is_that_of_sosfilt_in_equilibrium():
+    sos = np.array([np.hstack(section) for section in EXPECTED['WEIGHTING']])
+    states = scipy.signal.sosfilt_zi(sos)[:, np.newaxis] * SIGNALS[:, :1]
+    expected, _ = scipy.signal.sosfilt(sos, SIGNALS, zi=states)
+    assert weighted_acceleration(SIGNALS) == pytest.approx(expected, abs=1e-10)
+
+
+def test_judder_is_that_of_sosfiltfilt_on_each_interval():
+    sos = np.array([np.hstack(section) for section in EXPECTED['BAND_PASS']])
+    first, after = np.array([0, 30, 399]), np.array([400, 130, 400])
+    expected = [
+        np.sqrt(np.mean(scipy.signal.sosfiltfilt(sos, signal[begin:end]) ** 2))
+        for signal, begin, end in zip(SIGNALS[:2], first, after, strict=False)
+    ]
+    found = judder_of(SIGNALS, first, after)
+    assert found == pytest.approx([*expected, np.nan], rel=1e-9, nan_ok=True)
+
+
+def test_a_process_that_filters_much_uses_scipy(monkeypatch):
+    monkeypatch.setattr(filters, 'by_scipy', lambda section, values: 'from scipy')
+    recursion = filters.Recursion()
+    signal = np.ones(filters.Recursion.AS_LONG_AS_THE_IMPORT // 2)
+    assert recursion(filters.LOW_PASS[0], signal) == pytest.approx(signal)
+    assert recursion(filters.LOW_PASS[0], signal) == 'from scipy'
+
+
+SCORED = """
+import sys
+from ddct_bringup.programs.ddct import main
+code = main()
+assert 'scipy.signal' not in sys.modules
+assert 'scipy.stats' not in sys.modules
+sys.exit(code)
+"""
+
+
+def test_a_program_that_scores_a_run_does_without_the_slow_parts_of_scipy(tmp_path):
+    words = ['compare', '--headless', '--controllers', 'pi', '--out', str(tmp_path / 'out')]
+    done = subprocess.run(
+        [sys.executable, '-P', '-c', SCORED, *words],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+        env=os.environ,
+    )
+    assert done.returncode == 0, done.stderr
