@@ -17,7 +17,7 @@ from ddct_bringup.bag.run_info import RUN_INFO_TOPICS, RunInfoOfNodes, add_run_i
 from ddct_bringup.bag.ticks import check_ticks
 from ddct_bringup.bag.topic_values import Column, TopicValues
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_plant.bag_file.decoding import decoded_messages
+from ddct_plant.bag_file.decoding import decoded_columns
 from ddct_plant.bag_file.records import BagRecords, read_records
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.input_file import located, mcap_of
@@ -102,14 +102,23 @@ class _Found:
         for topic in recorded_topics(run):
             if topic.every_tick:
                 found.values[topic.resolved_name] = _no_values(topic, run)
-        for topic, stamp, message in decoded_messages(records):
+        numbers = [
+            topic
+            for topic in recorded_topics(run)
+            if topic.every_tick and topic.kind.numbers_alone and topic not in kept
+        ]
+        for topic, stamps, message in decoded_columns(records, numbers):
             name = topic.resolved_name
-            found.counts[name] += 1
-            if topic in kept:
-                found.messages.setdefault(name, []).append((stamp, message))
-            if name in found.values:
-                with _values_named(topic):
-                    found.values[name].add(stamp, topic.values(message))
+            with _values_named(topic):
+                if not isinstance(stamps, int):
+                    found.counts[name] += len(stamps)
+                    found.values[name].add_columns(stamps, topic.values(message))
+                    continue
+                found.counts[name] += 1
+                if topic in kept:
+                    found.messages.setdefault(name, []).append((stamps, message))
+                if name in found.values:
+                    found.values[name].add(stamps, topic.values(message))
         return found
 
 

@@ -35,6 +35,26 @@ class TopicValues:
 
     def add(self, stamp: int, row: Sequence[Any]) -> None:
         """Add the values in a message; raise DdctError where other messages have others."""
+        sizes = self._require_same(row)
+        self.stamps.append(stamp)
+        for signal, column, values, size in zip(
+            self._signals, self._columns, row, sizes, strict=True
+        ):
+            if not signal.unit or size is None:
+                column.append(values)
+            else:
+                column.extend(values)
+
+    def add_columns(self, stamps: np.ndarray, row: Sequence[Any]) -> None:
+        """Add the (n,) numbers in n messages, or rows of such; raise DdctError as `add`."""
+        sizes = self._require_same(row)
+        self.stamps.frombytes(stamps.astype(np.int64).tobytes())
+        for column, values, size in zip(self._columns, row, sizes, strict=True):
+            numbers = values if size is None else np.array(values).T
+            column.frombytes(numbers.astype(np.float64).tobytes())
+
+    def _require_same(self, row: Sequence[Any]) -> list[int | None]:
+        """Return the size of each value, None for a number; raise DdctError for other sizes."""
         if len(row) != len(self._signals):
             raise DdctError(
                 f'{self._name}: a message has {len(row)} values, not the {len(self._signals)} of '
@@ -43,18 +63,12 @@ class TopicValues:
             )
         sizes = [len(each) if isinstance(each, Sequence) else None for each in row]
         self._sizes = self._sizes or sizes
-        self.stamps.append(stamp)
-        for signal, column, values, size, first in zip(
-            self._signals, self._columns, row, sizes, self._sizes, strict=True
-        ):
+        for signal, size, first in zip(self._signals, sizes, self._sizes, strict=True):
             if signal.unit and size != first:
                 raise DdctError(
                     f'{signal.name} does not have the same size at every stamp', key=self._name
                 )
-            if not signal.unit or size is None:
-                column.append(values)
-            else:
-                column.extend(values)
+        return sizes
 
     def at_ticks(self, last: int) -> tuple[dict[str, Column], int]:
         """

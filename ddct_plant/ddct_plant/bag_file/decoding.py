@@ -3,16 +3,17 @@
 """Decode the serialised messages of a bag, without ROS."""
 
 import io
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import redirect_stderr
 from typing import Any
 
+import numpy as np
 from mcap.records import Channel, Schema
 from mcap_ros2.decoder import DecoderFactory
 
 from ddct_plant.bag_file.cdr import CdrDecoder
-from ddct_plant.bag_file.message_definitions import load_definition
-from ddct_plant.bag_file.records import BagRecords
+from ddct_plant.bag_file.message_definitions import MessageDefinition, load_definition
+from ddct_plant.bag_file.records import BagRecords, StoredMessage
 from ddct_plant.base.errors import DdctError
 from ddct_plant.signals.message_kind import stamp_ns
 from ddct_plant.signals.topic import Topic
@@ -31,16 +32,64 @@ def decoded_messages(
     Only topics in `chosen` are decoded, if given. Raise DdctError for a damaged bag, for a topic
     of another type and for a message that cannot be decoded.
     """
-    known = {topic.resolved_name: topic for topic in chosen or all_topics()}
-    channels = {channel.topic for channel in records.channels.values()}
-    decoders = {name: _decoder(records, known[name]) for name in known.keys() & channels}
-    for name, log_time, data in records.messages():
-        if (topic := known.get(name)) is None:
-            continue
-        if name not in decoders:
-            decoders[name] = _decoder(records, topic)
+    decoders = _Decoders(records, chosen or all_topics())
+    for stored in records.messages():
+        yield from decoders.one(stored)
+
+
+def decoded_columns(
+    records: BagRecords, numbers: Collection[Topic]
+) -> Iterator[tuple[Topic, int | np.ndarray, Any]]:
+    """
+    Yield as `decoded_messages`, but the messages on topics in `numbers` together where possible.
+
+    Those of one chunk and topic that differ in numbers alone are yielded as one message whose
+    numbers are (n,) arrays, with their (n,) stamps, before other messages of the chunk.
+    """
+    decoders = _Decoders(records, all_topics())
+    names = {topic.resolved_name for topic in numbers}
+    for batch in records.batches():
+        together: dict[str, list[StoredMessage]] = {}
+        apart = []
+        for stored in batch:
+            if stored[0] in names:
+                together.setdefault(stored[0], []).append(stored)
+            else:
+                apart.append(stored)
+        for group in together.values():
+            if (columns := decoders.columns(group)) is not None:
+                yield columns
+            else:
+                apart += group
+        for stored in apart:
+            yield from decoders.one(stored)
+
+
+class _Decoders:
+    """Decoders of the messages of a bag by topic."""
+
+    def __init__(self, records: BagRecords, topics: Collection[Topic]) -> None:
+        """Begin with the channels of a bag; raise DdctError where a topic has another type."""
+        self._records = records
+        self._known = {topic.resolved_name: topic for topic in topics}
+        channels = {channel.topic for channel in records.channels.values()}
+        self._decoders: dict[str, Decode | FastDecoder] = {}
+        for name in self._known.keys() & channels:
+            self._of(name)
+
+    def _of(self, name: str) -> 'Decode | FastDecoder':
+        if name not in self._decoders:
+            self._decoders[name] = _decoder(self._records, self._known[name])
+        return self._decoders[name]
+
+    def one(self, stored: StoredMessage) -> Iterator[tuple[Topic, int, Any]]:
+        """Yield a message on a known topic; raise DdctError where it cannot be decoded."""
+        name, log_time, data = stored
+        if (topic := self._known.get(name)) is None:
+            return
+        decode = self._of(name)
         try:
-            message = decoders[name](data)
+            message = decode(data)
             stamp = stamp_ns(message)
         except Exception as error:  # the decoder has no common base of its errors
             raise DdctError(f'{name} at {log_time} ns cannot be decoded ({error})') from error
@@ -48,8 +97,44 @@ def decoded_messages(
             raise DdctError(f'{name} at {log_time} ns carries the stamp {stamp} ns', key=name)
         yield topic, stamp, message
 
+    def columns(self, group: Sequence[StoredMessage]) -> tuple[Topic, np.ndarray, Any] | None:
+        """Return messages on a topic as one; None where each must be decoded by itself."""
+        name = group[0][0]
+        decode = self._of(name)
+        if not isinstance(decode, FastDecoder):
+            return None
+        message = decode.columns([data for _, _, data in group])
+        if message is None:
+            return None
+        stamps: Any = stamp_ns(message)
+        if not np.array_equal(stamps, [log_time for _, log_time, _ in group]):
+            return None
+        return self._known[name], stamps, message
 
-def _decoder(records: BagRecords, topic: Topic) -> Decode:
+
+class FastDecoder:
+    """Decoder of the messages of this project, which takes less time than a general one."""
+
+    def __init__(self, general: Decode, definition: MessageDefinition) -> None:
+        self._general = general
+        self._fast = CdrDecoder(definition)
+
+    def __call__(self, data: bytes) -> Any:
+        """Return the message as the general decoder does, or raise its error."""
+        try:
+            return self._fast(data)
+        except Exception:  # the general decoder takes other encodings, or has the reason
+            return self._general(data)
+
+    def columns(self, cdrs: Sequence[bytes]) -> Any:
+        """Return messages as one whose numbers are arrays; None where that is not possible."""
+        try:
+            return self._fast.columns(cdrs)
+        except Exception:  # each by itself has the reason
+            return None
+
+
+def _decoder(records: BagRecords, topic: Topic) -> Decode | FastDecoder:
     """Return the decoder of a topic; raise DdctError where one of its channels has another."""
     found = [
         _decoder_of(channel, records.schemas.get(channel.schema_id), topic)
@@ -59,7 +144,7 @@ def _decoder(records: BagRecords, topic: Topic) -> Decode:
     return found[0]
 
 
-def _decoder_of(channel: Channel, schema: Schema | None, topic: Topic) -> Decode:
+def _decoder_of(channel: Channel, schema: Schema | None, topic: Topic) -> Decode | FastDecoder:
     try:
         # The parser prints a line that it cannot parse, whatever bytes the file has there.
         with redirect_stderr(io.StringIO()):
@@ -71,20 +156,7 @@ def _decoder_of(channel: Channel, schema: Schema | None, topic: Topic) -> Decode
             f'{channel.topic} does not carry CDR messages of type {topic.type}',
             key=channel.topic,
         )
-    return _fast(decoder, topic.type, schema.data)
-
-
-def _fast(general: Decode, type_name: str, schema: bytes) -> Decode:
-    """Return a decoder that gives messages like `general`, in less time where it can."""
-    definition = load_definition(type_name)
-    if schema != definition.schema_text.encode():  # of an earlier version, or another recorder
-        return general
-    decoder = CdrDecoder(definition)
-
-    def decode(data: bytes) -> Any:
-        try:
-            return decoder(data)
-        except Exception:  # the general decoder takes other encodings, or has the reason
-            return general(data)
-
-    return decode
+    definition = load_definition(topic.type)
+    if schema.data != definition.schema_text.encode():  # earlier, or of another recorder
+        return decoder
+    return FastDecoder(decoder, definition)

@@ -7,21 +7,20 @@ The messages are unpacked chunk by chunk, so that only one chunk of them is in m
 """
 
 import contextlib
-import io
 import struct
 import zlib
-from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from lz4.frame import LZ4FrameDecompressor
 from mcap.exceptions import McapError
+from mcap.opcode import Opcode
 from mcap.records import Channel, Chunk, McapRecord, Message, Metadata, Schema
-from mcap.stream_reader import StreamReader, breakup_chunk
-from zstandard import ZstdError, frame_content_size
+from zstandard import ZstdError
 
 from ddct_plant.bag_file.metadata import RECORD_NAME, information_of
+from ddct_plant.bag_file.record_scan import UsedRecord, in_chunk, unpacked_size, used_records
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import STEPS_PER_S
 from ddct_plant.files.input_file import read_file
@@ -30,14 +29,15 @@ MAGIC = b'\x89MCAP0\r\n'
 """First and last bytes of an MCAP file."""
 MOST_BYTES = 1_000_000_000
 """Largest size of a bag's file in bytes; an hour's run has a quarter of that."""
-MOST_CHUNK_BYTES = 64_000_000
-"""Largest size of an unpacked chunk in bytes; recorders make chunks of about 1 MB."""
 MOST_UNPACKED_BYTES = 8_000_000_000
 """Largest size in bytes of all chunks of a bag, unpacked; an hour's run has a third of that."""
 MOST_STEP_BYTES = 100_000
 """Largest mean size in bytes of a step of a run, unpacked; a usual step has 5000."""
 SPARE_BYTES = 10_000_000
 """Size in bytes that a bag may have besides its steps: parameters, reports and definitions."""
+
+StoredMessage = tuple[str, int, bytes]
+"""Topic of a message, its log time in ns and its serialised bytes."""
 
 _READ_ERRORS = (
     McapError,
@@ -53,7 +53,8 @@ _READ_ERRORS = (
 
 _FOOTER = struct.Struct('<BQQQI8s')
 """End of an MCAP file: opcode, length, starts of summary and its offsets, checksum, magic."""
-_FOOTER_OPCODE = 2
+_DATA_END = struct.Struct('<BQI')
+"""End of the data, right before the summary: opcode, length, checksum."""
 
 
 @dataclass
@@ -83,23 +84,38 @@ class BagRecords:
             return {}
         return {str(key): str(value) for key, value in custom.items()}
 
-    def messages(self) -> Iterator[tuple[str, int, bytes]]:
+    def messages(self) -> Iterator[StoredMessage]:
         """
-        Yield the messages as (topic, log time in ns, data), in the order of the file.
+        Yield the messages in the order of the file.
 
         Raise DdctError at damage if `strict`.
         """
-        unpacked = 0
         with self._damage_named():
-            for record in self._records():
-                if isinstance(record, Chunk):
-                    unpacked += _unpacked_size(record)
-                    self._require_bounded(unpacked)
-                for each in in_chunk(record) if isinstance(record, Chunk) else (record,):
-                    if isinstance(each, Message):
-                        yield self.channels[each.channel_id].topic, each.log_time, each.data
-                    else:
-                        self._add(each)
+            for batch in self._batches():
+                yield from batch
+
+    def batches(self) -> Iterator[list[StoredMessage]]:
+        """Yield the messages of each chunk, in the order of the file; raise as `messages`."""
+        with self._damage_named():
+            for batch in self._batches():
+                yield list(batch)
+
+    def _batches(self) -> Iterator[Iterator[StoredMessage]]:
+        unpacked = 0
+        for record in used_records(self.data, len(MAGIC)):
+            if isinstance(record, Chunk):
+                unpacked += unpacked_size(record)
+                self._require_bounded(unpacked)
+                yield self._messages_of(in_chunk(record))
+            elif isinstance(record, Message):
+                yield self._messages_of([record])
+
+    def _messages_of(self, records: Iterable[UsedRecord]) -> Iterator[StoredMessage]:
+        for each in records:
+            if isinstance(each, Message):
+                yield self.channels[each.channel_id].topic, each.log_time, each.data
+            else:
+                self._add(each)
 
     def survey(self) -> None:
         """
@@ -109,25 +125,18 @@ class BagRecords:
         if `strict`.
         """
         with self._damage_named():
+            if self.strict:
+                _verify_checksums(self.data)
             unpacked = 0
-            for record in self._records(validate_crcs=self.strict):
+            for record in used_records(self.data, len(MAGIC)):
                 if isinstance(record, Chunk):
-                    unpacked += _unpacked_size(record)
+                    unpacked += unpacked_size(record)
                     self._require_bounded(unpacked)
                 else:
                     self._add(record)
         if not self.channels:
             for _ in self.messages():
                 pass
-
-    def _records(self, *, validate_crcs: bool = False) -> Iterator[McapRecord]:
-        stream = io.BytesIO(self.data)
-        return StreamReader(
-            stream,
-            emit_chunks=True,
-            validate_crcs=validate_crcs,
-            record_size_limit=len(self.data),
-        ).records
 
     def _add(self, record: McapRecord) -> None:
         """Add a record; a repeated schema or channel does not replace the first one."""
@@ -172,10 +181,6 @@ def read_records(path: Path) -> BagRecords:
             'short: rescue what it holds with ddct score --repair',
             place=path,
         )
-    try:
-        _verify_summary(data)
-    except _READ_ERRORS as error:
-        raise _damaged(path, error) from error
     bag = BagRecords(path, data)
     bag.survey()
     return bag
@@ -200,28 +205,6 @@ def _damaged(path: Path, error: BaseException) -> DdctError:
     )
 
 
-def in_chunk(chunk: Chunk) -> list[McapRecord]:
-    """Return the records in a chunk, after a check of its checksum."""
-    if chunk.compression == 'lz4':
-        # The library would unpack it to any size.
-        lz4 = LZ4FrameDecompressor()
-        data = lz4.decompress(chunk.data, max_length=chunk.uncompressed_size)
-        if not lz4.eof and lz4.decompress(b'', max_length=1):
-            raise ValueError(f'a chunk has more than its {chunk.uncompressed_size} bytes')
-        chunk = replace(chunk, compression='', data=data)
-    return breakup_chunk(chunk, validate_crc=True)
-
-
-def _unpacked_size(chunk: Chunk) -> int:
-    """Return the size of an unpacked chunk; raise ValueError where it would fill the memory."""
-    size = max(chunk.uncompressed_size, len(chunk.data))
-    if chunk.compression == 'zstd':
-        size = max(size, frame_content_size(chunk.data))
-    if size > MOST_CHUNK_BYTES:
-        raise ValueError(f'a chunk has {size} bytes unpacked, more than {MOST_CHUNK_BYTES}')
-    return size
-
-
 def _bytes_of(path: Path) -> bytes:
     try:
         data = read_file(path, MOST_BYTES)
@@ -233,9 +216,21 @@ def _bytes_of(path: Path) -> bytes:
     return data
 
 
-def _verify_summary(data: bytes) -> None:
-    """Raise ValueError unless the footer's checksum of the summary is correct or absent."""
-    opcode, _, start, _, checksum, _ = _FOOTER.unpack(data[-_FOOTER.size :])
-    covered = data[start : -len(MAGIC) - 4]
-    if opcode != _FOOTER_OPCODE or (checksum and zlib.crc32(covered) != checksum):
+def _verify_checksums(data: bytes) -> None:
+    """Raise ValueError unless the checksums of the data and the summary are correct or absent."""
+    view = memoryview(data)
+    footer = len(data) - _FOOTER.size
+    opcode, _, summary, _, checksum, _ = _FOOTER.unpack_from(data, footer)
+    if opcode != Opcode.FOOTER or _differs(checksum, view[summary : -len(MAGIC) - 4]):
         raise ValueError('the checksum of the summary is wrong')
+    data_end = (summary or footer) - _DATA_END.size
+    if data_end < 0:
+        raise ValueError('its data have no end')
+    opcode, _, checksum = _DATA_END.unpack_from(data, data_end)
+    if opcode != Opcode.DATA_END or _differs(checksum, view[:data_end]):
+        raise ValueError('the checksum of the data is wrong')
+
+
+def _differs(checksum: int, data: memoryview) -> bool:
+    """Return whether a checksum is there, but is not that of the data."""
+    return checksum != 0 and zlib.crc32(data) != checksum

@@ -25,6 +25,7 @@ MOST_DIGITS = 40
 """Most characters of a number; a double needs 24."""
 
 _PARSER = getattr(yaml, 'CSafeLoader', yaml.SafeLoader)
+_EMITTER = getattr(yaml, 'CSafeDumper', yaml.SafeDumper)
 _SURROGATE = re.compile('[\ud800-\udfff]')
 _WORDS = {
     **dict.fromkeys(('', '~', 'null', 'Null', 'NULL')),
@@ -73,7 +74,7 @@ def dump_yaml(value: Any, **options: Any) -> str:
     return yaml.dump(value, Dumper=_Dumper, sort_keys=False, **options)
 
 
-class _Dumper(yaml.SafeDumper):
+class _Dumper(_EMITTER):  # type: ignore[misc, valid-type]
     """Dumper that quotes text that YAML 1.2 reads as a number, and writes no aliases."""
 
     def ignore_aliases(self, data: Any) -> bool:

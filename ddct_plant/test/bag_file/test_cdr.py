@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Normalising serialised messages changes exactly the bytes that carry no value."""
 
+import numpy as np
 import pytest
 from mcap_ros2._dynamic import generate_dynamic, serialize_dynamic
 from refusals import refused
@@ -204,3 +205,56 @@ def test_a_message_in_another_encoding_is_left_to_the_general_decoder(case):
     for other in (b'\x00\x00' + clean[2:], clean[:-1], b''):
         with pytest.raises(DdctError, match='a message is no '):
             CdrDecoder(definition)(other)
+
+
+def at(message, index):
+    """Return whether the numbers of a message are arrays, and the message at one of them."""
+    if isinstance(message, list):
+        return [at(each, index) for each in message]
+    if isinstance(message, np.ndarray):
+        return message[index].item()
+    return message
+
+
+def same_at(message, index, expected):
+    if isinstance(expected, list):
+        return len(message) == len(expected) and all(
+            same_at(one, index, other) for one, other in zip(message, expected, strict=True)
+        )
+    if not hasattr(expected, '_type'):
+        return at(message, index) == expected
+    return all(
+        same_at(getattr(message, name), index, getattr(expected, name))
+        for name in expected.__slots__
+    )
+
+
+def test_messages_that_differ_in_numbers_are_decoded_as_one_with_arrays(case):
+    definition, clean, decode = case
+    decoder = CdrDecoder(definition)
+    cdrs = [clean]
+    for place in range(4, len(clean)):
+        other = bytearray(clean)
+        other[place] ^= 0x15
+        if decoder.columns([clean, bytes(other)]) is not None:
+            cdrs.append(bytes(other))
+    assert len(cdrs) > 8
+    message = decoder.columns(cdrs)
+    for index, cdr in enumerate(cdrs):
+        assert same_at(message, index, decode(cdr))
+
+
+def test_messages_that_differ_in_a_text_or_a_length_are_decoded_apart():
+    definition = load_definition('sensor_msgs/msg/JointState')
+    serialise = serialize_dynamic(definition.type_name, definition.schema_text)
+    message = {'header': HEADER, 'name': ['engine', 'wheel'], 'velocity': [1.0, 2.0]}
+    data, shorter = (
+        serialise[definition.type_name]({**message, **change})
+        for change in ({}, {'velocity': [1.0]})
+    )
+    decoder = CdrDecoder(definition)
+    assert decoder.columns([data, data]).name == ['engine', 'wheel']
+    assert decoder.columns([data, data.replace(b'wheel', b'wheal')]) is None
+    assert decoder.columns([data, shorter]) is None
+    with pytest.raises(DdctError, match='a message is no '):
+        decoder.columns([b'', data])

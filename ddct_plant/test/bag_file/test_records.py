@@ -14,6 +14,7 @@ from refusals import refused
 
 from ddct_plant.bag_file import records
 from ddct_plant.bag_file.metadata import RECORD_NAME, metadata_record
+from ddct_plant.bag_file.record_scan import in_chunk
 from ddct_plant.bag_file.records import read_records, salvage_records
 from ddct_plant.base.errors import DdctError
 
@@ -48,7 +49,7 @@ def test_more_is_refused_before_any_chunk_is_unpacked(
     bag_of_zeros(file, facts)
     assert file.stat().st_size < 100_000
     monkeypatch.setattr(records, 'MOST_UNPACKED_BYTES', COUNT * SIZE - 1)
-    monkeypatch.setattr(records, 'breakup_chunk', None)
+    monkeypatch.setattr(records, 'in_chunk', None)
     with refused(DdctError, place='bomb.mcap'):
         read_records(file)
 
@@ -65,4 +66,4 @@ def test_a_chunk_of_lz4_is_unpacked_to_its_declared_size_only() -> None:
     checksum = zlib.crc32(data[:1000])
     chunk = Chunk('lz4', lz4.frame.compress(data, store_size=False), 0, 0, checksum, 1000)
     with pytest.raises(ValueError, match='more than its 1000 bytes'):
-        records.in_chunk(chunk)
+        list(in_chunk(chunk))
