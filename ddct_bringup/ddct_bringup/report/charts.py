@@ -44,8 +44,7 @@ def chart_document(runs: Sequence[ChartRun]) -> tuple[Mapping[str, object], dict
     cursor = Span(dimension='height', line_color=NEUTRAL, line_width=1)
     drawn = _drawn(runs)
     sources = [_source(run.trajectory, of) for run, of in zip(runs, drawn, strict=True)]
-    document = Document()
-    roots = {}
+    charts = {}
     for quantity in charted_signals(runs):
         chart = _chart(quantity.key, quantity.unit, time_axis, cursor, runs)
         for run, source, of in zip(runs, sources, drawn, strict=True):
@@ -57,15 +56,17 @@ def chart_document(runs: Sequence[ChartRun]) -> tuple[Mapping[str, object], dict
             mark_events(chart, runs)
         if quantity.key == 'w_d1':
             mark_events(chart, runs, OFF_GOING)
-        document.add_root(chart)
-        roots[quantity.key] = str(chart.id)
+        charts[quantity.key] = chart
     sticking = [run for run in runs if run.trajectory.clutch_phase is not None]
     if sticking:
         chart = _chart(LANES, '', time_axis, cursor, runs)
         draw_lanes(chart, sticking)
-        document.add_root(chart)
-        roots[LANES] = str(chart.id)
-    return dict(document.to_json(deferred=False)), roots
+        charts[LANES] = chart
+    document = Document()
+    with document.models.freeze():  # or it would be searched for models after each chart
+        for chart in charts.values():
+            document.add_root(chart)
+    return dict(document.to_json(deferred=False)), {key: str(charts[key].id) for key in charts}
 
 
 def charted_signals(runs: Sequence[ChartRun]) -> list[ChartSignal]:
