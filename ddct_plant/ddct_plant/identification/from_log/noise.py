@@ -32,12 +32,13 @@ class NoiseModel:
 
     def white(self, values: np.ndarray) -> np.ndarray:
         """Return L^-1 e of residuals, (n, 3) or (n, 3, m), from the sample p on."""
-        left = [
-            scipy.signal.lfilter([1.0, *(-self.lags[output])], [1.0], values[:, output], axis=0)
-            for output in range(3)
-        ]
-        whitened = np.tensordot(np.stack(left, axis=1), np.linalg.inv(self.factor), (1, 1))
-        return np.moveaxis(whitened, -1, 1)[self.order :]
+        order, samples = self.order, len(values)
+        left = values[order:].copy()
+        for lag, share in enumerate(self.lags.T, start=1):
+            share = share.reshape(3, *(1,) * (values.ndim - 2))
+            left -= share * values[order - lag : samples - lag]
+        whitened = np.tensordot(left, np.linalg.inv(self.factor), (1, 1))
+        return np.moveaxis(whitened, -1, 1)
 
 
 def fit_noise(residuals: Sequence[np.ndarray], fitted: int) -> NoiseModel:
