@@ -3,9 +3,11 @@
 """Headless runs of the thesis's scenario, and their report page."""
 
 import json
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from report.headless_chromium import Browser, Visitor
 from support.runs import plan, record
 
 from ddct_bringup.programs.report import main
@@ -35,3 +37,10 @@ def page(demo: Path) -> Path:
     out = demo.parent / 'report.html'
     assert main([str(demo), '--out', str(out)]) == 0
     return out
+
+
+@pytest.fixture(scope='module')
+def visit() -> Iterator[Visitor]:
+    """Return a function that opens a page in the one browser of the tests of a file."""
+    with Browser() as browser:
+        yield browser.visit

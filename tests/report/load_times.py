@@ -1,12 +1,12 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Measure how long a browser takes to draw all of a report: python load_times.py PAGE..."""
+"""Measure how long a browser takes to draw all of a report: python -m report.load_times PAGE..."""
 
 import statistics
 import sys
 from pathlib import Path
 
-from headless_chromium import visit
+from report.headless_chromium import visit
 
 REPEATS = 5
 

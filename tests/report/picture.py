@@ -1,13 +1,13 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Take the picture of a report for the README: python picture.py PAGE PICTURE.png."""
+"""Take the picture of a report for the README: python -m report.picture PAGE PICTURE.png."""
 
 import io
 import sys
 from pathlib import Path
 
-from headless_chromium import PICTURE, visit
 from PIL import Image
+from report.headless_chromium import PICTURE, visit
 
 WIDTH_PX, HEIGHT_PX = 1280, 9000
 """Size of the window in pixels, high enough that nothing scrolls while the picture is taken."""

@@ -5,7 +5,7 @@
 from pathlib import Path
 
 import pytest
-from headless_chromium import chromium, visit
+from report.headless_chromium import Visitor, chromium
 
 from ddct_bringup.benchmark.cases import Cases, packaged_folder
 from ddct_bringup.benchmark.conduct import JudgedRows
@@ -56,7 +56,7 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.mark.parametrize(('width', 'scheme'), [(390, 'dark'), (1280, 'light')])
 def test_the_page_needs_no_network_sorts_and_is_no_wider_than_the_window(
-    page: Path, width: int, scheme: str
+    page: Path, width: int, scheme: str, visit: Visitor
 ) -> None:
     found = visit(page, width=width, scheme=scheme, scripts=[WIDER, SORT])
     assert found.errors == []

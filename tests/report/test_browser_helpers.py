@@ -9,7 +9,7 @@ import time
 from collections.abc import Iterator
 
 import pytest
-from headless_chromium import MARK, wait_for_helpers
+from report.browser_processes import MARK, wait_for_helpers
 from support.processes import processes_left
 
 Helpers = list['subprocess.Popen[bytes]']

@@ -5,8 +5,8 @@
 from pathlib import Path
 
 import pytest
-from headless_chromium import PRINT, chromium, visit
 from made_campaign import GRID, make_campaign
+from report.headless_chromium import PRINT, Visitor, chromium
 
 from ddct_bringup.campaign_report.folder import PAGE, write_campaign_page
 from ddct_bringup.verdict.state import ENGAGED, INVALID
@@ -47,7 +47,9 @@ def campaign(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return made
 
 
-def test_maps_name_failed_runs_describe_a_tapped_run_and_can_be_printed(campaign: Path) -> None:
+def test_maps_name_failed_runs_describe_a_tapped_run_and_can_be_printed(
+    campaign: Path, visit: Visitor
+) -> None:
     overflow = 'document.documentElement.scrollWidth - innerWidth'
     cells = "document.querySelectorAll('.map rect').length"
     scripts = [overflow, cells, UNPAINTED, WORDS, TAP, OTHER_QUANTITY, PRINT]

@@ -7,7 +7,7 @@ import re
 from pathlib import Path
 
 import pytest
-from headless_chromium import PRINT, chromium, visit
+from report.headless_chromium import PRINT, Visitor, chromium
 from support.runs import plan
 
 from ddct_bringup.bag.trajectory_bag import write_trajectory
@@ -61,7 +61,7 @@ def five(demo: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.mark.parametrize(('width', 'scheme'), [(390, 'dark'), (1280, 'light'), (1920, 'dark')])
 def test_the_page_draws_every_chart_without_error_or_request(
-    page: Path, width: int, scheme: str
+    page: Path, width: int, scheme: str, visit: Visitor
 ) -> None:
     overflow = 'document.documentElement.scrollWidth - innerWidth'
     visited = visit(page, width=width, scheme=scheme, scripts=[COUNT_PAINTED, overflow])
@@ -73,7 +73,7 @@ def test_the_page_draws_every_chart_without_error_or_request(
     assert wider <= 0
 
 
-def test_on_a_phone_only_tables_scroll_sideways(five: Path) -> None:
+def test_on_a_phone_only_tables_scroll_sideways(five: Path, visit: Visitor) -> None:
     page_px = 'document.scrollingElement.scrollWidth'
     open_all = "document.querySelectorAll('details').forEach((each) => { each.open = true; })"
     chips = """[...document.querySelectorAll('.chip')].map((chip) => {
@@ -88,7 +88,9 @@ def test_on_a_phone_only_tables_scroll_sideways(five: Path) -> None:
     assert visited.errors == []
 
 
-def test_a_print_of_five_runs_has_four_pages_at_most_with_the_definitions(five: Path) -> None:
+def test_a_print_of_five_runs_has_four_pages_at_most_with_the_definitions(
+    five: Path, visit: Visitor
+) -> None:
     listen = """addEventListener('beforeprint', () => {
       const shown = (each) => getComputedStyle(each).display !== 'none';
       window.onPaper = [document.querySelector('.paper-too').open,
@@ -127,7 +129,9 @@ POINT = """((name, share) => {
 
 
 @pytest.mark.parametrize('width', [PHONE_PX, 1280])
-def test_the_pointer_shows_the_nearest_curve_with_value_and_unit(page: Path, width: int) -> None:
+def test_the_pointer_shows_the_nearest_curve_with_value_and_unit(
+    page: Path, width: int, visit: Visitor
+) -> None:
     near, far = POINT.replace('OFF', '0'), POINT.replace('OFF', '-150')
     scroll = "dispatchEvent(new Event('scroll'))"
     hidden = "document.getElementById('tip').hidden"
@@ -145,7 +149,7 @@ def test_the_pointer_shows_the_nearest_curve_with_value_and_unit(page: Path, wid
     assert visited.errors == []
 
 
-def test_a_run_is_switched_off_in_all_charts(page: Path) -> None:
+def test_a_run_is_switched_off_in_all_charts(page: Path, visit: Visitor) -> None:
     click = "document.querySelector('.chip').click()"
     count = "document.getElementById('count').textContent"
     heights = """new Promise((done) => {
@@ -167,7 +171,7 @@ def test_a_run_is_switched_off_in_all_charts(page: Path) -> None:
     assert visited.errors == []
 
 
-def test_the_time_axis_is_one_for_all_charts(page: Path) -> None:
+def test_the_time_axis_is_one_for_all_charts(page: Path, visit: Visitor) -> None:
     window = "document.querySelectorAll('[data-range]')[1].click()"
     whole = "document.querySelectorAll('[data-range]')[0].click()"
     ranges = """Bokeh.documents[0].roots().map((chart) =>
@@ -177,7 +181,7 @@ def test_the_time_axis_is_one_for_all_charts(page: Path) -> None:
     assert visited.values[2] == [[0.6, 1.7]] * CHARTS
 
 
-def test_the_switch_and_the_system_choose_the_colours(page: Path) -> None:
+def test_the_switch_and_the_system_choose_the_colours(page: Path, visit: Visitor) -> None:
     line = 'Bokeh.documents[0].roots()[0].renderers[0].glyph.line_color.value'
     body = 'getComputedStyle(document.body).backgroundColor'
     click = "document.getElementById('theme').click()"
@@ -188,7 +192,7 @@ def test_the_switch_and_the_system_choose_the_colours(page: Path) -> None:
     assert light.errors == []
 
 
-def test_a_table_sorts_by_a_pressed_heading(page: Path) -> None:
+def test_a_table_sorts_by_a_pressed_heading(page: Path, visit: Visitor) -> None:
     press = "document.querySelectorAll('.summary .sort')[1].click()"
     order = """[...document.querySelectorAll('.summary tbody th .run')].map((run) =>
       run.textContent.trim())"""
@@ -198,7 +202,7 @@ def test_a_table_sorts_by_a_pressed_heading(page: Path) -> None:
     assert visited.values[4] == ['pi', 'hinf1', 'ls8']
 
 
-def test_the_two_criteria_of_the_pareto_view_are_chosen(page: Path) -> None:
+def test_the_two_criteria_of_the_pareto_view_are_chosen(page: Path, visit: Visitor) -> None:
     points = """[...document.querySelectorAll('.pareto .point')].map((point) => [
       point.style.left, point.style.bottom, point.classList.contains('best'), point.title])"""
     titles = "[...document.querySelectorAll('.pareto .title')].map((each) => each.textContent)"
@@ -221,7 +225,9 @@ def test_the_two_criteria_of_the_pareto_view_are_chosen(page: Path) -> None:
     assert visited.errors == []
 
 
-def test_labels_of_the_pareto_view_cover_neither_each_other_nor_a_dot(page: Path) -> None:
+def test_labels_of_the_pareto_view_cover_neither_each_other_nor_a_dot(
+    page: Path, visit: Visitor
+) -> None:
     crowd = """const {style} = document.querySelector('.field');
       Object.assign(style, {width: '1rem', height: '1rem'});
       document.querySelector('.pareto-choice select').dispatchEvent(new Event('change'))"""
@@ -241,7 +247,9 @@ def test_labels_of_the_pareto_view_cover_neither_each_other_nor_a_dot(page: Path
     assert visited.errors == []
 
 
-def test_labels_of_the_pareto_view_stay_within_it_where_they_have_room(page: Path) -> None:
+def test_labels_of_the_pareto_view_stay_within_it_where_they_have_room(
+    page: Path, visit: Visitor
+) -> None:
     stack = """const {style} = document.querySelector('.field');
       Object.assign(style, {width: '1rem', height: '6rem'});
       document.querySelectorAll('.point').forEach((point) => {
@@ -261,7 +269,7 @@ def test_labels_of_the_pareto_view_stay_within_it_where_they_have_room(page: Pat
     assert visited.errors == []
 
 
-def test_paper_gets_light_charts_even_from_a_dark_page(page: Path) -> None:
+def test_paper_gets_light_charts_even_from_a_dark_page(page: Path, visit: Visitor) -> None:
     listen = """addEventListener('beforeprint', () => {
       const lines = window.light.map((colour) => parseInt(colour.slice(1), 16));
       window.onPaper = [...document.querySelectorAll('.paper canvas')].map((canvas) => {
