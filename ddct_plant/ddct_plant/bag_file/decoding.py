@@ -73,11 +73,11 @@ class _Decoders:
         self._records = records
         self._known = {topic.resolved_name: topic for topic in topics}
         channels = {channel.topic for channel in records.channels.values()}
-        self._decoders: dict[str, Decode | FastDecoder] = {}
+        self._decoders: dict[str, Decode] = {}
         for name in self._known.keys() & channels:
             self._of(name)
 
-    def _of(self, name: str) -> 'Decode | FastDecoder':
+    def _of(self, name: str) -> Decode:
         if name not in self._decoders:
             self._decoders[name] = _decoder(self._records, self._known[name])
         return self._decoders[name]
@@ -134,7 +134,7 @@ class FastDecoder:
             return None
 
 
-def _decoder(records: BagRecords, topic: Topic) -> Decode | FastDecoder:
+def _decoder(records: BagRecords, topic: Topic) -> Decode:
     """Return the decoder of a topic; raise DdctError where one of its channels has another."""
     found = [
         _decoder_of(channel, records.schemas.get(channel.schema_id), topic)
@@ -144,7 +144,7 @@ def _decoder(records: BagRecords, topic: Topic) -> Decode | FastDecoder:
     return found[0]
 
 
-def _decoder_of(channel: Channel, schema: Schema | None, topic: Topic) -> Decode | FastDecoder:
+def _decoder_of(channel: Channel, schema: Schema | None, topic: Topic) -> Decode:
     try:
         # The parser prints a line that it cannot parse, whatever bytes the file has there.
         with redirect_stderr(io.StringIO()):

@@ -88,18 +88,21 @@ def _garbage_collected_by_timer() -> Iterator[None]:
     Let no allocation start a garbage collection, and undo that at the end.
 
     Objects of the start stay for the whole run, and messages contain no reference cycles: the
-    timer of `end_of` has little to collect, mostly between two ticks.
+    timer of `end_of` has little to collect, mostly between two ticks. Nothing is frozen where the
+    caller has frozen objects: these could not be told apart at the end.
     """
-    enabled = gc.isenabled()
+    enabled, ours = gc.isenabled(), not gc.get_freeze_count()
     gc.collect()
-    gc.freeze()
+    if ours:
+        gc.freeze()
     gc.disable()
     try:
         yield
     finally:
         if enabled:
             gc.enable()
-        gc.unfreeze()
+        if ours:
+            gc.unfreeze()
 
 
 def _generation_of(check: int) -> int:

@@ -30,15 +30,19 @@ class FakeExecutor:
         over.set_result(None)
 
 
+@pytest.mark.parametrize('frozen', [False, True])
 @pytest.mark.parametrize('fails', [False, True])
-def test_the_garbage_collector_is_set_for_the_run_and_then_as_before(fails):
+def test_the_garbage_collector_is_set_for_the_run_and_then_as_before(fails, frozen):
+    gc.unfreeze()
+    if frozen:
+        gc.freeze()
     before = gc.isenabled(), gc.get_freeze_count()
     executor: Any = FakeExecutor(fails)
     try:
         spin_until(executor, Future())
     except RuntimeError:
         assert fails
-    assert executor.frozen > before[1]
+    assert executor.frozen > before[1] or frozen
     assert before[0] and not executor.enabled
     assert (gc.isenabled(), gc.get_freeze_count()) == before
 

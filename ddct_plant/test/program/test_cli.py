@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Exit codes of programs, and the one-line error message for a user's mistake."""
 
+import gc
 import os
 import signal
 import subprocess
@@ -122,3 +123,17 @@ def test_a_reader_that_has_gone_ends_the_program_quietly():
         process.stdin.close()
         assert process.wait(timeout=30.0) == 141
         assert process.stderr.read() == ''
+
+
+@pytest.mark.parametrize('fails', [False, True])
+def test_a_program_searches_for_garbage_less_often_and_leaves_that_as_before(fails):
+    before = gc.get_threshold()
+
+    def main_function(argv):
+        assert gc.get_threshold()[0] > before[0]
+        if fails:
+            raise DdctError('it fails')
+        return 0
+
+    assert run_program('name', main_function, []) == int(fails)
+    assert gc.get_threshold() == before
