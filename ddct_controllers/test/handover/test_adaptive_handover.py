@@ -55,6 +55,15 @@ def test_neither_flare_nor_tie_up_with_a_worn_clutch(scenario, wear_gain):
     assert tie_up_work(ticks) < 75.0
 
 
+@pytest.mark.parametrize('wear_gain', [0.85, 1.15])
+def test_an_engine_that_cannot_give_the_demand_is_not_taken_for_wear(wear_gain):
+    beyond = {'engine.torque_n_m': [300.0]}
+    scenario = load_scenario('upshift_full', beyond, clutch='stick_slip')
+    settings = replace(worn('upshift_full', wear_gain), scenario=scenario)
+    ticks = shift(settings, 'adaptive')
+    assert carried_over_requested(ticks, settings) == pytest.approx(1.0, abs=0.05)
+
+
 def test_a_worn_clutch_flares_and_ties_up_without_the_measurement():
     assert flare(shift(worn('upshift', 0.7), 'model')) > 15.0
     assert tie_up_work(shift(worn('upshift_full', 1.3), 'model')) > 60.0
