@@ -43,8 +43,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     items.sort(key=lambda item: item.path not in slow)
 
 
-def pytest_runtest_setup() -> None:
-    """Exempt what the tests have loaded from each later search for garbage."""
-    if not gc.get_freeze_count():
-        gc.collect()
-        gc.freeze()
+def pytest_collection_finish() -> None:
+    """Exempt what the collected tests have loaded from each later search for garbage."""
+    gc.collect()
+    gc.freeze()
