@@ -36,20 +36,18 @@ _KINDS: dict[int, type[Channel] | type[Chunk] | type[Metadata] | type[Schema]] =
 }
 
 
-def used_records(data: bytes, start: int = 0) -> Iterator[UsedRecord]:
+def used_records(data: bytes, start: int, stop: int) -> Iterator[UsedRecord]:
     """
-    Yield the records from a place in the bytes on, up to the footer or the end.
+    Yield the records between two places of the bytes.
 
     Raise struct.error, ValueError or an error of the MCAP library where a record is cut short.
     """
     end = start
-    while end < len(data):
+    while end < stop:
         opcode, size = _HEAD.unpack_from(data, end)
         start, end = end + _HEAD.size, end + _HEAD.size + size
-        if end > len(data):
+        if end > stop:
             raise ValueError(f'a record of {size} bytes runs past the end')
-        if opcode == Opcode.FOOTER:
-            return
         if opcode == Opcode.MESSAGE:
             yield _message(data[start:end])
         elif kind := _KINDS.get(opcode):
@@ -71,7 +69,7 @@ def in_chunk(chunk: Chunk) -> Iterator[UsedRecord]:
             raise ValueError(f'a chunk has more than its {chunk.uncompressed_size} bytes')
         chunk = replace(chunk, compression='', data=data)
     stream, size = get_chunk_data_stream(chunk, validate_crc=True)
-    yield from used_records(stream.read(size))
+    yield from used_records(stream.read(size), 0, size)
 
 
 def unpacked_size(chunk: Chunk) -> int:

@@ -7,6 +7,7 @@ The messages are unpacked chunk by chunk, so that only one chunk of them is in m
 """
 
 import contextlib
+import io
 import struct
 import zlib
 from collections.abc import Iterable, Iterator
@@ -17,6 +18,7 @@ from typing import Any
 from mcap.exceptions import McapError
 from mcap.opcode import Opcode
 from mcap.records import Channel, Chunk, McapRecord, Message, Metadata, Schema
+from mcap.stream_reader import StreamReader
 from zstandard import ZstdError
 
 from ddct_plant.bag_file.metadata import RECORD_NAME, information_of
@@ -53,8 +55,6 @@ _READ_ERRORS = (
 
 _FOOTER = struct.Struct('<BQQQI8s')
 """End of an MCAP file: opcode, length, starts of summary and its offsets, checksum, magic."""
-_DATA_END = struct.Struct('<BQI')
-"""End of the data, right before the summary: opcode, length, checksum."""
 
 
 @dataclass
@@ -102,7 +102,8 @@ class BagRecords:
 
     def _batches(self) -> Iterator[Iterator[StoredMessage]]:
         unpacked = 0
-        for record in used_records(self.data, len(MAGIC)):
+        end = len(self.data) - len(MAGIC) if self.data.endswith(MAGIC) else len(self.data)
+        for record in used_records(self.data, len(MAGIC), end):
             if isinstance(record, Chunk):
                 unpacked += unpacked_size(record)
                 self._require_bounded(unpacked)
@@ -125,10 +126,14 @@ class BagRecords:
         if `strict`.
         """
         with self._damage_named():
-            if self.strict:
-                _verify_checksums(self.data)
             unpacked = 0
-            for record in used_records(self.data, len(MAGIC)):
+            # The library verifies the checksum of the data, and reads also what is not used here.
+            for record in StreamReader(
+                io.BytesIO(self.data),
+                emit_chunks=True,
+                validate_crcs=self.strict,
+                record_size_limit=len(self.data),
+            ).records:
                 if isinstance(record, Chunk):
                     unpacked += unpacked_size(record)
                     self._require_bounded(unpacked)
@@ -181,6 +186,10 @@ def read_records(path: Path) -> BagRecords:
             'short: rescue what it holds with ddct score --repair',
             place=path,
         )
+    try:
+        _verify_summary(data)
+    except _READ_ERRORS as error:
+        raise _damaged(path, error) from error
     bag = BagRecords(path, data)
     bag.survey()
     return bag
@@ -216,21 +225,9 @@ def _bytes_of(path: Path) -> bytes:
     return data
 
 
-def _verify_checksums(data: bytes) -> None:
-    """Raise ValueError unless the checksums of the data and the summary are correct or absent."""
-    view = memoryview(data)
-    footer = len(data) - _FOOTER.size
-    opcode, _, summary, _, checksum, _ = _FOOTER.unpack_from(data, footer)
-    if opcode != Opcode.FOOTER or _differs(checksum, view[summary : -len(MAGIC) - 4]):
+def _verify_summary(data: bytes) -> None:
+    """Raise ValueError unless the footer's checksum of the summary is correct or absent."""
+    opcode, _, start, _, checksum, _ = _FOOTER.unpack(data[-_FOOTER.size :])
+    covered = data[start : -len(MAGIC) - 4]
+    if opcode != Opcode.FOOTER or (checksum and zlib.crc32(covered) != checksum):
         raise ValueError('the checksum of the summary is wrong')
-    data_end = (summary or footer) - _DATA_END.size
-    if data_end < 0:
-        raise ValueError('its data have no end')
-    opcode, _, checksum = _DATA_END.unpack_from(data, data_end)
-    if opcode != Opcode.DATA_END or _differs(checksum, view[:data_end]):
-        raise ValueError('the checksum of the data is wrong')
-
-
-def _differs(checksum: int, data: memoryview) -> bool:
-    """Return whether a checksum is there, but is not that of the data."""
-    return checksum != 0 and zlib.crc32(data) != checksum
