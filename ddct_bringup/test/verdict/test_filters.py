@@ -80,7 +80,7 @@ def test_judder_is_that_of_sosfiltfilt_on_each_interval():
 def test_a_process_that_filters_much_uses_scipy(monkeypatch):
     monkeypatch.setattr(filters, 'by_scipy', lambda section, values: 'from scipy')
     recursion = filters.Recursion()
-    signal = np.ones(filters.Recursion.AS_LONG_AS_THE_IMPORT // 2)
+    signal = np.ones(filters.Recursion.STEPS_BEFORE_IMPORT // 2)
     assert recursion(filters.LOW_PASS[0], signal) == pytest.approx(signal)
     assert recursion(filters.LOW_PASS[0], signal) == 'from scipy'
 

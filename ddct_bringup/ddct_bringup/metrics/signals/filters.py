@@ -76,7 +76,7 @@ def filtered(sections: np.ndarray, values: np.ndarray) -> np.ndarray:
 class Recursion:
     """Recursion of a section; the number of samples in sequence so far chooses its means."""
 
-    AS_LONG_AS_THE_IMPORT = 50_000
+    STEPS_BEFORE_IMPORT = 50_000
     """Number of samples in sequence that take half as long as the import of `scipy.signal`."""
 
     def __init__(self) -> None:
@@ -85,7 +85,7 @@ class Recursion:
     def __call__(self, section: np.ndarray, values: np.ndarray) -> np.ndarray:
         """Return (..., n) values after a section."""
         self._steps += values.shape[-1]
-        apply = by_steps if self._steps < self.AS_LONG_AS_THE_IMPORT else by_scipy
+        apply = by_steps if self._steps < self.STEPS_BEFORE_IMPORT else by_scipy
         return apply(section, values)
 
 
@@ -114,16 +114,28 @@ def by_scipy(section: np.ndarray, values: np.ndarray) -> np.ndarray:
     return scipy.signal.lfilter(numerator, [1.0, *denominator], values, zi=states)[0]
 
 
-def forward_and_backward(
+def forward_and_backward(sections: np.ndarray, values: np.ndarray, padding: int) -> np.ndarray:
+    """
+    Return (..., n) values after a filter forward and backward, which adds no delay.
+
+    They are extended by `padding` samples at both ends, fewer than n, point-symmetric about the
+    end values.
+    """
+    before = 2.0 * values[..., :1] - values[..., padding:0:-1]
+    after = 2.0 * values[..., -1:] - values[..., -2 : -padding - 2 : -1]
+    padded = np.concatenate([before, values, after], axis=-1)
+    backward = filtered(sections, filtered(sections, padded)[..., ::-1])
+    return backward[..., ::-1][..., padding:-padding]
+
+
+def forward_and_backward_within(
     sections: np.ndarray, values: np.ndarray, first: np.ndarray, length: np.ndarray, padding: int
 ) -> np.ndarray:
     """
-    Return values[r, first[r]:first[r] + length[r]] after a filter forward and backward.
+    Return values[r, first[r]:first[r] + length[r]] as `forward_and_backward` does.
 
-    It adds no delay. `first` and `length` are (R, 1), and each interval has more than `padding`
-    samples, by which it is extended at both ends, point-symmetric about its end values. Each is
-    shifted to the start of its row, so that one call filters all of the (R, n) values; samples
-    after an interval do not count.
+    `first` and `length` are (R, 1). Each interval is shifted to the start of its row, so that one
+    call filters all of the (R, n) values; samples after an interval do not count.
     """
     place = np.arange(values.shape[-1] + 2 * padding)
     forward = filtered(sections, _padded(values, first, length, place - padding))

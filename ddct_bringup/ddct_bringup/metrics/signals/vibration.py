@@ -18,6 +18,7 @@ from ddct_bringup.metrics.signals.filters import (
     WEIGHTING,
     filtered,
     forward_and_backward,
+    forward_and_backward_within,
 )
 from ddct_bringup.metrics.signals.integrals import integral, running_integral
 from ddct_plant.base.timebase import PERIOD_S, STEPS_PER_S
@@ -44,13 +45,9 @@ def jerk(acceleration: np.ndarray) -> np.ndarray:
     point-symmetric about its end values: a slope continues, and a constant gives no jerk. Fewer
     than 10 samples give an empty array.
     """
-    samples = acceleration.shape[-1]
-    if samples <= _LOW_PASS_PADDING:
+    if acceleration.shape[-1] <= _LOW_PASS_PADDING:
         return np.empty((*acceleration.shape[:-1], 0))
-    rows = acceleration.reshape(-1, samples)
-    first = np.zeros((len(rows), 1), dtype=int)
-    smooth = forward_and_backward(LOW_PASS, rows, first, first + samples, _LOW_PASS_PADDING)
-    return np.diff(smooth.reshape(acceleration.shape)) / PERIOD_S
+    return np.diff(forward_and_backward(LOW_PASS, acceleration, _LOW_PASS_PADDING)) / PERIOD_S
 
 
 def weighted_acceleration(acceleration: np.ndarray) -> np.ndarray:
@@ -96,7 +93,7 @@ def judder_of(torsion_speed: np.ndarray, first: np.ndarray, after: np.ndarray) -
     long = (length - 1) * PERIOD_S >= SHORTEST_JUDDER_S
     found = np.full(len(rows), math.nan)
     if long.any():
-        passed = forward_and_backward(
+        passed = forward_and_backward_within(
             BAND_PASS,
             rows[long],
             begins[long, np.newaxis],
