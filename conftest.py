@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Keep floors out of the user's cache, let Ctrl-C work, and run the tests in less time."""
+"""Keep floors out of the user's cache, let Ctrl-C work, and let the suite take less time."""
 
 import gc
 import os

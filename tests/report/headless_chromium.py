@@ -155,35 +155,31 @@ class Browser:
         scripts: Sequence[str] = (),
     ) -> Visit:
         async with self._tab() as tab:
-            return await _visited(tab, page, width, height, scheme, scripts)
-
-
-async def _visited(
-    tab: 'Connection',
-    page: Path,
-    width: int,
-    height: int,
-    scheme: str,
-    scripts: Sequence[str],
-) -> Visit:
-    for domain in ('Page', 'Runtime', 'Log', 'Network'):
-        await tab.call(f'{domain}.enable')
-    metrics = {'width': width, 'height': height, 'deviceScaleFactor': 1, 'mobile': width < 600}
-    await tab.call('Emulation.setDeviceMetricsOverride', **metrics)
-    feature = {'name': 'prefers-color-scheme', 'value': scheme}
-    await tab.call('Emulation.setEmulatedMedia', features=[feature])
-    await tab.call('Page.navigate', url=page.resolve().as_uri())
-    result = Visit(tab.errors, tab.requests)
-    result.ready_ms = await tab.evaluate(_READY)
-    for script in scripts:
-        if script == PRINT:
-            printed = await tab.call('Page.printToPDF', preferCSSPageSize=True)
-            result.values.append(base64.b64decode(printed['data']))
-        elif script == PICTURE:
-            layout = await tab.call('Page.getLayoutMetrics')
-            clip = {**layout['cssContentSize'], 'scale': 1}
-            taken = await tab.call('Page.captureScreenshot', captureBeyondViewport=True, clip=clip)
-            result.values.append(base64.b64decode(taken['data']))
-        else:
-            result.values.append(await tab.evaluate(script))
-    return result
+            for domain in ('Page', 'Runtime', 'Log', 'Network'):
+                await tab.call(f'{domain}.enable')
+            metrics = {
+                'width': width,
+                'height': height,
+                'deviceScaleFactor': 1,
+                'mobile': width < 600,
+            }
+            await tab.call('Emulation.setDeviceMetricsOverride', **metrics)
+            feature = {'name': 'prefers-color-scheme', 'value': scheme}
+            await tab.call('Emulation.setEmulatedMedia', features=[feature])
+            await tab.call('Page.navigate', url=page.resolve().as_uri())
+            result = Visit(tab.errors, tab.requests)
+            result.ready_ms = await tab.evaluate(_READY)
+            for script in scripts:
+                if script == PRINT:
+                    printed = await tab.call('Page.printToPDF', preferCSSPageSize=True)
+                    result.values.append(base64.b64decode(printed['data']))
+                elif script == PICTURE:
+                    layout = await tab.call('Page.getLayoutMetrics')
+                    clip = {**layout['cssContentSize'], 'scale': 1}
+                    taken = await tab.call(
+                        'Page.captureScreenshot', captureBeyondViewport=True, clip=clip
+                    )
+                    result.values.append(base64.b64decode(taken['data']))
+                else:
+                    result.values.append(await tab.evaluate(script))
+            return result

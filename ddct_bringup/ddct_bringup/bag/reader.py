@@ -99,14 +99,9 @@ class _Found:
         kept = {*RUN_INFO_TOPICS, DIAGNOSTICS}
         if any(not topic.in_run(run) for topic in _topics_with_signals(run)):
             kept.update(EARLIER_TOPICS)
-        for topic in recorded_topics(run):
-            if topic.every_tick:
-                found.values[topic.resolved_name] = _no_values(topic, run)
-        numbers = [
-            topic
-            for topic in recorded_topics(run)
-            if topic.every_tick and topic.kind.numbers_alone and topic not in kept
-        ]
+        ticks = [topic for topic in recorded_topics(run) if topic.every_tick]
+        found.values.update({topic.resolved_name: _no_values(topic, run) for topic in ticks})
+        numbers = [each for each in ticks if each.kind.numbers_alone and each not in kept]
         for topic, stamps, message in decoded_columns(records, numbers):
             name = topic.resolved_name
             with _values_named(topic):

@@ -9,6 +9,7 @@ places, so that one walk serves both.
 
 import struct
 from collections.abc import Callable, Mapping, Sequence
+from functools import cached_property
 from operator import itemgetter
 from typing import Any
 
@@ -92,10 +93,7 @@ class Walk:
 
         None where any other text, length or encoding differs from that of the first message.
         """
-        others = np.ones(self.size, dtype=bool)
-        for place in (*self.gaps, *(place for place, _, _ in self._numbers)):
-            others[place.start : place.stop] = False
-        constant = cdrs[:, np.flatnonzero(others)]
+        constant = cdrs[:, self._constant]
         if (constant != constant[0]).any():
             return None
         values = self._row(cdrs[0].tobytes())
@@ -105,6 +103,14 @@ class Walk:
             columns = block if block.dtype.itemsize == 8 else block.astype(_WIDE[block.dtype.kind])
             values[first : first + block.shape[1]] = columns.T
         return self._build(values)
+
+    @cached_property
+    def _constant(self) -> np.ndarray:
+        """Places of the bytes that are neither in a number nor without a value."""
+        others = np.ones(self.size, dtype=bool)
+        for place in (*self.gaps, *(place for place, _, _ in self._numbers)):
+            others[place.start : place.stop] = False
+        return np.flatnonzero(others)
 
     def _message(self, type_name: str) -> Build:
         builds = {field.name: self._field(field) for field in self._fields[type_name]}

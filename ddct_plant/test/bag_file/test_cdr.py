@@ -159,14 +159,21 @@ def test_two_layouts_of_the_same_length_are_distinguished():
         assert normaliser.normalise(data) == data
 
 
-def same(message, expected):
-    """Return whether a message has the values of one that the general decoder returned."""
+def same(message, expected, index=None):
+    """
+    Return whether a message has the values of one that the general decoder returned.
+
+    Where its numbers are arrays, those at `index` count.
+    """
     if isinstance(expected, list):
-        return len(message) == len(expected) and all(map(same, message, expected))
+        return len(message) == len(expected) and all(
+            same(one, other, index) for one, other in zip(message, expected, strict=True)
+        )
     if not hasattr(expected, '_type'):
-        return type(message) is type(expected) and message == expected
+        value = message[index].item() if isinstance(message, np.ndarray) else message
+        return type(value) is type(expected) and value == expected
     return all(
-        same(getattr(message, name), getattr(expected, name)) for name in expected.__slots__
+        same(getattr(message, name), getattr(expected, name), index) for name in expected.__slots__
     )
 
 
@@ -207,28 +214,6 @@ def test_a_message_in_another_encoding_is_left_to_the_general_decoder(case):
             CdrDecoder(definition)(other)
 
 
-def at(message, index):
-    """Return whether the numbers of a message are arrays, and the message at one of them."""
-    if isinstance(message, list):
-        return [at(each, index) for each in message]
-    if isinstance(message, np.ndarray):
-        return message[index].item()
-    return message
-
-
-def same_at(message, index, expected):
-    if isinstance(expected, list):
-        return len(message) == len(expected) and all(
-            same_at(one, index, other) for one, other in zip(message, expected, strict=True)
-        )
-    if not hasattr(expected, '_type'):
-        return at(message, index) == expected
-    return all(
-        same_at(getattr(message, name), index, getattr(expected, name))
-        for name in expected.__slots__
-    )
-
-
 def test_messages_that_differ_in_numbers_are_decoded_as_one_with_arrays(case):
     definition, clean, decode = case
     decoder = CdrDecoder(definition)
@@ -241,7 +226,7 @@ def test_messages_that_differ_in_numbers_are_decoded_as_one_with_arrays(case):
     assert len(cdrs) > 8
     message = decoder.columns(cdrs)
     for index, cdr in enumerate(cdrs):
-        assert same_at(message, index, decode(cdr))
+        assert same(message, decode(cdr), index)
 
 
 def test_messages_that_differ_in_a_text_or_a_length_are_decoded_apart():
