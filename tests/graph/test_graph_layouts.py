@@ -3,6 +3,7 @@
 """One run, three layouts: separate processes, a single process and headless leave one bag."""
 
 import gc
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -51,6 +52,15 @@ def test_one_last_bit_changes_the_hash() -> None:
     assert first.sha256() != second.sha256()
 
 
+@pytest.fixture
+def nothing_frozen() -> Iterator[None]:
+    """Undo for a test what the suite's conftest.py has frozen."""
+    gc.unfreeze()
+    yield
+    gc.freeze()
+
+
+@pytest.mark.usefixtures('nothing_frozen')
 def test_two_runs_in_one_process_leave_its_garbage_collector_as_it_was(tmp_path: Path) -> None:
     before = gc.get_threshold(), gc.get_freeze_count()
     for number in range(2):

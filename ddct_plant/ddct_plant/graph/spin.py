@@ -88,13 +88,12 @@ def _garbage_collected_by_timer() -> Iterator[None]:
     Let no allocation start a garbage collection, and undo that at the end.
 
     Objects of the start stay for the whole run, and messages contain no reference cycles: the
-    timer of `end_of` has little to collect, mostly between two ticks. Nothing is frozen where the
-    caller has frozen objects: these could not be told apart at the end.
+    timer of `end_of` has little to collect, mostly between two ticks. Where the parent
+    or the caller has frozen objects, all stay frozen: they cannot be told apart at the end.
     """
     enabled, ours = gc.isenabled(), not gc.get_freeze_count()
     gc.collect()
-    if ours:
-        gc.freeze()
+    gc.freeze()
     gc.disable()
     try:
         yield

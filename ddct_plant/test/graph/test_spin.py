@@ -42,9 +42,12 @@ def test_the_garbage_collector_is_set_for_the_run_and_then_as_before(fails, froz
         spin_until(executor, Future())
     except RuntimeError:
         assert fails
-    assert executor.frozen > before[1] or frozen
+    assert executor.frozen > before[1]
     assert before[0] and not executor.enabled
-    assert (gc.isenabled(), gc.get_freeze_count()) == before
+    if frozen:  # objects whose last reference has gone are no longer counted
+        assert gc.isenabled() and gc.get_freeze_count() > 0.9 * before[1]
+    else:
+        assert (gc.isenabled(), gc.get_freeze_count()) == before
 
 
 class FakeNode:
