@@ -88,12 +88,13 @@ def _garbage_collected_by_timer() -> Iterator[None]:
     Let no allocation start a garbage collection, and undo that at the end.
 
     Objects of the start stay for the whole run, and messages contain no reference cycles: the
-    timer of `end_of` has little to collect, mostly between two ticks. Where the parent
-    or the caller has frozen objects, all stay frozen: they cannot be told apart at the end.
+    timer of `end_of` has little to collect, mostly between two ticks. Nothing is frozen where the
+    caller has frozen objects: these could not be told apart at the end.
     """
     enabled, ours = gc.isenabled(), not gc.get_freeze_count()
     gc.collect()
-    gc.freeze()
+    if ours:
+        gc.freeze()
     gc.disable()
     try:
         yield
@@ -182,6 +183,9 @@ def _run(
         require_declared(node)
         executor = make_executor()
         executor.add_node(node)
+        # As well as what the parent of a forked node has frozen; the process ends with its node.
+        gc.collect()
+        gc.freeze()
         spin_until(executor, end_of([node], stopped))
         finish_node(executor, node)
         return node.done.result() if node.done.done() else None
