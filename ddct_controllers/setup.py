@@ -27,7 +27,7 @@ setup(
     package_data={
         PACKAGE: [
             'py.typed',
-            *('mpc/export/c/*.c', 'mpc/export/c/*.h', 'least_jerk/export/c/*.c'),
+            *('c_code/c/*.c', 'mpc/export/c/*.c', 'mpc/export/c/*.h', 'least_jerk/export/c/*.c'),
             'template/files/*.in',
             *(f'from_file/c_library/template/*.{end}' for end in ('c', 'h', 'yaml')),
         ]

@@ -5,11 +5,13 @@
 from pathlib import Path
 
 from ddct_controllers.c_code.folder import require_free, write_files
+from ddct_controllers.c_code.parts import ENGINE, LIMITS, text_of
 from ddct_controllers.c_code.text import constants, macros, remark
 from ddct_controllers.from_file.c_library.host import HEADER as INTERFACE
 from ddct_controllers.from_file.c_library.host import TEMPLATE
 from ddct_controllers.interface import Controller
 from ddct_controllers.least_jerk.controller import NAME, LeastJerk
+from ddct_controllers.least_jerk.design import LeastJerkDesign
 from ddct_controllers.least_jerk.export.numbers import arrays_of, macros_of
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.program.command_line import package_version
@@ -18,8 +20,7 @@ from ddct_plant.scenario.settings import RunSettings
 SOURCE, FILE = 'ddct_least_jerk.c', 'least_jerk_in_c.yaml'
 _FILES = (SOURCE, INTERFACE, FILE)
 _MARK = 'Made by design least-jerk --export; make it again instead of editing it.'
-_PARTS = ('estimates.c', 'plan.c', 'engine.c', 'controller.c')
-"""Files of the hand-written C, in the order of their use."""
+_OURS = Path(__file__).parent / 'c'
 
 
 def export_least_jerk(
@@ -44,7 +45,7 @@ def export_least_jerk(
                 f'#include <math.h>\n\n#include "{INTERFACE}"',
                 macros(macros_of(design)),
                 constants(arrays_of()),
-                '\n'.join(_part(part) for part in _PARTS),
+                text_of(_parts(design)),
             ]
         ),
         INTERFACE: f'{note}\n{(TEMPLATE / INTERFACE).read_text(encoding="utf-8")}',
@@ -71,5 +72,7 @@ def _about(settings: RunSettings) -> list[str]:
     ]
 
 
-def _part(name: str) -> str:
-    return (Path(__file__).parent / 'c' / name).read_text(encoding='utf-8')
+def _parts(design: LeastJerkDesign) -> list[Path]:
+    """Return the files of the hand-written C, in the order of their use."""
+    engine = [ENGINE, _OURS / 'engine.c'] if design.shaping_steps else []
+    return [LIMITS, _OURS / 'estimates.c', _OURS / 'plan.c', *engine, _OURS / 'controller.c']

@@ -4,6 +4,7 @@
 
 import numpy as np
 
+from ddct_controllers.c_code.parts import authority_macros
 from ddct_controllers.least_jerk import (
     controller,
     demand_trend,
@@ -135,15 +136,10 @@ def _guard(design: LeastJerkDesign) -> dict[str, int | float]:
 
 
 def _engine(design: LeastJerkDesign) -> dict[str, int | float]:
-    authority = design.authority
     return {
         'SHAPING_STEPS': design.shaping_steps,
         'WAIT_STEPS': shaped_demand.WAIT_STEPS,
-        'MOST_DEVIATION': authority.deviation_n_m,
-        'MOST_CHANGE': authority.slew_n_m_s * PERIOD_S,
-        'LAG_SHARE': authority.lag_share,
-        'LEAST_ENGINE_TORQUE': authority.minimum_torque_n_m,
-        'MOST_ENGINE_TORQUE': authority.maximum_torque_n_m,
+        **authority_macros(design.authority),
     }
 
 

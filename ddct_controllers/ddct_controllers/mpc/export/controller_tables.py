@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ddct_controllers.c_code.parts import authority_macros
 from ddct_controllers.interface import Controller
 from ddct_controllers.mpc.controller import MpcController
 from ddct_controllers.mpc.estimate.observer import Observer
@@ -17,7 +18,6 @@ from ddct_controllers.mpc.program.horizon import CondensedProgram
 from ddct_controllers.mpc.program.settings import MpcSettings
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import PERIOD_S
-from ddct_plant.models.engine import EngineAuthority
 
 CHANGES_PER_ROW = 10
 """Changes of the active set allowed for each row that can be active, if no limit is given."""
@@ -61,7 +61,7 @@ def controller_tables(controller: MpcController[Observer], observer: Observer) -
     columns = known_columns(program, len(model.a), settings)
     clutch = settings.inputs[CLUTCH]
     limits_rate = math.isfinite(clutch.rate_n_m_s)
-    engine = _engine_macros(controller.authority) if controller.authority else {}
+    engine = authority_macros(controller.authority) if controller.authority else {}
     return ControllerTables(
         public={
             'PERIOD_S': PERIOD_S,
@@ -144,16 +144,6 @@ def _periods_ahead(program: CondensedProgram, of_input: int) -> np.ndarray:
     periods, rows = np.zeros(len(program.lower)), program.level_rows[of_input]
     periods[rows] = np.arange(1, len(rows) + 1)
     return periods
-
-
-def _engine_macros(authority: EngineAuthority) -> dict[str, float]:
-    return {
-        'MOST_DEVIATION': authority.deviation_n_m,
-        'MOST_CHANGE': authority.slew_n_m_s * PERIOD_S,
-        'LAG_SHARE': authority.lag_share,
-        'LEAST_TORQUE': authority.minimum_torque_n_m,
-        'MOST_TORQUE': authority.maximum_torque_n_m,
-    }
 
 
 def _iterations(settings: MpcSettings, form: DualForm) -> int:

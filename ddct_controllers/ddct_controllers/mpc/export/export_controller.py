@@ -6,6 +6,7 @@ import math
 from pathlib import Path
 
 from ddct_controllers.c_code.folder import require_free, write_files
+from ddct_controllers.c_code.parts import ENGINE, LIMITS, text_of
 from ddct_controllers.c_code.text import constants, macros, remark
 from ddct_controllers.from_file.c_library.host import HEADER as INTERFACE
 from ddct_controllers.from_file.c_library.host import TEMPLATE
@@ -24,6 +25,7 @@ HEADER, SOURCE, EXAMPLE = 'ddct_mpc.h', 'ddct_mpc.c', 'ddct_mpc_example.c'
 LIBRARY = 'ddct_mpc_library.c'
 _FILES = (HEADER, SOURCE, EXAMPLE, LIBRARY, INTERFACE)
 _PREFIX = 'DDCT_MPC_'
+_OURS = Path(__file__).parent / 'c'
 _MARK = 'Made by design mpc --export; make it again instead of editing it.'
 
 
@@ -51,8 +53,9 @@ def export_controller(
 
 def _texts(tables: ControllerTables, about: list[str]) -> dict[str, str]:
     note = remark(about)
-    engine = ['engine.c'] if tables.public['COMMANDS_ENGINE'] else []
-    parts = ['solver.c', *engine, 'controller.c']  # in the order of their use
+    engine = [ENGINE, _OURS / 'engine.c'] if tables.public['COMMANDS_ENGINE'] else []
+    # In the order of their use.
+    parts = [LIMITS, _OURS / 'solver.c', *engine, _OURS / 'controller.c']
     return {
         HEADER: f'{note}\n'
         + c_part('ddct_mpc.h').replace('@SIZES@', macros(tables.public, _PREFIX)),
@@ -62,7 +65,7 @@ def _texts(tables: ControllerTables, about: list[str]) -> dict[str, str]:
                 f'#include <limits.h>\n#include <math.h>\n\n#include "{HEADER}"',
                 macros(tables.private),
                 constants(tables.arrays),
-                '\n'.join(c_part(part) for part in parts),
+                text_of(parts),
             ]
         ),
         EXAMPLE: f'{note}\n{c_part("example.c")}',
@@ -98,4 +101,4 @@ def _about(name: str, settings: RunSettings, chosen: MpcSettings) -> list[str]:
 
 def c_part(name: str) -> str:
     """Return the text of the hand-written C in the file `name`."""
-    return (Path(__file__).parent / 'c' / name).read_text(encoding='utf-8')
+    return text_of([_OURS / name])

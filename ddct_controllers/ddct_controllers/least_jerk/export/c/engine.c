@@ -1,26 +1,10 @@
 /* Copyright 2026 DDCT team
  * SPDX-License-Identifier: Apache-2.0 */
-#if SHAPING_STEPS
 /* The mean of the demands of the last steps, within the authority over the engine. */
 typedef struct {
     double demands[SHAPING_STEPS], mean, last, asked, deviation;
     int next, waited;
 } shaped_demand;
-
-static double limited(double value, double limit)
-{
-    return smaller(larger(value, -limit), limit);
-}
-
-/* Return C_m over the coming period: the deviation requested is limited, then its rate, then it
- * passes a lag; last, the torque is limited. */
-static double deliver(shaped_demand *d, double demand, double request)
-{
-    const double requested = limited(request - demand, MOST_DEVIATION);
-    d->asked += limited(requested - d->asked, MOST_CHANGE);
-    d->deviation += LAG_SHARE * (d->asked - d->deviation);
-    return smaller(larger(demand + d->deviation, LEAST_ENGINE_TORQUE), MOST_ENGINE_TORQUE);
-}
 
 static void shaped_hold(shaped_demand *d, double demand)
 {
@@ -29,7 +13,7 @@ static void shaped_hold(shaped_demand *d, double demand)
     }
     d->mean = d->last = demand;
     d->next = d->waited = 0;
-    deliver(d, demand, demand);
+    deliver(&d->asked, &d->deviation, demand, demand);
 }
 
 static void shaped_reset(shaped_demand *d)
@@ -48,6 +32,5 @@ static double shaped_update(shaped_demand *d, double demand, int closed)
     d->mean += (d->last - d->demands[d->next]) / SHAPING_STEPS;
     d->demands[d->next] = d->last;
     d->next = (d->next + 1) % SHAPING_STEPS;
-    return deliver(d, demand, d->mean);
+    return deliver(&d->asked, &d->deviation, demand, d->mean);
 }
-#endif

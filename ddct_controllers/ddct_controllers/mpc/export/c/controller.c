@@ -116,8 +116,8 @@ static void bounds(const ddct_mpc *s, const double *known, double *lower, double
 #if DDCT_MPC_COMMANDS_ENGINE
         if (ENGINE_PERIODS_AHEAD[i] > 0.0) {
             const double demand = known[ENGINE], periods = ENGINE_PERIODS_AHEAD[i];
-            lower[i] = SCALE[i] * reachable(s, demand, LEAST_TORQUE, periods);
-            upper[i] = SCALE[i] * reachable(s, demand, MOST_TORQUE, periods);
+            lower[i] = SCALE[i] * reachable(s, demand, LEAST_ENGINE_TORQUE, periods);
+            upper[i] = SCALE[i] * reachable(s, demand, MOST_ENGINE_TORQUE, periods);
         }
 #endif
         lower[i] -= shift;
@@ -139,8 +139,8 @@ static void follow_plan(ddct_mpc *s, const double *known, double *moves)
     moves[0] = smaller(larger(level, last - CLUTCH_CHANGE), last + CLUTCH_CHANGE) - before;
 #if DDCT_MPC_COMMANDS_ENGINE
     const double demand = known[ENGINE], requested = known[BEFORE + 1];
-    level = larger(requested + s->plan[1], reachable(s, demand, LEAST_TORQUE, 1.0));
-    moves[1] = smaller(level, reachable(s, demand, MOST_TORQUE, 1.0)) - requested;
+    level = larger(requested + s->plan[1], reachable(s, demand, LEAST_ENGINE_TORQUE, 1.0));
+    moves[1] = smaller(level, reachable(s, demand, MOST_ENGINE_TORQUE, 1.0)) - requested;
 #endif
     if (s->fallbacks < ULONG_MAX) {
         ++s->fallbacks;
@@ -195,7 +195,8 @@ static void advance(ddct_mpc *s, const ddct_mpc_measurement *m, double clutch_to
     s->open_loop_torque = m->open_loop_torque;
 #if DDCT_MPC_COMMANDS_ENGINE
     s->engine_request = engine_request;
-    engine_torque = deliver(s, m->engine_torque, engine_request);
+    engine_torque = deliver(
+        &s->engine_asked, &s->engine_deviation, m->engine_torque, engine_request);
 #endif
     predict(s, clutch_torque, engine_torque, m->load_torque);
 }

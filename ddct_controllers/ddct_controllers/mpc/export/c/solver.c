@@ -23,16 +23,6 @@ typedef struct {
     double factor[ACTIVE * (ACTIVE + 1) / 2];
 } active_set;
 
-static double larger(double a, double b)
-{
-    return a > b ? a : b;
-}
-
-static double smaller(double a, double b)
-{
-    return a < b ? a : b;
-}
-
 static double dot(const double *a, const double *b, int count)
 {
     double sum = 0.0;
