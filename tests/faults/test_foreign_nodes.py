@@ -12,7 +12,8 @@ from rclpy.context import Context
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 from support.in_process_graph import GraphOf, node_class
-from support.runs import plan
+from support.patient_clock import realtime_owner
+from support.runs import SHORT_S, plan
 
 from ddct_bringup.processes.graph_nodes import GRAPH_NODES
 from ddct_bringup.record import recorder_node
@@ -86,15 +87,22 @@ def complaint_of_recorder(graph_of: GraphOf, topic: str, message: DiagnosticArra
     return complaint
 
 
-def complaint_about_another_type(graph_of: GraphOf, mode: str = 'lockstep') -> str:
+def complaint_about_another_type(
+    graph_of: GraphOf, mode: str = 'lockstep', duration_s: float = SHORT_S, from_step: int = -1
+) -> str:
     """Run beside a node that publishes `load/torque` as another type; return the error."""
-    graph = graph_of(plan(mode=mode))
+    graph = graph_of(plan(mode=mode, duration_s=duration_s))
     context = Context()
     rclpy.init(args=[], context=context, signal_handler_options=SignalHandlerOptions.NO)
     try:
         stranger = Node('stranger', context=context)
-        stranger.create_publisher(TwistStamped, 'load/torque', LOOP_QOS)
+        if from_step < 0:
+            stranger.create_publisher(TwistStamped, 'load/torque', LOOP_QOS)
         graph.add_all()
+        if from_step >= 0:
+            owner = realtime_owner(graph)
+            graph.spin_until(lambda: owner.step >= from_step, f'step {from_step}')
+            stranger.create_publisher(TwistStamped, 'load/torque', LOOP_QOS)
         failed, complaint = graph.first_failure()
         stranger.destroy_node()
     finally:
@@ -118,9 +126,27 @@ def test_an_error_about_a_second_publisher_waits_a_while_for_its_name(
     graph_of: GraphOf, monkeypatch: pytest.MonkeyPatch, mode: str, unnamed_calls: int
 ) -> None:
     """The middleware lists a topic before the name of its node."""
-    monkeypatch.setattr(sole_publishers, 'CHECK_S', 0.03)
     if unnamed_calls > 3:
         monkeypatch.setattr(sole_publishers, 'NAMING_S', 0.3)
+    # It ends the node before the run is over.
+    monkeypatch.setattr(sole_publishers, 'OPEN_S', 0.3)
+    name_late(monkeypatch, unnamed_calls)
+    complaint = complaint_about_another_type(graph_of, mode)
+    assert ('/stranger' in complaint) == (unnamed_calls <= 3)
+
+
+def test_a_real_time_run_that_is_over_first_has_the_name_of_the_second_publisher(
+    graph_of: GraphOf, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sole_publishers, 'OPEN_S', 60.0)
+    name_late(monkeypatch, 1)
+    complaint = complaint_about_another_type(graph_of, 'realtime', duration_s=3.0, from_step=5)
+    assert '/stranger' in complaint
+
+
+def name_late(monkeypatch: pytest.MonkeyPatch, unnamed_calls: int) -> None:
+    """Let the middleware list the stranger without its name for so many calls, at least once."""
+    monkeypatch.setattr(sole_publishers, 'CHECK_S', 0.03)
     publishers_of, calls = sole_publishers.publishers_of, count()
 
     def named_late(node: Node, topic: str) -> str:
@@ -129,6 +155,3 @@ def test_an_error_about_a_second_publisher_waits_a_while_for_its_name(
         return shown.replace('/stranger', sole_publishers._UNNAMED) if late else shown
 
     monkeypatch.setattr(sole_publishers, 'publishers_of', named_late)
-    complaint = complaint_about_another_type(graph_of, mode)
-    assert next(calls) > min(unnamed_calls, 3)
-    assert ('/stranger' in complaint) == (unnamed_calls <= 3)

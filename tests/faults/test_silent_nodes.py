@@ -69,7 +69,8 @@ def test_a_node_that_stops_publishing_ends_the_run_at_its_step(graph_of: GraphOf
 def test_a_process_that_hangs_ends_the_run_at_its_step(
     graph_of: GraphOf, programs: Programs
 ) -> None:
-    graph = _graph(graph_of(plan(duration_s=600.0)))
+    # On a busy machine another process may take more than a second for its first answer.
+    graph = _graph(graph_of(plan(duration_s=600.0)), timeout_s=5.0)
     clutch = programs.start_node('ddct_plant.nodes.clutch_node', graph.parameters['*'])
     graph.wait_for_publisher('clutch/torque', START_S)
     graph.add('driveline', {'require_recorder': False})
@@ -79,7 +80,7 @@ def test_a_process_that_hangs_ends_the_run_at_its_step(
     node, complaint = graph.first_failure()
     assert node == 'driveline'
     assert complaint.startswith(f'no clutch/torque for stamp {10**9 + _step(graph) * 10**7} ns')
-    assert 'within 1 s' in complaint
+    assert 'within 5 s' in complaint
 
 
 @pytest.mark.parametrize('late', ['clutch', 'controller'])

@@ -10,6 +10,7 @@ import signal
 import subprocess
 import sys
 from collections.abc import Callable
+from itertools import count
 from pathlib import Path
 
 import pytest
@@ -214,7 +215,7 @@ def test_a_parent_that_was_killed_since_the_last_start_is_replaced(run: Run, par
 def test_a_parent_that_is_killed_while_it_should_fork_is_named() -> None:
     with WarmParent() as parent:
         parent.process.send_signal(signal.SIGSTOP)
-        waited = iter(range(3))
+        waited = count()
 
         def stopped() -> bool:
             if next(waited) == 2:

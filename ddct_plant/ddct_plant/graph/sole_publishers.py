@@ -104,6 +104,8 @@ class SolePublishers:
         self._probes: dict[str, _Probe] = {}
         self._at_end = False
         self._proved_at: float | None = None
+        self._named: Callable[[], DdctError | None] = lambda: None
+        """Return `found` with the names that are known by then."""
         node.every(CHECK_S, self._on_timer)
 
     def finish(self, error: DdctError | None = None) -> None:
@@ -112,7 +114,7 @@ class SolePublishers:
             self._at_end = True
             self._repeat()
         else:
-            self._node.finish(error or self.found)
+            self._node.finish(error or self._named())
 
     def close(self) -> None:
         """End the check and its subscriptions; timers of the node may still run."""
@@ -165,14 +167,12 @@ class SolePublishers:
         if lockstep and unnamed and now - self._proved_at < NAMING_S:
             return
         self.found = error
+        self._named = lambda: self._error(topic, complaint) if unnamed else error
         if lockstep:
             self._node.finish(error)
         else:
             self._node.get_logger().error(f'{error}: opening the clutch')
-            self._node.every(
-                OPEN_S,
-                lambda: self._node.finish(self._error(topic, complaint) if unnamed else error),
-            )
+            self._node.every(OPEN_S, lambda: self._node.finish(self._named()))
 
     def _error(self, topic: str, complaint: str) -> DdctError:
         """Return the error with the names that the middleware knows by now."""
