@@ -24,6 +24,7 @@ LIVE = """
 import os, signal, sys, time
 from ddct_plant.program.supervision import announce_exit, beat
 def run():
+    beat()
     print('ready', flush=True)
     while True:
         beat()
