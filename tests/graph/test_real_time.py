@@ -91,7 +91,8 @@ def test_real_time_is_no_faster_than_the_wall_clock(tmp_path: Path) -> None:
     assert recording.trajectory.steps == run.steps
     assert recording.facts.mode == 'realtime'
     timing = _timing(tmp_path / 'bag')
-    assert 0.95 <= timing['wall_time_s'] / run.settings.scenario.duration_s <= 2.0
+    # Without a bound above: on a busy machine the end takes longer.
+    assert timing['wall_time_s'] >= 0.95 * run.settings.scenario.duration_s
 
 
 def test_wall_clock_figures_are_recorded_in_real_time_only(tmp_path: Path) -> None:
