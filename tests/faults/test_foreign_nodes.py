@@ -11,9 +11,9 @@ from geometry_msgs.msg import TwistStamped
 from rclpy.context import Context
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
-from support.in_process_graph import GraphOf, node_class
+from support.in_process_graph import GraphOf, InProcessGraph, node_class
 from support.patient_clock import realtime_owner
-from support.runs import SHORT_S, plan
+from support.runs import plan
 
 from ddct_bringup.processes.graph_nodes import GRAPH_NODES
 from ddct_bringup.record import recorder_node
@@ -87,22 +87,14 @@ def complaint_of_recorder(graph_of: GraphOf, topic: str, message: DiagnosticArra
     return complaint
 
 
-def complaint_about_another_type(
-    graph_of: GraphOf, mode: str = 'lockstep', duration_s: float = SHORT_S, from_step: int = -1
-) -> str:
+def complaint_about_another_type(graph: InProcessGraph) -> str:
     """Run beside a node that publishes `load/torque` as another type; return the error."""
-    graph = graph_of(plan(mode=mode, duration_s=duration_s))
     context = Context()
     rclpy.init(args=[], context=context, signal_handler_options=SignalHandlerOptions.NO)
     try:
         stranger = Node('stranger', context=context)
-        if from_step < 0:
-            stranger.create_publisher(TwistStamped, 'load/torque', LOOP_QOS)
+        stranger.create_publisher(TwistStamped, 'load/torque', LOOP_QOS)
         graph.add_all()
-        if from_step >= 0:
-            owner = realtime_owner(graph)
-            graph.spin_until(lambda: owner.step >= from_step, f'step {from_step}')
-            stranger.create_publisher(TwistStamped, 'load/torque', LOOP_QOS)
         failed, complaint = graph.first_failure()
         stranger.destroy_node()
     finally:
@@ -116,7 +108,7 @@ def test_a_topic_of_another_type_is_named(
     graph_of: GraphOf, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(sole_publishers, 'CHECK_S', 0.03)
-    assert '/stranger' in complaint_about_another_type(graph_of)
+    assert '/stranger' in complaint_about_another_type(graph_of(plan()))
 
 
 @pytest.mark.parametrize(
@@ -130,8 +122,9 @@ def test_an_error_about_a_second_publisher_waits_a_while_for_its_name(
         monkeypatch.setattr(sole_publishers, 'NAMING_S', 0.3)
     # It ends the node before the run is over.
     monkeypatch.setattr(sole_publishers, 'OPEN_S', 0.3)
-    name_late(monkeypatch, unnamed_calls)
-    complaint = complaint_about_another_type(graph_of, mode)
+    calls = name_late(monkeypatch, unnamed_calls)
+    complaint = complaint_about_another_type(graph_of(plan(mode=mode)))
+    assert next(calls) > min(unnamed_calls, 3)
     assert ('/stranger' in complaint) == (unnamed_calls <= 3)
 
 
@@ -140,12 +133,15 @@ def test_a_real_time_run_that_is_over_first_has_the_name_of_the_second_publisher
 ) -> None:
     monkeypatch.setattr(sole_publishers, 'OPEN_S', 60.0)
     name_late(monkeypatch, 1)
-    complaint = complaint_about_another_type(graph_of, 'realtime', duration_s=3.0, from_step=5)
-    assert '/stranger' in complaint
+    graph = graph_of(plan(mode='realtime', duration_s=3.0))
+    graph.add_all()
+    owner = realtime_owner(graph)
+    graph.spin_until(lambda: owner.step >= 5, 'step 5')
+    assert '/stranger' in complaint_about_another_type(graph)
 
 
-def name_late(monkeypatch: pytest.MonkeyPatch, unnamed_calls: int) -> None:
-    """Let the middleware list the stranger without its name for so many calls, at least once."""
+def name_late(monkeypatch: pytest.MonkeyPatch, unnamed_calls: int) -> 'count[int]':
+    """Let the middleware list the stranger without its name for so many calls; count all calls."""
     monkeypatch.setattr(sole_publishers, 'CHECK_S', 0.03)
     publishers_of, calls = sole_publishers.publishers_of, count()
 
@@ -155,3 +151,4 @@ def name_late(monkeypatch: pytest.MonkeyPatch, unnamed_calls: int) -> None:
         return shown.replace('/stranger', sole_publishers._UNNAMED) if late else shown
 
     monkeypatch.setattr(sole_publishers, 'publishers_of', named_late)
+    return calls

@@ -76,13 +76,18 @@ def test_real_time_without_a_miss_is_lock_step_to_the_last_bit(
 def test_a_real_time_run_that_counts_stays_near_lock_step(tmp_path: Path, layout: str) -> None:
     run = plan(layout=layout, mode='realtime', duration_s=1.5)
     recording, timing = _best_of_three(run, tmp_path)
-    if timing['missed_steps'] > MISS_TOLERANCE * run.steps:
-        pytest.skip(f'too busy for real time: {timing["missed_steps"]} of {run.steps} missed')
+    _skip_where_too_busy(timing, run)
     lockstep, realtime = expected(run), recording.trajectory
     peak = np.abs(lockstep.slip_speed).max()
     assert realtime.slip_speed == pytest.approx(lockstep.slip_speed, abs=NEAR * peak)
     assert timing['steps'] == run.steps
     assert len(timing['update_times_us']) >= 0.9 * run.steps
+
+
+def _skip_where_too_busy(timing: dict[str, Any], run: RunPlan) -> None:
+    missed = timing['missed_steps']
+    if missed > MISS_TOLERANCE * run.steps:
+        pytest.skip(f'too busy for real time: {missed} of {run.steps} missed')
 
 
 def test_real_time_is_no_faster_than_the_wall_clock(tmp_path: Path) -> None:
@@ -91,8 +96,10 @@ def test_real_time_is_no_faster_than_the_wall_clock(tmp_path: Path) -> None:
     assert recording.trajectory.steps == run.steps
     assert recording.facts.mode == 'realtime'
     timing = _timing(tmp_path / 'bag')
-    # Without a bound above: on a busy machine the end takes longer.
-    assert timing['wall_time_s'] >= 0.95 * run.settings.scenario.duration_s
+    share = timing['wall_time_s'] / run.settings.scenario.duration_s
+    assert share >= 0.95
+    _skip_where_too_busy(timing, run)
+    assert share <= 2.0
 
 
 def test_wall_clock_figures_are_recorded_in_real_time_only(tmp_path: Path) -> None:

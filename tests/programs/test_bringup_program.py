@@ -77,8 +77,8 @@ def test_timing_has_one_update_time_per_step(tmp_path: Path) -> None:
         assert len(timing['update_times_us']) == 71
         assert min(timing['update_times_us']) > 0.0
         assert timing['missed_steps'] == 0
-        # In a graph on a busy machine a tick may be sent again, and a reply to it comes twice.
-        assert timing['late_messages'] == 0 or layout == '--single-process'
+        # On a busy machine a tick may be sent again, and its second reply comes too late.
+        assert timing['late_messages'] == 0 or timing['resends'] > 0
         assert timing['wall_time_s'] > 0.0
 
 
