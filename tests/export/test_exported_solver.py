@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from support.exported_mpc import STATUS, compile_c
 
-from ddct_controllers.c_code.parts import LIMITS, text_of
+from ddct_controllers.c_code.parts import DOUBLES, text_of
 from ddct_controllers.mpc.export.dual_form import dual_form
 from ddct_controllers.mpc.export.export_controller import c_part, constants, macros
 from ddct_controllers.mpc.qp.backend import make_backend
@@ -39,7 +39,7 @@ class ExportedSolver:
             header,
             macros({'ROWS': rows, 'ACTIVE': form.capacity}),
             constants(tables),
-            text_of([LIMITS]),
+            text_of([DOUBLES]),
             c_part('solver.c'),
             _CALL,
         ]

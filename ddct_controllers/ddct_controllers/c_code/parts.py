@@ -9,10 +9,10 @@ from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.models.engine import EngineAuthority
 
 _SHARED = Path(__file__).parent / 'c'
-LIMITS = _SHARED / 'limits.c'
-"""Functions `smaller` and `larger`."""
+DOUBLES = _SHARED / 'doubles.c'
+"""Functions `smaller`, `larger` and `usable`, which every export needs."""
 ENGINE = _SHARED / 'engine.c'
-"""Torque that the engine delivers; it needs LIMITS and the macros of `authority_macros`."""
+"""Torque that the engine delivers; it needs DOUBLES and the macros of `authority_macros`."""
 
 
 def text_of(files: Iterable[Path]) -> str:

@@ -5,7 +5,7 @@
 from pathlib import Path
 
 from ddct_controllers.c_code.folder import require_free, write_files
-from ddct_controllers.c_code.parts import ENGINE, LIMITS, text_of
+from ddct_controllers.c_code.parts import DOUBLES, ENGINE, text_of
 from ddct_controllers.c_code.text import constants, macros, remark
 from ddct_controllers.from_file.c_library.host import HEADER as INTERFACE
 from ddct_controllers.from_file.c_library.host import TEMPLATE
@@ -75,4 +75,4 @@ def _about(settings: RunSettings) -> list[str]:
 def _parts(design: LeastJerkDesign) -> list[Path]:
     """Return the files of the hand-written C, in the order of their use."""
     engine = [ENGINE, _OURS / 'engine.c'] if design.shaping_steps else []
-    return [LIMITS, _OURS / 'estimates.c', _OURS / 'plan.c', *engine, _OURS / 'controller.c']
+    return [DOUBLES, _OURS / 'estimates.c', _OURS / 'plan.c', *engine, _OURS / 'controller.c']

@@ -6,7 +6,7 @@ import math
 from pathlib import Path
 
 from ddct_controllers.c_code.folder import require_free, write_files
-from ddct_controllers.c_code.parts import ENGINE, LIMITS, text_of
+from ddct_controllers.c_code.parts import DOUBLES, ENGINE, text_of
 from ddct_controllers.c_code.text import constants, macros, remark
 from ddct_controllers.from_file.c_library.host import HEADER as INTERFACE
 from ddct_controllers.from_file.c_library.host import TEMPLATE
@@ -55,7 +55,7 @@ def _texts(tables: ControllerTables, about: list[str]) -> dict[str, str]:
     note = remark(about)
     engine = [ENGINE, _OURS / 'engine.c'] if tables.public['COMMANDS_ENGINE'] else []
     # In the order of their use.
-    parts = [LIMITS, _OURS / 'solver.c', *engine, _OURS / 'controller.c']
+    parts = [DOUBLES, _OURS / 'solver.c', *engine, _OURS / 'controller.c']
     return {
         HEADER: f'{note}\n'
         + c_part('ddct_mpc.h').replace('@SIZES@', macros(tables.public, _PREFIX)),

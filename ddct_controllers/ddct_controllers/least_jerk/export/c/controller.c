@@ -17,11 +17,6 @@ typedef struct {
 
 const ddct_description ddct_controller = DDCT_DESCRIPTION(least_jerk, 0, SHAPING_STEPS > 0);
 
-static int usable(double value)
-{
-    return value >= -1e9 && value <= 1e9;
-}
-
 static int all_usable(const ddct_measurement *m)
 {
     return usable(m->engine_speed) && usable(m->shaft_speed) && usable(m->wheel_speed)

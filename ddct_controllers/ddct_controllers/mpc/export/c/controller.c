@@ -14,11 +14,6 @@ enum {
     KNOWN = RATE + RATE_REFERENCES
 };
 
-static int usable(double value)
-{
-    return value >= -1e9 && value <= 1e9;
-}
-
 static int all_usable(const ddct_mpc_measurement *m)
 {
     int good = usable(m->engine_speed) && usable(m->shaft_speed) && usable(m->wheel_speed)
