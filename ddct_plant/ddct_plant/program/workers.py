@@ -76,6 +76,8 @@ class WorkerPool:
         with deferred_signals():
             # The pool does not know one whose start was interrupted.
             processes = {*multiprocessing.active_children()} - self._not_ours
+            # shutdown() drops this thread, and cannot wait for it before the processes are killed.
+            manager = getattr(self._pool, '_executor_manager_thread', None)
             self._pool.shutdown(wait=False, cancel_futures=True)
             for process in processes:
                 process.kill()
@@ -83,6 +85,9 @@ class WorkerPool:
                 # The pool's own thread may take the exit status first: join() then returns early.
                 while process.is_alive():
                     process.join(0.01)
+            # Python wakes the thread at exit, by a pipe that the thread may just have closed.
+            if manager is not None and manager.is_alive():
+                manager.join()
             self._pool = None
 
 

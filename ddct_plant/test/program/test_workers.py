@@ -5,6 +5,7 @@
 import multiprocessing
 import os
 import signal
+import threading
 import time
 from multiprocessing.process import BaseProcess
 
@@ -31,6 +32,15 @@ def test_a_killed_worker_is_reported_in_a_line():
         in_processes(lambda _: os.kill(os.getpid(), signal.SIGKILL), 2, 2) as results,
     ):
         list(results)
+
+
+def test_a_pool_that_is_closed_leaves_no_thread_for_pythons_exit():
+    before = {*threading.enumerate()}
+    # More than once: the pool's own thread may end while its processes are awaited.
+    for _ in range(20):
+        with in_processes(lambda _: time.sleep(60.0), 4, 2):
+            pass
+        assert {*threading.enumerate()} <= before
 
 
 def test_ctrl_c_while_workers_are_ended_leaves_none(monkeypatch):
