@@ -2,7 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Third parties' nodes in the graph: the recorder names their missing values."""
 
+from collections.abc import Callable
 from itertools import count
+from typing import Any, cast
 
 import pytest
 import rclpy
@@ -20,6 +22,7 @@ from ddct_bringup.record import recorder_node
 from ddct_plant.graph import sole_publishers
 from ddct_plant.graph.node import GraphNode
 from ddct_plant.graph.qos import LOOP_QOS, RECORDER_LATCHED_QOS
+from ddct_plant.nodes.driveline_node import DrivelineNode
 
 NODE_NAMES = [node.name for node in GRAPH_NODES]
 
@@ -122,33 +125,37 @@ def test_an_error_about_a_second_publisher_waits_a_while_for_its_name(
         monkeypatch.setattr(sole_publishers, 'NAMING_S', 0.3)
     # It ends the node before the run is over.
     monkeypatch.setattr(sole_publishers, 'OPEN_S', 0.3)
-    calls = name_late(monkeypatch, unnamed_calls)
+    calls = count()
+    name_late(monkeypatch, lambda: next(calls) < unnamed_calls)
     complaint = complaint_about_another_type(graph_of(plan(mode=mode)))
     assert next(calls) > min(unnamed_calls, 3)
     assert ('/stranger' in complaint) == (unnamed_calls <= 3)
 
 
-def test_a_real_time_run_that_is_over_first_has_the_name_of_the_second_publisher(
+def test_a_real_time_run_that_is_over_first_waits_for_the_name_of_the_second_publisher(
     graph_of: GraphOf, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(sole_publishers, 'OPEN_S', 60.0)
-    name_late(monkeypatch, 1)
-    graph = graph_of(plan(mode='realtime', duration_s=3.0))
+    calls = count()
+    name_late(monkeypatch, lambda: owner.step < owner.last_step or next(calls) < 3)
+    graph = graph_of(plan(mode='realtime', duration_s=60.0))
     graph.add_all()
     owner = realtime_owner(graph)
+    check: Any = cast(DrivelineNode, graph.nodes['driveline'])._sole_publishers
+    # The run is over once the second publisher has brought the clutch into its safe state.
+    monkeypatch.setattr(owner, '_over', lambda: bool(check.found and owner.safe_clutches))
     graph.spin_until(lambda: owner.step >= 5, 'step 5')
     assert '/stranger' in complaint_about_another_type(graph)
+    assert owner.step == owner.last_step and next(calls) > 3
 
 
-def name_late(monkeypatch: pytest.MonkeyPatch, unnamed_calls: int) -> 'count[int]':
-    """Let the middleware list the stranger without its name for so many calls; count all calls."""
+def name_late(monkeypatch: pytest.MonkeyPatch, late: Callable[[], bool]) -> None:
+    """Let the middleware list the stranger without its name where `late()` is true."""
     monkeypatch.setattr(sole_publishers, 'CHECK_S', 0.03)
-    publishers_of, calls = sole_publishers.publishers_of, count()
+    publishers_of = sole_publishers.publishers_of
 
     def named_late(node: Node, topic: str) -> str:
         shown = publishers_of(node, topic)
-        late = next(calls) < unnamed_calls
-        return shown.replace('/stranger', sole_publishers._UNNAMED) if late else shown
+        return shown.replace('/stranger', sole_publishers._UNNAMED) if late() else shown
 
     monkeypatch.setattr(sole_publishers, 'publishers_of', named_late)
-    return calls

@@ -32,8 +32,8 @@ NAMING_S = 2.0
 """
 Time in s for which an error in lock-step waits for the name of a node.
 
-Names come after topics. In real time nothing waits: the clutch opens at once, and the error that
-ends the node `OPEN_S` later has the names.
+Names come after topics. In real time the clutch opens at once, and the error that ends the node
+has the names: it comes `OPEN_S` later, or at the end of the run as soon as they are known.
 """
 _UNKNOWN = '_NODE_NAME_UNKNOWN_'
 """Name in rmw of a node whose topics are known before its name."""
@@ -109,10 +109,11 @@ class SolePublishers:
         node.every(CHECK_S, self._on_timer)
 
     def finish(self, error: DdctError | None = None) -> None:
-        """End the node; an end without error waits until a second publisher is excluded."""
+        """End the node; one without error waits until a second publisher is excluded or named."""
         if error is None and self._in_doubt():
             self._at_end = True
-            self._repeat()
+            if self.found is None:
+                self._repeat()
         else:
             self._node.finish(error or self._named())
 
@@ -124,12 +125,10 @@ class SolePublishers:
             self._listener.destroy_node()
 
     def _on_timer(self) -> None:
-        doubt = self._in_doubt()
-        if self._at_end and self.found is None:
-            if doubt:
-                self._repeat()
-            else:
-                self._node.finish()
+        if self._at_end:
+            self.finish()
+        else:
+            self._in_doubt()
 
     def _in_doubt(self) -> bool:
         """Return whether a second publisher is neither excluded nor proved and named."""
@@ -144,7 +143,7 @@ class SolePublishers:
         if proved and self.found is None:
             self._end(*next(iter(proved.items())))
         if self.found is not None:
-            return False
+            return _UNNAMED in str(self._named())
         return bool(proved) or not all(each.excludes_two for each in self._probes.values())
 
     def _listen(self, topic: str, name: str) -> str | None:
