@@ -120,7 +120,7 @@ def test_the_recorder_waits_for_it_at_every_tick(add: Any, tmp_path: Path) -> No
 
     with InProcessGraph(RUN, tmp_path / 'pi') as graph:
         graph.add_all()
-        owner = graph.nodes['driveline'].owner  # type: ignore[attr-defined]
+        owner = graph.driveline.owner
         graph.spin_until(lambda: owner.missing() == ['recorder/ack'], 'the replies to t_0')
         graph.add_other(MoreOfTheLoad(context=graph.context))
         graph.run()

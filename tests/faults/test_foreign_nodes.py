@@ -4,7 +4,7 @@
 
 from collections.abc import Callable
 from itertools import count
-from typing import Any, cast
+from typing import Any
 
 import pytest
 import rclpy
@@ -22,7 +22,6 @@ from ddct_bringup.record import recorder_node
 from ddct_plant.graph import sole_publishers
 from ddct_plant.graph.node import GraphNode
 from ddct_plant.graph.qos import LOOP_QOS, RECORDER_LATCHED_QOS
-from ddct_plant.nodes.driveline_node import DrivelineNode
 
 NODE_NAMES = [node.name for node in GRAPH_NODES]
 
@@ -141,7 +140,7 @@ def test_a_real_time_run_that_is_over_first_waits_for_the_name_of_the_second_pub
     graph = graph_of(plan(mode='realtime', duration_s=60.0))
     graph.add_all()
     owner = realtime_owner(graph)
-    check: Any = cast(DrivelineNode, graph.nodes['driveline'])._sole_publishers
+    check: Any = graph.driveline._sole_publishers
     # The run is over once the second publisher has brought the clutch into its safe state.
     monkeypatch.setattr(owner, '_over', lambda: bool(check.found and owner.safe_clutches))
     graph.spin_until(lambda: owner.step >= 5, 'step 5')

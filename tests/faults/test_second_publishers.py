@@ -8,6 +8,7 @@ import pytest
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 from support.in_process_graph import GraphOf, InProcessGraph
+from support.patient_clock import realtime_owner
 from support.processes import START_S, Programs
 from support.runs import expected, plan
 
@@ -16,7 +17,6 @@ from ddct_bringup.processes.graph_nodes import GRAPH_NODES
 from ddct_plant.graph import sole_publishers
 from ddct_plant.graph.qos import RECORDER_QOS
 from ddct_plant.models.driveline import DrivelineOutputs
-from ddct_plant.nodes.driveline_node import DrivelineNode
 from ddct_plant.signals.signal import RunKind
 from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import (
@@ -26,7 +26,6 @@ from ddct_plant.signals.topics import (
     TOPICS,
     VEHICLE_ACCEL,
 )
-from ddct_plant.ticks.realtime_owner import RealtimeOwner
 
 STALL_S = 0.03
 """Lateness, s, from which a request may be missing for longer than the actuator's timeout."""
@@ -71,29 +70,17 @@ def _graph(graph: InProcessGraph, *, recorded: bool) -> InProcessGraph:
     return graph
 
 
-def _driveline(graph: InProcessGraph) -> DrivelineNode:
-    driveline = graph.nodes['driveline']
-    assert isinstance(driveline, DrivelineNode)
-    return driveline
-
-
-def _owner(graph: InProcessGraph) -> RealtimeOwner:
-    owner = _driveline(graph).owner
-    assert isinstance(owner, RealtimeOwner)
-    return owner
-
-
 def _clutch_torque(graph: InProcessGraph) -> float:
     """Return the torque in N m that the driveline integrates last."""
-    outputs = _driveline(graph).driveline.outputs()
+    outputs = graph.driveline.driveline.outputs()
     assert isinstance(outputs, DrivelineOutputs)
     return outputs.joint_effort.primary_shaft
 
 
 def test_the_publishers_of_every_topic_of_a_tick_are_checked(graph_of: GraphOf) -> None:
-    driveline = graph_of(plan()).add('driveline')
-    assert isinstance(driveline, DrivelineNode)
-    assert sorted(driveline._sole_publishers._topics) == sorted(topic.name for topic in LOOP)
+    graph = graph_of(plan())
+    graph.add('driveline')
+    assert sorted(graph.driveline._sole_publishers._topics) == sorted(topic.name for topic in LOOP)
 
 
 @pytest.mark.usefixtures('checked_often')
@@ -143,7 +130,7 @@ def test_a_process_that_could_not_run_does_not_miss_the_second_publisher(
     graph.add_other(Echo(topic, context=graph.context))
     graph.add('driveline', {'require_recorder': False})
     graph.add('controller')
-    check: Any = _driveline(graph)._sole_publishers
+    check: Any = graph.driveline._sole_publishers
     graph.spin_until(lambda: bool(check._probes), 'a topic with a second publisher')
     probed = clock.readings
     graph.spin_until(lambda: clock.readings > probed + 40, 'more checks than the proof needs')
@@ -175,7 +162,7 @@ def test_in_real_time_a_second_publisher_opens_the_clutch_before_it_is_named(
 ) -> None:
     graph = graph_of(plan('ls8', mode='realtime', duration_s=60.0))
     graph.add_all()
-    owner = _owner(graph)
+    owner = realtime_owner(graph)
     graph.spin_until(
         lambda: bool(owner.safe_clutches) or _clutch_torque(graph) > 10.0,
         'a clutch that transmits',
@@ -218,11 +205,11 @@ def test_a_driveline_that_is_closed_in_doubt_ends_its_check_quietly(graph_of: Gr
     graph.add_other(stranger)
     stranger.create_publisher(VEHICLE_ACCEL.message_class, VEHICLE_ACCEL.name, RECORDER_QOS)
     graph.add_all()
-    check: Any = _driveline(graph)._sole_publishers
+    check: Any = graph.driveline._sole_publishers
     graph.spin_until(lambda: bool(check._probes), 'a topic with a second publisher')
     checks: list[bool] = []
     in_doubt = check._in_doubt
     check._in_doubt = lambda: checks.append(in_doubt())
-    _driveline(graph).close()
+    graph.driveline.close()
     graph.spin_until(lambda: len(checks) >= 3, 'three more checks')
     assert not any(checks)

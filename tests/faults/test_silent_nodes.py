@@ -12,9 +12,7 @@ from support.processes import START_S, Programs
 from support.runs import plan
 
 from ddct_plant.base.timebase import stamp_of_step
-from ddct_plant.nodes.driveline_node import DrivelineNode
 from ddct_plant.signals.topics import LOAD_TORQUE
-from ddct_plant.ticks.tick_owner import TickOwner
 
 LOAD = LOAD_TORQUE.name
 
@@ -24,14 +22,8 @@ def _graph(graph: InProcessGraph, timeout_s: float = 1.0) -> InProcessGraph:
     return graph
 
 
-def _owner(graph: InProcessGraph) -> TickOwner:
-    driveline = graph.nodes['driveline']
-    assert isinstance(driveline, DrivelineNode)
-    return driveline.owner
-
-
 def _step(graph: InProcessGraph) -> int:
-    return _owner(graph).step
+    return graph.driveline.owner.step
 
 
 @pytest.mark.parametrize(
@@ -77,7 +69,7 @@ def test_a_process_that_hangs_ends_the_run_at_its_step(
     graph.add_all(without=['clutch', 'recorder'])
     graph.spin_until(lambda: _step(graph) >= 20, 'step 20')
     clutch.send(signal.SIGSTOP)
-    owner = _owner(graph)
+    owner = graph.driveline.owner
     # Only now: on a busy machine the first answer of another process may take longer.
     owner._plan = replace(owner._plan, answer_timeout_s=1.0)
     node, complaint = graph.first_failure()
@@ -94,9 +86,9 @@ def test_a_follower_that_is_started_in_the_middle_ends_with_the_reason(
     graph.add_all()
     graph.spin_until(lambda: _step(graph) >= 20, 'step 20')
     graph.remove(late)
-    resends = _owner(graph).resends
+    resends = graph.driveline.owner.resends
     # By then no reply of the removed node is under way, and the step stands still.
-    graph.spin_until(lambda: _owner(graph).resends >= resends + 2, 'a tick sent again')
+    graph.spin_until(lambda: graph.driveline.owner.resends >= resends + 2, 'a tick sent again')
     graph.add(late)
     node, complaint = graph.first_failure()
     assert node == late

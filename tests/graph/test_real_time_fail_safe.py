@@ -12,6 +12,7 @@ from geometry_msgs.msg import WrenchStamped
 from rclpy.node import Node
 from rosgraph_msgs.msg import Clock
 from support.in_process_graph import GraphOf, InProcessGraph
+from support.patient_clock import realtime_owner
 from support.processes import START_S, Programs
 from support.runs import plan
 from support.silent_controller import run_until_silent
@@ -21,10 +22,8 @@ from ddct_bringup.run.plan import RunPlan
 from ddct_plant.base.timebase import PERIOD_S, stamp_of_step, step_of_stamp
 from ddct_plant.fail_safe.request_watch import FailSafeSettings
 from ddct_plant.graph.qos import LOOP_QOS, RECORDER_QOS
-from ddct_plant.nodes.driveline_node import DrivelineNode
 from ddct_plant.signals.message_kind import stamp_ns
 from ddct_plant.signals.topics import ACTUATOR_TORQUE, CLOCK, TORQUE_REQUEST
-from ddct_plant.ticks.realtime_owner import RealtimeOwner
 
 FAIL_SAFE = FailSafeSettings()
 HELD_STEPS = round(FAIL_SAFE.request_timeout_s / PERIOD_S)
@@ -94,10 +93,7 @@ def _run_without_a_stall(
             waited_s = run_until_silent(
                 graph, programs, listener, listener.has_come_to, signals, SILENT_AT_STEP
             )
-            driveline = graph.nodes['driveline']
-            assert isinstance(driveline, DrivelineNode)
-            assert isinstance(driveline.owner, RealtimeOwner)
-            lateness_s = driveline.owner.worst_lateness_s
+            lateness_s = realtime_owner(graph).worst_lateness_s
             if lateness_s < STALL_S and all(map(listener.has_torque, range(SILENT_AT_STEP))):
                 return listener
     busy_s = max(lateness_s, waited_s)

@@ -10,7 +10,6 @@ from ddct_bringup.bag.reader import read_bag
 from ddct_controllers.handover.handover_node import HandoverNode
 from ddct_plant.base.timebase import PERIOD_S, stamp_of_step
 from ddct_plant.fail_safe.request_watch import REQUEST_TIMEOUT_S
-from ddct_plant.nodes.driveline_node import DrivelineNode
 from ddct_plant.signals.topics import CLUTCH_TORQUE, ENGINE_TORQUE, OFF_GOING_CLUTCH_TORQUE
 
 SILENT_AT_STEP = 80
@@ -34,9 +33,7 @@ def test_without_its_handover_a_shift_opens_both_clutches_and_no_tie_up_lasts(
     )
     graph = graph_of(run)
     graph.add_all()
-    driveline = graph.nodes['driveline']
-    assert isinstance(driveline, DrivelineNode)
-    assert driveline.plan.clutches == (CLUTCH_TORQUE.name, OFF_GOING_CLUTCH_TORQUE.name)
+    assert graph.driveline.plan.clutches == (CLUTCH_TORQUE.name, OFF_GOING_CLUTCH_TORQUE.name)
     owner = realtime_owner(graph)
     clock = PatientClock(owner)
     graph.spin_until(lambda: owner.step >= SILENT_AT_STEP, 'the handover of the torque')

@@ -21,6 +21,7 @@ from ddct_bringup.run.plan import RunPlan
 from ddct_plant.base.errors import DdctError
 from ddct_plant.graph.node import GraphNode
 from ddct_plant.graph.spin import finish_node, make_executor
+from ddct_plant.nodes.driveline_node import DrivelineNode
 
 CHECK_PERIOD_S = 0.001
 """Period of the checks of a condition while the graph spins, s."""
@@ -107,6 +108,13 @@ class InProcessGraph:
     def wait_for_publisher(self, topic: str, within_s: float) -> None:
         """Spin until `topic` has a publisher, perhaps in another process."""
         self.spin_until(lambda: bool(self._watch.count_publishers(topic)), topic, within_s)
+
+    @property
+    def driveline(self) -> DrivelineNode:
+        """Driveline of the graph, which `add` or `add_all` has built."""
+        node = self.nodes['driveline']
+        assert isinstance(node, DrivelineNode)
+        return node
 
     def spin_until(self, condition: Callable[[], bool], what: str, within_s: float = 30) -> None:
         """Spin until `condition()` holds; fail when it does not in time or a node failed."""

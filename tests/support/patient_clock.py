@@ -6,7 +6,6 @@ import sys
 import time
 
 from ddct_plant.base.timebase import PERIOD_S
-from ddct_plant.nodes.driveline_node import DrivelineNode
 from ddct_plant.ticks.realtime_owner import RealtimeOwner
 from support.in_process_graph import InProcessGraph
 
@@ -49,7 +48,6 @@ class PatientClock:
 
 def realtime_owner(graph: InProcessGraph) -> RealtimeOwner:
     """Return the owner of time of a graph in real time."""
-    driveline = graph.nodes['driveline']
-    assert isinstance(driveline, DrivelineNode)
-    assert isinstance(driveline.owner, RealtimeOwner)
-    return driveline.owner
+    owner = graph.driveline.owner
+    assert isinstance(owner, RealtimeOwner)
+    return owner
