@@ -28,6 +28,20 @@ def test_a_run_leaves_one_bag_with_its_timing_and_nothing_else(
     assert capfd.readouterr().out == f'{out / "ls8"}\n'
 
 
+@pytest.mark.parametrize('scenario', ['thesis', 'upshift'])
+def test_a_real_time_run_in_one_process_prints_its_folder_alone(
+    capfd: pytest.CaptureFixture[str], tmp_path: Path, scenario: str
+) -> None:
+    out = tmp_path / 'runs'
+    arguments = ['--controller', 'pi', '--scenario', scenario, '--clutch', 'stick_slip']
+    arguments += ['--duration', '0.8', '--single-process', '--mode', 'realtime', '--out', str(out)]
+    code = bringup.main(arguments)
+    printed = capfd.readouterr()
+    assert ' (single-process)\n' in printed.err
+    # On a busy machine too many steps are missed; the folder is then that of an invalid run.
+    assert printed.out == (f'{out / "pi"}\n' if code == 0 else '')
+
+
 def test_options_reach_the_bag(tmp_path: Path) -> None:
     out = tmp_path / 'runs'
     arguments = ['--wear-gain', '0.7', '--seed', '3', '--set', 'load.slope_rad=0.05']

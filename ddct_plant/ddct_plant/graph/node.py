@@ -35,9 +35,6 @@ from ddct_plant.signals.topics import (
 )
 from ddct_plant.ticks.stamp_limit import StampLimit
 
-STEADY = Clock(clock_type=ClockType.STEADY_TIME)
-"""Clock of every timer: a ROS clock would wait for simulated time."""
-
 _FOREIGN = ('use_sim_time', 'start_type_description_service', QOS_OVERRIDES)
 """Prefixes of the parameters that rclpy declares itself."""
 
@@ -57,6 +54,13 @@ class GraphNode(Node):
     def __init__(self, name: str, **kwargs: Any) -> None:
         """Declare the shared parameters; raise ParameterError when one cannot be used."""
         super().__init__(name, **kwargs)
+        self.steady_clock = Clock(clock_type=ClockType.STEADY_TIME)
+        """
+        Clock of the node's timers: a ROS clock would wait for simulated time.
+
+        Each node has its own: rclpy prints a warning on standard output about a clock that has
+        the timers of a whole graph.
+        """
         self.settings = declare_settings(self, self.DEFAULTS)
         # Before anything is made that may start a process, which then has the same.
         declare_scheduling(self, lockstep=self.settings.lockstep).apply()
@@ -171,7 +175,7 @@ class GraphNode(Node):
 
     def every(self, period_s: float, callback: Callable[[], None]) -> Timer:
         """Call `callback` every `period_s` of a steady clock; a DdctError in it ends the node."""
-        return self.create_timer(period_s, self.guarded(callback), clock=STEADY)
+        return self.create_timer(period_s, self.guarded(callback), clock=self.steady_clock)
 
     def guarded(self, callback: Callable[..., None]) -> Callable[..., None]:
         """Wrap a callback so that a DdctError ends the node with its one-line reason."""

@@ -22,7 +22,7 @@ from ddct_plant.graph.arguments import (
     require_declared,
     require_ros_arguments,
 )
-from ddct_plant.graph.node import STEADY, GraphNode
+from ddct_plant.graph.node import GraphNode
 from ddct_plant.program.command_line import run_program
 from ddct_plant.program.supervision import announce_exit, beat, ends_at_once, stop_signals
 
@@ -67,7 +67,7 @@ def end_of(nodes: Sequence[GraphNode], stopped: Callable[[], bool]) -> Future:
         if stopped():
             end()
 
-    nodes[0].create_timer(SLICE_S, check, clock=STEADY)
+    nodes[0].create_timer(SLICE_S, check, clock=nodes[0].steady_clock)
     return over
 
 
@@ -117,10 +117,12 @@ def finish_node(executor: Executor, node: GraphNode) -> None:
     if not node.done.done():
         over: Future = Future()
         timer = node.create_timer(
-            LAST_SLICE_S, lambda: over.done() or over.set_result(None), clock=STEADY
+            LAST_SLICE_S,
+            lambda: over.done() or over.set_result(None),
+            clock=node.steady_clock,
         )
         executor.spin_until_future_complete(over, SLICE_S)
-        # In one process these would add up, and rclpy complain of too many timers.
+        # Else it wakes the executor while the other nodes of the process are finished.
         node.destroy_timer(timer)
     node.close()
 

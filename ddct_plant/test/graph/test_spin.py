@@ -54,6 +54,7 @@ class FakeNode:
 
     def __init__(self) -> None:
         self.done = Future()
+        self.steady_clock = None
         self.check: Any = None
 
     def create_timer(self, _period: float, callback: Any, **_options: Any) -> None:

@@ -26,10 +26,10 @@ from bench.peers.bare_chain import (
     spin_driveline,
     wiring_with,
 )
+from rclpy.clock import Clock, ClockType
 from rclpy.task import Future
 
 from ddct_plant.base.timebase import PERIOD_S
-from ddct_plant.graph.node import STEADY
 from ddct_plant.graph.spin import SLICE_S, make_executor
 from ddct_plant.ticks.durations import TickDurations
 
@@ -71,7 +71,7 @@ class PacedDriveline(BareDriveline):
             self.durations.answer(self._answers[topic] - 1)
         if self._grid_from is None and self._answered() == 1:
             self._grid_from = time.monotonic()
-            self.create_timer(PACE_S, self._tick, clock=STEADY)
+            self.create_timer(PACE_S, self._tick, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
     def _tick(self) -> None:
         assert self._grid_from is not None
