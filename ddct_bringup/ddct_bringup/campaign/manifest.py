@@ -9,6 +9,7 @@ from typing import Any
 
 from ddct_bringup.batch.run_batch import MOST_RUNS
 from ddct_bringup.campaign.campaign import Campaign
+from ddct_bringup.campaign.named_files import digest_of
 from ddct_bringup.campaign.scored import are_linear
 from ddct_bringup.campaign.spec import CampaignSpec, spec_of
 from ddct_bringup.digests.code import code_digest
@@ -133,13 +134,13 @@ class Manifest:
 
         Raise DdctError where one of them has changed.
         """
-        campaign = Campaign(self.campaign_spec(folder))
-        if campaign.digest() != self.spec_digest:
+        spec = self.campaign_spec(folder)
+        if digest_of(spec) != self.spec_digest:  # first: making the campaign runs Python files
             raise DdctError(
                 f'{out}: a scenario, profile or controller file of its specification has changed '
                 'since: put the old one back'
             )
-        return campaign
+        return Campaign(spec)
 
     def require_same(self, other: 'Manifest', out: Path) -> None:
         """Raise DdctError with the differences of another campaign from this one, in `out`."""

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from ddct_bringup.campaign.distributions import Distribution
-from ddct_bringup.campaign.keys import COMMON, CONTROLLERS
+from ddct_bringup.campaign.keys import COMMON, CONTROLLERS, SCENARIO
 from ddct_bringup.campaign.specification.parts import (
     FLOOR_SAMPLES,
     FLOORS,
@@ -25,6 +25,7 @@ from ddct_bringup.campaign.specification.parts import (
     require_apart,
     samples_of,
 )
+from ddct_controllers.from_file.controller_file import is_controller_file
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import Option
 from ddct_plant.files.input_file import SCHEMA_KEY, located, require_schema_version, user_text
@@ -69,6 +70,19 @@ class CampaignSpec:
     def values_of(self, key: str) -> tuple[Any, ...]:
         """Return the possible values of a key; none for a distribution of numbers."""
         return self.grid[key] if key in self.grid else self.vary[key].values
+
+    @property
+    def chosen(self) -> list[str]:
+        """Names of the controllers, or the paths of their files."""
+        return [
+            str(self.folder / each) if is_controller_file(each) else each
+            for each in self.controllers
+        ]
+
+    @property
+    def scenarios(self) -> tuple[str, ...]:
+        """Names of the scenarios, or their files as the specification names them."""
+        return self.values_of(SCENARIO) if SCENARIO in self.keys else (self.common[SCENARIO],)
 
     def scenario_file(self, name: str) -> ScenarioFile:
         """Return a scenario that a specification names; raise DdctError for an invalid one."""

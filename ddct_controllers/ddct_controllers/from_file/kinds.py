@@ -49,13 +49,14 @@ def load_spec(file: str, find: Find) -> ControllerSpec[Controller]:
         return python_spec(file)
     source = read_controller_file(file)
     with source.located():
-        kind = _kind(source)
+        kind = kind_of(source)
         load = KINDS.get(kind) or partial(with_options_spec, find)
         spec = load(source)
         return replace(spec, digests=source.digests, written_in=source.place_of(kind))
 
 
-def _kind(file: ControllerFile) -> str:
+def kind_of(file: ControllerFile) -> str:
+    """Return the key of a file's kind; raise ParameterError where there is not one."""
     choices = ', '.join(_ALL)
     kinds = [key for key in mapping('', file.content) if key in _ALL]
     if len(kinds) == 1:

@@ -2,9 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Another controller with values of its options, in a file; `ddct tune` writes such files."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from ddct_controllers.from_file.controller_file import (
     YAML_SUFFIXES,
@@ -33,10 +34,9 @@ def with_options_spec(find: Find, file: ControllerFile) -> ControllerSpec[Contro
     A file is relative to this one. The options of the other controller stay options, with these
     values as their defaults.
     """
-    content = mapping(KIND, file.keys(KIND)[KIND], (_CHOSEN, _OPTIONS))
-    spec = find(_chosen(file.path, content[_CHOSEN]))
+    spec = find(base_of(file))
     prefix = f'{KIND}.{_OPTIONS}'
-    given = mapping(prefix, content[_OPTIONS])
+    given = mapping(prefix, _content(file)[_OPTIONS])
     known = spec.options or {}
     require_known(given, known, 'option', f'{prefix}.')
     options = {
@@ -45,13 +45,27 @@ def with_options_spec(find: Find, file: ControllerFile) -> ControllerSpec[Contro
         else option
         for name, option in known.items()
     }
-    file.digests.update({f'{_DIGEST}{key}': value for key, value in spec.digests.items()})
+    add_base_digests(file, spec.digests)
     return ControllerSpec(file.name, spec.make, options, spec.computed_from)
+
+
+def base_of(file: ControllerFile) -> str:
+    """Return the name, or the path of the file, of the other controller; raise DdctError."""
+    return _chosen(file.path, _content(file)[_CHOSEN])
+
+
+def add_base_digests(file: ControllerFile, digests: Mapping[str, str]) -> None:
+    """Add the digests of the other controller's files to those of a file."""
+    file.digests.update({f'{_DIGEST}{key}': value for key, value in digests.items()})
 
 
 def with_options_text(name: str, controller: str, options: dict[str, float | int]) -> str:
     """Return the text of such a file."""
     return dump_yaml({'name': name, KIND: {_CHOSEN: controller, _OPTIONS: options}})
+
+
+def _content(file: ControllerFile) -> Mapping[str, Any]:
+    return mapping(KIND, file.keys(KIND)[KIND], (_CHOSEN, _OPTIONS))
 
 
 def _chosen(file: Path, chosen: object) -> str:

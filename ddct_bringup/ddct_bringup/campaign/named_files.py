@@ -1,0 +1,69 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""The files that a specification names: their places, and the digest of it and of all of them."""
+
+import hashlib
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from ddct_bringup.campaign.keys import FILE_KEY
+from ddct_bringup.campaign.spec import CampaignSpec
+from ddct_controllers.from_file.digests import controller_digests
+from ddct_plant.base.errors import DdctError
+from ddct_plant.scenario.file import is_packaged
+
+_CSV = 'csv'
+
+
+def placed(key: str, value: Any, place: Callable[[str], str]) -> Any:
+    """Return the value of a varied key; if it names a file, with the `place` of that."""
+    if type(value) in (float, int):
+        return value
+    if key.endswith(FILE_KEY) and isinstance(value, str):
+        return place(value)
+    if isinstance(value, Mapping) and isinstance(value.get(_CSV), str):
+        return {**value, _CSV: place(value[_CSV])}
+    return value
+
+
+def digest_of(spec: CampaignSpec) -> str:
+    """
+    Return a hash of a specification and of the files that it names.
+
+    Nothing in these files runs. Raise DdctError for one that cannot be read.
+    """
+    digest = hashlib.sha256(spec.text().encode())
+    for path in (*_of_scenarios(spec), *_of_varied_keys(spec)):
+        try:
+            digest.update(hashlib.sha256(path.read_bytes()).digest())
+        except OSError as error:
+            raise DdctError(f'cannot be read ({error.strerror})', place=path) from error
+    for chosen in spec.chosen:
+        digest.update(repr(sorted(controller_digests(chosen).items())).encode())
+    return digest.hexdigest()
+
+
+def _of_scenarios(spec: CampaignSpec) -> Iterator[Path]:
+    """Yield the scenarios that are files of the user, and the profiles that they name."""
+    for name in spec.scenarios:
+        if not is_packaged(name):
+            file = spec.scenario_file(name)
+            yield Path(file.name)
+            for section in file.content.values():
+                if isinstance(section, Mapping) and _CSV in section:
+                    yield Path(file.name).parent / section[_CSV]
+
+
+def _of_varied_keys(spec: CampaignSpec) -> Iterator[Path]:
+    """Yield the files that values of varied keys name, besides scenarios."""
+    found: list[str] = []
+
+    def noted(name: str) -> str:
+        found.append(name)
+        return name
+
+    for key in spec.keys:
+        for value in spec.values_of(key):
+            placed(key, value, noted)
+    yield from (spec.folder / name for name in found)

@@ -1,0 +1,69 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""The digest of a campaign is that of all files it names; they do not run before it is right."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+from refusals import refused
+from verified import CONTROLLER
+
+from ddct_bringup.campaign.campaign import Campaign
+from ddct_bringup.campaign.manifest import Manifest
+from ddct_bringup.campaign.spec import spec_of
+from ddct_bringup.verdict.limits import packaged_limits
+from ddct_plant.base.errors import DdctError
+
+PROFILE = {'csv': 'a.csv', 'time': 't', 'value': 'c', 'unit': 'N m'}
+FILES = {
+    'own.yaml': 'name: own\nengine: {csv: a.csv, time: t, value: c, unit: N m}\n',
+    'a.csv': 't,c\n0,97\n',
+    'b.csv': 't,c\n0,98\n',
+    'tuned.yaml': 'name: tuned\nwith_options: {controller: line.yaml, options: {}}\n',
+    'line.yaml': 'name: line\nunits: {input: rpm, output: N m}\n'
+    'polynomial: {num: [-0.1, -1.0], den: [1, 0]}\n',
+    'mine.py': CONTROLLER,
+    'outer.yaml': 'name: outer\nwith_options: {controller: mine.py, options: {}}\n',
+}
+
+
+def campaign(folder: Path, **changes: Any) -> Campaign:
+    """Return a campaign of the files, which are written into a folder."""
+    for name, text in FILES.items():
+        (folder / name).write_text(text, encoding='utf-8')
+    content = {
+        'controllers': ['pi', 'tuned.yaml'],
+        'grid': {
+            'scenario': ['thesis', 'own.yaml'],
+            'brake.csv': ['b.csv'],
+            'engine': [PROFILE],
+        },
+    }
+    return Campaign(spec_of({**content, **changes}, folder))
+
+
+def test_the_digest_is_that_of_earlier_campaigns(tmp_path: Path) -> None:
+    expected = 'a1609dd39847ae615c2e7859cd3c690bd53c35d59c575d9948abf43f75984778'
+    assert campaign(tmp_path).digest() == expected
+
+
+@pytest.mark.parametrize('file', ['own.yaml', 'a.csv', 'b.csv', 'tuned.yaml', 'line.yaml'])
+def test_any_changed_file_changes_it(tmp_path: Path, file: str) -> None:
+    made = campaign(tmp_path)
+    before = made.digest()
+    (tmp_path / file).write_text(f'{FILES[file]}\n', encoding='utf-8')
+    assert made.digest() != before
+
+
+@pytest.mark.parametrize('controller', ['mine.py', 'outer.yaml'])
+def test_a_changed_python_file_is_refused_before_it_runs(tmp_path: Path, controller: str) -> None:
+    made = campaign(tmp_path, controllers=[controller])
+    manifest = Manifest.of(made, packaged_limits())
+    ran = tmp_path / 'ran'
+    other = f'{CONTROLLER}\nopen({str(ran)!r}, "w").close()\n'
+    (tmp_path / 'mine.py').write_text(other, encoding='utf-8')
+    with refused(DdctError) as caught:
+        manifest.campaign(tmp_path / 'out')
+    assert 'has changed since' in str(caught.value)
+    assert not ran.exists(), 'code of another file has run'
