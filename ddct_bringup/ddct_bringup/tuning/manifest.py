@@ -83,6 +83,7 @@ class TuningManifest:
             files or Path(self.controller['folder']),
             self.controller['digests'],
         )
+        judged.require_unchanged()
         spec: TuningSpec = tuning_spec_of(
             self.spec, files or Path(self.folder), controller_spec(judged.path)
         )

@@ -98,6 +98,7 @@ def _verified_cases(
     known = Manifest.read(request.folder)
     place = request.files or Path(known.folder)
     judged = Judged(entry.name, entry.chosen, place, entry.digests)
+    judged.require_unchanged()
     campaigns = campaigns_of(judged, manifest.run_cases, entry.held_out_seed)
     comparison = Comparison()
     found = campaigns.get(request.folder.name)

@@ -3,21 +3,15 @@
 """Plan the repetition of a recorded run: its settings and its controller, unchanged."""
 
 import os
-from collections.abc import Mapping
 from pathlib import Path
 
 from ddct_bringup.bag.recording import Recording
+from ddct_bringup.digests.controllers import require_same_files
 from ddct_bringup.digests.digest_file import RunDigests
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.verification.request import VerificationRequest
-from ddct_controllers.from_file.controller_file import (
-    FILE_DIGEST,
-    is_controller_file,
-    text_digest,
-)
-from ddct_controllers.registry import controller_spec
+from ddct_controllers.from_file.controller_file import is_controller_file
 from ddct_plant.base.errors import DdctError
-from ddct_plant.files.input_file import user_text
 
 
 def plan_of(request: VerificationRequest, recording: Recording, digests: RunDigests) -> RunPlan:
@@ -46,24 +40,9 @@ def controller_of(request: VerificationRequest, digests: RunDigests) -> str:
             'it with a controller file'
         )
     if is_controller_file(chosen):
-        file = _found(request, Path(chosen))
-        chosen = str(file)
-        recorded = {FILE_DIGEST: digests.controller_files.get(FILE_DIGEST, '')}
-        # First: what is written in a Python file runs when it is loaded.
-        _require_same(chosen, recorded, {FILE_DIGEST: text_digest(user_text(file))})
-    _require_same(chosen, digests.controller_files, dict(controller_spec(chosen).digests))
+        chosen = str(_found(request, Path(chosen)))
+    require_same_files(chosen, digests.controller_files)
     return chosen
-
-
-def _require_same(chosen: str, recorded: Mapping[str, str], files: Mapping[str, str]) -> None:
-    """Raise DdctError unless the files of a controller have the recorded digests."""
-    for key, digest in recorded.items():
-        if files.get(key) != digest:
-            what = 'has changed since' if key in files else 'is gone'
-            raise DdctError(
-                f'controller {chosen}: {key.removesuffix("_sha256")} {what}: put the old one '
-                'back, or name its folder with --files'
-            )
 
 
 def _found(request: VerificationRequest, file: Path) -> Path:

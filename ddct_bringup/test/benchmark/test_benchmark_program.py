@@ -161,6 +161,19 @@ def test_verify_computes_all_of_it_again(
     assert set(found.values()) == {'same_bits'}
 
 
+def test_a_changed_controller_is_refused_before_it_runs(
+    place: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    ran = tmp_path / 'ran'
+    other = f'open({str(ran)!r}, "w").close()\n'
+    (tmp_path / 'remembers.py').write_text(other, encoding='utf-8')
+    options = ('--workers', '1', '--files', str(tmp_path))
+    code, _, errors = verified(place / 'first', capfd, *options)
+    assert code == 1
+    assert 'controller_file has changed since' in errors
+    assert not ran.exists(), 'code of another file has run'
+
+
 def _seed(content: Any) -> None:
     content['controllers'][0]['held_out_seed'] += 1
 

@@ -26,6 +26,7 @@ from ddct_bringup.bag.trajectory_bag import write_trajectory
 from ddct_bringup.digests.digest_file import DIGESTS, read_digests
 from ddct_bringup.digests.files import digests_of_files
 from ddct_bringup.programs import compare, report, score, verify
+from ddct_controllers.from_file.with_options import with_options_text
 
 pytestmark = pytest.mark.slow
 
@@ -260,6 +261,23 @@ def test_a_controller_file_is_found_beside_the_folder_or_by_its_option(
     code, _, errors = verified(moved, capfd)
     assert code == 1
     assert 'has changed since: put the old one back' in errors
+    assert not ran.exists(), 'code of another file has run'
+
+
+def test_a_changed_file_behind_another_one_is_refused_before_it_runs(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / 'mine.py').write_text(CONTROLLER, encoding='utf-8')
+    outer = tmp_path / 'outer.yaml'
+    outer.write_text(with_options_text('outer', 'mine.py', {}), encoding='utf-8')
+    runs = make_runs(tmp_path / 'runs', str(outer))
+    assert verified(runs, capfd)[0] == 0
+    ran = tmp_path / 'ran'
+    other = f'{CONTROLLER}\nopen({str(ran)!r}, "w").close()\n'
+    (tmp_path / 'mine.py').write_text(other, encoding='utf-8')
+    code, _, errors = verified(runs, capfd)
+    assert code == 1
+    assert 'base_controller_file has changed since' in errors
     assert not ran.exists(), 'code of another file has run'
 
 

@@ -7,10 +7,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from python_controllers import IMPORTS, PROPORTIONAL
 from small_tuning import made_tuning
 from verified import copied, edit_json_with_digest, edit_with_digest
 
 from ddct_bringup.programs.verify import main as verify
+from ddct_controllers.from_file.with_options import with_options_text
 
 pytestmark = pytest.mark.slow
 
@@ -64,3 +66,24 @@ def test_every_edit_with_its_digest_is_found(finished: Path, tmp_path: Path) -> 
         *edited,
         'trials.json, runs.parquet',
     }
+
+
+def test_a_changed_controller_is_refused_before_it_runs(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / 'mine.py').write_text(IMPORTS + PROPORTIONAL, encoding='utf-8')
+    outer = tmp_path / 'outer.yaml'
+    outer.write_text(with_options_text('outer', 'mine.py', {}), encoding='utf-8')
+    folder = made_tuning(
+        tmp_path / 'out',
+        controller=str(outer),
+        parameters={'gain': {'low': 0.05, 'high': 0.5}},
+        constraints={'engaged': {'at_least': 0.0}},
+        trials=2,
+    )
+    ran = tmp_path / 'ran'
+    other = f'open({str(ran)!r}, "w").close()\n'
+    (tmp_path / 'mine.py').write_text(other, encoding='utf-8')
+    assert verify([str(folder), '--workers', '1']) == 1
+    assert 'base_controller_file has changed since' in capfd.readouterr().err
+    assert not ran.exists(), 'code of another file has run'
