@@ -16,6 +16,8 @@ from ddct_plant.scenario.settings import RunSettings
 SCENARIO, MODE, CONTROLLERS = 'scenario', 'mode', 'controllers'
 COMMON = (SCENARIO, 'architecture', 'clutch')
 """Keys that are given for all runs, or varied."""
+HANDOVER = 'handover'
+"""Key of the handover of a gear shift, by its name or the file of its code."""
 FILE_KEY = '.csv'
 """Suffix of the key of a file with a profile."""
 

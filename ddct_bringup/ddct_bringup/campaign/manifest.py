@@ -137,8 +137,8 @@ class Manifest:
         spec = self.campaign_spec(folder)
         if digest_of(spec) != self.spec_digest:  # first: making the campaign runs Python files
             raise DdctError(
-                f'{out}: a scenario, profile or controller file of its specification has changed '
-                'since: put the old one back'
+                f'{out}: a scenario, profile, controller or handover file of its specification '
+                'has changed since: put the old one back'
             )
         return Campaign(spec)
 

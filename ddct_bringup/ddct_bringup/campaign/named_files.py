@@ -7,11 +7,12 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from ddct_bringup.campaign.keys import FILE_KEY
+from ddct_bringup.campaign.keys import FILE_KEY, HANDOVER
 from ddct_bringup.campaign.spec import CampaignSpec
 from ddct_controllers.from_file.digests import controller_digests
 from ddct_plant.base.errors import DdctError
 from ddct_plant.scenario.file import is_packaged
+from ddct_plant.scenario.settings import is_handover_file
 
 _CSV = 'csv'
 
@@ -20,8 +21,9 @@ def placed(key: str, value: Any, place: Callable[[str], str]) -> Any:
     """Return the value of a varied key; if it names a file, with the `place` of that."""
     if type(value) in (float, int):
         return value
-    if key.endswith(FILE_KEY) and isinstance(value, str):
-        return place(value)
+    if isinstance(value, str):
+        is_file = key.endswith(FILE_KEY) or (key == HANDOVER and is_handover_file(value))
+        return place(value) if is_file else value
     if isinstance(value, Mapping) and isinstance(value.get(_CSV), str):
         return {**value, _CSV: place(value[_CSV])}
     return value

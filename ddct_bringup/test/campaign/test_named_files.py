@@ -6,16 +6,31 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from in_this_process import in_this_process
 from refusals import refused
 from verified import CONTROLLER
 
 from ddct_bringup.campaign.campaign import Campaign
+from ddct_bringup.campaign.conduct import carry_out
 from ddct_bringup.campaign.manifest import Manifest
 from ddct_bringup.campaign.spec import spec_of
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.base.errors import DdctError
 
 PROFILE = {'csv': 'a.csv', 'time': 't', 'value': 'c', 'unit': 'N m'}
+HANDOVER = """\
+from ddct_controllers.handover.laws import TimedHandover
+
+
+class Mine(TimedHandover):
+    pass
+"""
+SHIFT: dict[str, Any] = {
+    'controllers': ['pi'],
+    'scenario': 'upshift',
+    'clutch': 'stick_slip',
+    'grid': {'handover': ['timed', 'timed.py'], 'duration_s': [1.0]},
+}
 FILES = {
     'own.yaml': 'name: own\nengine: {csv: a.csv, time: t, value: c, unit: N m}\n',
     'a.csv': 't,c\n0,97\n',
@@ -24,6 +39,7 @@ FILES = {
     'line.yaml': 'name: line\nunits: {input: rpm, output: N m}\n'
     'polynomial: {num: [-0.1, -1.0], den: [1, 0]}\n',
     'mine.py': CONTROLLER,
+    'timed.py': HANDOVER,
     'outer.yaml': 'name: outer\nwith_options: {controller: mine.py, options: {}}\n',
 }
 
@@ -54,6 +70,36 @@ def test_any_changed_file_changes_it(tmp_path: Path, file: str) -> None:
     before = made.digest()
     (tmp_path / file).write_text(f'{FILES[file]}\n', encoding='utf-8')
     assert made.digest() != before
+
+
+def test_a_handover_file_is_relative_to_the_specification(tmp_path: Path) -> None:
+    made = campaign(tmp_path, **SHIFT)
+    named = [made.run(case).settings.handover for case in range(2)]
+    assert named == ['timed', str(tmp_path / 'timed.py')]
+    assert [made.run(case).varied['handover'] for case in range(2)] == ['timed', 'timed.py']
+    drawn = {'handover': {'distribution': 'choice', 'values': ['timed.py']}}
+    grid, random = {'duration_s': [1.0]}, {'samples': 1, 'vary': drawn}
+    made = campaign(tmp_path, **{**SHIFT, 'grid': grid, 'random': random})
+    assert made.run(0).settings.handover == named[1]
+
+
+def test_a_changed_handover_is_refused_before_it_runs(tmp_path: Path) -> None:
+    manifest = Manifest.of(campaign(tmp_path, **SHIFT), packaged_limits())
+    assert manifest.campaign(tmp_path / 'out').runs == 2
+    (tmp_path / 'timed.py').write_text(f'{HANDOVER}\n', encoding='utf-8')
+    with refused(DdctError) as caught:
+        manifest.campaign(tmp_path / 'out')
+    assert 'has changed since' in str(caught.value)
+
+
+def test_a_campaign_is_not_resumed_with_a_changed_handover(tmp_path: Path) -> None:
+    made = campaign(tmp_path, **SHIFT)
+    out = tmp_path / 'out'
+    with in_this_process():
+        carry_out(made, packaged_limits(), out)
+        (tmp_path / 'timed.py').write_text(f'{HANDOVER}\n', encoding='utf-8')
+        with refused(DdctError, key='specification'):
+            carry_out(Campaign(made.spec), packaged_limits(), out, resume=True)
 
 
 @pytest.mark.parametrize('controller', ['mine.py', 'outer.yaml'])

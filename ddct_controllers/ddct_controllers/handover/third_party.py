@@ -6,7 +6,7 @@ import importlib.metadata
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from ddct_controllers.from_file.python_file import SUFFIX, the_one_class
+from ddct_controllers.from_file.python_file import the_one_class
 from ddct_controllers.handover.interface import Handover, HandoverCommand, HandoverMeasurement
 from ddct_controllers.places import place_of_error
 from ddct_plant.base.errors import (
@@ -16,7 +16,7 @@ from ddct_plant.base.errors import (
     ParameterError,
     require_number,
 )
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import RunSettings, is_handover_file
 from ddct_plant.signals.handover_share import LEAST_DEVIATION
 
 ENTRY_POINT_GROUP = 'ddct.handovers'
@@ -33,7 +33,7 @@ def third_party_handover(settings: RunSettings, own: Iterable[str]) -> Handover:
     """
     name = settings.handover
     made: Callable[[RunSettings], Any]
-    if name.endswith(SUFFIX):
+    if is_handover_file(name):
         made = the_one_class(name, Handover, _PAGE)
     else:
         made = _entry_point(name, own)

@@ -16,8 +16,14 @@ ARCHITECTURES = ('base', 'feedforward', 'feedforward_tanh', 'detailed')
 """Names of the control architectures: those of Section 1.6, and CRF's detailed model (1.4)."""
 MODES = ('lockstep', 'realtime')
 """Modes of a run: lock-step waits for every reply; real time steps at 100 Hz and counts misses."""
+_PYTHON = '.py'
 OF_SHIFTS = ('off_going_wear_gain', 'handover')
 """Settings that only a gear shift has."""
+
+
+def is_handover_file(handover: str) -> bool:
+    """Return whether a handover is given by the path of a Python file, whose code then runs."""
+    return handover.endswith(_PYTHON)
 
 
 @dataclass(frozen=True)
@@ -93,7 +99,7 @@ class RunSettings(OptionGroup):
     @property
     def handover_name(self) -> str:
         """Name of the handover in bags and tables: of a file its name without the ending."""
-        return self.handover.rpartition('/')[2].removesuffix('.py')
+        return self.handover.rpartition('/')[2].removesuffix(_PYTHON)
 
     def kind(self, *, two_input: bool = False) -> RunKind:
         """Return the kind of the run, which decides its topics; `two_input` if it commands C_m."""
