@@ -10,6 +10,7 @@ from typing import Any, TypedDict
 from ddct_plant.base.errors import DdctError, ParameterError, require_name, require_number
 from ddct_plant.base.timebase import steps_in
 from ddct_plant.files.input_file import parse_json
+from ddct_plant.scenario.settings import is_handover_file
 from ddct_plant.signals.signal import RunKind
 from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import (
@@ -77,6 +78,11 @@ class RunFacts(RunConditions):
         super().__post_init__()
         if self.handover is not None:
             require_name('handover', self.handover)
+            if is_handover_file(self.handover):  # a bag is data alone: its facts run no file
+                raise ParameterError(
+                    f'handover is {self.handover!r}, a file: give a name without .py',
+                    key='handover',
+                )
 
     @property
     def of_shift(self) -> ShiftOptions:

@@ -36,6 +36,19 @@ class RunDigests:
     """
     controller_files: Mapping[str, str]
     """SHA-256 of the files that the controller is made of, by their key on `run_info`."""
+    handover: str | None = None
+    """Path of the handover's Python file relative to the folder; None where it has no file."""
+    handover_sha256: str | None = None
+    """SHA-256 of that file."""
+
+    def entry(self) -> dict[str, Any]:
+        """Return the digests as JSON; a run without a handover file has no keys of one."""
+        content = asdict(self)
+        return {
+            key: content[key]
+            for key in content
+            if not key.startswith('handover') or content[key] is not None
+        }
 
 
 @dataclass(frozen=True)
@@ -57,7 +70,8 @@ class Digests:
 
     def text(self) -> str:
         """Return the text of the file; its last key is the SHA-256 of the text without it."""
-        content = asdict(self)
+        runs = {name: run.entry() for name, run in self.runs.items()}
+        content = {**asdict(self), 'runs': runs}
         return _text(
             {**content, 'own_digest': hashlib.sha256(_text(content).encode()).hexdigest()}
         )

@@ -24,6 +24,7 @@ from ddct_bringup.run.plan import RunPlan
 from ddct_controllers.from_file.controller_file import is_controller_file
 from ddct_controllers.registry import controller_spec
 from ddct_plant.scenario.file import scenario_digest
+from ddct_plant.scenario.settings import is_handover_file
 
 ITSELF = '.'
 """Name of the bag of a run's own folder."""
@@ -105,4 +106,9 @@ def _run_digests(folder: Path, plan: RunPlan) -> RunDigests:
     if isinstance(plan.controller, str):
         is_file = is_controller_file(plan.controller)
         chosen = os.path.relpath(plan.controller, folder) if is_file else plan.controller
-    return RunDigests(scenario_digest(plan.settings.scenario), chosen, dict(spec.digests))
+    digests = RunDigests(scenario_digest(plan.settings.scenario), chosen, dict(spec.digests))
+    handover = plan.settings.handover
+    if not is_handover_file(handover):
+        return digests
+    place, digest = os.path.relpath(handover, folder), file_digest(Path(handover))
+    return replace(digests, handover=place, handover_sha256=digest)

@@ -97,7 +97,7 @@ def _parser() -> argparse.ArgumentParser:
         '--files',
         metavar='DIR',
         type=Path,
-        help='folder of the controller files and scenarios that the result names, if moved',
+        help='folder of the controller, handover and scenario files of the result, if moved',
     )
     parser.add_argument(
         '--workers', type=int, metavar='N', help='processes of a campaign; default: one per core'

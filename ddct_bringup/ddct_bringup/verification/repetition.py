@@ -3,11 +3,12 @@
 """Plan the repetition of a recorded run: its settings and its controller, unchanged."""
 
 import os
+from dataclasses import replace
 from pathlib import Path
 
 from ddct_bringup.bag.recording import Recording
 from ddct_bringup.digests.controllers import require_same_files
-from ddct_bringup.digests.digest_file import RunDigests
+from ddct_bringup.digests.digest_file import RunDigests, file_digest
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.verification.request import VerificationRequest
 from ddct_controllers.from_file.controller_file import is_controller_file
@@ -23,6 +24,8 @@ def plan_of(request: VerificationRequest, recording: Recording, digests: RunDige
             f'this version cannot build its settings; it was recorded by version {version}: '
             'verify it with that one'
         )
+    if digests.handover is not None:
+        settings = replace(settings, handover=_handover_of(request, digests.handover, digests))
     plan = RunPlan(settings, controller_of(request, digests), 'headless')
     if plan.name != recording.facts.controller:
         raise DdctError(
@@ -40,13 +43,24 @@ def controller_of(request: VerificationRequest, digests: RunDigests) -> str:
             'it with a controller file'
         )
     if is_controller_file(chosen):
-        chosen = str(_found(request, Path(chosen)))
+        chosen = str(_found(request, 'controller', Path(chosen)))
     require_same_files(chosen, digests.controller_files)
     return chosen
 
 
-def _found(request: VerificationRequest, file: Path) -> Path:
-    """Return the path of a controller file; raise DdctError where it is gone."""
+def _handover_of(request: VerificationRequest, named: str, digests: RunDigests) -> str:
+    """Return the path of a run's handover file; raise DdctError unless it is the same."""
+    file = _found(request, 'handover', Path(named))
+    if file_digest(file) != digests.handover_sha256:  # first: making the plan runs the file
+        raise DdctError(
+            f'handover {file}: the file has changed since: put the old one back, or name its '
+            'folder with --files'
+        )
+    return str(file)
+
+
+def _found(request: VerificationRequest, what: str, file: Path) -> Path:
+    """Return the path of the file of a controller or a handover; raise DdctError if it is gone."""
     places = [Path(os.path.normpath(request.folder / file))]
     if request.files:
         places.insert(0, request.files / file.name)
@@ -54,5 +68,5 @@ def _found(request: VerificationRequest, file: Path) -> Path:
         if place.is_file():
             return place
     raise DdctError(
-        f'the controller file {places[0]} is gone: put it back, or name its folder with --files'
+        f'the {what} file {places[0]} is gone: put it back, or name its folder with --files'
     )

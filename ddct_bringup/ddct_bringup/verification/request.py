@@ -20,7 +20,7 @@ class VerificationRequest:
     limits: Limits
     """Limits by which the scores are judged."""
     files: Path | None = None
-    """Folder with the controller files and scenarios of the result, if they were moved."""
+    """Folder with the controller, handover and scenario files of the result, if moved."""
     workers: int | None = None
     """Number of processes for a campaign; None for one per core."""
 

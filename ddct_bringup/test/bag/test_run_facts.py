@@ -40,6 +40,14 @@ def test_a_missing_fact_is_named(name):
         RunFacts.from_custom_data(custom_data)
 
 
+def test_a_handover_of_a_bag_is_a_name_and_no_file_that_would_run():
+    custom_data = {**FACTS.to_custom_data(), 'off_going_wear_gain': '1.0'}
+    assert RunFacts.from_custom_data({**custom_data, 'handover': 'mine'}).handover == 'mine'
+    for file in ('mine.py', '../mine.py'):
+        with refused(DdctError, 'handover'):
+            RunFacts.from_custom_data({**custom_data, 'handover': file})
+
+
 def test_the_largest_seed_comes_back():
     facts = dataclasses.replace(FACTS, seed=2**31 - 1)
     assert RunFacts.from_custom_data(facts.to_custom_data()) == facts

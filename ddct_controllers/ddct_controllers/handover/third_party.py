@@ -4,6 +4,7 @@
 
 import importlib.metadata
 from collections.abc import Callable, Iterable
+from pathlib import Path
 from typing import Any
 
 from ddct_controllers.from_file.python_file import the_one_class
@@ -75,7 +76,8 @@ class _Checked(Handover):
 
     def __init__(self, settings: RunSettings, handover: Handover) -> None:
         super().__init__(settings)
-        self._name, self._handover = settings.handover, handover
+        # Without the folder: a repetition elsewhere fails with the same reason.
+        self._name, self._handover = Path(settings.handover).name, handover
 
     def update(self, measurement: HandoverMeasurement) -> HandoverCommand:
         """Return its command; raise DdctError for a failure, or for values out of range."""
