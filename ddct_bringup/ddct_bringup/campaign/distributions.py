@@ -11,6 +11,8 @@ import numpy as np
 import scipy
 
 KIND, LOW, HIGH, STEP, CHOICE = 'distribution', 'low', 'high', 'step', 'choice'
+VALUES = 'values'
+"""Key of the values of `CHOICE`."""
 Numbers = Mapping[str, float]
 _DIGITS = 12
 """Decimals of a value that is rounded to a step: 0.035, not 0.035000000000000003."""

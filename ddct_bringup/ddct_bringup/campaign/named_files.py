@@ -7,8 +7,10 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from ddct_bringup.campaign.keys import FILE_KEY, HANDOVER
+from ddct_bringup.campaign.distributions import VALUES
+from ddct_bringup.campaign.keys import FILE_KEY, HANDOVER, SCENARIO
 from ddct_bringup.campaign.spec import CampaignSpec
+from ddct_bringup.campaign.specification.parts import GRID, RANDOM, VARY
 from ddct_controllers.from_file.digests import controller_digests
 from ddct_plant.base.errors import DdctError
 from ddct_plant.scenario.file import is_packaged
@@ -27,6 +29,33 @@ def placed(key: str, value: Any, place: Callable[[str], str]) -> Any:
     if isinstance(value, Mapping) and isinstance(value.get(_CSV), str):
         return {**value, _CSV: place(value[_CSV])}
     return value
+
+
+def with_places(content: Mapping[str, Any], place: Callable[[str], str]) -> dict[str, Any]:
+    """Return a valid specification with the `place` of each file that it names for its cases."""
+
+    def at_place(key: str, value: Any) -> Any:
+        if key == SCENARIO:
+            return value if is_packaged(value) else place(value)
+        return placed(key, value, place)
+
+    def described_at_place(key: str, described: Mapping[str, Any]) -> Mapping[str, Any]:
+        if VALUES not in described:
+            return described
+        return {**described, VALUES: [at_place(key, value) for value in described[VALUES]]}
+
+    found = dict(content)
+    if SCENARIO in found:
+        found[SCENARIO] = at_place(SCENARIO, found[SCENARIO])
+    if GRID in found:
+        found[GRID] = {
+            key: [at_place(key, value) for value in values] for key, values in found[GRID].items()
+        }
+    if RANDOM in found:
+        vary = found[RANDOM][VARY]
+        described = {key: described_at_place(key, each) for key, each in vary.items()}
+        found[RANDOM] = {**found[RANDOM], VARY: described}
+    return found
 
 
 def digest_of(spec: CampaignSpec) -> str:

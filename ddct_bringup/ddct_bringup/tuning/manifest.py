@@ -3,11 +3,13 @@
 """`tuning.json`: the inputs of a tuning, used to go on with it and to repeat it."""
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass, fields, replace
 from pathlib import Path
 from typing import Any
 
 from ddct_bringup.benchmark.judged import Judged
+from ddct_bringup.campaign.keys import CONTROLLERS
+from ddct_bringup.campaign.named_files import digest_of
 from ddct_bringup.digests.code import code_digest
 from ddct_bringup.digests.manifests import manifest_content, require_same_inputs
 from ddct_bringup.tuning.search import require_optuna
@@ -15,6 +17,7 @@ from ddct_bringup.tuning.specification.spec import TuningSpec, tuning_spec_of
 from ddct_bringup.tuning.tuning import Tuning
 from ddct_bringup.verdict.limits import Limits
 from ddct_controllers.registry import controller_spec
+from ddct_plant.base.errors import DdctError
 from ddct_plant.files.output_file import write_json
 from ddct_plant.program.command_line import package_version
 
@@ -77,17 +80,37 @@ class TuningManifest:
 
     def tuning(self, limits: Limits, files: Path | None = None) -> Tuning:
         """Return the tuning; its files are in `files` if they were moved. Raise DdctError."""
-        judged = Judged(
-            self.controller['name'],
-            self.controller['chosen'],
-            files or Path(self.controller['folder']),
-            self.controller['digests'],
-        )
+        judged = self._judged(files)
         judged.require_unchanged()
         spec: TuningSpec = tuning_spec_of(
             self.spec, files or Path(self.folder), controller_spec(judged.path)
         )
-        return Tuning(judged, spec, limits)
+        tuning = Tuning(judged, spec, limits)
+        # Cases of a benchmark name no files, and may be others in another release.
+        if not spec.development.scenarios and self.digest_of_cases(tuning) != self.campaign_digest:
+            raise DdctError(
+                'a scenario, profile or handover file of its cases has changed since: put the old '
+                'one back',
+                key='campaign_digest',
+                place=tuning.spec.folder,
+            )
+        return tuning
+
+    def digest_of_cases(self, tuning: Tuning) -> str:
+        """Return the present `campaign_digest`, of a tuning whose files may have been moved."""
+        spec = tuning.campaign.spec
+        # The specification has the path of the controller's file, which counts as recorded.
+        recorded = {**spec.content, CONTROLLERS: [self._judged().path]}
+        return digest_of(replace(spec, content=recorded))
+
+    def _judged(self, folder: Path | None = None) -> Judged:
+        """Return the controller; its file is in `folder` if it was moved."""
+        return Judged(
+            self.controller['name'],
+            self.controller['chosen'],
+            folder or Path(self.controller['folder']),
+            self.controller['digests'],
+        )
 
     def require_same(self, other: 'TuningManifest', out: Path) -> None:
         """Raise DdctError with the first difference of another tuning from this one, in `out`."""

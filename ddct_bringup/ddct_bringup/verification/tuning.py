@@ -107,7 +107,7 @@ def _verified_manifest(
         again = Judged.of(tuning.judged.path).digests
         comparison.add_nested('digests', manifest.controller['digests'], plain_json(dict(again)))
     if request.same_code:
-        digest = tuning.campaign.digest()
+        digest = manifest.digest_of_cases(tuning)
         comparison.add({'key': 'campaign_digest'}, manifest.campaign_digest, digest)
     return _of(request, MANIFEST, comparison)
 

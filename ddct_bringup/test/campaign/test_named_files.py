@@ -8,23 +8,17 @@ from typing import Any
 import pytest
 from in_this_process import in_this_process
 from refusals import refused
-from verified import CONTROLLER
+from verified import CONTROLLER, HANDOVER
 
 from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.conduct import carry_out
 from ddct_bringup.campaign.manifest import Manifest
+from ddct_bringup.campaign.named_files import with_places
 from ddct_bringup.campaign.spec import spec_of
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.base.errors import DdctError
 
 PROFILE = {'csv': 'a.csv', 'time': 't', 'value': 'c', 'unit': 'N m'}
-HANDOVER = """\
-from ddct_controllers.handover.laws import TimedHandover
-
-
-class Mine(TimedHandover):
-    pass
-"""
 SHIFT: dict[str, Any] = {
     'controllers': ['pi'],
     'scenario': 'upshift',
@@ -113,3 +107,33 @@ def test_a_changed_python_file_is_refused_before_it_runs(tmp_path: Path, control
         manifest.campaign(tmp_path / 'out')
     assert 'has changed since' in str(caught.value)
     assert not ran.exists(), 'code of another file has run'
+
+
+def test_a_moved_specification_names_the_same_files() -> None:
+    content = {
+        'controllers': ['mine.py'],
+        'scenario': 'own.yaml',
+        'grid': {'handover': ['timed', 'timed.py'], 'engine': [PROFILE], 'wear_gain': [1.0]},
+        'random': {
+            'samples': 1,
+            'vary': {
+                'brake.csv': {'distribution': 'choice', 'values': ['b.csv']},
+                'vehicle.mass_kg': {'distribution': 'uniform', 'low': 1000, 'high': 2000},
+            },
+        },
+    }
+    moved = with_places(content, lambda name: f'../{name}')
+    assert moved['controllers'] == ['mine.py']
+    assert moved['scenario'] == '../own.yaml'
+    engine = {**PROFILE, 'csv': '../a.csv'}
+    assert moved['grid'] == {
+        'handover': ['timed', '../timed.py'],
+        'engine': [engine],
+        'wear_gain': [1.0],
+    }
+    assert moved['random']['vary']['brake.csv']['values'] == ['../b.csv']
+    assert with_places(content, str) == content
+    varied = {'grid': {'scenario': ['thesis', 'own.yaml']}}
+    assert with_places(varied, lambda name: f'../{name}') == {
+        'grid': {'scenario': ['thesis', '../own.yaml']}
+    }

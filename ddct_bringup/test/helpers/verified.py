@@ -37,6 +37,13 @@ class Mine(Controller):
     def update(self, measurement):
         return Command(-0.1 * measurement.slip_error_rpm)
 """
+HANDOVER = """\
+from ddct_controllers.handover.laws import TimedHandover
+
+
+class Mine(TimedHandover):
+    pass
+"""
 RIPPLED = """\
 import math
 

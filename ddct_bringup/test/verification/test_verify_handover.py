@@ -7,18 +7,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from verified import copied, make_bag, states, verified
+from verified import HANDOVER, copied, make_bag, states, verified
 
 from ddct_bringup.digests.digest_file import DIGESTS, read_digests
 
 pytestmark = pytest.mark.slow
-HANDOVER = """\
-from ddct_controllers.handover.laws import TimedHandover
-
-
-class Mine(TimedHandover):
-    pass
-"""
 SHIFT = ('--controller', 'pi', '--scenario', 'upshift', '--clutch', 'stick_slip')
 
 

@@ -13,6 +13,7 @@ from ddct_bringup.campaign.distributions import (
     KINDS,
     LOW,
     STEP,
+    VALUES,
     Distribution,
     Kind,
     Numbers,
@@ -148,11 +149,11 @@ def _require_within(where: str, distribution: Distribution, option: Option) -> N
 
 
 def _choice(where: str, content: Mapping[str, Any], option: Option | None) -> Distribution:
-    _require_known(where, content, ('values', 'weights'))
-    values = content.get('values')
+    _require_known(where, content, (VALUES, 'weights'))
+    values = content.get(VALUES)
     if not isinstance(values, list) or not values:
         raise ParameterError(
-            f'{where}.values: give a list, [...], that is not empty', key=f'{where}.values'
+            f'{where}.{VALUES}: give a list, [...], that is not empty', key=f'{where}.{VALUES}'
         )
     weights = content.get('weights', [1.0] * len(values))
     if not isinstance(weights, list) or len(weights) != len(values):
@@ -166,5 +167,5 @@ def _choice(where: str, content: Mapping[str, Any], option: Option | None) -> Di
         )
     if option:
         for value in values:
-            option.checked(f'{where}.values', value)
+            option.checked(f'{where}.{VALUES}', value)
     return Distribution(CHOICE, {}, tuple(values), tuple(each / sum(parts) for each in parts))

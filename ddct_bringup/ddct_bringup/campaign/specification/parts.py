@@ -14,7 +14,7 @@ from ddct_plant.base.options import Option, require_known
 
 MOST_RUNS = 10_000_000
 """Largest number of runs of one campaign."""
-GRID, _VARY = 'grid', 'vary'
+GRID, VARY = 'grid', 'vary'
 RANDOM, SAMPLES, OF, ROOT_SEED = 'random', 'samples', 'of', 'seed'
 FLOORS, FLOOR_SAMPLES = 'floors', 'floor_samples'
 
@@ -102,15 +102,15 @@ def samples_of(content: Mapping[str, Any]) -> tuple[int, int, dict[str, Distribu
     """Return the numbers of samples that run and of all samples, and the distributions."""
     if RANDOM not in content:
         return 1, 1, {}
-    given = mapping_of(RANDOM, content[RANDOM], (SAMPLES, OF, _VARY), f'{RANDOM}.')
+    given = mapping_of(RANDOM, content[RANDOM], (SAMPLES, OF, VARY), f'{RANDOM}.')
     where = f'{RANDOM}.{SAMPLES}'
     if SAMPLES not in given:
         raise ParameterError(f'{where} is missing: say how many samples to draw', key=where)
     samples = _count(where, given[SAMPLES])
     of = _count(f'{RANDOM}.{OF}', given.get(OF, samples), at_least=samples)
     vary = {}
-    for key, described in _not_empty(f'{RANDOM}.{_VARY}', given.get(_VARY)).items():
-        where = f'{RANDOM}.{_VARY}.{key}'
+    for key, described in _not_empty(f'{RANDOM}.{VARY}', given.get(VARY)).items():
+        where = f'{RANDOM}.{VARY}.{key}'
         vary[key] = distribution_of(where, described, option_of(where, key))
     return samples, of, vary
 

@@ -16,6 +16,7 @@ from typing import Any
 from ddct_bringup.benchmark.cases import Cases
 from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.keys import CONTROLLERS, FILE_KEY, SCENARIO
+from ddct_bringup.campaign.named_files import with_places
 from ddct_bringup.campaign.spec import spec_of
 from ddct_bringup.campaign.specification.parts import (
     FLOOR_SAMPLES,
@@ -30,7 +31,6 @@ from ddct_bringup.campaign.specification.parts import (
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import require_known
 from ddct_plant.files.input_file import located
-from ddct_plant.scenario.file import is_packaged
 
 CAMPAIGN, BENCHMARK = 'campaign', 'benchmark'
 _SHARES = (0.25, 0.5, 1.0)
@@ -98,14 +98,8 @@ class Development:
         return cls(cases, tuple(names), samples)
 
     def moved(self, old: Path, new: Path) -> 'Development':
-        """Return the same cases with their scenarios' files relative to another folder."""
-        content = dict(self.content)
-        if SCENARIO in content:
-            content[SCENARIO] = _placed(content[SCENARIO], old, new)
-        grid = content.get(GRID, {})
-        if SCENARIO in grid:
-            names = [_placed(name, old, new) for name in grid[SCENARIO]]
-            content[GRID] = {**grid, SCENARIO: names}
+        """Return the same cases with the files that they name relative to another folder."""
+        content = with_places(self.content, lambda name: os.path.relpath(old / name, new))
         return replace(self, content=content)
 
     def campaign(self, controller: str, folder: Path, floors: Sequence[str]) -> Campaign:
@@ -141,11 +135,6 @@ class Development:
             random = content[RANDOM]
             content[RANDOM] = {OF: random[SAMPLES], **random, SAMPLES: self.samples}
         return Campaign(spec_of(content, folder))
-
-
-def _placed(name: str, old: Path, new: Path) -> str:
-    """Return the path of a scenario's file relative to another folder; a packaged name stays."""
-    return name if is_packaged(name) else os.path.relpath(old / name, new)
 
 
 def parts_of(cases: Sequence[int]) -> list[Sequence[int]]:
