@@ -16,6 +16,7 @@ from ddct_plant.scenario.settings import RunSettings
 SCENARIO, MODE, CONTROLLERS = 'scenario', 'mode', 'controllers'
 COMMON = (SCENARIO, 'architecture', 'clutch')
 """Keys that are given for all runs, or varied."""
+_SCENARIO_OPTION = Option('thesis', 'name of a scenario, or its file')
 HANDOVER = 'handover'
 """Key of the handover of a gear shift, by its name or the file of its code."""
 FILE_KEY = '.csv'
@@ -34,7 +35,7 @@ def option_of(where: str, key: str) -> Option | None:
 
     Raise ParameterError, which begins with `where`, for an unknown key.
     """
-    known = {**run_options(), **scenario_options()}
+    known = {SCENARIO: _SCENARIO_OPTION, **run_options(), **scenario_options()}
     if key in known:
         return known[key]
     section, _, rest = key.partition('.')
@@ -45,7 +46,7 @@ def option_of(where: str, key: str) -> Option | None:
         return (controller_spec(name).options or {}).get(option)
     if rest == FACTOR and section in sections():
         return FACTOR_OPTION
-    if key == SCENARIO or key in sections() or key.removesuffix(FILE_KEY) in sections():
+    if key in sections() or key.removesuffix(FILE_KEY) in sections():
         return None
     raise ParameterError(f'{where}: unknown key {key}: {key_hint(key, known)}', key=key)
 

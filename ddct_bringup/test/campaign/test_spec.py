@@ -69,6 +69,7 @@ def test_a_specification_has_defaults_for_all_but_what_varies(tmp_path: Path) ->
         ),
         (PI + GRID + 'clutch: wet\n', "unknown clutch 'wet': choose from linear, stick_slip"),
         (PI + GRID + 'scenario: 3\n', 'scenario is 3: give text'),
+        (PI + 'grid: {scenario: [{csv: a.csv}]}\n', 'line 2: grid.scenario is {'),
         (PI + GRID + 'schema_version: 2\n', 'schema_version is 2, this version reads up to 1'),
         (PI + 'random: {samples: 2}\n', 'random.vary is empty'),
         (PI + 'random: {samples: 2, vary: {}}\n', 'random.vary is empty'),
