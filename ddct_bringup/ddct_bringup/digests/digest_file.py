@@ -41,6 +41,14 @@ class RunDigests:
     handover_sha256: str | None = None
     """SHA-256 of that file."""
 
+    def __post_init__(self) -> None:
+        """Raise ParameterError for a value of another type, as in an edited file."""
+        if not isinstance(self.controller_files, Mapping):
+            raise ParameterError('controller_files is no group of keys', key='controller_files')
+        for value in (self.controller, self.handover, self.handover_sha256):
+            if not isinstance(value, str | None):
+                raise ParameterError(f'{value!r} is no text')
+
     def entry(self) -> dict[str, Any]:
         """Return the digests as JSON; a run without a handover file has no keys of one."""
         content = asdict(self)

@@ -331,6 +331,23 @@ def test_scores_by_other_limits_need_these_limits(
 
 
 @pytest.mark.parametrize(
+    ('key', 'value'),
+    [('controller', 3), ('controller_files', 'mine.py'), ('handover', ['mine.py'])],
+)
+def test_digests_of_a_run_with_another_type_are_one_line(
+    runs: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str], key: str, value: Any
+) -> None:
+    folder = copied(runs / 'pi', tmp_path / 'pi')
+    text = (folder / DIGESTS).read_text(encoding='utf-8')
+    content = json.loads(text)
+    content['runs']['.'][key] = value
+    (folder / DIGESTS).write_text(json.dumps(content), encoding='utf-8')
+    code, _, errors = verified(folder, capfd)
+    assert (code, errors.count('\n')) == (1, 1)
+    assert 'it is damaged (' in errors and 'is no ' in errors
+
+
+@pytest.mark.parametrize(
     ('content', 'words'),
     [
         ('', 'it is damaged (not valid JSON'),
