@@ -1,0 +1,189 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""The page on security lists each key that names a file: those for which the code opens one."""
+
+import re
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from dataclasses import fields
+from functools import cache, partial
+from pathlib import Path
+from typing import Any
+
+import pytest
+from support.documented import ROOT
+
+from ddct_bringup.bag.recording import Recording
+from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.campaign.campaign import Campaign
+from ddct_bringup.campaign.keys import FILE_KEY, SCENARIO, run_options, sections
+from ddct_bringup.campaign.named_files import digest_of
+from ddct_bringup.campaign.spec import _KEYS as CAMPAIGN_KEYS
+from ddct_bringup.campaign.spec import spec_of
+from ddct_bringup.digests.digest_file import RUNS, Digests, RunDigests
+from ddct_bringup.digests.environment import this_environment
+from ddct_bringup.run.description import facts_of
+from ddct_bringup.run.plan import RunPlan
+from ddct_bringup.verdict.limits import packaged_limits
+from ddct_bringup.verification.repetition import plan_of
+from ddct_bringup.verification.request import VerificationRequest
+from ddct_controllers.from_file.kinds import KINDS
+from ddct_controllers.from_file.with_options import KIND as WITH_OPTIONS
+from ddct_controllers.registry import controller_spec
+from ddct_plant.base.errors import DdctError
+from ddct_plant.files.yaml_text import dump_yaml
+from ddct_plant.scenario.file import ScenarioFile, load_scenario
+from ddct_plant.scenario.key_names import scenario_options
+from ddct_plant.scenario.settings import RunSettings
+
+PAGE = (ROOT / 'docs' / 'use' / 'security.md').read_text(encoding='utf-8')
+NAMED = 'named_by_a_key'
+FILES = (f'{NAMED}.py', f'{NAMED}.yaml', f'{NAMED}.csv')
+PROFILE = {'csv': FILES[2], 'time': 't', 'value': 'c', 'unit': 'N m'}
+CAMPAIGN: dict[str, Any] = {
+    'controllers': ['pi'],
+    'scenario': 'upshift',
+    'clutch': 'stick_slip',
+    'grid': {'wear_gain': [1.0]},
+}
+CONTROLLERS = {
+    **dict.fromkeys(KINDS, {}),
+    'c_library': {'file': '-', 'parameters': {}},
+    'fmu': {'file': '-', 'inputs': {}, 'outputs': {}, 'parameters': {}},
+    WITH_OPTIONS: {'controller': '-', 'options': {}},
+}
+"""Keys of each kind of controller file; those of linear controllers are numbers."""
+SHIFT = RunSettings(load_scenario('upshift', clutch='stick_slip'), clutch='stick_slip')
+
+
+@pytest.fixture
+def place(tmp_path: Path) -> Path:
+    """Return a folder with the files that keys may name."""
+    for name in FILES:
+        (tmp_path / name).write_text('{}\n', encoding='utf-8')
+    return tmp_path
+
+
+class _Opened:
+    """Whether a file of that name is opened, of which Python informs a hook that stays."""
+
+    seen = False
+
+    def hook(self, event: str, arguments: tuple[Any, ...]) -> None:
+        if event == 'open' and NAMED in str(arguments[0]):
+            self.seen = True
+
+
+@cache
+def _opened() -> _Opened:
+    opened = _Opened()
+    sys.addaudithook(opened.hook)
+    return opened
+
+
+def opens(use: Callable[[], object]) -> bool:
+    """Return whether a use opens one of the files."""
+    opened = _opened()
+    opened.seen = False
+    with suppress(DdctError):
+        use()
+    return opened.seen
+
+
+def listed(name: str) -> set[str]:
+    """Return the keys in the row of the page whose first cell begins with a name."""
+    (keys,) = re.findall(rf'^\| {re.escape(name)}.*?\|(.*)\|$', PAGE, re.MULTILINE)
+    return set(re.findall(r'`([^`]+)`', keys))
+
+
+def planned(place: Path, content: dict[str, Any]) -> RunPlan:
+    """Return the plan of the first run of a campaign, which has made its parts."""
+    made = Campaign(spec_of(content, place))
+    return RunPlan(made.run(0).settings, made.chosen(0), 'headless')
+
+
+def digested(place: Path, content: dict[str, Any]) -> str:
+    """Return the digest of a campaign and of its files."""
+    return digest_of(spec_of(content, place))
+
+
+def repeated(
+    request: VerificationRequest, recording: Recording, digests: dict[str, Any]
+) -> RunPlan:
+    """Return the plan of a recorded run with these digests."""
+    return plan_of(request, recording, RunDigests(**digests))
+
+
+def contents() -> Iterator[tuple[str, dict[str, Any]]]:
+    """Yield each key of a campaign with contents in which it might name a file."""
+    for key in CAMPAIGN_KEYS:
+        for file in FILES:
+            yield key, {**CAMPAIGN, key: file}
+            yield key, {**CAMPAIGN, key: [file]}
+    options = controller_spec('pi').options or {}
+    grid = (
+        SCENARIO,
+        *run_options(),
+        *scenario_options(),
+        *sections(),
+        *(f'{section}{FILE_KEY}' for section in sections()),
+        *(f'controllers.pi.{name}' for name in options),
+    )
+    for key in grid:
+        varied = {name: CAMPAIGN[name] for name in CAMPAIGN if name != key}
+        for value in (*FILES, PROFILE):
+            name = 'csv' if key.endswith(FILE_KEY) or value is PROFILE else key
+            yield name, {**varied, 'grid': {key: [value]}}
+
+
+def test_those_of_a_campaign_are_listed_and_each_file_is_in_its_digest(place: Path) -> None:
+    found, in_digest = set(), set()
+    for key, content in contents():
+        if opens(partial(planned, place, content)):
+            found.add(key)
+            if opens(partial(digested, place, content)):
+                in_digest.add(key)
+    assert found == in_digest == listed('a campaign')
+
+
+def test_those_of_a_scenario_are_listed(place: Path) -> None:
+    found = set()
+    for key in (*scenario_options(), *sections()):
+        for value in (*FILES, PROFILE):
+            name = 'csv' if value is PROFILE else key
+            section, _, rest = key.partition('.')
+            content = {section: {rest: value} if rest else value}
+            file = ScenarioFile(str(place / 'own.yaml'), content, {})
+            if opens(file.scenario):
+                found.add(name)
+    assert found == listed('a scenario')
+
+
+def test_those_of_a_controller_file_are_listed(place: Path) -> None:
+    found = set()
+    assert CONTROLLERS.keys() == {*KINDS, WITH_OPTIONS}, 'give the keys of the new kind'
+    for kind, keys in CONTROLLERS.items():
+        for key in keys:
+            for file in FILES:
+                content = {'name': 'mine', kind: {**keys, key: file}}
+                path = place / 'mine.yaml'
+                path.write_text(dump_yaml(content), encoding='utf-8')
+                if opens(partial(controller_spec, str(path))):
+                    found.add(f'{kind}.{key}')
+    assert found == listed('a controller file')
+
+
+def test_those_of_the_digests_of_a_run_are_listed(place: Path) -> None:
+    digests = Digests(1, RUNS, {}, this_environment())
+    request = VerificationRequest(place, digests, packaged_limits())
+    facts = facts_of(SHIFT, 'pi', SHIFT.scenario.steps)
+    recording = Recording(Path(), Trajectory({}), facts, {}, simulated=SHIFT)
+    known = RunDigests('', 'pi', {})
+    found = set()
+    for name in (field.name for field in fields(RunDigests)):
+        for file in FILES:
+            changed = {**vars(known), name: file}
+            if opens(partial(repeated, request, recording, changed)):
+                found.add(name)
+    assert found == listed('`digests.json` of a run')
