@@ -23,7 +23,7 @@ SHIFT: dict[str, Any] = {
     'controllers': ['pi'],
     'scenario': 'upshift',
     'clutch': 'stick_slip',
-    'grid': {'handover': ['timed', 'timed.py'], 'duration_s': [1.0]},
+    'grid': {'handover': ['timed', 'own.py'], 'duration_s': [1.0]},
 }
 FILES = {
     'own.yaml': 'name: own\nengine: {csv: a.csv, time: t, value: c, unit: N m}\n',
@@ -33,7 +33,7 @@ FILES = {
     'line.yaml': 'name: line\nunits: {input: rpm, output: N m}\n'
     'polynomial: {num: [-0.1, -1.0], den: [1, 0]}\n',
     'mine.py': CONTROLLER,
-    'timed.py': HANDOVER,
+    'own.py': HANDOVER,
     'outer.yaml': 'name: outer\nwith_options: {controller: mine.py, options: {}}\n',
 }
 
@@ -69,9 +69,9 @@ def test_any_changed_file_changes_it(tmp_path: Path, file: str) -> None:
 def test_a_handover_file_is_relative_to_the_specification(tmp_path: Path) -> None:
     made = campaign(tmp_path, **SHIFT)
     named = [made.run(case).settings.handover for case in range(2)]
-    assert named == ['timed', str(tmp_path / 'timed.py')]
-    assert [made.run(case).varied['handover'] for case in range(2)] == ['timed', 'timed.py']
-    drawn = {'handover': {'distribution': 'choice', 'values': ['timed.py']}}
+    assert named == ['timed', str(tmp_path / 'own.py')]
+    assert [made.run(case).varied['handover'] for case in range(2)] == ['timed', 'own.py']
+    drawn = {'handover': {'distribution': 'choice', 'values': ['own.py']}}
     grid, random = {'duration_s': [1.0]}, {'samples': 1, 'vary': drawn}
     made = campaign(tmp_path, **{**SHIFT, 'grid': grid, 'random': random})
     assert made.run(0).settings.handover == named[1]
@@ -80,7 +80,7 @@ def test_a_handover_file_is_relative_to_the_specification(tmp_path: Path) -> Non
 def test_a_changed_handover_is_refused_before_it_runs(tmp_path: Path) -> None:
     manifest = Manifest.of(campaign(tmp_path, **SHIFT), packaged_limits())
     assert manifest.campaign(tmp_path / 'out').runs == 2
-    (tmp_path / 'timed.py').write_text(f'{HANDOVER}\n', encoding='utf-8')
+    (tmp_path / 'own.py').write_text(f'{HANDOVER}\n', encoding='utf-8')
     with refused(DdctError) as caught:
         manifest.campaign(tmp_path / 'out')
     assert 'has changed since' in str(caught.value)
@@ -91,7 +91,7 @@ def test_a_campaign_is_not_resumed_with_a_changed_handover(tmp_path: Path) -> No
     out = tmp_path / 'out'
     with in_this_process():
         carry_out(made, packaged_limits(), out)
-        (tmp_path / 'timed.py').write_text(f'{HANDOVER}\n', encoding='utf-8')
+        (tmp_path / 'own.py').write_text(f'{HANDOVER}\n', encoding='utf-8')
         with refused(DdctError, key='specification'):
             carry_out(Campaign(made.spec), packaged_limits(), out, resume=True)
 
@@ -113,7 +113,7 @@ def test_a_moved_specification_names_the_same_files() -> None:
     content = {
         'controllers': ['mine.py'],
         'scenario': 'own.yaml',
-        'grid': {'handover': ['timed', 'timed.py'], 'engine': [PROFILE], 'wear_gain': [1.0]},
+        'grid': {'handover': ['timed', 'own.py'], 'engine': [PROFILE], 'wear_gain': [1.0]},
         'random': {
             'samples': 1,
             'vary': {
@@ -127,7 +127,7 @@ def test_a_moved_specification_names_the_same_files() -> None:
     assert moved['scenario'] == '../own.yaml'
     engine = {**PROFILE, 'csv': '../a.csv'}
     assert moved['grid'] == {
-        'handover': ['timed', '../timed.py'],
+        'handover': ['timed', '../own.py'],
         'engine': [engine],
         'wear_gain': [1.0],
     }

@@ -95,13 +95,13 @@ def test_a_changed_handover_is_refused_before_it_runs(
 ) -> None:
     place = tmp_path / 'place'
     place.mkdir()
-    (place / 'timed.py').write_text(HANDOVER, encoding='utf-8')
+    (place / 'own.py').write_text(HANDOVER, encoding='utf-8')
     controller = place / 'pi_again.yaml'
     controller.write_text(with_options_text('pi_again', 'pi', {}), encoding='utf-8')
     cases = {
         'scenario': 'upshift',
         'clutch': 'stick_slip',
-        'grid': {'handover': ['timed.py']},
+        'grid': {'handover': ['own.py']},
         'random': {'samples': 1, 'vary': {'duration_s': DURATION}},
     }
     changes = {'constraints': {'engaged': {'at_least': 0.0}}, 'campaign': cases, 'trials': 2}
@@ -111,7 +111,7 @@ def test_a_changed_handover_is_refused_before_it_runs(
     moved = tmp_path / 'moved' / folder.name
     assert verify([str(moved), *there]) == 0, capfd.readouterr().err
     ran = tmp_path / 'ran'
-    (tmp_path / 'moved' / 'timed.py').write_text(
+    (tmp_path / 'moved' / 'own.py').write_text(
         f'open({str(ran)!r}, "w").close()\n', encoding='utf-8'
     )
     assert verify([str(moved), *there]) == 1

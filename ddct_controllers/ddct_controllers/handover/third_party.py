@@ -35,6 +35,7 @@ def third_party_handover(settings: RunSettings, own: Iterable[str]) -> Handover:
     name = settings.handover
     made: Callable[[RunSettings], Any]
     if is_handover_file(name):
+        _require_new(settings.handover_name, name, own)
         made = the_one_class(name, Handover, _PAGE)
     else:
         made = _entry_point(name, own)
@@ -50,6 +51,15 @@ def third_party_handover(settings: RunSettings, own: Iterable[str]) -> Handover:
             'ddct_controllers.handover.interface.Handover'
         )
     return _Checked(settings, handover)
+
+
+def _require_new(label: str, file: str, own: Iterable[str]) -> None:
+    """Raise ParameterError where a file has the name of another handover in bags and tables."""
+    if label in own or importlib.metadata.entry_points(group=ENTRY_POINT_GROUP, name=label):
+        raise ParameterError(
+            f'handover {file!r}: {label} is the name of another handover: rename the file',
+            key='handover',
+        )
 
 
 def _entry_point(name: str, own: Iterable[str]) -> Callable[[RunSettings], Any]:

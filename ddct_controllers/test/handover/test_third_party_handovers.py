@@ -58,6 +58,13 @@ def test_a_bad_command_names_the_handover_and_the_step(tmp_path, body, wrong):
     assert '\n' not in text
 
 
+def test_a_file_with_the_name_of_another_handover_is_refused_before_it_runs(tmp_path):
+    file = tmp_path / 'timed.py'
+    file.write_text('raise SystemExit("it has run")\n')
+    with pytest.raises(DdctError, match='timed is the name of another handover: rename'):
+        make_handover(replace(shift_settings('upshift'), handover=str(file)))
+
+
 def test_a_package_adds_one_by_an_entry_point(monkeypatch):
     points = importlib.metadata.EntryPoints(
         importlib.metadata.EntryPoint(name, value, third_party.ENTRY_POINT_GROUP)
