@@ -13,6 +13,7 @@ import numpy as np
 import scipy
 
 from ddct_bringup.digests.code import code_digest
+from ddct_bringup.digests.digest_file import file_digest
 from ddct_bringup.floor.case import Case
 from ddct_bringup.floor.dynamics.capacity import CapacityRange
 from ddct_bringup.floor.dynamics.off_going import OffGoing
@@ -21,6 +22,7 @@ from ddct_bringup.floor.dynamics.tube import Tube
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.input_file import parse_json, read_text_file
 from ddct_plant.files.output_file import write_text
+from ddct_plant.scenario.settings import is_handover_file
 
 VARIABLE = 'DDCT_CACHE'
 """Environment variable with the folder of the cache; empty for none."""
@@ -47,7 +49,7 @@ def digest_of(case: Case, metric: str, engagements_a_day: float, attain: bool) -
         settings.clutch,
         repr(settings.wear_gain),
         repr(settings.off_going_wear_gain),
-        settings.handover,
+        _handover(settings.handover),
         repr(case.lock.time_s),
         repr(case.limited),
         repr(case.most_request),
@@ -57,6 +59,11 @@ def digest_of(case: Case, metric: str, engagements_a_day: float, attain: bool) -
     for part in (case.start, case.tube, case.capacity):
         _add(digest, part)
     return digest.hexdigest()
+
+
+def _handover(handover: str) -> str:
+    """Return the name of a handover; for a file its SHA-256, as its content may change."""
+    return file_digest(Path(handover)) if is_handover_file(handover) else handover
 
 
 def _add(digest: 'hashlib._Hash', part: Start | Tube | CapacityRange | OffGoing) -> None:

@@ -181,6 +181,17 @@ def test_another_handover_or_wear_has_a_floor_of_its_own_in_the_cache(further):
     assert len(digests) == 2
 
 
+def test_a_changed_handover_file_has_a_floor_of_its_own_in_the_cache(tmp_path):
+    file = tmp_path / 'mine.py'
+    settings, digests = settings_of(handover=str(file)), set()
+    start = control_start(settings_of())
+    for text in ('', '\n'):
+        file.write_text(text)
+        case = case_at(settings, start, 0.5, limited=False)
+        digests.add(digest_of(case, 'peak_jerk', 1000.0, True))
+    assert len(digests) == 2
+
+
 def test_a_floor_of_a_shift_comes_from_the_cache(monkeypatch):
     first = floor_of(settings_of(handover='slip'), 'mean_jerk', 0.5)
     monkeypatch.setattr(computed_floor, 'bound_of', None)
