@@ -14,9 +14,11 @@ from pathlib import Path
 from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.columns import schema_of, shard_bytes
 from ddct_bringup.campaign.manifest import require_code
+from ddct_bringup.campaign.named_files import digest_of
 from ddct_bringup.campaign.scored import Scorer
 from ddct_bringup.campaign.spec import CampaignSpec
 from ddct_bringup.verdict.limits import Limits
+from ddct_plant.base.errors import DdctError
 
 
 @dataclass(frozen=True)
@@ -45,7 +47,18 @@ def compute_shard(job: ShardJob) -> bytes:
     require_code(job.code)
     campaign, scorer = _prepared(job)
     found = scorer.scored(campaign.planned(job.first, job.last))
-    return shard_bytes(schema_of(job.spec), [each.row() for each in found])
+    rows = shard_bytes(schema_of(job.spec), [each.row() for each in found])
+    _require_unchanged(job)  # each run has read its handover file anew
+    return rows
+
+
+def _require_unchanged(job: ShardJob) -> None:
+    """Raise DdctError where a file of the specification has changed since the campaign began."""
+    if digest_of(job.spec) != job.digest:
+        raise DdctError(
+            'a file that the specification names has changed since the campaign began: put the '
+            'old one back'
+        )
 
 
 _kept: dict[str, tuple[Campaign, Scorer]] = {}
@@ -56,6 +69,7 @@ def _prepared(job: ShardJob) -> tuple[Campaign, Scorer]:
     """Return the campaign of a shard with its scorer; a worker builds them once."""
     key = f'{job.digest} {job.spec.folder} {job.limits.origin}'
     if key not in _kept:
+        _require_unchanged(job)
         _kept.clear()
         _kept[key] = Campaign(job.spec), Scorer(job.limits, floors=job.spec.floors)
     return _kept[key]

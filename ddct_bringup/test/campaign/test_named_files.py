@@ -11,7 +11,7 @@ from refusals import refused
 from verified import CONTROLLER, HANDOVER
 
 from ddct_bringup.campaign.campaign import Campaign
-from ddct_bringup.campaign.conduct import carry_out
+from ddct_bringup.campaign.conduct import SHARDS, carry_out
 from ddct_bringup.campaign.manifest import Manifest
 from ddct_bringup.campaign.named_files import with_places
 from ddct_bringup.campaign.spec import spec_of
@@ -94,6 +94,17 @@ def test_a_campaign_is_not_resumed_with_a_changed_handover(tmp_path: Path) -> No
         (tmp_path / 'own.py').write_text(f'{HANDOVER}\n', encoding='utf-8')
         with refused(DdctError, key='specification'):
             carry_out(Campaign(made.spec), packaged_limits(), out, resume=True)
+
+
+def test_a_handover_that_changes_meanwhile_ends_the_campaign(tmp_path: Path) -> None:
+    campaign(tmp_path)
+    changes_itself = f'{HANDOVER}\nopen(__file__, "a").write("#")\n'
+    (tmp_path / 'own.py').write_text(changes_itself, encoding='utf-8')
+    out = tmp_path / 'out'
+    with in_this_process(), refused(DdctError) as caught:
+        carry_out(Campaign(spec_of(SHIFT, tmp_path)), packaged_limits(), out)
+    assert 'has changed since the campaign began' in str(caught.value)
+    assert not (out / SHARDS / '00000001.parquet').exists()
 
 
 @pytest.mark.parametrize('controller', ['mine.py', 'outer.yaml'])
