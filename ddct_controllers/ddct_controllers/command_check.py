@@ -6,7 +6,7 @@ from numbers import Real
 
 from ddct_controllers.interface import Command, Controller
 from ddct_controllers.places import place_of_method
-from ddct_plant.base.errors import DdctError, require_finite
+from ddct_plant.base.errors import DdctError, require_signal
 
 
 def checked_command(controller: Controller, name: str, command: object, step: int) -> Command:
@@ -63,4 +63,4 @@ def _torque(source: str, torque: object) -> float:
         if not isinstance(torque, Real):
             raise DdctError(f'{source} is {torque!r}: give a number in N m', key=source)
         torque = float(torque)
-    return require_finite(source, torque)
+    return require_signal(source, torque)

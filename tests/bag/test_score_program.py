@@ -199,13 +199,16 @@ def test_a_run_that_ended_early_is_not_valid(bags, trajectory, capsys):
     assert 'ended early: 60 of 200 steps' in captured.err
 
 
-def test_a_non_finite_value_is_not_valid_and_named(bags, trajectory, capsys):
+@pytest.mark.parametrize(
+    ('value', 'named'), [(math.nan, 'non-finite value'), (1e308, 'value beyond +-1e+09')]
+)
+def test_a_value_that_no_signal_has_is_not_valid_and_named(bags, trajectory, capsys, value, named):
     spoiled = trajectory.joint_speed.copy()
-    spoiled[30, 3] = math.nan
+    spoiled[30, 3] = value
     bag = bags.write(Trajectory({**trajectory.signals, 'joint_speed': spoiled}))
     assert main([str(bag), '--json', '-']) == 1
     (run,) = runs_in(capsys.readouterr().out)
-    assert run['reason'] == 'non-finite value in joint_speed at 0.3 s'
+    assert run['reason'] == f'{named} in joint_speed at 0.3 s'
     assert run['metrics']['torsion_speed_std_rpm'] is None
     assert run['metrics']['acceleration_std_m_s2'] > 0.0
 

@@ -21,6 +21,7 @@ from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.batch.loops import reference_kind, simulate_batch
 from ddct_bringup.batch.results import part_of_stack, stacked_results
 from ddct_bringup.scores.scored_run import ScoredRun
+from ddct_bringup.scores.validity import are_signals
 from ddct_bringup.verdict.limits import Limits
 from ddct_controllers.interface import Controller
 from ddct_plant.base.errors import DdctError
@@ -114,7 +115,7 @@ def _results(runs: Sequence[_Linear], limits: Limits) -> list[ScoredRun | None]:
     try:
         with np.errstate(all='ignore'):  # what is not finite has no result
             stack = _stack(runs)
-            counts = _finite(stack) & _repeatable(runs, stack)
+            counts = _usable(stack) & _repeatable(runs, stack)
     except DdctError:
         if len(runs) == 1:
             return [None]
@@ -149,10 +150,10 @@ def _repeatable(runs: Sequence[_Linear], stack: Trajectory) -> np.ndarray:
     return repeatable
 
 
-def _finite(stack: Trajectory) -> np.ndarray:
-    """Return for each run of a stack whether all its signals are finite, (R,)."""
+def _usable(stack: Trajectory) -> np.ndarray:
+    """Return for each run of a stack whether all its values are those of signals, (R,)."""
     each = [
-        np.isfinite(values).all(axis=tuple(range(1, values.ndim)))
+        are_signals(values).all(axis=tuple(range(1, values.ndim)))
         for values in stack.signals.values()
     ]
     return np.all(each, axis=0)

@@ -8,6 +8,7 @@ import numpy as np
 
 from ddct_bringup.bag.recording import Recording
 from ddct_bringup.bag.trajectory import Trajectory
+from ddct_plant.base.errors import MOST_SIGNAL
 from ddct_plant.base.timebase import START_NS, time_of_step
 from ddct_plant.signals.topics import (
     CLUTCH_TORQUE,
@@ -36,20 +37,29 @@ def why_invalid(recording: Recording) -> str:
     reasons = [] if facts.lockstep else why_not_real_time(recording)
     if trajectory.steps < facts.steps and not engine_end(recording):
         reasons.insert(0, _why_early(recording))
-    wrong = [] if recording.measured else not_finite(trajectory)
+    wrong = [] if recording.measured else wrong_values(trajectory)
     return '; '.join([*reasons, *wrong])
 
 
-def not_finite(trajectory: Trajectory) -> list[str]:
-    """Return for each signal with a value that is not finite the time of the first such value."""
+def wrong_values(trajectory: Trajectory) -> list[str]:
+    """Return for each signal with a value that no signal has the time of the first such value."""
     found = []
     for name, values in trajectory.signals.items():
-        if not isinstance(values, np.ndarray) or np.isfinite(values).all():
+        if not isinstance(values, np.ndarray) or (good := are_signals(values)).all():
             continue
-        rows = np.isfinite(values.reshape(len(values), -1)).all(axis=1)
-        first = time_of_step(int(np.flatnonzero(~rows)[0]))
-        found.append(f'non-finite value in {name} at {first:g} s')
+        rows = good.reshape(len(values), -1).all(axis=1)
+        row = int(np.flatnonzero(~rows)[0])
+        what = 'non-finite value'
+        if np.isfinite(values[row]).all():
+            what = f'value beyond +-{MOST_SIGNAL:g}'
+        found.append(f'{what} in {name} at {time_of_step(row):g} s')
     return found
+
+
+def are_signals(values: np.ndarray) -> np.ndarray:
+    """Return for each value whether a signal can have it, as `require_signal` checks it."""
+    good: np.ndarray = np.abs(values) <= MOST_SIGNAL
+    return good
 
 
 def engine_end(recording: Recording) -> str | None:

@@ -139,10 +139,15 @@ def require_choice(name: str, value: str, choices: Sequence[str]) -> None:
         )
 
 
-def require_finite(source: str, value: float) -> float:
-    """Return the number of `source`; raise DdctError when it is NaN or infinite."""
-    if not math.isfinite(value):
-        raise DdctError(f'{source} is {value}: mend what computes it', key=source)
+MOST_SIGNAL = 1e9
+"""Largest size of a signal, in its SI unit; far beyond any vehicle."""
+
+
+def require_signal(source: str, value: float) -> float:
+    """Return the value of a signal; raise DdctError for NaN, or a size beyond MOST_SIGNAL."""
+    if not abs(value) <= MOST_SIGNAL:
+        beyond = f', beyond +-{MOST_SIGNAL:g}' if math.isfinite(value) else ''
+        raise DdctError(f'{source} is {value:g}{beyond}: mend what computes it', key=source)
     return value
 
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from ddct_plant.base.errors import require_finite, require_number
+from ddct_plant.base.errors import MOST_SIGNAL, require_number, require_signal
 from ddct_plant.signals.message_kind import ClassOf, MessageKind
 
 LEAST_DEVIATION = -0.9
@@ -54,6 +54,6 @@ class ShareVector(MessageKind):
         share, deviation, offset = self.values(message)
         return OnComingShare(
             require_number(topic, share, at_least=0.0, at_most=1.0),
-            require_number(topic, deviation, at_least=LEAST_DEVIATION),
-            require_finite(topic, offset),
+            require_number(topic, deviation, at_least=LEAST_DEVIATION, at_most=MOST_SIGNAL),
+            require_signal(topic, offset),
         )

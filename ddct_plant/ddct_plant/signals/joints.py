@@ -11,7 +11,7 @@ from functools import cached_property
 from typing import Any
 
 from ddct_plant.base.errors import DdctError
-from ddct_plant.signals.message_kind import ClassOf, MessageKind, finite_values
+from ddct_plant.signals.message_kind import ClassOf, MessageKind, signal_values
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class Joints(MessageKind):
 
     def read(self, topic: str, message: Any) -> Any:
         """Return the speeds by joint; raise DdctError unless each joint has one finite speed."""
-        return self._by_joint(*finite_values(topic, self._speeds(topic, message)))
+        return self._by_joint(*signal_values(topic, self._speeds(topic, message)))
 
     @cached_property
     def _by_joint(self) -> Callable[..., Any]:

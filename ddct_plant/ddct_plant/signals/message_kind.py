@@ -16,7 +16,7 @@ from functools import cached_property
 from operator import attrgetter
 from typing import Any, ClassVar
 
-from ddct_plant.base.errors import require_finite, require_number
+from ddct_plant.base.errors import MOST_SIGNAL, require_number, require_signal
 
 NS_PER_S = 1_000_000_000
 Write = Callable[..., Any]
@@ -93,9 +93,9 @@ class Scalar(MessageKind):
     path: str
     """Path of the number in the message, such as 'twist.angular.x'."""
     at_least: float | None = None
-    """Lowest value that a node accepts, None for no bound."""
-    at_most: float | None = None
-    """Highest value that a node accepts, None for no bound."""
+    """Lowest value that a node accepts, None for -MOST_SIGNAL."""
+    at_most: float = MOST_SIGNAL
+    """Highest value that a node accepts."""
 
     def _filler(self, message: Any, class_of: ClassOf) -> Callable[..., None]:
         parent, _, field = self.path.rpartition('.')
@@ -115,17 +115,18 @@ class Scalar(MessageKind):
         return (self._get(message),)
 
     def read(self, topic: str, message: Any) -> float:
-        """Return the number; raise DdctError unless finite and within its bounds."""
+        """Return the number; raise DdctError unless it is that of a signal, within its bounds."""
         if self.at_least is None:
-            return require_finite(topic, self._get(message))
+            return require_signal(topic, self._get(message))
         return require_number(
             topic, self._get(message), at_least=self.at_least, at_most=self.at_most
         )
 
 
-def finite_values(topic: str, values: Sequence[float]) -> list[float]:
-    """Return the values of a message on `topic`; raise DdctError unless all are finite."""
-    if not all(map(math.isfinite, values)):
+def signal_values(topic: str, values: Sequence[float]) -> list[float]:
+    """Return the values of a message on `topic`; raise DdctError as `require_signal` does."""
+    # One call for every message: what is within the bound together is so each by itself.
+    if not math.hypot(*values) <= MOST_SIGNAL:
         for value in values:
-            require_finite(topic, value)
+            require_signal(topic, value)
     return list(values)

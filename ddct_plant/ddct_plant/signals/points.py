@@ -9,7 +9,7 @@ from typing import Any
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.base.timebase import PERIOD_NS, SUBSTEP_NS, SUBSTEPS
 from ddct_plant.hybrid.friction_system import require_capacities
-from ddct_plant.signals.message_kind import ClassOf, MessageKind, finite_values, set_time
+from ddct_plant.signals.message_kind import ClassOf, MessageKind, set_time, signal_values
 
 
 @dataclass(frozen=True)
@@ -87,8 +87,8 @@ class TorqueRows(Points):
         """
         Return the (11,) torques in N m of each joint.
 
-        Raise DdctError unless there are `joints` joints, all torques are finite and, of two
-        joints, 0 <= kinetic <= static.
+        Raise DdctError unless there are `joints` joints, all torques are within MOST_SIGNAL and,
+        of two joints, 0 <= kinetic <= static.
         """
         needed = list(self.joints[:joints])
         if list(message.joint_names) != needed:
@@ -104,7 +104,7 @@ class TorqueRows(Points):
                 f'{topic} has {len(points)} points: it needs {self.count}, '
                 '1 ms apart, each with an effort for each joint and no more'
             )
-        rows = [finite_values(topic, row) for row in self._rows(columns, joints)]
+        rows = [signal_values(topic, row) for row in self._rows(columns, joints)]
         try:
             if joints > 1:
                 require_capacities(0, *rows)
@@ -148,4 +148,4 @@ class PreviewPoints(Points):
             raise DdctError(f'{topic}: each point needs one velocity and one acceleration')
         speeds, rates = self._rows(columns, 1)
         last = preview_steps + 1
-        return finite_values(topic, speeds[:last]), finite_values(topic, rates[:last])
+        return signal_values(topic, speeds[:last]), signal_values(topic, rates[:last])

@@ -10,10 +10,10 @@ from ddct_plant.base.errors import (
     DdctError,
     ParameterError,
     require_choice,
-    require_finite,
     require_name,
     require_number,
     require_rising,
+    require_signal,
 )
 from ddct_plant.base.timebase import steps_in
 from ddct_plant.files.input_file import located
@@ -64,7 +64,7 @@ def test_key_and_place_reach_another_process() -> None:
         lambda: require_name('gain', '../gain'),
         lambda: require_rising('gain', [1.0, 1.0]),
         lambda: require_choice('gain', 'high', ['low']),
-        lambda: require_finite('gain', float('inf')),
+        lambda: require_signal('gain', float('inf')),
         lambda: steps_in('gain', 0.005),
     ],
 )

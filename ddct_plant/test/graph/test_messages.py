@@ -3,6 +3,8 @@
 """Every message that is made reads back as what went into it, and so do reused ones."""
 
 import math
+from collections.abc import Callable
+from typing import Any
 
 import pytest
 from refusals import refused
@@ -11,7 +13,7 @@ rclpy_messages = pytest.importorskip('trajectory_msgs.msg', reason='needs the RO
 
 import diagnostic_msgs.msg as rclpy_diagnostics  # noqa: E402
 
-from ddct_plant.base.errors import DdctError  # noqa: E402
+from ddct_plant.base.errors import MOST_SIGNAL, DdctError  # noqa: E402
 from ddct_plant.base.timebase import stamp_of_step  # noqa: E402
 from ddct_plant.signals import topics  # noqa: E402
 from ddct_plant.signals.handover_share import WHOLE  # noqa: E402
@@ -115,14 +117,32 @@ def test_a_torque_whose_name_comes_twice_is_refused():
         topics.TORQUE_PARTS.values(message)
 
 
+NUMBERS: dict[str, Callable[[float], Any]] = {
+    **{topic.name: lambda value: (value,) for topic in SCALARS},
+    'driveline/joint_states': lambda value: ([0.0] * 4, [1.0, value, 2.0, 3.0], [2.0] * 4),
+    'sensors/joint_states': lambda value: ([1.0, 2.0, value],),
+    'clutch/torque': lambda value: ([*POINTS[:-1], value],),
+    'clutch/slip_reference': lambda value: ([1.0], [value]),
+    'clutch/handover_share': lambda value: (0.5, value, 0.0),
+}
+"""Values of a topic, by its name, with a number among them."""
+
+
+@pytest.mark.parametrize('value', [math.nan, -math.inf, 1.1 * MOST_SIGNAL, 1e308])
+@pytest.mark.parametrize('name', NUMBERS)
+def test_a_number_that_no_signal_has_is_refused_with_the_topic(name, value):
+    topic = next(each for each in topics.TOPICS if each.name == name)
+    topic.read(topic.message(STAMP, *NUMBERS[name](0.25)))
+    with refused(DdctError, name):
+        topic.read(topic.message(STAMP, *NUMBERS[name](value)))
+
+
 @pytest.mark.parametrize(
     'values',
     [
         (-0.1, 0.0, 0.0),
         (1.1, 0.0, 0.0),
-        (math.nan, 0.0, 0.0),
         (0.5, -0.95, 0.0),
-        (0.5, math.inf, 0.0),
         (0.5, 0.0, math.nan),
     ],
 )

@@ -19,7 +19,7 @@ from ddct_controllers.from_file.foreign.loaded import (
     loaded_code,
 )
 from ddct_controllers.interface import Command, Controller, Measurement
-from ddct_plant.base.errors import DdctError, require_finite
+from ddct_plant.base.errors import DdctError, require_signal
 from ddct_plant.base.timebase import PERIOD_S, time_of_step
 
 CLUTCH, ENGINE = 'clutch_torque_n_m', 'engine_torque_n_m'
@@ -94,7 +94,7 @@ class FmuController(Controller):
             torques = dict(zip(self._outputs, self._reply.unpack(reply), strict=True))
             for name, torque in torques.items():
                 variable = self._outputs[name].name
-                require_finite(f'fmu.outputs.{variable} at step {measurement.step}', torque)
+                require_signal(f'fmu.outputs.{variable} at step {measurement.step}', torque)
         return Command(torques[CLUTCH], engine_torque=torques.get(ENGINE))
 
     def _load(self) -> None:
