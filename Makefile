@@ -30,8 +30,8 @@ NEEDED_AT_RUN := bokeh, control, daqp, jinja2, matplotlib, osqp, scipy.signal, y
     diagnostic_msgs.msg, geometry_msgs.msg, rosgraph_msgs.msg, sensor_msgs.msg, trajectory_msgs.msg
 
 help:
-	@echo 'make setup | fmu | tune-extra | demo | test | test-fast | mutants | fuzz | faults | lint | docs | bench | soak | loaded-runs | sbom | release | site | clean' \
-	    '(see docs/use/setup.md)'
+	@echo 'make setup | fmu | tune-extra | demo | test | test-fast | mutants | fuzz | faults | lint | docs | bench | soak | loaded-runs |' \
+	    'benchmark-rows | sbom | release | site | lock | clean (see docs/use/setup.md)'
 
 setup: $(WORKSPACE_BUILT)
 
