@@ -119,6 +119,8 @@ def test_counts_and_update_times_are_those_of_the_whole_run(tmp_path: Path, mode
     assert timing['steps'] == run.steps == 55
     updates = len(timing['update_times_us'])
     assert updates == 56 or (mode == 'realtime' and updates + timing['missed_steps'] >= 56)
+    ticks = {name: sum(each['counts'].values()) for name, each in timing['durations'].items()}
+    assert ticks.get('lateness') == (55 if mode == 'realtime' else None)
 
 
 def _lose(owner: RealtimeOwner, steps: Collection[int]) -> None:
