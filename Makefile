@@ -93,9 +93,11 @@ test-fast: setup .venv/.tune
 	@$(SOURCED) $(BIN)/python -m pytest -q -n 2 --dist loadfile \
 	    -m 'not (graph or browser or compiler or slow)' $(TEST_FOLDERS)
 
-# MUTANTS='--claim TEXT' or files of tests/mutants try only those.
+# MUTANTS='--claim TEXT' or files of tests/mutants try only those. JSON=docs/examples/mutants.json renews their records
+# of docs/develop/seeded_defects.md, MISSING=1 adds those that it lacks; then make docs KINDS=mutants.
 mutants: fmu tune-extra .venv/.test
-	@$(SOURCED) $(BIN)/python tests/mutants/run.py $(MUTANTS)
+	@$(SOURCED) $(BIN)/python tests/mutants/run.py \
+	    $(if $(JSON),--json '$(JSON)') $(if $(MISSING),--missing) $(MUTANTS)
 
 # Damaged inputs for every reader, minutes: SECONDS for each, first at random, then guided by what code they reach.
 # READERS='bag log' tries only those. An input that a reader fails on is kept in tests/fuzz/corpus, where the suite tries it.
