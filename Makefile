@@ -101,11 +101,16 @@ mutants: fmu tune-extra .venv/.test
 
 # Damaged inputs for every reader, minutes: SECONDS for each, first at random, then guided by what code they reach.
 # READERS='bag log' tries only those. An input that a reader fails on is kept in tests/fuzz/corpus, where the suite tries it.
+# Then SCHEDULES new schedules for each machine of the protocols of ticks; the suite has 150, always the same.
 SECONDS := 20
+SCHEDULES := 2000
+SCHEDULE_TESTS := $(addprefix ddct_plant/test/,ticks/test_lockstep_protocol.py ticks/test_realtime_protocol.py \
+    ticks/test_stamp_schedules.py fail_safe/test_actuator_schedules.py)
 fuzz: fmu .venv/.fuzz
 	@$(SOURCED) export PYTHONPATH="$(CURDIR)/tests:$$PYTHONPATH"; status=0; \
 	$(BIN)/python -P -m fuzz --seconds $(SECONDS) $(READERS) || status=1; \
 	$(BIN)/python -P -m fuzz --seconds $(SECONDS) --guided $(READERS) || status=1; \
+	$(if $(READERS),,DDCT_SCHEDULES=$(SCHEDULES) $(BIN)/python -m pytest -q -n 2 --dist loadfile $(SCHEDULE_TESTS) || status=1;) \
 	exit $$status
 
 # Every fault of the campaign on the real graph, half an hour: CASES='killed lockstep' tries only those with these words.
