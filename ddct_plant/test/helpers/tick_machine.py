@@ -48,6 +48,8 @@ class TickMachine(RuleBasedStateMachine):
         self.answered = dict.fromkeys(wiring.nodes, -1)
         self.dead: set[str] = set()
         self.restarted: set[str] = set()
+        self.spoilt: dict[str, str] = {}
+        """Topic, by its reader, on which a stranger sends stamps that the run never comes to."""
         self.ends: list[DdctError | None] = []
 
     @property
@@ -143,15 +145,16 @@ class TickMachine(RuleBasedStateMachine):
         """
         One topic of a node with several inputs carries stamps that this run never comes to.
 
-        With a single input they would be complete: `StampLimit`, which is no part of this model,
+        On all of its inputs they would be complete: `StampLimit`, which is no part of this model,
         refuses them in real time.
         """
         name = self.node_at(pick)
         inputs = self.wiring.nodes[name].inputs
         if name in self.dead or len(inputs) == 1 or (many and self.nodes_stay):
             return
+        topic = self.spoilt.setdefault(name, inputs[pick % len(inputs)])
         for ahead in range(1, 1 + (_MANY if many else _FEW)):
-            self.deliver(Message(name, inputs[pick % len(inputs)], self.steps + ahead, -1.0))
+            self.deliver(Message(name, topic, self.steps + ahead, -1.0))
         self.after_stamps_of_no_step(name, many)
 
     def after_stamps_of_no_step(self, name: str, many: bool) -> None:

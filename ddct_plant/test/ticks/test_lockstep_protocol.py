@@ -103,9 +103,14 @@ class LockstepMachine(TickMachine):
         self.now += 1.01 * TIMEOUT_S
         self.owner.watch()
 
+    def start_again(self, name: str) -> None:
+        super().start_again(name)
+        self.failures.pop(name, None)
+        self.crowded.discard(name)
+
     def after_stamps_of_no_step(self, name: str, many: bool) -> None:
         """Require that a node ends which has no room for the stamps of the run any more."""
-        assert many == (name in self.failures)
+        assert many == (name in self.dead)
         if many:
             self.crowded.add(name)
 
