@@ -30,8 +30,8 @@ NEEDED_AT_RUN := bokeh, control, daqp, jinja2, matplotlib, osqp, scipy.signal, y
     diagnostic_msgs.msg, geometry_msgs.msg, rosgraph_msgs.msg, sensor_msgs.msg, trajectory_msgs.msg
 
 help:
-	@echo 'make setup | fmu | tune-extra | demo | test | test-fast | mutants | fuzz | faults | lint | docs | bench | soak | loaded-runs | sbom | release | site | clean' \
-	    '(see docs/use/setup.md)'
+	@echo 'make setup | fmu | tune-extra | demo | test | test-fast | mutants | fuzz | faults | lint | docs | bench | soak | loaded-runs |' \
+	    'benchmark-rows | sbom | release | site | lock | clean (see docs/use/setup.md)'
 
 setup: $(WORKSPACE_BUILT)
 
@@ -93,17 +93,24 @@ test-fast: setup .venv/.tune
 	@$(SOURCED) $(BIN)/python -m pytest -q -n 2 --dist loadfile \
 	    -m 'not (graph or browser or compiler or slow)' $(TEST_FOLDERS)
 
-# MUTANTS='--claim TEXT' or files of tests/mutants try only those.
+# MUTANTS='--claim TEXT' or files of tests/mutants try only those. JSON=docs/examples/mutants.json renews their records
+# of docs/develop/seeded_defects.md, MISSING=1 adds those that it lacks; then make docs KINDS=mutants.
 mutants: fmu tune-extra .venv/.test
-	@$(SOURCED) $(BIN)/python tests/mutants/run.py $(MUTANTS)
+	@$(SOURCED) $(BIN)/python tests/mutants/run.py \
+	    $(if $(JSON),--json '$(JSON)') $(if $(MISSING),--missing) $(MUTANTS)
 
 # Damaged inputs for every reader, minutes: SECONDS for each, first at random, then guided by what code they reach.
 # READERS='bag log' tries only those. An input that a reader fails on is kept in tests/fuzz/corpus, where the suite tries it.
+# Then SCHEDULES new schedules for each machine of the protocols of ticks; the suite has 150, always the same.
 SECONDS := 20
+SCHEDULES := 2000
+SCHEDULE_TESTS := $(addprefix ddct_plant/test/,ticks/test_lockstep_protocol.py ticks/test_realtime_protocol.py \
+    ticks/test_stamp_schedules.py fail_safe/test_actuator_schedules.py)
 fuzz: fmu .venv/.fuzz
 	@$(SOURCED) export PYTHONPATH="$(CURDIR)/tests:$$PYTHONPATH"; status=0; \
 	$(BIN)/python -P -m fuzz --seconds $(SECONDS) $(READERS) || status=1; \
 	$(BIN)/python -P -m fuzz --seconds $(SECONDS) --guided $(READERS) || status=1; \
+	$(if $(READERS),,DDCT_SCHEDULES=$(SCHEDULES) $(BIN)/python -m pytest -q -n 2 --dist loadfile $(SCHEDULE_TESTS) || status=1;) \
 	exit $$status
 
 # Every fault of the campaign on the real graph, half an hour: CASES='killed lockstep' tries only those with these words.

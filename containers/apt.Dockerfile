@@ -3,9 +3,11 @@
 #     docker run --rm ddct-apt
 FROM ros:jazzy-ros-base
 SHELL ["/bin/bash", "-c"]
-# pip brings what has no rosdep key; the flag is Ubuntu's for packages beside apt's.
+# pip brings what has no rosdep key, and rosdep itself calls it for keys that end in -pip: the
+# variable lets both put packages beside those of apt.
+ENV PIP_BREAK_SYSTEM_PACKAGES=1
 RUN apt-get update && apt-get install -y --no-install-recommends python3-pip \
-    && pip install --break-system-packages daqp osqp pyarrow \
+    && pip install daqp osqp pyarrow \
     && rm -rf /var/lib/apt/lists/*
 WORKDIR /ddct
 COPY . .

@@ -2,23 +2,29 @@
 # SPDX-License-Identifier: Apache-2.0
 """A ROS_DOMAIN_ID that is none ends nodes and programs with one line, before anything is left."""
 
+import subprocess
+import sys
+from contextlib import ExitStack
 from pathlib import Path
 from types import ModuleType
 
 import pytest
+from refusals import refused
 from support.complaints import assert_one_line
 from support.processes import Programs
 
 from ddct_bringup.programs import bringup, compare
-from ddct_plant.graph.domain import own_domain
+from ddct_plant.base.errors import DdctError
+from ddct_plant.graph import domain
+from ddct_plant.graph.domain import LAST_DOMAIN, own_domain, require_domain
 
 
-@pytest.mark.parametrize('domain', ['abc', '-1', '233'])
-def test_a_node_names_it(programs: Programs, monkeypatch: pytest.MonkeyPatch, domain: str) -> None:
-    monkeypatch.setenv('ROS_DOMAIN_ID', domain)
+@pytest.mark.parametrize('given', ['abc', '-1', '233'])
+def test_a_node_names_it(programs: Programs, monkeypatch: pytest.MonkeyPatch, given: str) -> None:
+    monkeypatch.setenv('ROS_DOMAIN_ID', given)
     program = programs.start_node('ddct_plant.nodes.engine_node', {})
     assert program.wait() == 1
-    assert_one_line(program.errors(), 'engine', 'ROS_DOMAIN_ID', repr(domain), '0 to 232')
+    assert_one_line(program.errors(), 'engine', 'ROS_DOMAIN_ID', repr(given), '0 to 232')
 
 
 @pytest.mark.parametrize('program', [bringup, compare])
@@ -49,6 +55,44 @@ def test_each_graph_has_another_domain_than_the_one_before(
     monkeypatch.delenv('ROS_DOMAIN_ID')
     domains = []
     for _ in range(10):
-        with own_domain() as domain:
-            domains.append(domain)
+        with own_domain() as each:
+            domains.append(each)
     assert len(set(domains)) == len(domains)
+
+
+def test_the_lowest_and_the_highest_domain_are_respected(monkeypatch: pytest.MonkeyPatch) -> None:
+    for given in (0, LAST_DOMAIN):
+        monkeypatch.setenv('ROS_DOMAIN_ID', str(given))
+        assert require_domain() == given
+        with own_domain() as each:
+            assert each == given
+        assert require_domain() == given
+
+
+def test_each_program_begins_with_another_domain_than_the_one_before(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.delenv('ROS_DOMAIN_ID')
+    program = (
+        'from ddct_plant.graph.domain import own_domain\n'
+        'with own_domain() as each:\n'
+        '    print(each)\n'
+    )
+    command = [sys.executable, '-c', program]
+    domains = [subprocess.check_output(command, text=True) for _ in range(3)]
+    assert len(set(domains)) == 3
+
+
+def test_no_graph_takes_the_domain_that_another_one_has(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Among three domains, whose ports are others than those of the graphs of this machine."""
+    monkeypatch.setattr(domain, '_DOMAINS', range(1, 4))
+    monkeypatch.setattr(domain, '_FIRST_PORT', 28000)
+    taken = []
+    with ExitStack() as graphs:
+        for _ in range(3):
+            monkeypatch.delenv('ROS_DOMAIN_ID')
+            taken.append(graphs.enter_context(own_domain()))
+        assert sorted(taken) == [1, 2, 3]
+        monkeypatch.delenv('ROS_DOMAIN_ID')
+        with refused(DdctError), own_domain():
+            pass

@@ -66,6 +66,29 @@ def test_only_a_middleware_with_security_passes(
     require_security_if_asked()
 
 
+def test_a_library_with_security_behind_the_one_that_is_loaded_does_not_count(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    other = tmp_path / 'other' / 'lib' / 'libfastrtps.so'
+    other.parent.mkdir(parents=True)
+    other.write_bytes(b'builtin.PKI-DH')
+    with_security, present = str(other.parents[1]), os.environ['AMENT_PREFIX_PATH']
+    monkeypatch.setenv('AMENT_PREFIX_PATH', os.pathsep.join([present, with_security]))
+    with refused(DdctError, REQUEST):
+        require_security_if_asked()
+    monkeypatch.setenv('AMENT_PREFIX_PATH', os.pathsep.join([with_security, present]))
+    require_security_if_asked()
+
+
+def test_the_library_is_found_in_the_folder_of_a_processor_too(without_security: Path) -> None:
+    """Packages of Debian and Ubuntu have theirs in lib/x86_64-linux-gnu."""
+    folder = without_security.parent / 'x86_64-linux-gnu'
+    folder.mkdir()
+    (folder / 'libfastrtps.so').write_bytes(b'builtin.PKI-DH')
+    without_security.unlink()
+    require_security_if_asked()
+
+
 def test_no_request_is_no_error(monkeypatch: pytest.MonkeyPatch) -> None:
     for value in ('false', ''):
         monkeypatch.setenv(REQUEST, value)

@@ -110,6 +110,19 @@ def test_wall_clock_figures_are_recorded_in_real_time_only(tmp_path: Path) -> No
         assert topics & {topic for topic, count in counts.items() if count} == recorded
 
 
+@pytest.mark.parametrize('mode', ['realtime', 'lockstep'])
+def test_counts_and_update_times_are_those_of_the_whole_run(tmp_path: Path, mode: str) -> None:
+    """The end is between two reports of the driveline, and between two of the controller."""
+    run = plan(layout='single-process', mode=mode, duration_s=0.55)
+    record(run, tmp_path / mode)
+    timing = _timing(tmp_path / mode)
+    assert timing['steps'] == run.steps == 55
+    updates = len(timing['update_times_us'])
+    assert updates == 56 or (mode == 'realtime' and updates + timing['missed_steps'] >= 56)
+    ticks = {name: sum(each['counts'].values()) for name, each in timing['durations'].items()}
+    assert ticks.get('lateness') == (55 if mode == 'realtime' else None)
+
+
 def _lose(owner: RealtimeOwner, steps: Collection[int]) -> None:
     """Lose the clutch torques that answer the ticks of these steps, and wait for none of them."""
     offer, missing = owner.offer, owner.missing

@@ -168,12 +168,20 @@ def test_requests_without_clock_give_no_torque_and_end_the_actuator(
 
 
 def test_a_late_clock_makes_the_actuator_answer(
-    bench: tuple[InProcessGraph, _Bench],
+    bench: tuple[InProcessGraph, _Bench], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     graph, driver = bench
+    actuator: Any = graph.nodes['actuator']
+    publish, published = actuator._torque.publish, []
+
+    def noted() -> None:
+        published.append(actuator.join.last_step)
+        publish()
+
+    monkeypatch.setattr(actuator._torque, 'publish', noted)
     driver.request(0)
-    graph.spin_until(lambda: 0 in driver.requests, 'the request')
-    assert not driver.torques
+    graph.spin_until(lambda: actuator.join.last_step == 0, 'the request')
+    assert not published
     driver.publish_time(0)
 
     def answered_again() -> bool:

@@ -12,21 +12,20 @@ import numpy as np
 import pytest
 from geometry_msgs.msg import WrenchStamped
 from rclpy.node import Node
-from sensor_msgs.msg import JointState
-from support.in_process_graph import GraphOf, InProcessGraph
+from support.in_process_graph import GraphOf
 from support.patient_clock import realtime_owner
-from support.processes import START_S, Programs
+from support.processes import Programs
 from support.runs import LAYOUTS, bag_bytes, expected, plan, record
 from support.silent_controller import run_until_silent
 
 from ddct_bringup.run.plan import RunPlan
-from ddct_plant.base.timebase import PERIOD_S, stamp_of_step, step_of_stamp
+from ddct_plant.base.timebase import PERIOD_S, step_of_stamp
 from ddct_plant.fail_safe.request_watch import REQUEST_TIMEOUT_S
-from ddct_plant.graph.qos import LOOP_QOS, RECORDER_QOS
+from ddct_plant.graph.qos import RECORDER_QOS
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.signals.message_kind import stamp_ns
-from ddct_plant.signals.topics import ENGINE_REQUEST, ENGINE_TORQUE, JOINT_STATES
+from ddct_plant.signals.topics import ENGINE_TORQUE
 
 pytestmark = pytest.mark.slow
 
@@ -165,87 +164,3 @@ def test_in_real_time_the_engine_goes_back_to_the_demand_when_requests_stop_and_
     left = np.maximum(abs(deviations[0]) - (alone - first) * most_change, 0.0)
     np.testing.assert_allclose(np.abs(deviations), left, atol=1e-9)
     assert left[-1] == 0.0
-
-
-class _Driver(Node):
-    """Substitute for driveline and controller; stores the engine's answers in order."""
-
-    def __init__(self, **options: Any) -> None:
-        super().__init__('driver', **options)
-        self.answers: list[tuple[int, float]] = []
-        self._joints = self.create_publisher(JointState, 'driveline/joint_states', LOOP_QOS)
-        self._request = self.create_publisher(WrenchStamped, 'engine/torque_request', LOOP_QOS)
-        self.create_subscription(WrenchStamped, 'engine/torque', self._on_torque, LOOP_QOS)
-
-    def tick(self, step: int) -> None:
-        """Publish the tick of a step."""
-        zero = [0.0] * 4
-        self._joints.publish(JOINT_STATES.message(stamp_of_step(step), zero, zero, zero))
-
-    def request(self, step: int, torque: float) -> None:
-        """Publish the request of a step."""
-        self._request.publish(ENGINE_REQUEST.message(stamp_of_step(step), torque))
-
-    def connected(self) -> bool:
-        """Return whether the engine is connected."""
-        publishers = (self._joints, self._request)
-        connected = all(each.get_subscription_count() for each in publishers)
-        return connected and self.count_publishers('engine/torque') > 0
-
-    def _on_torque(self, message: WrenchStamped) -> None:
-        self.answers.append((step_of_stamp(stamp_ns(message)), ENGINE_TORQUE.read(message)))
-
-
-def _driven(graph_of: GraphOf) -> tuple[InProcessGraph, _Driver]:
-    demand = ('engine.time_s=[0.0]', 'engine.torque_n_m=[308.0]')
-    graph = graph_of(plan('mpc4', mode='realtime', changes=(LITTLE_SLEW, *demand)))
-    graph.add('engine')
-    driver = _Driver(context=graph.context)
-    graph.add_other(driver)
-    graph.spin_until(driver.connected, 'the engine', START_S)
-    return graph, driver
-
-
-def test_in_real_time_requests_that_come_back_change_nothing(
-    graph_of: GraphOf, capfd: pytest.CaptureFixture[str]
-) -> None:
-    graph, driver = _driven(graph_of)
-
-    def answered(count: int) -> bool:
-        return len(driver.answers) == count
-
-    driver.tick(0)
-    driver.request(0, 320.0)
-    graph.spin_until(partial(answered, 1), 'the answer to a request')
-    first, second = TIMEOUT_STEPS + 1, TIMEOUT_STEPS + 2
-    for step in range(1, second + 1):
-        driver.tick(step)
-    graph.spin_until(partial(answered, 3), 'two answers without a request')
-    driver.tick(second)
-    graph.spin_until(partial(answered, 4), 'the answer to a tick that comes again')
-    for step in (first, second, second + 1):
-        driver.request(step, 400.0)
-    driver.tick(second + 1)
-    graph.spin_until(partial(answered, 5), 'the answer to the tick after a request')
-    assert driver.answers == [
-        (0, 313.0),
-        (first, 315.0),  # in between 320 were held, which a slow engine came to
-        (second, 310.0),
-        (second, 310.0),
-        (second + 1, 308.0),
-    ]
-    assert capfd.readouterr().err.count('the demand holds until the engine is started again') == 1
-
-
-def test_in_real_time_the_demand_is_delivered_until_the_first_request_and_not_held(
-    graph_of: GraphOf,
-) -> None:
-    graph, driver = _driven(graph_of)
-    first = TIMEOUT_STEPS + 1
-    driver.tick(first)
-    graph.spin_until(lambda: bool(driver.answers), 'an answer without a request')
-    for step in (first, first + 1):
-        driver.request(step, 320.0)
-    driver.tick(first + 1)
-    graph.spin_until(lambda: len(driver.answers) == 2, 'the answer to a request')
-    assert driver.answers == [(first, 308.0), (first + 1, 313.0)]

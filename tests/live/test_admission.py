@@ -3,13 +3,14 @@
 """Who may connect to the live view: programs and Foxglove, and no other web page."""
 
 import socket
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from pathlib import Path
 
 import pytest
 from support.processes import Program
 
+from ddct_bringup.live.gate import Gate, secret_address
 from ddct_bringup.live.handshake import ORIGINS, Admission
 
 Start = Callable[..., tuple[Program, str]]
@@ -103,6 +104,34 @@ def test_no_address_of_this_machine_that_a_page_can_guess_serves(live: Start) ->
     assert len(ports) == 2
     (inner,) = [address for address, port in ports if f':{port}' not in url]
     assert inner.startswith('127.') and inner != '127.0.0.1'
+
+
+@pytest.fixture
+def gate(monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[str, list[str]]]:
+    """Yield the address of a gate that waits for a tenth of a second, and what it prints."""
+    monkeypatch.setattr('ddct_bringup.live.gate._HEAD_S', 0.1)
+    lines: list[str] = []
+    gate = Gate(Admission('127.0.0.1'), 0, ('127.0.0.1', 1), lines.append)
+    yield f'ws://127.0.0.1:{gate.port}', lines
+    gate.stop()
+
+
+def test_a_connection_without_first_lines_is_closed(gate: tuple[str, list[str]]) -> None:
+    url, lines = gate
+    assert answer(url, b'GET / HTTP/1.1') == b''
+    assert not lines
+
+
+def test_a_refusal_that_comes_again_is_printed_once(gate: tuple[str, list[str]]) -> None:
+    url, lines = gate
+    for origin in (EVIL, EVIL, 'null', EVIL):
+        refused = answer(url, head(HERE, f'Origin: {origin}', *UPGRADE))
+        assert refused.startswith(b'HTTP/1.1 403 ')
+    assert [EVIL in line for line in lines] == [True, False]
+
+
+def test_the_address_behind_the_gate_is_another_one_in_each_run() -> None:
+    assert len({secret_address() for _ in range(5)}) > 1
 
 
 def listening(pid: int) -> set[tuple[str, int]]:

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """`make mutants` reports which seeded defects live, and refuses entries that are out of date."""
 
+import json
 import subprocess
 import sys
 from pathlib import Path
@@ -44,7 +45,8 @@ def entry(claim: str, find: str, replace: str, test: str = 'ddct_sums/test_sums.
 def run_mutants(
     repository: Path, *entries: str, options: tuple[str, ...] = ()
 ) -> subprocess.CompletedProcess[str]:
-    file = repository / 'seeded.yaml'
+    file = repository / 'tests' / 'mutants' / 'seeded.yaml'
+    file.parent.mkdir(parents=True, exist_ok=True)
     file.write_text(''.join(entries), encoding='utf-8')
     command = [sys.executable, str(HERE / 'run.py'), '--root', str(repository), str(file)]
     return subprocess.run([*command, *options], capture_output=True, text=True, check=False)
@@ -88,6 +90,22 @@ def test_a_test_that_is_gone_is_an_error(repository: Path, test: str) -> None:
     ended = run_mutants(repository, lacks, options=('--check',))
     assert (ended.returncode, ended.stdout) == (1, '')
     assert test.strip('"') in ended.stderr
+
+
+@pytest.mark.slow
+def test_outcomes_are_kept_and_only_the_missing_ones_are_tried_when_that_is_asked(
+    repository: Path,
+) -> None:
+    author = ['-c', 'user.name=a', '-c', 'user.email=a@example']
+    subprocess.run(['git', *author, 'commit', '-qm', 'first'], cwd=repository, check=True)
+    caught, lives = entry('it multiplies', 'a + b', 'a * b'), entry('-b', 'a + b', 'a - b')
+    options = ('--json', str(repository / 'records.json'))
+    run_mutants(repository, caught, lives, options=(*options, '--claim', 'multiplies'))
+    ended = run_mutants(repository, caught, lives, options=(*options, '--missing'))
+    assert ended.stdout.splitlines()[1:] == ['0 caught, 1 LIVED, 0 ERROR, 0 skipped']
+    records = json.loads((repository / 'records.json').read_text(encoding='utf-8'))
+    outcomes = {claim: record['outcome'] for claim, record in records.items()}
+    assert outcomes == {'it multiplies': 'caught', '-b': 'LIVED'}
 
 
 @pytest.mark.slow

@@ -134,6 +134,19 @@ def test_the_page_on_apt_names_what_rosdep_cannot_install() -> None:
     assert {name for module in modules for name in without_key(module)} <= told
 
 
+def test_the_container_of_the_way_with_apt_installs_from_pip_as_the_page_states() -> None:
+    """Ubuntu refuses packages of pip beside those of apt, unless the variable allows them."""
+    page = (ROOT / 'docs' / 'use' / 'setup.md').read_text(encoding='utf-8')
+    container = (ROOT / 'containers' / 'apt.Dockerfile').read_text(encoding='utf-8')
+    assert any(key.endswith('-pip') for package in PACKAGES for key in declared_to_ros(package))
+    (allowed,) = re.findall(r'`(PIP_[A-Z_]+=1)`', page)
+    before, _, _ = container.partition('rosdep install')
+    assert f'\nENV {allowed}\n' in before.partition('pip install')[0]
+    ((named, _),) = re.findall(r'^\| (.*) \| (install them with pip) \|$', page, re.MULTILINE)
+    (installed,) = re.findall(r'pip install ([^\\\n]+)', container)
+    assert installed.split() == re.findall(r'`([a-z0-9-]+)`', named)
+
+
 def without_key(module: str) -> set[str]:
     name, key = FROM_PYPI.get(module, (module, module))
     return set() if key else {name}

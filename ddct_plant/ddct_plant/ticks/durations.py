@@ -96,7 +96,8 @@ class TickDurations:
         self.histograms = {name: DurationHistogram() for name in ('lateness', 'jitter', 'latency')}
         self._clock = clock
         self._period_s = period_s
-        self._sent: list[tuple[int, float]] = [(-1, 0.0)] * _REMEMBERED
+        # Of no step: the number of a false stamp may be any, below 0 too.
+        self._sent: list[tuple[int | None, float]] = [(None, 0.0)] * _REMEMBERED
 
     def publish(self, step: int, late_s: float) -> None:
         """Note that the tick of a step is being published, `late_s` after it was due."""

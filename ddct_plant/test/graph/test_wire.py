@@ -76,6 +76,16 @@ def test_a_message_takes_as_many_numbers_as_the_first_one() -> None:
         serialise(0, TORQUES[:-1])
 
 
+def test_another_publisher_of_the_topic_has_a_length_of_its_own() -> None:
+    """As in one process the controllers of two runs with other previews, one after the other."""
+    for points in (3, 1):
+        numbers = [0.5] * points
+        sent = serialiser(topics.SLIP_REFERENCE)(0, numbers, numbers)
+        message = decoder(topics.SLIP_REFERENCE)(sent)
+        read = topics.SLIP_REFERENCE.read(message, preview_steps=points - 1)
+        assert [list(each) for each in read] == [numbers, numbers]
+
+
 @pytest.mark.parametrize(
     'spoil', [lambda cdr: cdr[:-9], lambda cdr: b'\0\0' + cdr[2:], lambda _: b'']
 )

@@ -14,6 +14,12 @@ from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.program.scheduling import Scheduling, cpus_in, scheduling_restored
 
 CORES = sorted(os.sched_getaffinity(0))
+LOCKED = (
+    'from ddct_plant.program.scheduling import Scheduling, scheduling_restored\n'
+    'locked = lambda: int(next(line.split()[1] for line in open("/proc/self/status")'
+    ' if line.startswith("VmLck")))\n'
+)
+"""Begin of a program: `locked()` is its locked memory in kB."""
 
 
 def permitted(**options):
@@ -57,24 +63,35 @@ def test_the_cores_are_those_of_every_thread_until_they_are_taken_back(other_thr
 
 
 def test_locked_memory_is_locked_until_it_is_unlocked():
+    """Memory that is taken later is locked too."""
     permitted(lock_memory=True)
     program = (
-        'from ddct_plant.program.scheduling import Scheduling, scheduling_restored\n'
-        'locked = lambda: int(next(line.split()[1] for line in open("/proc/self/status")'
-        ' if line.startswith("VmLck")))\n'
+        f'{LOCKED}'
         'with scheduling_restored():\n'
         '    Scheduling(lock_memory=True).apply()\n'
-        '    assert locked() > 1000, locked()\n'
+        '    first = locked()\n'
+        '    assert first > 1000, first\n'
+        '    later = bytearray(4_000_000)\n'
+        '    assert locked() > first + 3_000, (first, locked())\n'
         'assert locked() == 0, locked()\n'
     )
     subprocess.run([sys.executable, '-c', program], check=True)
 
 
-def test_a_trial_changes_nothing():
-    scheduling = permitted(realtime_priority=3, lock_memory=True, cpus=str(CORES[0]))
+@pytest.mark.parametrize('options', [{'realtime_priority': 3}, {'cpus': str(CORES[0])}])
+def test_a_trial_changes_no_thread(options):
     before = os.sched_getscheduler(0), os.sched_getaffinity(0)
-    scheduling.require_permitted()
-    assert (os.sched_getscheduler(0), os.sched_getaffinity(0)) == before
+    with scheduling_restored():
+        permitted(**options)
+        assert (os.sched_getscheduler(0), os.sched_getaffinity(0)) == before
+
+
+def test_a_trial_leaves_no_memory_locked():
+    permitted(lock_memory=True)
+    program = (
+        f'{LOCKED}Scheduling(lock_memory=True).require_permitted()\nassert locked() == 0, locked()'
+    )
+    subprocess.run([sys.executable, '-c', program], check=True)
 
 
 def test_a_user_without_permission_reads_which_option_it_is():
@@ -112,9 +129,10 @@ def test_a_list_of_cores_has_single_ones_and_ranges():
     assert cpus_in('0, 2-4,7') == {0, 2, 3, 4, 7}
 
 
-def test_a_core_that_is_not_there_is_refused():
+@pytest.mark.parametrize('cpus', ['9998', f'{CORES[0]},9998'])
+def test_a_core_that_is_not_there_is_refused(cpus):
     with refused(ParameterError, 'cpus'):
-        Scheduling(cpus='9998').require_permitted()
+        Scheduling(cpus=cpus).require_permitted()
 
 
 @pytest.mark.parametrize('priority', [-1, 99, 1.5])

@@ -5,7 +5,13 @@
 import numpy as np
 import pytest
 
-from ddct_plant.ticks.durations import BINS_PER_OCTAVE, LAST_BIN, DurationHistogram, upper_end_us
+from ddct_plant.ticks.durations import (
+    BINS_PER_OCTAVE,
+    LAST_BIN,
+    DurationHistogram,
+    TickDurations,
+    upper_end_us,
+)
 
 WIDTH = 2.0 ** (1.0 / BINS_PER_OCTAVE)
 
@@ -42,3 +48,53 @@ def test_any_duration_has_a_bin():
 
 def test_without_durations_there_is_no_percentile():
     assert DurationHistogram().percentile_us(50.0) is None
+
+
+class Clock:
+    """Steady clock that a test sets, s."""
+
+    now = 0.0
+
+    def __call__(self):
+        return self.now
+
+
+def published(steps_and_times):
+    """Return the durations of ticks of 10 ms that were published at these times, and the clock."""
+    clock = Clock()
+    durations = TickDurations(clock, 0.01)
+    for step, clock.now in steps_and_times:
+        durations.publish(step, late_s=0.001 * step)
+    return durations, clock
+
+
+def largest_us(durations):
+    """Return by name the largest duration, of those that have any."""
+    return {name: each.largest_us for name, each in durations.histograms.items() if each.total}
+
+
+def test_the_jitter_is_the_difference_of_a_period_from_its_length_in_either_direction():
+    durations, _ = published([(1, 5.0), (2, 5.012), (3, 5.0215)])
+    assert durations.histograms['jitter'].total == 2
+    assert largest_us(durations) == pytest.approx({'lateness': 3000.0, 'jitter': 2000.0})
+
+
+def test_a_tick_after_others_that_were_not_published_has_no_jitter():
+    durations, _ = published([(1, 5.0), (4, 5.03)])
+    assert durations.histograms['jitter'].total == 0
+    assert durations.histograms['lateness'].total == 2
+
+
+def test_the_latency_is_from_the_publication_of_the_tick_that_is_answered():
+    durations, clock = published([(1, 5.0), (2, 5.01)])
+    clock.now = 5.017
+    durations.answer(1)
+    assert largest_us(durations)['latency'] == pytest.approx(17000.0)
+
+
+@pytest.mark.parametrize(('step', 'ticks'), [(1, 2000), (3000, 2000), (-1, 3), (-1, 2000)])
+def test_a_reply_to_no_tick_that_is_remembered_has_no_latency(step, ticks):
+    """One is forgotten after some ten seconds, one is not yet published, one is before t_0."""
+    durations, _ = published([(each, 0.01 * each) for each in range(1, ticks + 1)])
+    durations.answer(step)
+    assert durations.histograms['latency'].total == 0

@@ -25,6 +25,8 @@ SILENCE_STEPS = 40
 class RealtimeMachine(TickMachine):
     """The owner of time on its grid, its followers, and a network without any promise."""
 
+    steps = STEPS
+
     @initialize(wiring=st.sampled_from([ONE_CLUTCH, TWO_CLUTCHES]), recorder=st.booleans())
     def begin(self, wiring: Wiring, recorder: bool) -> None:
         wiring = wiring.with_recorder() if recorder else wiring
