@@ -99,6 +99,7 @@ mutants: fmu tune-extra .venv/.test
 
 # Damaged inputs for every reader, minutes: SECONDS for each, first at random, then guided by what code they reach.
 # READERS='bag log' tries only those. An input that a reader fails on is kept in tests/fuzz/corpus, where the suite tries it.
+# Each run begins with the inputs by which earlier ones have reached new code, in .fuzz_cache: remove that to begin anew.
 SECONDS := 20
 fuzz: fmu .venv/.fuzz
 	@$(SOURCED) export PYTHONPATH="$(CURDIR)/tests:$$PYTHONPATH"; status=0; \
@@ -176,4 +177,4 @@ lock: $(VENV_MADE)
 	@echo uv | $(COMPILE) - -o requirements-uv.txt
 
 clean:
-	rm -rf .venv build install log .mypy_cache .pytest_cache .ruff_cache
+	rm -rf .venv build install log .fuzz_cache .mypy_cache .pytest_cache .ruff_cache

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from fuzz.edits import KINDS, Edit, edited
-from fuzz.loop import CORPUS, bounded_time
+from fuzz.loop import CORPUS, bounded_time, fuzz, inputs_in, keep
 from fuzz.readers import Reader, readers
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
@@ -43,8 +43,7 @@ def test_good_and_kept_inputs_have_no_finding(
     known: dict[str, Reader], tmp_path: Path, name: str
 ) -> None:
     reader = known[name]
-    kept = [file.read_bytes() for file in sorted((CORPUS / name).glob('*'))]
-    for data in (*reader.seeds, *kept, b''):
+    for data in (*reader.seeds, *inputs_in(CORPUS / name), b''):
         with bounded_time():
             assert reader.finding(data, tmp_path / 'work') == ''
 
@@ -63,7 +62,7 @@ def test_damaged_inputs_have_no_finding(
         deadline=None,
         suppress_health_check=list(HealthCheck),
     )
-    @given(st.sampled_from(reader.seeds), EDITS)
+    @given(st.sampled_from((*reader.seeds, *inputs_in(CORPUS / name))), EDITS)
     def require_no_finding(seed: bytes, edits: list[Edit]) -> None:
         with bounded_time():
             assert reader.finding(edited(seed, edits), tmp_path / 'work') == ''
@@ -83,3 +82,12 @@ def test_a_traceback_printed_text_and_another_number_are_findings(tmp_path: Path
     assert reader.finding(b'x', tmp_path / 'work').startswith('ValueError')
     assert reader.finding(b'', tmp_path / 'work') == "prints 'nothing\\n'"
     assert reader.finding(b'13', tmp_path / 'work') == 'other numbers than those of the good input'
+
+
+def test_inputs_of_findings_are_edited_too(tmp_path: Path) -> None:
+    seen = set()
+    reader = Reader('number', 'number', lambda file: seen.add(file.read_bytes()), (b'',))
+    keep(b'far from all edits of nothing', tmp_path / 'kept')
+    fuzz(reader, 0.3, 0, tmp_path / 'work', tmp_path / 'kept')
+    assert any(b'all edits' in data for data in seen)
+    assert any(b'all edits' not in data for data in seen)
