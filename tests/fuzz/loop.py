@@ -18,7 +18,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from fuzz.edits import edited, random_edits
-from fuzz.readers import Reader
+from fuzz.reader import Reader
 
 CORPUS = Path(__file__).with_name('corpus')
 """Folder with the inputs of findings, by reader."""

@@ -11,7 +11,7 @@ from types import SimpleNamespace
 import pytest
 from fuzz import live_readers
 from fuzz.live_readers import ADDRESS, read_frames
-from fuzz.readers import Reader
+from fuzz.reader import Reader
 
 FATAL = b'fatal'
 """Frames after which the server serves nobody."""

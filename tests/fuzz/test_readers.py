@@ -8,16 +8,17 @@ from pathlib import Path
 import pytest
 from fuzz.edits import KINDS, Edit, edited
 from fuzz.loop import CORPUS, bounded_time, fuzz, inputs_in, keep
-from fuzz.readers import Reader, readers
+from fuzz.reader import Reader
+from fuzz.readers import readers
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from ddct_plant.base.errors import DdctError
 
 NAMES = (
-    *('bag', 'bag_as_log', 'repair', 'scenario', 'limits', 'campaign', 'controller', 'columns'),
-    *('log', 'parquet', 'manifest', 'timing', 'failed_run', 'digests', 'scores'),
-    *('tuning_mpc_thesis', 'tuning_pi_launches', 'fmu_description', 'fmu'),
+    *('bag', 'bag_as_log', 'repair', 'log', 'controller', 'fmu_description', 'fmu'),
+    *('scenario', 'limits', 'campaign', 'columns', 'parquet', 'manifest', 'timing'),
+    *('failed_run', 'digests', 'scores', 'tuning_mpc_thesis', 'tuning_pi_launches'),
     *('live_head', 'live_frames'),
 )
 EDITS = st.lists(
@@ -36,6 +37,11 @@ def known(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Reader]:
 def test_every_reader_is_tried(known: dict[str, Reader]) -> None:
     assert tuple(known) == NAMES
     assert {folder.name for folder in CORPUS.iterdir() if folder.is_dir()} <= set(NAMES)
+
+
+@pytest.mark.parametrize('name', NAMES)
+def test_good_inputs_are_read(known: dict[str, Reader], name: str) -> None:
+    assert len(known[name].expected) == len(known[name].seeds)
 
 
 @pytest.mark.parametrize('name', NAMES)
@@ -81,7 +87,8 @@ def test_a_traceback_printed_text_and_another_number_are_findings(tmp_path: Path
     assert reader.finding(b'12', tmp_path / 'work') == ''
     assert reader.finding(b'x', tmp_path / 'work').startswith('ValueError')
     assert reader.finding(b'', tmp_path / 'work') == "prints 'nothing\\n'"
-    assert reader.finding(b'13', tmp_path / 'work') == 'other numbers than those of the good input'
+    other = reader.finding(b'13', tmp_path / 'work')
+    assert other == 'other numbers than those of the good inputs'
 
 
 def test_inputs_of_findings_are_edited_too(tmp_path: Path) -> None:
