@@ -17,9 +17,10 @@ from ddct_plant.base.errors import DdctError
 
 NAMES = (
     *('bag', 'bag_as_log', 'repair', 'log', 'controller', 'fmu_description', 'fmu'),
-    *('scenario', 'limits', 'campaign', 'columns', 'parquet', 'manifest', 'timing'),
-    *('failed_run', 'digests', 'scores', 'tuning_mpc_thesis', 'tuning_pi_launches'),
-    *('live_head', 'live_frames'),
+    *('timing', 'failed_run', 'repeated_failure', 'digests', 'scores', 'verified_scores'),
+    *('frequency', 'campaign', 'manifest', 'results', 'result_row', 'summary'),
+    *('scenario', 'limits', 'columns', 'parquet'),
+    *('tuning_mpc_thesis', 'tuning_pi_launches', 'live_head', 'live_frames'),
 )
 EDITS = st.lists(
     st.builds(Edit, st.sampled_from(KINDS), st.integers(0, 2**31 - 1), st.integers(0, 2**16 - 1)),
