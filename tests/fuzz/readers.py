@@ -12,12 +12,14 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as parquet
 from fuzz.bag_readers import bag_readers, made_bag
+from fuzz.benchmark_readers import benchmark_readers
 from fuzz.campaign_readers import campaign_readers
 from fuzz.controller_readers import controller_readers
+from fuzz.floor_readers import floor_reader
 from fuzz.live_readers import frames, heads, read_frames, read_head
 from fuzz.reader import Reader
 from fuzz.run_readers import run_readers
-from fuzz.tuning_readers import tunings
+from fuzz.tuning_readers import tuning_readers
 from support.runs import plan
 
 from ddct_bringup.campaign.arrow_columns import read_parquet
@@ -27,6 +29,7 @@ from ddct_plant.measured.columns import load_columns
 from ddct_plant.scenario.file import ScenarioFile, load_scenario, scenario_to_yaml
 
 ROOT = Path(__file__).resolve().parents[2]
+_PROFILE = b't,torque\n0.0,0.0\n0.5,120.5\n1.5e0,240\n'
 _VERDICT = 'ddct_bringup/ddct_bringup/verdict'
 
 
@@ -41,11 +44,14 @@ def readers(folder: Path) -> dict[str, Reader]:
         *controller_readers(),
         *run_readers(bag, folder),
         *campaign_readers(folder),
+        *benchmark_readers(folder),
+        floor_reader(folder),
+        *tuning_readers(folder),
         Reader('scenario', 'mine.yaml', _scenario, (scenario, *packaged)),
+        Reader('profile', 'pedal.csv', _profile, (_PROFILE, _PROFILE.replace(b',', b'; '))),
         Reader('limits', 'limits.yaml', load_limits, _texts(f'{_VERDICT}/limits.yaml')),
         Reader('columns', 'map.yaml', _columns, _texts('docs/use/own_car_columns.yaml')),
         Reader('parquet', 'results.parquet', _table, (_parquet(folder),)),
-        *(Reader(f'tuning_{name}', 'mine.yaml', read, (text,)) for name, read, text in tunings()),
         Reader('live_head', 'head', read_head, heads()),
         Reader('live_frames', 'frames', read_frames, frames()),
     ]
@@ -58,6 +64,12 @@ def _columns(file: Path) -> object:
 
 def _scenario(file: Path) -> object:
     return ScenarioFile.read(str(file)).scenario()
+
+
+def _profile(file: Path) -> object:
+    """Load a scenario whose torque of the engine is in a file."""
+    section = f'{{csv: {file}, time: t, value: torque, unit: N m}}'
+    return load_scenario('thesis', [f'engine={section}'])
 
 
 def _table(file: Path) -> object:

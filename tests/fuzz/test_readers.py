@@ -19,8 +19,10 @@ NAMES = (
     *('bag', 'bag_as_log', 'repair', 'log', 'controller', 'fmu_description', 'fmu'),
     *('timing', 'failed_run', 'repeated_failure', 'digests', 'scores', 'verified_scores'),
     *('frequency', 'campaign', 'manifest', 'results', 'result_row', 'summary'),
-    *('scenario', 'limits', 'columns', 'parquet'),
-    *('tuning_mpc_thesis', 'tuning_pi_launches', 'live_head', 'live_frames'),
+    *('benchmark', 'benchmark_rows', 'benchmark_limits', 'update_times', 'floor'),
+    *('tuning_mpc_thesis', 'tuning_pi_launches', 'tuning_manifest', 'tuning_trials'),
+    *('tuning_runs', 'scenario', 'profile', 'limits', 'columns', 'parquet'),
+    *('live_head', 'live_frames'),
 )
 EDITS = st.lists(
     st.builds(Edit, st.sampled_from(KINDS), st.integers(0, 2**31 - 1), st.integers(0, 2**16 - 1)),
