@@ -80,6 +80,8 @@ def grid_of(content: Mapping[str, Any]) -> dict[str, tuple[Any, ...]]:
         for value in values:
             if option:
                 option.checked(where, value)
+            elif key == SCENARIO:
+                _text(where, value)
         grid[key] = _distinct(where, values)
     return grid
 
@@ -112,6 +114,9 @@ def samples_of(content: Mapping[str, Any]) -> tuple[int, int, dict[str, Distribu
     for key, described in _not_empty(f'{RANDOM}.{_VARY}', given.get(_VARY)).items():
         where = f'{RANDOM}.{_VARY}.{key}'
         vary[key] = distribution_of(where, described, option_of(where, key))
+        if key == SCENARIO:
+            for name in vary[key].values or (described,):  # no distribution of numbers has names
+                _text(where, name)
     return samples, of, vary
 
 
