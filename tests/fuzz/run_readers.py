@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from contextlib import redirect_stdout
 from dataclasses import replace
 from pathlib import Path
+from unittest.mock import patch
 
 from fuzz.reader import Read, Reader
 
@@ -15,6 +16,7 @@ from ddct_bringup.digests.digest_file import DIGESTS, RUNS, Digests, RunDigests,
 from ddct_bringup.digests.environment import this_environment
 from ddct_bringup.digests.writing import ITSELF
 from ddct_bringup.programs.score import main as score
+from ddct_bringup.report import evidence
 from ddct_bringup.report.evidence import FREQUENCY_FILE, evidence_of, loop_rows, without_evidence
 from ddct_bringup.run.timing_and_failure import (
     NOTE_FILE,
@@ -31,6 +33,7 @@ from ddct_bringup.verification.request import VerificationRequest
 from ddct_bringup.verification.runs import verified_runs
 from ddct_bringup.verification.scores import SCORES, verified_scores
 from ddct_controllers.workflows.evidence import frequency_evidence
+from ddct_controllers.workflows.evidence_types import FrequencyEvidence
 
 BAG = 'pi_0.mcap'
 
@@ -40,7 +43,8 @@ def run_readers(bag: Path, folder: Path) -> list[Reader]:
     scored = score_any_bag(bag, bag.parent, packaged_limits())
     assert scored.recording is not None
     assert scored.settings is not None
-    evidence = json.dumps(frequency_evidence(['pi', 'mpc3'], scored.settings)).encode()
+    analyses = frequency_evidence(['pi', 'mpc3'], scored.settings)
+    computed = frequency_evidence(['pi'], scored.settings)
     scores, note = _scores(bag, folder), _note(scored.recording.custom_data, folder)
     return [
         Reader('timing', TIMING_FILE, in_folder(read_timing), (_timing(folder),)),
@@ -49,7 +53,12 @@ def run_readers(bag: Path, folder: Path) -> list[Reader]:
         Reader('digests', DIGESTS, in_folder(read_digests), (_digests(),)),
         Reader('scores', SCORES, read_scores, (scores,)),
         Reader('verified_scores', SCORES, _beside(bag, _verified), (scores,)),
-        Reader('frequency', FREQUENCY_FILE, _evidence(scored), (evidence,)),
+        Reader(
+            'frequency',
+            FREQUENCY_FILE,
+            _evidence(scored, computed),
+            (json.dumps(analyses).encode(),),
+        ),
     ]
 
 
@@ -83,10 +92,14 @@ def _verified(folder: Path) -> object:
     return verified_scores(request_of(folder, {}))
 
 
-def _evidence(scored: ScoredRecording) -> Read:
+def _evidence(scored: ScoredRecording, computed: FrequencyEvidence) -> Read:
+    """Return a reader of analyses beside a bag; where they are damaged `computed` is taken."""
+
     def read(file: Path) -> object:
         recording = replace(scored.recording, path=file.parent / 'pi' / BAG)
-        found = evidence_of([replace(scored, recording=recording)])
+        # To compute them each time would take a second.
+        with patch.object(evidence, 'frequency_evidence', return_value=computed):
+            found = evidence_of([replace(scored, recording=recording)])
         return loop_rows(found), without_evidence(found)
 
     return read
