@@ -4,6 +4,10 @@
 Readers of files and connections from users and strangers, each with good inputs.
 
 Other inputs are made of those.
+
+No target are files that are run (controllers in Python, libraries in C), files that are only
+searched for a mark or compared byte by byte (exports, pages, `metadata.yaml`), lock files, and
+what the packages contain.
 """
 
 from pathlib import Path
