@@ -102,6 +102,7 @@ mutants: fmu tune-extra .venv/.test
 # Damaged inputs for every reader, minutes: SECONDS for each, first at random, then guided by what code they reach.
 # READERS='bag log' tries only those. An input that a reader fails on is kept in tests/fuzz/corpus, where the suite tries it.
 # Then SCHEDULES new schedules for each machine of the protocols of ticks; the suite has 150, always the same.
+# Each run begins with the inputs by which earlier ones have reached new code, in .fuzz_cache: remove that to begin anew.
 SECONDS := 20
 SCHEDULES := 2000
 SCHEDULE_TESTS := $(addprefix ddct_plant/test/,ticks/test_lockstep_protocol.py ticks/test_realtime_protocol.py \
@@ -183,4 +184,4 @@ lock: $(VENV_MADE)
 	@echo uv | $(COMPILE) - -o requirements-uv.txt
 
 clean:
-	rm -rf .venv build install log .mypy_cache .pytest_cache .ruff_cache
+	rm -rf .venv build install log .fuzz_cache .mypy_cache .pytest_cache .ruff_cache

@@ -1,6 +1,11 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""One reader, given inputs that reach new code: `fuzz.guided READER SECONDS SEED FOLDER`."""
+"""
+One reader, given inputs that reach new code: `fuzz.guided READER SECONDS SEED FOLDER`.
+
+It begins with the inputs of earlier runs, and adds to them. FOLDER is for what it needs until it
+ends.
+"""
 
 import sys
 from pathlib import Path
@@ -10,7 +15,7 @@ import atheris
 with atheris.instrument_imports(
     include=['ddct_plant', 'ddct_bringup', 'ddct_controllers', 'mcap']
 ):
-    from fuzz.loop import CORPUS, bounded_time, keep
+    from fuzz.loop import CORPUS, REACHED, bounded_time, inputs_in, keep
     from fuzz.readers import readers
 
 
@@ -21,8 +26,10 @@ def main() -> None:
     reader = readers(folder)[name]
     seeds = folder / 'seeds'
     seeds.mkdir()
-    for number, data in enumerate(reader.seeds):
+    for number, data in enumerate((*reader.seeds, *inputs_in(CORPUS / name))):
         (seeds / str(number)).write_bytes(data)
+    reached = REACHED / name
+    reached.mkdir(parents=True, exist_ok=True)
 
     def one(data: bytes) -> None:
         with bounded_time():
@@ -32,7 +39,8 @@ def main() -> None:
             raise AssertionError(what)
 
     limits = [f'-max_total_time={float(seconds):.0f}', '-rss_limit_mb=3000', '-max_len=200000']
-    start = [f'-artifact_prefix={folder}/', f'-seed={int(seed) + 1}', str(seeds)]
+    # What reaches new code is written into the first folder, and read from all.
+    start = [f'-artifact_prefix={folder}/', f'-seed={int(seed) + 1}', str(reached), str(seeds)]
     atheris.Setup([sys.argv[0], *limits, *start], one)
     atheris.Fuzz()
 

@@ -18,6 +18,7 @@ ADDRESS = '127.0.0.1'
 ADMISSION = Admission(ADDRESS)
 FOREIGN = 'https://evil.example'
 _ANSWER_S = 10.0
+_BLOCK_BYTES = 65536
 _TEXT, _BINARY, _CLOSE, _PING = 1, 2, 8, 9
 _MASK = b'mask'
 
@@ -55,10 +56,20 @@ def frames() -> tuple[bytes, ...]:
 
 
 def read_frames(file: Path) -> object:
-    """Send frames to a server; raise NoAnswerError where it lets nobody in after others."""
-    with _connected(_server()) as viewer:
+    """
+    Send frames to a server; raise NoAnswerError where it lets nobody in after them.
+
+    It has taken all of them when it closes the connection. Without this wait, and without the
+    second viewer, a failure would appear at a later input.
+    """
+    server = _server()
+    with _connected(server) as viewer:
         viewer.sendall(file.read_bytes())
-    return None
+        viewer.shutdown(socket.SHUT_WR)
+        while viewer.recv(_BLOCK_BYTES):
+            pass
+    with _connected(server):
+        return None
 
 
 @contextmanager

@@ -1,6 +1,13 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Give a reader random edits of its good inputs for some seconds, and keep what it fails on."""
+"""
+Give a reader random edits of its known inputs for some seconds, and keep what it fails on.
+
+Its known inputs are the good ones, which are made anew, those of findings, which are in git, and
+those by which the guided runs have reached new code. The latter stay in a folder that git ignores:
+there are hundreds for each reader, and a change of a format makes them worthless, while the good
+ones follow it.
+"""
 
 import hashlib
 import random
@@ -11,10 +18,12 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from fuzz.edits import edited, random_edits
-from fuzz.readers import Reader
+from fuzz.reader import Reader
 
 CORPUS = Path(__file__).with_name('corpus')
 """Folder with the inputs of findings, by reader."""
+REACHED = Path(__file__).resolve().parents[2] / '.fuzz_cache'
+"""Folder with the inputs by which guided runs have reached new code, by reader; git ignores it."""
 LONGEST_S = 20.0
 """Longest time for one input, s; more is a hang."""
 
@@ -42,10 +51,11 @@ def bounded_time() -> Iterator[None]:
 def fuzz(reader: Reader, seconds: float, seed: int, folder: Path, kept: Path) -> tuple[int, int]:
     """Return the numbers of inputs and of findings; write the inputs of findings into `kept`."""
     source = random.Random(f'{reader.name} {seed}')
+    known = (*reader.seeds, *inputs_in(kept), *inputs_in(REACHED / reader.name))
     inputs, found = 0, set()
     until = time.monotonic() + seconds
     while time.monotonic() < until:
-        data = edited(source.choice(reader.seeds), random_edits(source))
+        data = edited(source.choice(known), random_edits(source))
         with bounded_time():
             what = reader.finding(data, folder)
         inputs += 1
@@ -55,6 +65,11 @@ def fuzz(reader: Reader, seconds: float, seed: int, folder: Path, kept: Path) ->
             print(f'{reader.name}: {what[:300]}', flush=True)
             keep(data, kept)
     return inputs, len(found)
+
+
+def inputs_in(folder: Path) -> list[bytes]:
+    """Return the inputs in a folder in the order of their names, none where it is absent."""
+    return [file.read_bytes() for file in sorted(folder.glob('*'))]
 
 
 def keep(data: bytes, kept: Path) -> None:

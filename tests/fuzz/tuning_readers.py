@@ -1,26 +1,116 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Specifications of tunings, each read for the controller that it is for."""
+"""Readers of tunings: specifications, each for its controller, the manifest and the trials."""
 
-from collections.abc import Callable, Iterator
+import json
+from collections.abc import Iterator
+from dataclasses import asdict
+from functools import partial
 from importlib.resources import files
 from pathlib import Path
 
-from ddct_bringup.tuning.specification.spec import packaged_specs, read_tuning_spec
+from fuzz.reader import Reader
+from fuzz.run_readers import in_folder
+
+from ddct_bringup.benchmark.judged import Judged
+from ddct_bringup.campaign.columns import schema_of
+from ddct_bringup.tuning.manifest import MANIFEST, SCHEMA_VERSION, TuningManifest
+from ddct_bringup.tuning.record import RUNS, TRIALS, read_entries, rows_bytes, trials_of
+from ddct_bringup.tuning.specification.spec import (
+    packaged_specs,
+    read_tuning_spec,
+    tuning_spec_of,
+)
+from ddct_bringup.tuning.trial import Trial
+from ddct_bringup.tuning.tuning import Tuning
+from ddct_bringup.verdict.limits import packaged_limits
 from ddct_controllers.interface import Controller, ControllerSpec
 from ddct_controllers.registry import controller_spec
 
 _CONTROLLERS = {'mpc_thesis': 'mpc3', 'pi_launches': 'pi'}
 """Controllers of the packaged specifications."""
+_SPEC = {
+    'parameters': {'proportional_gain': {'low': 0.05, 'high': 0.5}},
+    'objectives': {'engagement_time_s': {'statistic': 'worst'}},
+    'constraints': {'engaged': {'at_least': 0.9}},
+    'campaign': {
+        'scenario': 'thesis',
+        'random': {
+            'samples': 2,
+            'vary': {'wear_gain': {'distribution': 'uniform', 'low': 0.7, 'high': 1.3}},
+        },
+    },
+    'trials': 2,
+}
 
 
-def tunings() -> Iterator[tuple[str, Callable[[Path], object], bytes]]:
-    """Yield the name of each packaged specification, what reads one like it, and its text."""
+def tuning_readers(folder: Path) -> list[Reader]:
+    """Return the readers of a tuning's files; `folder` is that of its specification."""
+    spec = tuning_spec_of(_SPEC, folder, controller_spec('pi'))
+    tuning = Tuning(Judged.of('pi'), spec, packaged_limits())
+    trials = [
+        Trial(number, {'proportional_gain': 0.1 + number}, [_row(tuning, number)], {'corner': 1.5})
+        for number in range(2)
+    ]
+    entries = json.dumps([each.entry(spec) for each in trials]).encode()
+    rows = rows_bytes(trials, tuning.campaign.spec)
+    return [
+        *_specifications(),
+        Reader('tuning_manifest', MANIFEST, in_folder(_tuning), (_manifest(tuning),)),
+        Reader('tuning_trials', TRIALS, partial(_trials, rows), (entries,)),
+        Reader('tuning_runs', RUNS, partial(_runs, entries), (rows,)),
+    ]
+
+
+def _specifications() -> Iterator[Reader]:
     for name in packaged_specs():
-        controller = controller_spec(_CONTROLLERS[name])
+        read = partial(_specification, controller_spec(_CONTROLLERS[name]))
         text = (files('ddct_bringup.tuning') / 'packaged' / f'{name}.yaml').read_bytes()
-        yield name, _reader(controller), text
+        yield Reader(f'tuning_{name}', 'mine.yaml', read, (text,))
 
 
-def _reader(controller: ControllerSpec[Controller]) -> Callable[[Path], object]:
-    return lambda file: read_tuning_spec(str(file), controller)
+def _specification(controller: ControllerSpec[Controller], file: Path) -> object:
+    return read_tuning_spec(str(file), controller)
+
+
+def _row(tuning: Tuning, number: int) -> dict[str, object]:
+    """Return a row of which most columns have no value."""
+    columns = dict.fromkeys(schema_of(tuning.campaign.spec).names)
+    return {**columns, 'index': number, 'verdict_state': 'engaged', 'engagement_time_s': 0.7}
+
+
+def _manifest(tuning: Tuning) -> bytes:
+    """Return a manifest with a made-up version of Optuna, which need not be there to read it."""
+    judged = tuning.judged
+    manifest = TuningManifest(
+        schema_version=SCHEMA_VERSION,
+        version='0.1',
+        code_digest='a',
+        optuna='4.0',
+        limits=dict(tuning.limits.origin),
+        controller={
+            'name': judged.name,
+            'chosen': judged.chosen,
+            'folder': str(judged.folder),
+            'digests': dict(judged.digests),
+        },
+        campaign_digest='b',
+        spec=dict(tuning.spec.content),
+        folder=str(tuning.spec.folder),
+    )
+    return json.dumps(asdict(manifest)).encode()
+
+
+def _tuning(folder: Path) -> object:
+    """Return the digest of the cases of the tuning in a folder."""
+    return TuningManifest.read(folder).tuning(packaged_limits()).campaign.digest()
+
+
+def _trials(rows: bytes, file: Path) -> object:
+    (file.parent / RUNS).write_bytes(rows)
+    return trials_of(read_entries(file), file.parent / RUNS)
+
+
+def _runs(entries: bytes, file: Path) -> object:
+    (file.parent / TRIALS).write_bytes(entries)
+    return trials_of(read_entries(file.parent / TRIALS), file)

@@ -25,6 +25,7 @@ from ddct_bringup.campaign.specification.parts import (
     ROOT_SEED,
     SAMPLES,
 )
+from ddct_plant.base.errors import ParameterError
 from ddct_plant.files.yaml_text import parse_yaml
 
 SPECIFICATION = 'cases.yaml'
@@ -61,6 +62,15 @@ class Cases:
     def beside(self) -> list[str]:
         """Names of the controllers that run beside the judged one in held-out cases."""
         return list(self.content[CONTROLLERS])
+
+    def require_parts(self) -> None:
+        """Raise ParameterError or LookupError without the parts that campaigns replace."""
+        if not isinstance(self.content[CONTROLLERS], list):
+            raise ParameterError(f'cases.{CONTROLLERS} is no list', key=CONTROLLERS)
+        if type(self.content[RANDOM][SAMPLES]) is not int:
+            raise ParameterError(f'cases.{RANDOM}.{SAMPLES} is no whole number', key=SAMPLES)
+        if type(self.content[ROOT_SEED]) is not int:
+            raise ParameterError(f'cases.{ROOT_SEED} is no whole number', key=ROOT_SEED)
 
     @cached_property
     def whole(self) -> CampaignSpec:

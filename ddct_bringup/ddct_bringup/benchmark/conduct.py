@@ -12,7 +12,7 @@ from ddct_bringup.benchmark.cases import Cases, packaged_folder
 from ddct_bringup.benchmark.judged import Judged
 from ddct_bringup.benchmark.manifest import MANIFEST, BenchmarkManifest
 from ddct_bringup.benchmark.release import COPIED, copy_release_rows, release_rows
-from ddct_bringup.benchmark.unavoidable import unavoidable_limits
+from ddct_bringup.benchmark.unavoidable import unavoidable_limits, unavoidable_of
 from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.conduct import RESUME, carry_out
 from ddct_bringup.campaign.manifest import MANIFEST as CAMPAIGN_MANIFEST
@@ -25,8 +25,8 @@ from ddct_bringup.run.output_folder import (
     require_ours_or_empty,
 )
 from ddct_bringup.verdict.limits import packaged_limits
-from ddct_plant.base.errors import DdctError
-from ddct_plant.files.input_file import parse_json, read_text_file
+from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.files.input_file import read_text_file
 from ddct_plant.files.output_file import write_json
 
 DEVELOPMENT, HELD_OUT = 'development', 'held_out'
@@ -137,15 +137,15 @@ def _compute(judged: Judged, seed: int, cases: Cases, folder: Path, options: Opt
 def read_judged_rows(folder: Path) -> JudgedRows:
     """Return the rows in the folder of a judged controller; raise DdctError where some miss."""
     path = folder / UNAVOIDABLE
+    development = _rows(folder / DEVELOPMENT) if (folder / DEVELOPMENT).exists() else None
+    held_out = _rows(folder / HELD_OUT)
     try:
-        content = parse_json(read_text_file(path))
-        unavoidable = {int(case): list(names) for case, names in content.items()}
-    except (OSError, ValueError, TypeError, AttributeError) as error:
-        raise DdctError(f'{path}: cannot be read ({error}): start the benchmark again') from error
-    development = None
-    if (folder / DEVELOPMENT).exists():
-        development = _rows(folder / DEVELOPMENT)
-    return JudgedRows(development, _rows(folder / HELD_OUT), unavoidable)
+        unavoidable = unavoidable_of(read_text_file(path), held_out.cases)
+    except (OSError, ParameterError) as error:
+        raise DdctError(
+            f'cannot be read ({error}): start the benchmark again', place=path
+        ) from error
+    return JudgedRows(development, held_out, unavoidable)
 
 
 def _rows(folder: Path) -> CaseRows:

@@ -10,7 +10,12 @@ from typing import Any
 from ddct_bringup.benchmark.cases import Cases
 from ddct_bringup.benchmark.judged import Judged, require_no_path
 from ddct_bringup.digests.code import code_digest
-from ddct_bringup.digests.manifests import manifest_content, require_same_inputs
+from ddct_bringup.digests.manifests import (
+    manifest_content,
+    require_kinds,
+    require_same_inputs,
+    require_texts,
+)
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.files.output_file import write_json
 from ddct_plant.program.command_line import package_version
@@ -18,6 +23,13 @@ from ddct_plant.program.command_line import package_version
 MANIFEST = 'benchmark.json'
 SCHEMA_VERSION = 1
 """Schema version of the manifest."""
+
+_KINDS = {
+    **dict.fromkeys(('version', 'code_digest'), str),
+    **dict.fromkeys(('limits', 'cases'), dict),
+    'quick': bool,
+}
+"""Types of values of the manifest."""
 
 
 @dataclass(frozen=True)
@@ -33,8 +45,10 @@ class JudgedEntry:
     held_out_seed: int
 
     def __post_init__(self) -> None:
-        """Raise ParameterError for a name that is no part of a path: a manifest may be altered."""
+        """Raise ParameterError for a name with a folder, or another type: it may be altered."""
+        require_kinds(self, {'chosen': str, 'held_out_seed': int}, 'controllers.')
         require_no_path(self.name, self.chosen)
+        require_texts('controllers.digests', self.digests)
 
     @classmethod
     def of(cls, judged: Judged, release: str, judge_seed: int | None) -> 'JudgedEntry':
@@ -84,7 +98,12 @@ class BenchmarkManifest:
         with manifest_content(out / MANIFEST, SCHEMA_VERSION, 'benchmark') as content:
             entries = [JudgedEntry(**each) for each in content['controllers']]
             known = {each.name: content[each.name] for each in fields(cls)}
-            return cls(**{**known, 'controllers': entries})
+            manifest = cls(**{**known, 'controllers': entries})
+            require_kinds(manifest, _KINDS)
+            if manifest.judge_seed is not None:
+                require_kinds(manifest, {'judge_seed': int})
+            manifest.run_cases.require_parts()
+            return manifest
 
     def write(self, out: Path) -> None:
         """Write the manifest into a folder; raise DdctError when that fails."""

@@ -21,7 +21,8 @@ import pyarrow.parquet as parquet
 
 from ddct_bringup.benchmark.case_rows import CaseRows
 from ddct_bringup.benchmark.cases import Cases, packaged_folder
-from ddct_bringup.benchmark.unavoidable import unavoidable_limits
+from ddct_bringup.benchmark.unavoidable import unavoidable_limits, unavoidable_of
+from ddct_bringup.campaign.arrow_columns import read_parquet
 from ddct_bringup.campaign.columns import CONTROLLER, SEED
 from ddct_bringup.campaign.conduct import carry_out
 from ddct_bringup.campaign.manifest import MANIFEST, Manifest
@@ -34,7 +35,6 @@ from ddct_bringup.scores.csv_text import OVER_FLOOR
 from ddct_bringup.verdict.limits import TRACTION, packaged_limits
 from ddct_controllers.registry import own_controller_names
 from ddct_plant.base.errors import DdctError
-from ddct_plant.files.input_file import parse_json
 from ddct_plant.files.output_file import write_bytes
 from ddct_plant.program.command_line import package_version, run_program
 
@@ -67,11 +67,12 @@ class ReleaseRows:
         campaign = cases.planned
         samples, each = campaign.samples, cases.whole.samples
         whole = [case // samples * each + case % samples for case in range(campaign.cases)]
-        unavoidable = {
-            case: self.unavoidable[number]
-            for case, number in enumerate(whole)
-            if campaign.has_floors(case)
+        with_floors = {
+            case: whole[case] for case in range(len(whole)) if campaign.has_floors(case)
         }
+        if max(whole) >= self.rows.cases or {*with_floors.values()} - self.unavoidable.keys():
+            raise DdctError(f'{ROWS} or {UNAVOIDABLE} lacks cases: run {_PROGRAM}')
+        unavoidable = {case: self.unavoidable[number] for case, number in with_floors.items()}
         floors = np.array([campaign.has_floors(case) for case in range(campaign.cases)])
         rows = self.rows.of_cases(whole).with_floors_in(floors)
         return replace(self, rows=rows, unavoidable=unavoidable)
@@ -90,13 +91,12 @@ def columns_kept(spec: CampaignSpec) -> list[str]:
 def release_rows(folder: Traversable | Path) -> ReleaseRows:
     """Return the rows of a release in a folder; raise DdctError where they cannot be read."""
     try:
-        with (folder / ROWS).open('rb') as file:
-            table = parquet.read_table(file)
-        known = table.schema.metadata
-        limits = parse_json((folder / UNAVOIDABLE).read_text(encoding='utf-8'))
+        table = read_parquet(Path(str(folder / ROWS)))
+        known, rows = table.schema.metadata, CaseRows.of_table(table)
+        text = (folder / UNAVOIDABLE).read_text(encoding='utf-8')
         return ReleaseRows(
-            CaseRows.of_table(table),
-            {int(case): list(names) for case, names in limits.items()},
+            rows,
+            unavoidable_of(text, rows.cases),
             *(known[key].decode() for key in (_CASES, _CODE, _VERSION)),
         )
     except (OSError, pa.ArrowException, LookupError, TypeError, ValueError) as error:

@@ -10,7 +10,8 @@ from ddct_bringup.floor.any_lock import least_at_any_lock
 from ddct_bringup.floor.control_start import control_start
 from ddct_bringup.floor.values import METRICS
 from ddct_bringup.verdict.limits import Limits
-from ddct_plant.base.errors import DdctError
+from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.files.input_file import parse_json
 from ddct_plant.program.progress import Progress
 from ddct_plant.program.workers import in_processes
 from ddct_plant.scenario.settings import RunSettings
@@ -56,3 +57,19 @@ def unavoidable_in(settings: RunSettings, limits: Limits) -> list[str]:
         for name, limit in limits.of_all(scenario.name, gravity).items()
         if name in METRICS and least_at_any_lock(settings, name, start, limit.value)
     ]
+
+
+def unavoidable_of(text: str, cases: int) -> dict[int, list[str]]:
+    """
+    Return the limits by case in the JSON of a file; there are `cases` cases.
+
+    Raise ParameterError for a key that is no case, and for limits that are none.
+    """
+    content = parse_json(text)
+    numbers = {str(case): case for case in range(cases)}
+    if not isinstance(content, dict) or not content.keys() <= numbers.keys():
+        raise ParameterError(f'its keys are not those of {cases} cases')
+    for key, names in content.items():
+        if not isinstance(names, list) or not all(name in (*METRICS,) for name in names):
+            raise ParameterError(f'{key} is {names!r}: it must be a list of limits', key=key)
+    return {numbers[key]: names for key, names in content.items()}

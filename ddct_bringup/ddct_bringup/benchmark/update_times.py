@@ -9,19 +9,27 @@ They are wall-clock times, so they differ each time, and stand in a file of thei
 import statistics
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TypedDict, cast
+from typing import Literal, TypedDict, cast, get_args
 
 from ddct_bringup.benchmark.cases import Cases
 from ddct_bringup.benchmark.judged import Judged
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.run.timing_and_failure import TIMING_FILE, RunTiming
 from ddct_controllers.registry import Chosen, make_controller
-from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError
+from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError, ParameterError, require_number
 from ddct_plant.files.input_file import parse_json, read_text_file
 from ddct_plant.files.output_file import write_json
 from ddct_plant.scenario.settings import RunSettings
 
 REFERENCE = 'pi'
+_Time = Literal[
+    'ratio_to_pi',
+    'lowest_ratio',
+    'highest_ratio',
+    'update_time_median_us',
+    'pi_update_time_median_us',
+]
+_TIMES: tuple[_Time, ...] = get_args(_Time)
 _ROUNDS = 3
 """Number of runs of each, in turn, so that a busy machine slows both alike."""
 
@@ -56,16 +64,27 @@ def write_update_times(judged: Sequence[Judged], cases: Cases, out: Path) -> Non
 
 def read_update_times(out: Path) -> UpdateTimesFile:
     """Return the content of the file in a folder; raise DdctError for one that is damaged."""
-    content = parse_json(read_text_file(out / TIMING_FILE))
-    times = content.get('controllers') if isinstance(content, dict) else None
-    if not isinstance(times, dict) or not all(
-        isinstance(each, dict) and 'ratio_to_pi' in each for each in times.values()
-    ):
+    path = out / TIMING_FILE
+    try:
+        content = parse_json(read_text_file(path))
+        for name, found in content['controllers'].items():
+            _require_complete(name, found)
+    except (OSError, ParameterError, LookupError, TypeError, AttributeError) as error:
         raise DdctError(
-            f'{out / TIMING_FILE}: it has no update times: delete it, and the same command '
-            'measures them again'
-        )
+            f'it has no update times ({error}): delete it, and the same command measures them '
+            'again',
+            place=path,
+        ) from error
     return cast(UpdateTimesFile, content)
+
+
+def _require_complete(name: str, found: UpdateTime) -> None:
+    """Raise ParameterError or LookupError unless there are all times, or a reason for none."""
+    if found['ratio_to_pi'] is not None:
+        for key in _TIMES:
+            require_number(f'{name}.{key}', found[key])
+    elif not isinstance(found['reason'], str):
+        raise ParameterError(f'{name}.reason is no text', key='reason')
 
 
 def median_ratio(chosen: Chosen, reference: str, settings: RunSettings) -> float:

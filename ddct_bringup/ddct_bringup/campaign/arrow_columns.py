@@ -32,8 +32,8 @@ def read_parquet(path: Path) -> pa.Table:
     """
     Return all rows of a Parquet file.
 
-    Raise OSError or ArrowException where that fails, ArrowException also for a small file that
-    would fill the memory: runs of equal values take next to no bytes in it.
+    Raise OSError or ArrowException where that fails, ArrowException also for texts that are none,
+    and for a small file that would fill the memory: runs of equal values take next to no bytes.
     """
     data = read_file(path, MOST_BYTES)
     try:
@@ -52,7 +52,9 @@ def _table_of(data: bytes) -> pa.Table:
         texts = [field.name for field in file.schema_arrow if pa.types.is_string(field.type)]
     # As dictionaries, texts take no more memory than they have in the file.
     with parquet.ParquetFile(pa.BufferReader(data), read_dictionary=texts) as file:
-        return _without_dictionaries(file.read())
+        table = _without_dictionaries(file.read())
+    table.validate(full=True)  # texts of a damaged file may be no UTF-8
+    return table
 
 
 def _without_dictionaries(table: pa.Table) -> pa.Table:

@@ -10,6 +10,13 @@ from typing import Any
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.files.input_file import parse_json, read_text_file, require_schema_version
 
+_KINDS = {
+    str: 'a text',
+    int: 'a whole number',
+    bool: 'true or false',
+    dict: 'a group of keys',
+}
+
 
 @contextmanager
 def manifest_content(path: Path, newest: int, what: str) -> Iterator[Any]:
@@ -29,6 +36,26 @@ def manifest_content(path: Path, newest: int, what: str) -> Iterator[Any]:
         ) from error
     except (OSError, ParameterError, LookupError, TypeError, AttributeError) as error:
         raise DdctError(f'cannot be read ({error})', place=path) from error
+
+
+def require_kinds(manifest: object, kinds: Mapping[str, type], within: str = '') -> None:
+    """
+    Raise ParameterError for an attribute of a manifest that is not of its type.
+
+    `within` is the key of the manifest that has the others.
+    """
+    for name, kind in kinds.items():
+        value = getattr(manifest, name)
+        if type(value) is not kind:
+            key = f'{within}{name}'
+            raise ParameterError(f'{key} is {value!r}: it must be {_KINDS[kind]}', key=key)
+
+
+def require_texts(key: str, content: object) -> None:
+    """Raise ParameterError unless a value of a manifest is a group of texts by their key."""
+    values = content.values() if isinstance(content, dict) else [None]
+    if not all(isinstance(each, str) for each in values):
+        raise ParameterError(f'{key} is {content!r}: it must be a group of texts', key=key)
 
 
 def require_same_inputs(

@@ -26,6 +26,8 @@ from ddct_plant.scenario.settings import is_handover_file
 
 VARIABLE = 'DDCT_CACHE'
 """Environment variable with the folder of the cache; empty for none."""
+_VALUES, _DIGEST = 'values', 'sha256'
+"""Keys of a file: the values, and their own digest."""
 
 
 def cache_folder() -> Path | None:
@@ -82,22 +84,36 @@ def _add(digest: 'hashlib._Hash', part: Start | Tube | CapacityRange | OffGoing)
 
 
 def cached(digest: str) -> dict[str, Any] | None:
-    """Return the values stored under a digest, None where there are none that can be read."""
+    """
+    Return the values stored under a digest, None where there are none.
+
+    Of a file with other values than those that were stored there are none: a floor with another
+    number would be no bound.
+    """
     folder = cache_folder()
-    try:
-        content = parse_json(read_text_file(folder / f'{digest}.json')) if folder else None
-    except (OSError, ValueError, DdctError):
+    if folder is None:
         return None
-    return content if isinstance(content, dict) else None
+    try:
+        content = parse_json(read_text_file(folder / f'{digest}.json'))
+        values: dict[str, Any] = content[_VALUES]
+        return values if content[_DIGEST] == _digest_of_values(values) else None
+    except (OSError, LookupError, TypeError, DdctError):
+        return None
 
 
-def store(digest: str, content: dict[str, Any]) -> None:
+def store(digest: str, values: dict[str, Any]) -> None:
     """Store values under a digest; a folder that cannot be written is no error."""
     folder = cache_folder()
     if folder is None:
         return
+    content = {_VALUES: values, _DIGEST: _digest_of_values(values)}
     try:
         folder.mkdir(parents=True, exist_ok=True)
         write_text(str(folder / f'{digest}.json'), json.dumps(content, allow_nan=False))
     except (OSError, DdctError):
         return
+
+
+def _digest_of_values(values: dict[str, Any]) -> str:
+    """Return the SHA-256 of values, which is the same for those that JSON reads back."""
+    return hashlib.sha256(json.dumps(values).encode()).hexdigest()

@@ -12,6 +12,8 @@ The result equals that of the graph, in any process layout, to the last bit.
 import time
 from typing import Any, Protocol, TypeVar
 
+import numpy as np
+
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.run.shift_loop import ShiftLoop
 from ddct_bringup.run.timing_and_failure import RunTiming
@@ -101,6 +103,8 @@ def closed_loop(settings: RunSettings, controller: Controller) -> Loop[Any]:
     return ShiftLoop(settings, controller) if settings.shift else ClosedLoop(settings, controller)
 
 
+# What is not finite ends the run with a reason, so that numpy need not warn of it as well.
+@np.errstate(over='ignore', invalid='ignore')
 def run_loop(loop: Loop[Reply], steps: int, timing: RunTiming | None = None) -> Trajectory:
     """
     Simulate a loop from t_0 to t_`steps`, return every signal and fill `timing` if given.

@@ -97,6 +97,8 @@ class RunFailure:
     reason: str
     facts: RunFacts | None = None
     """Planned facts of the run; None where the note cannot be read."""
+    custom_data: dict[str, str] = field(default_factory=dict)
+    """Custom data that the bag of the run has, or would have; empty without facts."""
 
 
 def note_failure(folder: Path, reason: str, custom_data: Mapping[str, str]) -> None:
@@ -117,7 +119,10 @@ def failed_run(folder: Path) -> RunFailure | None:
     path = folder / NOTE_FILE
     try:
         note = parse_json(read_text_file(path))
-        return RunFailure(printable(note['reason']), RunFacts.from_custom_data(note['run']))
+        known = note['run']
+        if not all(isinstance(text, str) for text in known.values()):
+            raise DdctError('its run has values that are no texts')
+        return RunFailure(printable(note['reason']), RunFacts.from_custom_data(known), known)
     except FileNotFoundError:
         return None
     except (OSError, DdctError, LookupError, TypeError, AttributeError) as error:

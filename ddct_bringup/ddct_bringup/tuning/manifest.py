@@ -11,7 +11,12 @@ from ddct_bringup.benchmark.judged import Judged
 from ddct_bringup.campaign.keys import CONTROLLERS
 from ddct_bringup.campaign.named_files import digest_of
 from ddct_bringup.digests.code import code_digest
-from ddct_bringup.digests.manifests import manifest_content, require_same_inputs
+from ddct_bringup.digests.manifests import (
+    manifest_content,
+    require_kinds,
+    require_same_inputs,
+    require_texts,
+)
 from ddct_bringup.tuning.search import require_optuna
 from ddct_bringup.tuning.specification.spec import TuningSpec, tuning_spec_of
 from ddct_bringup.tuning.tuning import Tuning
@@ -24,6 +29,14 @@ from ddct_plant.program.command_line import package_version
 MANIFEST = 'tuning.json'
 SCHEMA_VERSION = 1
 """Schema version of the manifest."""
+
+_KINDS = {
+    **dict.fromkeys(('version', 'code_digest', 'optuna', 'campaign_digest', 'folder'), str),
+    **dict.fromkeys(('limits', 'controller', 'spec'), dict),
+}
+"""Types of values of the manifest."""
+_OF_CONTROLLER = ('name', 'chosen', 'folder')
+"""Keys of the controller, besides its digests."""
 
 
 @dataclass(frozen=True)
@@ -72,7 +85,12 @@ class TuningManifest:
     def read(cls, out: Path) -> 'TuningManifest':
         """Return the manifest in a folder; raise DdctError without a valid one."""
         with manifest_content(out / MANIFEST, SCHEMA_VERSION, 'tuning') as content:
-            return cls(**{each.name: content[each.name] for each in fields(cls)})
+            manifest = cls(**{each.name: content[each.name] for each in fields(cls)})
+            require_kinds(manifest, _KINDS)
+            controller = dict(manifest.controller)
+            require_texts('controller.digests', controller.pop('digests'))
+            require_texts('controller', {key: controller[key] for key in _OF_CONTROLLER})
+            return manifest
 
     def write(self, out: Path) -> None:
         """Write the manifest into a folder; raise DdctError when that fails."""

@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The record of trials: their rows and entries by batch, each written completely."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -14,8 +15,8 @@ from ddct_bringup.campaign.conduct import RESUME, SHARDS
 from ddct_bringup.campaign.rows import Row
 from ddct_bringup.campaign.spec import CampaignSpec
 from ddct_bringup.tuning.specification.spec import TuningSpec
-from ddct_bringup.tuning.trial import Trial, TrialEntry
-from ddct_plant.base.errors import DdctError
+from ddct_bringup.tuning.trial import STATES, Trial, TrialEntry
+from ddct_plant.base.errors import DdctError, ParameterError, require_choice, require_number
 from ddct_plant.files.input_file import parse_json, read_text_file
 from ddct_plant.files.output_file import write_bytes, write_json
 
@@ -64,7 +65,11 @@ def read_batch(out: Path, batch: int) -> list[Trial] | None:
 
 def read_entries(path: Path) -> list[TrialEntry]:
     """Return the entries of trials in a file; raise DdctError where it cannot be read."""
-    return list(read_json(path))
+    content = read_json(path)
+    try:
+        return [_checked(entry) for entry in content]
+    except (ParameterError, LookupError, TypeError, AttributeError) as error:
+        raise DdctError(f'cannot be read ({error}): start the tuning anew', place=path) from error
 
 
 def read_json(path: Path) -> Any:
@@ -85,6 +90,18 @@ def trials_of(entries: Sequence[TrialEntry], rows: Path) -> list[Trial]:
         return [_trial(entry, by_trial.get(entry['number'], [])) for entry in entries]
     except (OSError, pa.ArrowException, LookupError, TypeError) as error:
         raise DdctError(f'cannot be read ({error}): start the tuning anew', place=rows) from error
+
+
+def _checked(entry: TrialEntry) -> TrialEntry:
+    """Return an entry; raise ParameterError for a value of another type in what a trial has."""
+    if type(entry['number']) is not int or not isinstance(entry['reason'], str):
+        raise ParameterError('a trial has no whole number, or no text of a reason')
+    require_choice('state', entry['state'], STATES)
+    values: Iterable[tuple[str, float | None]] = entry['parameters'].items()
+    defined = ((name, value) for name, value in entry['further'].items() if value is not None)
+    for name, value in chain(values, defined):
+        require_number(name, value)
+    return entry
 
 
 def _trial(entry: TrialEntry, rows: Sequence[Row]) -> Trial:

@@ -11,7 +11,7 @@ from ddct_bringup.tuning.specification.goals import MINIMISE, Goal, RunColumns
 from ddct_bringup.tuning.specification.parameters import Values
 from ddct_bringup.tuning.specification.spec import TuningSpec
 
-FEASIBLE, INFEASIBLE, DOMINATED = 'feasible', 'infeasible', 'dominated'
+STATES = FEASIBLE, INFEASIBLE, DOMINATED = 'feasible', 'infeasible', 'dominated'
 """
 States of a trial: it keeps all constraints; it breaks one, or has no value of an objective; it
 was ended because another one is better in every objective, whatever its other runs come to.

@@ -2,11 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Repeat the runs of a benchmark, and compare its rows, seeds, limits and result."""
 
-import json
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 from ddct_bringup.benchmark.cases import Cases, packaged_folder
 from ddct_bringup.benchmark.conduct import HELD_OUT, UNAVOIDABLE, campaigns_of
@@ -18,14 +16,9 @@ from ddct_bringup.benchmark.unavoidable import unavoidable_limits
 from ddct_bringup.campaign.manifest import Manifest
 from ddct_bringup.digests.digest_file import read_digests
 from ddct_bringup.verification.campaign import verified_campaign
-from ddct_bringup.verification.comparison import Comparison, plain_json
+from ddct_bringup.verification.comparison import Comparison, plain_json, recorded_json
 from ddct_bringup.verification.request import VerificationRequest
 from ddct_bringup.verification.result import RepetitionResult
-from ddct_plant.base.errors import DdctError
-from ddct_plant.files.input_file import parse_json, read_text_file
-
-_MOST_BYTES = 100_000_000
-"""Largest size of a file of JSON in bytes."""
 
 
 def verified_benchmark(request: VerificationRequest) -> Iterator[RepetitionResult]:
@@ -121,7 +114,7 @@ def _verified_limits(
     found = unavoidable_limits(campaign, request.limits, request.workers)
     comparison = Comparison()
     again = {str(case): names for case, names in found.items()}
-    comparison.add_nested('', _stored(folder / UNAVOIDABLE), plain_json(again))
+    comparison.add_nested('', recorded_json(folder / UNAVOIDABLE), plain_json(again))
     name = f'{entry.name}/{UNAVOIDABLE}'
     return RepetitionResult.of(name, comparison, same_environment=request.same_environment)
 
@@ -130,12 +123,5 @@ def _verified_result(request: VerificationRequest) -> RepetitionResult:
     """Compare `result.json` with the result of the recorded rows."""
     comparison = Comparison()
     again = plain_json(result_in(request.folder))
-    comparison.add_nested('', _stored(request.folder / RESULT), again)
+    comparison.add_nested('', recorded_json(request.folder / RESULT), again)
     return RepetitionResult.of(RESULT, comparison, same_environment=request.same_environment)
-
-
-def _stored(path: Path) -> Any:
-    try:
-        return parse_json(read_text_file(path, _MOST_BYTES))
-    except (OSError, json.JSONDecodeError) as error:
-        raise DdctError(f'{path}: cannot be read ({error})') from error

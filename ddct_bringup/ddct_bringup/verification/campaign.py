@@ -19,17 +19,14 @@ from ddct_bringup.campaign.scored import ScoredRow, scored_runs
 from ddct_bringup.campaign_report.folder import SUMMARY
 from ddct_bringup.campaign_report.reading import read_table, results_of
 from ddct_bringup.campaign_report.summary import summary_of
-from ddct_bringup.verification.comparison import BOUND, Comparison, plain_json
+from ddct_bringup.verification.comparison import BOUND, Comparison, plain_json, recorded_json
 from ddct_bringup.verification.request import VerificationRequest
 from ddct_bringup.verification.result import RepetitionResult
 from ddct_bringup.verification.rounding_bound import LARGEST, bound_of_row
 from ddct_plant.base.errors import DdctError
-from ddct_plant.files.input_file import parse_json, read_text_file
 from ddct_plant.program.progress import Progress
 from ddct_plant.program.workers import in_processes
 
-_MOST_BYTES = 100_000_000
-"""Largest size of `summary.json` in bytes."""
 _TOGETHER = 1000
 """Number of rows that are compared at once."""
 _OF_PLACE = ('commit', 'folder')
@@ -173,11 +170,7 @@ def _verified_summary(
     request: VerificationRequest, manifest: Manifest, table: pa.Table
 ) -> RepetitionResult:
     """Compare `summary.json` with the summary of the recorded rows."""
-    path = request.folder / SUMMARY
-    try:
-        stored = parse_json(read_text_file(path, _MOST_BYTES))
-    except OSError as error:
-        raise DdctError(f'{path}: cannot be read ({error.strerror})') from error
+    stored = recorded_json(request.folder / SUMMARY)
     comparison = Comparison()
     comparison.add_nested('', stored, plain_json(summary_of(results_of(manifest, table))))
     return RepetitionResult.of(SUMMARY, comparison, same_environment=request.same_environment)

@@ -10,13 +10,15 @@ import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.verification.deviation import deviation_of, deviations_of
-from ddct_plant.files.input_file import parse_json
+from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.files.input_file import parse_json, read_text_file
 
 SAME_BITS, SAME_WITHIN = 'same_bits', 'same_within'
 DIFFERENT, DIGEST_ONLY = 'different', 'digest_only'
@@ -28,6 +30,8 @@ Largest difference of two numbers that are the same, relative to the largest mag
 That is the larger magnitude of a single number, and the largest in the run of a signal; 1 in its
 unit where it is smaller.
 """
+_MOST_BYTES = 100_000_000
+"""Largest size of a file of JSON in bytes."""
 Place = Mapping[str, Any]
 """Place of a value, such as its signal and step, or its key."""
 
@@ -157,3 +161,13 @@ def _plain(value: Any) -> Any:
 def plain_json(value: Any) -> Any:
     """Return a value as JSON reads it back: lists for tuples, texts for keys."""
     return parse_json(json.dumps(value))
+
+
+def recorded_json(path: Path) -> Any:
+    """Return the content of a file of JSON; raise DdctError that names it when that fails."""
+    try:
+        return parse_json(read_text_file(path, _MOST_BYTES))
+    except OSError as error:
+        raise DdctError(f'cannot be read ({error.strerror})', place=path) from error
+    except ParameterError as error:
+        raise error.at(path) from error

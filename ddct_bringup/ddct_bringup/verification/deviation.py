@@ -18,9 +18,11 @@ def deviation_of(recorded: Any, repeated: Any) -> float | None:
     if isinstance(recorded, str) and isinstance(repeated, str):
         return _text_deviation(recorded, repeated)
     if _is_number(recorded) and _is_number(repeated):
-        if math.isnan(recorded) and math.isnan(repeated):
-            return None
-        return _relative(recorded, repeated)
+        try:
+            both_undefined = math.isnan(recorded) and math.isnan(repeated)
+            return None if both_undefined else _relative(recorded, repeated)
+        except OverflowError:  # a whole number beyond the largest float
+            return math.inf
     return math.inf
 
 

@@ -10,7 +10,6 @@ from pathlib import Path
 
 from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.bag.recording import Recording
-from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.bag.trajectory_bag import write_trajectory
 from ddct_bringup.digests.digest_file import RunDigests
@@ -18,7 +17,7 @@ from ddct_bringup.digests.writing import ITSELF
 from ddct_bringup.report.evidence import FREQUENCY_FILE
 from ddct_bringup.run.execution import simulate
 from ddct_bringup.run.plan import RunPlan
-from ddct_bringup.run.timing_and_failure import NOTE_FILE, failed_run
+from ddct_bringup.run.timing_and_failure import RunFailure, failed_run
 from ddct_bringup.scores.bags import bag_name, find_bags
 from ddct_bringup.verification.comparison import BOUND, SAME_BITS, Comparison, plain_json
 from ddct_bringup.verification.repetition import plan_of
@@ -27,7 +26,6 @@ from ddct_bringup.verification.result import RepetitionResult
 from ddct_bringup.verification.rounding_bound import LARGEST, bound_of_run
 from ddct_bringup.verification.scores import SCORES, verified_frequency, verified_scores
 from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError
-from ddct_plant.files.input_file import parse_json, read_text_file
 from ddct_plant.scenario.file import scenario_digest
 from ddct_plant.signals.topics import RUN_INFO
 
@@ -65,7 +63,7 @@ def _verified_bag(request: VerificationRequest, bag: Path, name: str) -> Repetit
         return RepetitionResult.failed(name, 'no digests of this run')
     try:
         if failure := failed_run(bag if bag.is_dir() else bag.parent):
-            return _verified_failure(request, bag, name, digests, failure.reason)
+            return _verified_failure(request, bag, name, digests, failure)
         recording = read_bag(bag)
         if not recording.facts.lockstep:
             return RepetitionResult.by_digest(name, _REAL_TIME)
@@ -107,15 +105,15 @@ def _compare_signals(
 
 
 def _verified_failure(
-    request: VerificationRequest, bag: Path, name: str, digests: RunDigests, reason: str
+    request: VerificationRequest, bag: Path, name: str, digests: RunDigests, failure: RunFailure
 ) -> RepetitionResult:
     """Return the result of a run that failed: its repetition has to fail with the same reason."""
-    folder = bag if bag.is_dir() else bag.parent
-    custom_data = parse_json(read_text_file(folder / NOTE_FILE))['run']
-    facts = RunFacts.from_custom_data(custom_data)
+    facts = failure.facts
+    if facts is None:
+        return RepetitionResult.failed(name, failure.reason)
     if not facts.lockstep:
         return RepetitionResult.by_digest(name, _REAL_TIME)
-    described = Recording(bag, Trajectory({}), facts, custom_data)
+    described = Recording(bag, Trajectory({}), facts, failure.custom_data)
     comparison = Comparison()
     try:
         simulate(plan_of(request, described, digests))
@@ -123,7 +121,7 @@ def _verified_failure(
     except FOREIGN_FAILURES as error:
         repeated = str(error)
     # In a graph the name of the node and its log stand around the reason.
-    ours, theirs = (_FOLDERS.sub('', text) for text in (reason, repeated))
+    ours, theirs = (_FOLDERS.sub('', text) for text in (failure.reason, repeated))
     comparison.add({'key': 'reason'}, theirs if theirs in ours else ours, theirs)
     return RepetitionResult.of(name, comparison, same_environment=request.same_environment)
 

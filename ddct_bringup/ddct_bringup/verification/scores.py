@@ -15,24 +15,21 @@ from ddct_bringup.scores.bags import find_bags
 from ddct_bringup.scores.document import scores_document
 from ddct_bringup.scores.floors import NONE, floor_metrics, with_floors
 from ddct_bringup.scores.scored_recording import score_any_bag
-from ddct_bringup.verification.comparison import Comparison, plain_json
+from ddct_bringup.verification.comparison import Comparison, plain_json, recorded_json
 from ddct_bringup.verification.repetition import controller_of
 from ddct_bringup.verification.request import VerificationRequest
 from ddct_bringup.verification.result import RepetitionResult
 from ddct_controllers.workflows.evidence import frequency_evidence
 from ddct_plant.base.errors import DdctError
-from ddct_plant.files.input_file import parse_json, read_text_file
 from ddct_plant.scenario.settings import RunSettings
 
 SCORES = 'scores.json'
 """Scores in a folder of runs."""
-_MOST_BYTES = 100_000_000
-"""Largest size of a file of scores in bytes."""
 
 
 def verified_scores(request: VerificationRequest) -> RepetitionResult:
     """Compare `scores.json` with the scores of the recorded bags."""
-    stored = _stored(request.folder / SCORES)
+    stored = recorded_json(request.folder / SCORES)
     limits = stored.get('limits') if isinstance(stored, dict) else None
     if limits != plain_json(request.limits.origin):
         return RepetitionResult.failed(
@@ -62,13 +59,6 @@ def verified_scores(request: VerificationRequest) -> RepetitionResult:
     return RepetitionResult.of(SCORES, comparison, same_environment=request.same_environment)
 
 
-def _stored(path: Path) -> Any:
-    try:
-        return parse_json(read_text_file(path, _MOST_BYTES))
-    except OSError as error:
-        raise DdctError(f'{path}: cannot be read ({error.strerror})') from error
-
-
 def _by_bag(document: Mapping[str, Any], names: Sequence[str]) -> Mapping[str, Any]:
     """Return scores with their runs by the names of the bags in the folder."""
     runs = {}
@@ -84,7 +74,7 @@ def verified_frequency(request: VerificationRequest) -> RepetitionResult:
     """Compare `frequency.json` with the analyses of the controllers in the first run's plant."""
     comparison = Comparison()
     try:
-        stored = _stored(request.folder / FREQUENCY_FILE)
+        stored = recorded_json(request.folder / FREQUENCY_FILE)
         controllers = [controller_of(request, each) for each in request.digests.runs.values()]
         settings = _first_settings(request.folder)
         computed = plain_json(frequency_evidence(controllers, settings))

@@ -93,6 +93,14 @@ def test_a_small_file_that_would_fill_the_memory_is_refused(
         read_parquet(file)
 
 
+def test_texts_that_are_no_utf_8_are_refused(tmp_path: Path) -> None:
+    file = tmp_path / 'results.parquet'
+    parquet.write_table(pa.table({'reason': ['stalled']}), file, compression='none')
+    file.write_bytes(file.read_bytes().replace(b'stalled', b'sta\xffled'))
+    with pytest.raises(pa.ArrowInvalid):
+        read_parquet(file)
+
+
 def test_a_pipe_is_not_waited_for(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / 'results.parquet')
     with pytest.raises(OSError, match='it is a pipe'):

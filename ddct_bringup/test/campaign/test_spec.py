@@ -70,6 +70,18 @@ def test_a_specification_has_defaults_for_all_but_what_varies(tmp_path: Path) ->
         (PI + GRID + 'clutch: wet\n', "unknown clutch 'wet': choose from linear, stick_slip"),
         (PI + GRID + 'scenario: 3\n', 'scenario is 3: give text'),
         (PI + 'grid: {scenario: [{csv: a.csv}]}\n', 'line 2: grid.scenario is {'),
+        (PI + 'grid: {scenario: [{a: b}, launch]}\n', "grid.scenario is {'a': 'b'}: give text"),
+        (PI + 'grid: {scenario: [7]}\n', 'grid.scenario is 7: give text'),
+        (
+            PI
+            + 'random: {samples: 2, vary: {scenario: {distribution: choice, values: [7, 8]}}}\n',
+            'random.vary.scenario.values is 7: give text',
+        ),
+        (
+            PI
+            + 'random: {samples: 2, vary: {scenario: {distribution: uniform, low: 0, high: 1}}}\n',
+            'random.vary.scenario: scenario takes no number',
+        ),
         (PI + GRID + 'schema_version: 2\n', 'schema_version is 2, this version reads up to 1'),
         (PI + 'random: {samples: 2}\n', 'random.vary is empty'),
         (PI + 'random: {samples: 2, vary: {}}\n', 'random.vary is empty'),

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The note in a failed run's folder marks the run as failed, whatever its content."""
 
+import json
 from pathlib import Path
 
 import pytest
@@ -25,6 +26,7 @@ def test_a_note_is_read_back_with_the_reason_and_the_planned_facts(tmp_path: Pat
     assert found.reason == 'node clutch was killed'
     assert found.facts is not None
     assert (found.facts.controller, found.facts.wear_gain, found.facts.steps) == ('ls8', 0.7, 300)
+    assert found.custom_data == FACTS
 
 
 def test_without_a_note_no_run_has_failed(tmp_path: Path) -> None:
@@ -42,6 +44,14 @@ def test_a_note_that_cannot_be_read_still_marks_the_run_as_failed(
     found = failed_run(tmp_path)
     assert found is not None
     assert NOTE_FILE in found.reason
+    assert found.facts is None
+
+
+def test_a_run_with_a_value_that_is_no_text_cannot_be_read(tmp_path: Path) -> None:
+    content = {'reason': 'failed', 'run': {**FACTS, 'scenario_yaml': 5}}
+    (tmp_path / NOTE_FILE).write_text(json.dumps(content), encoding='utf-8')
+    found = failed_run(tmp_path)
+    assert found is not None
     assert found.facts is None
 
 

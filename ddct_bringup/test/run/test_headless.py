@@ -74,3 +74,10 @@ def test_a_controller_that_commands_nan_ends_the_run():
 
     with refused(DdctError, "controller 'Broken': its torque at step 60"):
         run_headless(SETTINGS, Broken())
+
+
+def test_a_plant_beyond_all_numbers_ends_the_run_without_warnings(recwarn):
+    heavy = load_scenario('thesis', ['vehicle.gravity_m_s2=1e300'])
+    with pytest.raises(DdctError):
+        run_headless(RunSettings(heavy), 'pi')
+    assert [str(each.message) for each in recwarn] == []

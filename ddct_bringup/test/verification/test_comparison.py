@@ -3,6 +3,7 @@
 """Two results are the same to the last bit, within the bound, or different from a step on."""
 
 import math
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,9 @@ from ddct_bringup.verification.comparison import (
     SAME_BITS,
     SAME_WITHIN,
     Comparison,
+    recorded_json,
 )
+from ddct_plant.base.errors import DdctError
 
 STATUS = tuple((('iterations', '3'), ('cost', '1.5')) for _ in range(4))
 
@@ -116,6 +119,7 @@ def test_numbers_in_texts_have_the_bound_too() -> None:
         (1.0, 1.0 + 1e-8, DIFFERENT),
         (None, 1.0, DIFFERENT),
         (True, 1, DIFFERENT),
+        (10**400, 1.0, DIFFERENT),
         ('engaged', 'stalled', DIFFERENT),
         ([1.0], [1.0, 2.0], DIFFERENT),
         ({'a': 1.0}, {'a': 1.0, 'b': 2.0}, DIFFERENT),
@@ -127,3 +131,12 @@ def test_values_of_json_are_compared_by_their_type(
     comparison = Comparison()
     comparison.add_nested('', {'value': recorded}, {'value': repeated})
     assert comparison.state(same_environment=False) == state
+
+
+@pytest.mark.parametrize('content', [b'{', b'\xff', b'{"a": NaN}'])
+def test_a_file_that_is_no_json_is_named(tmp_path: Path, content: bytes) -> None:
+    file = tmp_path / 'summary.json'
+    file.write_bytes(content)
+    with pytest.raises(DdctError) as error:
+        recorded_json(file)
+    assert error.value.place == str(file)

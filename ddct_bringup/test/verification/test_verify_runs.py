@@ -302,6 +302,16 @@ def test_a_run_that_failed_fails_again_with_the_same_reason(
     assert (code, states(document)['Mine']) == (1, 'different')
 
 
+@pytest.mark.parametrize('content', [b'{', b'\xff', b'[]', b'{"reason": "it stalled"}'])
+def test_a_run_with_a_damaged_note_of_its_failure_is_different(
+    runs: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str], content: bytes
+) -> None:
+    folder = copied(runs, tmp_path / 'runs')
+    edit_with_digest(folder, 'pi/failed_run.json', content)
+    code, document, _ = verified(folder, capfd)
+    assert (code, states(document)['pi']) == (1, 'different')
+
+
 def test_score_and_report_keep_the_digests_of_what_they_write(
     tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:

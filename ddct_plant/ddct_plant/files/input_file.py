@@ -46,6 +46,8 @@ def read_file(path: Path, most_bytes: int) -> bytes:
     Raise OSError, whose `strerror` is a message for the user, when it cannot be read, is no
     regular file (a pipe may block, a device may never end) or has more than `most_bytes`.
     """
+    if '\0' in str(path):  # a file can give such a name, and Python would raise ValueError
+        raise OSError(errno.EINVAL, 'its name has a null character', str(path))
     # Without O_NONBLOCK opening a pipe blocks.
     descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
     status = os.fstat(descriptor)

@@ -33,7 +33,13 @@ def test_a_pipe_is_not_waited_for(pipe):
 
 
 @pytest.mark.parametrize(
-    ('path', 'what'), [('/dev/zero', 'a device'), ('/', 'a folder'), ('/nowhere', 'No such file')]
+    ('path', 'what'),
+    [
+        ('/dev/zero', 'a device'),
+        ('/', 'a folder'),
+        ('/nowhere', 'No such file'),
+        ('null\0', 'a null character'),
+    ],
 )
 def test_what_is_no_file_is_called_what_it_is(path, what):
     with pytest.raises(OSError, match=what):

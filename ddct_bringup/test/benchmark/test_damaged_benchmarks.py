@@ -1,0 +1,95 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""A damaged file of a benchmark's folder is refused in one line that names it."""
+
+import json
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from ddct_bringup.benchmark.cases import Cases, packaged_folder
+from ddct_bringup.benchmark.judged import Judged
+from ddct_bringup.benchmark.manifest import MANIFEST, BenchmarkManifest
+from ddct_bringup.benchmark.release import COPIED, UNAVOIDABLE, release_rows
+from ddct_bringup.benchmark.unavoidable import unavoidable_of
+from ddct_bringup.benchmark.update_times import read_update_times
+from ddct_bringup.run.timing_and_failure import TIMING_FILE
+from ddct_plant.base.errors import DdctError, ParameterError
+
+Edit = Callable[[dict[str, Any]], object]
+RATIO = {'ratio_to_pi': 2.0, 'lowest_ratio': 1.9, 'highest_ratio': 2.1}
+TIMES = {**RATIO, 'update_time_median_us': 10.0, 'pi_update_time_median_us': 5.0}
+
+
+@pytest.mark.parametrize(
+    'edit',
+    [
+        lambda content: content.update(version=1),
+        lambda content: content.update(limits=[]),
+        lambda content: content.update(quick='yes'),
+        lambda content: content.update(judge_seed='1'),
+        lambda content: content['controllers'][0].update(chosen=['pi']),
+        lambda content: content['controllers'][0].update(digests=['a']),
+        lambda content: content['controllers'][0].update(held_out_seed=1.5),
+        lambda content: content['cases'].pop('controllers'),
+        lambda content: content['cases'].update(controllers=7),
+        lambda content: content['cases'].update(seed='1'),
+        lambda content: content['cases'].update(random=None),
+        lambda content: content['cases']['random'].update(samples='3'),
+    ],
+)
+def test_a_manifest_with_a_value_of_another_type_is_refused(tmp_path: Path, edit: Edit) -> None:
+    BenchmarkManifest.of([Judged.of('pi')], Cases.packaged(), None).write(tmp_path)
+    file = tmp_path / MANIFEST
+    content = json.loads(file.read_text(encoding='utf-8'))
+    assert BenchmarkManifest.read(tmp_path).controllers[0].name == 'pi'
+    edit(content)
+    file.write_text(json.dumps(content), encoding='utf-8')
+    with pytest.raises(DdctError) as error:
+        BenchmarkManifest.read(tmp_path)
+    assert error.value.place == str(file)
+
+
+def test_update_times_are_whole_or_have_a_reason(tmp_path: Path) -> None:
+    failed = {'ratio_to_pi': None, 'reason': 'it failed'}
+    content = {'reference': 'pi', 'controllers': {'mine': TIMES, 'other': failed}}
+    (tmp_path / TIMING_FILE).write_text(json.dumps(content), encoding='utf-8')
+    assert read_update_times(tmp_path) == content
+
+
+@pytest.mark.parametrize(
+    'text',
+    [
+        *('', '\xff', '[]', '{"controllers": []}', '{"controllers": {"mine": 1}}'),
+        *(json.dumps({'controllers': {'mine': each}}) for each in (RATIO, {'ratio_to_pi': None})),
+        json.dumps({'controllers': {'mine': {**TIMES, 'ratio_to_pi': '2'}}}),
+    ],
+)
+def test_damaged_update_times_are_refused(tmp_path: Path, text: str) -> None:
+    (tmp_path / TIMING_FILE).write_bytes(text.encode('latin-1'))
+    with pytest.raises(DdctError) as error:
+        read_update_times(tmp_path)
+    assert error.value.place == str(tmp_path / TIMING_FILE)
+
+
+@pytest.mark.parametrize(
+    'text',
+    ['[]', '{"3": []}', '{"01": []}', '{"a": []}', '{"1": "peak_jerk"}', '{"1": [["peak_jerk"]]}'],
+)
+def test_limits_of_no_case_and_limits_that_are_none_are_refused(text: str) -> None:
+    assert unavoidable_of('{"1": ["peak_jerk"], "2": []}', 3) == {1: ['peak_jerk'], 2: []}
+    with pytest.raises(ParameterError):
+        unavoidable_of(text, 3)
+
+
+def test_a_case_with_floors_and_without_its_limits_is_missed(tmp_path: Path) -> None:
+    for name in COPIED:
+        shutil.copyfile(str(packaged_folder() / name), tmp_path / name)
+    limits = json.loads((tmp_path / UNAVOIDABLE).read_text(encoding='utf-8'))
+    limits.pop(next(iter(limits)))
+    (tmp_path / UNAVOIDABLE).write_text(json.dumps(limits), encoding='utf-8')
+    with pytest.raises(DdctError, match=f'{UNAVOIDABLE} lacks cases'):
+        release_rows(tmp_path).of(Cases.packaged())

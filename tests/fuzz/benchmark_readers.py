@@ -1,0 +1,68 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Readers of the files of a benchmark: its manifest, the rows of the release, update times."""
+
+import json
+from pathlib import Path
+
+from fuzz.reader import Reader
+from fuzz.run_readers import in_folder
+
+from ddct_bringup.benchmark.cases import Cases, packaged_folder
+from ddct_bringup.benchmark.judged import Judged
+from ddct_bringup.benchmark.manifest import MANIFEST, BenchmarkManifest, JudgedEntry
+from ddct_bringup.benchmark.release import COPIED, ROWS, UNAVOIDABLE, release_rows
+from ddct_bringup.benchmark.update_times import UpdateTimesFile, read_update_times
+from ddct_bringup.run.timing_and_failure import TIMING_FILE
+
+_RELEASE = {name: (packaged_folder() / name).read_bytes() for name in COPIED}
+_UPDATE_TIMES: UpdateTimesFile = {
+    'reference': 'pi',
+    'controllers': {
+        'mine': {
+            'ratio_to_pi': 2.0,
+            'lowest_ratio': 1.9,
+            'highest_ratio': 2.1,
+            'update_time_median_us': 10.0,
+            'pi_update_time_median_us': 5.0,
+        },
+        'other': {'ratio_to_pi': None, 'reason': 'ValueError: it failed'},
+    },
+}
+
+
+def benchmark_readers(folder: Path) -> list[Reader]:
+    """Return the readers of a benchmark's files."""
+    judged = [Judged.of(name) for name in ('pi', 'ls8')]
+    BenchmarkManifest.of(judged, Cases.packaged(quick=True), None).write(folder)
+    times = json.dumps(_UPDATE_TIMES).encode()
+    return [
+        Reader('benchmark', MANIFEST, in_folder(_manifest), ((folder / MANIFEST).read_bytes(),)),
+        Reader('benchmark_rows', ROWS, _release, (_RELEASE[ROWS],)),
+        Reader('benchmark_limits', UNAVOIDABLE, _release, (_RELEASE[UNAVOIDABLE],)),
+        Reader('update_times', TIMING_FILE, in_folder(read_update_times), (times,)),
+    ]
+
+
+def _manifest(folder: Path) -> object:
+    """Return all that follows from a manifest alone."""
+    manifest = BenchmarkManifest.read(folder)
+    judged = [
+        Judged(each.name, each.chosen, folder, each.digests) for each in manifest.controllers
+    ]
+    seeds = [
+        JudgedEntry.of(each, manifest.code_digest, manifest.judge_seed).held_out_seed
+        for each in judged
+    ]
+    cases = manifest.run_cases
+    pairs = zip(judged, seeds, strict=True)
+    held_out = [cases.held_out(each.chosen, folder, seed).cases for each, seed in pairs]
+    return cases.digest, held_out
+
+
+def _release(file: Path) -> object:
+    """Read a file of the release beside the other one."""
+    for name in {*COPIED} - {file.name}:
+        (file.parent / name).write_bytes(_RELEASE[name])
+    rows = release_rows(file.parent).of(Cases.packaged(quick=True))
+    return rows.rows.cases, rows.unavoidable

@@ -1,0 +1,69 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Readers of the files of a campaign, and of the JSON with which `verify` compares its own."""
+
+import json
+from pathlib import Path
+
+from fuzz.reader import Read, Reader
+from fuzz.run_readers import in_folder
+
+from ddct_bringup.campaign.campaign import Campaign
+from ddct_bringup.campaign.columns import read_row
+from ddct_bringup.campaign.conduct import RESULTS, carry_out
+from ddct_bringup.campaign.manifest import MANIFEST, Manifest
+from ddct_bringup.campaign.spec import read_spec, spec_of
+from ddct_bringup.campaign_report.folder import SUMMARY
+from ddct_bringup.campaign_report.reading import read_table, results_of
+from ddct_bringup.campaign_report.results import Results
+from ddct_bringup.campaign_report.summary import summary_of
+from ddct_bringup.verdict.limits import packaged_limits
+from ddct_bringup.verification.comparison import Comparison, plain_json, recorded_json
+from ddct_bringup.verification.result import RepetitionResult
+
+_TEMPLATE = Path(__file__).resolve().parents[2] / 'docs' / 'templates' / 'campaign.yaml'
+_SPEC = {'controllers': ['pi', 'ls8'], 'grid': {'wear_gain': [0.8, 1.2], 'duration_s': [0.7]}}
+_LAST = 3
+
+
+def campaign_readers(folder: Path) -> list[Reader]:
+    """Return the readers of a campaign's files; a good campaign is carried out in a folder."""
+    made = folder / 'campaign'
+    carry_out(Campaign(spec_of(_SPEC, folder)), packaged_limits(), made, workers=1)
+    manifest, results = ((made / name).read_bytes() for name in (MANIFEST, RESULTS))
+    summary = plain_json(summary_of(_results(made)))
+    return [
+        Reader('campaign', 'mine.yaml', read_spec, (_TEMPLATE.read_bytes(),)),
+        Reader('manifest', MANIFEST, in_folder(Manifest.read), (manifest,)),
+        Reader('results', RESULTS, _summary_beside(manifest), (results,)),
+        Reader('result_row', RESULTS, lambda file: read_row(file, _LAST), (results,)),
+        Reader(
+            'summary', SUMMARY, _compared(plain_json(summary)), (json.dumps(summary).encode(),)
+        ),
+    ]
+
+
+def _results(folder: Path) -> Results:
+    manifest = Manifest.read(folder)
+    return results_of(manifest, read_table(folder, manifest))
+
+
+def _summary_beside(manifest: bytes) -> Read:
+    """Return a reader of results, with their manifest."""
+
+    def read(file: Path) -> object:
+        (file.parent / MANIFEST).write_bytes(manifest)
+        return summary_of(_results(file.parent))
+
+    return read
+
+
+def _compared(again: object) -> Read:
+    """Return a reader that compares a recorded file with `again`, as all of `verify` do."""
+
+    def read(file: Path) -> object:
+        comparison = Comparison()
+        comparison.add_nested('', recorded_json(file), again)
+        return RepetitionResult.of(file.name, comparison, same_environment=True).entry()
+
+    return read
