@@ -6,10 +6,12 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from ddct_plant.base.errors import MOST_SIGNAL, DdctError
+from ddct_plant.base.errors import DdctError
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.scenario.whole_plant import Observation
 
+MOST = 1e9
+"""Largest size of a signal, in its SI unit; far beyond any vehicle."""
 _UNITS = {
     'engine_speed': 'rad/s',
     'shaft_speed': 'rad/s',
@@ -114,11 +116,11 @@ def measured_speeds(measurement: Measurement) -> tuple[float, float, float]:
     """
     Return w_m, w_p, w_r in rad/s after a check of the whole measurement.
 
-    Raise DdctError that names the first number among them, the torques and the references that
-    is not finite or larger than MOST_SIGNAL.
+    Raise DdctError that names the first number that is not finite or larger than MOST, among them,
+    the torques and the references.
     """
     speeds = (measurement.engine_speed, measurement.shaft_speed, measurement.wheel_speed)
-    # One call at every step: what is within MOST_SIGNAL together is so each by itself.
+    # One call at every step: what is within MOST together is so each by itself.
     together = math.hypot(
         *speeds,
         measurement.engine_torque,
@@ -127,7 +129,7 @@ def measured_speeds(measurement: Measurement) -> tuple[float, float, float]:
         *measurement.slip_reference,
         *measurement.slip_reference_rate,
     )
-    if not together <= MOST_SIGNAL:
+    if not together <= MOST:
         _require_each(measurement)
     return speeds
 
@@ -137,10 +139,10 @@ def _require_each(measurement: Measurement) -> None:
         values = getattr(measurement, name)
         listed = isinstance(values, Iterable)
         for ahead, value in enumerate(values if listed else (values,)):
-            if not abs(value) <= MOST_SIGNAL:
+            if not abs(value) <= MOST:
                 what = f'{name}[{ahead}]' if listed else name
                 raise DdctError(
                     f'{what} is {value:g} {unit} at step {measurement.step}, not a number within '
-                    f'+-{MOST_SIGNAL:g}: mend what gives it, or the loop if it diverges',
+                    f'+-{MOST:g}: mend what gives it, or the loop if it diverges',
                     key=what,
                 )

@@ -9,10 +9,10 @@ import pytest
 from refusals import refused
 
 from ddct_controllers.interface import Measurement
-from ddct_controllers.measurement import measured_speeds
+from ddct_controllers.measurement import MOST, measured_speeds
 from ddct_controllers.mpc.variants import PREDICTIVE
 from ddct_controllers.registry import make_controller
-from ddct_plant.base.errors import MOST_SIGNAL, DdctError
+from ddct_plant.base.errors import DdctError
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
@@ -51,7 +51,7 @@ def test_no_number_is_refused_and_leaves_no_trace(name, way, field):
     assert used.update(measurement(60, preview)) == other.update(measurement(60, preview))
 
 
-@pytest.mark.parametrize('value', [math.inf, -math.inf, 1.1 * MOST_SIGNAL, -1.1 * MOST_SIGNAL])
+@pytest.mark.parametrize('value', [math.inf, -math.inf, 1.1 * MOST, -1.1 * MOST])
 @pytest.mark.parametrize('field', [*SCALARS, *REFERENCES])
 def test_beyond_the_largest_size_is_refused(field, value):
     with pytest.raises(DdctError) as caught:
@@ -68,5 +68,5 @@ def test_many_large_numbers_are_no_error():
     """Their sum is beyond the largest size, each by itself is within."""
     good = measurement(3, 4)
     for field in (*SCALARS, *REFERENCES):
-        good = spoilt(good, field, MOST_SIGNAL)
-    assert measured_speeds(good) == (MOST_SIGNAL, MOST_SIGNAL, MOST_SIGNAL)
+        good = spoilt(good, field, MOST)
+    assert measured_speeds(good) == (MOST, MOST, MOST)

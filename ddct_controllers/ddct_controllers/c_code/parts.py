@@ -5,14 +5,14 @@
 from collections.abc import Iterable
 from pathlib import Path
 
-from ddct_plant.base.errors import MOST_SIGNAL
+from ddct_controllers.measurement import MOST
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.models.engine import EngineAuthority
 
 _SHARED = Path(__file__).parent / 'c'
 DOUBLES = _SHARED / 'doubles.c'
 """Functions `smaller`, `larger` and `usable`, which every export needs, with `SIGNAL_MACROS`."""
-SIGNAL_MACROS = {'MOST_SIGNAL': MOST_SIGNAL}
+SIGNAL_MACROS = {'MOST_SIGNAL': MOST}
 """Largest size of a measured value, in its SI unit."""
 ENGINE = _SHARED / 'engine.c'
 """Torque that the engine delivers; it needs DOUBLES and the macros of `authority_macros`."""

@@ -139,8 +139,8 @@ def require_choice(name: str, value: str, choices: Sequence[str]) -> None:
         )
 
 
-MOST_SIGNAL = 1e9
-"""Largest size of a signal, in its SI unit; far beyond any vehicle."""
+MOST_SIGNAL = 1e150
+"""Largest size of a signal, in its SI unit: the square of a larger one would not be finite."""
 
 
 def require_signal(source: str, value: float) -> float:
