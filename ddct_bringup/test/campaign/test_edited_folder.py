@@ -1,0 +1,83 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""A campaign's folder that was edited, with its digests removed, is refused in one line."""
+
+import json
+import shutil
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+from in_this_process import in_this_process
+from refusals import refused
+
+from ddct_bringup.campaign.campaign import Campaign
+from ddct_bringup.campaign.conduct import RESULTS, carry_out
+from ddct_bringup.campaign.manifest import MANIFEST, Manifest
+from ddct_bringup.campaign.spec import spec_of
+from ddct_bringup.digests.digest_file import DIGESTS
+from ddct_bringup.verdict.limits import packaged_limits
+from ddct_plant.base.errors import DdctError
+
+SPEC: dict[str, Any] = {
+    'controllers': ['pi', 'ls8'],
+    'grid': {'wear_gain': [0.7, 1.0], 'duration_s': [0.7]},
+}
+RUNS = 4
+
+
+@pytest.fixture(scope='module')
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return the folder of a finished campaign."""
+    out = tmp_path_factory.mktemp('whole') / 'campaign'
+    with in_this_process():
+        carry_out(Campaign(spec_of(SPEC, Path())), packaged_limits(), out)
+    return out
+
+
+@pytest.fixture
+def out(whole: Path, tmp_path: Path) -> Path:
+    """Return a copy of the folder without its digests."""
+    copy = shutil.copytree(whole, tmp_path / 'campaign')
+    (copy / DIGESTS).unlink()
+    return copy
+
+
+def resumed(out: Path) -> list[int]:
+    """Go on with the campaign; return the first runs of the shards that were computed."""
+    with in_this_process() as workers:
+        carry_out(Campaign(spec_of(SPEC, Path())), packaged_limits(), out, resume=True)
+    return workers.computed
+
+
+def edit(out: Path, **changes: Any) -> None:
+    """Change values of the manifest."""
+    content = json.loads((out / MANIFEST).read_text(encoding='utf-8'))
+    (out / MANIFEST).write_text(json.dumps({**content, **changes}), encoding='utf-8')
+
+
+@pytest.mark.parametrize(
+    'changes',
+    [
+        {'runs': RUNS // 2},
+        {'runs': RUNS + 3},
+        {'runs': 9_999_999},
+        {'shard_size': 3},
+        {'spec': {}},
+    ],
+)
+def test_a_manifest_that_does_not_follow_from_the_specification_is_not_resumed(
+    out: Path, changes: dict[str, Any]
+) -> None:
+    before = (out / RESULTS).read_bytes()
+    edit(out, **changes)
+    with refused(DdctError, *changes, place=MANIFEST):
+        resumed(out)
+    assert (out / RESULTS).read_bytes() == before
+
+
+def test_a_campaign_is_not_repeated_with_another_number_of_runs(whole: Path) -> None:
+    more = replace(Manifest.read(whole), runs=RUNS + 3)
+    with refused(DdctError, 'runs', place=MANIFEST):
+        more.campaign(whole)
