@@ -76,7 +76,8 @@ def carry_out(
         conduct.compute(missing, done)
         require_unaltered(out, [file.relative_to(out).as_posix() for file in shards])
         schema = schema_of(campaign.spec)
-        merge([*shards], manifest.shard_size, schema, out / RESULTS, RESUME)
+        rows = {file: job.last - job.first for file, job in shards.items()}
+        merge(rows, schema, out / RESULTS, RESUME)
         finish_campaign_digests(out)
     return out / RESULTS
 

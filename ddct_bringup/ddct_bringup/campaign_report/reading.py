@@ -37,7 +37,7 @@ def read_table(folder: Path, manifest: Manifest) -> pa.Table:
     path = folder / RESULTS
     require_unaltered(folder, (MANIFEST, RESULTS))
     try:
-        table = read_parquet(path)
+        table = read_parquet(path, manifest.runs)
         metadata = table.schema.metadata or {}
         _require_single(table)
         require_schema_version(
@@ -72,13 +72,10 @@ def _require_types(table: pa.Table, path: Path) -> None:
 
 
 def _require_single(table: pa.Table) -> None:
-    """Raise ValueError for a column that is there twice, or is not of one of our types."""
+    """Raise ValueError for a column that is there twice."""
     for field in table.schema:
         if table.column_names.count(field.name) > 1:
             raise ValueError(f'the column {field.name} is there twice')
-        kinds = (pa.types.is_string, pa.types.is_boolean, pa.types.is_int64, pa.types.is_float64)
-        if not any(is_kind(field.type) for is_kind in kinds):
-            raise ValueError(f'the column {field.name} is of type {field.type}')
 
 
 def results_of(manifest: Manifest, table: pa.Table) -> Results:

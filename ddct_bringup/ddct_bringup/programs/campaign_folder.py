@@ -109,7 +109,7 @@ def _replay(options: argparse.Namespace) -> int:
     manifest.require_limits(limits, options.folder)
     campaign = manifest.campaign(options.folder)
     require_unaltered(options.folder, (MANIFEST, RESULTS))
-    row = read_row(options.folder / RESULTS, options.index)
+    row = read_row(options.folder / RESULTS, options.index, manifest.runs)
     if manifest.code_digest != code_digest():
         complain(_REPLAY, f'the campaign is of {manifest.code}, this is another code')
     run = campaign.run(options.index)

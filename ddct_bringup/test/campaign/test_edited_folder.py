@@ -8,14 +8,18 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import pyarrow as pa
+import pyarrow.parquet as parquet
 import pytest
 from in_this_process import in_this_process
 from refusals import refused
 
 from ddct_bringup.campaign.campaign import Campaign
-from ddct_bringup.campaign.conduct import RESULTS, carry_out
+from ddct_bringup.campaign.columns import merge, read_row, schema_of
+from ddct_bringup.campaign.conduct import RESULTS, SHARDS, carry_out
 from ddct_bringup.campaign.manifest import MANIFEST, Manifest
 from ddct_bringup.campaign.spec import spec_of
+from ddct_bringup.campaign_report.reading import read_table
 from ddct_bringup.digests.digest_file import DIGESTS
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.base.errors import DdctError
@@ -81,3 +85,33 @@ def test_a_campaign_is_not_repeated_with_another_number_of_runs(whole: Path) -> 
     more = replace(Manifest.read(whole), runs=RUNS + 3)
     with refused(DdctError, 'runs', place=MANIFEST):
         more.campaign(whole)
+
+
+def of_one_row_repeated(file: Path, count: int) -> None:
+    """Let a file of rows have its first row many times."""
+    table = parquet.read_table(file)
+    rows = table.to_pylist()[:1] * count
+    parquet.write_table(pa.Table.from_pylist(rows, schema=table.schema), file)
+
+
+def test_results_with_more_rows_than_runs_are_refused_by_all_that_reads_them(out: Path) -> None:
+    of_one_row_repeated(out / RESULTS, RUNS + 1)
+    manifest = Manifest.read(out)
+    with pytest.raises(DdctError, match=f'it has {RUNS + 1} rows, not {RUNS}'):
+        read_table(out, manifest)
+    with pytest.raises(DdctError, match=f'it has {RUNS + 1} rows, not {RUNS}'):
+        read_row(out / RESULTS, 0, manifest.runs)
+
+
+@pytest.mark.parametrize('count', [0, 2])
+def test_a_shard_with_another_number_of_rows_is_not_merged(out: Path, count: int) -> None:
+    shards = dict.fromkeys(sorted((out / SHARDS).iterdir()), 1)
+    of_one_row_repeated(list(shards)[2], count)
+    before = (out / RESULTS).read_bytes()
+    schema = schema_of(Campaign(spec_of(SPEC, Path())).spec)
+    with pytest.raises(
+        DdctError, match=rf'0002.parquet: .*\(it has {count} rows, not 1\): remove'
+    ):
+        merge(shards, schema, out / RESULTS, 'advice')
+    assert (out / RESULTS).read_bytes() == before
+    assert not list(out.glob('.*.partial'))
