@@ -78,8 +78,9 @@ def merge(shards: Mapping[Path, int], schema: pa.Schema, target: Path, advice: s
     files = list(shards)
     partial = target.with_name(f'.{target.name}.partial')
     try:
+        partial.unlink(missing_ok=True)  # of a killed program, or a pipe or link of a stranger
         with (
-            partial.open('wb') as file,
+            partial.open('xb') as file,
             parquet.ParquetWriter(file, schema, compression=_COMPRESSION) as writer,
         ):
             for first in range(0, len(files), in_group):

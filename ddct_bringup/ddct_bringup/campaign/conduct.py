@@ -193,7 +193,7 @@ class _Conduct:
             for future in finished:
                 file = running.pop(future)
                 rows, seconds = _result(future, shards[file])
-                write_bytes(str(file), rows, RESUME)
+                write_bytes(str(file), rows, RESUME, ours=True)
                 keep_digests([file])
                 self.time_left.add(shards[file], seconds)
                 yield file

@@ -99,7 +99,7 @@ class Manifest:
 
     def write(self, out: Path) -> None:
         """Write the manifest to a campaign's folder; raise DdctError when that fails."""
-        write_json(str(out / MANIFEST), asdict(self))
+        write_json(str(out / MANIFEST), asdict(self), ours=True)
 
     @property
     def grid(self) -> tuple[str, ...]:
