@@ -97,6 +97,11 @@ class Manifest:
         _require_group('spec.random', random)
         _require_group('spec.random.vary', random.get('vary') or {})
 
+    @property
+    def has_digests(self) -> bool:
+        """Whether its version writes `digests.json`, as all after 0.1.0 do."""
+        return self.version != '0.1.0'
+
     def write(self, out: Path) -> None:
         """Write the manifest to a campaign's folder; raise DdctError when that fails."""
         write_json(str(out / MANIFEST), asdict(self), ours=True)

@@ -22,7 +22,8 @@ from ddct_bringup.campaign.manifest import MANIFEST, Manifest
 from ddct_bringup.campaign.spec import spec_of
 from ddct_bringup.campaign_report.folder import SUMMARY, write_campaign_page
 from ddct_bringup.campaign_report.reading import read_table
-from ddct_bringup.digests.digest_file import DIGESTS
+from ddct_bringup.digests.digest_file import DIGESTS, read_digests
+from ddct_bringup.programs.campaign import main
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.base.errors import DdctError
 
@@ -55,6 +56,11 @@ def resumed(out: Path) -> list[int]:
     with in_this_process() as workers:
         carry_out(Campaign(spec_of(SPEC, Path())), packaged_limits(), out, resume=True)
     return workers.computed
+
+
+def replayed(out: Path) -> int:
+    """Return the exit code of making a run again."""
+    return main(['replay', str(out), '--index', '0', '--out', str(out.parent / 'again')])
 
 
 def edit(out: Path, **changes: Any) -> None:
@@ -98,6 +104,7 @@ def of_one_row_repeated(file: Path, count: int) -> None:
 
 def test_results_with_more_rows_than_runs_are_refused_by_all_that_reads_them(out: Path) -> None:
     of_one_row_repeated(out / RESULTS, RUNS + 1)
+    edit(out, version='0.1.0')
     manifest = Manifest.read(out)
     with pytest.raises(DdctError, match=f'it has {RUNS + 1} rows, not {RUNS}'):
         read_table(out, manifest)
@@ -170,3 +177,24 @@ def test_a_key_that_the_manifest_lacks_is_named(out: Path) -> None:
     (out / MANIFEST).write_text(json.dumps(content), encoding='utf-8')
     with pytest.raises(DdctError, match=r'\(the key runs is missing\): put the original back'):
         Manifest.read(out)
+
+
+@pytest.mark.parametrize('kept', [None, MANIFEST])
+def test_results_without_a_digest_are_refused_until_they_are_computed_again(
+    whole: Path, out: Path, kept: str | None
+) -> None:
+    if kept:
+        digests = read_digests(whole)
+        replace(digests, files={kept: digests.files[kept]}).write(out)
+    missing = RESULTS if kept else MANIFEST
+    with refused(DdctError, missing, place='campaign') as caught:
+        read_table(out, Manifest.read(out))
+    assert '--resume' in str(caught.value)
+    assert replayed(out) == 1
+    resumed(out)
+    assert len(read_table(out, Manifest.read(out))) == RUNS
+
+
+def test_a_campaign_of_the_version_without_digests_is_read(out: Path) -> None:
+    edit(out, version='0.1.0')
+    assert len(read_table(out, Manifest.read(out))) == RUNS
