@@ -19,33 +19,44 @@ from ddct_plant.files.input_file import read_file
 
 MOST_BYTES = 4_000_000_000
 """Largest size of a Parquet file in bytes; a million rows have a twentieth of that."""
-MOST_ROWS_PER_BYTE = 10
-"""Most rows per byte of a file; rows that differ in their index alone have one."""
+MOST_EXPANSION = 400
+"""Most bytes of memory per byte of a file; a million failed runs with one seed need 340."""
+SMALL_BYTES = 10_000_000
+"""Bytes of memory that any file may need."""
 MOST_COLUMNS = 2000
 """Most columns of a file."""
 MOST_TEXT_BYTES = 500_000_000
 """Largest size of all texts of a file in bytes; a million rows have a fifth of that."""
 _NUMBERS = {pa.int64(): np.int64, pa.float64(): np.float64}
+_TYPES = (*_NUMBERS, pa.bool_(), pa.string())
+_VALUE_BYTES = 8
+"""Bytes of a value in memory, for a text those of its place."""
 
 
-def read_parquet(path: Path) -> pa.Table:
+def read_parquet(path: Path, most_rows: int | None = None) -> pa.Table:
     """
-    Return all rows of a Parquet file.
+    Return all rows of a Parquet file, which may have `most_rows` where that is given.
 
     Raise OSError or ArrowException where that fails, ArrowException also for texts that are none,
     and for a small file that would fill the memory: runs of equal values take next to no bytes.
     """
     data = read_file(path, MOST_BYTES)
     try:
-        return _table_of(data)
+        return _table_of(data, most_rows)
     except UnicodeDecodeError as error:
         raise pa.ArrowInvalid(f'its names are no text ({error})') from error
 
 
-def _table_of(data: bytes) -> pa.Table:
+def _table_of(data: bytes, most_rows: int | None) -> pa.Table:
     with parquet.ParquetFile(pa.BufferReader(data)) as file:
         rows, columns = file.metadata.num_rows, file.metadata.num_columns
-        if rows > MOST_ROWS_PER_BYTE * len(data) or columns > MOST_COLUMNS:
+        if most_rows is not None and rows > most_rows:
+            raise pa.ArrowInvalid(f'it has {rows} rows, not {most_rows}')
+        for field in file.schema_arrow:  # a list may have any number of values in a row
+            if field.type not in _TYPES:
+                raise pa.ArrowInvalid(f'the column {field.name} is of type {field.type}')
+        most = max(SMALL_BYTES, MOST_EXPANSION * len(data))
+        if columns > MOST_COLUMNS or _needed_bytes(file.metadata) > most:
             raise pa.ArrowInvalid(
                 f'{len(data)} bytes cannot have {rows} rows of {columns} columns'
             )
@@ -55,6 +66,17 @@ def _table_of(data: bytes) -> pa.Table:
         table = _without_dictionaries(file.read())
     table.validate(full=True)  # texts of a damaged file may be no UTF-8
     return table
+
+
+def _needed_bytes(metadata: parquet.FileMetaData) -> int:
+    """Return the memory for all values of a file and for its bytes without compression."""
+    needed = 0
+    for number in range(metadata.num_row_groups):
+        group = metadata.row_group(number)
+        # Arrow reads as many values as a part of a column has, whatever the number of rows.
+        for part in map(group.column, range(group.num_columns)):
+            needed += abs(part.num_values) * _VALUE_BYTES + abs(part.total_uncompressed_size)
+    return needed
 
 
 def _without_dictionaries(table: pa.Table) -> pa.Table:

@@ -68,36 +68,52 @@ def shard_bytes(schema: pa.Schema, rows: Sequence[Row]) -> bytes:
     return sink.getvalue().to_pybytes()
 
 
-def merge(
-    shards: Sequence[Path], shard_size: int, schema: pa.Schema, target: Path, advice: str
-) -> None:
+def merge(shards: Mapping[Path, int], schema: pa.Schema, target: Path, advice: str) -> None:
     """
     Write the rows of all shards, in their order, to one file, completely or not at all.
 
-    `shard_size` is the number of rows in each but the last. Raise DdctError, with an advice, when
-    that fails.
+    `shards` has the number of rows of each. Raise DdctError, with an advice, when that fails.
     """
-    in_group = -(-_ROW_GROUP // shard_size)
+    in_group = -(-_ROW_GROUP // max(shards.values()))
+    files = list(shards)
     partial = target.with_name(f'.{target.name}.partial')
     try:
+        partial.unlink(missing_ok=True)  # of a killed program, or a pipe or link of a stranger
         with (
-            partial.open('wb') as file,
+            partial.open('xb') as file,
             parquet.ParquetWriter(file, schema, compression=_COMPRESSION) as writer,
         ):
-            for first in range(0, len(shards), in_group):
-                tables = [read_parquet(each) for each in shards[first : first + in_group]]
+            for first in range(0, len(files), in_group):
+                group = files[first : first + in_group]
+                tables = [_rows_of(each, shards[each]) for each in group]
                 writer.write_table(pa.concat_tables(tables))
         partial.replace(target)
+    except DdctError:
+        partial.unlink(missing_ok=True)
+        raise
     except (OSError, pa.ArrowException) as error:
         partial.unlink(missing_ok=True)
         why = getattr(error, 'strerror', None) or error
         raise DdctError(f'cannot be written ({why}); {advice}', place=target) from error
 
 
-def read_row(results: Path, index: int) -> dict[str, Any]:
-    """Return one row by column name; raise DdctError for a missing file or row."""
+def _rows_of(shard: Path, count: int) -> pa.Table:
+    """Return the rows of a shard; raise DdctError for one that has not so many of them."""
     try:
-        table = read_parquet(results)
+        table = read_parquet(shard, count)
+        if len(table) != count:
+            raise pa.ArrowInvalid(f'it has {len(table)} rows, not {count}')
+    except (OSError, pa.ArrowException) as error:
+        raise DdctError(
+            f'cannot be read ({error}): remove it, and go on with --resume', place=shard
+        ) from error
+    return table
+
+
+def read_row(results: Path, index: int, runs: int) -> dict[str, Any]:
+    """Return one of `runs` rows by column name; raise DdctError for a missing file or row."""
+    try:
+        table = read_parquet(results, runs)
         rows = table.filter(compute.equal(table[INDEX], index)).to_pylist()
     except (OSError, LookupError, ValueError, pa.ArrowException) as error:
         raise DdctError(f'{results}: cannot be read ({error}): finish the campaign') from error

@@ -76,7 +76,8 @@ def carry_out(
         conduct.compute(missing, done)
         require_unaltered(out, [file.relative_to(out).as_posix() for file in shards])
         schema = schema_of(campaign.spec)
-        merge([*shards], manifest.shard_size, schema, out / RESULTS, RESUME)
+        rows = {file: job.last - job.first for file, job in shards.items()}
+        merge(rows, schema, out / RESULTS, RESUME)
         finish_campaign_digests(out)
     return out / RESULTS
 
@@ -192,7 +193,7 @@ class _Conduct:
             for future in finished:
                 file = running.pop(future)
                 rows, seconds = _result(future, shards[file])
-                write_bytes(str(file), rows, RESUME)
+                write_bytes(str(file), rows, RESUME, ours=True)
                 keep_digests([file])
                 self.time_left.add(shards[file], seconds)
                 yield file

@@ -7,10 +7,9 @@ from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import Any
 
-from ddct_bringup.batch.run_batch import MOST_RUNS
 from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.named_files import digest_of
-from ddct_bringup.campaign.scored import are_linear
+from ddct_bringup.campaign.shard_size import shard_size_of
 from ddct_bringup.campaign.spec import CampaignSpec, spec_of
 from ddct_bringup.digests.code import code_digest
 from ddct_bringup.digests.manifests import manifest_content
@@ -33,18 +32,6 @@ _NUMBERS = (
     ('shard_size', 1, MOST_ROWS),
 )
 """Keys of whole numbers, with the least and the most."""
-_MOST_RUNS = 2000
-"""Largest number of runs in a shard."""
-_LEAST_SHARDS = 50
-"""Smallest number of shards of a large campaign, so that all workers end together."""
-_MANY_LINEAR_RUNS = 1000
-"""
-Smallest number of linear runs of a campaign with fewer shards.
-
-They are computed together, and each costs less the more they are.
-"""
-_LEAST_LINEAR_SHARDS = 4
-"""Smallest number of shards of so many linear runs, which take seconds."""
 
 
 @dataclass(frozen=True)
@@ -81,7 +68,7 @@ class Manifest:
             spec_digest=campaign.digest(),
             limits=dict(limits.origin),
             runs=campaign.runs,
-            shard_size=_shard_size(campaign),
+            shard_size=shard_size_of(campaign),
             folder=str(campaign.spec.folder),
             spec=dict(campaign.spec.content),
         )
@@ -110,9 +97,14 @@ class Manifest:
         _require_group('spec.random', random)
         _require_group('spec.random.vary', random.get('vary') or {})
 
+    @property
+    def has_digests(self) -> bool:
+        """Whether its version writes `digests.json`, as all after 0.1.0 do."""
+        return self.version != '0.1.0'
+
     def write(self, out: Path) -> None:
         """Write the manifest to a campaign's folder; raise DdctError when that fails."""
-        write_json(str(out / MANIFEST), asdict(self))
+        write_json(str(out / MANIFEST), asdict(self), ours=True)
 
     @property
     def grid(self) -> tuple[str, ...]:
@@ -132,7 +124,7 @@ class Manifest:
         """
         Return the campaign in `out`; the files that it names are in `folder` if they were moved.
 
-        Raise DdctError where one of them has changed.
+        Raise DdctError where one of them has changed, or where the manifest was edited.
         """
         spec = self.campaign_spec(folder)
         if digest_of(spec) != self.spec_digest:  # first: making the campaign runs Python files
@@ -140,7 +132,9 @@ class Manifest:
                 f'{out}: a scenario, profile, controller or handover file of its specification '
                 'has changed since: put the old one back'
             )
-        return Campaign(spec)
+        campaign = Campaign(spec)
+        self._require_given('runs', campaign.runs, out)
+        return campaign
 
     def require_same(self, other: 'Manifest', out: Path) -> None:
         """Raise DdctError with the differences of another campaign from this one, in `out`."""
@@ -156,6 +150,19 @@ class Manifest:
                     'that one, or choose another --out',
                     key=what,
                 )
+        for key in ('runs', 'shard_size', 'spec'):
+            self._require_given(key, getattr(other, key), out)
+
+    def _require_given(self, key: str, given: object, out: Path) -> None:
+        """Raise DdctError unless a value is the one that the specification gives."""
+        value, expected = json.dumps(getattr(self, key)), json.dumps(given)
+        if value != expected:
+            raise DdctError(
+                f'{key} is {value}, but the specification gives {expected}: put the original '
+                'back, or start the campaign anew in another --out',
+                key=key,
+                place=out / MANIFEST,
+            )
 
     def require_limits(self, limits: Limits, out: Path) -> None:
         """Raise DdctError unless the limits are those of this campaign, in `out`."""
@@ -169,15 +176,6 @@ class Manifest:
     def code(self) -> str:
         """Commit, and the digest of the code, which distinguishes changes without a commit."""
         return f'{short_commit(self.commit)} ({self.code_digest[:10]})'
-
-
-def _shard_size(campaign: Campaign) -> int:
-    """Return the number of runs in a shard of a campaign."""
-    runs = campaign.runs
-    size = min(_MOST_RUNS, -(-runs // _LEAST_SHARDS))
-    if size < MOST_RUNS and runs >= _MANY_LINEAR_RUNS and are_linear(campaign):
-        return max(size, min(MOST_RUNS, -(-runs // _LEAST_LINEAR_SHARDS)))
-    return size
 
 
 def _require_group(key: str, value: object) -> None:

@@ -60,8 +60,8 @@ def write_campaign_page(folder: Path) -> Summary:
     summary = summary_of(results)
     page = campaign_page(results, summary, folder.as_posix(), facts_of(manifest))
     with locked_folders(folder):
-        write_json(str(folder / SUMMARY), summary)
-        write_text(str(folder / PAGE), page)
+        write_json(str(folder / SUMMARY), summary, ours=True)
+        write_text(str(folder / PAGE), page, ours=True)
         keep_digests([folder / SUMMARY, folder / PAGE])
     return summary
 

@@ -11,7 +11,12 @@ from typing import Any
 
 from ddct_bringup.digests.environment import Environment
 from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.files.input_file import parse_json, read_text_file, require_schema_version
+from ddct_plant.files.input_file import (
+    open_regular,
+    parse_json,
+    read_text_file,
+    require_schema_version,
+)
 from ddct_plant.files.output_file import write_text
 
 DIGESTS = 'digests.json'
@@ -86,7 +91,7 @@ class Digests:
 
     def write(self, folder: Path) -> None:
         """Write `digests.json` into a folder; raise DdctError when that fails."""
-        write_text(str(folder / DIGESTS), self.text())
+        write_text(str(folder / DIGESTS), self.text(), ours=True)
 
 
 def read_digests(folder: Path) -> Digests:
@@ -116,7 +121,7 @@ def read_digests(folder: Path) -> Digests:
 def file_digest(path: Path) -> str:
     """Return the SHA-256 of a file; raise DdctError when it cannot be read."""
     try:
-        with path.open('rb') as file:
+        with open_regular(path) as file:
             return hashlib.file_digest(file, 'sha256').hexdigest()
     except OSError as error:
         raise DdctError(f'{path}: cannot be read ({error.strerror})') from error

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Compare the files of a folder with their digests."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -64,15 +64,22 @@ def altered_files(folder: Path, digests: Digests, names: Iterable[str]) -> list[
     ]
 
 
-def require_unaltered(folder: Path, names: Iterable[str]) -> None:
+def require_unaltered(folder: Path, names: Sequence[str], *, advice: str = '') -> None:
     """
     Raise DdctError for a file that is not as its digest; `names` are paths in the folder.
 
-    A folder without `digests.json`, of an earlier version, is not checked.
+    With an `advice`, each that exists must have a digest. Else a folder without `digests.json`, of
+    an earlier version, is not checked.
     """
-    if not (folder / DIGESTS).exists():
-        return
-    if altered := altered_files(folder, read_digests(folder), names):
+    digests = read_digests(folder) if (folder / DIGESTS).exists() else None
+    for name in names if advice else ():
+        if (folder / name).exists() and (digests is None or name not in digests.files):
+            raise DdctError(
+                f'no digest of {name} in {DIGESTS}, by which its bytes are checked: {advice}',
+                key=name,
+                place=folder,
+            )
+    if digests is not None and (altered := altered_files(folder, digests, names)):
         raise DdctError(
             f'its bytes are not those that were written (see {DIGESTS}): put the original back',
             key=altered[0],

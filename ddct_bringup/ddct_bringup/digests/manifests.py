@@ -28,6 +28,8 @@ def manifest_content(path: Path, newest: int, what: str) -> Iterator[Any]:
     """
     try:
         content = parse_json(read_text_file(path))
+        if not isinstance(content, dict):
+            raise ParameterError('it is no group of keys')
         require_schema_version(content, newest)
         yield content
     except FileNotFoundError as error:
@@ -35,7 +37,8 @@ def manifest_content(path: Path, newest: int, what: str) -> Iterator[Any]:
             f'no {path.name} in it: give the folder of a {what}', place=path.parent
         ) from error
     except (OSError, ParameterError, LookupError, TypeError, AttributeError) as error:
-        raise DdctError(f'cannot be read ({error})', place=path) from error
+        why = f'the key {error.args[0]} is missing' if isinstance(error, KeyError) else error
+        raise DdctError(f'cannot be read ({why}): put the original back', place=path) from error
 
 
 def require_kinds(manifest: object, kinds: Mapping[str, type], within: str = '') -> None:

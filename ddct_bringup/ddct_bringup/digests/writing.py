@@ -18,7 +18,7 @@ from ddct_bringup.digests.digest_file import (
     read_digests,
 )
 from ddct_bringup.digests.environment import this_environment
-from ddct_bringup.digests.files import digests_of_files
+from ddct_bringup.digests.files import digests_of_files, files_in
 from ddct_bringup.run.output_folder import is_ours
 from ddct_bringup.run.plan import RunPlan
 from ddct_controllers.from_file.controller_file import is_controller_file
@@ -57,8 +57,11 @@ def begin_campaign_digests(
     resumed = any((folder / shards).glob('*'))
     if not one_machine or (resumed and (known is None or known.environment != here)):
         here = replace(here, processor=None)
-    found = digests_of_files(folder)
-    files = {name: each for name, each in found.items() if not name.startswith(f'{shards}/')}
+    files = {
+        name: file_digest(path)
+        for name, path in files_in(folder).items()
+        if not name.startswith(f'{shards}/')
+    }
     digests = Digests(SCHEMA_VERSION, kind, dict(known.files) if known else {}, here)
     digests = digests.with_files(files)
     digests.write(folder)

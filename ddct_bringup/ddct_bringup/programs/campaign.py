@@ -40,8 +40,8 @@ def main(argv: list[str] | None = None) -> int:
     given = sys.argv[1:] if argv is None else argv
     if given and given[0] in _COMMANDS:
         parser = ProgramParser(prog=PROGRAM, description='What else can be done with a campaign.')
-        return run_subcommands(parser, [campaign_folder], given, metavar='WHAT')
-    return run_program(PROGRAM, _campaign, given)
+        return run_subcommands(parser, [campaign_folder], argv, metavar='WHAT')
+    return run_program(PROGRAM, _campaign, argv)
 
 
 def _campaign(argv: list[str]) -> int:

@@ -20,15 +20,14 @@ from ddct_bringup.campaign.columns import (
     read_row,
 )
 from ddct_bringup.campaign.conduct import RESULTS
-from ddct_bringup.campaign.manifest import MANIFEST, Manifest
+from ddct_bringup.campaign.manifest import Manifest
 from ddct_bringup.campaign.rows import SERIAL, result_row
 from ddct_bringup.campaign_report.distributions_figure import write_distributions
 from ddct_bringup.campaign_report.folder import PAGE, SUMMARY, scenario_of, write_campaign_page
 from ddct_bringup.campaign_report.printed_summary import print_summary
-from ddct_bringup.campaign_report.reading import read_table, results_of
+from ddct_bringup.campaign_report.reading import read_table, require_as_written, results_of
 from ddct_bringup.campaign_report.texts import RULES
 from ddct_bringup.digests.code import code_digest
-from ddct_bringup.digests.files import require_unaltered
 from ddct_bringup.digests.writing import keep_digests
 from ddct_bringup.run.execution import run_with_progress
 from ddct_bringup.run.options import add_layout_options
@@ -108,8 +107,8 @@ def _replay(options: argparse.Namespace) -> int:
     limits = load_limits(options.limits)
     manifest.require_limits(limits, options.folder)
     campaign = manifest.campaign(options.folder)
-    require_unaltered(options.folder, (MANIFEST, RESULTS))
-    row = read_row(options.folder / RESULTS, options.index)
+    require_as_written(options.folder, manifest)
+    row = read_row(options.folder / RESULTS, options.index, manifest.runs)
     if manifest.code_digest != code_digest():
         complain(_REPLAY, f'the campaign is of {manifest.code}, this is another code')
     run = campaign.run(options.index)

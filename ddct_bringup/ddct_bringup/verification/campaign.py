@@ -150,7 +150,7 @@ def _verified_shards(request: VerificationRequest, table: pa.Table) -> Repetitio
     comparison = Comparison()
     start = 0
     for path in sorted((request.folder / SHARDS).glob('*.parquet')):
-        rows = _shard(path)
+        rows = _shard(path, table.num_rows)
         same = rows.equals(table.slice(start, rows.num_rows))
         reason = f'other rows than those of {RESULTS}'
         comparison.add({'file': f'{SHARDS}/{path.name}', 'reason': reason}, same, True)
@@ -159,9 +159,9 @@ def _verified_shards(request: VerificationRequest, table: pa.Table) -> Repetitio
     return RepetitionResult.of(SHARDS, comparison, same_environment=request.same_environment)
 
 
-def _shard(path: Path) -> pa.Table:
+def _shard(path: Path, most_rows: int) -> pa.Table:
     try:
-        return read_parquet(path)
+        return read_parquet(path, most_rows)
     except (OSError, pa.ArrowException) as error:
         raise DdctError(f'{path}: cannot be read ({error})') from error
 

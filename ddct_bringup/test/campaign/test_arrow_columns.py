@@ -6,6 +6,7 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from typing import NoReturn
 
 import numpy as np
 import pyarrow as pa
@@ -99,6 +100,45 @@ def test_texts_that_are_no_utf_8_are_refused(tmp_path: Path) -> None:
     file.write_bytes(file.read_bytes().replace(b'stalled', b'sta\xffled'))
     with pytest.raises(pa.ArrowInvalid):
         read_parquet(file)
+
+
+@pytest.fixture
+def nothing_is_read(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let reading rows fail, so that a file is refused by its metadata or not at all."""
+
+    def read(*_: object) -> NoReturn:
+        raise AssertionError('it is read')
+
+    monkeypatch.setattr(parquet.ParquetFile, 'read', read)
+
+
+@pytest.mark.parametrize(
+    ('column', 'most_rows', 'why'),
+    [
+        (pa.array([0, 1]), 1, 'it has 2 rows, not 1'),
+        (pa.array(['x' * 50_000_000]), 1, 'bytes cannot have 1 rows of 1 columns'),
+        (pa.array([[0] * 2_000_000]), 1, 'the column a is of type list<element: int64>'),
+        (pa.nulls(2_000_000, pa.float64()), None, 'bytes cannot have 2000000 rows of 1 columns'),
+    ],
+    ids=['too many rows', 'a text', 'a list', 'nulls'],
+)
+def test_a_file_is_refused_before_its_rows_are_read(
+    tmp_path: Path, nothing_is_read: None, column: pa.Array, most_rows: int | None, why: str
+) -> None:
+    file = tmp_path / 'results.parquet'
+    parquet.write_table(pa.table({'a': column}), file, compression='zstd')
+    assert file.stat().st_size < 50_000
+    with pytest.raises(pa.ArrowInvalid, match=why):
+        read_parquet(file, most_rows)
+
+
+def test_a_campaign_whose_runs_all_fail_is_read(tmp_path: Path) -> None:
+    """Its rows, which differ in their index alone, take the fewest bytes."""
+    columns = {'index': pa.array(np.arange(200_000)), 'reason': pa.array(['fails'] * 200_000)}
+    columns |= {f'metric {number}': pa.nulls(200_000, pa.float64()) for number in range(55)}
+    table = pa.table(columns)
+    parquet.write_table(table, tmp_path / 'results.parquet', compression='zstd')
+    assert read_parquet(tmp_path / 'results.parquet', 200_000).equals(table)
 
 
 def test_a_pipe_is_not_waited_for(tmp_path: Path) -> None:

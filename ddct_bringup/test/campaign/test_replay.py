@@ -90,10 +90,10 @@ def test_a_replay_that_differs_ends_with_exit_code_1_and_the_differences(
     assert 'run 0: verdict_state is ' in capfd.readouterr().err
 
 
-def _another_row(results: Path, index: int) -> dict[str, object]:
+def _another_row(results: Path, index: int, runs: int) -> dict[str, object]:
     from ddct_bringup.campaign.columns import read_row
 
-    return {**read_row(results, index), 'verdict_state': 'over_revved'}
+    return {**read_row(results, index, runs), 'verdict_state': 'over_revved'}
 
 
 @pytest.mark.parametrize(

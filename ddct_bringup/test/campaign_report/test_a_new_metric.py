@@ -47,7 +47,7 @@ def test_it_is_shown_and_names_the_metric_that_it_lacks(
 
 
 def test_a_row_without_it_is_compared_with_its_run_made_again(finished: Path) -> None:
-    row = read_row(finished / RESULTS, 1)
+    row = read_row(finished / RESULTS, 1, 12)
     assert NEW.key not in compared_in(row)
     assert differences(row, {**row, NEW.key: 1.0}) == []
     assert parquet.read_metadata(finished / RESULTS).num_rows == 12

@@ -129,7 +129,7 @@ def test_replay_compares_the_columns_of_the_row(
 ) -> None:
     from ddct_bringup.campaign.columns import compared_in, differences, read_row
 
-    row = read_row(stored / RESULTS, 0)
+    row = read_row(stored / RESULTS, 0, 12)
     assert 'seed' not in compared_in(row)
     assert differences(row, {**row, 'seed': 5}) == []
     assert differences(row, {**row, 'verdict_state': 'stalled'})

@@ -3,6 +3,7 @@
 """The folder of a campaign whose rows are made by hand."""
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -30,7 +31,9 @@ def make_campaign(
     **cells: Any,
 ) -> Path:
     """
-    Write manifest and results of the runs of a specification.
+    Write manifest and results of the runs of a specification, which a test may edit.
+
+    They are of the version without digests.
 
     The first metric of a run is its index, the next twice that, and so on.
     """
@@ -48,6 +51,6 @@ def make_campaign(
             | {'verdict_state': state, **run.varied, **cells}
         )
     folder.mkdir(parents=True, exist_ok=True)
-    Manifest.of(campaign, packaged_limits()).write(folder)
+    replace(Manifest.of(campaign, packaged_limits()), version='0.1.0').write(folder)
     (folder / RESULTS).write_bytes(shard_bytes(schema, rows))
     return folder

@@ -16,6 +16,7 @@ import stat
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from functools import partial
+from io import BufferedReader
 from itertools import islice
 from pathlib import Path
 from typing import Any, NoReturn
@@ -39,29 +40,34 @@ _PATH = re.compile(r'[\w-]+(?:\.[\w-]+|\[\d+\])*')
 _PARENT = re.compile(r'(?:\.[\w-]+|\[\d+\])$')
 
 
-def read_file(path: Path, most_bytes: int) -> bytes:
+def open_regular(path: Path) -> BufferedReader:
     """
-    Return the content of a regular file.
+    Open a regular file to read it.
 
-    Raise OSError, whose `strerror` is a message for the user, when it cannot be read, is no
-    regular file (a pipe may block, a device may never end) or has more than `most_bytes`.
+    Raise OSError, whose `strerror` is a message for the user, where that fails or where it is no
+    regular file: a pipe may block, a device may never end.
     """
     if '\0' in str(path):  # a file can give such a name, and Python would raise ValueError
         raise OSError(errno.EINVAL, 'its name has a null character', str(path))
     # Without O_NONBLOCK opening a pipe blocks.
     descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
-    status = os.fstat(descriptor)
-    kind = stat.S_IFMT(status.st_mode)
+    kind = stat.S_IFMT(os.fstat(descriptor).st_mode)
     if kind != stat.S_IFREG:
         os.close(descriptor)
         what = _KINDS.get(kind, 'no file')
         raise OSError(errno.EINVAL, f'it is {what}: give a regular file', str(path))
-    with os.fdopen(descriptor, 'rb') as file:
+    return os.fdopen(descriptor, 'rb')
+
+
+def read_file(path: Path, most_bytes: int) -> bytes:
+    """Return the content of a file; raise OSError as `open_regular`, and above `most_bytes`."""
+    with open_regular(path) as file:
+        size = os.fstat(file.fileno()).st_size
         # In blocks, as some files of the system have a size of 0 and are not empty.
         blocks = iter(partial(file.read, _BLOCK_BYTES), b'')
-        most_blocks = most_bytes // _BLOCK_BYTES + 1 if status.st_size <= most_bytes else 0
+        most_blocks = most_bytes // _BLOCK_BYTES + 1 if size <= most_bytes else 0
         data = b''.join(islice(blocks, most_blocks))
-    if max(len(data), status.st_size) > most_bytes:
+    if max(len(data), size) > most_bytes:
         raise OSError(errno.EFBIG, f'it is larger than {most_bytes} bytes', str(path))
     return data
 

@@ -46,29 +46,31 @@ def require_one_for_stdout(json_target: str | None, csv_target: str | None) -> N
         raise DdctError('--json - and --csv - both want standard output: give one a file')
 
 
-def write_json(target: str, content: Any, advice: str = _ADVICE) -> None:
+def write_json(target: str, content: Any, advice: str = _ADVICE, *, ours: bool = False) -> None:
     """Write `content` as JSON by `write_text`; raise ValueError for NaN and infinity."""
-    write_text(target, json.dumps(content, indent=2, allow_nan=False) + '\n', advice)
+    text = json.dumps(content, indent=2, allow_nan=False) + '\n'
+    write_text(target, text, advice, ours=ours)
 
 
-def write_text(target: str, text: str, advice: str = _ADVICE) -> None:
+def write_text(target: str, text: str, advice: str = _ADVICE, *, ours: bool = False) -> None:
     """
     Write `text` to the file `target`, or to standard output for `-`.
 
-    A file is replaced completely or not at all. Raise DdctError, with the advice, when it cannot
-    be written.
+    A file is replaced completely or not at all. `ours` is one in a folder of results, which may
+    be from a stranger: there a pipe, a device or a symbolic link is replaced too, not written to.
+    Raise DdctError, with the advice, when it cannot be written.
     """
     if target == STDOUT:
         sys.stdout.write(text)
     else:
-        write_bytes(target, text.encode(), advice)
+        write_bytes(target, text.encode(), advice, ours=ours)
 
 
-def write_bytes(target: str, content: bytes, advice: str = _ADVICE) -> None:
+def write_bytes(target: str, content: bytes, advice: str = _ADVICE, *, ours: bool = False) -> None:
     """Write bytes to the file `target`, with the guarantees of `write_text`."""
-    path = Path(target).resolve()
+    path = Path(target) if ours else Path(target).resolve()
     try:
-        if path.exists() and not path.is_file():
+        if not ours and path.exists() and not path.is_file():
             path.write_bytes(content)  # a device or pipe: nothing to replace
         else:
             _replace(path, content)

@@ -15,7 +15,7 @@ from typing import Any, NoReturn
 
 from ddct_plant.base.errors import DdctError, printable
 from ddct_plant.files.output_file import STDOUT, write_json
-from ddct_plant.program.supervision import interrupted_by, interruptible
+from ddct_plant.program.supervision import interrupted_by, interruptible, is_first_report
 
 USAGE = 2
 """Exit code after invalid options, as in argparse."""
@@ -70,10 +70,19 @@ def run_program(
     `argv` is without the program's name; None takes it from the command line. A DdctError is
     printed on standard error as `<name>: <text>` and gives 1, and so is an error of the operating
     system, such as a name that is too long, a full disk or a full standard output. SIGINT and
-    SIGTERM are printed as a line too, and give 128 and their number.
+    SIGTERM are printed as a line too, one for all of them, and give 128 and the number of the
+    first. After them the process must end where `argv` is None: a further SIGINT ends it at once.
     """
-    with interruptible(), _rare_garbage_collection():
-        return _run_program(name, main_function, sys.argv[1:] if argv is None else argv)
+    given = sys.argv[1:] if argv is None else argv
+
+    def work() -> int:
+        try:
+            return main_function(given)
+        finally:  # argparse ends the program itself after --help
+            _flush()
+
+    with interruptible(ends_process=argv is None) as called, _rare_garbage_collection():
+        return _run_program(name, lambda: called(work))
 
 
 @contextlib.contextmanager
@@ -87,17 +96,15 @@ def _rare_garbage_collection() -> Iterator[None]:
         gc.set_threshold(*before)
 
 
-def _run_program(name: str, main_function: Callable[[list[str]], int], argv: list[str]) -> int:
+def _run_program(name: str, work: Callable[[], int]) -> int:
     try:
-        try:
-            return main_function(argv)
-        finally:  # argparse ends the program itself after --help
-            _flush()
+        return work()
     except DdctError as error:
         complain(name, error)
         return 1
     except KeyboardInterrupt as error:
-        complain(name, str(error) or 'interrupted')
+        if is_first_report():
+            complain(name, str(error) or 'interrupted')
         return 128 + interrupted_by() if interrupted_by() else INTERRUPTED
     except BrokenPipeError:
         _drop_output()

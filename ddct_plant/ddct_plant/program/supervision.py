@@ -7,12 +7,15 @@ Handlers of SIGINT and SIGTERM, signals at the end of the parent process, the pu
 node, and its announced exit code.
 """
 
+import atexit
 import ctypes
+import operator
 import os
 import signal
 import threading
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
+from types import FrameType
 from typing import Any
 
 PULSE_FD = 'DDCT_PULSE_FD'
@@ -25,24 +28,44 @@ _SET_TAKES_ORPHANS, _GET_TAKES_ORPHANS = 36, 37
 
 
 _interruptions: list[int] = []
-"""Signals that were received since `interruptible` began."""
+"""Signals that were received since the outermost `interruptible` began."""
+_depth = 0
+"""Number of `interruptible` within one another."""
+_reported = False
+"""Whether an interruption was reported since the outermost of them began."""
 
 
 @contextmanager
-def interruptible() -> Iterator[None]:
+def interruptible(*, ends_process: bool = False) -> Iterator[Callable[[Callable[[], Any]], Any]]:
     """
-    Raise KeyboardInterrupt at either signal; `interrupted_by` then returns which one it was.
+    Yield a function that calls another, and raises KeyboardInterrupt at either signal meanwhile.
+
+    `interrupted_by` then returns which signal it was. A signal before the call is raised at its
+    beginning, and one after it only noted: raised while an earlier one is reported, it would end
+    the program with a traceback. Where the process ends after the outermost `interruptible`, a
+    second SIGINT gives no traceback there either.
 
     An ignored signal stays ignored, as SIGINT is in the background of a shell. Outside of the main
-    thread, which alone may set handlers, this does nothing.
+    thread, which alone may set handlers, the function only calls the other.
     """
+    global _depth, _reported
     if threading.current_thread() is not threading.main_thread():
-        yield
+        yield operator.call
         return
-    _interruptions.clear()
+    if not _depth:
+        _interruptions.clear()
+        _reported = False
     kept = [number for number in _CAUGHT if signal.getsignal(number) != signal.SIG_IGN]
-    with _handled(_interrupt, kept):
-        yield
+    _depth += 1
+    try:
+        with _handled(_interrupt, kept) as before:
+            yield _called
+            if ends_process and _depth == 1 and _reported and signal.SIGINT in before:
+                before[signal.SIGINT] = _end_at_once
+                # Python gives SIGINT its default action back while it frees its modules.
+                atexit.register(signal.signal, signal.SIGINT, signal.SIG_IGN)
+    finally:
+        _depth -= 1
 
 
 def interrupted_by() -> int:
@@ -50,9 +73,32 @@ def interrupted_by() -> int:
     return next(iter(_interruptions), 0)
 
 
-def _interrupt(caught: int, _frame: object) -> None:
+def is_first_report() -> bool:
+    """Return whether no program within the outermost `interruptible` reports it before this."""
+    global _reported
+    first, _reported = not _reported, True
+    return first
+
+
+def _called(work: Callable[[], Any]) -> Any:
+    """Return the result of `work`; a signal is raised while this is on the stack."""
+    if _interruptions:
+        raise KeyboardInterrupt
+    return work()
+
+
+def _interrupt(caught: int, frame: FrameType | None) -> None:
     _interruptions.append(caught)
-    raise KeyboardInterrupt
+    calls = 0
+    while frame is not None:
+        calls += frame.f_code is _called.__code__
+        frame = frame.f_back
+    if calls == _depth:  # else the innermost program has not begun its work or has ended it
+        raise KeyboardInterrupt
+
+
+def _end_at_once(_caught: int, _frame: object) -> None:
+    os._exit(128 + interrupted_by())
 
 
 @contextmanager
@@ -115,10 +161,13 @@ def adopting_orphans() -> Iterator[None]:
 @contextmanager
 def _handled(
     by: Callable[[int, Any], Any] | signal.Handlers, numbers: Iterable[signal.Signals] = _CAUGHT
-) -> Iterator[None]:
-    before = {number: signal.signal(number, by) for number in numbers}
+) -> Iterator[dict[signal.Signals, Any]]:
+    """Handle signals within; yield the handlers from before, which are restored at the end."""
+    before: dict[signal.Signals, Any] = {}
     try:
-        yield
+        for number in numbers:
+            before[number] = signal.signal(number, by)
+        yield before
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)

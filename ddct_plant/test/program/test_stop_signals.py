@@ -33,11 +33,16 @@ def test_a_signal_is_noted_and_its_handler_comes_back(number):
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
 def test_a_deferred_signal_interrupts_at_the_end(number):
     reached = []
-    before = signal.signal(number, lambda *_: reached.append('before'))
-    try:
-        with interruptible(), pytest.raises(KeyboardInterrupt), deferred_signals():
+
+    def work():
+        with deferred_signals():
             os.kill(os.getpid(), number)
             reached.append('end')
+
+    before = signal.signal(number, lambda *_: reached.append('before'))
+    try:
+        with interruptible() as called, pytest.raises(KeyboardInterrupt):
+            called(work)
     finally:
         signal.signal(number, before)
     assert reached == ['end']
@@ -47,8 +52,8 @@ def test_a_deferred_signal_interrupts_at_the_end(number):
 def test_a_signal_that_was_ignored_stays_ignored():
     before = signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
-        with interruptible():
-            os.kill(os.getpid(), signal.SIGINT)
+        with interruptible() as called:
+            called(lambda: os.kill(os.getpid(), signal.SIGINT))
     finally:
         signal.signal(signal.SIGINT, before)
 

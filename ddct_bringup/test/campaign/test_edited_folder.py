@@ -1,0 +1,200 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""A campaign's folder that was edited, with its digests removed, is refused in one line."""
+
+import json
+import os
+import shutil
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pyarrow as pa
+import pyarrow.parquet as parquet
+import pytest
+from in_this_process import in_this_process
+from refusals import refused
+
+from ddct_bringup.campaign.campaign import Campaign
+from ddct_bringup.campaign.columns import merge, read_row, schema_of
+from ddct_bringup.campaign.conduct import RESULTS, SHARDS, carry_out
+from ddct_bringup.campaign.manifest import MANIFEST, Manifest
+from ddct_bringup.campaign.spec import spec_of
+from ddct_bringup.campaign_report.folder import SUMMARY, write_campaign_page
+from ddct_bringup.campaign_report.reading import read_table
+from ddct_bringup.digests.digest_file import DIGESTS, read_digests
+from ddct_bringup.programs.campaign import main
+from ddct_bringup.verdict.limits import packaged_limits
+from ddct_plant.base.errors import DdctError
+
+SPEC: dict[str, Any] = {
+    'controllers': ['pi', 'ls8'],
+    'grid': {'wear_gain': [0.7, 1.0], 'duration_s': [0.7]},
+}
+RUNS = 4
+
+
+@pytest.fixture(scope='module')
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return the folder of a finished campaign."""
+    out = tmp_path_factory.mktemp('whole') / 'campaign'
+    with in_this_process():
+        carry_out(Campaign(spec_of(SPEC, Path())), packaged_limits(), out)
+    return out
+
+
+@pytest.fixture
+def out(whole: Path, tmp_path: Path) -> Path:
+    """Return a copy of the folder without its digests."""
+    copy = shutil.copytree(whole, tmp_path / 'campaign')
+    (copy / DIGESTS).unlink()
+    return copy
+
+
+def resumed(out: Path) -> list[int]:
+    """Go on with the campaign; return the first runs of the shards that were computed."""
+    with in_this_process() as workers:
+        carry_out(Campaign(spec_of(SPEC, Path())), packaged_limits(), out, resume=True)
+    return workers.computed
+
+
+def replayed(out: Path) -> int:
+    """Return the exit code of making a run again."""
+    return main(['replay', str(out), '--index', '0', '--out', str(out.parent / 'again')])
+
+
+def edit(out: Path, **changes: Any) -> None:
+    """Change values of the manifest."""
+    content = json.loads((out / MANIFEST).read_text(encoding='utf-8'))
+    (out / MANIFEST).write_text(json.dumps({**content, **changes}), encoding='utf-8')
+
+
+@pytest.mark.parametrize(
+    'changes',
+    [
+        {'runs': RUNS // 2},
+        {'runs': RUNS + 3},
+        {'runs': 9_999_999},
+        {'shard_size': 3},
+        {'spec': {}},
+    ],
+)
+def test_a_manifest_that_does_not_follow_from_the_specification_is_not_resumed(
+    out: Path, changes: dict[str, Any]
+) -> None:
+    before = (out / RESULTS).read_bytes()
+    edit(out, **changes)
+    with refused(DdctError, *changes, place=MANIFEST):
+        resumed(out)
+    assert (out / RESULTS).read_bytes() == before
+
+
+def test_a_campaign_is_not_repeated_with_another_number_of_runs(whole: Path) -> None:
+    more = replace(Manifest.read(whole), runs=RUNS + 3)
+    with refused(DdctError, 'runs', place=MANIFEST):
+        more.campaign(whole)
+
+
+def of_one_row_repeated(file: Path, count: int) -> None:
+    """Let a file of rows have its first row many times."""
+    table = parquet.read_table(file)
+    rows = table.to_pylist()[:1] * count
+    parquet.write_table(pa.Table.from_pylist(rows, schema=table.schema), file)
+
+
+def test_results_with_more_rows_than_runs_are_refused_by_all_that_reads_them(out: Path) -> None:
+    of_one_row_repeated(out / RESULTS, RUNS + 1)
+    edit(out, version='0.1.0')
+    manifest = Manifest.read(out)
+    with pytest.raises(DdctError, match=f'it has {RUNS + 1} rows, not {RUNS}'):
+        read_table(out, manifest)
+    with pytest.raises(DdctError, match=f'it has {RUNS + 1} rows, not {RUNS}'):
+        read_row(out / RESULTS, 0, manifest.runs)
+
+
+@pytest.mark.parametrize('count', [0, 2])
+def test_a_shard_with_another_number_of_rows_is_not_merged(out: Path, count: int) -> None:
+    shards = dict.fromkeys(sorted((out / SHARDS).iterdir()), 1)
+    of_one_row_repeated(list(shards)[2], count)
+    before = (out / RESULTS).read_bytes()
+    schema = schema_of(Campaign(spec_of(SPEC, Path())).spec)
+    with pytest.raises(
+        DdctError, match=rf'0002.parquet: .*\(it has {count} rows, not 1\): remove'
+    ):
+        merge(shards, schema, out / RESULTS, 'advice')
+    assert (out / RESULTS).read_bytes() == before
+    assert not list(out.glob('.*.partial'))
+
+
+SHARD, PARTIAL = f'{SHARDS}/00000002.parquet', f'.{RESULTS}.partial'
+
+
+@pytest.mark.parametrize(
+    ('name', 'kind'),
+    [(SHARD, 'pipe'), (SHARD, 'link'), (SUMMARY, 'pipe'), (SUMMARY, 'link'), (PARTIAL, 'link')],
+)
+def test_a_file_that_is_written_replaces_a_pipe_or_a_link(
+    whole: Path, tmp_path: Path, name: str, kind: str
+) -> None:
+    out, mine = shutil.copytree(whole, tmp_path / 'campaign'), tmp_path / 'mine.txt'
+    mine.write_text('mine', encoding='utf-8')
+    (out / name).unlink(missing_ok=True)
+    if kind == 'pipe':
+        os.mkfifo(out / name)
+        # With a reader, a program that opens it to write goes on: the test ends in any case.
+        reader = os.open(out / name, os.O_RDONLY | os.O_NONBLOCK)
+    else:
+        (out / name).symlink_to(mine)
+    if name == SUMMARY:
+        write_campaign_page(out)
+    else:
+        assert resumed(out) == [2] * (name == SHARD)
+    if kind == 'pipe':
+        assert os.read(reader, 1) == b''
+        os.close(reader)
+    assert mine.read_text(encoding='utf-8') == 'mine'
+    assert not (out / name).is_symlink()
+    assert (out / name).is_file() == (name != PARTIAL)
+    assert (out / RESULTS).read_bytes() == (whole / RESULTS).read_bytes()
+
+
+def test_a_pipe_that_is_not_written_is_named(out: Path) -> None:
+    os.mkfifo(out / 'notes.txt')
+    with pytest.raises(DdctError, match=r'notes.txt: cannot be read \(it is a pipe: give a reg'):
+        resumed(out)
+
+
+@pytest.mark.parametrize('text', ['null', '[]', '3', '"runs"'])
+def test_a_manifest_without_keys_is_refused(out: Path, text: str) -> None:
+    (out / MANIFEST).write_text(text, encoding='utf-8')
+    with pytest.raises(DdctError, match=r'\(it is no group of keys\): put the original back'):
+        Manifest.read(out)
+
+
+def test_a_key_that_the_manifest_lacks_is_named(out: Path) -> None:
+    content = json.loads((out / MANIFEST).read_text(encoding='utf-8'))
+    del content['runs']
+    (out / MANIFEST).write_text(json.dumps(content), encoding='utf-8')
+    with pytest.raises(DdctError, match=r'\(the key runs is missing\): put the original back'):
+        Manifest.read(out)
+
+
+@pytest.mark.parametrize('kept', [None, MANIFEST])
+def test_results_without_a_digest_are_refused_until_they_are_computed_again(
+    whole: Path, out: Path, kept: str | None
+) -> None:
+    if kept:
+        digests = read_digests(whole)
+        replace(digests, files={kept: digests.files[kept]}).write(out)
+    missing = RESULTS if kept else MANIFEST
+    with refused(DdctError, missing, place='campaign') as caught:
+        read_table(out, Manifest.read(out))
+    assert '--resume' in str(caught.value)
+    assert replayed(out) == 1
+    resumed(out)
+    assert len(read_table(out, Manifest.read(out))) == RUNS
+
+
+def test_a_campaign_of_the_version_without_digests_is_read(out: Path) -> None:
+    edit(out, version='0.1.0')
+    assert len(read_table(out, Manifest.read(out))) == RUNS
