@@ -17,6 +17,8 @@ from ddct_bringup.campaign_report.folder import SUMMARY
 from ddct_bringup.campaign_report.reading import read_table, results_of
 from ddct_bringup.campaign_report.results import Results
 from ddct_bringup.campaign_report.summary import summary_of
+from ddct_bringup.digests.digest_file import CAMPAIGN
+from ddct_bringup.digests.writing import write_folder_digests
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_bringup.verification.comparison import Comparison, plain_json, recorded_json
 from ddct_bringup.verification.result import RepetitionResult
@@ -36,7 +38,7 @@ def campaign_readers(folder: Path) -> list[Reader]:
         Reader('campaign', 'mine.yaml', read_spec, (_TEMPLATE.read_bytes(),)),
         Reader('manifest', MANIFEST, in_folder(Manifest.read), (manifest,)),
         Reader('results', RESULTS, _summary_beside(manifest), (results,)),
-        Reader('result_row', RESULTS, lambda file: read_row(file, _LAST), (results,)),
+        Reader('result_row', RESULTS, lambda file: read_row(file, _LAST, _LAST + 1), (results,)),
         Reader(
             'summary', SUMMARY, _compared(plain_json(summary)), (json.dumps(summary).encode(),)
         ),
@@ -49,10 +51,11 @@ def _results(folder: Path) -> Results:
 
 
 def _summary_beside(manifest: bytes) -> Read:
-    """Return a reader of results, with their manifest."""
+    """Return a reader of results, with their manifest and the digests of both as they are."""
 
     def read(file: Path) -> object:
         (file.parent / MANIFEST).write_bytes(manifest)
+        write_folder_digests(file.parent, CAMPAIGN)
         return summary_of(_results(file.parent))
 
     return read

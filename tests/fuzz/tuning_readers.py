@@ -94,7 +94,7 @@ def _manifest(tuning: Tuning) -> bytes:
             'folder': str(judged.folder),
             'digests': dict(judged.digests),
         },
-        campaign_digest='b',
+        campaign_digest=tuning.campaign.digest(),
         spec=dict(tuning.spec.content),
         folder=str(tuning.spec.folder),
     )
