@@ -12,9 +12,9 @@ from ddct_bringup.bag.realtime_facts import RealtimeFacts
 from ddct_bringup.bag.run_facts import MEASURED, RunFacts
 from ddct_bringup.bag.run_info import RunInfoOfNodes
 from ddct_bringup.bag.trajectory import Trajectory
+from ddct_plant.bag_file.facts import contradiction, recorded_scenario
 from ddct_plant.base.errors import DdctError, require_choice
 from ddct_plant.files.input_file import SCHEMA_KEY
-from ddct_plant.files.yaml_text import parse_yaml
 from ddct_plant.models.clutch import CLUTCHES
 from ddct_plant.scenario.content import scenario_from_mapping
 from ddct_plant.scenario.settings import MODES, RunSettings
@@ -80,10 +80,7 @@ class Recording:
     @cached_property
     def _scenario(self) -> Any:
         """Content of the recorded scenario; None without a readable one."""
-        try:
-            return parse_yaml(self.custom_data.get('scenario_yaml', ''))
-        except DdctError:
-            return None
+        return recorded_scenario(self.custom_data)
 
 
 def require_consistent(recording: Recording) -> None:
@@ -102,8 +99,6 @@ def require_consistent(recording: Recording) -> None:
         for name in ('control_start_s', 'score_window_s'):
             ours, theirs = getattr(facts, name), getattr(scenario, name)
             _require(name, ours, theirs, 'the recorded scenario')
-        if facts.duration_s > scenario.duration_s:
-            _require('duration_s', facts.duration_s, scenario.duration_s, 'the recorded scenario')
     for node, pairs in recording.run_info.items():
         for name in _OF_NODES:
             ours = getattr(facts, name)
@@ -113,8 +108,4 @@ def require_consistent(recording: Recording) -> None:
 
 def _require(name: str, ours: object, theirs: object, whose: str) -> None:
     if ours != theirs:
-        raise DdctError(
-            f'{name} is {ours} in its custom data and {theirs} in that of {whose}: it was edited, '
-            'take the original',
-            key=name,
-        )
+        raise contradiction(name, ours, theirs, whose)
