@@ -13,6 +13,7 @@ from refusals import refused
 from ddct_bringup.bag.reader import mcap_of
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_plant.base.errors import DdctError
+from ddct_plant.measured import bag_log
 from ddct_plant.measured.columns import own_columns
 from ddct_plant.measured.log import MeasuredLog, read_log
 
@@ -53,6 +54,31 @@ def test_a_missing_or_doubled_message_is_an_error(bags, trajectory, edit) -> Non
     odd = bags.rewrite(bags.write(trajectory), 'odd', edit)
     with pytest.raises(DdctError, match='odd'):
         log_of(odd)
+
+
+def test_messages_after_the_end_of_the_run_are_an_error(bags, trajectory) -> None:
+    short = bags.rewrite(bags.write(trajectory), 'odd', duration_s='0.5')
+    with refused(DdctError, 'duration_s', place='odd_0.mcap'):
+        log_of(short)
+
+
+def test_a_stamp_far_beyond_the_last_is_the_end_of_reading(bags, trajectory, monkeypatch) -> None:
+    def far(messages):
+        topic, _, data = next(each for each in messages if each[0] == '/driveline/joint_states')
+        late = (2**31 - 1).to_bytes(4, 'little') + bytes(4)
+        return [*messages, (topic, (2**31 - 1) * 10**9, data[:4] + late + data[12:])]
+
+    asked = []
+
+    def never_there(step: int) -> int:
+        asked.append(step)
+        return -1
+
+    monkeypatch.setattr(bag_log, 'stamp_of_step', never_there)
+    monkeypatch.setattr(bag_log, 'require_last_step', lambda *_: None)
+    with refused(DdctError, '/driveline/joint_states', place='odd_0.mcap'):
+        log_of(bags.rewrite(bags.write(trajectory), 'odd', far))
+    assert len(asked) == 1
 
 
 def test_a_value_that_is_not_finite_is_an_error(bags, trajectory) -> None:

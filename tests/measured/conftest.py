@@ -1,11 +1,20 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""A log of another car with its column map, in a folder."""
+"""A log of another car with its column map, in a folder; fits without their progress."""
 
+import math
 from pathlib import Path
 
 import pytest
 from support.other_car import COLUMNS, drive, write_csv
+
+from ddct_plant.program import progress
+
+
+@pytest.fixture(autouse=True)
+def no_progress(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Have no progress printed: on a busy machine a fit takes long enough for it."""
+    monkeypatch.setattr(progress, 'QUIET_S', math.inf)
 
 
 @pytest.fixture

@@ -18,9 +18,18 @@ from ddct_plant.identification.from_log.verdict import doubts, reasons_against
 from ddct_plant.identification.identify import main
 from ddct_plant.measured.log import SPEEDS, MeasuredLog
 from ddct_plant.models.parameters import DrivelineParameters
+from ddct_plant.program import progress
 from ddct_plant.scenario.file import load_scenario
 
 START = DrivelineParameters()
+
+
+def test_a_fit_prints_its_progress(
+    folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(progress, 'QUIET_S', 0.0)
+    assert identify(folder) == 0
+    assert capsys.readouterr().err.startswith('fitting the driveline, evaluations: 1')
 
 
 def identify_into_file(folder: Path, *options: str) -> int:

@@ -18,6 +18,7 @@ from ddct_bringup.bag.ticks import check_ticks
 from ddct_bringup.bag.topic_values import Column, TopicValues
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_plant.bag_file.decoding import decoded_columns
+from ddct_plant.bag_file.facts import require_last_step
 from ddct_plant.bag_file.records import BagRecords, read_records
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.input_file import located, mcap_of
@@ -51,6 +52,7 @@ def recording_of(records: BagRecords) -> Recording:
     run = facts.kind_of_bag(records.topics)
     found = _Found.of(records, run)
     last = check_ticks({name: each.stamps for name, each in found.values.items()}, run)
+    require_last_step(records.custom_data, last)
     columns: dict[str, Column] = {}
     missed: dict[str, int] = {}
     absent: dict[str, str] = {}

@@ -10,17 +10,19 @@ from typing import Any
 
 from ddct_bringup.bag.realtime_facts import RealtimeFacts
 from ddct_bringup.bag.run_facts import MEASURED, RunFacts
-from ddct_bringup.bag.run_info import RunInfoOfNodes
+from ddct_bringup.bag.run_info import CONTROLLER_NODE, DRIVELINE_NODE, RunInfoOfNodes
 from ddct_bringup.bag.trajectory import Trajectory
+from ddct_plant.bag_file.facts import contradiction, recorded_scenario
 from ddct_plant.base.errors import DdctError, require_choice
 from ddct_plant.files.input_file import SCHEMA_KEY
-from ddct_plant.files.yaml_text import parse_yaml
+from ddct_plant.graph.node_reports import CONTROLLER, DIGEST, STEPS
 from ddct_plant.models.clutch import CLUTCHES
 from ddct_plant.scenario.content import scenario_from_mapping
+from ddct_plant.scenario.file import content_digest
 from ddct_plant.scenario.settings import MODES, RunSettings
 
-_OF_NODES = ('scenario', 'architecture', 'clutch', 'mode', 'seed', 'wear_gain')
-"""Facts that each node publishes on `run_info` too."""
+_OF_NODES = ('scenario', 'architecture', 'clutch', 'mode', 'seed')
+"""Facts that each node publishes on `run_info` too, besides the wear gain."""
 
 
 @dataclass(frozen=True)
@@ -77,13 +79,18 @@ class Recording:
         """Whether the recorded scenario is older than the version numbers of scenarios."""
         return not isinstance(self._scenario, dict) or SCHEMA_KEY not in self._scenario
 
+    @property
+    def recorded_digest(self) -> str:
+        """Digest of the recorded scenario as it is in the bag; 'missing' where there is none."""
+        try:
+            return content_digest(self._scenario)
+        except (AttributeError, TypeError):
+            return 'missing'
+
     @cached_property
     def _scenario(self) -> Any:
         """Content of the recorded scenario; None without a readable one."""
-        try:
-            return parse_yaml(self.custom_data.get('scenario_yaml', ''))
-        except DdctError:
-            return None
+        return recorded_scenario(self.custom_data)
 
 
 def require_consistent(recording: Recording) -> None:
@@ -102,19 +109,16 @@ def require_consistent(recording: Recording) -> None:
         for name in ('control_start_s', 'score_window_s'):
             ours, theirs = getattr(facts, name), getattr(scenario, name)
             _require(name, ours, theirs, 'the recorded scenario')
-        if facts.duration_s > scenario.duration_s:
-            _require('duration_s', facts.duration_s, scenario.duration_s, 'the recorded scenario')
+    of_all = {name: str(getattr(facts, name)) for name in _OF_NODES}
+    of_all |= {'wear_gain': repr(float(facts.wear_gain)), DIGEST: recording.recorded_digest}
+    of_one = {CONTROLLER_NODE: {CONTROLLER: facts.controller}}
+    of_one[DRIVELINE_NODE] = {STEPS: str(facts.steps)}
     for node, pairs in recording.run_info.items():
-        for name in _OF_NODES:
-            ours = getattr(facts, name)
-            text = repr(float(ours)) if name == 'wear_gain' else str(ours)
+        # Nodes of earlier versions and of third parties need not publish each of them.
+        for name, text in (of_all | of_one.get(node, {})).items():
             _require(name, text, pairs.get(name, text), f'node {node}')
 
 
 def _require(name: str, ours: object, theirs: object, whose: str) -> None:
     if ours != theirs:
-        raise DdctError(
-            f'{name} is {ours} in its custom data and {theirs} in that of {whose}: it was edited, '
-            'take the original',
-            key=name,
-        )
+        raise contradiction(name, ours, theirs, whose)

@@ -7,9 +7,9 @@ from collections.abc import Container, Iterable, Mapping
 from dataclasses import dataclass, fields
 from typing import Any, TypedDict
 
-from ddct_plant.base.errors import DdctError, ParameterError, require_name, require_number
+from ddct_plant.bag_file.facts import parsed_fact
+from ddct_plant.base.errors import DdctError, ParameterError, require_name
 from ddct_plant.base.timebase import steps_in
-from ddct_plant.files.input_file import parse_json
 from ddct_plant.scenario.settings import is_handover_file
 from ddct_plant.signals.signal import RunKind
 from ddct_plant.signals.topic import Topic
@@ -25,8 +25,6 @@ _NAMES = ('controller', 'architecture', 'scenario', 'clutch', 'mode')
 """Facts that are plain names, used in tables, labels and file names."""
 _OF_SHIFTS = ('off_going_wear_gain', 'handover')
 """Facts that only a shift has."""
-_LARGEST = 2.0**31
-"""Upper bound of any number, in its unit; the largest seed is one less."""
 MEASURED = 'measured'
 """Mode of the log of another tool, and the text for facts that such a log lacks."""
 
@@ -148,21 +146,5 @@ class RunFacts(RunConditions):
                     f'no {name} in the custom data: not a recording of this project', key=name
                 )
             text = custom_data[name]
-            values[name] = text if name in (*_NAMES, 'handover') else _parsed(name, text)
+            values[name] = text if name in (*_NAMES, 'handover') else parsed_fact(name, text)
         return cls(**{**values, 'seed': int(values['seed'])})
-
-
-def _parsed(name: str, text: str) -> Any:
-    """Return the number in `text`, or the two numbers of the score window."""
-    try:
-        value = parse_json(text)
-        if name == 'score_window_s':
-            first, last = value
-            value = (first, last)
-        for number in value if isinstance(value, tuple) else (value,):
-            require_number(name, number, at_least=-_LARGEST, at_most=_LARGEST)
-    except (ParameterError, TypeError, ValueError) as error:
-        raise DdctError(
-            f'{name} is {text!r} in the custom data: not a recording of this project', key=name
-        ) from error
-    return value

@@ -19,6 +19,8 @@ from mcap.records import Channel, Chunk, Message, Metadata, Schema
 from mcap.stream_reader import get_chunk_data_stream
 from zstandard import frame_content_size
 
+from ddct_plant.bag_file.limits import Allowance
+
 MOST_CHUNK_BYTES = 64_000_000
 """Largest size of an unpacked chunk in bytes; recorders make chunks of about 1 MB."""
 UsedRecord = Channel | Chunk | Message | Metadata | Schema
@@ -36,14 +38,16 @@ _KINDS: dict[int, type[Channel] | type[Chunk] | type[Metadata] | type[Schema]] =
 }
 
 
-def used_records(data: bytes, start: int, stop: int) -> Iterator[UsedRecord]:
+def used_records(data: bytes, start: int, stop: int, allowance: Allowance) -> Iterator[UsedRecord]:
     """
-    Yield the records between two places of the bytes.
+    Yield the records between two places of the bytes; all of them count in `allowance`.
 
-    Raise struct.error, ValueError or an error of the MCAP library where a record is cut short.
+    Raise struct.error, ValueError or an error of the MCAP library where a record is cut short,
+    and ValueError where there are too many.
     """
     end = start
     while end < stop:
+        allowance.add_record()
         opcode, size = _HEAD.unpack_from(data, end)
         start, end = end + _HEAD.size, end + _HEAD.size + size
         if end > stop:
@@ -59,8 +63,8 @@ def _message(content: bytes) -> Message:
     return Message(channel, log_time, content[_MESSAGE.size :], publish_time, sequence)
 
 
-def in_chunk(chunk: Chunk) -> Iterator[UsedRecord]:
-    """Yield the records in a chunk, after a check of its checksum."""
+def in_chunk(chunk: Chunk, allowance: Allowance) -> Iterator[UsedRecord]:
+    """Yield the records in a chunk as `used_records`, after a check of its checksum."""
     if chunk.compression == 'lz4':
         # The library would unpack it to any size.
         lz4 = LZ4FrameDecompressor()
@@ -69,7 +73,7 @@ def in_chunk(chunk: Chunk) -> Iterator[UsedRecord]:
             raise ValueError(f'a chunk has more than its {chunk.uncompressed_size} bytes')
         chunk = replace(chunk, compression='', data=data)
     stream, size = get_chunk_data_stream(chunk, validate_crc=True)
-    yield from used_records(stream.read(size), 0, size)
+    yield from used_records(stream.read(size), 0, size, allowance)
 
 
 def unpacked_size(chunk: Chunk) -> int:

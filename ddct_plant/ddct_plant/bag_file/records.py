@@ -21,22 +21,17 @@ from mcap.records import Channel, Chunk, McapRecord, Message, Metadata, Schema
 from mcap.stream_reader import StreamReader
 from zstandard import ZstdError
 
+from ddct_plant.bag_file.facts import planned_steps, require_duration
+from ddct_plant.bag_file.limits import MOST_CHANNELS, Allowance
 from ddct_plant.bag_file.metadata import RECORD_NAME, information_of
 from ddct_plant.bag_file.record_scan import UsedRecord, in_chunk, unpacked_size, used_records
 from ddct_plant.base.errors import DdctError
-from ddct_plant.base.timebase import STEPS_PER_S
-from ddct_plant.files.input_file import read_file
+from ddct_plant.files.input_file import located, read_file
 
 MAGIC = b'\x89MCAP0\r\n'
 """First and last bytes of an MCAP file."""
 MOST_BYTES = 1_000_000_000
 """Largest size of a bag's file in bytes; an hour's run has a quarter of that."""
-MOST_UNPACKED_BYTES = 8_000_000_000
-"""Largest size in bytes of all chunks of a bag, unpacked; an hour's run has a third of that."""
-MOST_STEP_BYTES = 100_000
-"""Largest mean size in bytes of a step of a run, unpacked; a usual step has 5000."""
-SPARE_BYTES = 10_000_000
-"""Size in bytes that a bag may have besides its steps: parameters, reports and definitions."""
 
 StoredMessage = tuple[str, int, bytes]
 """Topic of a message, its log time in ns and its serialised bytes."""
@@ -101,13 +96,12 @@ class BagRecords:
                 yield list(batch)
 
     def _batches(self) -> Iterator[Iterator[StoredMessage]]:
-        unpacked = 0
+        allowance = self._allowance()
         end = len(self.data) - len(MAGIC) if self.data.endswith(MAGIC) else len(self.data)
-        for record in used_records(self.data, len(MAGIC), end):
+        for record in used_records(self.data, len(MAGIC), end, allowance):
             if isinstance(record, Chunk):
-                unpacked += unpacked_size(record)
-                self._require_bounded(unpacked)
-                yield self._messages_of(in_chunk(record))
+                allowance.add_bytes(unpacked_size(record))
+                yield self._messages_of(in_chunk(record, allowance))
             elif isinstance(record, Message):
                 yield self._messages_of([record])
 
@@ -123,10 +117,10 @@ class BagRecords:
         Add all records but those in chunks, after a check of the file's checksums and size.
 
         Those in chunks are added too if there is no channel elsewhere. Raise DdctError at damage
-        if `strict`.
+        if `strict`, and for a duration that no run has or that the scenario contradicts.
         """
         with self._damage_named():
-            unpacked = 0
+            unpacked = []
             # The library verifies the checksum of the data, and reads also what is not used here.
             for record in StreamReader(
                 io.BytesIO(self.data),
@@ -135,10 +129,13 @@ class BagRecords:
                 record_size_limit=len(self.data),
             ).records:
                 if isinstance(record, Chunk):
-                    unpacked += unpacked_size(record)
-                    self._require_bounded(unpacked)
+                    unpacked.append(unpacked_size(record))
                 else:
                     self._add(record)
+        with located(str(self.path)):
+            require_duration(self.custom_data)
+        with self._damage_named():
+            self._allowance().add_bytes(sum(unpacked))
         if not self.channels:
             for _ in self.messages():
                 pass
@@ -149,19 +146,13 @@ class BagRecords:
             self.schemas.setdefault(record.id, record)
         elif isinstance(record, Channel):
             self.channels.setdefault(record.id, record)
+            if len(self.channels) > MOST_CHANNELS:
+                raise ValueError(f'it has more than {MOST_CHANNELS} channels')
         elif isinstance(record, Metadata) and record.name == RECORD_NAME:
             self.information = information_of(record.metadata) or self.information
 
-    def _require_bounded(self, unpacked: int) -> None:
-        """Raise ValueError where the chunks are larger than those of so long a run."""
-        most = MOST_UNPACKED_BYTES
-        try:
-            duration_s = float(self.custom_data['duration_s'])
-            most = min(most, SPARE_BYTES + int(duration_s * STEPS_PER_S) * MOST_STEP_BYTES)
-        except (KeyError, ValueError, OverflowError):
-            pass  # a bag of another recorder
-        if unpacked > most:
-            raise ValueError(f'its chunks have {unpacked} bytes unpacked, more than {most}')
+    def _allowance(self) -> Allowance:
+        return Allowance(len(self.data), planned_steps(self.custom_data))
 
     @contextlib.contextmanager
     def _damage_named(self) -> Iterator[None]:

@@ -28,6 +28,8 @@ Pairs = dict[str, str]
 """Texts by key."""
 CONTROLLER, STEPS, TWO_INPUT = 'controller', 'steps', 'two_input'
 """Keys on `run_info` without which there is no recording, or which the recorder compares."""
+DIGEST = 'scenario_digest'
+"""Key on `run_info` of the digest of a node's scenario."""
 ROLE = 'role'
 """Key on `run_info` of a clutch and an actuator in a gear shift: the side on which they are."""
 PARTS = 'torque_parts'
@@ -51,7 +53,7 @@ def run_info_pairs(settings: RunSettings, own: Mapping[str, str] | None = None) 
     return {
         'version': package_version(),
         'scenario': settings.scenario.name,
-        'scenario_digest': scenario_digest(settings.scenario),
+        DIGEST: scenario_digest(settings.scenario),
         'architecture': settings.architecture,
         'clutch': settings.clutch,
         'wear_gain': repr(settings.wear_gain),

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ddct_plant.bag_file.decoding import decoded_messages
+from ddct_plant.bag_file.facts import require_last_step
 from ddct_plant.bag_file.records import BagRecords, read_records
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import START_NS, SUBSTEP_NS, SUBSTEPS, stamp_of_step, step_of_stamp
@@ -105,10 +106,11 @@ def _signal_rows(records: BagRecords) -> dict[str, dict[int, Any]]:
                 key=topic.resolved_name,
             )
     last = step_of_stamp(max(rows['joint_speed']))
-    missing = [step for step in range(last + 1) if stamp_of_step(step) not in rows['joint_speed']]
-    if missing:
-        raise DdctError(
-            f'{JOINT_STATES.resolved_name} has no message at step {missing[0]}',
-            key=JOINT_STATES.resolved_name,
-        )
+    require_last_step(records.custom_data, last)
+    for step in range(last + 1):  # ends at the first that is missing, however late the last is
+        if stamp_of_step(step) not in rows['joint_speed']:
+            raise DdctError(
+                f'{JOINT_STATES.resolved_name} has no message at step {step}',
+                key=JOINT_STATES.resolved_name,
+            )
     return rows

@@ -4,7 +4,7 @@
 
 import hashlib
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -48,11 +48,24 @@ class MeasuredLog:
     """Values in SI units, (n,), by quantity."""
     held: tuple[str, ...] = ()
     """Quantities with zero-order hold between samples; the others are linear."""
+    _samples: dict[str, tuple[np.ndarray, np.ndarray]] = field(
+        default_factory=dict, init=False, repr=False
+    )
+    _usual_steps: dict[str, float] = field(default_factory=dict, init=False, repr=False)
 
     def samples(self, name: str) -> tuple[np.ndarray, np.ndarray]:
         """Return times in s and values of a quantity, in the rows that have it."""
-        rows = np.isfinite(self.signals[name])
-        return self.time_s[rows], self.signals[name][rows]
+        # Kept, because each of many short stretches asks for those of the whole log.
+        if name not in self._samples:
+            rows = np.isfinite(self.signals[name])
+            self._samples[name] = self.time_s[rows], self.signals[name][rows]
+        return self._samples[name]
+
+    def usual_step(self, name: str) -> float:
+        """Return the median time in s between two samples of a quantity."""
+        if name not in self._usual_steps:
+            self._usual_steps[name] = float(np.median(np.diff(self.samples(name)[0])))
+        return self._usual_steps[name]
 
     def at(self, name: str, time_s: np.ndarray) -> np.ndarray:
         """Return a quantity at any times in s, interpolated linearly or held."""

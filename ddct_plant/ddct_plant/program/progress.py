@@ -23,13 +23,17 @@ class Progress:
     def __init__(
         self,
         what: str,
-        total: int,
+        total: int | None = None,
         *,
         done: int = 0,
         stream: TextIO | None = None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        """Start the clock; `done` of `total` steps are from before and not in the rate."""
+        """
+        Start the clock; `done` of `total` steps are from before and not in the rate.
+
+        The total is None where nobody knows it before the end.
+        """
         self._what = what
         self._total = total
         self._before = done
@@ -58,11 +62,16 @@ class Progress:
         """
         elapsed = self._clock() - self._started
         rate = (done - self._before) / elapsed if elapsed else 0.0
-        text = f'{self._what}: {done} of {self._total}'
+        text = f'{self._what}: {done}'
+        if self._total is not None:
+            text += f' of {self._total}'
         if not rate:
             return text
+        text += f', {rate:.3g} a second'
+        if self._total is None:
+            return text
         left_s = (self._total - done) / rate if left_s is None else left_s
-        return f'{text}, {rate:.3g} a second, {_duration(left_s)} left'
+        return f'{text}, {_duration(left_s)} left'
 
     def end(self) -> None:
         """Clear the line on a terminal."""

@@ -45,3 +45,10 @@ def test_a_terminal_has_one_line_that_goes_in_the_end() -> None:
         f'{clear}runs: 30 of 100, 10 a second, 7 s left'
         f'{clear}runs: 40 of 100, 10 a second, 6 s left{clear}'
     )
+
+
+def test_work_of_unknown_length_has_a_rate_and_no_end() -> None:
+    times = iter([0.0, 3.0, 3.0])
+    stream = io.StringIO()
+    Progress('evaluations', stream=stream, clock=lambda: next(times)).update(30)
+    assert stream.getvalue() == 'evaluations: 30, 10 a second\n'

@@ -3,10 +3,9 @@
 """`identify --from LOG`: the driveline of a measured car, as tables, JSON and a scenario."""
 
 import argparse
+import itertools
 from collections.abc import Sequence
 from pathlib import Path
-
-from rich.console import Console
 
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.output_file import require_place, write_text
@@ -21,6 +20,7 @@ from ddct_plant.identification.from_log.verdict import reasons_against
 from ddct_plant.measured.columns import TIME, ColumnMap, load_columns, own_columns
 from ddct_plant.measured.log import SPEEDS, MeasuredLog, read_log
 from ddct_plant.program.command_line import ProgramParser, show_and_write
+from ddct_plant.program.progress import Progress
 from ddct_plant.scenario.file import scenario_to_yaml
 from ddct_plant.scenario.options import add_scenario_options
 from ddct_plant.scenario.options import scenario_of as base_scenario
@@ -78,8 +78,16 @@ def identify_log(options: argparse.Namespace) -> int:
     columns = load_columns(options.columns) if options.columns else own_columns(TIME, *NEEDED)
     fitted, held_out = _logs(options, columns)
     known_load, known_delays = load_of(base), columns.known_delays
-    with Console(stderr=True).status('fitting the driveline'):
-        fit = fit_log(fitted, base.driveline, known_load, options.fix, known_delays)
+    count, progress = itertools.count(1), Progress('fitting the driveline, evaluations')
+    fit = fit_log(
+        fitted,
+        base.driveline,
+        known_load,
+        options.fix,
+        known_delays,
+        lambda: progress.update(next(count)),
+    )
+    progress.end()
     predictions = predict(fit, stretches_of(held_out, known_load))
     reasons = reasons_against(fit, predictions, stretches_of(fitted, known_load))
     report = LogFitReport(fit, predictions, reasons, fitted, held_out)

@@ -3,7 +3,7 @@
 """Fit driveline parameters and the delays of the signals to the log of a drive."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from ddct_plant.identification.from_log.delays import (
 )
 from ddct_plant.identification.from_log.dependence import Dependence, dependences
 from ddct_plant.identification.from_log.determined import not_determined
-from ddct_plant.identification.from_log.problem import LogProblem
+from ddct_plant.identification.from_log.problem import LogProblem, nothing
 from ddct_plant.identification.from_log.result import PARAMETERS, SLIP, LogFit
 from ddct_plant.identification.from_log.stretch import (
     LOAD,
@@ -56,12 +56,14 @@ def fit_log(
     known_load: KnownLoad,
     fixed: Sequence[str] = (),
     known_delays: Mapping[str, float] = _ALL_FITTED,
+    evaluated: Callable[[], None] = nothing,
 ) -> LogFit:
     """
     Fit driveline and delays to a log; `fixed` parameters keep the value of `start`.
 
     `known_delays` are the delays in s, by quantity, that are not fitted. That of the engine speed
-    is 0 if it is not given: the others are relative to it.
+    is 0 if it is not given: the others are relative to it. `evaluated` is called at each
+    evaluation of the residuals, of which a fit has hundreds to thousands.
 
     White noise of the torques biases a fit, as it is no torque of the car. So the fit is repeated
     with that noise doubled; the shift is subtracted, and counts as a deviation (simulation and
@@ -86,7 +88,7 @@ def fit_log(
     weak: list[str] = []
     while len(weak) < len(free):
         fitted = [name for name in (*free, *bends) if name not in weak]
-        problem = LogProblem(stretches, start, delays, fitted)
+        problem = LogProblem(stretches, start, delays, fitted, evaluated)
         x, covariance, jacobian = problem.solve()
         moved = problem.moved_by(x, noisier) if noisier else np.zeros(len(x))
         std = np.sqrt(np.diag(covariance) + moved**2)
@@ -109,7 +111,7 @@ def _between(
 ) -> dict[str, float]:
     """Return the deviations in s of the delays of linearly interpolated torques."""
     return {
-        name: math.hypot(deviations[name], _BENT * float(np.median(np.diff(log.samples(name)[0]))))
+        name: math.hypot(deviations[name], _BENT * log.usual_step(name))
         for name in (*TORQUES, LOAD)
         if name in fitted and name not in log.held
     }

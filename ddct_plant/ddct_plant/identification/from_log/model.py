@@ -8,8 +8,9 @@ plus noise. Each signal has a delay of its own. Between its samples a torque is 
 according to the column map.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 from types import SimpleNamespace
 from typing import Any, cast
 
@@ -17,7 +18,7 @@ import numpy as np
 import scipy
 
 from ddct_plant.identification.from_log.stretch import SPEED_COLUMNS, Stretch
-from ddct_plant.models.driveline_model import STATES, driveline_matrices
+from ddct_plant.models.driveline_model import STATES, TORQUES, driveline_matrices
 from ddct_plant.models.gearbox import EngagedGear
 from ddct_plant.models.parameters import DrivelineParameters
 
@@ -32,6 +33,10 @@ _NEARLY_CONSTANT = 1e-6
 """Largest pole times time of a mode that is treated as an integrator."""
 _NOTHING = 1e-12
 """Size of an entry of a mode that counts as zero, over the largest entry."""
+_Mode = tuple[complex, np.ndarray, np.ndarray, np.ndarray]
+"""
+Pole, right eigenvector in the outputs (3,), left eigenvector (n,), and what each torque adds (3,).
+"""
 
 
 @dataclass(frozen=True)
@@ -64,20 +69,17 @@ def responses(
     h) z_0 + h (phi_1 - phi_2) v_0 + h phi_2 v_1. The system is linear, so for a torque with the
     delay d in the log the response to the logged torque is d later.
     """
-    unchecked = SimpleNamespace(**values, gear=EngagedGear(values['total_ratio']))
-    model = driveline_matrices(cast(DrivelineParameters, unchecked))
     forced = np.zeros((len(stretch.time_s), OUTPUTS))
     basis = np.zeros((len(stretch.time_s), OUTPUTS, NUISANCE))
     lags = np.array(sampling.speeds)
     since = stretch.time_s - stretch.time_s[0]
     shifts = sampling.shifts.tolist()
     places = {shift: _Place.of(stretch, shift) for shift in {each for r in shifts for each in r}}
-    for pole, shape, inverse in _modes(model.a):
-        driven = inverse @ model.b
+    for pole, shape, inverse, driven in _modes(tuple(values.items())):
         free = np.exp(pole * since)[:, None] * np.exp(-pole * lags)
         basis[:, :, :-1] += np.real((free * shape)[:, :, None] * inverse)
         if not stretch.load_known:
-            load = driven[model.torques['load_torque']]
+            load = driven[TORQUES['load_torque']]
             basis[:, :, -1] += np.real(
                 _under_one(pole, since[:, None] - lags, free) * shape * load
             )
@@ -103,19 +105,27 @@ def residuals_of(
     return left - basis @ nuisance, nuisance
 
 
-def _modes(a: np.ndarray) -> Iterator[tuple[complex, np.ndarray, np.ndarray]]:
+@lru_cache(maxsize=1)  # all stretches of a log have the driveline of one evaluation
+def _modes(values: tuple[tuple[str, float], ...]) -> list[_Mode]:
     """
-    Yield each pole, its right eigenvector in the outputs (3,), and its left eigenvector (n,).
+    Return the modes of the driveline with these values by name.
 
-    Of a conjugate pair only one pole is yielded, with twice its outputs: the real part is used.
+    Of a conjugate pair only one pole is returned, with twice its outputs: the real part is used.
     """
-    poles, vectors = np.linalg.eig(a)
+    named = dict(values)
+    unchecked = SimpleNamespace(**named, gear=EngagedGear(named['total_ratio']))
+    model = driveline_matrices(cast(DrivelineParameters, unchecked))
+    poles, vectors = np.linalg.eig(model.a)
     poles, vectors = poles.astype(complex), vectors.astype(complex)
     inverse = np.linalg.inv(vectors)
-    for mode, pole in enumerate(poles):
-        if pole.imag >= 0.0:
-            twice = 2.0 if pole.imag else 1.0
-            yield complex(pole), twice * vectors[_MEASURED, mode], inverse[mode]
+    modes: list[_Mode] = []
+    for pole, shape, left in zip(poles.tolist(), vectors[_MEASURED, :].T, inverse, strict=True):
+        if pole.imag > 0.0:
+            modes.append((pole, 2.0 * shape, left, left @ model.b))
+        elif not pole.imag:
+            # In real numbers, which take half the time of complex ones.
+            modes.append((pole.real, shape.real, left.real, left.real @ model.b))
+    return modes
 
 
 def _present(entries: np.ndarray) -> np.ndarray:

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Least-squares problem of a fit to the stretches of a log, with the noise model."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 import scipy
@@ -49,6 +49,10 @@ _SETTLED = 0.05
 """Largest change of an estimate in the last round, over its standard deviation."""
 
 
+def nothing() -> None:
+    """Do nothing at an evaluation: the default of a fit without progress."""
+
+
 class LogProblem:
     """
     Least-squares problem for the parameters and delays called `free`.
@@ -64,7 +68,10 @@ class LogProblem:
         start: DrivelineParameters,
         delays: Mapping[str, float],
         free: Sequence[str],
+        evaluated: Callable[[], None] = nothing,
     ) -> None:
+        """Store what is fitted; `evaluated` is called at each evaluation of the residuals."""
+        self._evaluated = evaluated
         self._whole, self.free = stretches, free
         self._start: dict[str, float] = start.values() | dict(delays)
         self._at: Mapping[str, float] = self._start
@@ -150,6 +157,7 @@ class LogProblem:
 
     def _residuals(self, x: np.ndarray, stretches: Sequence[Stretch]) -> np.ndarray:
         """Return the whitened residuals without nuisances of all stretches, then x over prior."""
+        self._evaluated()
         parts = []
         values = self.values(x)
         for stretch in stretches:

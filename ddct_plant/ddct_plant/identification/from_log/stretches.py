@@ -47,10 +47,14 @@ def stretches_of(log: MeasuredLog, known_load: KnownLoad) -> list[Stretch]:
     time_s, speeds = log.time_s[rows], speeds[rows]
     torques = {name: log.samples(name) for name in (*TORQUES, LOAD) if name in log.signals}
     number_of = _stretch_numbers(time_s, [time_s, *(times for times, _ in torques.values())])
+    within = number_of >= 0
+    # The numbers rise along the log, so each stretch is one piece of it.
+    parting = np.flatnonzero(np.diff(number_of[within])) + 1
+    pieces = (np.split(each[within], parting) for each in (time_s, speeds))
     stretches = [
-        _stretch(log, time_s[number_of == number], speeds[number_of == number], known_load)
-        for number in np.unique(number_of[number_of >= 0])
-        if np.sum(number_of == number) >= FEWEST_SAMPLES
+        _stretch(log, times, rows, known_load)
+        for times, rows in zip(*pieces, strict=True)
+        if len(times) >= FEWEST_SAMPLES
     ]
     if not stretches:
         raise DdctError(
@@ -91,13 +95,15 @@ def white_noise(values: np.ndarray) -> float:
 def _stretch_numbers(time_s: np.ndarray, sampled: list[np.ndarray]) -> np.ndarray:
     """Return the number of the stretch of each time, -1 within a gap of one of the signals."""
     part = np.zeros(len(time_s), dtype=int)
+    known = np.ones(len(time_s), dtype=bool)
     for times in sampled:
-        part[(time_s < times[0]) | (time_s > times[-1])] = -1
         steps = np.diff(times)
-        for index in np.flatnonzero(steps > _GAP * np.median(steps)):
-            part[(time_s > times[index]) & (time_s < times[index + 1])] = -1
-            part[(time_s >= times[index + 1]) & (part >= 0)] += 1
-    return part
+        gaps = np.flatnonzero(steps > _GAP * np.median(steps))
+        begun = np.searchsorted(times[gaps], time_s, side='left')
+        ended = np.searchsorted(times[gaps + 1], time_s, side='right')
+        known &= (time_s >= times[0]) & (time_s <= times[-1]) & (begun == ended)
+        part += ended
+    return np.where(known, part, -1)
 
 
 def _stretch(
@@ -113,7 +119,7 @@ def _stretch(
         usual = float(time_s[-1] - time_s[0]) / (len(time_s) - 1)
         time_s = time_s[0] + usual * np.arange(len(time_s))
     finer = [1.0 if even else _FOR_UNEVEN]
-    finer += [usual / float(np.median(np.diff(log.samples(name)[0]))) for name in TORQUES]
+    finer += [usual / log.usual_step(name) for name in TORQUES]
     step = usual / min(max(round(max(finer)), 1), _FINEST)
     # The largest shift: a torque with the largest delay, of a speed with the largest lead.
     before = int(np.ceil(2.0 * MOST_DELAY_S / step))
@@ -138,6 +144,6 @@ def _second_difference(log: MeasuredLog, name: str, grid_s: np.ndarray) -> np.nd
     """Return the second difference in N m of a torque over a step of its rows, 0 if it is held."""
     if name in log.held:
         return np.zeros(len(grid_s))
-    step = float(np.median(np.diff(log.samples(name)[0])))
+    step = log.usual_step(name)
     before, now, after = (log.at(name, grid_s + shift) for shift in (-step, 0.0, step))
     return before - 2.0 * now + after
