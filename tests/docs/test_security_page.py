@@ -18,9 +18,9 @@ from ddct_bringup.bag.recording import Recording
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.keys import FILE_KEY, SCENARIO, run_options, sections
-from ddct_bringup.campaign.named_files import digest_of
 from ddct_bringup.campaign.spec import _KEYS as CAMPAIGN_KEYS
 from ddct_bringup.campaign.spec import spec_of
+from ddct_bringup.campaign.specification.named_files import digest_of
 from ddct_bringup.digests.digest_file import RUNS, Digests, RunDigests
 from ddct_bringup.digests.environment import this_environment
 from ddct_bringup.run.description import facts_of

@@ -5,9 +5,9 @@
 from typing import Any
 
 from ddct_bringup.campaign.keys import CONTROLLERS
-from ddct_bringup.campaign.named_files import digest_of, placed
 from ddct_bringup.campaign.run_set import RunSet
 from ddct_bringup.campaign.spec import CampaignSpec
+from ddct_bringup.campaign.specification.named_files import digest_of, placed
 from ddct_bringup.campaign.specification.parts import MOST_RUNS
 from ddct_bringup.run.run_base import RunBase
 from ddct_controllers.registry import controller_spec

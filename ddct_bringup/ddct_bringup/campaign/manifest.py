@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from ddct_bringup.campaign.campaign import Campaign
-from ddct_bringup.campaign.named_files import digest_of
 from ddct_bringup.campaign.shard_size import shard_size_of
 from ddct_bringup.campaign.spec import CampaignSpec, spec_of
+from ddct_bringup.campaign.specification.named_files import digest_of
 from ddct_bringup.digests.code import code_digest
 from ddct_bringup.digests.manifests import manifest_content
 from ddct_bringup.run.description import short_commit, source_commit

@@ -11,10 +11,10 @@ from typing import Any, Self
 
 import numpy as np
 
-from ddct_bringup.campaign.distributions import Distribution
 from ddct_bringup.campaign.draws import Draw, drawn_in_part, run_seeds, uniforms
 from ddct_bringup.campaign.keys import COMMON, SCENARIO
 from ddct_bringup.campaign.rows import SEED, require_suitable
+from ddct_bringup.campaign.specification.distributions import Distribution
 from ddct_bringup.run.run_base import RunBase
 from ddct_controllers.interface import Controller, ControllerSpec
 from ddct_plant.base.errors import DdctError

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ddct_bringup.campaign.distributions import Distribution
 from ddct_bringup.campaign.keys import COMMON, CONTROLLERS, SCENARIO
+from ddct_bringup.campaign.specification.distributions import Distribution
 from ddct_bringup.campaign.specification.parts import (
     FLOOR_SAMPLES,
     FLOORS,

@@ -9,7 +9,7 @@ from typing import Any
 
 from ddct_bringup.benchmark.judged import Judged
 from ddct_bringup.campaign.keys import CONTROLLERS
-from ddct_bringup.campaign.named_files import digest_of
+from ddct_bringup.campaign.specification.named_files import digest_of
 from ddct_bringup.digests.code import code_digest
 from ddct_bringup.digests.manifests import (
     manifest_content,

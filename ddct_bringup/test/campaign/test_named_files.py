@@ -13,8 +13,8 @@ from verified import CONTROLLER, HANDOVER
 from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.conduct import SHARDS, carry_out
 from ddct_bringup.campaign.manifest import Manifest
-from ddct_bringup.campaign.named_files import with_places
 from ddct_bringup.campaign.spec import spec_of
+from ddct_bringup.campaign.specification.named_files import with_places
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.base.errors import DdctError
 

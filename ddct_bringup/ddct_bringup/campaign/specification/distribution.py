@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from ddct_bringup.campaign.distributions import (
+from ddct_bringup.campaign.specification.distributions import (
     CHOICE,
     HIGH,
     KIND,

@@ -5,9 +5,9 @@
 from collections.abc import Mapping
 from typing import Any
 
-from ddct_bringup.campaign.distributions import Distribution
 from ddct_bringup.campaign.keys import COMMON, CONTROLLERS, SCENARIO, option_of, run_options
 from ddct_bringup.campaign.specification.distribution import distribution_of
+from ddct_bringup.campaign.specification.distributions import Distribution
 from ddct_bringup.floor.values import METRICS
 from ddct_plant.base.errors import ParameterError, require_choice
 from ddct_plant.base.options import Option, require_known

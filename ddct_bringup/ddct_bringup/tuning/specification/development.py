@@ -16,8 +16,8 @@ from typing import Any
 from ddct_bringup.benchmark.cases import Cases
 from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.keys import CONTROLLERS, FILE_KEY, SCENARIO
-from ddct_bringup.campaign.named_files import with_places
 from ddct_bringup.campaign.spec import spec_of
+from ddct_bringup.campaign.specification.named_files import with_places
 from ddct_bringup.campaign.specification.parts import (
     FLOOR_SAMPLES,
     FLOORS,

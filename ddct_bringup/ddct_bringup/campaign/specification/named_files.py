@@ -7,9 +7,9 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from ddct_bringup.campaign.distributions import VALUES
 from ddct_bringup.campaign.keys import FILE_KEY, HANDOVER, SCENARIO
 from ddct_bringup.campaign.spec import CampaignSpec
+from ddct_bringup.campaign.specification.distributions import VALUES
 from ddct_bringup.campaign.specification.parts import GRID, RANDOM, VARY
 from ddct_controllers.from_file.digests import controller_digests
 from ddct_plant.base.errors import DdctError
