@@ -2,12 +2,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """A sample of the fault campaign ends as stated; `make faults` tries all of its cases."""
 
+from dataclasses import replace
+
 import pytest
 from faults.campaign.__main__ import attempt_in_time
 from faults.campaign.all_cases import all_cases
-from faults.campaign.case import SAME, Observed, named, safe_state
+from faults.campaign.case import LATEST
+from faults.campaign.outcome import NEVER, RUNS_ON, SAME, Observed, named, safe_state
 from faults.campaign.records import read_records, record_of
 from generator.fault_tables import RECORDS
+
+from ddct_plant.signals.topics import TOPICS
 
 SAMPLE = (
     'node killed, load, start, lockstep, one clutch',
@@ -18,7 +23,9 @@ SAMPLE = (
     'message reordered, each topic to handover, middle, lockstep, two clutches',
     'stamp off the grid, clutch/torque, middle, lockstep, one clutch',
     'second publisher, clutch/torque, middle, lockstep, one clutch',
-    'another type, load/torque, middle, lockstep, one clutch',
+    'another type, load/torque, start, realtime, one clutch',
+    'value 1e308, sensors/slip, middle, realtime, two clutches',
+    'node killed, clutch, middle, realtime, one clutch',
     'value NaN, off_going/clutch/torque_request, middle, lockstep, two clutches',
     '10 MB array, clutch/torque, middle, lockstep, one clutch',
     'killed by SIGKILL, bringup, start, lockstep, one clutch',
@@ -34,8 +41,17 @@ def test_a_fault_ends_as_stated_and_leaves_nothing(name: str) -> None:
 
 
 def test_the_kept_records_are_of_the_cases_and_outcomes_that_the_campaign_has() -> None:
-    kept = {name: record['stated'] for name, record in read_records(RECORDS).items()}
+    records = read_records(RECORDS)
+    kept = {name: record['stated'] for name, record in records.items()}
     assert kept == {case.name: case.stated.text for case in all_cases()}
+    assert [
+        name for name, each in records.items() if not (each['tries'] and each['as_stated'])
+    ] == []
+
+
+def test_the_topics_of_the_campaign_are_those_of_the_project() -> None:
+    targets = {case.target for case in all_cases() if case.fault == 'another type'}
+    assert {topic.name for topic in TOPICS} == targets
 
 
 def test_records_have_no_paths_of_one_machine() -> None:
@@ -65,3 +81,30 @@ def test_an_outcome_is_met_by_what_it_states_alone() -> None:
     assert safe_state('actuator', within_s=0.1).met(opened)
     assert not safe_state('actuator', within_s=0.05).met(opened)
     assert not safe_state('driveline', within_s=0.1).met(opened)
+    opened.safe = {'/actuator': 7}
+    assert not safe_state('actuator', within_s=0.1).met(opened), 'long before the fault'
+
+
+def test_other_values_need_a_reason_in_real_time() -> None:
+    other = Observed(steps=100, planned=100, complete=True)
+    assert not RUNS_ON.met(other)
+    assert RUNS_ON.met(replace(other, missed=1))
+    assert RUNS_ON.met(replace(other, complete=False))
+    assert RUNS_ON.met(replace(other, same_hash=True))
+    assert not RUNS_ON.met(replace(other, error='load: no load/torque', missed=1))
+
+
+def test_an_end_in_time_is_not_met_by_a_later_one() -> None:
+    ended = Observed(error='node load was killed', fault_step=68, steps=90, planned=160)
+    assert named('load', within_s=0.3).met(ended)
+    assert not named('load', within_s=0.2).met(ended)
+
+
+def test_a_fault_that_came_late_or_never_is_not_as_stated() -> None:
+    (case,) = [each for each in all_cases() if each.name == SAMPLE[1]]
+    seen = Observed(fault_step=case.begin, steps=case.steps, planned=case.steps, same_hash=True)
+    assert case.met(seen)
+    assert not case.met(replace(seen, fault_step=NEVER))
+    live = replace(case, mode='realtime', stated=RUNS_ON)
+    assert live.met(seen)
+    assert not live.met(replace(seen, fault_step=case.begin + LATEST + 1))

@@ -14,22 +14,26 @@ class PatientClock:
     """
     Clock whose next step is due only once every reply to the last tick has arrived.
 
-    So a run misses nothing, however slow the machine is. From `release` on it follows the wall
-    clock.
+    So a run misses nothing, however slow the machine is. From `release`, or from a step, on it
+    follows the wall clock.
     """
 
-    def __init__(self, owner: RealtimeOwner) -> None:
+    def __init__(self, owner: RealtimeOwner, until_step: int = sys.maxsize) -> None:
         """Replace the clock of `owner`, before its run begins."""
         self._owner = owner
+        self._until_step = until_step
         self._offset: float | None = None
         self._not_awaited: dict[str, int] = {}
         owner._clock = self
 
     def __call__(self) -> float:
         """Return the time in s."""
+        if self._offset is None and self._owner.step >= self._until_step:
+            self.release()
+        return self._patient() if self._offset is None else time.monotonic() + self._offset
+
+    def _patient(self) -> float:
         started, owner = self._owner._started_at, self._owner
-        if self._offset is not None:
-            return time.monotonic() + self._offset
         if started is None or owner.step == owner._plan.steps:
             return time.monotonic()
         missing = [
@@ -43,7 +47,7 @@ class PatientClock:
 
     def release(self) -> None:
         """Follow the wall clock from now on."""
-        self._offset = self() - time.monotonic()
+        self._offset = self._patient() - time.monotonic()
 
 
 def realtime_owner(graph: InProcessGraph) -> RealtimeOwner:

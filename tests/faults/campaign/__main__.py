@@ -16,8 +16,9 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from faults.campaign.all_cases import all_cases
-from faults.campaign.case import MOST_TRIES, Case, Observed
+from faults.campaign.case import MOST_TRIES, Case
 from faults.campaign.leftovers import Leftovers, isolated
+from faults.campaign.outcome import Observed
 from faults.campaign.records import read_records, record_of, write_records
 from support.fewer_warnings import quiet_logs
 
@@ -32,7 +33,7 @@ def attempt(case: Case) -> tuple[bool, Observed]:
         except Exception as error:  # a finding as any other: the campaign goes on
             seen = Observed(error=f'traceback: {error!r}')
         seen.left += Leftovers().found() if not seen.left else []
-    return case.stated.met(seen) and not seen.left, seen
+    return case.met(seen), seen
 
 
 def attempt_in_time(case: Case) -> tuple[bool, Observed, int]:

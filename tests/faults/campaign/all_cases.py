@@ -7,7 +7,7 @@ from itertools import chain
 
 from faults.campaign import (
     hop_cases,
-    process_runs,
+    process_cases,
     program_cases,
     restart_cases,
     spoilt_cases,
@@ -21,7 +21,7 @@ def all_cases() -> tuple[Case, ...]:
     """Return all cases; no two have one name."""
     parts = (
         *(program_cases, hop_cases, stranger_cases),
-        *(spoilt_cases, restart_cases, process_runs),
+        *(spoilt_cases, restart_cases, process_cases),
     )
     cases = tuple(chain.from_iterable(part.cases() for part in parts))
     names = [case.name for case in cases]

@@ -6,8 +6,10 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from faults.campaign.case import Case, Observed
+from faults.campaign.case import Case
+from faults.campaign.outcome import Observed
 from support.in_process_graph import InProcessGraph
+from support.patient_clock import PatientClock, realtime_owner
 
 from ddct_plant.graph import sole_publishers
 
@@ -20,18 +22,28 @@ CHECK_S = 0.03
 
 
 def graph_run(
-    case: Case, folder: Path, arrange: Callable[[InProcessGraph, Observed], object]
+    case: Case,
+    folder: Path,
+    arrange: Callable[[InProcessGraph], object],
+    patient_until: int | None = None,
 ) -> Observed:
-    """Record the run of a case; `arrange(graph, seen)` prepares its fault before it begins."""
+    """
+    Record the run of a case; `arrange(graph)` prepares its fault before it begins.
+
+    In real time the clock waits for all replies until the fault begins, or until a given step, so
+    that nothing but the fault disturbs the run before.
+    """
     seen, run = Observed(fault_step=case.begin), case.run
     before, sole_publishers.CHECK_S = sole_publishers.CHECK_S, CHECK_S
     try:
         with InProcessGraph(run, folder) as graph:
             graph.parameters['driveline']['answer_timeout_s'] = PATIENCE_S
-            kept = arrange(graph, seen)
+            arrange(graph)
             graph.add_all()
+            if case.mode == 'realtime':
+                until = case.begin if patient_until is None else patient_until
+                PatientClock(realtime_owner(graph), until)
             seen.error = _spin(graph)
-            del kept
         seen.read(folder, run)
     finally:
         sole_publishers.CHECK_S = before

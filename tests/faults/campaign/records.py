@@ -8,7 +8,8 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from faults.campaign.case import Case, Observed
+from faults.campaign.case import Case
+from faults.campaign.outcome import Observed
 
 _FOLDER = re.compile(r'/\S*?(faults-\w+/(run/)?|/build/(?=ddct_\w+/ddct_))')
 """Path of the temporary folder of a case, or of the folder that has the packages."""

@@ -4,26 +4,18 @@
 
 from collections.abc import Iterator
 from functools import partial
+from itertools import product
 from pathlib import Path
 
-from faults.campaign.case import (
-    CLUTCHES,
-    INSTANTS,
-    MODES,
-    RUNS_ON,
-    SAME,
-    Case,
-    Observed,
-    either,
-    named,
-)
+from faults.campaign.case import CLUTCHES, INSTANTS, MODES, Case
 from faults.campaign.graph_runs import graph_run
+from faults.campaign.outcome import RUNS_ON, SAME, Observed, Stated, either, named
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 from rosgraph_msgs.msg import Clock as ClockMessage
 from support.in_process_graph import InProcessGraph
 
-from ddct_bringup.processes.graph_nodes import nodes_of
+from ddct_bringup.processes.graph_nodes import NodeSpec, nodes_of
 from ddct_plant.base.timebase import step_of_stamp
 from ddct_plant.graph.qos import RECORDER_QOS
 from ddct_plant.signals.message_kind import stamp_ns
@@ -59,29 +51,32 @@ class Restarter(Node):
 def restart(path: str, case: Case, folder: Path) -> Observed:
     """Record a run in which a node is started again."""
 
-    def arrange(graph: InProcessGraph, _: Observed) -> None:
+    def arrange(graph: InProcessGraph) -> None:
         graph.add_other(Restarter(graph, path, case.begin))
 
     return graph_run(case, folder, arrange)
 
 
 def cases() -> Iterator[Case]:
-    """Yield each node at each instant in lock-step, and in the middle in real time."""
+    """Yield each node at each instant; with two clutches what is as with one in the middle."""
+    of_one = nodes_of(shift=False)
+    for clutches, mode, instant in product(CLUTCHES, MODES, INSTANTS):
+        for spec in nodes_of(shift=clutches == 2):
+            if clutches == 2 and spec in of_one and instant != 'middle':
+                continue
+            common = (spec.path, instant, mode, clutches)
+            stated = _after_restart(spec, instant, mode)
+            yield Case('node restarted', *common, stated, partial(restart, spec.path))
+
+
+def _after_restart(spec: NodeSpec, instant: str, mode: str) -> Stated:
     missed, silent = named('came where step'), named('no ', ' for stamp')
-    for clutches in CLUTCHES:
-        for mode in MODES:
-            for instant in INSTANTS if mode == 'lockstep' else ['middle']:
-                for spec in nodes_of(shift=clutches == 2):
-                    if clutches == 2 and spec in nodes_of(shift=False):
-                        continue
-                    stated = missed if mode == 'lockstep' else AGAIN
-                    if spec.path in ('driveline', 'recorder'):
-                        stated = either(missed, silent, named('nothing was recorded'))
-                    elif mode == 'realtime' and spec.name == 'actuator':
-                        # It ends when requests reach it earlier than ticks, for too long.
-                        stated = either(AGAIN, named('/clock'))
-                    if instant == 'start':
-                        stated = either(SAME, stated)
-                    attempt = partial(restart, spec.path)
-                    common = (spec.path, instant, mode, clutches)
-                    yield Case('node restarted', *common, stated, attempt)
+    stated = missed if mode == 'lockstep' else AGAIN
+    if spec.path in ('driveline', 'recorder'):
+        stated = either(missed, silent, named('nothing was recorded'))
+    elif mode == 'realtime' and spec.name == 'actuator':
+        # It ends when requests reach it earlier than ticks, for too long.
+        stated = either(AGAIN, named('/clock'))
+    # A driveline that is started again at once begins the run anew.
+    anew = [RUNS_ON] if mode == 'realtime' else []
+    return either(SAME, stated, *anew) if instant == 'start' else stated

@@ -5,18 +5,19 @@
 import math
 from collections.abc import Callable, Iterator
 from functools import partial
+from itertools import product
 from pathlib import Path
 from typing import Any
 
-from faults.campaign.case import CLUTCHES, MODES, RUNS_ON, Case, Observed, Stated, either, named
+from faults.campaign.case import CLUTCHES, MODES, Case
 from faults.campaign.graph_runs import graph_run
+from faults.campaign.outcome import NOT_VALID, RUNS_ON, Observed, Stated, either, named, safe_state
 from faults.campaign.stranger_cases import topics_of
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
 from support.in_process_graph import InProcessGraph
 from trajectory_msgs.msg import JointTrajectory
 
-from ddct_bringup.processes.graph_nodes import nodes_of
 from ddct_plant.base.timebase import step_of_stamp
 from ddct_plant.graph.qos import RECORDER_QOS
 from ddct_plant.signals.message_kind import stamp_ns
@@ -78,64 +79,76 @@ def spoil_numbers(change: Callable[[float], float], message: Any) -> None:
 def spoil_array(change: Callable[[Any], Any], message: Any) -> None:
     """Change the size of the first array of numbers of a message."""
     holder = message.points[0] if isinstance(message, JointTrajectory) else message
-    for name in ('velocities', 'effort', 'velocity', 'position'):
+    for name in ('velocities', 'velocity', 'effort', 'position'):
         if value := list(getattr(holder, name, ())):
             setattr(holder, name, change(value))
             return
 
 
-def spoilt(
-    spoil: Callable[[Any], Any], publisher: str, topic: Topic, case: Case, folder: Path
-) -> Observed:
+def spoilt(spoil: Callable[[Any], Any], topic: Topic, case: Case, folder: Path) -> Observed:
     """Record a run in which the messages of a topic are changed from a step on."""
 
-    def arrange(graph: InProcessGraph, _: Observed) -> None:
+    def arrange(graph: InProcessGraph) -> None:
         remap = ['--ros-args', '-r', f'{topic.resolved_name}:={raw_name(topic)}']
-        graph.add(publisher, cli_args=remap)
+        graph.add(topic.publisher, cli_args=remap)
         graph.add_other(Spoiler(topic, case.begin, spoil, context=graph.context))
 
     return graph_run(case, folder, arrange)
 
 
-ANY_ERROR = Stated(
-    'an error of one line',
-    lambda seen: bool(seen.error) and 'traceback' not in seen.error and '\n' not in seen.error,
-)
-NOT_VALID = Stated(
-    'a recording that is not valid', lambda seen: not seen.error and not seen.complete
-)
 TAKEN = Stated(
     'taken as it is: it is a number', lambda seen: not seen.error and seen.steps == seen.planned
 )
+NO_NUMBER = ('NaN', 'infinity', '1e308')
+"""Values that no signal has."""
+WITHIN_S = 0.3
+"""Timeout of a clutch torque, and time for the signal on a busy machine."""
+OPENS = {
+    **dict.fromkeys(
+        (
+            *('driveline/joint_states', 'clutch/slip', 'vehicle/twist', 'engine/torque'),
+            *('clutch/slip_reference', 'clutch/torque_request', 'clutch/handover_share'),
+            *('sensors/joint_states', 'sensors/slip', 'sensors/twist', 'engine/torque_cut'),
+        ),
+        'actuator',
+    ),
+    'off_going/clutch/torque_request': 'off_going/actuator',
+    **dict.fromkeys(
+        (
+            *('actuator/torque', 'clutch/torque', 'off_going/clutch/slip'),
+            *('off_going/actuator/torque', 'off_going/clutch/torque'),
+        ),
+        'driveline',
+    ),
+}
+"""By topic of a value that counts as missing in real time, a node that opens its clutch."""
 
 
 def cases() -> Iterator[Case]:
-    """Yield spoilt numbers and arrays of each topic; all kinds in lock-step with one clutch."""
-    for clutches in CLUTCHES:
-        publishers = {spec.path for spec in nodes_of(shift=clutches == 2)}
-        for mode in MODES if clutches == 1 else MODES[:1]:
-            for topic in topics_of(clutches):
-                publisher = topic.publisher
-                assert publisher in publishers, publisher
-                common = (topic.name, 'middle', mode, clutches)
-                bad = either(named(topic.name), *_without_error(mode))
-                if not _has_numbers(topic):
-                    continue
-                whole = (mode, clutches) == ('lockstep', 1)
-                for what, change in list(NUMBERS.items())[: None if whole else 1]:
-                    spoil = partial(spoil_numbers, change)
-                    stated = bad if not math.isfinite(change(1.0)) else either(TAKEN, ANY_ERROR)
-                    attempt = partial(spoilt, spoil, publisher, topic)
-                    yield Case(f'value {what}', *common, stated, attempt)
-                if topic.message_class in (JointTrajectory, JointState):
-                    for what, change_array in list(SIZES.items())[0 if whole else -1 :]:
-                        spoil = partial(spoil_array, change_array)
-                        attempt = partial(spoilt, spoil, publisher, topic)
-                        yield Case(what, *common, bad, attempt)
+    """Yield spoilt numbers and arrays of each topic of a tick."""
+    for clutches, mode in product(CLUTCHES, MODES):
+        for topic in filter(_has_numbers, topics_of(clutches)):
+            make = partial(Case, mode=mode, clutches=clutches, equipped=clutches == 2)
+            refused = _refused(topic, mode)
+            for what, change in NUMBERS.items():
+                attempt = partial(spoilt, partial(spoil_numbers, change), topic)
+                stated = refused if what in NO_NUMBER else either(TAKEN, refused)
+                yield make(f'value {what}', topic.name, 'middle', stated=stated, attempt=attempt)
+            if topic.message_class in (JointTrajectory, JointState):
+                for what, change_array in SIZES.items():
+                    attempt = partial(spoilt, partial(spoil_array, change_array), topic)
+                    # In real time they are in the bag too, which then is refused.
+                    stated = either(refused, NOT_VALID)
+                    yield make(what, topic.name, 'middle', stated=stated, attempt=attempt)
 
 
-def _without_error(mode: str) -> list[Stated]:
-    return [NOT_VALID] if mode == 'lockstep' else [NOT_VALID, RUNS_ON, named('no ')]
+def _refused(topic: Topic, mode: str) -> Stated:
+    """Return what follows from a message that a reader refuses, or that none but a bag takes."""
+    if mode == 'lockstep':
+        return either(named(topic.name), NOT_VALID)
+    if topic.name in OPENS:
+        return safe_state(OPENS[topic.name], within_s=WITHIN_S)
+    return either(NOT_VALID, RUNS_ON, named('no ', ' for stamp'))
 
 
 def _has_numbers(topic: Topic) -> bool:
