@@ -39,7 +39,7 @@ FEW_FILES = (20, 40, 64, 256)
 
 def _ends(mode: str, *otherwise: Stated) -> Stated:
     """Return that the run is as undisturbed; in real time a busy machine may miss steps of it."""
-    usual = [SAME] if mode == 'lockstep' else [RUNS_ON, named(' not valid: ')]
+    usual = [SAME] if mode == 'lockstep' else [RUNS_ON, named('not valid:')]
     return either(*usual, *otherwise)
 
 
