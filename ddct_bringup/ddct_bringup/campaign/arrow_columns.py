@@ -31,6 +31,8 @@ _NUMBERS = {pa.int64(): np.int64, pa.float64(): np.float64}
 _TYPES = (*_NUMBERS, pa.bool_(), pa.string())
 _VALUE_BYTES = 8
 """Bytes of a value in memory, for a text those of its place."""
+_BATCH_ROWS = 65536
+"""Rows that are read at once."""
 
 
 def read_parquet(path: Path, most_rows: int | None = None) -> pa.Table:
@@ -63,20 +65,29 @@ def _table_of(data: bytes, most_rows: int | None) -> pa.Table:
         texts = [field.name for field in file.schema_arrow if pa.types.is_string(field.type)]
     # As dictionaries, texts take no more memory than they have in the file.
     with parquet.ParquetFile(pa.BufferReader(data), read_dictionary=texts) as file:
-        table = _without_dictionaries(file.read())
+        table = _without_dictionaries(_rows_in(file, rows))
     table.validate(full=True)  # texts of a damaged file may be no UTF-8
     return table
 
 
 def _needed_bytes(metadata: parquet.FileMetaData) -> int:
     """Return the memory for all values of a file and for its bytes without compression."""
-    needed = 0
-    for number in range(metadata.num_row_groups):
-        group = metadata.row_group(number)
-        # Arrow reads as many values as a part of a column has, whatever the number of rows.
-        for part in map(group.column, range(group.num_columns)):
-            needed += abs(part.num_values) * _VALUE_BYTES + abs(part.total_uncompressed_size)
-    return needed
+    # Of its groups only, as pyarrow aborts the process for some damage of a group's columns.
+    groups = map(metadata.row_group, range(metadata.num_row_groups))
+    unpacked = sum(abs(group.total_byte_size) for group in groups)
+    return metadata.num_rows * metadata.num_columns * _VALUE_BYTES + unpacked
+
+
+def _rows_in(file: parquet.ParquetFile, rows: int) -> pa.Table:
+    """Return all rows of a file; raise ArrowException once there are more than it states."""
+    batches, count = [], 0
+    for batch in file.iter_batches(_BATCH_ROWS):
+        count += len(batch)
+        if count > rows:
+            raise pa.ArrowInvalid(f'it has more rows than {rows}, which it states')
+        batches.append(batch)
+    table = pa.Table.from_batches(batches) if batches else file.read()
+    return table.replace_schema_metadata(file.schema_arrow.metadata)
 
 
 def _without_dictionaries(table: pa.Table) -> pa.Table:
