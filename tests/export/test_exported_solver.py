@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from support.exported_mpc import STATUS, compile_c
 
-from ddct_controllers.c_code.parts import DOUBLES, SIGNAL_MACROS, text_of
+from ddct_controllers.c_code.parts import DOUBLES, MEASURED_MACROS, text_of
 from ddct_controllers.mpc.export.dual_form import dual_form
 from ddct_controllers.mpc.export.export_controller import c_part, constants, macros
 from ddct_controllers.mpc.qp.backend import make_backend
@@ -37,7 +37,7 @@ class ExportedSolver:
         tables = {'NORMAL': form.normals, 'RELAXATION': form.relaxation}
         parts = [
             header,
-            macros({'ROWS': rows, 'ACTIVE': form.capacity, **SIGNAL_MACROS}),
+            macros({'ROWS': rows, 'ACTIVE': form.capacity, **MEASURED_MACROS}),
             constants(tables),
             text_of([DOUBLES]),
             c_part('solver.c'),

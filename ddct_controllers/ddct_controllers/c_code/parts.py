@@ -11,8 +11,8 @@ from ddct_plant.models.engine import EngineAuthority
 
 _SHARED = Path(__file__).parent / 'c'
 DOUBLES = _SHARED / 'doubles.c'
-"""Functions `smaller`, `larger` and `usable`, which every export needs, with `SIGNAL_MACROS`."""
-SIGNAL_MACROS = {'MOST_SIGNAL': MOST}
+"""Functions `smaller`, `larger` and `usable`, which every export needs, with `MEASURED_MACROS`."""
+MEASURED_MACROS = {'MOST_MEASURED': MOST}
 """Largest size of a measured value, in its SI unit."""
 ENGINE = _SHARED / 'engine.c'
 """Torque that the engine delivers; it needs DOUBLES and the macros of `authority_macros`."""

@@ -15,5 +15,5 @@ static double larger(double first, double second)
 /* Whether a measured value can be used: it is finite, and no absurd number. */
 static int usable(double value)
 {
-    return value >= -MOST_SIGNAL && value <= MOST_SIGNAL;
+    return value >= -MOST_MEASURED && value <= MOST_MEASURED;
 }

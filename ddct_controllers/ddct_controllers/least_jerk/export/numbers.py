@@ -4,7 +4,7 @@
 
 import numpy as np
 
-from ddct_controllers.c_code.parts import SIGNAL_MACROS, authority_macros
+from ddct_controllers.c_code.parts import MEASURED_MACROS, authority_macros
 from ddct_controllers.least_jerk import (
     controller,
     demand_trend,
@@ -28,7 +28,7 @@ def macros_of(design: LeastJerkDesign) -> dict[str, int | float]:
         'STICKS': int(design.sticks),
         'SHIFTS': int(design.shifts),
         'INITIAL_REQUEST': design.initial_request,
-        **SIGNAL_MACROS,
+        **MEASURED_MACROS,
         **_driveline(design),
         **_estimates(design),
         **_plan(design),

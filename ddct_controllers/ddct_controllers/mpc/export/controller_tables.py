@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ddct_controllers.c_code.parts import SIGNAL_MACROS, authority_macros
+from ddct_controllers.c_code.parts import MEASURED_MACROS, authority_macros
 from ddct_controllers.interface import Controller
 from ddct_controllers.mpc.controller import MpcController
 from ddct_controllers.mpc.estimate.observer import Observer
@@ -86,7 +86,7 @@ def controller_tables(controller: MpcController[Observer], observer: Observer) -
             'LIMITS_RATE': int(limits_rate),
             'CLUTCH_CHANGE': clutch.rate_n_m_s * PERIOD_S,
             'ROOM': ROOM,
-            **SIGNAL_MACROS,
+            **MEASURED_MACROS,
             **engine,
         },
         arrays={
