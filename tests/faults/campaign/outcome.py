@@ -133,7 +133,12 @@ def either(*stated: Stated) -> Stated:
     )
 
 
-def safe_state(*nodes: str, within_s: float) -> Stated:
+NO_REPLY = named('no ', ' for stamp')
+WITHIN_S = 0.3
+"""Timeout of a clutch torque, and time for the signal on a busy machine."""
+
+
+def safe_state(*nodes: str, within_s: float = WITHIN_S) -> Stated:
     """
     Return the outcome that all of these nodes enter their safe state.
 

@@ -29,8 +29,6 @@ OPENS = {
     'off_going/clutch': ('driveline',),
 }
 """Nodes that enter their safe state in real time when a node stops, by the node that stops."""
-WITHIN_S = 0.3
-"""Timeout of a clutch torque, and time for the signal on a busy machine."""
 GONE_S = 0.5
 """Time in s within which a real-time run ends whose node is gone, on a busy machine."""
 ANSWERS = {
@@ -63,7 +61,7 @@ def _after_stop(node: str, instant: str, mode: str) -> Stated:
     if mode == 'lockstep' or instant != 'middle':
         return either(silent, by_pulse, *([RUNS_ON] if mode == 'realtime' else []))
     if node in OPENS:
-        return safe_state(*OPENS[node], within_s=WITHIN_S)
+        return safe_state(*OPENS[node])
     return either(silent, by_pulse, RUNS_ON)
 
 
@@ -73,7 +71,7 @@ def _after_pause(node: str, instant: str, mode: str) -> Stated:
     if node == 'recorder':
         return either(RUNS_ON, REFUSED)
     if instant == 'middle' and node in OPENS:
-        return safe_state(*OPENS[node], within_s=WITHIN_S)
+        return safe_state(*OPENS[node])
     return RUNS_ON
 
 

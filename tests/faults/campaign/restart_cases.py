@@ -9,7 +9,7 @@ from pathlib import Path
 
 from faults.campaign.case import CLUTCHES, INSTANTS, MODES, Case
 from faults.campaign.graph_runs import graph_run
-from faults.campaign.outcome import RUNS_ON, SAME, Observed, Stated, either, named
+from faults.campaign.outcome import NO_REPLY, RUNS_ON, SAME, Observed, Stated, either, named
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 from rosgraph_msgs.msg import Clock as ClockMessage
@@ -70,10 +70,10 @@ def cases() -> Iterator[Case]:
 
 
 def _after_restart(spec: NodeSpec, instant: str, mode: str) -> Stated:
-    missed, silent = named('came where step'), named('no ', ' for stamp')
+    missed = named('came where step')
     stated = missed if mode == 'lockstep' else AGAIN
     if spec.path in ('driveline', 'recorder'):
-        stated = either(missed, silent, named('nothing was recorded'))
+        stated = either(missed, NO_REPLY, named('nothing was recorded'))
     elif mode == 'realtime' and spec.name == 'actuator':
         # It ends when requests reach it earlier than ticks, for too long.
         stated = either(AGAIN, named('/clock'))

@@ -11,7 +11,16 @@ from typing import Any
 
 from faults.campaign.case import CLUTCHES, MODES, Case
 from faults.campaign.graph_runs import graph_run
-from faults.campaign.outcome import NOT_VALID, RUNS_ON, Observed, Stated, either, named, safe_state
+from faults.campaign.outcome import (
+    NO_REPLY,
+    NOT_VALID,
+    RUNS_ON,
+    Observed,
+    Stated,
+    either,
+    named,
+    safe_state,
+)
 from faults.campaign.stranger_cases import topics_of
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
@@ -101,8 +110,6 @@ TAKEN = Stated(
 )
 NO_NUMBER = ('NaN', 'infinity', '1e308')
 """Values that no signal has."""
-WITHIN_S = 0.3
-"""Timeout of a clutch torque, and time for the signal on a busy machine."""
 OPENS = {
     **dict.fromkeys(
         (
@@ -147,8 +154,8 @@ def _refused(topic: Topic, mode: str) -> Stated:
     if mode == 'lockstep':
         return either(named(topic.name), NOT_VALID)
     if topic.name in OPENS:
-        return safe_state(OPENS[topic.name], within_s=WITHIN_S)
-    return either(NOT_VALID, RUNS_ON, named('no ', ' for stamp'))
+        return safe_state(OPENS[topic.name])
+    return either(NOT_VALID, RUNS_ON, NO_REPLY)
 
 
 def _has_numbers(topic: Topic) -> bool:
