@@ -14,7 +14,7 @@ from fuzz.run_readers import in_folder
 
 from ddct_bringup.benchmark.judged import Judged
 from ddct_bringup.campaign.columns import schema_of
-from ddct_bringup.tuning.manifest import MANIFEST, SCHEMA_VERSION, TuningManifest
+from ddct_bringup.tuning.manifest import MANIFEST, TuningManifest
 from ddct_bringup.tuning.record import RUNS, TRIALS, read_entries, rows_bytes, trials_of
 from ddct_bringup.tuning.specification.spec import (
     packaged_specs,
@@ -81,24 +81,7 @@ def _row(tuning: Tuning, number: int) -> dict[str, object]:
 
 def _manifest(tuning: Tuning) -> bytes:
     """Return a manifest with a made-up version of Optuna, which need not be there to read it."""
-    judged = tuning.judged
-    manifest = TuningManifest(
-        schema_version=SCHEMA_VERSION,
-        version='0.1',
-        code_digest='a',
-        optuna='4.0',
-        limits=dict(tuning.limits.origin),
-        controller={
-            'name': judged.name,
-            'chosen': judged.chosen,
-            'folder': str(judged.folder),
-            'digests': dict(judged.digests),
-        },
-        campaign_digest=tuning.campaign.digest(),
-        spec=dict(tuning.spec.content),
-        folder=str(tuning.spec.folder),
-    )
-    return json.dumps(asdict(manifest)).encode()
+    return json.dumps(asdict(TuningManifest.of(tuning, '4.0'))).encode()
 
 
 def _tuning(folder: Path) -> object:

@@ -21,7 +21,7 @@ from ddct_bringup.tuning.front import dominates, why_all_invalid
 from ddct_bringup.tuning.loop_quantities import update_time
 from ddct_bringup.tuning.manifest import MANIFEST, TuningManifest
 from ddct_bringup.tuning.record import batch_files, read_batch, write_batch
-from ddct_bringup.tuning.search import BATCH, Search
+from ddct_bringup.tuning.search import BATCH, Search, require_optuna
 from ddct_bringup.tuning.specification.development import parts_of
 from ddct_bringup.tuning.specification.goals import UPDATE_TIME
 from ddct_bringup.tuning.specification.parameters import Values
@@ -60,7 +60,7 @@ def carry_out_tuning(
 
 def _begin(tuning: Tuning, out: Path, *, resume: bool) -> Digests:
     """Write the manifest, or require the same one in the folder; return the folder's digests."""
-    manifest = TuningManifest.of(tuning)
+    manifest = TuningManifest.of(tuning, require_optuna())
     require_ours_or_empty(out)
     if (out / MANIFEST).exists():
         if not resume:

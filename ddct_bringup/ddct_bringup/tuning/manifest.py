@@ -17,7 +17,6 @@ from ddct_bringup.digests.manifests import (
     require_same_inputs,
     require_texts,
 )
-from ddct_bringup.tuning.search import require_optuna
 from ddct_bringup.tuning.specification.spec import TuningSpec, tuning_spec_of
 from ddct_bringup.tuning.tuning import Tuning
 from ddct_bringup.verdict.limits import Limits
@@ -61,14 +60,14 @@ class TuningManifest:
     """Folder that files of the specification are relative to."""
 
     @classmethod
-    def of(cls, tuning: Tuning) -> 'TuningManifest':
-        """Return the manifest of a tuning by this version."""
+    def of(cls, tuning: Tuning, optuna: str) -> 'TuningManifest':
+        """Return the manifest of a tuning by this version, and by that of Optuna."""
         judged = tuning.judged
         return cls(
             schema_version=SCHEMA_VERSION,
             version=package_version(),
             code_digest=code_digest(),
-            optuna=require_optuna(),
+            optuna=optuna,
             limits=dict(tuning.limits.origin),
             controller={
                 'name': judged.name,
