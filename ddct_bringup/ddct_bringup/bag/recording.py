@@ -121,4 +121,4 @@ def require_consistent(recording: Recording) -> None:
 
 def _require(name: str, ours: object, theirs: object, whose: str) -> None:
     if ours != theirs:
-        raise contradiction(name, ours, theirs, whose)
+        raise contradiction(name, ours, theirs, f'in that of {whose}')

@@ -66,20 +66,22 @@ def require_duration(custom_data: Mapping[str, str]) -> None:
     scenario = recorded_scenario(custom_data)
     longest = scenario.get(DURATION) if isinstance(scenario, dict) else None
     if steps and isinstance(longest, int | float) and time_of_step(steps) > longest:
-        raise contradiction(DURATION, time_of_step(steps), longest, 'the recorded scenario')
+        raise contradiction(
+            DURATION, time_of_step(steps), longest, 'in that of the recorded scenario'
+        )
 
 
 def require_last_step(custom_data: Mapping[str, str], last: int) -> None:
     """Raise DdctError for messages up to the step `last`, after the end of the planned run."""
     steps = planned_steps(custom_data)
     if steps is not None and last > steps:
-        raise contradiction(DURATION, time_of_step(steps), time_of_step(last), 'the last tick')
+        raise contradiction(DURATION, time_of_step(steps), time_of_step(last), 'at its last tick')
 
 
-def contradiction(name: str, ours: object, theirs: object, whose: str) -> DdctError:
+def contradiction(name: str, ours: object, theirs: object, where: str) -> DdctError:
     """Return the error for a fact that another part of the bag contradicts."""
     return DdctError(
-        f'{name} is {ours} in its custom data and {theirs} in that of {whose}: it was edited, '
+        f'{name} is {ours} in its custom data and {theirs} {where}: it was edited, '
         'take the original',
         key=name,
     )

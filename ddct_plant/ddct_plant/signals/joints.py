@@ -45,7 +45,7 @@ class Joints(MessageKind):
         return tuple(getattr(message, field) for field in self.fields)
 
     def read(self, topic: str, message: Any) -> Any:
-        """Return the speeds by joint; raise DdctError unless each joint has one finite speed."""
+        """Return the speeds by joint; raise DdctError unless each joint has one, of a signal."""
         return self._by_joint(*signal_values(topic, self._speeds(topic, message)))
 
     @cached_property

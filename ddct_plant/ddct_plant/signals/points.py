@@ -126,7 +126,7 @@ class PreviewPoints(Points):
         """
         Return speeds and rates, (preview_steps + 1,) each.
 
-        Raise DdctError for another joint, a value that is not finite or a preview that is too
+        Raise DdctError for another joint, a value that no signal has or a preview that is too
         short.
         """
         if tuple(message.joint_names) != self.joints:
