@@ -15,15 +15,15 @@ from pathlib import Path
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as parquet
-from fuzz.bag_readers import bag_readers, made_bag
-from fuzz.benchmark_readers import benchmark_readers
-from fuzz.campaign_readers import campaign_readers
-from fuzz.controller_readers import controller_readers
-from fuzz.floor_readers import floor_reader
-from fuzz.live_readers import frames, heads, read_frames, read_head
 from fuzz.reader import Reader
-from fuzz.run_readers import run_readers
-from fuzz.tuning_readers import tuning_readers
+from fuzz.targets.bag_readers import bag_readers, made_bag
+from fuzz.targets.benchmark_readers import benchmark_readers
+from fuzz.targets.campaign_readers import campaign_readers
+from fuzz.targets.controller_readers import controller_readers
+from fuzz.targets.floor_readers import floor_reader
+from fuzz.targets.live_readers import frames, heads, read_frames, read_head
+from fuzz.targets.run_readers import run_readers
+from fuzz.targets.tuning_readers import tuning_readers
 from support.runs import plan
 
 from ddct_bringup.campaign.arrow_columns import read_parquet

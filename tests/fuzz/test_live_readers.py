@@ -9,9 +9,9 @@ from threading import Thread
 from types import SimpleNamespace
 
 import pytest
-from fuzz import live_readers
-from fuzz.live_readers import ADDRESS, read_frames
 from fuzz.reader import Reader
+from fuzz.targets import live_readers
+from fuzz.targets.live_readers import ADDRESS, read_frames
 
 FATAL = b'fatal'
 """Frames after which the server serves nobody."""

@@ -19,7 +19,7 @@ from ddct_plant.measured.columns import own_columns
 from ddct_plant.measured.log import read_log
 
 NAME = 'pi.mcap'
-_EARLIER = Path(__file__).resolve().parents[1] / 'bag' / 'earlier' / 'real_time' / 'pi_0.mcap'
+_EARLIER = Path(__file__).resolve().parents[2] / 'bag' / 'earlier' / 'real_time' / 'pi_0.mcap'
 """A bag of real time: to record one takes a graph."""
 
 

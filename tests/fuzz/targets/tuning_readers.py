@@ -10,7 +10,7 @@ from importlib.resources import files
 from pathlib import Path
 
 from fuzz.reader import Reader
-from fuzz.run_readers import in_folder
+from fuzz.targets.run_readers import in_folder
 
 from ddct_bringup.benchmark.judged import Judged
 from ddct_bringup.campaign.columns import schema_of

@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 
 from fuzz.reader import Reader
-from fuzz.run_readers import in_folder
+from fuzz.targets.run_readers import in_folder
 
 from ddct_bringup.benchmark.cases import Cases, packaged_folder
 from ddct_bringup.benchmark.judged import Judged

@@ -9,8 +9,15 @@ file names is read for its digest alone, as its code is loaded with the first ru
 
 from pathlib import Path
 
-from fuzz.fmu_readers import DESCRIPTION, FMU, descriptions, fmus, read_description, read_fmu
 from fuzz.reader import Reader
+from fuzz.targets.fmu_readers import (
+    DESCRIPTION,
+    FMU,
+    descriptions,
+    fmus,
+    read_description,
+    read_fmu,
+)
 from support.fmu import CONTROLLER
 
 from ddct_controllers.from_file.with_options import with_options_text
@@ -21,7 +28,7 @@ _WITH_LIBRARY = f"""\
 name: mine
 c_library: {{file: {_LIBRARY}, parameters: {{gain_n_m_per_rpm: -0.1, limit: 60}}}}
 """
-_TEMPLATES = Path(__file__).resolve().parents[2] / 'docs' / 'templates'
+_TEMPLATES = Path(__file__).resolve().parents[3] / 'docs' / 'templates'
 
 
 def controller_readers() -> list[Reader]:
