@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from ddct_bringup.processes.graph_nodes import ANSWER_TIMEOUT_S
 from ddct_bringup.processes.node_process import START_S
 from ddct_bringup.record.recorder_node import PATIENCE_S
-from ddct_bringup.record.tick_buffer import GIVE_UP_AFTER_STEPS
+from ddct_bringup.record.tick_buffer import GIVE_UP_AFTER_STEPS, LAG_LIMIT_STEPS
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.fail_safe.request_watch import (
     CLUTCH_TIMEOUT_S,
@@ -91,8 +91,12 @@ def _realtime() -> list[tuple[str, ...]]:
             *('ends the run well; the bag may lack the last tick, and the run is not valid', '-'),
         ),
         (
-            *('`recorder`', 'a message of a tick', _s(GIVE_UP_AFTER_STEPS * PERIOD_S)),
+            *('`recorder`', 'a reply to a tick', _s(GIVE_UP_AFTER_STEPS * PERIOD_S)),
             *('writes the tick without it', 'with the next tick'),
+        ),
+        (
+            *('`recorder`', 'a message of `driveline`', _s(LAG_LIMIT_STEPS * PERIOD_S)),
+            *('writes the tick without it: every program refuses the bag', 'with the next tick'),
         ),
         (
             *('`recorder`', '`run_info` of a node', _s(PATIENCE_S)),

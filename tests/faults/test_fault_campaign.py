@@ -21,6 +21,7 @@ SAMPLE = (
     'node restarted, actuator, middle, lockstep, one clutch',
     'message dropped, each topic to controller, middle, lockstep, one clutch',
     'message reordered, each topic to handover, middle, lockstep, two clutches',
+    'message delayed, each topic to recorder, middle, realtime, one clutch',
     'stamp off the grid, clutch/torque, middle, lockstep, one clutch',
     'second publisher, clutch/torque, middle, lockstep, one clutch',
     'another type, load/torque, start, realtime, one clutch',

@@ -66,6 +66,7 @@ class RecorderNode(GraphNode):
             [topic.name for topic in ticks if topic is not RECORDER_ACK],
             self._same_message,
             wait_for_all=self.settings.lockstep,
+            certain=frozenset(topic.name for topic in ticks if topic.is_tick),
             undecided=frozenset({TORQUE_PARTS.name}),
         )
         self._bag = RecordedBag(

@@ -9,10 +9,13 @@ from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import stamp_of_step, step_of_stamp
 
 GIVE_UP_AFTER_STEPS = 10
-"""Number of steps after which, in real time, an incomplete tick is written as it is."""
+"""Number of steps after which, in real time, a tick is written without a reply that it lacks."""
 
 LAG_LIMIT_STEPS = 100
-"""Number of steps after which, in lock-step, an incomplete tick has lost a message for good."""
+"""
+Number of steps after which a message that certainly comes is lost: in lock-step each message of a
+tick, in real time those that the tick itself consists of.
+"""
 
 Tick = dict[str, bytes]
 """Serialised messages of one stamp, by topic."""
@@ -37,6 +40,8 @@ class TickBuffer:
     """Function that returns whether two serialised messages of a topic are equal."""
     wait_for_all: bool = True
     """Whether only complete ticks are returned, as in lock-step."""
+    certain: frozenset[str] = frozenset()
+    """Topics of the tick itself, which come in real time too: a bag without one is refused."""
     undecided: frozenset[str] = frozenset()
     """Topics that the run may lack; complete ticks have them until `decide`."""
     dropped: int = 0
@@ -70,7 +75,7 @@ class TickBuffer:
         tick[topic] = cdr
         if self.wait_for_all and len(tick) < len(self.topics):
             return []
-        return self._ready(step - GIVE_UP_AFTER_STEPS)
+        return self._ready()
 
     def decide(self, present: Container[str]) -> list[tuple[int, Tick]]:
         """
@@ -86,32 +91,38 @@ class TickBuffer:
         for tick in self._pending.values():
             for topic in lacking:
                 tick.pop(topic, None)
-        return self._ready(max(self._pending, default=0) - GIVE_UP_AFTER_STEPS)
+        return self._ready()
 
     def drain(self) -> list[tuple[int, Tick]]:
         """Return the remaining ticks when recording ends; only real time keeps incomplete ones."""
-        if self.wait_for_all or not self._pending:
-            return []
-        return self._ready(max(self._pending))
+        return [] if self.wait_for_all else self._ready(over=True)
 
-    def _ready(self, give_up_step: int) -> list[tuple[int, Tick]]:
+    def _ready(self, *, over: bool = False) -> list[tuple[int, Tick]]:
+        """Return the ticks that can be written now; all of them when real time is over."""
         ready = []
+        newest = max(self._pending, default=0) + (LAG_LIMIT_STEPS if over else 0)
         while self._pending:
             step = min(self._pending)
-            if step > self._next_step and not self._skip_to(step, give_up_step):
+            if step > self._next_step and not self._skip_to(step, newest):
                 break
             tick = self._pending[step]
-            if len(tick) < len(self.topics) and (self.wait_for_all or step > give_up_step):
+            if len(tick) < len(self.topics) and step > self._give_up_step(tick, newest):
                 break
             ready.append((step, self._pending.pop(step)))
             self._last = (step, tick)
             self._next_step = step + 1
         return ready
 
-    def _skip_to(self, step: int, give_up_step: int) -> bool:
+    def _give_up_step(self, tick: Tick, newest: int) -> int:
+        """Return the last step that is not waited for if it has no more than `tick`."""
+        if self.wait_for_all:
+            return -1
+        lost = self.certain - tick.keys()
+        return newest - (LAG_LIMIT_STEPS if lost else GIVE_UP_AFTER_STEPS)
+
+    def _skip_to(self, step: int, newest: int) -> bool:
         """Drop steps without a message, at most up to `step`; return whether all are dropped."""
-        if not self.wait_for_all:
-            self._next_step = max(self._next_step, min(step, give_up_step + 1))
+        self._next_step = max(self._next_step, min(step, self._give_up_step({}, newest) + 1))
         return self._next_step == step
 
     def _check_repeat(self, step: int, topic: str, cdr: bytes) -> None:

@@ -89,14 +89,14 @@ def cases() -> Iterator[Case]:
         readers = list(inputs_of(run_of(mode, clutches)))
         for reader in readers:
             common = (f'each topic to {reader}', 'middle', mode, clutches)
-            stated = SAME if mode == 'lockstep' else _counted(reader)
+            stated = SAME if mode == 'lockstep' else _counted(reader, how)
             yield Case(f'message {how}', *common, stated, partial(disturb, how, [reader]))
         if mode == 'realtime':
             every = ('each topic to each node', 'all along', mode, clutches)
-            stated = _counted('recorder')
+            stated = _counted('recorder', how)
             yield Case(f'message {how}', *every, stated, partial(disturb, how, readers))
 
 
-def _counted(reader: str) -> Stated:
+def _counted(reader: str, how: str) -> Stated:
     """Return what follows in real time; only what the recorder lacks is not in the recording."""
-    return either(RUNS_ON, REFUSED) if reader == 'recorder' else RUNS_ON
+    return either(RUNS_ON, REFUSED) if (reader, how) == ('recorder', 'dropped') else RUNS_ON
