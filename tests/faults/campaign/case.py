@@ -85,9 +85,12 @@ class Case:
 
     def met(self, seen: Observed) -> bool:
         """Return whether what is stated followed, of a fault at its instant."""
+        return self.in_time(seen) and self.stated.met(seen) and not seen.left
+
+    def in_time(self, seen: Observed) -> bool:
+        """Return whether the fault began at its instant, or not too long after it."""
         latest = self.begin + LATEST if self.mode == 'realtime' else self.steps
-        in_time = seen.fault_step <= latest
-        return in_time and self.stated.met(seen) and not seen.left
+        return seen.fault_step <= latest
 
     def came_too_late(self, seen: Observed) -> bool:
         """Return whether the run was over before the fault, or the machine too slow."""
