@@ -39,7 +39,8 @@ def test_a_fault_ends_as_stated_and_leaves_nothing(name: str) -> None:
     (case,) = [each for each in all_cases() if each.name == name]
     as_stated, seen, tries = attempt_in_time(case)
     assert not seen.left
-    if case.mode == 'realtime' and not case.in_time(seen):
+    too_late = not case.in_time(seen) and (not seen.error or case.stated.met(seen))
+    if case.mode == 'realtime' and too_late:
         pytest.skip(f'too busy for real time: the fault came too late {tries} times')
     assert as_stated, f'{seen.summary()}; stated: {case.stated.text}'
 
