@@ -12,10 +12,10 @@ from support.other_car import LASTS_S, NOISE_RAD_S, ROLLING_N_M, SPEEDS, TRUE, d
 from support.runs import plan, record
 
 from ddct_plant.base.errors import DdctError
+from ddct_plant.identification.from_log.command import NEEDED
 from ddct_plant.identification.from_log.fit import fit_log
 from ddct_plant.identification.from_log.prediction import predict
 from ddct_plant.identification.from_log.result import LogFit
-from ddct_plant.identification.from_log.stretch import TORQUES
 from ddct_plant.identification.from_log.stretches import stretches_of, white_noise
 from ddct_plant.measured.columns import TIME, own_columns
 from ddct_plant.measured.log import MeasuredLog, read_log
@@ -204,8 +204,7 @@ def test_the_drive_of_the_other_car_has_its_stated_length() -> None:
 def test_a_fit_to_an_exact_log_of_20_s_settles_within_few_evaluations(tmp_path: Path) -> None:
     """The noise of such a log is the rounding of the speeds, which grow with its length."""
     record(plan('pi', 'headless', duration_s=20.0), tmp_path / 'pi')
-    needed = (*SPEEDS, *TORQUES)
-    log = read_log(tmp_path / 'pi', own_columns(TIME, *needed), needed)
+    log = read_log(tmp_path / 'pi', own_columns(TIME, *NEEDED), NEEDED)
     evaluations: list[int] = []
     fit = fit_log(log, START, drag, evaluated=lambda: evaluations.append(1))
     assert fit.values['engine_inertia'] == pytest.approx(START.engine_inertia, rel=1e-6)

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from ddct_bringup.scores.csv_text import signals_csv
+from ddct_plant.identification.from_log.command import NEEDED
 from ddct_plant.identification.from_log.stretch import TORQUES
 from ddct_plant.identification.identify import main
 from ddct_plant.measured.columns import TIME, own_columns
@@ -28,8 +29,7 @@ def drive_log(folder: Path, controller: str = 'pi', changes: tuple[str, ...] = (
     )
     file = folder / f'{controller}.csv'
     file.write_text(signals_csv(run))
-    needed = (*SPEEDS, *TORQUES)
-    return read_log(file, own_columns(TIME, *needed), needed)
+    return read_log(file, own_columns(TIME, *NEEDED), NEEDED)
 
 
 def noisy_log(log: MeasuredLog, seed: int, size: float = 0.1) -> MeasuredLog:

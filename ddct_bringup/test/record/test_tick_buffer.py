@@ -166,7 +166,7 @@ def test_a_stamp_off_the_grid_is_an_error_with_its_topic(lockstep):
 class UndecidedBuffer(Buffer):
     """Buffer of the topics a, b and c; the run may lack c."""
 
-    def __init__(self, *, lockstep, certain=()):
+    def __init__(self, *, lockstep):
         super().__init__(lockstep=lockstep)
         self.buffer.topics = ['a', 'b', 'c']
         self.buffer.undecided = frozenset('c')
