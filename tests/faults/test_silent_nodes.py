@@ -51,11 +51,13 @@ def test_a_node_that_stops_publishing_ends_the_run_at_its_step(graph_of: GraphOf
     graph = _graph(graph_of(plan()))
     graph.add_all()
     graph.spin_until(lambda: _step(graph) >= 20, 'step 20')
+    assert _step(graph) == 20
     graph.remove('load')
     node, complaint = graph.first_failure()
     assert node == 'driveline'
     step = _step(graph)
-    assert 20 <= step < 30
+    # The torque of that step may already have been under way.
+    assert step in (20, 21)
     assert f'no load/torque and no recorder/ack for stamp {10**9 + step * 10**7} ns' in complaint
 
 

@@ -4,7 +4,6 @@
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 from faults.campaign.case import Case
 from faults.campaign.outcome import Observed
@@ -50,16 +49,12 @@ def graph_run(
     return seen
 
 
-def _spin(graph: Any) -> str:
+def _spin(graph: InProcessGraph) -> str:
     """Spin until the run is over; return the error of the first node that failed, or ''."""
-
-    def over() -> bool:
-        return bool(graph.failures()) or graph.nodes['driveline'].done.done()
-
     try:
-        graph._spin_until(over, 'the end of the run', WITHIN_S)
+        graph.spin_to_end(WITHIN_S)
     except AssertionError:
-        return f'the run hangs at step {graph.nodes["driveline"].owner.step}'
+        return f'the run hangs at step {graph.driveline.owner.step}'
     except Exception as error:  # what no node turns into an error of its own is a finding
         return f'traceback: {error!r}'
     errors = [f'{name}: {error}' for name, error in graph.failures().items()]
