@@ -106,6 +106,10 @@ def test_an_outcome_is_met_by_what_it_states_alone() -> None:
     assert safe_state('actuator', within_s=0.1).met(opened)
     assert not safe_state('actuator', within_s=0.05).met(opened)
     assert not safe_state('driveline', within_s=0.1).met(opened)
+    ended = replace(opened, error='node controller has shown no sign of life for 3 s')
+    assert safe_state('actuator', stopped='controller').met(ended)
+    assert not safe_state('actuator', stopped='reference').met(ended)
+    assert not safe_state('actuator').met(ended)
     opened.safe = {'/actuator': 7}
     assert not safe_state('actuator', within_s=0.1).met(opened), 'long before the fault'
 

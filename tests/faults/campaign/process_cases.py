@@ -61,7 +61,7 @@ def _after_stop(node: str, instant: str, mode: str) -> Stated:
     if mode == 'lockstep' or instant != 'middle':
         return either(silent, by_pulse, *([RUNS_ON] if mode == 'realtime' else []))
     if node in OPENS:
-        return safe_state(*OPENS[node])
+        return safe_state(*OPENS[node], stopped=node)
     return either(silent, by_pulse, RUNS_ON)
 
 
