@@ -69,17 +69,21 @@ def test_the_lowest_and_the_highest_domain_are_respected(monkeypatch: pytest.Mon
         assert require_domain() == given
 
 
-def test_programs_do_not_all_begin_with_the_same_domain(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A domain follows from the id of the process, of which now and then two have the same one."""
+def test_each_program_begins_with_another_domain_than_the_one_before(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """It follows from the id of the process; these are so far apart that no graph is between."""
     monkeypatch.delenv('ROS_DOMAIN_ID')
     program = (
+        'import os\n'
+        'os.getpid = lambda: {}\n'
         'from ddct_plant.graph.domain import own_domain\n'
         'with own_domain() as each:\n'
         '    print(each)\n'
     )
-    command = [sys.executable, '-c', program]
-    domains = {subprocess.check_output(command, text=True) for _ in range(3)}
-    assert len(domains) > 1
+    commands = [[sys.executable, '-c', program.format(pid)] for pid in (5000, 5033, 5066)]
+    domains = [subprocess.check_output(command, text=True) for command in commands]
+    assert len(set(domains)) == 3
 
 
 def test_no_graph_takes_the_domain_that_another_one_has(monkeypatch: pytest.MonkeyPatch) -> None:
