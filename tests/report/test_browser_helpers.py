@@ -6,6 +6,7 @@ import os
 import subprocess
 import sys
 import time
+import uuid
 from collections.abc import Iterator
 
 import pytest
@@ -25,6 +26,12 @@ def helpers() -> Iterator[Helpers]:
             helper.kill()
 
 
+@pytest.fixture
+def mark() -> str:
+    """Return a mark of this test alone: two copies of the suite can run on one machine."""
+    return uuid.uuid4().hex
+
+
 def start(helpers: Helpers, mark: str, program: str) -> int:
     """Start a helper in a separate session, like the crash handler."""
     helper = subprocess.Popen(
@@ -42,25 +49,25 @@ def start(helpers: Helpers, mark: str, program: str) -> int:
 
 
 def test_a_helper_that_ends_a_little_after_the_browser_is_waited_for(
-    helpers: Helpers,
+    helpers: Helpers, mark: str
 ) -> None:
-    pid = start(helpers, 'one', 'import sys, time; sys.stdin.read(); time.sleep(0.3)')
+    pid = start(helpers, mark, 'import sys, time; sys.stdin.read(); time.sleep(0.3)')
     assert pid in processes_left()
     (browser,) = (helper.stdin for helper in helpers)
     assert browser is not None
     browser.close()
-    assert wait_for_helpers('one', 20.0) == []
+    assert wait_for_helpers(mark, 20.0) == []
     assert pid not in processes_left(), 'what each test is asked at its end'
 
 
-def test_a_helper_that_stays_is_not_passed_over(helpers: Helpers) -> None:
-    pid = start(helpers, 'two', 'import sys; sys.stdin.read()')
+def test_a_helper_that_stays_is_not_passed_over(helpers: Helpers, mark: str) -> None:
+    pid = start(helpers, mark, 'import sys; sys.stdin.read()')
     started = time.monotonic()
-    assert wait_for_helpers('two', 0.2) == [pid]
+    assert wait_for_helpers(mark, 0.2) == [pid]
     assert time.monotonic() - started < 10.0
     assert pid in processes_left(), 'so the test that started it fails'
 
 
-def test_helpers_of_another_browser_are_not_waited_for(helpers: Helpers) -> None:
-    start(helpers, 'three', 'import sys; sys.stdin.read()')
-    assert wait_for_helpers('four') == []
+def test_helpers_of_another_browser_are_not_waited_for(helpers: Helpers, mark: str) -> None:
+    start(helpers, mark, 'import sys; sys.stdin.read()')
+    assert wait_for_helpers(f'another than {mark}') == []
