@@ -2,7 +2,7 @@
 SHELL := /bin/bash
 .SHELLFLAGS := -e -o pipefail -c
 .DELETE_ON_ERROR:
-.PHONY: help setup demo docs fmu tune-extra sbom test test-fast mutants lint fuzz faults bench soak loaded-runs benchmark-rows release \
+.PHONY: help setup demo docs fmu tune-extra sbom test test-fast lint fuzz faults bench soak loaded-runs benchmark-rows release \
     site lock clean
 
 ifneq ($(words $(CURDIR)),1)
@@ -30,7 +30,7 @@ NEEDED_AT_RUN := bokeh, control, daqp, jinja2, matplotlib, osqp, scipy.signal, y
     diagnostic_msgs.msg, geometry_msgs.msg, rosgraph_msgs.msg, sensor_msgs.msg, trajectory_msgs.msg
 
 help:
-	@echo 'make setup | fmu | tune-extra | demo | test | test-fast | mutants | fuzz | faults | lint | docs | bench | soak | loaded-runs |' \
+	@echo 'make setup | fmu | tune-extra | demo | test | test-fast | fuzz | faults | lint | docs | bench | soak | loaded-runs |' \
 	    'benchmark-rows | sbom | release | site | lock | clean (see docs/use/setup.md)'
 
 setup: $(WORKSPACE_BUILT)
@@ -93,12 +93,6 @@ test-fast: setup .venv/.tune
 	@$(SOURCED) $(BIN)/python -m pytest -q -n 2 --dist loadfile \
 	    -m 'not (graph or browser or compiler or slow)' $(TEST_FOLDERS)
 
-# MUTANTS='--claim TEXT' or files of tests/mutants try only those. JSON=docs/examples/mutants.json renews their records
-# of docs/develop/seeded_defects.md, MISSING=1 adds those that it lacks; then make docs KINDS=mutants.
-mutants: fmu tune-extra .venv/.test
-	@$(SOURCED) $(BIN)/python tests/mutants/run.py \
-	    $(if $(JSON),--json '$(JSON)') $(if $(MISSING),--missing) $(MUTANTS)
-
 # Damaged inputs for every reader, minutes: SECONDS for each, first at random, then guided by what code they reach.
 # READERS='bag log' tries only those. An input that a reader fails on is kept in tests/fuzz/corpus, where the suite tries it.
 # Then SCHEDULES new schedules for each machine of the protocols of ticks; the suite has 150, always the same.
@@ -129,7 +123,6 @@ lint: $(VENV_MADE)
 	$(BIN)/ruff check || status=1; \
 	$(BIN)/ruff format --check || status=1; \
 	$(BIN)/mypy || status=1; \
-	$(BIN)/python tests/mutants/run.py --check || status=1; \
 	exit $$status
 
 # What is installed, and what the wheels bundle, as CycloneDX JSON; needs no network.

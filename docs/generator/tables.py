@@ -42,7 +42,6 @@ from ddct_plant.scenario.settings import RunSettings
 from generator.drawings.study_charts import save_study_chart
 from generator.fault_tables import fault_tables
 from generator.least_jerk.least_jerk_tables import least_jerk_tables
-from generator.mutant_tables import mutant_tables
 from generator.option_tables import TABLES as OPTION_TABLES
 from generator.pages import DOCS
 from generator.robustness.robustness_charts import draw_robustness
@@ -189,7 +188,6 @@ TABLES: Mapping[str, Callable[[], Mapping[str, Table]]] = {
     'shifts': shift_tables,
     'tuning': tuning_tables,
     'faults': fault_tables,
-    'mutants': mutant_tables,
     'numbers': lambda: page_tables(judge(thesis_numbers(), compute(SOURCES))),
     'figures': lambda: figure_tables(_drawn()),
     'studies': studies_and_charts,

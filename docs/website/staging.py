@@ -25,7 +25,7 @@ ROOMS = {
     'Thesis': ('docs/thesis/*.md',),
     'Develop': ('docs/develop/*.md',),
     'Packages': ('ddct_*/README.md', 'ddct_*/CHANGELOG.md'),
-    'Project': ('[A-QS-Z]*.md', 'tests/mutants/README.md'),
+    'Project': ('[A-QS-Z]*.md',),
 }
 """Pages besides the front, by their heading in the sidebar."""
 _LINK = re.compile(r'(!?)\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^)\s#]+)(#[^)\s]*)?\)')
