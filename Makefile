@@ -18,6 +18,8 @@ unexport $(filter AMENT_% COLCON_% RMW_% ROS_% _ROS_% CMAKE_PREFIX_PATH LD_LIBRA
 export OPENBLAS_NUM_THREADS := 1
 
 BIN := .venv/bin
+# Runs an instrument of tools/, after the workspace is sourced.
+TOOL = PYTHONPATH="$(CURDIR)/tools:$$PYTHONPATH" $(BIN)/python -P -m
 SOURCED := . install/setup.bash;
 VENV_MADE := .venv/.made
 WORKSPACE_BUILT := install/.built
@@ -127,7 +129,7 @@ lint: $(VENV_MADE)
 
 # What is installed, and what the wheels bundle, as CycloneDX JSON; needs no network.
 sbom: setup
-	@$(SOURCED) $(BIN)/python tests/release/sbom.py build/sbom.cdx.json
+	@$(SOURCED) $(TOOL) sbom build/sbom.cdx.json
 
 # Added to the environment that is there; a second sync would break it.
 $(EXTRAS_INSTALLED): .venv/.%: requirements-%.txt $(VENV_MADE)
@@ -157,7 +159,7 @@ loaded-runs: setup
 # sdists and wheels in dist/, once they have passed a trial in an empty environment without ROS.
 # MAINTAINER=name@domain is the address in their package.xml.
 release: setup
-	@PYTHONPATH=tests $(BIN)/python -P -m release --out dist $(if $(MAINTAINER),--maintainer '$(MAINTAINER)')
+	@$(TOOL) release --out dist $(if $(MAINTAINER),--maintainer '$(MAINTAINER)')
 
 # The documentation as one folder that opens from disk, with search and a reference: site/index.html.
 site: setup .venv/.site

@@ -9,7 +9,6 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
-from release.trial import example_of_readme
 from support.documented import ROOT, blocks
 
 from ddct_bringup.run import execution
@@ -19,13 +18,16 @@ from ddct_controllers.template.new_controller import write_package
 from ddct_plant.scenario.file import scenario_to_yaml
 
 
+def example_on(page: str) -> str:
+    """Return the first example in Python of a page."""
+    return next(
+        block.text for block in blocks() if block.page == page and block.language == 'python'
+    )
+
+
 def install_example(site: Path) -> None:
     """Install the class that the page shows, and what new-controller writes, as `my_slip`."""
-    code = next(
-        block.text
-        for block in blocks()
-        if block.page == 'docs/controllers/writing_a_controller.md' and block.language == 'python'
-    )
+    code = example_on('docs/controllers/writing_a_controller.md')
     package, record = site / 'my_package', site / 'my_package-1.0.dist-info'
     for folder in (package, record):
         folder.mkdir(parents=True)
@@ -63,7 +65,7 @@ def workplace(install: Path, tmp_path: Path) -> Path:
         shutil.copytree(ROOT / folder, tmp_path / folder)
     (tmp_path / 'install').symlink_to(install)
     install_example(tmp_path / 'site')
-    (tmp_path / 'mine.py').write_text(example_of_readme(), encoding='utf-8')
+    (tmp_path / 'mine.py').write_text(example_on('README.md'), encoding='utf-8')
     shutil.copy(tmp_path / 'site' / 'my_package' / 'control.py', tmp_path / 'proportional.py')
     return tmp_path
 

@@ -73,6 +73,8 @@ def document() -> dict[str, Any]:
 
 def _packages() -> Iterator[tuple[str, str, str]]:
     """Yield name, version and scope of every package in the locks, sorted, each once."""
+    if unknown := {file.name for file in ROOT.glob('requirements*.txt')} - set(LOCKS):
+        raise SystemExit(f'make sbom: no scope is given for {", ".join(sorted(unknown))}')
     found: dict[tuple[str, str], str] = {}
     for lock, scope in LOCKS.items():
         for name, version in _PIN.findall((ROOT / lock).read_text(encoding='utf-8')):
