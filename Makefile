@@ -18,8 +18,8 @@ unexport $(filter AMENT_% COLCON_% RMW_% ROS_% _ROS_% CMAKE_PREFIX_PATH LD_LIBRA
 export OPENBLAS_NUM_THREADS := 1
 
 BIN := .venv/bin
-# Runs an instrument of tools/, after the workspace is sourced.
-TOOL = PYTHONPATH="$(CURDIR)/tools:$$PYTHONPATH" $(BIN)/python -P -m
+# Runs an instrument of tools/; some need helpers of tests/support.
+TOOL = PYTHONPATH="$(CURDIR)/tools:$(CURDIR)/tests:$$PYTHONPATH" $(BIN)/python -P -m
 SOURCED := . install/setup.bash;
 VENV_MADE := .venv/.made
 WORKSPACE_BUILT := install/.built
@@ -95,20 +95,10 @@ test-fast: setup .venv/.tune
 	@$(SOURCED) $(BIN)/python -m pytest -q -n 2 --dist loadfile \
 	    -m 'not (graph or browser or compiler or slow)' $(TEST_FOLDERS)
 
-# Damaged inputs for every reader, minutes: SECONDS for each, first at random, then guided by what code they reach.
-# READERS='bag log' tries only those. An input that a reader fails on is kept in tests/fuzz/corpus, where the suite tries it.
-# Then SCHEDULES new schedules for each machine of the protocols of ticks; the suite has 150, always the same.
-# Each run begins with the inputs by which earlier ones have reached new code, in .fuzz_cache: remove that to begin anew.
+# Damaged inputs for every reader, minutes: SECONDS for each, at random and guided; READERS='bag log' tries only those.
 SECONDS := 20
-SCHEDULES := 2000
-SCHEDULE_TESTS := $(addprefix ddct_plant/test/,ticks/test_lockstep_protocol.py ticks/test_realtime_protocol.py \
-    ticks/test_stamp_schedules.py fail_safe/test_actuator_schedules.py)
 fuzz: fmu .venv/.fuzz
-	@$(SOURCED) export PYTHONPATH="$(CURDIR)/tests:$$PYTHONPATH"; status=0; \
-	$(BIN)/python -P -m fuzz --seconds $(SECONDS) $(READERS) || status=1; \
-	$(BIN)/python -P -m fuzz --seconds $(SECONDS) --guided $(READERS) || status=1; \
-	$(if $(READERS),,DDCT_SCHEDULES=$(SCHEDULES) $(BIN)/python -m pytest -q -n 2 --dist loadfile $(SCHEDULE_TESTS) || status=1;) \
-	exit $$status
+	@$(SOURCED) $(TOOL) fuzz --seconds $(SECONDS) $(READERS)
 
 # Every fault of the campaign on the real graph, half an hour: CASES='killed lockstep' tries only those with these words.
 # JSON=docs/examples/faults.json renews the records of docs/develop/faults.md, MISSING=1 adds those that it lacks; then make docs KINDS=faults.

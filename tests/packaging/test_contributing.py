@@ -13,7 +13,7 @@ PAGE = (ROOT / 'CONTRIBUTING.md').read_text(encoding='utf-8')
 
 
 def test_every_path_is_there() -> None:
-    named = re.findall(r'`((?:ddct_\w+|docs|tests)/[\w./]+)`', PAGE)
+    named = re.findall(r'`((?:ddct_\w+|docs|tests|tools)/[\w./]+)`', PAGE)
     linked = re.findall(r'\]\((?!https?:)([\w./]+)\)', PAGE)
     assert len(named) >= 6
     assert [path for path in (*named, *linked) if not (ROOT / path).exists()] == []

@@ -9,6 +9,10 @@ file names is read for its digest alone, as its code is loaded with the first ru
 
 from pathlib import Path
 
+from support.fmu import CONTROLLER
+
+from ddct_controllers.from_file.with_options import with_options_text
+from ddct_controllers.registry import controller_spec
 from fuzz.reader import Reader
 from fuzz.targets.fmu_readers import (
     DESCRIPTION,
@@ -18,10 +22,6 @@ from fuzz.targets.fmu_readers import (
     read_description,
     read_fmu,
 )
-from support.fmu import CONTROLLER
-
-from ddct_controllers.from_file.with_options import with_options_text
-from ddct_controllers.registry import controller_spec
 
 _LIBRARY = 'libmine.so'
 _WITH_LIBRARY = f"""\

@@ -6,7 +6,6 @@ import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
-from fuzz.reader import Reader
 from support.runs import plan
 from support.sensors import ALL_ON
 
@@ -17,9 +16,11 @@ from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.scores.csv_text import signals_csv
 from ddct_plant.measured.columns import own_columns
 from ddct_plant.measured.log import read_log
+from fuzz.reader import Reader
 
 NAME = 'pi.mcap'
-_EARLIER = Path(__file__).resolve().parents[2] / 'bag' / 'earlier' / 'real_time' / 'pi_0.mcap'
+_ROOT = Path(__file__).resolve().parents[3]
+_EARLIER = _ROOT / 'tests' / 'bag' / 'earlier' / 'real_time' / 'pi_0.mcap'
 """A bag of real time: to record one takes a graph."""
 
 

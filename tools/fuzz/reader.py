@@ -28,7 +28,7 @@ class Reader:
     """A reader of one kind of file."""
 
     name: str
-    """Name of the reader, and of the folder of its corpus."""
+    """Name of the reader, and of the folder of inputs found for it."""
     file: str
     """Name of the file that it reads."""
     read: Read

@@ -15,6 +15,13 @@ from pathlib import Path
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as parquet
+from support.runs import plan
+
+from ddct_bringup.campaign.arrow_columns import read_parquet
+from ddct_bringup.verdict.limits import load_limits
+from ddct_plant.base.errors import DdctError
+from ddct_plant.measured.columns import load_columns
+from ddct_plant.scenario.file import ScenarioFile, load_scenario, scenario_to_yaml
 from fuzz.reader import Reader
 from fuzz.targets.bag_readers import bag_readers, made_bag
 from fuzz.targets.benchmark_readers import benchmark_readers
@@ -24,13 +31,6 @@ from fuzz.targets.floor_readers import floor_reader
 from fuzz.targets.live_readers import frames, heads, read_frames, read_head
 from fuzz.targets.run_readers import run_readers
 from fuzz.targets.tuning_readers import tuning_readers
-from support.runs import plan
-
-from ddct_bringup.campaign.arrow_columns import read_parquet
-from ddct_bringup.verdict.limits import load_limits
-from ddct_plant.base.errors import DdctError
-from ddct_plant.measured.columns import load_columns
-from ddct_plant.scenario.file import ScenarioFile, load_scenario, scenario_to_yaml
 
 ROOT = Path(__file__).resolve().parents[2]
 _PROFILE = b't,torque\n0.0,0.0\n0.5,120.5\n1.5e0,240\n'

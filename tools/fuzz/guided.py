@@ -17,7 +17,7 @@ import atheris
 with atheris.instrument_imports(
     include=['ddct_plant', 'ddct_bringup', 'ddct_controllers', 'mcap']
 ):
-    from fuzz.loop import CORPUS, REACHED, bounded_time, inputs_in, keep
+    from fuzz.loop import FOUND, REACHED, bounded_time, inputs_in, keep
     from fuzz.readers import readers
 
 
@@ -28,7 +28,7 @@ def main() -> None:
     reader = readers(folder)[name]
     seeds = folder / 'seeds'
     seeds.mkdir()
-    for number, data in enumerate((*reader.seeds, *inputs_in(CORPUS / name))):
+    for number, data in enumerate((*reader.seeds, *inputs_in(FOUND / name))):
         (seeds / str(number)).write_bytes(data)
     reached = REACHED / name
     reached.mkdir(parents=True, exist_ok=True)
@@ -41,7 +41,7 @@ def main() -> None:
         with bounded_time():
             what = reader.finding(data, folder / 'work')
         if what:
-            keep(data, CORPUS / name)
+            keep(data, FOUND / name)
         if what or time.monotonic() > until:
             print(f'{what}\nDone {inputs}', file=sys.stderr, flush=True)
             # libFuzzer would wait for threads of pyarrow, which wait for the lock of Python.

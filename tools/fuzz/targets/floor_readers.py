@@ -7,10 +7,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from fuzz.reader import Reader
-
 from ddct_bringup.floor.cache import VARIABLE, cache_folder, cached, store
 from ddct_plant.base.errors import DdctError
+from fuzz.reader import Reader
 
 _NAME = 'floor'
 _VALUES = {

@@ -8,9 +8,8 @@ from dataclasses import dataclass
 
 WORDS = (
     *(b'', b'nan', b'NaN', b'.inf', b'-1', b'0', b'1e999', b'-1e308', b'9' * 30, b'true', b'null'),
-    *(b'[]', b'{}', b'""', b'[[]]', b'{a: b}', b'"\\ud800"', b'"\\u0000"', b'9' * 400),
-    *(b'\x00', b'\xff', b'\xef\xbb\xbf'),
-    *(b'=1+1', b'../../x', b'/dev/zero', b'&a [*a]', b'!!python/object:os.system', b'# '),
+    *(b'[]', b'{}', b'""', b'[[]]', b'{a: b}', b'\x00', b'\xff', b'\xef\xbb\xbf'),
+    *(b'=1+1', b'../../x', b'&a [*a]', b'# '),
     *(b'\xff\xff\xff\xff', b'\x00\x00\x00\x80', b'\n', b',,', b';', b': ', b'- '),
 )
 """Texts and numbers that a reader may take for something else."""

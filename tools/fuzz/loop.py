@@ -20,9 +20,10 @@ from pathlib import Path
 from fuzz.edits import edited, random_edits
 from fuzz.reader import Reader
 
-CORPUS = Path(__file__).with_name('corpus')
+_ROOT = Path(__file__).resolve().parents[2]
+FOUND = _ROOT / 'tests' / 'formats' / 'found_inputs'
 """Folder with the inputs of findings, by reader."""
-REACHED = Path(__file__).resolve().parents[2] / '.fuzz_cache'
+REACHED = _ROOT / '.fuzz_cache'
 """Folder with the inputs by which guided runs have reached new code, by reader; git ignores it."""
 LONGEST_S = 20.0
 """Longest time for one input, s; more is a hang."""

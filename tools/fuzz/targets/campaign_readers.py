@@ -5,9 +5,6 @@
 import json
 from pathlib import Path
 
-from fuzz.reader import Read, Reader
-from fuzz.targets.run_readers import in_folder
-
 from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.columns import read_row
 from ddct_bringup.campaign.conduct import RESULTS, carry_out
@@ -22,6 +19,8 @@ from ddct_bringup.digests.writing import write_folder_digests
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_bringup.verification.comparison import Comparison, plain_json, recorded_json
 from ddct_bringup.verification.result import RepetitionResult
+from fuzz.reader import Read, Reader
+from fuzz.targets.run_readers import in_folder
 
 _TEMPLATE = Path(__file__).resolve().parents[3] / 'docs' / 'templates' / 'campaign.yaml'
 _SPEC = {'controllers': ['pi', 'ls8'], 'grid': {'wear_gain': [0.8, 1.2], 'duration_s': [0.7]}}

@@ -9,9 +9,6 @@ from functools import partial
 from importlib.resources import files
 from pathlib import Path
 
-from fuzz.reader import Reader
-from fuzz.targets.run_readers import in_folder
-
 from ddct_bringup.benchmark.judged import Judged
 from ddct_bringup.campaign.columns import schema_of
 from ddct_bringup.tuning.manifest import MANIFEST, TuningManifest
@@ -26,6 +23,8 @@ from ddct_bringup.tuning.tuning import Tuning
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_controllers.interface import Controller, ControllerSpec
 from ddct_controllers.registry import controller_spec
+from fuzz.reader import Reader
+from fuzz.targets.run_readers import in_folder
 
 _CONTROLLERS = {'mpc_thesis': 'mpc3', 'pi_launches': 'pi'}
 """Controllers of the packaged specifications."""

@@ -5,15 +5,14 @@
 import json
 from pathlib import Path
 
-from fuzz.reader import Reader
-from fuzz.targets.run_readers import in_folder
-
 from ddct_bringup.benchmark.cases import Cases, packaged_folder
 from ddct_bringup.benchmark.judged import Judged
 from ddct_bringup.benchmark.manifest import MANIFEST, BenchmarkManifest, JudgedEntry
 from ddct_bringup.benchmark.release import COPIED, ROWS, UNAVOIDABLE, release_rows
 from ddct_bringup.benchmark.update_times import UpdateTimesFile, read_update_times
 from ddct_bringup.run.timing_and_failure import TIMING_FILE
+from fuzz.reader import Reader
+from fuzz.targets.run_readers import in_folder
 
 _RELEASE = {name: (packaged_folder() / name).read_bytes() for name in COPIED}
 _UPDATE_TIMES: UpdateTimesFile = {

@@ -10,8 +10,6 @@ from dataclasses import replace
 from pathlib import Path
 from unittest.mock import patch
 
-from fuzz.reader import Read, Reader
-
 from ddct_bringup.digests.digest_file import DIGESTS, RUNS, Digests, RunDigests, read_digests
 from ddct_bringup.digests.environment import this_environment
 from ddct_bringup.digests.writing import ITSELF
@@ -34,6 +32,7 @@ from ddct_bringup.verification.runs import verified_runs
 from ddct_bringup.verification.scores import SCORES, verified_scores
 from ddct_controllers.workflows.evidence import frequency_evidence
 from ddct_controllers.workflows.evidence_types import FrequencyEvidence
+from fuzz.reader import Read, Reader
 
 BAG = 'pi_0.mcap'
 
@@ -94,9 +93,11 @@ def _verified(folder: Path) -> object:
 
 def _evidence(scored: ScoredRecording, computed: FrequencyEvidence) -> Read:
     """Return a reader of analyses beside a bag; where they are damaged `computed` is taken."""
+    good = scored.recording
+    assert good is not None
 
     def read(file: Path) -> object:
-        recording = replace(scored.recording, path=file.parent / 'pi' / BAG)
+        recording = replace(good, path=file.parent / 'pi' / BAG)
         # To compute them each time would take a second.
         with patch.object(evidence, 'frequency_evidence', return_value=computed):
             found = evidence_of([replace(scored, recording=recording)])
