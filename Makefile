@@ -126,25 +126,23 @@ $(EXTRAS_INSTALLED): .venv/.%: requirements-%.txt $(VENV_MADE)
 	@$(BIN)/uv pip install --quiet --python $(BIN)/python --require-hashes -r $<
 	@touch $@
 
-# Ratios to references measured in turn: BASE=REV adds that commit, WHAT='graph suite' chooses by name.
+# Ratios to peers measured in turn: BASE=REV adds commands of that commit, WHAT='graph headless' chooses by name.
 # A peer that cannot be installed is not measured.
 bench: setup
-	@$(MAKE) --no-print-directory --silent .venv/.bench .venv/.test \
-	    || echo 'make: without requirements-bench.txt and -test.txt their peers are not measured' >&2
-	@$(SOURCED) PYTHONPATH="$(CURDIR)/tests:$$PYTHONPATH" $(BIN)/python -P -m bench $(WHAT) \
-	    $(if $(BASE),--base '$(BASE)') $(if $(ROUNDS),--rounds '$(ROUNDS)') \
+	@$(MAKE) --no-print-directory --silent .venv/.bench \
+	    || echo 'make: without requirements-bench.txt its peer is not measured' >&2
+	@$(SOURCED) $(TOOL) bench $(WHAT) $(if $(BASE),--base '$(BASE)') $(if $(ROUNDS),--rounds '$(ROUNDS)') \
 	    $(if $(JSON),--json '$(JSON)')
 
-# The graph in real time beside a bare chain, MINUTES for each of CONDITIONS (idle, busy, preferred); JSON=FILE is the record.
+# The graph in real time beside a bare chain, MINUTES for each of CONDITIONS (idle, busy, preferred).
 MINUTES := 10
 soak: setup
-	@$(SOURCED) PYTHONPATH="$(CURDIR)/tests:$$PYTHONPATH" $(BIN)/python -P -m soak \
-	    --minutes $(MINUTES) $(if $(JSON),--json '$(JSON)') $(CONDITIONS)
+	@$(SOURCED) $(TOOL) soak --minutes $(MINUTES) $(if $(JSON),--json '$(JSON)') $(CONDITIONS)
 
 # Lock-step runs of the graph on busy cores, RUNS of them: each must have the hash of the headless loop.
 RUNS := 1000
 loaded-runs: setup
-	@$(SOURCED) PYTHONPATH="$(CURDIR)/tests:$$PYTHONPATH" $(BIN)/python -P -m soak.loaded_runs --runs $(RUNS)
+	@$(SOURCED) $(TOOL) soak.loaded_runs --runs $(RUNS)
 
 # sdists and wheels in dist/, once they have passed a trial in an empty environment without ROS.
 # MAINTAINER=name@domain is the address in their package.xml.

@@ -54,9 +54,6 @@ from generator.runs.launch_table import launch_table
 from generator.runs.shift_tables import shift_tables
 from generator.score_tables import score_tables
 from generator.sensor_table import sensor_table
-from generator.speed.soak_tables import digest_of_record, record_of, soak_figure, soak_tables
-from generator.speed.speed_charts import draw_speed, save_measured
-from generator.speed.speed_history import digest_of, histories, speed_tables
 from generator.tuning_tables import tuning_tables
 
 
@@ -140,22 +137,6 @@ def robustness_tables_and_charts() -> Mapping[str, Table]:
     return robustness_tables(maps)
 
 
-def speed_tables_and_charts() -> Mapping[str, Table]:
-    """Return the tables of the history of `make bench`, and draw its charts."""
-    machines = histories()
-    draw_speed(machines, digest_of())
-    return speed_tables(machines)
-
-
-def soak_tables_and_chart() -> Mapping[str, Table]:
-    """Return the tables of the record of `make soak`, and draw its chart."""
-    record = record_of()
-    with chart_style():
-        picture = DOCS / 'images' / 'real_time.png'
-        save_measured(soak_figure(record), digest_of_record(), picture)
-    return soak_tables(record)
-
-
 def tables_of_missing_messages() -> Mapping[str, Table]:
     """Return what nodes do when a message is missing, with the times of the code."""
     # Only here: the recorder needs ROS, which the other tables do without.
@@ -191,8 +172,6 @@ TABLES: Mapping[str, Callable[[], Mapping[str, Table]]] = {
     'numbers': lambda: page_tables(judge(thesis_numbers(), compute(SOURCES))),
     'figures': lambda: figure_tables(_drawn()),
     'studies': studies_and_charts,
-    'speed': speed_tables_and_charts,
-    'soak': soak_tables_and_chart,
     'missing': tables_of_missing_messages,
 }
 """Functions by kind, quick ones first; `studies` takes minutes, `figures` some ten seconds."""

@@ -10,9 +10,8 @@ from contextlib import suppress
 from pathlib import Path
 
 import pytest
-from soak.process_use import children_by_module
 from support.complaints import assert_one_line
-from support.processes import Programs
+from support.processes import Programs, processes_left
 
 from ddct_bringup.processes.graph_nodes import GRAPH_NODES
 from ddct_bringup.programs import bringup
@@ -46,8 +45,12 @@ def test_the_nodes_have_cores_and_priority_and_the_recorder_has_one_priority_les
     deadline = time.monotonic() + WITHIN_S
     while found != wanted and time.monotonic() < deadline:
         with suppress(ProcessLookupError):
-            pids = children_by_module(MODULES, run.process.pid)
-            found = {name: scheduling_of(pid) for name, pid in pids.items()}
+            found = {
+                MODULES[word]: scheduling_of(pid)
+                for pid, command in processes_left().items()
+                for word in command.split()
+                if word in MODULES
+            }
     assert found == wanted
     run.send(signal.SIGINT)
     assert run.wait() == 130
