@@ -40,7 +40,6 @@ from ddct_plant.program.table import Table
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 from generator.drawings.study_charts import save_study_chart
-from generator.fault_tables import fault_tables
 from generator.least_jerk.least_jerk_tables import least_jerk_tables
 from generator.option_tables import TABLES as OPTION_TABLES
 from generator.pages import DOCS
@@ -168,7 +167,6 @@ TABLES: Mapping[str, Callable[[], Mapping[str, Table]]] = {
     'sensors': lambda: {'in_thesis': sensor_table()},
     'shifts': shift_tables,
     'tuning': tuning_tables,
-    'faults': fault_tables,
     'numbers': lambda: page_tables(judge(thesis_numbers(), compute(SOURCES))),
     'figures': lambda: figure_tables(_drawn()),
     'studies': studies_and_charts,

@@ -33,7 +33,6 @@ NOT_RUN_HERE = {
     'ddct bringup --mode realtime --realtime-priority': (
         'needs a permission; tests/graph/test_scheduling_of_nodes.py does it where there is one'
     ),
-    'make soak': 'takes minutes',
     'ddct live': 'serves until Ctrl-C; tests/live stops it',
     'ddct clutch --ros-args -p qos_overrides': (
         'serves until Ctrl-C; tests/graph/test_qos_overrides.py stops it'

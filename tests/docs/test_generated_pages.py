@@ -9,7 +9,6 @@ from pathlib import Path
 
 import pytest
 from generator.drawings.block_diagrams import drawings
-from generator.fault_tables import fault_tables
 from generator.option_tables import TABLES as OPTION_TABLES
 from generator.pages import DOCS, as_markdown, fill_pages, marked_pages, shown_tables
 from generator.runs.launch_table import launch_table
@@ -92,10 +91,6 @@ def test_the_table_of_launches_is_what_the_scenarios_give() -> None:
 def test_the_table_of_sensors_is_what_its_runs_give() -> None:
     computed = as_markdown({'in_thesis': sensor_table()})
     assert shown_tables('sensors') == computed, 'run: make docs KINDS=sensors'
-
-
-def test_the_tables_of_the_fault_campaign_are_those_of_its_records() -> None:
-    assert shown_tables('faults') == as_markdown(fault_tables()), 'run: make docs KINDS=faults'
 
 
 def test_the_tables_of_tunings_are_those_of_the_kept_results() -> None:

@@ -12,9 +12,6 @@ from pathlib import Path
 from typing import Any
 
 import rclpy
-from faults.campaign.case import Case
-from faults.campaign.leftovers import Leftovers
-from faults.campaign.outcome import NEVER, Observed
 from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
@@ -30,6 +27,9 @@ from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import step_of_stamp
 from ddct_plant.graph.qos import RECORDER_QOS
 from ddct_plant.signals.message_kind import stamp_ns
+from faults.case import Case
+from faults.leftovers import Leftovers
+from faults.outcome import NEVER, Observed
 
 PAUSE_S = 0.5
 PATIENCE_S = 3.0

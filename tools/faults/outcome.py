@@ -59,11 +59,6 @@ class Observed:
                 for node, stamp in recording.realtime.safe_states.items()
             }
 
-    @property
-    def disturbed_before(self) -> bool:
-        """Whether steps that a busy machine missed have opened a clutch before the fault."""
-        return self.missed > 0 and any(step < self.fault_step - 1 for step in self.safe.values())
-
     def summary(self) -> str:
         """Return the outcome in a few words."""
         states = [f'safe state of {node} at {step / 100:g} s' for node, step in self.safe.items()]

@@ -5,12 +5,12 @@
 from collections.abc import Callable
 from pathlib import Path
 
-from faults.campaign.case import Case
-from faults.campaign.outcome import Observed
 from support.in_process_graph import InProcessGraph
 from support.patient_clock import PatientClock, realtime_owner
 
 from ddct_plant.graph import sole_publishers
+from faults.case import Case
+from faults.outcome import Observed
 
 PATIENCE_S = 10.0
 """Wall time in s that the driveline waits for an answer here; 60 s for users."""

@@ -1,27 +1,34 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Each node ends and is started again, at once and without its memory."""
+"""Nodes that end and are started again, at once and without their memory."""
 
 from collections.abc import Iterator
 from functools import partial
-from itertools import product
 from pathlib import Path
 
-from faults.campaign.case import CLUTCHES, INSTANTS, MODES, Case
-from faults.campaign.graph_runs import graph_run
-from faults.campaign.outcome import NO_REPLY, RUNS_ON, SAME, Observed, Stated, either, named
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 from rosgraph_msgs.msg import Clock as ClockMessage
 from support.in_process_graph import InProcessGraph
 
-from ddct_bringup.processes.graph_nodes import NodeSpec, nodes_of
 from ddct_plant.base.timebase import step_of_stamp
 from ddct_plant.graph.qos import RECORDER_QOS
 from ddct_plant.signals.message_kind import stamp_ns
+from faults.case import Case, Where, places
+from faults.graph_runs import graph_run
+from faults.outcome import NO_REPLY, RUNS_ON, SAME, Observed, Stated, either, named
 
 AGAIN = either(RUNS_ON, named('carries two different messages'))
 """A node without memory that answers the stamp of its predecessor again may answer otherwise."""
+
+
+RESTARTED: Where = {
+    ('start', 'lockstep', 1): ('driveline',),
+    ('middle', 'lockstep', 1): ('driveline', 'recorder', 'controller', 'actuator'),
+    ('middle', 'lockstep', 2): ('handover',),
+    ('start', 'realtime', 1): ('load',),
+    ('middle', 'realtime', 1): ('driveline', 'recorder', 'actuator'),
+}
 
 
 class Restarter(Node):
@@ -58,23 +65,20 @@ def restart(path: str, case: Case, folder: Path) -> Observed:
 
 
 def cases() -> Iterator[Case]:
-    """Yield each node at each instant; with two clutches what is as with one in the middle."""
-    of_one = nodes_of(shift=False)
-    for clutches, mode, instant in product(CLUTCHES, MODES, INSTANTS):
-        for spec in nodes_of(shift=clutches == 2):
-            if clutches == 2 and spec in of_one and instant != 'middle':
-                continue
-            common = (spec.path, instant, mode, clutches)
-            stated = _after_restart(spec, instant, mode)
-            yield Case('node restarted', *common, stated, partial(restart, spec.path))
+    """Yield each of the targets."""
+    for path, instant, mode, clutches in places(RESTARTED):
+        stated = _after_restart(path, instant, mode)
+        yield Case(
+            *('node restarted', path, instant, mode, clutches), stated, partial(restart, path)
+        )
 
 
-def _after_restart(spec: NodeSpec, instant: str, mode: str) -> Stated:
+def _after_restart(path: str, instant: str, mode: str) -> Stated:
     missed = named('came where step')
     stated = missed if mode == 'lockstep' else AGAIN
-    if spec.path in ('driveline', 'recorder'):
+    if path in ('driveline', 'recorder'):
         stated = either(missed, NO_REPLY, named('nothing was recorded'))
-    elif mode == 'realtime' and spec.name == 'actuator':
+    elif mode == 'realtime' and path == 'actuator':
         # It ends when requests reach it earlier than ticks, for too long.
         stated = either(AGAIN, named('/clock'))
     # A driveline that is started again at once begins the run anew.

@@ -1,23 +1,12 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Each node killed, stopped for half a second, and stopped for good."""
+"""Nodes killed, stopped for half a second, and stopped for good."""
 
 from collections.abc import Iterator
-from itertools import product
 
-from faults.campaign.case import (
-    CLUTCHES,
-    ENDED_BY_FAULT,
-    IN_REAL_TIME,
-    INSTANTS,
-    LONG,
-    MODES,
-    Case,
-)
-from faults.campaign.outcome import REFUSED, RUNS_ON, SAME, Stated, either, named, safe_state
-from faults.campaign.process_runs import kill, pause, stop
-
-from ddct_bringup.processes.graph_nodes import nodes_of
+from faults.case import ENDED_BY_FAULT, IN_REAL_TIME, LONG, Case, Where, places
+from faults.outcome import REFUSED, RUNS_ON, SAME, Stated, either, named, safe_state
+from faults.process_runs import kill, pause, stop
 
 OPENS = {
     'actuator': ('driveline',),
@@ -45,10 +34,29 @@ ANSWERS = {
 }
 """A topic that stays away when a node has stopped."""
 
-_NODES_OF_ONE = [spec.path for spec in nodes_of(shift=False)]
+KILLED: Where = {
+    ('start', 'lockstep', 1): ('load', 'driveline'),
+    ('middle', 'lockstep', 1): ('driveline', 'recorder', 'controller'),
+    ('middle', 'lockstep', 2): ('off_going/clutch',),
+    ('middle', 'realtime', 1): ('driveline', 'recorder', 'clutch'),
+}
+PAUSED: Where = {
+    ('middle', 'lockstep', 1): ('driveline', 'recorder', 'controller'),
+    ('middle', 'lockstep', 2): ('off_going/clutch',),
+    ('start', 'realtime', 1): ('load',),
+    ('middle', 'realtime', 1): ('driveline', 'recorder', 'controller', 'clutch'),
+    ('middle', 'realtime', 2): ('handover',),
+}
+STOPPED: Where = {
+    ('start', 'lockstep', 1): ('controller',),
+    ('middle', 'lockstep', 1): ('driveline', 'recorder', 'engine'),
+    ('start', 'realtime', 1): ('actuator',),
+    ('middle', 'realtime', 1): ('driveline', 'recorder', 'controller', 'clutch', 'load'),
+    ('middle', 'realtime', 2): ('handover',),
+}
 
 
-def _after_kill(node: str, mode: str) -> Stated:
+def _after_kill(node: str, instant: str, mode: str) -> Stated:
     words = f'node {node} was killed by SIGKILL'
     return named(words) if mode == 'lockstep' else named(words, within_s=GONE_S)
 
@@ -76,17 +84,14 @@ def _after_pause(node: str, instant: str, mode: str) -> Stated:
 
 
 def cases() -> Iterator[Case]:
-    """Yield the faults of each node; with two clutches what is as with one in the middle alone."""
-    for clutches, mode, instant in product(CLUTCHES, MODES, INSTANTS):
-        lockstep = mode == 'lockstep'
-        pause_steps = LONG if lockstep else IN_REAL_TIME
-        end_steps = ENDED_BY_FAULT if lockstep else IN_REAL_TIME
-        for spec in nodes_of(shift=clutches == 2):
-            node, common = spec.path, (instant, mode, clutches)
-            if clutches == 2 and node in _NODES_OF_ONE and instant != 'middle':
-                continue
-            yield Case('node killed', node, *common, _after_kill(node, mode), kill, end_steps)
-            paused = _after_pause(node, instant, mode)
-            yield Case('node stopped for 0.5 s', node, *common, paused, pause, pause_steps)
-            stopped = _after_stop(node, instant, mode)
-            yield Case('node stopped for good', node, *common, stopped, stop, end_steps)
+    """Yield each fault of each of its targets."""
+    kinds = (
+        ('node killed', KILLED, _after_kill, kill, ENDED_BY_FAULT),
+        ('node stopped for 0.5 s', PAUSED, _after_pause, pause, LONG),
+        ('node stopped for good', STOPPED, _after_stop, stop, ENDED_BY_FAULT),
+    )
+    for fault, where, stated_of, attempt, in_lockstep in kinds:
+        for node, instant, mode, clutches in places(where):
+            stated = stated_of(node, instant, mode)
+            steps = in_lockstep if mode == 'lockstep' else IN_REAL_TIME
+            yield Case(fault, node, instant, mode, clutches, stated, attempt, steps)

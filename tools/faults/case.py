@@ -2,29 +2,35 @@
 # SPDX-License-Identifier: Apache-2.0
 """A case of the fault campaign: one fault, its run, and what must follow from it."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from faults.campaign.outcome import Observed, Stated
 from support.runs import plan
 
 from ddct_bringup.run.plan import RunPlan
 from ddct_plant.base.timebase import time_of_step
+from faults.outcome import Observed, Stated
 
-MODES = ('lockstep', 'realtime')
 SHORT, IN_REAL_TIME, LONG = 100, 160, 400
 """Steps of a run; in real time a fault of half a second must be over before the end."""
 ENDED_BY_FAULT = 3000
 """Steps of a run in lock-step that its fault ends: it must not be over before the fault."""
-INSTANTS = ('start', 'middle', 'end')
 MIDDLE = 68
 """Step at which a fault in the middle begins; control begins at step 60, or 30 in the shift."""
 LATEST = 15
 """Most steps of a real-time run by which a fault may come later than its instant."""
 MOST_TRIES = 3
 """Times that a case is tried where a busy machine was too late for it."""
-CLUTCHES = (1, 2)
+Where = Mapping[tuple[str, str, int], Sequence[str]]
+"""Targets of a fault by instant, mode and number of clutches."""
+
+
+def places(where: Where) -> Iterator[tuple[str, str, str, int]]:
+    """Yield target, instant, mode and number of clutches of each case."""
+    for (instant, mode, clutches), targets in where.items():
+        for target in targets:
+            yield target, instant, mode, clutches
 
 
 def run_of(mode: str, clutches: int, steps: int = SHORT, *, equipped: bool = False) -> RunPlan:

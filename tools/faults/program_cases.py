@@ -5,11 +5,10 @@
 import resource
 from collections.abc import Iterator, Mapping
 from functools import partial
-from itertools import product
 
-from faults.campaign.case import CLUTCHES, ENDED_BY_FAULT, INSTANTS, LONG, MODES, Case
-from faults.campaign.outcome import RUNS_ON, SAME, Stated, either, named, safe_state
-from faults.campaign.program_runs import (
+from faults.case import ENDED_BY_FAULT, LONG, Case
+from faults.outcome import RUNS_ON, SAME, Stated, either, named, safe_state
+from faults.program_runs import (
     kill_bringup,
     on_a_full_disk,
     slow_controller,
@@ -34,7 +33,12 @@ ENVIRONMENTS: Mapping[str, Mapping[str, str | None]] = {
     'TMPDIR that does not exist': {'TMPDIR': '/no/such/folder'},
     'no locale': {'LC_ALL': 'C', 'LANG': None},
 }
-FEW_FILES = (20, 40, 64, 256)
+FEW_FILES = (20, 64)
+"""Fewer than the program needs, and than the nodes need."""
+KILLED_AT = (
+    *(('lockstep', instant, 1) for instant in ('start', 'middle', 'end')),
+    ('realtime', 'middle', 1),
+)
 
 
 def _ends(mode: str, *otherwise: Stated) -> Stated:
@@ -45,26 +49,27 @@ def _ends(mode: str, *otherwise: Stated) -> Stated:
 
 def cases() -> Iterator[Case]:
     """Yield the faults of the program and of its surroundings."""
-    for clutches, mode in product(CLUTCHES, MODES):
-        for instant in INSTANTS:
-            common = ('bringup', instant, mode, clutches)
-            steps = ENDED_BY_FAULT if mode == 'lockstep' else LONG
-            yield Case('killed by SIGKILL', *common, KILLED, kill_bringup, steps)
-        whole = ('bringup', '', mode, clutches)
+    for mode, instant, clutches in KILLED_AT:
+        steps = ENDED_BY_FAULT if mode == 'lockstep' else LONG
+        yield Case(
+            *('killed by SIGKILL', 'bringup', instant, mode, clutches, KILLED, kill_bringup, steps)
+        )
+    for mode in ('lockstep', 'realtime'):
+        whole = ('bringup', '', mode, 1)
         full = named('No space left on device')
         yield Case('full disk', *whole, full, on_a_full_disk, 2000)
         both = _ends(mode, ONE_LINE)
         yield Case('two graphs on one domain', *whole, both, two_graphs, LONG)
-        large = partial(with_limit, resource.RLIMIT_FSIZE, 200 * 1024)
-        yield Case('limit on the size of files', *whole, named('File too large'), large, 2000)
-        for files in FEW_FILES:
-            few = partial(with_limit, resource.RLIMIT_NOFILE, files)
-            yield Case(f'{files} file descriptors', *whole, _ends(mode, ONE_LINE), few)
-        for what, changes in ENVIRONMENTS.items():
-            stated = _ends(mode, named('HOME')) if what == 'no HOME' else _ends(mode)
-            yield Case(what, *whole, stated, partial(with_environment, changes))
-        yield Case('locale with decimal comma', *whole, _ends(mode), with_comma)
         late = SAME if mode == 'lockstep' else safe_state('actuator')
-        yield Case(
-            'slow controller', 'controller', 'middle', mode, clutches, late, slow_controller
-        )
+        yield Case('slow controller', 'controller', 'middle', mode, 1, late, slow_controller)
+    whole = ('bringup', '', 'lockstep', 1)
+    large = partial(with_limit, resource.RLIMIT_FSIZE, 200 * 1024)
+    yield Case('limit on the size of files', *whole, named('File too large'), large, 2000)
+    for files in FEW_FILES:
+        few = partial(with_limit, resource.RLIMIT_NOFILE, files)
+        yield Case(f'{files} file descriptors', *whole, _ends('lockstep', ONE_LINE), few)
+    for what, changes in ENVIRONMENTS.items():
+        otherwise = [named('HOME')] if what == 'no HOME' else []
+        stated = _ends('lockstep', *otherwise)
+        yield Case(what, *whole, stated, partial(with_environment, changes))
+    yield Case('locale with decimal comma', *whole, _ends('lockstep'), with_comma)

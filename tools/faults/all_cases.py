@@ -1,11 +1,17 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""All cases of the campaign, in the order of the table."""
+"""
+All cases of the campaign: each kind of fault once per place where the code path differs.
+
+Every part lists its targets. They are no products: what happens to one node of a kind happens to
+the others, so a fault is tried on the owner of time, on the recorder, on a node in the chain of
+replies, and on one of the second clutch where its path is another.
+"""
 
 from functools import cache
 from itertools import chain
 
-from faults.campaign import (
+from faults import (
     hop_cases,
     process_cases,
     program_cases,
@@ -13,7 +19,7 @@ from faults.campaign import (
     spoilt_cases,
     stranger_cases,
 )
-from faults.campaign.case import Case
+from faults.case import Case
 
 
 @cache

@@ -1,17 +1,13 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""A stranger in the graph: false stamps, a second publisher, another type, on every topic."""
+"""A stranger in the graph: false stamps, a second publisher, another type."""
 
 from collections.abc import Callable, Iterator, Sequence
 from functools import cache, partial
-from itertools import product
 from pathlib import Path
 from typing import Any
 
 import rclpy
-from faults.campaign.case import CLUTCHES, MODES, Case, run_of
-from faults.campaign.graph_runs import graph_run
-from faults.campaign.outcome import RUNS_ON, SAME, Observed, either, named
 from geometry_msgs.msg import PolygonStamped
 from rclpy.clock import Clock, ClockType
 from rclpy.context import Context
@@ -25,7 +21,10 @@ from ddct_plant.graph.qos import LOOP_QOS, RECORDER_QOS
 from ddct_plant.signals.message_kind import set_time, stamp_ns
 from ddct_plant.signals.signal import RunKind
 from ddct_plant.signals.topic import Topic
-from ddct_plant.signals.topics import recorded_topics
+from ddct_plant.signals.topics import TOPICS, recorded_topics
+from faults.case import Case, Where, places
+from faults.graph_runs import graph_run
+from faults.outcome import RUNS_ON, SAME, Observed, Stated, either, named
 
 SHIFTS = {
     'stamp in the past': -30 * PERIOD_NS,
@@ -36,8 +35,26 @@ SHIFTS = {
 FAR = 3000
 """Factor on these in real time, where the limit of stamps goes with the wall clock: minutes."""
 REPEAT_S = 0.02
-PLAIN = RunKind()
-"""Run without anything optional."""
+FALSELY_STAMPED: dict[str, Where] = {
+    'stamp in the past': {('middle', 'lockstep', 1): ('/clock', 'clutch/torque')},
+    'stamp in the future': {
+        ('middle', 'lockstep', 1): ('/clock', 'clutch/torque', 'controller/status'),
+    },
+    'stamp off the grid': {
+        ('middle', 'lockstep', 1): ('clutch/torque', 'recorder/ack'),
+        ('middle', 'lockstep', 2): ('clutch/handover_share',),
+    },
+}
+"""Topics that owner of time, joins and recorder read."""
+TWICE_PUBLISHED: Where = {
+    ('middle', 'lockstep', 1): ('/clock', 'clutch/torque', 'controller/status'),
+    ('middle', 'realtime', 1): ('/clock', 'clutch/torque_request'),
+}
+OF_ANOTHER_TYPE: Where = {
+    ('start', 'lockstep', 1): ('clutch/torque', 'controller/status', 'run_info'),
+    ('start', 'realtime', 1): ('load/torque', '/diagnostics'),
+}
+"""Topics that somebody waits for, that only the recorder reads, and reports."""
 
 
 class Stranger(Node):
@@ -122,46 +139,46 @@ def other_type(topic: Topic, case: Case, folder: Path) -> Observed:
 
 
 @cache
-def topics_of(clutches: int) -> tuple[Topic, ...]:
-    """Return the topics of each tick; with two clutches those that one clutch lacks."""
-    if clutches == 1:
-        return _ticked(run_of('lockstep', 1).settings.kind())
-    every = _ticked(run_of('lockstep', 2, equipped=True).settings.kind(two_input=True))
-    return tuple(topic for topic in every if topic not in topics_of(1))
+def topic_of(name: str) -> Topic:
+    """Return the topic with a name."""
+    (topic,) = [each for each in TOPICS if each.name == name]
+    return topic
 
 
-def _ticked(kind: RunKind) -> tuple[Topic, ...]:
-    return tuple(topic for topic in recorded_topics(kind) if topic.every_tick)
+def topics_of_a_tick() -> list[Topic]:
+    """Return the topics of each tick of a run with one clutch."""
+    return [topic for topic in recorded_topics(RunKind()) if topic.every_tick]
 
 
 def cases() -> Iterator[Case]:
-    """Yield the faults for every topic of a tick; false stamps in real time for all at once."""
-    for clutches, mode in product(CLUTCHES, MODES):
-        make = partial(Case, mode=mode, clutches=clutches, equipped=clutches == 2)
-        for topic in topics_of(clutches):
-            if mode == 'lockstep':
-                one_of_two = either(SAME, named(topic.name))
-                for fault, by_ns in SHIFTS.items():
-                    attempt = partial(false_stamp, by_ns, [topic])
-                    yield make(fault, topic.name, 'middle', stated=one_of_two, attempt=attempt)
-            both = named(topic.name, '/stranger')
-            second = partial(second_publisher, topic)
-            yield make('second publisher', topic.name, 'middle', stated=both, attempt=second)
-        if mode == 'realtime':
-            for fault, by_ns in SHIFTS.items():
-                attempt = partial(false_stamp, FAR * by_ns, topics_of(clutches))
-                yield make(fault, 'each topic', 'middle', stated=SAME, attempt=attempt)
-        for topic in (*topics_of(clutches), *_reports(clutches, mode)):
-            # The middleware may know the type before the name of the node. No node waits for a
-            # report, and none receives it with another type.
-            harmless = SAME if mode == 'lockstep' else RUNS_ON
-            stated = named(topic.name, 'PolygonStamped') if topic.every_tick else harmless
-            attempt = partial(other_type, topic)
-            yield make('another type', topic.name, 'start', stated=stated, attempt=attempt)
+    """Yield each fault of each of its topics; false stamps in real time for all at once."""
+    for fault, by_ns in SHIFTS.items():
+        for name, instant, mode, clutches in places(FALSELY_STAMPED[fault]):
+            attempt = partial(false_stamp, by_ns, [topic_of(name)])
+            yield _case(fault, name, instant, mode, clutches, either(SAME, named(name)), attempt)
+        attempt = partial(false_stamp, FAR * by_ns, topics_of_a_tick())
+        yield _case(fault, 'each topic', 'middle', 'realtime', 1, SAME, attempt)
+    for name, instant, mode, clutches in places(TWICE_PUBLISHED):
+        attempt = partial(second_publisher, topic_of(name))
+        stated = named(name, '/stranger')
+        yield _case('second publisher', name, instant, mode, clutches, stated, attempt)
+    for name, instant, mode, clutches in places(OF_ANOTHER_TYPE):
+        # The middleware may know the type before the name of the node. No node waits for a
+        # report, and none receives it with another type.
+        harmless = SAME if mode == 'lockstep' else RUNS_ON
+        stated = named(name, 'PolygonStamped') if topic_of(name).every_tick else harmless
+        attempt = partial(other_type, topic_of(name))
+        yield _case('another type', name, instant, mode, clutches, stated, attempt)
 
 
-def _reports(clutches: int, mode: str) -> list[Topic]:
-    """Return the topics without a message per tick that a run has, once for all runs."""
-    kind = run_of(mode, clutches).settings.kind()
-    reports = [topic for topic in recorded_topics(kind) if not topic.every_tick]
-    return reports if clutches == 1 else [each for each in reports if not each.in_run(PLAIN)]
+def _case(
+    fault: str,
+    target: str,
+    instant: str,
+    mode: str,
+    clutches: int,
+    stated: Stated,
+    attempt: Callable[[Case, Path], Observed],
+) -> Case:
+    equipped = clutches == 2
+    return Case(fault, target, instant, mode, clutches, stated, attempt, equipped=equipped)

@@ -13,13 +13,13 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from faults.campaign.case import Case
-from faults.campaign.leftovers import Leftovers
-from faults.campaign.outcome import NEVER, Observed
-from faults.campaign.process_runs import at_step
 from support.processes import Program, Programs, children_of
 
 from ddct_plant.base.timebase import time_of_step
+from faults.case import Case
+from faults.leftovers import Leftovers
+from faults.outcome import NEVER, Observed
+from faults.process_runs import at_step
 
 END_S = 90.0
 COMMA = 'de_DE.UTF-8'
