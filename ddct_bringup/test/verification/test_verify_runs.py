@@ -4,6 +4,7 @@
 
 import json
 import re
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -22,11 +23,14 @@ from verified import (
 )
 
 from ddct_bringup.bag.reader import read_bag
+from ddct_bringup.bag.recording import Recording
+from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.bag.trajectory_bag import write_trajectory
 from ddct_bringup.digests.digest_file import DIGESTS, read_digests
 from ddct_bringup.digests.files import digests_of_files
 from ddct_bringup.programs import compare, report, score, verify
 from ddct_controllers.from_file.with_options import with_options_text
+from ddct_plant.signals.gain_changes import GainChange
 
 pytestmark = pytest.mark.slow
 
@@ -155,8 +159,14 @@ def _rewrite_bag(folder: Path, timeout_s: str = '', **custom_data: str) -> None:
     elif not custom_data:
         recording.trajectory.slip_speed[60] += 1e-6
     data = {**recording.custom_data, **custom_data}
+    _write_anew(folder, replace(recording, custom_data=data, run_info=nodes))
+
+
+def _write_anew(folder: Path, recording: Recording) -> None:
+    """Write a recording with its digest in place of the bag in a folder."""
     recording.path.unlink()
     (folder / 'metadata.yaml').unlink()
+    data, nodes = recording.custom_data, recording.run_info
     write_trajectory(recording.trajectory, folder, 'pi', data, nodes)
     read_digests(folder).with_files(digests_of_files(folder)).write(folder)
 
@@ -172,6 +182,29 @@ def test_a_signal_of_a_bag_edited_with_its_digest_is_found(
     first = run['first_difference']
     assert (first['signal'], first['step']) == ('slip_speed', 60)
     assert first['recorded'] != first['repeated']
+
+
+@pytest.mark.parametrize(
+    ('gain', 'found'),
+    [('proportional_gain', 'signal '), ('nix', 'its repetition fails: unknown gain nix: known: ')],
+)
+def test_a_changed_gain_is_named_where_the_repetition_with_it_differs(
+    runs: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str], gain: str, found: str
+) -> None:
+    folder = copied(runs / 'pi', tmp_path / 'pi')
+    change, recording = GainChange(gain, 0.103, 0.25, 65), read_bag(folder)
+    status = tuple(
+        (*pairs, change.pair) if step >= change.step else pairs
+        for step, pairs in enumerate(recording.trajectory.status)
+    )
+    signals = {**recording.trajectory.signals, 'status': status}
+    _write_anew(folder, replace(recording, trajectory=Trajectory(signals)))
+    code, document, errors = verified(folder, capfd)
+    assert (code, states(document)) == (1, {'pi': 'different'})
+    note = f'gains changed in the run: {gain} 0.103 to 0.25 at 0.65 s'
+    assert document['runs'][0]['note'] == note
+    (line,) = errors.splitlines()
+    assert found in line and line.endswith(f'; {note}')
 
 
 def test_a_parameter_of_a_node_edited_with_its_digest_is_found(
