@@ -145,6 +145,14 @@ class Course(NamedTuple):
             slope = slope * part + order * coefficients[order]
         return flow.signs[element] * slope + 0.0  # no zero with a sign
 
+    def friction(self) -> np.ndarray:
+        """Return the coefficients of t^k of the friction torques, (N, d+1)."""
+        flow = self.flow
+        inputs = self.y[flow.states :].reshape(2, -1)
+        torques = flow.force[:, : flow.states].dot(self.states.T)
+        torques[:, :2] += flow.force[:, flow.states :].dot(inputs.T)
+        return torques
+
     def capacities(self) -> tuple[list[float], list[float]]:
         """Return the capacities at t = 0, and their change over a piece, (N,) each."""
         elements = len(self.flow.signs)

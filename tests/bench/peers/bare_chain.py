@@ -41,7 +41,7 @@ VALUES: dict[str, tuple[Any, ...]] = {
     'clutch/slip_reference': ([1.0], [1.0]),
     'controller/status': (STATUS,),
     'clutch/phase': (1.0, 1.0, ()),
-    'off_going/clutch/phase': (1.0, 1.0, ()),
+    'off_going/clutch/phase': (1.0, 1.0, 1.0, ()),
 }
 """Values of the message of a topic; others have the number 1, or a row of it, for each signal."""
 SHIFT = RunKind(clutch='stick_slip', shift=True)
