@@ -10,7 +10,7 @@ import numpy as np
 from ddct_plant.base.errors import DdctError
 from ddct_plant.identification.from_log.stretch import LOAD, SPEED_COLUMNS, TORQUES, Stretch
 from ddct_plant.measured.columns import MOST_DELAY_S
-from ddct_plant.measured.log import SPEEDS, MeasuredLog
+from ddct_plant.measured.log import SPEEDS, MeasuredLog, between
 
 FEWEST_SAMPLES = 40
 """Fewest samples of a stretch: 0.4 s at 100 Hz, just over a period of the locked driveline."""
@@ -35,7 +35,8 @@ def stretches_of(log: MeasuredLog, known_load: KnownLoad) -> list[Stretch]:
     Return the stretches of a log; raise DdctError when none is long enough.
 
     A sample is a row with all three speeds. Each torque has its own rows. A gap of any of them
-    ends a stretch. Where C_load was not measured `known_load` gives its known part.
+    ends a stretch. Where C_load was not measured `known_load` gives its known part, between the
+    samples of w_r as the log's `held` says.
     """
     speeds = np.column_stack([log.signals[name] for name in SPEEDS])
     rows = np.isfinite(speeds).all(axis=1)
@@ -125,8 +126,12 @@ def _stretch(
     before = int(np.ceil(2.0 * MOST_DELAY_S / step))
     after = before + int(np.ceil((time_s[-1] - time_s[0]) / step - 1e-6))
     grid_s = time_s[0] + step * np.arange(-before, after + 1)
-    known, wheel_speed = LOAD in log.signals, speeds[:, SPEED_COLUMNS['wheel_speed']]
-    load = log.at(LOAD, grid_s) if known else known_load(np.interp(grid_s, time_s, wheel_speed))
+    known = LOAD in log.signals
+    if known:
+        load = log.at(LOAD, grid_s)
+    else:
+        wheel_speed = speeds[:, SPEED_COLUMNS['wheel_speed']]
+        load = known_load(between(time_s, wheel_speed, grid_s, held=LOAD in log.held))
     second_differences = [_second_difference(log, name, grid_s) for name in TORQUES]
     return Stretch(
         time_s=time_s,
