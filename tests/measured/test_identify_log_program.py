@@ -13,6 +13,7 @@ from support.runs import expected, plan, record
 
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.scores.csv_text import signals_csv
+from ddct_plant.identification.from_log import command
 from ddct_plant.identification.identify import main
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
@@ -163,3 +164,36 @@ def test_options_that_make_no_sense_are_refused(
     assert main(options) == 1
     (line,) = capsys.readouterr().err.splitlines()
     assert complaint in line
+
+
+@pytest.mark.parametrize('option', ['--from', '--check'])
+@pytest.mark.parametrize(('unit', 'period'), [('s', '8 s'), ('us', '8e-06 s')])
+def test_a_wrong_unit_of_the_time_is_named_before_the_fit(
+    folder: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+    option: str,
+    unit: str,
+    period: str,
+) -> None:
+    """The rows are 8 ms apart: in --from the map has a wrong unit, in --check the file."""
+    monkeypatch.setattr(command, 'fit_log', _no_fit)
+    wrong = folder / 'drive.csv'
+    if option == '--check':
+        wrong = folder / 'other.csv'
+        lines = (folder / 'drive.csv').read_text().splitlines()
+        rows = [line.split(';') for line in lines[2:]]
+        factor = {'s': 1e3, 'us': 1e-3}[unit]
+        times = [f'{factor * float(row[0].replace(",", ".")):.9f}' for row in rows]
+        moved = [';'.join([time, *row[1:]]) for time, row in zip(times, rows, strict=True)]
+        wrong.write_text('\n'.join([*lines[:2], *moved]) + '\n')
+    else:
+        (folder / 'map.yaml').write_text(COLUMNS.replace('unit: ms', f'unit: {unit}'))
+    assert identify(folder, *(['--check', str(wrong)] if option == '--check' else [])) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert f'{wrong}: engine_speed has a sampling period of {period}' in line
+    assert 'check the unit of columns.time, with which the period may be 0.008 s' in line
+
+
+def _no_fit(*_: object) -> None:
+    raise AssertionError('the fit began')

@@ -78,6 +78,8 @@ def identify_log(options: argparse.Namespace) -> int:
     columns = load_columns(options.columns) if options.columns else own_columns(TIME, *NEEDED)
     fitted, held_out = _logs(options, columns)
     known_load, known_delays = load_of(base), columns.known_delays
+    # Before the fit, which takes long, because it raises the errors of the held-out data.
+    predicted = stretches_of(held_out, known_load)
     count, progress = itertools.count(1), Progress('fitting the driveline, evaluations')
     fit = fit_log(
         fitted,
@@ -88,7 +90,7 @@ def identify_log(options: argparse.Namespace) -> int:
         lambda: progress.update(next(count)),
     )
     progress.end()
-    predictions = predict(fit, stretches_of(held_out, known_load))
+    predictions = predict(fit, predicted)
     reasons = reasons_against(fit, predictions, stretches_of(fitted, known_load))
     report = LogFitReport(fit, predictions, reasons, fitted, held_out)
     show_and_write(options.json, content_of(report), lambda: print_fit(report))
