@@ -101,6 +101,8 @@ class ColumnMap:
 
     C_load may be among them without a column: then the part of it that is computed is held.
     """
+    optional: tuple[str, ...] = ()
+    """Quantities that a log without their column lacks; the other columns must be there."""
 
     @property
     def known_delays(self) -> dict[str, float]:
@@ -109,13 +111,13 @@ class ColumnMap:
         return {name: each for name, each in given.items() if each is not None}
 
 
-def own_columns(*names: str) -> ColumnMap:
+def own_columns(*names: str, optional: tuple[str, ...] = ()) -> ColumnMap:
     """Return the column map of quantities in the output of `score --signals-csv`."""
-    quantities_by_name = {name: QUANTITIES[name] for name in names}
+    quantities_by_name = {name: QUANTITIES[name] for name in (*names, *optional)}
     columns = {
         name: LogColumn(each.own_column, each.unit) for name, each in quantities_by_name.items()
     }
-    return ColumnMap(columns, {}, OWN_HELD)
+    return ColumnMap(columns, {}, OWN_HELD, optional)
 
 
 def load_columns(file: str) -> ColumnMap:

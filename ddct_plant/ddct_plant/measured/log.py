@@ -116,10 +116,18 @@ def _read_csv_log(path: Path, columns: ColumnMap, needed: Sequence[str]) -> Meas
             raise ParameterError(f'{path}: the column map has no {name}: add columns.{name}')
     names = [each.column for each in columns.columns.values()]
     dated = [each.column for each in columns.columns.values() if each.unit == DATE_TIME]
-    table = read_csv(path, names, most_bytes=MOST_BYTES, most_rows=MOST_ROWS, date_times=dated)
+    table = read_csv(
+        path,
+        names,
+        most_bytes=MOST_BYTES,
+        most_rows=MOST_ROWS,
+        date_times=dated,
+        optional=[columns.columns[name].column for name in columns.optional],
+    )
     signals = {
         name: si_values(table.columns[each.column], _unit(each), QUANTITIES[name].unit)
         for name, each in columns.columns.items()
+        if each.column in table.columns
     }
     _require_rising(table, columns.columns[TIME].column, signals[TIME])
     for name, values in signals.items():
