@@ -18,6 +18,7 @@ from ddct_plant.identification.from_log.scenario import (
     name_of,
     radius_of,
     replay_of,
+    require_new_scenario,
     with_radius,
 )
 from ddct_plant.identification.from_log.stretch import TORQUES
@@ -72,6 +73,9 @@ def add_log_options(parser: ProgramParser) -> None:
         help='accept a fit that is refused: write the scenario all the same, exit code 0',
     )
     group.add_argument('--out', metavar='FILE.yaml', help='write a scenario that replays the log')
+    group.add_argument(
+        '--overwrite', action='store_true', help='replace an earlier scenario at --out'
+    )
     add_scenario_options(group, set_example='vehicle.wheel_radius_m=0.31')
 
 
@@ -81,6 +85,7 @@ def identify_log(options: argparse.Namespace) -> int:
         raise DdctError(f'--hold-out is {options.hold_out:g}: give a share from 0.1 to 0.9')
     for option, file in (('--out', options.out), ('--json', options.json)):
         require_place(option, file)
+    require_new_scenario(options.out, overwrite=options.overwrite)
     start = base_scenario(options, options.overrides)
     columns = (
         load_columns(options.columns)

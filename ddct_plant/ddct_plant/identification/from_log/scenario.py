@@ -12,6 +12,7 @@ import numpy as np
 
 from ddct_plant.base.errors import LONGEST_NAME, DdctError
 from ddct_plant.base.timebase import PERIOD_S, time_of_step
+from ddct_plant.files.output_file import STDOUT, require_new
 from ddct_plant.identification.from_log.delays import residuals_by_name, without_ends
 from ddct_plant.identification.from_log.result import (
     ASSUMED,
@@ -31,6 +32,7 @@ from ddct_plant.models.load import RoadLoad
 from ddct_plant.models.parameters import DrivelineSection
 from ddct_plant.scenario.content import flat
 from ddct_plant.scenario.csv_profiles import MOST_ROWS
+from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.initial_speeds import InitialSpeeds
 from ddct_plant.scenario.overrides import parsed_override
 from ddct_plant.scenario.rules.consistency import RADIUS, gear_line
@@ -44,6 +46,21 @@ _PIECES = 10
 """Number of instants of a period over which C_m is averaged."""
 _MOVED = ('driveline.', 'vehicle.mass_kg', 'gear')
 """Beginnings of the lines in `adjusted` about values that the log replaces."""
+
+
+def require_new_scenario(target: str | None, *, overwrite: bool) -> None:
+    """Raise DdctError where the `target` of --out exists; `overwrite` replaces a scenario only."""
+    if not target or target == STDOUT or not Path(target).exists():
+        return
+    require_new('--out', target, overwrite=overwrite)
+    try:
+        load_scenario(str(Path(target).resolve()))
+    except DdctError as error:
+        raise DdctError(
+            f'{target} is no scenario, and --overwrite replaces only that: choose another --out '
+            f'({error})',
+            key='--out',
+        ) from error
 
 
 def radius_of(base: Scenario, overrides: Sequence[str], log: MeasuredLog) -> WheelRadius:
