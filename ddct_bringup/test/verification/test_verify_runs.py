@@ -314,6 +314,25 @@ def test_a_changed_file_behind_another_one_is_refused_before_it_runs(
     assert not ran.exists(), 'code of another file has run'
 
 
+def test_a_changed_module_beside_a_controller_file_is_named_as_the_cause(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    file, helper = tmp_path / 'mine.py', tmp_path / 'parts' / 'gains.py'
+    file.write_text(f'from parts.gains import GAIN\n{CONTROLLER}', encoding='utf-8')
+    helper.parent.mkdir()
+    helper.write_text('GAIN = 0.1\n', encoding='utf-8')
+    runs = make_runs(tmp_path / 'runs', str(file))
+    assert verified(runs, capfd)[0] == 0
+    ran = tmp_path / 'ran'
+    helper.write_text(f'GAIN = open({str(ran)!r}, "w")\n', encoding='utf-8')
+    code, _, errors = verified(runs, capfd)
+    assert code == 1
+    assert f'controller {file}: parts/gains.py has changed since' in errors
+    helper.unlink()
+    assert f'controller {file}: parts/gains.py is gone' in verified(runs, capfd)[2]
+    assert not ran.exists(), 'code of another file has run'
+
+
 def test_a_run_that_failed_fails_again_with_the_same_reason(
     tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
@@ -375,7 +394,12 @@ def test_scores_by_other_limits_need_these_limits(
 
 @pytest.mark.parametrize(
     ('key', 'value'),
-    [('controller', 3), ('controller_files', 'mine.py'), ('handover', ['mine.py'])],
+    [
+        ('controller', 3),
+        ('controller_files', 'mine.py'),
+        ('handover', ['mine.py']),
+        ('handover_files', 'mine.py'),
+    ],
 )
 def test_digests_of_a_run_with_another_type_are_one_line(
     runs: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str], key: str, value: Any
