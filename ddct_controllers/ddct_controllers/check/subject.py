@@ -21,7 +21,7 @@ from ddct_controllers.check.trial import (
 )
 from ddct_controllers.check.watch import OutputMonitor
 from ddct_controllers.from_file.own_modules import module_name, sources_of
-from ddct_controllers.from_file.python_file import SUFFIX
+from ddct_controllers.from_file.python_file import SUFFIX, python_spec
 from ddct_controllers.interface import Controller, ControllerSpec, Measurement
 from ddct_controllers.linear import PiController
 from ddct_controllers.places import place_of_error
@@ -69,12 +69,13 @@ class Subject:
 
     @cached_property
     def spec(self) -> ControllerSpec[Controller]:
-        """Specification by which the controller is made."""
-        return controller_spec(self.name)
+        """Specification by which the controller is made; objects of a file share its modules."""
+        spec = controller_spec(self.name)
+        return python_spec(self.name, anew=False) if self.name.endswith(SUFFIX) else spec
 
     def make(self) -> Controller:
         """Return a new controller object."""
-        return make_controller(self.name, self.settings)
+        return make_controller(self.spec, self.settings)
 
     def failure(self, error: BaseException) -> CheckFailedError:
         """Return the failure of a check in which the controller raised `error`."""

@@ -90,22 +90,30 @@ def module_name(sources: Sources) -> str:
     return f'controller_file_{stem}_{hashlib.sha256(content.encode()).hexdigest()[:12]}'
 
 
-def load_module(sources: Sources) -> ModuleType:
+def load_module(sources: Sources, *, anew: bool = False) -> ModuleType:
     """
-    Return the module of a file; it runs once, and after an edit anew with all of its own.
+    Return the module of a file; after an edit, or `anew`, it runs again with all of its own.
 
-    Raise whatever its code raises; then no module of it stays.
+    Objects of an earlier load keep the modules that they have. Raise whatever its code raises;
+    then no module of it stays.
     """
     name = module_name(sources)
     _FINDER.sources[name] = sources
     if _FINDER not in sys.meta_path:
         sys.meta_path.append(_FINDER)
+    if anew:
+        _forget(name)
     try:
         return importlib.import_module(name)
     except BaseException:
-        for each in [each for each in sys.modules if each.partition('.')[0] == name]:
-            del sys.modules[each]
+        _forget(name)
         raise
+
+
+def _forget(name: str) -> None:
+    """Remove the module of a file and its own from the loaded ones."""
+    for each in [each for each in sys.modules if each.partition('.')[0] == name]:
+        del sys.modules[each]
 
 
 class _Finder(MetaPathFinder, Loader):

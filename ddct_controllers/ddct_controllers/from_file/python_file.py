@@ -17,7 +17,7 @@ from ddct_controllers.from_file.own_modules import (
     source_digests,
     sources_of,
 )
-from ddct_controllers.interface import Controller, ControllerSpec
+from ddct_controllers.interface import Controller, ControllerContext, ControllerSpec
 from ddct_controllers.places import place_of_error
 from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError, ParameterError, require_name
 from ddct_plant.files.input_file import located
@@ -27,20 +27,28 @@ SUFFIX = '.py'
 _PAGE = 'docs/controllers/writing_a_controller.md'
 
 
-def python_spec(file: str) -> ControllerSpec[Controller]:
+def python_spec(file: str, *, anew: bool = True) -> ControllerSpec[Controller]:
     """
     Return the specification of the controller in a Python file, with its class's name.
 
-    Raise DdctError that names the file where it cannot be loaded, ParameterError where it does not
-    define one controller.
+    With `anew` it loads the file again for each controller that it makes: runs in one process
+    share no variable of a module. Raise DdctError that names the file where it cannot be loaded,
+    ParameterError where it does not define one controller.
     """
     path = Path(file)
     with located(f'controller file {path}'):
         sources = sources_of(path)
-        made = _the_one(Controller, _module(sources), _PAGE)  # type: ignore[type-abstract]
+        made = _controller_class(_module(sources))
         require_name('controller name', made.__name__)
         spec = factory_spec(made.__name__, made, str(path))
-    return replace(spec, digests=source_digests(FILE_DIGEST, sources))
+
+    def make(context: ControllerContext) -> Controller:
+        with located(f'controller file {path}'):
+            again = _controller_class(_module(sources, anew=True))
+        return factory_spec(spec.name, again, str(path)).make(context)
+
+    digests = source_digests(FILE_DIGEST, sources)
+    return replace(spec, make=make if anew else spec.make, digests=digests)
 
 
 def the_one_class(file: str, base: type[Base], page: str) -> type[Base]:
@@ -52,12 +60,16 @@ def the_one_class(file: str, base: type[Base], page: str) -> type[Base]:
     """
     path = Path(file)
     with located(f'{base.__name__.lower()} file {path}'):
-        return _the_one(base, _module(sources_of(path)), page)
+        return _the_one(base, _module(sources_of(path), anew=True), page)
 
 
-def _module(sources: Sources) -> ModuleType:
+def _controller_class(module: ModuleType) -> type[Controller]:
+    return _the_one(Controller, module, _PAGE)  # type: ignore[type-abstract]
+
+
+def _module(sources: Sources, *, anew: bool = False) -> ModuleType:
     try:
-        return load_module(sources)
+        return load_module(sources, anew=anew)
     except FOREIGN_FAILURES as error:
         name = module_name(sources)
         place = place_of_error(error, name)
