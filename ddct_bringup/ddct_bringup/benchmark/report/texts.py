@@ -33,6 +33,7 @@ RULES = {
     'below the least at any lock instant are left out. A run that is no success keeps none.',
     'explained': CAMPAIGN_RULES['explained'],
     'drives': CAMPAIGN_RULES['drives'],
+    'most failures': CAMPAIGN_RULES['most failures'],
     'difference': CAMPAIGN_RULES['difference'],
     'difference interval': CAMPAIGN_RULES['difference interval'],
     'not dominated': 'No other controller is at least as good in each of these and better in one: '
