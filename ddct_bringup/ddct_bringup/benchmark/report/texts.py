@@ -68,7 +68,9 @@ def notes_of(result: Result) -> Iterator[str]:
 
 
 def warnings_of(result: Result) -> Iterator[str]:
-    """Yield what is wrong with a controller, or with its result, a line each."""
+    """Yield what to know of the rows and of controllers before reading the tables, a line each."""
+    if result['cases']['other_code']:
+        yield result['cases']['other_code']
     for judged in result['controllers']:
         yield from _warnings(judged)
 
