@@ -164,7 +164,7 @@ def _show(options: argparse.Namespace) -> int:
     written = (options.json, options.csv, options.figure)
     keep_digests(file for file in written if file not in (None, STDOUT))
     if STDOUT not in (options.json, options.csv):
-        print_summary(summary, str(options.folder))
+        print_summary(summary, options.folder)
         print(options.folder / PAGE)
     return 0
 

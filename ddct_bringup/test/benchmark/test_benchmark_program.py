@@ -4,6 +4,7 @@
 
 import json
 import os
+import shlex
 import shutil
 import struct
 import subprocess
@@ -16,6 +17,7 @@ from typing import Any
 import pyarrow.parquet as parquet
 import pytest
 from altered_bytes import kinds_of_files, not_found
+from printed_commands import printed_commands, run_printed
 from refusals import refused
 from small_benchmark import (
     judge,
@@ -66,7 +68,8 @@ raise SystemExit(judge(Path(sys.argv[3]), sys.argv[2]))
 @pytest.fixture(scope='module')
 def place(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     """Return a folder with a small release, a controller that remembers, and its benchmark."""
-    folder = tmp_path_factory.mktemp('small')
+    folder = tmp_path_factory.mktemp('small') / "the driver's own"
+    folder.mkdir()
     with pytest.MonkeyPatch.context() as patch:
         use_small_release(folder, patch)
         remembers = write_controller_that_remembers(folder / 'remembers.py')
@@ -137,7 +140,9 @@ def test_the_bytes_are_the_same_with_any_number_of_workers_and_after_an_interrup
     assert 1 < left < len([*out.rglob('*.parquet')])
     pages = [(each / PAGE).read_text().splitlines() for each in (place / 'first', out)]
     other = [a for a, b in zip(*pages, strict=True) if a != b]
-    assert [line for line in other if 'class="num wall"' not in line] == []
+    of_folder = [line for line in other if '<code>ddct ' in line]
+    assert len(of_folder) == 2
+    assert [line for line in other if 'class="num wall"' not in line] == of_folder
 
 
 def test_other_kernels_give_the_same_values_within_the_bound(place: Path, tmp_path: Path) -> None:
@@ -165,6 +170,18 @@ def test_verify_computes_all_of_it_again(
     assert {'benchmark.json', 'development.parquet', RESULT} <= found.keys()
     assert f'{NAME}/held_out: {NAME}: rows 0 to 5' in found
     assert set(found.values()) == {'same_bits'}
+
+
+def test_the_commands_on_the_page_name_the_folder_and_run(
+    place: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    page = (place / 'first' / PAGE).read_text(encoding='utf-8')
+    replay, verify = printed_commands(page)
+    assert run_printed(replay, CASE='1') == 0
+    assert [*tmp_path.glob('runs/again/*/*.mcap')]
+    # To run it takes as long as the test before, which does with a copy of the folder.
+    assert shlex.split(verify) == ['ddct', 'verify', str(place / 'first')]
 
 
 def test_a_changed_controller_is_refused_before_it_runs(

@@ -3,6 +3,7 @@
 """Common parts of both design methods: options, a free name, tables, JSON, and the files."""
 
 import argparse
+import shlex
 from collections.abc import Iterable, Mapping
 from functools import partial
 from pathlib import Path
@@ -78,7 +79,8 @@ def write_design(
     write_design_charts(path.parent, designed, specifications)
     write_text(str(path), designed.to_yaml())
     if options.json != STDOUT:
-        print(f'Run it: ddct bringup --controller {path} --out runs/{designed.name}')
+        run_it = ('ddct', 'bringup', '--controller', str(path), '--out', f'runs/{designed.name}')
+        print(f'Run it: {shlex.join(run_it)}')
 
 
 def _path(options: argparse.Namespace, name: str) -> Path | None:
