@@ -26,6 +26,8 @@ PROGRAMS = [
     'verify = ddct_bringup.programs.verify:main',
 ]
 DDCT = 'ddct = ddct_bringup.programs.ddct:main'
+SCRIPTS = [f'{program.split()[0]} = ddct_plant.program.start:main' for program in PROGRAMS]
+"""The same programs as scripts, whose imports can be interrupted."""
 WHEEL = not {'bdist_wheel', 'dist_info', 'editable_wheel'}.isdisjoint(sys.argv)
 """
 Whether pip builds a wheel. A wheel puts scripts into bin/, so that `ddct` is its only one.
@@ -92,7 +94,7 @@ setup(
     ],
     python_requires='>=3.11',
     entry_points={
-        'console_scripts': [DDCT] if WHEEL else [DDCT, *PROGRAMS],
+        'console_scripts': [DDCT] if WHEEL else [DDCT, *SCRIPTS],
         'ddct.programs': PROGRAMS,
     },
 )

@@ -18,6 +18,8 @@ PROGRAMS = [
     'identify = ddct_plant.identification.identify:main',
     'load = ddct_plant.nodes.load_node:main',
 ]
+SCRIPTS = [f'{program.split()[0]} = ddct_plant.program.start:main' for program in PROGRAMS]
+"""The same programs as scripts, whose imports can be interrupted."""
 WHEEL = not {'bdist_wheel', 'dist_info', 'editable_wheel'}.isdisjoint(sys.argv)
 """Whether pip builds a wheel, which would put scripts into bin/ that `ros2 run` does not find."""
 
@@ -55,5 +57,5 @@ setup(
         'Typing :: Typed',
     ],
     python_requires='>=3.11',
-    entry_points={'console_scripts': [] if WHEEL else PROGRAMS, 'ddct.programs': PROGRAMS},
+    entry_points={'console_scripts': [] if WHEEL else SCRIPTS, 'ddct.programs': PROGRAMS},
 )

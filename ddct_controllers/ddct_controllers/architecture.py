@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Control architectures of the thesis: the torque request as open loop plus feedback."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -12,11 +12,19 @@ from ddct_controllers.command_check import checked_command
 from ddct_controllers.handover.torque_phase import TorquePhase
 from ddct_controllers.interface import Command, Controller, Measurement, Status
 from ddct_controllers.places import place_of_failure
-from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError, ForeignError
+from ddct_plant.base.errors import (
+    FOREIGN_FAILURES,
+    DdctError,
+    ForeignError,
+    ParameterError,
+    require_number,
+)
+from ddct_plant.base.options import require_known
 from ddct_plant.base.timebase import time_of_step
 from ddct_plant.models.load import RoadLoad
 from ddct_plant.models.static_torque import StaticTorque
 from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.signals.gain_changes import GainRecord
 from ddct_plant.signals.handover_share import WHOLE, OnComingShare
 
 _FEEDBACK_OFF = Command(0.0)
@@ -32,7 +40,7 @@ class TorqueRequest(NamedTuple):
     In a shift it is corrected by what the handover knows of the on-coming clutch.
     """
     status: Status
-    """Pairs for `controller/status`: feedback, saturation, then the controller's own."""
+    """Pairs for `controller/status`: feedback, saturation, the controller's own, changed gains."""
     open_loop: float
     """Part of the torque without feedback in N m, that of the closing stage included."""
     closed_loop: float
@@ -88,6 +96,27 @@ class Architecture:
         self._closing = closing
         self._torque_phase = torque_phase
         self._last_request = self._engine_deviation = 0.0
+        self._changed_gains = GainRecord()
+
+    def change_gains(self, gains: Mapping[str, float]) -> None:
+        """
+        Change gains of the controller, by name, from the next update on: all of them or none.
+
+        From that update on the status has the latest change of each. Raise ParameterError for a
+        name that the controller's `gains` lack, or for a value that it does not take.
+        """
+        before = self._controller.gains()
+        require_known(gains, before, 'gain')
+        for name, value in gains.items():
+            require_number(name, value)
+        self._changed_gains.announce(gains, before)
+        try:
+            for name, value in gains.items():
+                self._controller.set_gain(name, value)
+        except ParameterError:
+            for name, value in before.items():
+                self._controller.set_gain(name, value)
+            raise
 
     def update(self, measurement: Measurement, on_coming: OnComingShare = WHOLE) -> TorqueRequest:
         """
@@ -97,6 +126,7 @@ class Architecture:
         below 1 feedback is off. What is known of the clutch corrects the request, and the
         controller has a clutch as requested.
         """
+        self._changed_gains.update(self._controller.gains, measurement.step)
         share = on_coming.share
         load_torque = self._load.torque(measurement.vehicle_speed, time_of_step(measurement.step))
         open_loop = share * self._open_loop(measurement, load_torque)
@@ -123,6 +153,7 @@ class Architecture:
                 ('saturated', 'true' if request < 0.0 else 'false'),
                 *closing,
                 *command.status,
+                *self._changed_gains.pairs,
             ),
             open_loop,
             command.clutch_torque,

@@ -37,6 +37,8 @@ from ddct_plant.signals.topics import (
 
 TIMING_BATCH = 20
 """Number of steps whose update times are published together."""
+_GAINS = 'gains.'
+"""Prefix of the parameters that are the controller's options."""
 
 
 class ControllerNode(FollowerNode):
@@ -48,7 +50,7 @@ class ControllerNode(FollowerNode):
     `engine/torque`, in a gear shift less `engine/torque_cut`. In a gear shift every controller
     waits for `clutch/handover_share`, carries that share of the open loop, and has feedback with
     the share 1. The options of the controller are parameters `gains.<name>`; its gains among them
-    may be changed while it runs.
+    may be changed while it runs, which `controller/status` says from then on.
     """
 
     EXAMPLES: ClassVar[tuple[str, ...]] = (
@@ -64,6 +66,7 @@ class ControllerNode(FollowerNode):
         )
         self._controller, info = self._make_controller(name)
         self._architecture = make_architecture(self.settings, self._controller)
+        self.add_on_set_parameters_callback(self._set_gains)
         self._measured_topics = measurement_topics(sensed=self.settings.sensed)
         self._request = Output(self, TORQUE_REQUEST)
         if self._controller.commands_engine:
@@ -156,23 +159,22 @@ class ControllerNode(FollowerNode):
                     value, 'its unit is in the documentation of the controller', live=True
                 )
                 controller.set_gain(key, self._declare_gain(key, about))
-        self.add_on_set_parameters_callback(self._set_gains)
-        changed = {f'gains.{key}': repr(given[key]) for key in given if given[key] != section[key]}
+        others = {key: value for key, value in given.items() if value != section[key]}
+        changed = {f'{_GAINS}{key}': repr(value) for key, value in others.items()}
         return controller, {**controller.info(spec.name), **changed}
 
     def _declare_gain(self, key: str, option: Option) -> Any:
-        return declare(self, f'gains.{key}', option, read_only=not option.live)
+        return declare(self, f'{_GAINS}{key}', option, read_only=not option.live)
 
     def _set_gains(self, parameters: list[Parameter]) -> SetParametersResult:
-        before = self._controller.gains()
         try:
-            for parameter in parameters:
-                if parameter.name.startswith('gains.'):
-                    name = parameter.name.removeprefix('gains.')
-                    self._controller.set_gain(name, parameter.value)
+            if gains := {
+                each.name.removeprefix(_GAINS): each.value
+                for each in parameters
+                if each.name.startswith(_GAINS)
+            }:
+                self._architecture.change_gains(gains)
         except ParameterError as error:
-            for name, value in before.items():
-                self._controller.set_gain(name, value)
             return SetParametersResult(successful=False, reason=str(error))
         return SetParametersResult(successful=True)
 

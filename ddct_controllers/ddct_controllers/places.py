@@ -4,12 +4,19 @@
 
 import inspect
 import traceback
+from pathlib import Path
 
 from ddct_controllers.interface import Controller
 
 
 def place_of_error(error: BaseException, package: str) -> str:
-    """Return `FILE line N` of the last step of a traceback in `package`, '' if none is there."""
+    """
+    Return `FILE line N` of the last step of a traceback in `package`, '' if none is there.
+
+    Of an error of syntax in a file it is the place of that.
+    """
+    if isinstance(error, SyntaxError) and Path(error.filename or '').is_file():
+        return f'{error.filename} line {error.lineno}'
     places = [
         f'{frame.f_code.co_filename} line {line}'
         for frame, line in traceback.walk_tb(error.__traceback__)

@@ -14,7 +14,8 @@ from refusals import refused
 from ddct_controllers.architecture import make_architecture
 from ddct_controllers.feedforward import Feedforward
 from ddct_controllers.interface import Command, Controller, Measurement
-from ddct_plant.base.errors import DdctError, ForeignError
+from ddct_controllers.linear import PiController
+from ddct_plant.base.errors import DdctError, ForeignError, ParameterError
 from ddct_plant.models.load import RoadLoad
 from ddct_plant.models.static_torque import constant_slip_torque
 from ddct_plant.scenario.file import load_scenario
@@ -193,3 +194,40 @@ def test_numbers_that_diverge_end_the_run_with_the_controllers_name_and_the_step
         f"controller 'mine': it cannot go on at step {ON.step} (Singular matrix): the "
         'loop diverges in this scenario, or its options do not suit it'
     )
+
+
+def test_changed_gains_act_all_or_none_from_the_next_update_on_and_stand_in_the_status():
+    pi = PiController(0.1, 0.02)
+    architecture = make_architecture(SETTINGS, pi)
+    usual = architecture.update(ON)
+    for wrong in ({'nix': 1.0}, {'integral_gain': 0.5, 'proportional_gain': -1.0}):
+        with pytest.raises(ParameterError, match='nix: known: proportional_gain|at least 0'):
+            architecture.change_gains(wrong)
+    assert pi.gains() == {'proportional_gain': 0.1, 'integral_gain': 0.02}
+    pi.reset()
+    assert architecture.update(ON) == usual
+    architecture.change_gains({'proportional_gain': 0.2})
+    pi.reset()
+    changed = architecture.update(ON)
+    assert changed.closed_loop == 2.0 * usual.closed_loop
+    place = f'{1_000_000_000 + START * 10_000_000} ns'
+    pair = ('changed gains.proportional_gain', f'0.1 to 0.2 at {place}')
+    assert changed.status == (*usual.status, pair)
+
+
+@pytest.mark.parametrize('value', [True, '1', math.nan, None])
+def test_a_gain_that_is_no_finite_number_is_refused(value):
+    architecture = make_architecture(SETTINGS, PiController(0.1, 0.02))
+    with refused(ParameterError, 'integral_gain'):
+        architecture.change_gains({'integral_gain': value})
+
+
+def test_a_gain_of_which_the_controller_does_not_report_the_value_is_refused():
+    class Silent(Recording):
+        def set_gain(self, name, value):
+            self.torque = value
+
+    controller = Silent()
+    with pytest.raises(ParameterError, match='unknown gain torque'):
+        make_architecture(SETTINGS, controller).change_gains({'torque': 1.0})
+    assert controller.torque == 7.0

@@ -39,6 +39,7 @@ ENTRY_KEYS = [
     'safe_state',
     'before_schema',
     'scenario_changes',
+    'gain_changes',
     'over_floor',
     'no_floor',
 ]

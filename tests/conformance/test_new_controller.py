@@ -39,17 +39,25 @@ def python(site: Path, code: str) -> str:
     return done.stdout
 
 
-def test_the_package_installs_by_its_own_command_and_its_tests_pass(tmp_path: Path) -> None:
-    folder, site = tmp_path / 'my_slip', tmp_path / 'site'
+def test_the_printed_commands_install_check_and_run_the_package_and_its_tests_pass(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    folder, site = tmp_path / 'my own slip', tmp_path / 'site'
     write(folder)
-    command = install_command(str(folder))
-    assert f'    {command}\n' in (folder / 'README.md').read_text(encoding='utf-8')
+    *_, command, check, compare = capfd.readouterr().out.splitlines()
+    readme = (folder / 'README.md').read_text(encoding='utf-8')
+    assert f'    {command.strip()}\n' in readme
+    assert f"-m pytest '{folder}'`" in readme
     subprocess.run(
         [*shlex.split(command), '--target', str(site)],
         capture_output=True,
         timeout=WITHIN_S,
         check=True,
     )
+    for line in (check, compare):
+        words = f'import sys\nsys.argv = {shlex.split(line)!r}\n'
+        python(site, f'{words}from ddct_bringup.programs.ddct import main\nassert not main()')
+    assert list(tmp_path.glob('runs/my_slip/my_slip/*.mcap'))
     listing = "from ddct_bringup.programs.bringup import main\nmain(['--list'])"
     assert 'least_jerk, my_slip' in python(site, listing).splitlines()[0]
     tests = f'import pytest\nassert pytest.main(["-q", {str(folder)!r}, "-p", "no:cacheprovider"])'

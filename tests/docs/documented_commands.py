@@ -4,12 +4,9 @@
 
 import shlex
 import subprocess
-import sys
-from unittest.mock import patch
 
+from printed_commands import run_words
 from support.documented import Block, blocks
-
-from ddct_bringup.programs import ddct
 
 NOT_RUN_HERE = {
     'make': 'would run this very test, or take its environment away; .ci/run and users run them',
@@ -51,12 +48,10 @@ NOT_RUN_HERE = {
 SHELL_BLOCKS = [block for block in blocks() if block.is_shell]
 SOURCE = '. install/setup.bash'
 _DESIGN = 'ddct design'
-_RUNS = ('bringup', 'compare')
 _TOOLS = ('cp ', 'cc ')
 """Commands of others that end by themselves."""
 _OWN_PROCESS = ('&', 'realtime', 'ddct campaign')
 """Parts of commands that need processes of their own; a campaign's workers outlast a test."""
-_NOT_HEADLESS = ('--help', '--list', '--headless', '--single-process', 'realtime')
 
 
 def commands_of(block: Block) -> list[str]:
@@ -94,10 +89,4 @@ def run_here(line: str) -> int:
     command = shlex.split(line, comments=True)
     if line.startswith(_TOOLS):
         return subprocess.run(command, check=False).returncode
-    if command[1] in _RUNS and not any(words in line for words in _NOT_HEADLESS):
-        command.append('--headless')
-    try:
-        with patch.object(sys, 'argv', command):
-            return ddct.main()
-    except SystemExit as end:  # of --help
-        return 1 if end.code else 0
+    return run_words(command)

@@ -216,11 +216,11 @@ class InPython(Controller):
         ),
         (
             TEMPLATE.replace('DDCT_DESCRIPTION(my_state, 0, 0)', '{2, 80, 16, 8, 0, 0}'),
-            'its interface_version is 2, this ddct has 1: compile it with',
+            'its interface_version is 2, this version has 1: compile it with',
         ),
         (
             TEMPLATE.replace('DDCT_DESCRIPTION(my_state, 0, 0)', '{1, 96, 16, 8, 0, 0}'),
-            'its measurement_bytes is 96, this ddct has 80',
+            'its measurement_bytes is 96, this version has 80',
         ),
         (TEMPLATE.replace('(my_state, 0, 0)', '(my_state, -1, 0)'), 'its preview_steps is -1'),
         (TEMPLATE.replace('(my_state, 0, 0)', '(my_state, 0, 7)'), 'its commands_engine 7'),

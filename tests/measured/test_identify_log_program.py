@@ -13,8 +13,9 @@ from support.runs import expected, plan, record
 
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.scores.csv_text import signals_csv
+from ddct_plant.identification.from_log import command
 from ddct_plant.identification.identify import main
-from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.file import load_scenario, scenario_to_yaml
 from ddct_plant.scenario.settings import RunSettings
 
 
@@ -148,7 +149,7 @@ def test_a_bad_log_is_refused_in_one_line_with_its_place(
     [
         (
             ['--fix', 'total_ratio'],
-            '--columns, --check, --fix, --set, --force and --out need a log',
+            '--columns, --check, --fix, --set, --force, --out and --overwrite need a log',
         ),
         (['--from', 'a.csv', '--as-printed'], '--as-printed is about the thesis'),
         (['--from', 'a.csv', '--hold-out', '1.5'], '--hold-out is 1.5: give a share'),
@@ -163,3 +164,58 @@ def test_options_that_make_no_sense_are_refused(
     assert main(options) == 1
     (line,) = capsys.readouterr().err.splitlines()
     assert complaint in line
+
+
+@pytest.mark.parametrize('option', ['--from', '--check'])
+@pytest.mark.parametrize(('unit', 'period'), [('s', '8 s'), ('us', '8e-06 s')])
+def test_a_wrong_unit_of_the_time_is_named_before_the_fit(
+    folder: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+    option: str,
+    unit: str,
+    period: str,
+) -> None:
+    """The rows are 8 ms apart: in --from the map has a wrong unit, in --check the file."""
+    monkeypatch.setattr(command, 'fit_log', _no_fit)
+    wrong = folder / 'drive.csv'
+    if option == '--check':
+        wrong = folder / 'other.csv'
+        lines = (folder / 'drive.csv').read_text().splitlines()
+        rows = [line.split(';') for line in lines[2:]]
+        factor = {'s': 1e3, 'us': 1e-3}[unit]
+        times = [f'{factor * float(row[0].replace(",", ".")):.9f}' for row in rows]
+        moved = [';'.join([time, *row[1:]]) for time, row in zip(times, rows, strict=True)]
+        wrong.write_text('\n'.join([*lines[:2], *moved]) + '\n')
+    else:
+        (folder / 'map.yaml').write_text(COLUMNS.replace('unit: ms', f'unit: {unit}'))
+    assert identify(folder, *(['--check', str(wrong)] if option == '--check' else [])) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert f'{wrong}: engine_speed has a sampling period of {period}' in line
+    assert 'check the unit of columns.time, with which the period may be 0.008 s' in line
+
+
+def _no_fit(*_: object) -> None:
+    raise AssertionError('the fit began')
+
+
+def test_an_existing_file_is_refused_at_out_before_the_fit_and_stays(
+    folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(command, 'fit_log', _no_fit)
+    for content, options, complaint in (
+        ('name: mine', [], 'exists already: choose another --out or add --overwrite'),
+        ('a,b', ['--overwrite'], 'is no scenario, and --overwrite replaces only that'),
+    ):
+        (folder / 'mine.yaml').write_text(content)
+        assert identify(folder, '--out', str(folder / 'mine.yaml'), *options) == 1
+        (line,) = capsys.readouterr().err.splitlines()
+        assert f'{folder / "mine.yaml"} {complaint}' in line
+        assert (folder / 'mine.yaml').read_text() == content
+
+
+def test_an_earlier_scenario_is_replaced_with_overwrite(folder: Path) -> None:
+    out = folder / 'mine.yaml'
+    out.write_text(scenario_to_yaml(load_scenario('launch')))
+    assert identify(folder, '--out', str(out), '--overwrite') == 0
+    assert load_scenario(str(out)).name == 'drive'

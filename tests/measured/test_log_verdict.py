@@ -102,7 +102,7 @@ def test_the_table_marks_new_values(folder: Path, capsys: pytest.CaptureFixture[
 
 def test_force_needs_a_log(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(['--force']) == 1
-    assert '--force and --out need a log' in capsys.readouterr().err
+    assert '--force, --out and --overwrite need a log' in capsys.readouterr().err
 
 
 def judged(

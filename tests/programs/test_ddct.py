@@ -15,7 +15,10 @@ import pytest
 from support.complaints import assert_one_line
 from support.processes import Programs, processes_left
 
+from ddct_bringup.processes import warm_parent
 from ddct_bringup.programs import ddct
+from ddct_plant.program import start
+from ddct_plant.program.start import programs
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = ('ddct_bringup', 'ddct_controllers', 'ddct_plant', 'ddct_reference')
@@ -41,7 +44,7 @@ def test_help_lists_every_program_with_what_it_does(capsys: pytest.CaptureFixtur
     text = help_text(capsys)
     packages = re.findall(r'^(\w+):\n((?:  .*\n)+)', text, re.MULTILINE)
     assert tuple(name for name, _ in packages if name.startswith('ddct_')) == PACKAGES
-    for name in ddct.programs():
+    for name in programs():
         (task,) = re.findall(rf'^  {name}  +(.*)', text, re.MULTILINE)
         assert len(task.split()) >= 4 and 'cannot be read' not in task
 
@@ -51,7 +54,7 @@ def test_the_page_of_programs_names_every_program() -> None:
     page = text.partition('| program |')[2]
     rows = page.partition('\n\n')[0].splitlines()[2:]
     named = {name for row in rows for name in re.findall(r'`([a-z-]+)`', row.split('|')[1])}
-    assert named == set(ddct.programs())
+    assert named == set(programs())
 
 
 def test_programs_start_without_the_slow_parts_of_scipy() -> None:
@@ -67,7 +70,7 @@ def test_programs_start_without_the_slow_parts_of_scipy() -> None:
         'score',
         'sweep',
     )
-    modules = [ddct.programs()[name].module for name in names]
+    modules = [programs()[name].module for name in names]
     code = (
         f'import {", ".join(modules)}, sys; print([n for n in sys.modules if n[:6] == "scipy."])'
     )
@@ -137,6 +140,36 @@ def test_a_signal_during_imports_is_no_missing_package(
     assert capsys.readouterr().err == 'ddct: interrupted\n'
 
 
+@pytest.mark.parametrize('script', ['ddct', 'extra'])
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize(
+    'code',
+    [
+        'class Signals:\n    def __set_name__(self, owner, name):\n        interrupt()\n\n\n'
+        'class Owner:\n    key = Signals()\n',
+        'try:\n    interrupt()\nexcept BaseException:\n    raise ValueError("failed")\n',
+        'try:\n    interrupt()\nexcept BaseException as e:\n    raise ImportError("no") from e\n',
+        'try:\n    interrupt()\nexcept BaseException:\n    pass\nraise SystemError("null")\n',
+    ],
+    ids=['wrapped by Python', 'another error', 'cause of a failed import', 'dropped in C'],
+)
+def test_a_signal_during_imports_ends_a_program_as_any_other(
+    code: str,
+    number: signal.Signals,
+    script: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    interrupt = f'import os\n\n\ndef interrupt():\n    os.kill(os.getpid(), {number:d})\n\n\n'
+    install_program(tmp_path, f'{interrupt}{code}\n\ndef main():\n    return 0\n')
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.delitem(sys.modules, 'extra_program', raising=False)
+    monkeypatch.setattr(sys, 'argv', [f'/lib/{script}', 'extra'])
+    assert (ddct if script == 'ddct' else start).main() == 128 + number
+    assert capsys.readouterr().err == f'{script}: interrupted\n'
+
+
 @pytest.mark.parametrize('name', ['rclpy', 'rcl_interfaces'])
 def test_a_node_without_ros_names_what_is_missing_and_the_page_to_read(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
@@ -203,7 +236,7 @@ def test_a_warm_parent_starts_ahead_where_nodes_are_to_come(
         started.append(True)
         yield
 
-    monkeypatch.setattr(ddct, 'started_ahead', started_ahead)
+    monkeypatch.setattr(warm_parent, 'started_ahead', started_ahead)
     monkeypatch.setattr(sys, 'argv', ['ddct'])
     with suppress(SystemExit):
         ddct.main(arguments)

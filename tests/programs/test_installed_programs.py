@@ -10,7 +10,7 @@ from support.processes import Program, Programs, package_of, ros_arguments
 from support.runs import bag_bytes, plan, record
 
 from ddct_bringup.processes.graph_nodes import GRAPH_NODES
-from ddct_bringup.programs.ddct import programs as installed_programs
+from ddct_plant.program.start import programs as installed_programs
 
 PROGRAMS = sorted(
     (point.module.partition('.')[0], name) for name, point in installed_programs().items()

@@ -14,7 +14,7 @@ from support.processes import Programs
 from support.runs import bag_bytes, expected, plan, record
 from support.third_party import EXAMPLE, example_entry_points, install
 
-from ddct_bringup.programs import bringup, compare, ddct, score
+from ddct_bringup.programs import bringup, compare, ddct, score, verify
 from ddct_controllers import registry
 from ddct_controllers.linear import PI
 from ddct_controllers.registry import make_controller
@@ -193,26 +193,29 @@ def test_a_controller_that_outlasts_its_period_is_marked_in_the_terminal(
 
 
 @pytest.mark.usefixtures('broken')
-def test_compare_names_the_controller_whose_linear_model_is_none(
+def test_compare_runs_and_names_a_controller_whose_linear_model_is_none(
     capfd: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
-    options = ['--headless', '--duration', '1', '--out', str(tmp_path / 'runs')]
-    assert compare.main(['--controllers', 'bad_linear_model', *options]) == 1
+    out = tmp_path / 'runs'
+    options = ['--headless', '--duration', '1', '--out', str(out)]
+    assert compare.main(['--controllers', 'bad_linear_model,pi', *options]) == 1
     *_, last = capfd.readouterr().err.splitlines()
     assert last.startswith(
         "ddct compare: controller 'bad_linear_model': its linear_model cannot be"
     )
     assert 'it is of type list' in last
     assert f'{SUPPORT}/support/broken_controllers.py line ' in last
-
-
-@pytest.mark.usefixtures('broken')
-def test_compare_runs_nothing_where_the_evidence_of_a_controller_cannot_be_computed(
-    tmp_path: Path,
-) -> None:
-    options = ['--headless', '--duration', '1', '--out', str(tmp_path / 'runs')]
-    assert compare.main(['--controllers', 'pi,bad_linear_model', *options]) == 1
-    assert not list(tmp_path.rglob('*.mcap'))
+    runs = json.loads((out / 'scores.json').read_text())['runs']
+    assert [(each['controller'], each['valid']) for each in runs] == [
+        ('bad_linear_model', True),
+        ('pi', True),
+    ]
+    entries = json.loads((out / 'frequency.json').read_text())['controllers']
+    assert [entry['linear'] for entry in entries] == [None, True]
+    assert 'its linear_model cannot be used: it is of type list' in (
+        out / 'report.html'
+    ).read_text(encoding='utf-8')
+    assert verify.main([str(out)]) == 0
 
 
 @pytest.mark.usefixtures('broken')

@@ -48,7 +48,7 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
     result = result_of(manifest, release, judged, {})
     file = tmp_path_factory.mktemp('benchmark') / 'report.html'
     file.write_text(
-        benchmark_page(result, {'reference': 'pi', 'controllers': {'ls8': TIMES}}),
+        benchmark_page(result, {'reference': 'pi', 'controllers': {'ls8': TIMES}}, file.parent),
         encoding='utf-8',
     )
     return file

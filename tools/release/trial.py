@@ -33,6 +33,16 @@ print(state, time_s)
 """Use of the Python interface with types, for `mypy --strict`."""
 
 
+ROWS = """\
+from ddct_bringup.benchmark.cases import packaged_folder
+from ddct_bringup.benchmark.release import release_rows
+from ddct_bringup.digests.origin import CodeOrigin
+
+print(release_rows(packaged_folder()).other_code(CodeOrigin.here()) or 'computed by this code')
+"""
+"""Program that says whether the code of a release is that which computed its rows."""
+
+
 def try_wheels(wheels: Sequence[Path], folder: Path) -> Iterator[str]:
     """
     Install wheels into a new environment in a folder, and use them; yield a line for each use.
@@ -53,6 +63,7 @@ def try_wheels(wheels: Sequence[Path], folder: Path) -> Iterator[str]:
     ddct = python.with_name('ddct')
     run(ddct, 'compare', '--headless', '--controllers', 'pi,ls8', '--out', 'runs', cwd=folder)
     yield f'ddct compare --headless: {len(list(folder.glob("runs/*/*.mcap")))} bags'
+    yield f'rows of the benchmark: {run(python, "-c", ROWS, cwd=folder).strip()}'
     (folder / 'typed.py').write_text(TYPED, encoding='utf-8')
     run(*install, '--constraint', constraints, 'mypy', cwd=folder)
     checked = run(python, '-m', 'mypy', '--strict', 'typed.py', cwd=folder)

@@ -126,7 +126,8 @@ class Run:
         Return the controller's entry of `frequency.json`: margins of its sampled loop.
 
         Its `linear` is false, and the rest None, for a controller without a frequency response.
-        Raise DdctError where the controller of a loaded run cannot be found here.
+        Raise DdctError where the controller of a loaded run cannot be found here, or its
+        `linear_model` cannot be used.
         """
         return frequency_evidence([self.chosen], self.settings)['controllers'][0]
 

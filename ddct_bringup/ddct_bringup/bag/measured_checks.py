@@ -12,6 +12,7 @@ import numpy as np
 
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.measured.wheel_radius import RADII_M
 from ddct_plant.models.gearbox import EngagedGear
 
 Values = Mapping[str, np.ndarray]
@@ -23,8 +24,6 @@ TWIST_RAD = 0.5
 """Largest twist of the driveshaft with its backlash, rad: tolerance of the turned angles."""
 _LEAST_TURNED_RAD = 5.0
 """Least angle that the wheels must have turned for a check of ratio or radius, rad."""
-RADII_M = (0.15, 0.7)
-"""Lowest and highest rolling radius of the wheels of a car or truck, m."""
 ENGINE_INERTIAS = (0.03, 1.5)
 """Lowest and highest inertia J_m of a car's engine with its flywheel, kg m^2."""
 _PER_OTHER_UNIT = {'rpm': 30.0 / np.pi, 'deg/s': 180.0 / np.pi}

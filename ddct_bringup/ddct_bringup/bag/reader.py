@@ -3,13 +3,12 @@
 """Read a recorded bag into a trajectory, its facts and counts, without ROS."""
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from ddct_bringup.bag.earlier_bags import EARLIER_TOPICS, Messages, earlier_values
 from ddct_bringup.bag.realtime_facts import RealtimeFacts
 from ddct_bringup.bag.recording import Recording, require_consistent
 from ddct_bringup.bag.run_facts import RunFacts
@@ -57,7 +56,7 @@ def recording_of(records: BagRecords) -> Recording:
     missed: dict[str, int] = {}
     absent: dict[str, str] = {}
     for topic in _topics_with_signals(run):
-        values = found.values.pop(topic.resolved_name, None) or _earlier(topic, found, run)
+        values = found.values.pop(topic.resolved_name, None) or _no_values(topic, run)
         if not values.stamps:
             if not topic.optional:
                 raise DdctError(f'no message on {topic.resolved_name}', key=topic.resolved_name)
@@ -99,8 +98,6 @@ class _Found:
         """Decode all messages; raise DdctError for one that is unusable."""
         found = cls()
         kept = {*RUN_INFO_TOPICS, DIAGNOSTICS}
-        if any(not topic.in_run(run) for topic in _topics_with_signals(run)):
-            kept.update(EARLIER_TOPICS)
         ticks = [topic for topic in recorded_topics(run) if topic.every_tick]
         found.values.update({topic.resolved_name: _no_values(topic, run) for topic in ticks})
         numbers = [each for each in ticks if each.kind.numbers_alone and each not in kept]
@@ -120,23 +117,13 @@ class _Found:
 
 
 def _topics_with_signals(run: RunKind) -> list[Topic]:
-    """Return the topics whose signals a run of this kind has, in bags of this version."""
-    topics = recorded_topics(replace(run, earlier=False, torque_parts=True))
+    """Return the topics whose signals a run of this kind has, those that are optional too."""
+    topics = recorded_topics(replace(run, torque_parts=True))
     return [topic for topic in topics if topic.signals]
 
 
 def _no_values(topic: Topic, run: RunKind) -> TopicValues:
     return TopicValues(topic.resolved_name, topic.signals_in(run))
-
-
-def _earlier(topic: Topic, found: _Found, run: RunKind) -> TopicValues:
-    """Return the values of a topic that the bag lacks, if other messages have them."""
-    values = _no_values(topic, run)
-    if not topic.in_run(run):
-        with _values_named(topic):
-            for stamp, row in earlier_values(topic, found.messages).items():
-                values.add(stamp, row)
-    return values
 
 
 @contextmanager
@@ -161,7 +148,7 @@ def _realtime(messages: Sequence[tuple[int, Any]]) -> RealtimeFacts:
     return facts
 
 
-def _run_info(messages: Messages) -> RunInfoOfNodes:
+def _run_info(messages: Mapping[str, Sequence[tuple[int, Any]]]) -> RunInfoOfNodes:
     received: RunInfoOfNodes = {}
     for topic in RUN_INFO_TOPICS:
         for _, message in messages.get(topic.resolved_name, ()):

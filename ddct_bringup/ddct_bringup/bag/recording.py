@@ -20,6 +20,7 @@ from ddct_plant.models.clutch import CLUTCHES
 from ddct_plant.scenario.content import scenario_from_mapping
 from ddct_plant.scenario.file import content_digest
 from ddct_plant.scenario.settings import MODES, RunSettings
+from ddct_plant.signals.gain_changes import GainChange, gain_changes
 
 _OF_NODES = ('scenario', 'architecture', 'clutch', 'mode', 'seed')
 """Facts that each node publishes on `run_info` too, besides the wear gain."""
@@ -68,6 +69,11 @@ class Recording:
             )
         except (DdctError, TypeError, ValueError):
             return None
+
+    @cached_property
+    def gain_changes(self) -> tuple[GainChange, ...]:
+        """Gains that were changed in the run; raise DdctError for an unreadable change."""
+        return gain_changes(self.trajectory.status)
 
     @property
     def measured(self) -> bool:

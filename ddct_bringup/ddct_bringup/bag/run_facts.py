@@ -17,7 +17,6 @@ from ddct_plant.signals.topics import (
     ENGINE_REQUEST,
     SENSED_TOPICS,
     SHIFT_TOPICS,
-    TOPICS,
     TORQUE_PARTS,
 )
 
@@ -106,10 +105,9 @@ class RunFacts(RunConditions):
         sensed: bool,
         shift: bool = False,
         torque_parts: bool = True,
-        earlier: bool = False,
     ) -> RunKind:
         """Return the kind of the run, which decides which topics it has."""
-        return RunKind(self.lockstep, two_input, self.clutch, sensed, shift, torque_parts, earlier)
+        return RunKind(self.lockstep, two_input, self.clutch, sensed, shift, torque_parts)
 
     def kind_of_bag(self, topics: Container[str]) -> RunKind:
         """Return the kind of run of a bag that has these topics, given by resolved name."""
@@ -122,7 +120,6 @@ class RunFacts(RunConditions):
             sensed=has_any(SENSED_TOPICS),
             shift=has_any(SHIFT_TOPICS),
             torque_parts=has_any([TORQUE_PARTS]),
-            earlier=not has_any(topic for topic in TOPICS if topic.later),
         )
 
     def to_custom_data(self) -> dict[str, str]:

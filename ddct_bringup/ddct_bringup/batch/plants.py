@@ -58,9 +58,7 @@ class Plants:
         self._forces = np.broadcast_to(forces, (steps + 1, len(runs)))
         engines = [scenario.engine for scenario in scenarios]
         first, places = distinct(engines)
-        profiles = [
-            np.interp(times, engines[index].time_s, engines[index].torque_n_m) for index in first
-        ]
+        profiles = [engines[index].over(times) for index in first]
         self.engine_torque = np.stack([profiles[place] for place in places], axis=-1)
         """Engine torque C_m in N m at every step, (N+1, R), as `Engine.demand` returns it."""
         self._actuators = Actuators(actuators, start.torque_request, steps + 1)

@@ -32,7 +32,7 @@ from ddct_bringup.campaign_report.printed_summary import MAIN
 from ddct_bringup.campaign_report.results import is_number
 from ddct_bringup.campaign_report.statistics import attribution
 from ddct_bringup.campaign_report.summary_types import Reason
-from ddct_bringup.campaign_report.texts import range_text
+from ddct_bringup.campaign_report.texts import where_text
 from ddct_bringup.floor.values import METRICS as FLOOR_METRICS
 from ddct_bringup.metrics.catalogue import METRICS
 from ddct_bringup.scores.csv_text import OVER_FLOOR
@@ -106,31 +106,26 @@ def causes_in(columns: Columns, varied: list[str]) -> Causes:
     """
     Return which of the varied keys, and whether the scenario, drive failure.
 
-    A failed run is one that is no success. The scenario counts as a key with a value for each.
+    A failed run is one that is no success. The scenario counts as a key whose values are names.
     """
     failed = ~successes_in(columns)
     if why := attribution.too_few(failed):
         return {'too_few': why, 'keys': []}
-    names = list(dict.fromkeys(columns[SCENARIO].tolist()))
-    values = {key: columns[key].astype(float) for key in varied}
-    if len(names) > 1:
-        values[SCENARIO] = np.array([names.index(each) for each in columns[SCENARIO]], dtype=float)
-    effects = attribution.effects_of(values, failed)
-    return {'too_few': '', 'keys': [_effect(each, names) for each in effects]}
+    values = {key: columns[key] for key in (*varied, SCENARIO)}
+    several = {key: each for key, each in values.items() if len(set(each.tolist())) > 1}
+    effects = attribution.effects_of(several, failed)
+    return {'too_few': '', 'keys': [_effect(each) for each in effects]}
 
 
-def _effect(effect: attribution.Effect, scenarios: list[str]) -> KeyEffect:
+def _effect(effect: attribution.Effect) -> KeyEffect:
     part = effect.worst_part
-    where = range_text(part.low, part.high)
-    if effect.key == SCENARIO:
-        where = ', '.join(scenarios[int(part.low) : int(part.high) + 1])
     return {
         'key': effect.key,
         'drives': effect.drives,
         'explained': effect.explained,
         'interval': list(effect.interval),
         'p_value': effect.p_value,
-        'worst_part': where,
+        'worst_part': where_text(part),
         'worst_part_runs': part.runs,
         'worst_part_failed': part.failed,
     }

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ddct_bringup.digests.code import code_digest, package_digest
-from ddct_bringup.digests.controllers import require_same_files
+from ddct_bringup.digests.user_files import require_same_controller
 from ddct_controllers.from_file.controller_file import is_controller_file
 from ddct_controllers.registry import (
     ENTRY_POINT_GROUP,
@@ -63,7 +63,7 @@ class Judged:
     def require_unchanged(self) -> None:
         """Raise DdctError where one of its files has changed since; none of them runs before."""
         if is_controller_file(self.chosen):
-            require_same_files(self.path, self.digests)
+            require_same_controller(self.path, self.digests)
 
     def held_out_seed(self, release: str) -> int:
         """

@@ -9,23 +9,22 @@ from typing import Any
 
 from ddct_bringup.benchmark.cases import Cases
 from ddct_bringup.benchmark.judged import Judged, require_no_path
-from ddct_bringup.digests.code import code_digest
 from ddct_bringup.digests.manifests import (
     manifest_content,
     require_kinds,
     require_same_inputs,
     require_texts,
 )
+from ddct_bringup.digests.origin import CodeOrigin
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.files.output_file import write_json
-from ddct_plant.program.command_line import package_version
 
 MANIFEST = 'benchmark.json'
 SCHEMA_VERSION = 1
 """Schema version of the manifest."""
 
 _KINDS = {
-    **dict.fromkeys(('version', 'code_digest'), str),
+    **dict.fromkeys(('version', 'commit', 'code_digest'), str),
     **dict.fromkeys(('limits', 'cases'), dict),
     'quick': bool,
 }
@@ -64,6 +63,8 @@ class BenchmarkManifest:
     schema_version: int
     version: str
     """Version of the release."""
+    commit: str
+    """Commit of its sources, as in `run_info`."""
     code_digest: str
     """Digest of the code of the release."""
     limits: Mapping[str, Any]
@@ -80,15 +81,16 @@ class BenchmarkManifest:
         cls, judged: Sequence[Judged], cases: Cases, judge_seed: int | None
     ) -> 'BenchmarkManifest':
         """Return the manifest of a benchmark by this release."""
-        release = code_digest()
+        here = CodeOrigin.here()
         return cls(
             schema_version=SCHEMA_VERSION,
-            version=package_version(),
-            code_digest=release,
+            version=here.version,
+            commit=here.commit,
+            code_digest=here.code,
             limits=dict(packaged_limits().origin),
             quick=cases.quick,
             judge_seed=judge_seed,
-            controllers=[JudgedEntry.of(each, release, judge_seed) for each in judged],
+            controllers=[JudgedEntry.of(each, here.code, judge_seed) for each in judged],
             cases=dict(cases.content),
         )
 
@@ -108,6 +110,11 @@ class BenchmarkManifest:
     def write(self, out: Path) -> None:
         """Write the manifest into a folder; raise DdctError when that fails."""
         write_json(str(out / MANIFEST), asdict(self))
+
+    @property
+    def origin(self) -> CodeOrigin:
+        """Code of the release, which computes the rows of the benchmark."""
+        return CodeOrigin(self.version, self.commit, self.code_digest)
 
     @property
     def run_cases(self) -> Cases:

@@ -30,20 +30,21 @@ from ddct_bringup.campaign.rows import CRITERION
 from ddct_bringup.campaign.spec import CampaignSpec
 from ddct_bringup.campaign_report.evaluated_quantities import QUANTITIES
 from ddct_bringup.campaign_report.reading import read_table
-from ddct_bringup.digests.code import code_digest
+from ddct_bringup.digests.origin import CodeOrigin
 from ddct_bringup.scores.csv_text import OVER_FLOOR
 from ddct_bringup.verdict.limits import TRACTION, packaged_limits
 from ddct_controllers.registry import own_controller_names
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.output_file import write_bytes
-from ddct_plant.program.command_line import package_version, run_program
+from ddct_plant.program.command_line import run_program
 
 ROWS = 'development.parquet'
 UNAVOIDABLE = 'development_unavoidable.json'
 COPIED = (ROWS, UNAVOIDABLE)
 """Files of the release that each benchmark has a copy of."""
 _PROGRAM = 'make benchmark-rows'
-_CASES, _CODE, _VERSION = b'cases_digest', b'code_digest', b'version'
+_CASES, _CODE = b'cases_digest', b'code_digest'
+_VERSION, _COMMIT = b'version', b'commit'
 _VERDICT = ('valid', 'reason', 'verdict_state', 'verdict_limits')
 
 
@@ -56,9 +57,18 @@ class ReleaseRows:
     """Limits that no controller can keep, for each case with floors."""
     cases_digest: str
     """Digest of the cases that were run."""
-    code: str
-    """Digest of the code that computed the rows."""
-    version: str
+    origin: CodeOrigin
+    """Code that computed the rows."""
+
+    def other_code(self, origin: CodeOrigin) -> str:
+        """Return what to know beside rows of another `origin`; empty for rows of the same code."""
+        if self.origin.code == origin.code:
+            return ''
+        return (
+            'the development rows of the packaged controllers were computed by other code '
+            f'({self.origin.text}) than all other rows ({origin.text}): differences between them '
+            f'may be those of the code. {_PROGRAM}, in a clone, computes these rows again'
+        )
 
     def of(self, cases: Cases) -> 'ReleaseRows':
         """Return the rows of the cases that run; raise DdctError for cases without rows."""
@@ -94,11 +104,10 @@ def release_rows(folder: Traversable | Path) -> ReleaseRows:
         table = read_parquet(Path(str(folder / ROWS)))
         known, rows = table.schema.metadata, CaseRows.of_table(table)
         text = (folder / UNAVOIDABLE).read_text(encoding='utf-8')
-        return ReleaseRows(
-            rows,
-            unavoidable_of(text, rows.cases),
-            *(known[key].decode() for key in (_CASES, _CODE, _VERSION)),
-        )
+        unavoidable = unavoidable_of(text, rows.cases)
+        version, commit, code = (known[key].decode() for key in (_VERSION, _COMMIT, _CODE))
+        cases = known[_CASES].decode()
+        return ReleaseRows(rows, unavoidable, cases, CodeOrigin(version, commit, code))
     except (OSError, pa.ArrowException, LookupError, TypeError, ValueError) as error:
         why = next(iter(str(error).splitlines()), type(error).__name__)
         raise DdctError(f'{folder}: its rows of the release cannot be read ({why})') from error
@@ -114,15 +123,24 @@ def write_release_rows(work: Path, target: Path, workers: int | None = None) -> 
     """
     Compute the rows of all packaged controllers in the folder `work`, and write them to `target`.
 
-    The runs of an earlier start with the same code are taken. Raise DdctError where that fails.
+    The runs of an earlier start with the same code are taken. Raise DdctError where that fails,
+    and for a folder `work` with runs of other code.
     """
     cases, limits = Cases.packaged(), packaged_limits()
     campaign = cases.development(own_controller_names(), Path())
     resume = (work / MANIFEST).exists()
+    if resume and (before := Manifest.read(work).origin).code != CodeOrigin.here().code:
+        raise DdctError(
+            f'it has runs of other code, {before.text}: remove it, and run {_PROGRAM} again',
+            place=work,
+        )
     carry_out(campaign, limits, work, workers=workers, resume=resume)
-    table = read_table(work, Manifest.read(work)).select(columns_kept(campaign.spec))
-    origin = {_CASES: cases.digest, _CODE: code_digest(), _VERSION: package_version()}
-    table = table.replace_schema_metadata({key: text.encode() for key, text in origin.items()})
+    manifest = Manifest.read(work)
+    table = read_table(work, manifest).select(columns_kept(campaign.spec))
+    origin = manifest.origin
+    texts = {_VERSION: origin.version, _COMMIT: origin.commit, _CODE: origin.code}
+    texts[_CASES] = cases.digest
+    table = table.replace_schema_metadata({key: text.encode() for key, text in texts.items()})
     unavoidable = unavoidable_limits(campaign, limits, workers)
     _write_table(table, target / ROWS)
     text = json.dumps({str(case): names for case, names in unavoidable.items()}, indent=0)

@@ -49,7 +49,7 @@ def result_of(
     """
     return {
         'schema_version': SCHEMA_VERSION,
-        'release': {'version': manifest.version, 'code': manifest.code_digest},
+        'release': manifest.origin.entry(),
         'cases': _cases(manifest, release),
         'judge_seed': manifest.judge_seed,
         'method': _method(),
@@ -72,7 +72,8 @@ def _cases(manifest: BenchmarkManifest, release: ReleaseRows) -> CasesResult:
         'floor_samples': spec.floor_samples,
         'varied': list(spec.vary),
         'development_seed': spec.root,
-        'release_rows': {'version': release.version, 'code': release.code},
+        'release_rows': release.origin.entry(),
+        'other_code': release.other_code(manifest.origin),
     }
 
 

@@ -5,6 +5,7 @@
 from typing import TypedDict
 
 from ddct_bringup.campaign_report.summary_types import PairSummary, Quantiles, Reason
+from ddct_bringup.digests.origin import OriginEntry
 
 
 class RunShare(TypedDict):
@@ -151,13 +152,6 @@ class JudgedResult(TypedDict):
     held_out_pairs: list[PairSummary] | None
 
 
-class Release(TypedDict):
-    """Release that judged."""
-
-    version: str
-    code: str
-
-
 class CasesResult(TypedDict):
     """Cases that were run."""
 
@@ -168,8 +162,10 @@ class CasesResult(TypedDict):
     floor_samples: int
     varied: list[str]
     development_seed: int
-    release_rows: Release
-    """Version and code that computed the kept rows of our controllers."""
+    release_rows: OriginEntry
+    """Code that computed the kept rows of our controllers."""
+    other_code: str
+    """What to know where that is other code than `release`; empty where it is the same."""
 
 
 class Method(TypedDict):
@@ -189,7 +185,8 @@ class Result(TypedDict):
     """Content of `result.json`."""
 
     schema_version: int
-    release: Release
+    release: OriginEntry
+    """Code of the release that judged."""
     cases: CasesResult
     judge_seed: int | None
     """Seed of a judge for the held-out cases; null where it follows from the digests."""

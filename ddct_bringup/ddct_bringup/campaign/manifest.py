@@ -13,11 +13,10 @@ from ddct_bringup.campaign.spec import CampaignSpec, spec_of
 from ddct_bringup.campaign.specification.named_files import digest_of
 from ddct_bringup.digests.code import code_digest
 from ddct_bringup.digests.manifests import manifest_content
-from ddct_bringup.run.description import short_commit, source_commit
+from ddct_bringup.digests.origin import CodeOrigin
 from ddct_bringup.verdict.limits import Limits
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.files.output_file import write_json
-from ddct_plant.program.command_line import package_version
 
 MANIFEST = 'manifest.json'
 SCHEMA_VERSION = 1
@@ -59,12 +58,13 @@ class Manifest:
     @classmethod
     def of(cls, campaign: Campaign, limits: Limits) -> 'Manifest':
         """Return the manifest of a campaign that this version of the program computes."""
+        here = CodeOrigin.here()
         return cls(
             schema_version=SCHEMA_VERSION,
             root_seed=campaign.spec.root,
-            version=package_version(),
-            commit=source_commit(),
-            code_digest=code_digest(),
+            version=here.version,
+            commit=here.commit,
+            code_digest=here.code,
             spec_digest=campaign.digest(),
             limits=dict(limits.origin),
             runs=campaign.runs,
@@ -96,11 +96,6 @@ class Manifest:
         random = self.spec.get('random') or {}
         _require_group('spec.random', random)
         _require_group('spec.random.vary', random.get('vary') or {})
-
-    @property
-    def has_digests(self) -> bool:
-        """Whether its version writes `digests.json`, as all after 0.1.0 do."""
-        return self.version != '0.1.0'
 
     def write(self, out: Path) -> None:
         """Write the manifest to a campaign's folder; raise DdctError when that fails."""
@@ -140,7 +135,7 @@ class Manifest:
         """Raise DdctError with the differences of another campaign from this one, in `out`."""
         for what, ours, theirs in (
             ('root seed', str(self.root_seed), str(other.root_seed)),
-            ('code', self.code, other.code),
+            ('code', self.origin.short, other.origin.short),
             ('specification', self.spec_digest[:10], other.spec_digest[:10]),
             ('limits', json.dumps(self.limits), json.dumps(other.limits)),
         ):
@@ -173,9 +168,9 @@ class Manifest:
             )
 
     @property
-    def code(self) -> str:
-        """Commit, and the digest of the code, which distinguishes changes without a commit."""
-        return f'{short_commit(self.commit)} ({self.code_digest[:10]})'
+    def origin(self) -> CodeOrigin:
+        """Code that computes the rows."""
+        return CodeOrigin(self.version, self.commit, self.code_digest)
 
 
 def _require_group(key: str, value: object) -> None:

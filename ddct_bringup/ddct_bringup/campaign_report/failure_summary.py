@@ -10,6 +10,7 @@ from ddct_bringup.campaign_report.results import Group, Results
 from ddct_bringup.campaign_report.statistics import attribution
 from ddct_bringup.campaign_report.statistics.boundaries import FailureBoundary, boundaries
 from ddct_bringup.campaign_report.statistics.outcome import FAILED, Share, count_outcomes
+from ddct_bringup.campaign_report.statistics.parts import Part, RangePart
 from ddct_bringup.campaign_report.summary_types import (
     AttributionSummary,
     BoundarySide,
@@ -131,7 +132,8 @@ def attribution_summary(results: Results, group: Group) -> AttributionSummary:
     }
 
 
-def _part(part: attribution.Part) -> PartSummary:
+def _part(part: Part) -> PartSummary:
+    assert isinstance(part, RangePart)  # the keys are numbers: each name has a group of its own
     return {'low': part.low, 'high': part.high, 'runs': part.runs, 'failed': part.failed}
 
 

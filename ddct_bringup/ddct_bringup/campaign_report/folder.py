@@ -58,7 +58,8 @@ def write_campaign_page(folder: Path) -> Summary:
     manifest = Manifest.read(folder)
     results = results_of(manifest, read_table(folder, manifest))
     summary = summary_of(results)
-    page = campaign_page(results, summary, folder.as_posix(), facts_of(manifest))
+    replay = texts.replay_command(folder.as_posix(), 'INDEX', manifest.limits)
+    page = campaign_page(results, summary, replay, facts_of(manifest))
     with locked_folders(folder):
         write_json(str(folder / SUMMARY), summary, ours=True)
         write_text(str(folder / PAGE), page, ours=True)
@@ -88,11 +89,14 @@ def facts_of(manifest: Manifest) -> dict[str, str]:
 
 
 def campaign_page(
-    results: Results, summary: Summary, folder: str, facts: Mapping[str, str]
+    results: Results, summary: Summary, replay: str, facts: Mapping[str, str]
 ) -> str:
-    """Return the HTML page of a campaign in a folder; `facts` describe its origin."""
+    """
+    Return the HTML page of a campaign; `facts` describe its origin.
+
+    `replay` is the command that makes the bag of the run INDEX.
+    """
     maps = campaign_maps(results)
-    replay = texts.replay_command(folder, 'INDEX')
     return page_template(_ROOM, 'campaign.html.j2').render(
         marker=Markup(MARKER),
         style=page_part(_REPORT, 'page.css') + page_part(_ROOM, 'campaign.css'),
@@ -112,7 +116,6 @@ def campaign_page(
         quantities={quantity.key: quantity for quantity in results.quantities},
         first=[metric.key for metric in TABLE_5_1],
         replay=replay,
-        folder=folder,
         facts=facts,
         version=package_version(),
     )

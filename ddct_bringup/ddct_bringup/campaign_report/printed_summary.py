@@ -3,8 +3,10 @@
 """Tables of a campaign for the terminal."""
 
 from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
 from typing import TypeVar
 
+from ddct_bringup.campaign.manifest import Manifest
 from ddct_bringup.campaign_report import texts
 from ddct_bringup.campaign_report.summary_types import (
     GroupSummary,
@@ -36,12 +38,13 @@ def summary_tables(summary: Summary) -> list[Table]:
     ]
 
 
-def print_summary(summary: Summary, folder: str) -> None:
+def print_summary(summary: Summary, folder: Path) -> None:
     """Print the summary of the campaign in a folder."""
+    limits = Manifest.read(folder).limits
     print_tables(summary_tables(summary))
     for note in texts.notes_of(summary):
         print(printable(note))
-    print(f'the bag of a run: {texts.replay_command(folder, "I")}')
+    print(f'the bag of a run: {texts.replay_command(str(folder), "I", limits)}')
 
 
 def _failed(summary: Summary) -> Table:

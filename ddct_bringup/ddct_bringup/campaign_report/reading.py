@@ -30,14 +30,13 @@ _DIGEST_ADVICE = (
 _RESUME_ADVICE = 'give --resume to ddct campaign, which writes it from what is done'
 
 
-def require_as_written(folder: Path, manifest: Manifest) -> None:
+def require_as_written(folder: Path) -> None:
     """
     Raise DdctError unless the manifest and the rows of a campaign are as their digests.
 
-    Flipped bits may change numbers and nothing else. Only a version without digests needs none.
+    Flipped bits may change numbers and nothing else.
     """
-    advice = _DIGEST_ADVICE if manifest.has_digests else ''
-    require_unaltered(folder, (MANIFEST, RESULTS), advice=advice)
+    require_unaltered(folder, (MANIFEST, RESULTS), advice=_DIGEST_ADVICE)
 
 
 def read_table(folder: Path, manifest: Manifest) -> pa.Table:
@@ -48,7 +47,7 @@ def read_table(folder: Path, manifest: Manifest) -> pa.Table:
     rows, or without a required column.
     """
     path = folder / RESULTS
-    require_as_written(folder, manifest)
+    require_as_written(folder)
     try:
         table = read_parquet(path, manifest.runs)
         metadata = table.schema.metadata or {}

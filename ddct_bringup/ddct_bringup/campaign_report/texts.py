@@ -3,9 +3,11 @@
 """Definitions and texts of a summary for the page and the terminal."""
 
 import shlex
+from collections.abc import Mapping
 
-from ddct_bringup.campaign_report.statistics.attribution import FEWEST, MOST_PARTS
+from ddct_bringup.campaign_report.statistics.attribution import FEWEST
 from ddct_bringup.campaign_report.statistics.outcome import CONFIDENCE, METHOD
+from ddct_bringup.campaign_report.statistics.parts import MOST_PARTS, NamesPart, Part
 from ddct_bringup.campaign_report.statistics.spread import ONE_IN
 from ddct_bringup.campaign_report.summary_types import (
     BoundarySide,
@@ -16,6 +18,7 @@ from ddct_bringup.campaign_report.summary_types import (
     Summary,
 )
 from ddct_bringup.report.page_parts import value_text
+from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.program.table import UNDEFINED
 
 RULES = {
@@ -32,11 +35,14 @@ RULES = {
     'failed and all are valid, and the first value at which a run failed. The other keys of '
     'the grid stay at the values in the last column.',
     'explained': 'The main effect of a key: the part of the variance of failure that the key '
-    f'explains by itself, 0 to 1, over at most {MOST_PARTS} parts of its range. Keys that act '
-    'together only are not found by it.',
+    f'explains by itself, 0 to 1, over at most {MOST_PARTS} parts of its range, or over its '
+    'names, such as those of scenarios. Keys that act together only are not found by it.',
     'drives': 'Beyond chance: the p-value, by a permutation test and corrected for the number of '
     f'keys (Holm), is at most {1.0 - CONFIDENCE:.2g}. Fewer than {FEWEST} failed runs say nothing '
     'of keys.',
+    'most failures': 'The part of the range with the largest share of failed runs, or the names '
+    'that fail, as one group: the one that differs most from the others. It is chosen after the '
+    'runs, so its share is larger than that of new runs; p and the interval are of all parts.',
     'quantiles': 'P5, P50 and P95 of the engaged runs that have a value, with their signs. Failed '
     'runs have no place among them: their share is in the first table. On a grid these are '
     'quantiles over its points, not chances.',
@@ -52,9 +58,12 @@ RULES = {
 """Definitions by term."""
 
 
-def replay_command(folder: str, index: int | str) -> str:
-    """Return the command that makes the bag of one row."""
-    return f'ddct campaign replay {shlex.quote(folder)} --index {index} --out replay-{index}'
+def replay_command(folder: str, index: int | str, limits: Mapping[str, object]) -> str:
+    """Return the command that makes the bag of one row, judged by limits of this origin."""
+    words = ['ddct', 'campaign', 'replay', folder, '--index', str(index)]
+    if limits != packaged_limits().origin:
+        words += ['--limits', str(limits['name'])]
+    return shlex.join([*words, '--out', f'replay-{index}'])
 
 
 def share_text(share: float | None) -> str:
@@ -114,6 +123,13 @@ def _apart(value: float, other: float | None) -> str:
 def range_text(low: float, high: float) -> str:
     """Return the ends of an interval or a range."""
     return value_text(low) if low == high else f'{value_text(low)} to {value_text(high)}'
+
+
+def where_text(part: Part) -> str:
+    """Return a part of a key's values: the ends of a range, or names."""
+    if isinstance(part, NamesPart):
+        return ', '.join(part.names)
+    return range_text(part.low, part.high)
 
 
 def p_text(p_value: float) -> str:

@@ -43,14 +43,15 @@ class RunDigests:
     """SHA-256 of the files that the controller is made of, by their key on `run_info`."""
     handover: str | None = None
     """Path of the handover's Python file relative to the folder; None where it has no file."""
-    handover_sha256: str | None = None
-    """SHA-256 of that file."""
+    handover_files: Mapping[str, str] = field(default_factory=dict)
+    """SHA-256 of that file and of the modules beside it that it imports, by their key."""
 
     def __post_init__(self) -> None:
         """Raise ParameterError for a value of another type, as in an edited file."""
-        if not isinstance(self.controller_files, Mapping):
-            raise ParameterError('controller_files is no group of keys', key='controller_files')
-        for value in (self.controller, self.handover, self.handover_sha256):
+        for key in ('controller_files', 'handover_files'):
+            if not isinstance(getattr(self, key), Mapping):
+                raise ParameterError(f'{key} is no group of keys', key=key)
+        for value in (self.controller, self.handover):
             if not isinstance(value, str | None):
                 raise ParameterError(f'{value!r} is no text')
 
@@ -58,9 +59,7 @@ class RunDigests:
         """Return the digests as JSON; a run without a handover file has no keys of one."""
         content = asdict(self)
         return {
-            key: content[key]
-            for key in content
-            if not key.startswith('handover') or content[key] is not None
+            key: content[key] for key in content if not key.startswith('handover') or content[key]
         }
 
 

@@ -68,8 +68,8 @@ def require_unaltered(folder: Path, names: Sequence[str], *, advice: str = '') -
     """
     Raise DdctError for a file that is not as its digest; `names` are paths in the folder.
 
-    With an `advice`, each that exists must have a digest. Else a folder without `digests.json`, of
-    an earlier version, is not checked.
+    With an `advice`, each that exists must have a digest. Else one without a digest is not
+    checked: who goes on with a folder computes again what has none.
     """
     digests = read_digests(folder) if (folder / DIGESTS).exists() else None
     for name in names if advice else ():

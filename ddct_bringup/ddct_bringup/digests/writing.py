@@ -22,6 +22,7 @@ from ddct_bringup.digests.files import digests_of_files, files_in
 from ddct_bringup.run.output_folder import is_ours
 from ddct_bringup.run.plan import RunPlan
 from ddct_controllers.from_file.controller_file import is_controller_file
+from ddct_controllers.from_file.digests import handover_digests
 from ddct_controllers.registry import controller_spec
 from ddct_plant.scenario.file import scenario_digest
 from ddct_plant.scenario.settings import is_handover_file
@@ -113,5 +114,5 @@ def _run_digests(folder: Path, plan: RunPlan) -> RunDigests:
     handover = plan.settings.handover
     if not is_handover_file(handover):
         return digests
-    place, digest = os.path.relpath(handover, folder), file_digest(Path(handover))
-    return replace(digests, handover=place, handover_sha256=digest)
+    place = os.path.relpath(handover, folder)
+    return replace(digests, handover=place, handover_files=handover_digests(handover))

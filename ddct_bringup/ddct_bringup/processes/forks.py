@@ -27,7 +27,7 @@ from typing import NoReturn
 from ddct_bringup.processes.jobs import ForkRequest, JobText
 from ddct_bringup.processes.preloading import preload
 from ddct_bringup.processes.tracing_locks import TracingLocks
-from ddct_plant.program.supervision import PULSE_FD, end_with_parent
+from ddct_plant.program.supervision import PULSE_FD, end_with_parent, stems_from_interrupt
 
 MOST_DESCRIPTORS = 250
 """Largest number of descriptors in one request; the kernel's limit is 253."""
@@ -136,10 +136,10 @@ def exit_code(work: Callable[[], int | None]) -> int:
         if end.code is None or isinstance(end.code, int):
             return end.code or 0
         print(end.code, file=sys.stderr)
-    except KeyboardInterrupt:
-        signal.signal(signal.SIGINT, signal.SIG_DFL)
-        os.kill(os.getpid(), signal.SIGINT)
-    except BaseException:
+    except BaseException as error:
+        if stems_from_interrupt(error):
+            signal.signal(signal.SIGINT, signal.SIG_DFL)
+            os.kill(os.getpid(), signal.SIGINT)
         traceback.print_exc()
     return 1
 

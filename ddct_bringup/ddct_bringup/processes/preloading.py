@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Imports of the warm parent before it forks nodes: slow modules that keep no state."""
+"""Imports of the warm parent before it forks nodes: slow modules, and the commit of the code."""
 
 import contextlib
 import importlib
@@ -35,7 +35,7 @@ _GENERATOR = 'rosidl_generator_py'
 
 def preload() -> None:
     """
-    Import the nodes, the middleware's libraries and the messages.
+    Import the nodes, the middleware's libraries and the messages, and find the commit.
 
     No third party's controller is imported: only the process of its node loads it.
     """
@@ -47,6 +47,9 @@ def preload() -> None:
         _load_messages()
     with contextlib.suppress(ImportError):
         importlib.import_module('ddct_plant.graph.rare_warnings').find_sources()
+    with contextlib.suppress(ImportError):
+        # For the recorders: each would call git between the start of its graph and the first tick.
+        importlib.import_module('ddct_bringup.run.description').source_commit()
 
 
 @contextlib.contextmanager

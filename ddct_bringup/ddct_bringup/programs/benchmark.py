@@ -33,11 +33,11 @@ _SEED = Option(0, 'seed of a judge', at_least=0, at_most=2**31 - 1)
 
 _EPILOG = f"""\
 examples:
-  ddct benchmark mine.yaml --out results/mine            a few minutes on two cores
-  ddct benchmark mine.yaml --out results/try --quick     a tenth of the cases
-  ddct benchmark a.py b.py ls8 --out results/three       each on its own held-out cases
-  ddct benchmark mine.yaml --out results/judged --seed 7 a judge chooses the held-out cases
-  ddct verify results/mine                               whether a result comes out again
+  ddct benchmark mine.yaml --out results/mine             a few minutes on two cores
+  ddct benchmark mine.yaml --out results/try --quick      a tenth of the cases
+  ddct benchmark a.py b.py ls8 --out results/three        each on its own held-out cases
+  ddct benchmark mine.yaml --out results/judged --seed 7  a judge chooses the held-out cases
+  ddct verify results/mine                                whether a result comes out again
 
 The development cases are fixed in a release, which has our controllers' rows of them. The seed of
 the held-out cases follows from the digests of controller and release; pi, ls8, hinf_sampled and

@@ -25,6 +25,7 @@ from ddct_controllers.registry import controller_label
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.program.command_line import ProgramParser, run_program
 from ddct_plant.scenario.differences import scenario_title
+from ddct_plant.signals.gain_changes import changes_note
 
 PROGRAM = 'ddct bringup'
 
@@ -93,7 +94,7 @@ def _run(
         title = scenario_title(plan.settings.scenario.name, changes)
         print(f'{PROGRAM}: {title}', file=sys.stderr)
     _print_notes(run, folder.final)
-    for note in slow_notes(scores):
+    for note in filter(None, (changes_note(scores.gain_changes), *slow_notes(scores))):
         print(f'{PROGRAM}: {note}', file=sys.stderr)
     verdict = scores.verdict
     print(f'{PROGRAM}: state {verdict.state}, limits {verdict.limits}', file=sys.stderr)

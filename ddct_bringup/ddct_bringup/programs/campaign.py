@@ -57,7 +57,7 @@ def _campaign(argv: list[str]) -> int:
             resume=options.resume,
             stopped=lambda: bool(stops),
         )
-    print_summary(write_campaign_page(options.out), str(options.out))
+    print_summary(write_campaign_page(options.out), options.out)
     print(results)
     print(options.out / PAGE, flush=True)
     return 0

@@ -107,10 +107,10 @@ def _replay(options: argparse.Namespace) -> int:
     limits = load_limits(options.limits)
     manifest.require_limits(limits, options.folder)
     campaign = manifest.campaign(options.folder)
-    require_as_written(options.folder, manifest)
+    require_as_written(options.folder)
     row = read_row(options.folder / RESULTS, options.index, manifest.runs)
     if manifest.code_digest != code_digest():
-        complain(_REPLAY, f'the campaign is of {manifest.code}, this is another code')
+        complain(_REPLAY, f'the campaign is of {manifest.origin.short}, this is another code')
     run = campaign.run(options.index)
     plan = RunPlan(run.settings, campaign.chosen(options.index), options.layout)
     with run_folder(options.out, plan.name, overwrite=options.overwrite) as folder:
@@ -164,7 +164,7 @@ def _show(options: argparse.Namespace) -> int:
     written = (options.json, options.csv, options.figure)
     keep_digests(file for file in written if file not in (None, STDOUT))
     if STDOUT not in (options.json, options.csv):
-        print_summary(summary, str(options.folder))
+        print_summary(summary, options.folder)
         print(options.folder / PAGE)
     return 0
 

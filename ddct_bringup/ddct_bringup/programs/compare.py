@@ -35,11 +35,11 @@ from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.verdict.limits import Limits, add_limits_option, load_limits
 from ddct_controllers.registry import controller_label, working_controllers
 from ddct_controllers.workflows.evidence import frequency_evidence
+from ddct_controllers.workflows.evidence_types import FrequencyEvidence
 from ddct_plant.base.errors import DdctError, ParameterError, printable
 from ddct_plant.files.output_file import STDOUT, require_place, write_json
 from ddct_plant.program.command_line import ProgramParser, complain, run_program
 from ddct_plant.program.progress import with_progress
-from ddct_plant.scenario.settings import RunSettings
 
 PROGRAM = 'ddct compare'
 SCORES_FILE = 'scores.json'
@@ -53,8 +53,9 @@ examples:
 
 Writes one bag per controller, DIR/scores.json, DIR/frequency.json with the margins of the
 linear ones, and DIR/report.html, a page that shows all of it. A run that fails does not stop the
-others: DIR has its reason and its logs, and the exit code is 1. When no run is
-valid, or on Ctrl-C, DIR is not touched, and what was recorded stays in DIR.partial.
+others: DIR has its reason and its logs, and the exit code is 1, as where a controller's
+linear_model cannot be used: its run counts, but has no margins. When no run is valid, or on
+Ctrl-C, DIR is not touched, and what was recorded stays in DIR.partial.
 """
 
 
@@ -73,6 +74,7 @@ def _compare(argv: list[str]) -> int:
     require_chart_library()
     require_place('--json', options.json)
     floor_metrics(options.floors)
+    unusable: list[DdctError] = []
     # The warm parent imports while the runs are planned, and serves them all.
     with parent_for(options.layout) as parent:
         limits = load_limits(options.limits)
@@ -86,16 +88,19 @@ def _compare(argv: list[str]) -> int:
             locked_folders(options.out),
             StagedFolder(options.out, overwrite=options.overwrite) as folder,
         ):
-            failed = _run_all(plans, folder, settings, options, limits, parent)
+            evidence = frequency_evidence(names, settings, unusable.append)
+            failed = _run_all(plans, folder, evidence, options, limits, parent)
     if failed:
         complain(PROGRAM, f'not valid: {", ".join(failed)}: the table and the report say why')
-    return 1 if failed else 0
+    for error in unusable:
+        complain(PROGRAM, f'{error}; its run counts, but it has no margins')
+    return 1 if failed or unusable else 0
 
 
 def _run_all(
     plans: list[RunPlan],
     folder: StagedFolder,
-    settings: RunSettings,
+    evidence: FrequencyEvidence,
     options: argparse.Namespace,
     limits: Limits,
     parent: WarmParent | None,
@@ -105,7 +110,6 @@ def _run_all(
 
     Raise DdctError when none is valid: DIR stays as it was.
     """
-    evidence = frequency_evidence([plan.controller for plan in plans], settings)
     runs = [
         _run(plan, folder.path, f'{index} of {len(plans)}, ', limits, parent)
         for index, plan in enumerate(plans, start=1)
@@ -114,7 +118,7 @@ def _run_all(
     runs = [with_floors(run, metrics, limits) for run in with_progress(runs, len(runs), 'floors')]
     scored = [run.scores for run in runs]
     write_json(str(folder.path / SCORES_FILE), scores_document(scored, limits))
-    _report(scored, plans, settings, options, limits)
+    _report(scored, plans, options, limits)
     failed = [plan.name for plan, run in zip(plans, scored, strict=True) if not run.valid]
     if len(failed) == len(plans):
         print_logs_with_warnings(PROGRAM, [folder.path / plan.name for plan in plans])
@@ -158,10 +162,10 @@ def _run(
 def _report(
     scored: list[ScoredRun],
     plans: list[RunPlan],
-    settings: RunSettings,
     options: argparse.Namespace,
     limits: Limits,
 ) -> None:
+    settings = plans[0].settings
     if options.json:
         write_json(options.json, scores_document(scored, limits))
     stream = sys.stderr if options.json == STDOUT else sys.stdout

@@ -6,22 +6,19 @@ import ast
 import os
 import sys
 from collections.abc import Callable
-from contextlib import nullcontext
-from importlib.metadata import EntryPoint, entry_points
+from contextlib import AbstractContextManager, nullcontext
+from importlib.metadata import EntryPoint
 from importlib.util import find_spec
 from itertools import groupby
 from pathlib import Path
 
-from ddct_bringup.processes.warm_parent import started_ahead
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.options import close_name
 from ddct_plant.graph.domain import require_ros
 from ddct_plant.program.command_line import ProgramParser, run_program
-from ddct_plant.program.supervision import interrupted_by
+from ddct_plant.program.start import load_program, programs
 
 PROGRAM = 'ddct'
-GROUP = 'ddct.programs'
-"""Group of the programs' entry points, which the packages' setup.py declare."""
 _FIRST_OF_ROS = ('rclpy', 'rcl_interfaces')
 """Modules that a node imports first of ROS."""
 _RUNS_GRAPHS = ('bringup', 'compare')
@@ -42,11 +39,6 @@ def main(argv: list[str] | None = None) -> int:
     return run_program(PROGRAM, _ddct, argv)
 
 
-def programs() -> dict[str, EntryPoint]:
-    """Return the programs by name; of two with the same name the first on Python's path."""
-    return {point.name: point for point in reversed(tuple(entry_points(group=GROUP)))}
-
-
 def _ddct(argv: list[str]) -> int:
     known = programs()
     if not argv or argv[0] not in known:
@@ -62,25 +54,30 @@ def _ddct(argv: list[str]) -> int:
         parser.error(f'unknown program {name}: {close_name(name, sorted(known))}')
     # Matrices are small: more threads only wait for one another. Nodes inherit this setting.
     os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
-    ahead = argv[0] in _RUNS_GRAPHS and _WITHOUT_NODES.isdisjoint(argv)
-    with started_ahead() if ahead else nullcontext():
+    with _warm_parent() if _starts_nodes(argv) else nullcontext():
         sys.argv[1:] = argv[1:]
         return _load(known[argv[0]])()
 
 
+def _starts_nodes(argv: list[str]) -> bool:
+    return argv[0] in _RUNS_GRAPHS and _WITHOUT_NODES.isdisjoint(argv)
+
+
+def _warm_parent() -> AbstractContextManager[None]:
+    # Only here: what is imported before `run_program` cannot be interrupted without a traceback.
+    from ddct_bringup.processes.warm_parent import started_ahead
+
+    return started_ahead()
+
+
 def _load(point: EntryPoint) -> Callable[[], int]:
-    """Import a program; raise DdctError where a package that it needs is not installed."""
+    """Import a program; raise DdctError, with the page to read where ROS is not installed."""
     try:
-        loaded = point.load()
-    except ImportError as error:
-        if interrupted_by():  # some modules report any failure in them as one of an import
-            raise KeyboardInterrupt from error
-        if error.name in _FIRST_OF_ROS:
+        return load_program(point)
+    except DdctError as error:
+        if getattr(error.__cause__, 'name', None) in _FIRST_OF_ROS:
             require_ros()
-        raise DdctError(f'{point.name} cannot start: {error}: install what it needs') from error
-    if interrupted_by():  # a module has dropped it
-        raise KeyboardInterrupt
-    return loaded
+        raise
 
 
 def _listing(known: dict[str, EntryPoint]) -> str:

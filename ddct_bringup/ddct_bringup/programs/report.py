@@ -33,10 +33,10 @@ _HEAD_BYTES = 1000
 
 _EPILOG = """\
 examples:
-  ddct report runs/demo                                 every bag in the folder and below it
-  ddct report runs/new/ls8 runs/worn/ls8 --out ls8.html one controller in two conditions
-  ddct report runs/demo --out -                         the page on standard output
-  ddct report runs/demo --limits mine.yaml              judged by limits of your own
+  ddct report runs/demo                                  every bag in the folder and below it
+  ddct report runs/new/ls8 runs/worn/ls8 --out ls8.html  one controller in two conditions
+  ddct report runs/demo --out -                          the page on standard output
+  ddct report runs/demo --limits mine.yaml               judged by limits of your own
 
 The page needs no network and no other file. Bags are scored anew; frequency.json and
 timing.json are taken from beside them. All runs must be of one scenario. The exit code is 0

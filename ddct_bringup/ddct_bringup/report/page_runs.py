@@ -17,6 +17,7 @@ from ddct_bringup.scores.scored_recording import ScoredRecording
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.thesis.table_5_1 import ThesisRow
 from ddct_controllers.design.drawing.line_looks import LineLook, looks_of, sample_svg
+from ddct_plant.signals.gain_changes import changes_note
 
 SHOWN_AT_FIRST = 12
 """
@@ -72,6 +73,11 @@ class PageRun:
     def fallback(self) -> str:
         """Note on the steps of a controller without a solution; empty for none."""
         return fallback_note(self.scores) if self.scores.fallbacks else ''
+
+    @property
+    def changed_gains(self) -> str:
+        """Note on gains that were changed while it ran; empty for none."""
+        return changes_note(self.scores.gain_changes)
 
 
 def page_runs(runs: Sequence[ScoredRecording]) -> list[PageRun]:

@@ -4,6 +4,7 @@
 
 import os
 import subprocess
+from functools import cache
 from pathlib import Path
 
 from ddct_bringup.bag.run_facts import RunFacts
@@ -63,12 +64,23 @@ def run_info_of(
     return {name_in_graph(node): pairs for node, pairs in info.items()}
 
 
-def source_commit(file: Path = Path(__file__)) -> str:
+@cache
+def source_commit() -> str:
+    """
+    Return the `commit_of` the sources of this process, found at first use and then kept.
+
+    The loaded code stays the same, whatever becomes of its files: in a long session a commit of
+    later would name code that does not run. Forked processes inherit it with the code.
+    """
+    return commit_of(Path(__file__))
+
+
+def commit_of(file: Path) -> str:
     """
     Return the git commit that contains `file`, a source module, with `DIRTY` where it applies.
 
     Return 'unknown' outside a checkout: for a copy inside another repository git would return
-    the commit of that repository. The function calls git twice, about 10 ms.
+    the commit of that repository. Git is called twice, which takes 10 ms or more.
     """
     path = file.resolve()
     try:

@@ -5,7 +5,7 @@
 import re
 import sys
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
 from pathlib import Path
@@ -29,6 +29,7 @@ from ddct_plant.base.errors import DdctError
 from ddct_plant.graph.domain import own_domain
 from ddct_plant.program.supervision import stop_signals
 from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.signals.gain_changes import GainChange
 
 WORK_FOLDER = 'work'
 """
@@ -171,19 +172,22 @@ def _execute_processes(
         processes.require_clean_end()
 
 
-def simulate(plan: RunPlan) -> tuple[Recording, RunTiming]:
+def simulate(plan: RunPlan, changes: Sequence[GainChange] = ()) -> tuple[Recording, RunTiming]:
     """
     Execute a headless `plan` in memory; return its recording and its timing.
+
+    `changes` are gains that are changed in the run; raise DdctError for one that is not taken.
 
     No file exists at the recording's path, and its message counts are empty.
     """
     controller = make_controller(plan.controller, plan.settings)
     timing = RunTiming()
-    trajectory = run_headless(plan.settings, controller, timing)
+    described = run_info_of(plan.settings, plan.name, controller, plan.steps)
+    trajectory = run_headless(plan.settings, controller, timing, changes)
     recording = replace(
         recording_in_memory(plan.settings, plan.name, trajectory),
         custom_data=custom_data(plan.settings, plan.name, plan.steps),
-        run_info=run_info_of(plan.settings, plan.name, controller, plan.steps),
+        run_info=described,
     )
     return recording, timing
 

@@ -10,6 +10,7 @@ The result equals that of the graph, in any process layout, to the last bit.
 """
 
 import time
+from collections.abc import Sequence
 from typing import Any, Protocol, TypeVar
 
 import numpy as np
@@ -17,12 +18,13 @@ import numpy as np
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.run.shift_loop import ShiftLoop
 from ddct_bringup.run.timing_and_failure import RunTiming
-from ddct_controllers.architecture import make_architecture
+from ddct_controllers.architecture import Architecture, make_architecture
 from ddct_controllers.interface import Controller, Measurement
 from ddct_controllers.registry import Chosen, make_controller
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.scenario.whole_plant import PlantReply, WholePlant
 from ddct_plant.shift_plant.plant import ShiftPlant, ShiftReply
+from ddct_plant.signals.gain_changes import GainChange
 from ddct_plant.signals.signal import RunKind
 from ddct_reference.factory import make_reference
 
@@ -36,7 +38,7 @@ class ClosedLoop:
         """Kind of the run, which decides which signals it has."""
         self.plant = WholePlant(settings, two_input=controller.commands_engine)
         self._reference = make_reference(settings, controller.preview_steps)
-        self._architecture = make_architecture(settings, controller)
+        self.architecture = make_architecture(settings, controller)
         self.update_time_us = 0.0
         """Wall time of the controller's last update, us."""
 
@@ -47,7 +49,7 @@ class ClosedLoop:
         speeds, rates = self._reference.update(step, measured.slip_speed, measured.shaft_speed)
         measurement = Measurement.of_plant(step, observation, speeds, rates)
         started = time.perf_counter()
-        request = self._architecture.update(measurement)
+        request = self.architecture.update(measurement)
         self.update_time_us = 1e6 * (time.perf_counter() - started)
         reply = self.plant.reply(step, observation, request.torque, request.engine_torque)
         reply.signals.update(
@@ -70,6 +72,7 @@ class Loop(Protocol[Reply]):
     """A closed loop that `run_loop` steps: that of one clutch, or of a shift."""
 
     kind: RunKind
+    architecture: Architecture
     update_time_us: float
 
     @property
@@ -84,18 +87,22 @@ class Loop(Protocol[Reply]):
 
 
 def run_headless(
-    settings: RunSettings, controller: Chosen | Controller, timing: RunTiming | None = None
+    settings: RunSettings,
+    controller: Chosen | Controller,
+    timing: RunTiming | None = None,
+    changes: Sequence[GainChange] = (),
 ) -> Trajectory:
     """
     Simulate one run from t_0 to t_N and return every signal; fill `timing` if it is given.
 
-    `controller` is a value that `make_controller` accepts, or an object. Raise ParameterError
-    for a loop that cannot be built, DdctError when a controller commands a value that is not
-    finite.
+    `controller` is a value that `make_controller` accepts, or an object; `changes` are gains that
+    are changed in the run. Raise ParameterError for a loop that cannot be built, or for a gain
+    that the controller does not take, DdctError when it commands a value that is not finite.
     """
     if not isinstance(controller, Controller):
         controller = make_controller(controller, settings)
-    return run_loop(closed_loop(settings, controller), settings.scenario.steps, timing)
+    loop = closed_loop(settings, controller)
+    return run_loop(loop, settings.scenario.steps, timing, changes)
 
 
 def closed_loop(settings: RunSettings, controller: Controller) -> Loop[Any]:
@@ -105,20 +112,35 @@ def closed_loop(settings: RunSettings, controller: Controller) -> Loop[Any]:
 
 # What is not finite ends the run with a reason, so that numpy need not warn of it as well.
 @np.errstate(over='ignore', invalid='ignore')
-def run_loop(loop: Loop[Reply], steps: int, timing: RunTiming | None = None) -> Trajectory:
+def run_loop(
+    loop: Loop[Reply],
+    steps: int,
+    timing: RunTiming | None = None,
+    changes: Sequence[GainChange] = (),
+) -> Trajectory:
     """
     Simulate a loop from t_0 to t_`steps`, return every signal and fill `timing` if given.
 
-    Raise DdctError when the controller commands a value that is not finite.
+    Each of the `changes` of gains acts from its step on. Raise DdctError when the controller
+    commands a value that is not finite, or does not take a gain.
     """
     timing = RunTiming() if timing is None else timing
+    by_step: dict[int, dict[str, float]] = {}
+    for change in changes:
+        by_step.setdefault(change.step, {})[change.gain] = change.after
+
+    def reply_at(step: int) -> Reply:
+        if step in by_step:
+            loop.architecture.change_gains(by_step[step])
+        return loop.reply(step)
+
     started = time.perf_counter()
-    reply = loop.reply(0)
+    reply = reply_at(0)
     rows = [reply.signals]
     timing.update_times_us.append(loop.update_time_us)
     for step in range(1, steps + 1):
         loop.advance(reply)
-        reply = loop.reply(step)
+        reply = reply_at(step)
         rows.append(reply.signals)
         timing.update_times_us.append(loop.update_time_us)
         if loop.plant.over:

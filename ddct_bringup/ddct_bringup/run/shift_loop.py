@@ -47,7 +47,7 @@ class ShiftLoop:
         self.plant = ShiftPlant(settings, two_input=controller.commands_engine)
         self._handover = make_handover(settings)
         self._reference = make_reference(settings, controller.preview_steps)
-        self._architecture = make_architecture(settings, controller)
+        self.architecture = make_architecture(settings, controller)
         self.update_time_us = 0.0
         """Wall time of the controller's last update, us."""
 
@@ -60,7 +60,7 @@ class ShiftLoop:
         )
         measurement = Measurement.of_plant(step, observation, speeds, rates)
         started = time.perf_counter()
-        request = self._architecture.update(measurement, command.on_coming)
+        request = self.architecture.update(measurement, command.on_coming)
         self.update_time_us = 1e6 * (time.perf_counter() - started)
         reply = self.plant.reply(
             step,

@@ -51,6 +51,7 @@ def score_row(run: ScoredRun) -> dict[str, Cell]:
         'safe_state': run.safe_state,
         'before_schema': run.before_schema,
         'scenario_changes': None if run.scenario_changes is None else list(run.scenario_changes),
+        'gain_changes': [each.text for each in run.gain_changes],
         **run.metrics,
         'verdict_state': run.verdict.state,
         'verdict_limits': run.verdict.limits,

@@ -13,7 +13,9 @@ from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.verdict.limits import TRACTION, Limits
 from ddct_bringup.verdict.verdict import NO_LIMIT, CriterionResult, Verdict
 from ddct_plant.base.errors import DdctError
+from ddct_plant.base.timebase import steps_in
 from ddct_plant.files.input_file import parse_json, read_text_file
+from ddct_plant.signals.gain_changes import GainChange
 
 SCHEMA_VERSION = 3
 """
@@ -55,10 +57,17 @@ def run_entry(run: ScoredRun) -> Mapping[str, Any]:
         'safe_state': run.safe_state,
         'before_schema': run.before_schema,
         'scenario_changes': None if run.scenario_changes is None else list(run.scenario_changes),
+        'gain_changes': [gain_change_entry(each) for each in run.gain_changes],
         'over_floor': dict(run.over_floor),
         'no_floor': run.no_floor,
     }
     return {**entry, NOT_COMPUTED: dict(run.not_computed)} if run.measured else entry
+
+
+def gain_change_entry(change: GainChange) -> Mapping[str, Any]:
+    """Return the entry of a gain that was changed in a run, in force from `time_s` in s on."""
+    values = {'gain': change.gain, 'before': change.before, 'after': change.after}
+    return {**values, 'time_s': change.time_s}
 
 
 def verdict_entry(verdict: Verdict) -> Mapping[str, Any]:
@@ -118,10 +127,16 @@ def _run_of(entry: Mapping[str, Any]) -> ScoredRun:
         safe_state=entry['safe_state'],
         before_schema=entry['before_schema'],
         scenario_changes=None if changes is None else tuple(changes),
+        gain_changes=tuple(_gain_change_of(each) for each in entry.get('gain_changes', ())),
         over_floor=entry.get('over_floor', {}),
         no_floor=entry.get('no_floor', ''),
         not_computed={**dict.fromkeys(missing, NO_SUCH_METRIC), **entry.get(NOT_COMPUTED, {})},
     )
+
+
+def _gain_change_of(entry: Mapping[str, Any]) -> GainChange:
+    step = steps_in('time_s', entry['time_s'])
+    return GainChange(entry['gain'], entry['before'], entry['after'], step)
 
 
 def _verdict_of(entry: Mapping[str, Any]) -> Verdict:

@@ -9,6 +9,7 @@ from ddct_bringup.verdict.state import SUCCESSES
 from ddct_bringup.verdict.verdict import BEYOND, NO_LIMIT, UNAVOIDABLE
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.program.table import UNDEFINED, Column
+from ddct_plant.signals.gain_changes import changes_note
 
 
 def dash_notes(runs: Sequence[ScoredRun], columns: Sequence[Column[ScoredRun]]) -> list[str]:
@@ -26,6 +27,8 @@ def run_notes(run: ScoredRun) -> list[str]:
     notes = [] if run.valid else [f'not valid: {run.reason}']
     if run.valid and run.fallbacks:
         notes.append(fallback_note(run))
+    if run.gain_changes:
+        notes.append(changes_note(run.gain_changes))
     notes += [*slow_notes(run), *unknown_limits_notes(run)]
     names_by_reason: dict[str, list[str]] = {}
     for name, why in run.not_computed.items():

@@ -9,6 +9,7 @@ from ddct_bringup.bag.run_facts import MEASURED, RunConditions
 from ddct_bringup.metrics.catalogue import OF_SHIFT
 from ddct_bringup.metrics.metric import Metrics
 from ddct_bringup.verdict.verdict import Verdict
+from ddct_plant.signals.gain_changes import GainChange
 
 
 @dataclass(frozen=True)
@@ -32,6 +33,8 @@ class ScoredRun:
     """Whether the scenario is older than its version numbers; None of an unreadable run."""
     scenario_changes: tuple[str, ...] | None = None
     """Changes of the packaged scenario as KEY=VALUE; None where the scenario is unknown."""
+    gain_changes: tuple[GainChange, ...] = ()
+    """Gains of the controller that were changed while it ran."""
     not_computed: Mapping[str, str] = field(default_factory=dict)
     """Reason by metric or criterion that lacks its value, where the reason is known."""
     over_floor: Mapping[str, float | None] = field(default_factory=dict)

@@ -52,6 +52,7 @@ def score_run(
         safe_state=None if facts.lockstep else safe_state(recording),
         before_schema=recording.before_schema,
         scenario_changes=tuple(changed_values(settings.scenario)) if settings else None,
+        gain_changes=recording.gain_changes,
         not_computed=not_computed(recording, metrics, verdict),
     )
 

@@ -38,6 +38,8 @@ _MARK: LineStyle = {'linestyle': 'none', 'markersize': 7.0, 'markeredgewidth': 1
 _CROSS: LineStyle = {**_MARK, 'marker': 'x'}
 _RING: LineStyle = {**_MARK, 'marker': 'o', 'markerfacecolor': 'none'}
 _MARKS_OF_RUNS = ((_CROSS, 'other than engaged'), (_RING, 'engaged, no value'))
+_HALF_LINE = 0.3
+"""Half of the length of the line of a run at a name, where names are 1 apart."""
 _MARGIN = 0.08
 """Margin above and below the values shown, as a share of their range."""
 _FARTHEST = 4.0
@@ -73,15 +75,17 @@ def sweep_figure(sweep: Sweep, runs: Sequence[ScoredRow], metrics: Sequence[Quan
     drawing = Figure(figsize=(_WIDTH_IN, sum(heights) + 1.3))
     panels = drawing.subplots(len(heights), sharex=True, height_ratios=heights)
     panels[0].set_title(_title(sweep, names, _WIDTH_IN))  # below the legend
-    places = places_of(sweep.axes[0])
+    swept = sweep.axes[0]
+    places = places_of(swept)
     for axes, figure in zip(panels, metrics, strict=False):
         values = np.array([run.scores.metrics[figure.key] for run in runs], dtype=float)
         axes.set_ylabel(', '.join(filter(None, (figure.symbol, unit_text(figure.unit)))))
-        _draw_metric(axes, places, names, values.reshape(states.shape), states == ENGAGED)
+        values = values.reshape(states.shape)
+        _draw_metric(axes, places, names, values, states == ENGAGED, joined=swept.numeric)
     lines = panels[0].get_legend_handles_labels()
     drawing.legend(*lines, ncols=_LEGEND_COLUMNS, loc='outside upper center')
     _draw_lanes(panels[-1], places, names, states)
-    label_values(sweep.axes[0], panels[-1].xaxis)
+    label_values(swept, panels[-1].xaxis)
     marks = [_legend_mark(mark, meaning) for mark, meaning in _MARKS_OF_RUNS]
     state_legend(drawing, {*states.flat}, marks)
     return drawing
@@ -94,25 +98,46 @@ def _legend_mark(mark: LineStyle, meaning: str) -> Line2D:
 
 
 def _draw_metric(
-    axes: Axes, places: np.ndarray, names: Sequence[str], values: np.ndarray, engaged: np.ndarray
+    axes: Axes,
+    places: np.ndarray,
+    names: Sequence[str],
+    values: np.ndarray,
+    engaged: np.ndarray,
+    *,
+    joined: bool,
 ) -> None:
     """
     Draw lines through engaged runs; a cross marks another run, at the edge if it is far away.
 
-    An engaged run without a value is a ring at the lower edge. `values` and `engaged` are
-    (controllers, places).
+    Names have no order, so that runs at names are not `joined`: each has a short line of its own,
+    by whose dash its controller is known. An engaged run without a value is a ring at the lower
+    edge. `values` and `engaged` are (controllers, places).
     """
     low, high = _range(values[engaged], values)
     axes.set_ylim(low, high)
     for name, each, good in zip(names, values, engaged, strict=True):
         style = controller_style(name)
         style |= {'marker': style.get('marker', 'o'), 'markersize': 4.0, 'markevery': None}
-        axes.plot(places, each, color=style['color'], linewidth=0.6, alpha=0.5)
-        axes.plot(places, np.where(good, each, np.nan), label=name, **style)
+        shown = np.where(good, each, np.nan)
+        if joined:
+            axes.plot(places, each, color=style['color'], linewidth=0.6, alpha=0.5)
+            axes.plot(places, shown, label=name, **style)
+        else:
+            _draw_apart(axes, places, shown, name, style)
         at = np.clip(np.nan_to_num(each, nan=low), low, high)
         for mark, chosen in ((_CROSS, ~good), (_RING, good & ~np.isfinite(each))):
             if chosen.any():  # an empty line outside the clip makes the layout collapse
                 axes.plot(places[chosen], at[chosen], color=style['color'], clip_on=False, **mark)
+
+
+def _draw_apart(
+    axes: Axes, places: np.ndarray, values: np.ndarray, name: str, style: LineStyle
+) -> None:
+    """Draw a mark for each of (n,) values, and through it a line that reaches no neighbour."""
+    across = places[:, np.newaxis] + np.array([-_HALF_LINE, 0.0, _HALF_LINE, np.nan])
+    up = np.repeat(values, across.shape[1])
+    (line,) = axes.plot(across.ravel(), up, label=name, **style)
+    line.set_markevery(slice(1, None, across.shape[1]))
 
 
 def _draw_lanes(axes: Axes, places: np.ndarray, names: Sequence[str], states: np.ndarray) -> None:

@@ -15,7 +15,8 @@ from typing import TypedDict
 import numpy as np
 import scipy
 
-from ddct_bringup.campaign_report.statistics.attribution import MOST_PARTS, holm
+from ddct_bringup.campaign_report.statistics.attribution import holm
+from ddct_bringup.campaign_report.statistics.parts import places_in_range
 from ddct_bringup.tuning.specification.goals import Goal
 from ddct_bringup.tuning.specification.spec import TuningSpec
 from ddct_bringup.tuning.trial import Trial
@@ -49,7 +50,7 @@ def effects_on(goal: Goal, trials: Sequence[Trial], spec: TuningSpec) -> list[Pa
     explained, chances = {}, {}
     for parameter in spec.parameters:
         values = np.array([each.values[parameter.name] for each, _ in known], dtype=float)
-        parts = _parts(values)
+        parts = places_in_range(values, _IN_PART)
         explained[parameter.name] = _explained(parts, ranks)
         dealt = np.array([random.permutation(ranks) for _ in range(_PERMUTATIONS)])
         as_much = sum(_explained(parts, each) >= explained[parameter.name] for each in dealt)
@@ -64,15 +65,6 @@ def effects_on(goal: Goal, trials: Sequence[Trial], spec: TuningSpec) -> list[Pa
         for name, value in explained.items()
     ]
     return sorted(effects, key=lambda each: (-each['explained'], each['parameter']))
-
-
-def _parts(values: np.ndarray) -> np.ndarray:
-    """Return the part of each of (n,) values: one per value if there are few, else of one size."""
-    count = min(MOST_PARTS, max(2, len(values) // _IN_PART))
-    edges = np.unique(values)
-    if len(edges) > count:
-        edges = np.unique(np.quantile(values, np.arange(count) / count))
-    return np.unique(np.searchsorted(edges, values, side='right'), return_inverse=True)[1]
 
 
 def _explained(parts: np.ndarray, ranks: np.ndarray) -> float:

@@ -10,7 +10,7 @@ from ddct_bringup.benchmark.cases import Cases, packaged_folder
 from ddct_bringup.benchmark.conduct import HELD_OUT, UNAVOIDABLE, campaigns_of
 from ddct_bringup.benchmark.judged import Judged
 from ddct_bringup.benchmark.manifest import MANIFEST, BenchmarkManifest, JudgedEntry
-from ddct_bringup.benchmark.release import COPIED
+from ddct_bringup.benchmark.release import COPIED, release_rows
 from ddct_bringup.benchmark.report.folder import RESULT, result_in
 from ddct_bringup.benchmark.unavoidable import unavoidable_limits
 from ddct_bringup.campaign.manifest import Manifest
@@ -29,7 +29,7 @@ def verified_benchmark(request: VerificationRequest) -> Iterator[RepetitionResul
     """
     manifest = BenchmarkManifest.read(request.folder)
     yield _verified_manifest(request, manifest)
-    yield from _verified_release(request)
+    yield from _verified_release(request, manifest)
     for entry in manifest.controllers:
         yield from _verified_controller(request, manifest, entry)
     yield _verified_result(request)
@@ -55,18 +55,26 @@ def _verified_manifest(
     return RepetitionResult.of(MANIFEST, comparison, same_environment=request.same_environment)
 
 
-def _verified_release(request: VerificationRequest) -> Iterator[RepetitionResult]:
+def _verified_release(
+    request: VerificationRequest, manifest: BenchmarkManifest
+) -> Iterator[RepetitionResult]:
     """Compare the rows of the release with those that this release has, if it is the same."""
+    origin = release_rows(request.folder).origin
+    other = origin.code != manifest.code_digest
+    note = f'computed by other code: {origin.text}' if other else ''
     for name in COPIED:
         if not request.same_code:
-            yield RepetitionResult.by_digest(name, 'rows of another release')
+            yield RepetitionResult.by_digest(
+                name, '; '.join(filter(None, ('rows of another release', note)))
+            )
             continue
         comparison = Comparison()
         same = (request.folder / name).read_bytes() == (packaged_folder() / name).read_bytes()
         comparison.add(
             {'file': name, 'reason': 'other rows than those of the release'}, same, True
         )
-        yield RepetitionResult.of(name, comparison, same_environment=request.same_environment)
+        found = RepetitionResult.of(name, comparison, same_environment=request.same_environment)
+        yield replace(found, note=note)
 
 
 def _verified_controller(

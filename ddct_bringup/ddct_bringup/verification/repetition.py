@@ -7,8 +7,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from ddct_bringup.bag.recording import Recording
-from ddct_bringup.digests.controllers import require_same_files
-from ddct_bringup.digests.digest_file import RunDigests, file_digest
+from ddct_bringup.digests.digest_file import RunDigests
+from ddct_bringup.digests.user_files import require_same_controller, require_same_handover
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.verification.request import VerificationRequest
 from ddct_controllers.from_file.controller_file import is_controller_file
@@ -44,19 +44,15 @@ def controller_of(request: VerificationRequest, digests: RunDigests) -> str:
         )
     if is_controller_file(chosen):
         chosen = str(_found(request, 'controller', Path(chosen)))
-    require_same_files(chosen, digests.controller_files)
+    require_same_controller(chosen, digests.controller_files)
     return chosen
 
 
 def _handover_of(request: VerificationRequest, named: str, digests: RunDigests) -> str:
     """Return the path of a run's handover file; raise DdctError unless it is the same."""
-    file = _found(request, 'handover', Path(named))
-    if file_digest(file) != digests.handover_sha256:  # first: making the plan runs the file
-        raise DdctError(
-            f'handover {file}: the file has changed since: put the old one back, or name its '
-            'folder with --files'
-        )
-    return str(file)
+    file = str(_found(request, 'handover', Path(named)))
+    require_same_handover(file, digests.handover_files)  # first: a plan runs the file
+    return file
 
 
 def _found(request: VerificationRequest, what: str, file: Path) -> Path:

@@ -27,7 +27,7 @@ class RepetitionResult:
     largest: float = 0.0
     """Largest difference, relative as `BOUND`; 0 for equal bits."""
     note: str = ''
-    """Reason why it was not repeated."""
+    """Reason why it was not repeated, or what else to know of it."""
     bound: float = BOUND
     """Bound that was used where bits may differ: BOUND, or that of a run which amplifies them."""
 

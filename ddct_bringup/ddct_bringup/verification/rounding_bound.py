@@ -8,7 +8,7 @@ amplify that beyond `BOUND`. An engine inertia whose last bits are others change
 of the run too, so that the differences which this makes are as large as those of other kernels.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 from ddct_bringup.campaign.columns import COMPARED
@@ -21,6 +21,7 @@ from ddct_bringup.verdict.limits import Limits
 from ddct_bringup.verification.comparison import BOUND, Comparison, plain_json
 from ddct_plant.base.errors import FOREIGN_FAILURES
 from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.signals.gain_changes import GainChange
 
 LARGEST = 1e-3
 """Largest bound: what rounding changes by more than that cannot be compared."""
@@ -51,12 +52,12 @@ def bound_of_row(run: PlannedRow | ImpossibleRow, limits: Limits) -> float:
     return _bound(run.settings, compare)
 
 
-def bound_of_run(plan: RunPlan) -> float:
-    """Return the bound of the signals of a run."""
-    ours, _ = simulate(plan)
+def bound_of_run(plan: RunPlan, changes: Sequence[GainChange] = ()) -> float:
+    """Return the bound of the signals of a run, whose gains were changed so."""
+    ours, _ = simulate(plan, changes)
 
     def compare(settings: RunSettings) -> Comparison:
-        theirs, _ = simulate(replace(plan, settings=settings))
+        theirs, _ = simulate(replace(plan, settings=settings), changes)
         comparison = Comparison()
         comparison.add_trajectories(ours.trajectory, theirs.trajectory)
         return comparison

@@ -27,6 +27,7 @@ from ddct_bringup.verification.rounding_bound import LARGEST, bound_of_run
 from ddct_bringup.verification.scores import SCORES, verified_frequency, verified_scores
 from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError
 from ddct_plant.scenario.file import scenario_digest
+from ddct_plant.signals.gain_changes import changes_note
 from ddct_plant.signals.topics import RUN_INFO
 
 METADATA = 'metadata.yaml'
@@ -65,9 +66,13 @@ def _verified_bag(request: VerificationRequest, bag: Path, name: str) -> Repetit
         if failure := failed_run(bag if bag.is_dir() else bag.parent):
             return _verified_failure(request, bag, name, digests, failure)
         recording = read_bag(bag)
-        if not recording.facts.lockstep:
-            return RepetitionResult.by_digest(name, _REAL_TIME)
-        return _verified_recording(request, recording, name, digests)
+        result = (
+            _verified_recording(request, recording, name, digests)
+            if recording.facts.lockstep
+            else RepetitionResult.by_digest(name, _REAL_TIME)
+        )
+        notes = (result.note, changes_note(recording.gain_changes))
+        return replace(result, note='; '.join(filter(None, notes)))
     except DdctError as error:
         return RepetitionResult.failed(name, error)
 
@@ -82,7 +87,7 @@ def _verified_recording(
             {'key': 'scenario'}, digests.scenario, scenario_digest(plan.settings.scenario)
         )
     try:
-        repeated, _ = simulate(plan)
+        repeated, _ = simulate(plan, recording.gain_changes)
     except FOREIGN_FAILURES as error:
         return RepetitionResult.failed(name, f'its repetition fails: {error}')
     _compare_descriptions(comparison, recording, repeated, same_code=request.same_code)
@@ -100,7 +105,7 @@ def _compare_signals(
     alone = Comparison()
     alone.add_trajectories(ours, theirs)
     if plan is not None and BOUND < alone.largest <= LARGEST:
-        comparison.bound = bound_of_run(plan)
+        comparison.bound = bound_of_run(plan, recording.gain_changes)
     comparison.add_trajectories(ours, theirs)
 
 

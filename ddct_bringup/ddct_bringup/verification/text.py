@@ -86,11 +86,15 @@ def _measured(found: Verification) -> str:
 
 
 def _detail(run: RepetitionResult) -> str:
-    """Return the first difference of a run, or why it was not repeated."""
+    """Return the first difference of a run, and why it was not repeated or its changed gains."""
+    return printable('; '.join(filter(None, (_difference(run), run.note))))
+
+
+def _difference(run: RepetitionResult) -> str:
     if run.first_difference is None:
-        return printable(run.note or (f'at most {run.largest:.2g}' if run.largest else ''))
+        return f'at most {run.largest:.2g}' if run.largest else ''
     first = dict(run.first_difference)
     reason = first.pop('reason', '')
     values = [f'{key} {first.pop(key)!r}' for key in ('recorded', 'repeated') if key in first]
     place = ', '.join(f'{key} {value}' for key, value in first.items())
-    return printable(': '.join(filter(None, (place, reason or ', '.join(values)))))
+    return ': '.join(filter(None, (place, reason or ', '.join(values))))

@@ -147,6 +147,7 @@ def test_whole_trajectories_are_those_of_the_run_step_by_step():
     for index, (each, controller) in enumerate(runs):
         controller.reset()
         expected = run_headless(each, controller)
+        assert stack.torque_demand[index].tolist() == expected.torque_demand.tolist()
         for name, values in stack.signals.items():
             ours, theirs = values[index], getattr(expected, name)
             assert ours.shape == theirs.shape

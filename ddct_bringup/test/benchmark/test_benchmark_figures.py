@@ -10,10 +10,12 @@ import pytest
 from scipy import stats
 
 from ddct_bringup.benchmark.case_rows import CaseRows
+from ddct_bringup.benchmark.cases import Cases
 from ddct_bringup.benchmark.comparison import figures_of, non_dominated, pairs_of
-from ddct_bringup.benchmark.evaluation import evaluations_of
+from ddct_bringup.benchmark.evaluation import causes_in, evaluations_of
 from ddct_bringup.benchmark.gaps import fisher_p_value, gaps_of
 from ddct_bringup.benchmark.update_times import read_update_times
+from ddct_bringup.campaign.keys import SCENARIO
 from ddct_bringup.campaign_report.printed_summary import MAIN
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.base.errors import DdctError
@@ -120,6 +122,23 @@ def test_an_invalid_run_is_no_success_and_has_a_state_of_its_own() -> None:
     assert found['reasons'] == [{'reason': 'why', 'runs': 1, 'index': 0}]
     assert found['causes'] is not None
     assert 'too few' in found['causes']['too_few']
+
+
+def test_scenarios_that_fail_are_named_without_their_neighbours_in_the_specification() -> None:
+    scenarios = Cases.packaged().whole.values_of(SCENARIO)
+    fails = ('launch', 'launch_hot')
+    columns = {
+        'scenario': np.repeat(np.array(scenarios, dtype=object), 3),
+        'valid': np.ones(3 * len(scenarios), dtype=bool),
+        'wear_gain': np.tile([0.8, 1.0, 1.2], len(scenarios)),
+    }
+    failed = np.isin(columns['scenario'], fails)
+    columns['verdict_state'] = np.where(failed, 'stalled', 'engaged').astype(object)
+    scenario, wear = causes_in(columns, ['wear_gain'])['keys']
+    assert (scenario['key'], scenario['drives']) == ('scenario', True)
+    assert scenario['worst_part'] == 'launch, launch_hot'
+    assert (scenario['worst_part_failed'], scenario['worst_part_runs']) == (6, 6)
+    assert (wear['key'], wear['drives']) == ('wear_gain', False)
 
 
 def test_the_worst_case_and_the_ratio_to_the_least_are_those_of_engaged_runs() -> None:

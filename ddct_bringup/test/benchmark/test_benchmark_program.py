@@ -4,6 +4,7 @@
 
 import json
 import os
+import shlex
 import shutil
 import struct
 import subprocess
@@ -13,10 +14,14 @@ from itertools import count
 from pathlib import Path
 from typing import Any
 
+import pyarrow.parquet as parquet
 import pytest
 from altered_bytes import kinds_of_files, not_found
+from printed_commands import printed_commands, run_printed
+from refusals import refused
 from small_benchmark import (
     judge,
+    use_release,
     use_small_release,
     write_controller_that_remembers,
 )
@@ -25,10 +30,13 @@ from verified import copied, edit_json_with_digest, states, verified
 from ddct_bringup.benchmark.cases import Cases
 from ddct_bringup.benchmark.conduct import AGAIN, Options, carry_out_benchmark
 from ddct_bringup.benchmark.judged import Judged
+from ddct_bringup.benchmark.release import ROWS, write_release_rows
 from ddct_bringup.benchmark.report.folder import PAGE, RESULT
 from ddct_bringup.digests.digest_file import DIGESTS
+from ddct_bringup.digests.origin import CodeOrigin
 from ddct_bringup.run.timing_and_failure import TIMING_FILE
 from ddct_bringup.verification.comparison import Comparison
+from ddct_plant.base.errors import DdctError
 
 pytestmark = pytest.mark.slow
 NAME = 'Remembers'
@@ -60,7 +68,8 @@ raise SystemExit(judge(Path(sys.argv[3]), sys.argv[2]))
 @pytest.fixture(scope='module')
 def place(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     """Return a folder with a small release, a controller that remembers, and its benchmark."""
-    folder = tmp_path_factory.mktemp('small')
+    folder = tmp_path_factory.mktemp('small') / "the driver's own"
+    folder.mkdir()
     with pytest.MonkeyPatch.context() as patch:
         use_small_release(folder, patch)
         remembers = write_controller_that_remembers(folder / 'remembers.py')
@@ -131,7 +140,9 @@ def test_the_bytes_are_the_same_with_any_number_of_workers_and_after_an_interrup
     assert 1 < left < len([*out.rglob('*.parquet')])
     pages = [(each / PAGE).read_text().splitlines() for each in (place / 'first', out)]
     other = [a for a, b in zip(*pages, strict=True) if a != b]
-    assert [line for line in other if 'class="num wall"' not in line] == []
+    of_folder = [line for line in other if '<code>ddct ' in line]
+    assert len(of_folder) == 2
+    assert [line for line in other if 'class="num wall"' not in line] == of_folder
 
 
 def test_other_kernels_give_the_same_values_within_the_bound(place: Path, tmp_path: Path) -> None:
@@ -159,6 +170,18 @@ def test_verify_computes_all_of_it_again(
     assert {'benchmark.json', 'development.parquet', RESULT} <= found.keys()
     assert f'{NAME}/held_out: {NAME}: rows 0 to 5' in found
     assert set(found.values()) == {'same_bits'}
+
+
+def test_the_commands_on_the_page_name_the_folder_and_run(
+    place: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    page = (place / 'first' / PAGE).read_text(encoding='utf-8')
+    replay, verify = printed_commands(page)
+    assert run_printed(replay, CASE='1') == 0
+    assert [*tmp_path.glob('runs/again/*/*.mcap')]
+    # To run it takes as long as the test before, which does with a copy of the folder.
+    assert shlex.split(verify) == ['ddct', 'verify', str(place / 'first')]
 
 
 def test_a_changed_controller_is_refused_before_it_runs(
@@ -239,6 +262,49 @@ def test_a_controller_that_fails_in_every_case_is_one_line_and_its_rows_stay(
     assert result_in(out)['controllers'][0]['held_out'][0]['states']['invalid']['runs'] == 2
 
 
+def test_rows_of_the_release_that_other_code_computed_are_named_wherever_the_result_is_read(
+    place: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    release = shutil.copytree(place / 'packaged', tmp_path / 'packaged')
+    table = parquet.read_table(release / ROWS)
+    other = {b'version': b'0.9.0', b'commit': b'c0ffee' * 4, b'code_digest': b'7' * 64}
+    kept = table.replace_schema_metadata({**table.schema.metadata, **other})
+    parquet.write_table(kept, release / ROWS)
+    out = tmp_path / 'out'
+    with pytest.MonkeyPatch.context() as patch:
+        use_release(release, patch)
+        assert judge(out, 'ls8', '--quick') == 0
+        printed = capfd.readouterr().out
+        code, document, _ = verified(out, capfd, '--workers', '1')
+    here = CodeOrigin.here()
+    before = f'version 0.9.0, commit c0ffeec0ff ({"7" * 10})'
+    cases = result_in(out)['cases']
+    assert cases['release_rows'] == {'version': '0.9.0', 'commit': 'c0ffee' * 4, 'code': '7' * 64}
+    for text in (printed, (out / PAGE).read_text(encoding='utf-8'), cases['other_code']):
+        assert f'by other code ({before}) than all other rows ({here.text})' in text
+        assert 'make benchmark-rows, in a clone, computes these rows again' in text
+    notes = {run['run']: run['note'] for run in document['runs']}
+    assert code == 0
+    assert notes[ROWS] == f'computed by other code: {before}'
+    # Rows of the same code need no word.
+    same = result_in(place / 'first')
+    assert same['release'] == same['cases']['release_rows'] == here.entry()
+    assert same['cases']['other_code'] == ''
+    assert 'other code' not in (place / 'first' / PAGE).read_text(encoding='utf-8')
+
+
+def test_rows_of_other_code_are_not_taken_when_the_release_is_computed_again(
+    place: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    work = shutil.copytree(place / 'rows', tmp_path / 'rows')
+    before = content_of(work)
+    monkeypatch.setattr('ddct_bringup.digests.origin.code_digest', lambda: '0' * 64)
+    with refused(DdctError, place='rows') as caught:
+        write_release_rows(work, tmp_path, workers=1)
+    assert 'remove it, and run make benchmark-rows again' in str(caught.value)
+    assert content_of(work) == before
+
+
 def foreign_library(folder: Path) -> str:
     """Write a controller file that names a library for another processor."""
     header = bytearray(Path(sys.executable).resolve().read_bytes()[:4096])
@@ -276,7 +342,7 @@ def test_a_folder_of_another_benchmark_or_release_is_refused_and_stays(
     file = str(place / 'remembers.py')
     assert judge(folder, file, '--quick') == 1
     assert judge(folder, 'ls8') == 1
-    monkeypatch.setattr('ddct_bringup.benchmark.manifest.code_digest', lambda: '0' * 64)
+    monkeypatch.setattr('ddct_bringup.digests.origin.code_digest', lambda: '0' * 64)
     assert judge(folder, file) == 1
     quick, others, release = capfd.readouterr().err.splitlines()
     assert 'with another number of cases' in quick

@@ -5,6 +5,7 @@
 from pathlib import Path
 
 import pytest
+from python_controllers import IMPORTS, PROPORTIONAL
 
 from ddct_bringup.benchmark.judged import Judged
 from ddct_bringup.benchmark.manifest import JudgedEntry
@@ -27,6 +28,17 @@ def test_any_other_byte_of_the_file_gives_another_seed_and_its_place_does_not(
     assert seed == seed_of(FILE, tmp_path / 'there' / 'other.yaml')
     assert 0 <= seed < 2**31
     assert seed != seed_of(FILE + '#', tmp_path / 'mine.yaml')
+
+
+def test_any_other_byte_of_a_module_beside_a_python_file_gives_another_seed(
+    tmp_path: Path,
+) -> None:
+    text = f'from helper import X\n{IMPORTS}{PROPORTIONAL}'
+    seeds = []
+    for helper in ('X = 1\n', 'X = 2\n', 'X = 1\n'):
+        (tmp_path / 'helper.py').write_text(helper, encoding='utf-8')
+        seeds.append(seed_of(text, tmp_path / 'mine.py'))
+    assert seeds[0] == seeds[2] != seeds[1]
 
 
 def test_another_release_gives_another_seed() -> None:

@@ -239,7 +239,7 @@ def test_other_code_or_limits_cannot_go_on(whole: Path, monkeypatch: pytest.Monk
     mine = limits_of_text(file.read_text(encoding='utf-8') + '# mine\n', 'mine.yaml')
     with refused(DdctError, 'limits'):
         carry_out(made(), mine, whole, resume=True)
-    monkeypatch.setattr('ddct_bringup.campaign.manifest.code_digest', lambda: '0' * 64)
+    monkeypatch.setattr('ddct_bringup.digests.origin.code_digest', lambda: '0' * 64)
     with refused(DdctError, 'code'):
         carried_out(whole, resume=True)
 

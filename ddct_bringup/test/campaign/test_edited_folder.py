@@ -13,6 +13,7 @@ import pyarrow as pa
 import pyarrow.parquet as parquet
 import pytest
 from in_this_process import in_this_process
+from made_campaign import seal
 from refusals import refused
 
 from ddct_bringup.campaign.campaign import Campaign
@@ -104,7 +105,7 @@ def of_one_row_repeated(file: Path, count: int) -> None:
 
 def test_results_with_more_rows_than_runs_are_refused_by_all_that_reads_them(out: Path) -> None:
     of_one_row_repeated(out / RESULTS, RUNS + 1)
-    edit(out, version='0.1.0')
+    seal(out)
     manifest = Manifest.read(out)
     with pytest.raises(DdctError, match=f'it has {RUNS + 1} rows, not {RUNS}'):
         read_table(out, manifest)
@@ -195,6 +196,8 @@ def test_results_without_a_digest_are_refused_until_they_are_computed_again(
     assert len(read_table(out, Manifest.read(out))) == RUNS
 
 
-def test_a_campaign_of_the_version_without_digests_is_read(out: Path) -> None:
-    edit(out, version='0.1.0')
-    assert len(read_table(out, Manifest.read(out))) == RUNS
+@pytest.mark.parametrize('version', ['0.1.0', '9.9.9'])
+def test_no_version_in_a_manifest_makes_up_for_digests(out: Path, version: str) -> None:
+    edit(out, version=version)
+    with refused(DdctError, MANIFEST, place='campaign'):
+        read_table(out, Manifest.read(out))

@@ -66,6 +66,19 @@ def test_any_changed_file_changes_it(tmp_path: Path, file: str) -> None:
     assert made.digest() != before
 
 
+@pytest.mark.parametrize('changed', ['controllers', 'grid'])
+def test_a_changed_module_beside_a_python_file_changes_it(tmp_path: Path, changed: str) -> None:
+    own = {**SHIFT, 'controllers': ['mine.py']} if changed == 'controllers' else SHIFT
+    made = campaign(tmp_path, **own)
+    file = tmp_path / ('mine.py' if changed == 'controllers' else 'own.py')
+    file.write_text(f'import helper\n{file.read_text(encoding="utf-8")}', encoding='utf-8')
+    digests = set()
+    for text in ('X = 1\n', 'X = 2\n', 'X = 2\n'):
+        (tmp_path / 'helper.py').write_text(text, encoding='utf-8')
+        digests.add(made.digest())
+    assert len(digests) == 2
+
+
 def test_a_handover_file_is_relative_to_the_specification(tmp_path: Path) -> None:
     made = campaign(tmp_path, **SHIFT)
     named = [made.run(case).settings.handover for case in range(2)]

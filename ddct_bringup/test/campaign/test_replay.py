@@ -6,10 +6,13 @@ from pathlib import Path
 
 import pytest
 from in_this_process import in_this_process
+from printed_commands import printed_commands, run_printed
 
 from ddct_bringup.campaign.columns import COMPARED, differences
 from ddct_bringup.campaign.conduct import RESULTS
+from ddct_bringup.campaign_report.folder import PAGE
 from ddct_bringup.programs import campaign
+from ddct_bringup.verdict import limits
 
 ROW = {
     **dict.fromkeys(COMPARED, 1.5),
@@ -42,6 +45,26 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def replay(folder: Path, *arguments: str) -> int:
     out = str(folder.parent / 'again')
     return campaign.main(['replay', str(folder), '--headless', '--out', out, *arguments])
+
+
+def test_the_printed_commands_make_the_bag_of_a_row(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    place, packaged = tmp_path / "the driver's own", Path(limits.__file__).parent / 'limits.yaml'
+    place.mkdir()
+    monkeypatch.chdir(place)
+    Path('spec.yaml').write_text(SPEC, encoding='utf-8')
+    mine = packaged.read_text(encoding='utf-8') + '# mine\n'
+    Path('my limits.yaml').write_text(mine, encoding='utf-8')
+    with in_this_process():
+        given = ['spec.yaml', '--out', 'my campaign', '--limits', 'my limits.yaml']
+        assert campaign.main(given) == 0
+    (printed,) = printed_commands(capsys.readouterr().out)
+    *of_runs, on_page = printed_commands(Path('my campaign', PAGE).read_text(encoding='utf-8'))
+    assert on_page == printed
+    assert run_printed(printed, I='1') == 0
+    assert run_printed(of_runs[0]) == 0
+    assert all(list(Path(folder).rglob('*.mcap')) for folder in ('replay-I', 'replay-0'))
 
 
 def test_a_row_is_its_own_replay() -> None:

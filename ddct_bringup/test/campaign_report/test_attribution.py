@@ -2,12 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Attribution of failure to the keys that drive it, and to no others; none for few failures."""
 
+from itertools import combinations
+
 import numpy as np
 import pytest
 from made_results import made_results
 
 from ddct_bringup.campaign_report.statistics import attribution as attribution_module
 from ddct_bringup.campaign_report.statistics.attribution import FEWEST, effects_of, too_few
+from ddct_bringup.campaign_report.statistics.parts import NamesPart, parts_of, worst_of
 from ddct_bringup.campaign_report.summary import summary_of
 from ddct_bringup.verdict.state import ENGAGED, INVALID
 
@@ -93,7 +96,8 @@ def test_few_campaigns_attribute_failures_that_no_key_causes_to_a_key(monkeypatc
     wrong = 0
     for seed in range(200):
         failed = np.random.default_rng([1, seed]).random(RUNS) < 0.1
-        wrong += bool(blamed(drawn(seed), failed))
+        names = np.random.default_rng([4, seed]).choice(NAMES, RUNS)
+        wrong += bool(blamed({**drawn(seed), 'scenario': names}, failed))
     assert wrong <= 18  # 5 % of 200 are 10; more than 18 come by chance in 0.7 % of the cases
 
 
@@ -121,6 +125,64 @@ def test_the_same_runs_give_the_same_effects():
     values = drawn(8)
     failed = values['wear_gain'] < 0.2
     assert effects_of(values, failed) == effects_of(values, failed)
+
+
+NAMES = ('thesis', 'launch', 'launch_hot', 'launch_hill', 'tip_in', 'upshift', 'upshift_hot')
+
+
+def of_names(failed_of):
+    """Return names with their runs, and which of these fail: `failed_of` has (runs, failed)."""
+    names = [name for name, (runs, _) in failed_of.items() for _ in range(runs)]
+    failed = [place < count for runs, count in failed_of.values() for place in range(runs)]
+    return np.array(names, dtype=object), np.array(failed)
+
+
+def worst_names(failed_of):
+    (effect,) = effects_of({'scenario': of_names(failed_of)[0]}, of_names(failed_of)[1])
+    worst = effect.worst_part
+    assert isinstance(worst, NamesPart)
+    return worst.names, worst.failed, worst.runs
+
+
+@pytest.mark.parametrize('order', [NAMES, NAMES[::-1], sorted(NAMES), NAMES[3:] + NAMES[:3]])
+def test_the_names_that_fail_are_the_worst_group_in_any_order(order):
+    fails = ('launch', 'upshift')
+    found = worst_names({name: (3, 3 if name in fails else 0) for name in order})
+    assert found == (tuple(name for name in order if name in fails), 6, 6)
+
+
+def test_names_that_nearly_always_fail_are_one_group():
+    counts = {'thesis': (30, 1), 'launch': (30, 29), 'tip_in': (30, 0), 'upshift': (30, 27)}
+    assert worst_names(counts) == (('launch', 'upshift'), 56, 60)
+
+
+def test_booleans_are_names():
+    values = np.arange(RUNS) % 2 == 0
+    (effect,) = effects_of({'cut': values}, values)
+    assert effect.worst_part == NamesPart(200, 200, ('True',))
+
+
+@pytest.mark.parametrize('seed', range(20))
+def test_no_group_of_names_differs_more_from_the_others_than_the_worst(seed):
+    random = np.random.default_rng([3, seed])
+    counts = {name: (10, int(random.integers(0, 11))) for name in NAMES}
+    values, failed = of_names(counts)
+
+    def between(group):
+        inside = np.isin(values, group)
+        return (failed[inside].mean() - failed.mean()) ** 2 * inside.sum() / (~inside).sum()
+
+    groups = [each for size in range(1, len(NAMES)) for each in combinations(NAMES, size)]
+    worst = worst_of(parts_of(values, failed, 10))
+    assert isinstance(worst, NamesPart)
+    assert between(worst.names) == pytest.approx(max(map(between, groups)))
+    assert failed[np.isin(values, worst.names)].mean() >= failed.mean()
+
+
+def test_a_run_for_each_name_says_nothing_of_names():
+    names = np.array([f'scenario_{number}' for number in range(20)], dtype=object)
+    (effect,) = effects_of({'scenario': names}, np.arange(20) < 8)
+    assert (effect.drives, effect.explained, effect.interval) == (False, 0.0, (0.0, 1.0))
 
 
 def test_a_grid_has_no_attribution():

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pyarrow.parquet as parquet
 import pytest
-from made_campaign import GRID, make_campaign
+from made_campaign import GRID, make_campaign, seal
 
 from ddct_bringup.api import DdctError, read_campaign
 from ddct_bringup.campaign.conduct import RESULTS
@@ -155,6 +155,7 @@ def test_damaged_results_are_reported(
 ) -> None:
     path = folder / RESULTS
     path.write_bytes(path.read_bytes()[:keep])
+    seal(folder)
     assert 'it is damaged' in complaint(folder, capsys)
 
 
@@ -163,6 +164,7 @@ def test_results_that_lack_a_row_are_not_those_of_the_manifest(
 ) -> None:
     table = parquet.read_table(folder / RESULTS)
     parquet.write_table(table.slice(0, 11), folder / RESULTS)
+    seal(folder)
     assert 'its rows are not the 12 runs' in complaint(folder, capsys)
 
 
@@ -172,6 +174,7 @@ def test_a_newer_version_of_the_results_or_the_manifest_is_named(
     table = parquet.read_table(folder / RESULTS)
     newer = table.replace_schema_metadata({'schema_version': '3'})
     parquet.write_table(newer, folder / RESULTS)
+    seal(folder)
     assert 'schema_version is 3, this version reads up to 2' in complaint(folder, capsys)
     manifest = json.loads((folder / MANIFEST).read_text())
     (folder / MANIFEST).write_text(json.dumps({**manifest, 'schema_version': 9}))

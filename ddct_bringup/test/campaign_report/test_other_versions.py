@@ -1,35 +1,22 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""
-Results of other versions are read with the columns that they have, and are not mixed.
-
-`stored` is a campaign of version 0.1.0, before rows had their seed.
-"""
+"""Results of other versions are read with the columns that they have."""
 
 import json
-import shutil
 from pathlib import Path
 
 import pyarrow as pa
 import pyarrow.parquet as parquet
 import pytest
-from in_this_process import in_this_process
-from made_campaign import GRID, make_campaign
+from made_campaign import GRID, make_campaign, seal
 
 from ddct_bringup.api import DdctError, read_campaign
 from ddct_bringup.campaign.conduct import RESULTS
-from ddct_bringup.campaign.manifest import MANIFEST, Manifest
+from ddct_bringup.campaign.manifest import MANIFEST
 from ddct_bringup.campaign_report.folder import PAGE
 from ddct_bringup.programs.campaign import main
 
-STORED = Path(__file__).parent / 'stored'
 ABSENT, UNKNOWN = 'peak_jerk_m_s3', 'metric_of_tomorrow'
-
-
-@pytest.fixture
-def stored(tmp_path: Path) -> Path:
-    """Return a copy of the stored campaign: `show` writes into its folder."""
-    return Path(shutil.copytree(STORED, tmp_path / 'stored'))
 
 
 @pytest.fixture
@@ -39,27 +26,16 @@ def changed(tmp_path: Path) -> Path:
     table = parquet.read_table(made / RESULTS).drop_columns([ABSENT])
     table = table.append_column(UNKNOWN, pa.array([7.5] * len(table)))
     parquet.write_table(table, made / RESULTS)
-    return made
+    return seal(made)
 
 
-def test_a_stored_campaign_is_read_from_python(stored: Path) -> None:
-    table, summary = read_campaign(stored)
-    assert len(table) == 12
-    assert 'seed' not in table
-    assert 'seed' in summary['other_version']['absent']
-    pi, ls8 = summary['groups']
-    assert (pi['failed']['engaged'], ls8['failed']['engaged']) == (3, 6)
-    (jerk,) = (each for each in pi['quantities'] if each['name'] == 'peak_jerk_m_s3')
-    assert jerk['p50'] == pytest.approx(2.40, abs=0.01)
-
-
-def test_a_stored_campaign_is_shown_with_its_missing_columns(
-    stored: Path, capsys: pytest.CaptureFixture[str]
+def test_the_terminal_and_the_page_name_the_missing_columns(
+    changed: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert main(['show', str(stored), '--figure', str(stored / 'wear.png')]) == 0
+    assert main(['show', str(changed), '--figure', str(changed / 'wear.png')]) == 0
     printed = capsys.readouterr().out
-    assert 'results of another version, without seed' in printed
-    assert 'Results of another version' in (stored / PAGE).read_text(encoding='utf-8')
+    assert f'results of another version, without {ABSENT}' in printed
+    assert 'Results of another version' in (changed / PAGE).read_text(encoding='utf-8')
 
 
 def test_missing_columns_stay_missing_and_unknown_ones_are_kept(
@@ -84,6 +60,7 @@ def test_without_a_column_that_is_needed_the_line_names_it(changed: Path, name: 
     parquet.write_table(
         parquet.read_table(changed / RESULTS).drop_columns([name]), changed / RESULTS
     )
+    seal(changed)
     with pytest.raises(DdctError, match=f'it has no column {name}'):
         read_campaign(changed)
 
@@ -100,36 +77,10 @@ def test_a_key_of_another_version_is_read_without_its_nominal_value(
     names = [{'wear_gain': 'wear_of_tomorrow'}.get(each, each) for each in table.column_names]
     renamed = table.rename_columns(names).replace_schema_metadata(table.schema.metadata)
     parquet.write_table(renamed, changed / RESULTS)
+    seal(changed)
     summary = read_campaign(changed).summary
     assert 'wear_of_tomorrow' in summary['other_version']['no_nominal']
     wear, mass = summary['groups'][0]['boundaries']
     assert (wear['nominal'], wear['start']) == (None, 1.0)
     assert mass['start'] == 1300.0
     assert main(['show', str(changed)]) == 0
-
-
-def test_resume_refuses_to_mix_versions_and_names_both(
-    stored: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    spec = stored.parent / 'spec.json'
-    spec.write_text(json.dumps(Manifest.read(stored).spec), encoding='utf-8')
-    (stored / '.ddct-output').write_text('runs', encoding='utf-8')
-    before = (stored / RESULTS).read_bytes()
-    with in_this_process() as workers:
-        assert main([str(spec), '--out', str(stored), '--resume']) == 1
-    (line,) = capsys.readouterr().err.splitlines()
-    assert 'holds a campaign of another code, 25032b3' in line
-    assert 'choose another --out' in line
-    assert workers.computed == []
-    assert (stored / RESULTS).read_bytes() == before
-
-
-def test_replay_compares_the_columns_of_the_row(
-    stored: Path, capfd: pytest.CaptureFixture[str]
-) -> None:
-    from ddct_bringup.campaign.columns import compared_in, differences, read_row
-
-    row = read_row(stored / RESULTS, 0, 12)
-    assert 'seed' not in compared_in(row)
-    assert differences(row, {**row, 'seed': 5}) == []
-    assert differences(row, {**row, 'verdict_state': 'stalled'})

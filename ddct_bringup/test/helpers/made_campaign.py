@@ -3,7 +3,6 @@
 """The folder of a campaign whose rows are made by hand."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +13,8 @@ from ddct_bringup.campaign.manifest import Manifest
 from ddct_bringup.campaign.rows import METRIC_COLUMNS
 from ddct_bringup.campaign.run_set import PlannedRow
 from ddct_bringup.campaign.spec import spec_of
+from ddct_bringup.digests.digest_file import CAMPAIGN
+from ddct_bringup.digests.writing import write_folder_digests
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_bringup.verdict.state import ENGAGED, INVALID
 
@@ -31,9 +32,9 @@ def make_campaign(
     **cells: Any,
 ) -> Path:
     """
-    Write manifest and results of the runs of a specification, which a test may edit.
+    Write manifest, results and digests of the runs of a specification.
 
-    They are of the version without digests.
+    A test that edits a file writes the digests again, with `seal`.
 
     The first metric of a run is its index, the next twice that, and so on.
     """
@@ -51,6 +52,12 @@ def make_campaign(
             | {'verdict_state': state, **run.varied, **cells}
         )
     folder.mkdir(parents=True, exist_ok=True)
-    replace(Manifest.of(campaign, packaged_limits()), version='0.1.0').write(folder)
+    Manifest.of(campaign, packaged_limits()).write(folder)
     (folder / RESULTS).write_bytes(shard_bytes(schema, rows))
+    return seal(folder)
+
+
+def seal(folder: Path) -> Path:
+    """Write the digests of the files of a campaign as they are now, and return the folder."""
+    write_folder_digests(folder, CAMPAIGN)
     return folder

@@ -13,7 +13,7 @@ from ddct_bringup.verdict.verdict import UNREADABLE, CriterionResult, Verdict
 FACTS = ('architecture', 'clutch', 'wear_gain', 'mode', 'seed', 'scenario')
 NAMED = (
     *('bag', 'valid', 'reason', 'verdict', 'fallbacks', 'safe_state', 'before_schema'),
-    *('scenario_changes', 'not_computed', 'over_floor', 'no_floor'),
+    *('scenario_changes', 'gain_changes', 'not_computed', 'over_floor', 'no_floor'),
 )
 
 

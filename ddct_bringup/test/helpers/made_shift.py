@@ -63,6 +63,7 @@ def made_shift(**signals: Any) -> Trajectory:
         'off_going_slip_speed': engine - first,
         'off_going_clutch_phase': np.where(STEP < SHARE_ONE, LOCKED, OPEN),
         'off_going_friction_work': np.zeros(STEPS + 1),
+        'tie_up_work': np.zeros(STEPS + 1),
         'off_going_phase_events': events((0.01 * SHARE_ONE, 'release')),
         'off_going_clutch_temperature': np.full(STEPS + 1, 20.0),
     }

@@ -20,6 +20,8 @@ from ddct_bringup.processes import warm_parent
 from ddct_bringup.processes.jobs import Job
 from ddct_bringup.processes.node_process import Child
 from ddct_bringup.processes.warm_parent import WarmParent
+from ddct_bringup.run import description
+from ddct_bringup.run.description import commit_of
 from ddct_plant.base.errors import DdctError
 from ddct_plant.graph.domain import own_domain
 
@@ -148,6 +150,18 @@ def test_two_forks_draw_other_random_numbers(run: Run) -> None:
     )
     first, second = (run(text).output_text().split() for _ in range(2))
     assert all(one != other for one, other in zip(first, second, strict=True))
+
+
+def test_a_fork_knows_the_commit_of_the_sources_without_git(run: Run) -> None:
+    pytest.importorskip('rclpy')
+    text = (
+        'import os\n'
+        'from ddct_bringup.run.description import source_commit\n'
+        'def main():\n'
+        '    os.environ["PATH"] = "/nowhere"\n'
+        '    print(source_commit())\n'
+    )
+    assert run(text).output_text().strip() == commit_of(Path(description.__file__))
 
 
 def _threads(pid: int) -> int:

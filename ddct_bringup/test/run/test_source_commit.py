@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from ddct_bringup.run import description
-from ddct_bringup.run.description import short_commit, source_commit
+from ddct_bringup.run.description import commit_of, short_commit, source_commit
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
@@ -37,12 +37,12 @@ def sources(tmp_path: Path) -> Path:
 
 
 def test_clean_sources_have_the_commit_alone(sources: Path) -> None:
-    assert source_commit(sources / MODULE) == git(sources, 'rev-parse', 'HEAD')
+    assert commit_of(sources / MODULE) == git(sources, 'rev-parse', 'HEAD')
 
 
 def test_an_installed_link_leads_to_the_sources(sources: Path, tmp_path: Path) -> None:
     (tmp_path / 'installed').symlink_to(sources / MODULE)
-    assert source_commit(tmp_path / 'installed') == git(sources, 'rev-parse', 'HEAD')
+    assert commit_of(tmp_path / 'installed') == git(sources, 'rev-parse', 'HEAD')
 
 
 @pytest.mark.parametrize('change', ['changed', 'staged', 'deleted', 'new'])
@@ -55,14 +55,14 @@ def test_uncommitted_changes_are_marked(sources: Path, change: str) -> None:
         file.write_text('another clutch\n')
     if change == 'staged':
         git(sources, 'add', '.')
-    assert source_commit(sources / MODULE) == git(sources, 'rev-parse', 'HEAD') + '-dirty'
+    assert commit_of(sources / MODULE) == git(sources, 'rev-parse', 'HEAD') + '-dirty'
 
 
 def test_what_is_no_part_of_a_package_marks_nothing(sources: Path) -> None:
     (sources / NOTES).write_text('something else\n')
     (sources / 'runs').mkdir()
     (sources / 'runs' / 'pi_0.mcap').touch()
-    assert source_commit(sources / MODULE) == git(sources, 'rev-parse', 'HEAD')
+    assert commit_of(sources / MODULE) == git(sources, 'rev-parse', 'HEAD')
 
 
 @pytest.mark.parametrize('known', ['ignored', 'untracked', 'only staged'])
@@ -74,24 +74,24 @@ def test_a_copy_in_somebody_elses_repository_is_unknown(sources: Path, known: st
         (sources / '.gitignore').write_text('/install/\n')
     if known == 'only staged':
         git(sources, 'add', '.')
-    assert source_commit(copy) == 'unknown'
+    assert commit_of(copy) == 'unknown'
 
 
 def test_without_a_repository_or_a_commit_it_is_unknown(tmp_path: Path) -> None:
     module = tmp_path / MODULE
     module.parent.mkdir(parents=True)
     module.touch()
-    assert source_commit(module) == 'unknown'
+    assert commit_of(module) == 'unknown'
     git(tmp_path, 'init', '--quiet')
     git(tmp_path, 'add', '.')
-    assert source_commit(module) == 'unknown'
+    assert commit_of(module) == 'unknown'
 
 
 def test_without_git_it_is_unknown(
     sources: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv('PATH', str(tmp_path))
-    assert source_commit(sources / MODULE) == 'unknown'
+    assert commit_of(sources / MODULE) == 'unknown'
 
 
 def test_a_hook_of_another_repository_does_not_lead_astray(
@@ -101,7 +101,26 @@ def test_a_hook_of_another_repository_does_not_lead_astray(
     git(tmp_path, 'init', '--quiet', 'other')
     monkeypatch.setenv('GIT_DIR', str(tmp_path / 'other' / '.git'))
     monkeypatch.setenv('GIT_WORK_TREE', str(tmp_path / 'other'))
-    assert source_commit(sources / MODULE) == commit
+    assert commit_of(sources / MODULE) == commit
+
+
+def test_git_is_called_for_the_first_run_of_a_process_alone(
+    sources: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A session that goes on while its sources change runs the code that it has loaded."""
+    monkeypatch.setattr(description, '__file__', str(sources / MODULE))
+    source_commit.cache_clear()
+    try:
+        settings = RunSettings(load_scenario('thesis'))
+        first = description.custom_data(settings, 'pi', 300)['commit']
+        assert first == git(sources, 'rev-parse', 'HEAD')
+        (sources / OTHER).write_text('another clutch\n')
+        calls: list[Path] = []
+        monkeypatch.setattr(description, '_git', lambda folder, *_: calls.append(folder))
+        assert description.custom_data(settings, 'ls8', 300)['commit'] == first
+        assert calls == []
+    finally:
+        source_commit.cache_clear()
 
 
 def test_the_bag_contains_the_commit(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -19,11 +19,13 @@ from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.scores.scoring import run_without_score
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.base.errors import DdctError
+from ddct_plant.signals.gain_changes import GainChange
 
 RESULTS = [made_result(each.key, 1.0, 2.0, unit=each.unit) for each in CRITERIA]
 RUN = made_scores(
     'ls8',
     scenario_changes=('load.slope_rad=0.05',),
+    gain_changes=(GainChange('proportional_gain', 0.103, 0.25, 62),),
     verdict=made_verdict('engaged', 'within', *RESULTS),
     **dict.fromkeys(METRICS, 1.5),
 )
@@ -44,6 +46,7 @@ def test_scores_are_read_as_they_were_written(tmp_path: Path) -> None:
     runs = [RUN, run_without_score('broken/pi', None, 'unfinished')]
     found = read(tmp_path, content(*runs))
     assert content(*found) == content(*runs)
+    assert found[0].gain_changes == RUN.gain_changes
     assert [replace(each, facts=None) for each in found] == [
         replace(each, facts=None) for each in runs
     ]

@@ -91,17 +91,9 @@ def test_flare_is_the_rise_above_the_speed_in_the_off_going_gear_until_the_lock(
     assert again['flare_rad_s'] == pytest.approx(24.0)
 
 
-def test_tie_up_work_is_the_smaller_of_two_opposing_torques_times_the_difference_of_the_speeds():
-    on_coming = np.where((STEP >= 40) & (STEP <= 60), 130.0, 0.0)
-    off_going = np.where((STEP >= 45) & (STEP <= 70), -20.0, 50.0)
-    found = metrics(joint_effort=joints(second=on_coming), off_going_transmitted_torque=off_going)
-    # 15 whole periods, and half a period at each end by the rule of trapezoids.
-    assert found['tie_up_work_j'] == pytest.approx(20.0 * 70.0 * 0.16)
-    assert metrics()['tie_up_work_j'] == 0.0
-    braking = metrics(
-        joint_effort=joints(second=0.0 * on_coming), off_going_transmitted_torque=off_going
-    )
-    assert braking['tie_up_work_j'] == 0.0
+def test_tie_up_work_is_what_the_plant_records_of_the_periods_from_the_start_of_the_shift_on():
+    assert metrics(tie_up_work=np.where(STEP <= 30, 5.0, 0.0))['tie_up_work_j'] == 0.0
+    assert metrics(tie_up_work=np.where(STEP > 30, 0.5, 0.0))['tie_up_work_j'] == 60.0
 
 
 def test_works_temperatures_and_the_criterion_of_temperature_know_both_clutches():
@@ -169,6 +161,7 @@ def row_of(driveline: ShiftDriveline, share: float) -> dict[str, Any]:
     outputs = driveline.outputs()
     now, other = outputs.driveline, outputs.off_going
     return {
+        'tie_up_work': outputs.tie_up_work,
         **{name: getattr(now, name) for name in ('joint_speed', 'joint_effort', 'slip_speed')},
         **{name: getattr(now, name) for name in ('vehicle_accel', 'friction_work')},
         **{name: getattr(now, name) for name in ('clutch_phase', 'phase_events')},

@@ -13,6 +13,7 @@ from printed_table import value_under
 from ddct_bringup.metrics.catalogue import METRICS
 from ddct_bringup.scores.run_table import BAG, COLUMNS, CONTROLLER, WEAR, metric, print_runs
 from ddct_plant.program.table import Column, Quantity
+from ddct_plant.signals.gain_changes import GainChange
 
 
 class Terminal(io.StringIO):
@@ -202,6 +203,14 @@ def test_a_run_that_could_not_be_read_has_one_reason_for_its_dashes():
 
 def test_a_bag_from_before_the_schema_is_marked():
     assert 'pi: recorded before' in printed([run(before_schema=True)])
+
+
+def test_gains_that_were_changed_in_a_run_are_named_below_the_table():
+    changes = (GainChange('kp', 0.103, 0.25, 62), GainChange('ki', 0.02, 0.0, 90))
+    text = printed([run(gain_changes=changes)])
+    changed = 'kp 0.103 to 0.25 at 0.62 s, ki 0.02 to 0 at 0.9 s'
+    assert f'pi: gains changed in the run: {changed}\n' in text
+    assert 'gains changed' not in printed([run()])
 
 
 def test_the_title_is_the_scenario_with_what_is_changed_in_it():

@@ -61,6 +61,19 @@ def test_a_line_joins_engaged_runs_alone(panel):
     assert line.get_color() == controller_style('pi')['color']
 
 
+def test_no_line_joins_runs_at_words_and_each_controller_keeps_its_dash():
+    runs = [(ENGAGED, 1.0), (ENGAGED, 2.0), (RUNAWAY, 3.0), (ENGAGED, 1.5)]
+    panel = drawn(['clutch=linear,stick_slip'], ['pi', 'ls5'], runs).axes[0]
+    drawn_lines = [each for each in panel.lines if each.get_marker() == 'o']
+    for line, expected in zip(drawn_lines, ([(0.0, 1.0), (1.0, 2.0)], [(1.0, 1.5)]), strict=True):
+        points = np.column_stack([line.get_xdata(), line.get_ydata()])
+        apart = np.flatnonzero(np.isnan(points).any(axis=1))
+        pieces = [each[~np.isnan(each).any(axis=1)] for each in np.split(points, apart)]
+        assert [(each[:, 0].mean(), each[0, 1]) for each in pieces if len(each)] == expected
+    styles = [line._unscaled_dash_pattern for line in drawn_lines]
+    assert styles[0] != styles[1]
+
+
 def test_each_other_run_has_a_cross_within_the_panel(panel):
     crosses = by_marker(panel, 'x')
     low, high = panel.get_ylim()

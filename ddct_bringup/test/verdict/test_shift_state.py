@@ -30,6 +30,7 @@ from ddct_bringup.scores.scoring import score_run
 from ddct_bringup.verdict.limits import Limits, limits_of_text, packaged_limits
 from ddct_bringup.verdict.rules import ShiftRules
 from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.timebase import PERIOD_S
 
 FACTS = made_facts(
     clutch='stick_slip',
@@ -47,13 +48,13 @@ def scored(limits: Limits | None = None, **signals: Any) -> ScoredRun:
 
 
 def opposing(torque: float) -> dict[str, Any]:
-    """Return the signals of clutches that work against each other from 0.4 to 0.6 s."""
-    on_coming, off_going = (
-        np.where((STEP > 40) & (STEP < 60), each, 0.0) for each in (200.0, -torque)
-    )
+    """Return the signals of clutches that work against each other from 0.41 to 0.6 s."""
+    opposing = (STEP > 40) & (STEP < 60)
+    on_coming, off_going = (np.where(opposing, each, 0.0) for each in (200.0, -torque))
     return {
         'joint_effort': joints(second=on_coming, fourth=1000.0),
         'off_going_transmitted_torque': off_going,
+        'tie_up_work': np.where(opposing, torque * 70.0 * PERIOD_S, 0.0),
     }
 
 

@@ -44,8 +44,22 @@ def test_a_changed_handover_is_refused_before_it_runs(
     file.write_text(f'open({str(ran)!r}, "w").close()\n', encoding='utf-8')
     code, _, errors = verified(runs / 'pi', capfd)
     assert code == 1
-    assert f'handover {file}: the file has changed since' in errors
+    assert f'handover {file}: handover_file has changed since' in errors
     assert not ran.exists(), 'code of another file has run'
+
+
+def test_a_changed_module_beside_a_handover_is_named_as_the_cause(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    file, helper = tmp_path / 'mine.py', tmp_path / 'helper.py'
+    file.write_text(f'import helper\n{HANDOVER}', encoding='utf-8')
+    helper.write_text('SHARE = 1.0\n', encoding='utf-8')
+    runs = make_bag(tmp_path / 'runs', *SHIFT, '--handover', str(file))
+    assert verified(runs / 'pi', capfd)[0] == 0
+    helper.write_text('SHARE = 0.9\n', encoding='utf-8')
+    code, _, errors = verified(runs / 'pi', capfd)
+    assert code == 1
+    assert f'handover {file}: helper.py has changed since' in errors
 
 
 def test_the_digests_of_a_run_without_a_handover_file_are_those_of_before(

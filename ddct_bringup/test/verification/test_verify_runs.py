@@ -4,6 +4,7 @@
 
 import json
 import re
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -22,11 +23,14 @@ from verified import (
 )
 
 from ddct_bringup.bag.reader import read_bag
+from ddct_bringup.bag.recording import Recording
+from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.bag.trajectory_bag import write_trajectory
 from ddct_bringup.digests.digest_file import DIGESTS, read_digests
 from ddct_bringup.digests.files import digests_of_files
 from ddct_bringup.programs import compare, report, score, verify
 from ddct_controllers.from_file.with_options import with_options_text
+from ddct_plant.signals.gain_changes import GainChange
 
 pytestmark = pytest.mark.slow
 
@@ -155,8 +159,14 @@ def _rewrite_bag(folder: Path, timeout_s: str = '', **custom_data: str) -> None:
     elif not custom_data:
         recording.trajectory.slip_speed[60] += 1e-6
     data = {**recording.custom_data, **custom_data}
+    _write_anew(folder, replace(recording, custom_data=data, run_info=nodes))
+
+
+def _write_anew(folder: Path, recording: Recording) -> None:
+    """Write a recording with its digest in place of the bag in a folder."""
     recording.path.unlink()
     (folder / 'metadata.yaml').unlink()
+    data, nodes = recording.custom_data, recording.run_info
     write_trajectory(recording.trajectory, folder, 'pi', data, nodes)
     read_digests(folder).with_files(digests_of_files(folder)).write(folder)
 
@@ -172,6 +182,29 @@ def test_a_signal_of_a_bag_edited_with_its_digest_is_found(
     first = run['first_difference']
     assert (first['signal'], first['step']) == ('slip_speed', 60)
     assert first['recorded'] != first['repeated']
+
+
+@pytest.mark.parametrize(
+    ('gain', 'found'),
+    [('proportional_gain', 'signal '), ('nix', 'its repetition fails: unknown gain nix: known: ')],
+)
+def test_a_changed_gain_is_named_where_the_repetition_with_it_differs(
+    runs: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str], gain: str, found: str
+) -> None:
+    folder = copied(runs / 'pi', tmp_path / 'pi')
+    change, recording = GainChange(gain, 0.103, 0.25, 65), read_bag(folder)
+    status = tuple(
+        (*pairs, change.pair) if step >= change.step else pairs
+        for step, pairs in enumerate(recording.trajectory.status)
+    )
+    signals = {**recording.trajectory.signals, 'status': status}
+    _write_anew(folder, replace(recording, trajectory=Trajectory(signals)))
+    code, document, errors = verified(folder, capfd)
+    assert (code, states(document)) == (1, {'pi': 'different'})
+    note = f'gains changed in the run: {gain} 0.103 to 0.25 at 0.65 s'
+    assert document['runs'][0]['note'] == note
+    (line,) = errors.splitlines()
+    assert found in line and line.endswith(f'; {note}')
 
 
 def test_a_parameter_of_a_node_edited_with_its_digest_is_found(
@@ -281,6 +314,25 @@ def test_a_changed_file_behind_another_one_is_refused_before_it_runs(
     assert not ran.exists(), 'code of another file has run'
 
 
+def test_a_changed_module_beside_a_controller_file_is_named_as_the_cause(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    file, helper = tmp_path / 'mine.py', tmp_path / 'parts' / 'gains.py'
+    file.write_text(f'from parts.gains import GAIN\n{CONTROLLER}', encoding='utf-8')
+    helper.parent.mkdir()
+    helper.write_text('GAIN = 0.1\n', encoding='utf-8')
+    runs = make_runs(tmp_path / 'runs', str(file))
+    assert verified(runs, capfd)[0] == 0
+    ran = tmp_path / 'ran'
+    helper.write_text(f'GAIN = open({str(ran)!r}, "w")\n', encoding='utf-8')
+    code, _, errors = verified(runs, capfd)
+    assert code == 1
+    assert f'controller {file}: parts/gains.py has changed since' in errors
+    helper.unlink()
+    assert f'controller {file}: parts/gains.py is gone' in verified(runs, capfd)[2]
+    assert not ran.exists(), 'code of another file has run'
+
+
 def test_a_run_that_failed_fails_again_with_the_same_reason(
     tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
@@ -342,7 +394,12 @@ def test_scores_by_other_limits_need_these_limits(
 
 @pytest.mark.parametrize(
     ('key', 'value'),
-    [('controller', 3), ('controller_files', 'mine.py'), ('handover', ['mine.py'])],
+    [
+        ('controller', 3),
+        ('controller_files', 'mine.py'),
+        ('handover', ['mine.py']),
+        ('handover_files', 'mine.py'),
+    ],
 )
 def test_digests_of_a_run_with_another_type_are_one_line(
     runs: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str], key: str, value: Any

@@ -3,8 +3,10 @@
 """The controller under check, with the trials and signals that several checks share."""
 
 import importlib.metadata
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
 
 import numpy as np
 
@@ -18,7 +20,8 @@ from ddct_controllers.check.trial import (
     step_response,
 )
 from ddct_controllers.check.watch import OutputMonitor
-from ddct_controllers.from_file.python_file import SUFFIX, module_name
+from ddct_controllers.from_file.own_modules import module_name, sources_of
+from ddct_controllers.from_file.python_file import SUFFIX, python_spec
 from ddct_controllers.interface import Controller, ControllerSpec, Measurement
 from ddct_controllers.linear import PiController
 from ddct_controllers.places import place_of_error
@@ -59,17 +62,20 @@ class Subject:
     def package(self) -> str:
         """Top-level module of the controller's code; '' for one of ours or in YAML."""
         if self.name.endswith(SUFFIX):
-            return module_name(self.name)
+            with suppress(DdctError):
+                return module_name(sources_of(Path(self.name)))
+            return ''
         return self.entry_points[0].module.partition('.')[0] if self.entry_points else ''
 
     @cached_property
     def spec(self) -> ControllerSpec[Controller]:
-        """Specification by which the controller is made."""
-        return controller_spec(self.name)
+        """Specification by which the controller is made; objects of a file share its modules."""
+        spec = controller_spec(self.name)
+        return python_spec(self.name, anew=False) if self.name.endswith(SUFFIX) else spec
 
     def make(self) -> Controller:
         """Return a new controller object."""
-        return make_controller(self.name, self.settings)
+        return make_controller(self.spec, self.settings)
 
     def failure(self, error: BaseException) -> CheckFailedError:
         """Return the failure of a check in which the controller raised `error`."""

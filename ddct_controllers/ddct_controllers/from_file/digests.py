@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Digests of the files behind a controller, taken without running any of them."""
+"""Digests of the files behind a controller or a handover, taken without running any of them."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -9,16 +9,17 @@ from ddct_controllers.from_file.controller_file import (
     FILE_DIGEST,
     is_controller_file,
     read_controller_file,
-    text_digest,
 )
 from ddct_controllers.from_file.kinds import kind_of
+from ddct_controllers.from_file.own_modules import source_digests, sources_of
 from ddct_controllers.from_file.python_file import SUFFIX
 from ddct_controllers.from_file.with_options import KIND as WITH_OPTIONS
 from ddct_controllers.from_file.with_options import add_base_digests, base_of
-from ddct_plant.files.input_file import located, user_text
+from ddct_plant.files.input_file import located
 
 _FILE = 'file'
 """Key of every kind that names a file."""
+_HANDOVER_DIGEST = 'handover_file_sha256'
 
 
 def controller_digests(chosen: str) -> Mapping[str, str]:
@@ -33,7 +34,7 @@ def controller_digests(chosen: str) -> Mapping[str, str]:
         return {}
     if chosen.endswith(SUFFIX):
         with located(f'controller file {chosen}'):
-            return {FILE_DIGEST: text_digest(user_text(Path(chosen)))}
+            return source_digests(FILE_DIGEST, sources_of(Path(chosen)))
     file = read_controller_file(chosen)
     with file.located():
         kind = kind_of(file)
@@ -43,3 +44,9 @@ def controller_digests(chosen: str) -> Mapping[str, str]:
         if isinstance(content, Mapping) and _FILE in content:
             file.named_file(kind, content[_FILE], 'the file that it names')
     return file.digests
+
+
+def handover_digests(file: str) -> Mapping[str, str]:
+    """Return the digests of a handover's Python file; raise DdctError as for a controller."""
+    with located(f'handover file {file}'):
+        return source_digests(_HANDOVER_DIGEST, sources_of(Path(file)))

@@ -2,47 +2,53 @@
 # SPDX-License-Identifier: Apache-2.0
 """A controller in a file of Python: the one class of `Controller` that the file defines."""
 
-import hashlib
 import inspect
-import re
-import sys
-from functools import lru_cache
+from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
 from typing import TypeVar
 
 from ddct_controllers.factories import factory_spec
-from ddct_controllers.from_file.controller_file import FILE_DIGEST, text_digest
-from ddct_controllers.interface import Controller, ControllerSpec
+from ddct_controllers.from_file.controller_file import FILE_DIGEST
+from ddct_controllers.from_file.own_modules import (
+    Sources,
+    load_module,
+    module_name,
+    source_digests,
+    sources_of,
+)
+from ddct_controllers.interface import Controller, ControllerContext, ControllerSpec
 from ddct_controllers.places import place_of_error
 from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError, ParameterError, require_name
-from ddct_plant.files.input_file import located, user_text
+from ddct_plant.files.input_file import located
 
 Base = TypeVar('Base')
 SUFFIX = '.py'
 _PAGE = 'docs/controllers/writing_a_controller.md'
 
 
-def python_spec(file: str) -> ControllerSpec[Controller]:
+def python_spec(file: str, *, anew: bool = True) -> ControllerSpec[Controller]:
     """
     Return the specification of the controller in a Python file, with its class's name.
 
-    Raise DdctError that names the file where it cannot be loaded, ParameterError where it does not
-    define one controller.
+    With `anew` it loads the file again for each controller that it makes: runs in one process
+    share no variable of a module. Raise DdctError that names the file where it cannot be loaded,
+    ParameterError where it does not define one controller.
     """
     path = Path(file)
     with located(f'controller file {path}'):
-        text = user_text(path)
-        made = _the_one(Controller, _module(path.resolve(), text), _PAGE)  # type: ignore[type-abstract]
+        sources = sources_of(path)
+        made = _controller_class(_module(sources))
         require_name('controller name', made.__name__)
         spec = factory_spec(made.__name__, made, str(path))
-    return ControllerSpec(
-        spec.name,
-        spec.make,
-        spec.options,
-        spec.computed_from,
-        {FILE_DIGEST: text_digest(text)},
-    )
+
+    def make(context: ControllerContext) -> Controller:
+        with located(f'controller file {path}'):
+            again = _controller_class(_module(sources, anew=True))
+        return factory_spec(spec.name, again, str(path)).make(context)
+
+    digests = source_digests(FILE_DIGEST, sources)
+    return replace(spec, make=make if anew else spec.make, digests=digests)
 
 
 def the_one_class(file: str, base: type[Base], page: str) -> type[Base]:
@@ -54,34 +60,22 @@ def the_one_class(file: str, base: type[Base], page: str) -> type[Base]:
     """
     path = Path(file)
     with located(f'{base.__name__.lower()} file {path}'):
-        return _the_one(base, _module(path.resolve(), user_text(path)), page)
+        return _the_one(base, _module(sources_of(path), anew=True), page)
 
 
-def module_name(file: str) -> str:
-    """Return the name of the module of a file, which no other module has."""
-    path = Path(file).resolve()
-    stem, place = re.sub(r'\W', '_', path.stem), hashlib.sha256(str(path).encode()).hexdigest()
-    return f'controller_file_{stem}_{place[:8]}'
+def _controller_class(module: ModuleType) -> type[Controller]:
+    return _the_one(Controller, module, _PAGE)  # type: ignore[type-abstract]
 
 
-@lru_cache(maxsize=64)
-def _module(path: Path, text: str) -> ModuleType:
-    """Run the text, anew after each edit; modules beside the file can be imported."""
-    name = module_name(str(path))
-    module = ModuleType(name)
-    module.__file__ = str(path)
-    if (folder := str(path.parent)) not in sys.path:
-        sys.path.append(folder)  # last: a file there takes the place of no other module
-    sys.modules[name] = module
+def _module(sources: Sources, *, anew: bool = False) -> ModuleType:
     try:
-        exec(compile(text.encode(), str(path), 'exec', dont_inherit=True), vars(module))
+        return load_module(sources, anew=anew)
     except FOREIGN_FAILURES as error:
+        name = module_name(sources)
         place = place_of_error(error, name)
         where = f', in {place}' if place else ''
-        raise DdctError(
-            f'it cannot be loaded ({type(error).__name__}: {error}{where}): mend its code'
-        ) from error
-    return module
+        reason = f'{type(error).__name__}: {error}{where}'.replace(f'{name}.', '')
+        raise DdctError(f'it cannot be loaded ({reason}): mend its code') from error
 
 
 def _the_one(base: type[Base], module: ModuleType, page: str) -> type[Base]:

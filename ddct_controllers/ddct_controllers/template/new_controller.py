@@ -3,6 +3,7 @@
 """Program `new-controller`: write an installable package with a controller to start from."""
 
 import keyword
+import shlex
 import sys
 import sysconfig
 from importlib.util import find_spec
@@ -86,14 +87,15 @@ def install_command(folder: str) -> str:
     the environment, as on the wheel path, or where that has no pip; pip needs an option to install
     into Ubuntu's Python.
     """
-    linked = f'--no-build-isolation -e {folder}'
+    linked = f'--no-build-isolation -e {shlex.quote(folder)}'
+    python = shlex.quote(sys.executable)
     uv = Path(sys.prefix) / 'bin' / 'uv'
     if uv.exists() or find_spec('pip') is None:
-        program = uv if uv.exists() else 'uv'
-        return f'{program} pip install --python {sys.executable} {linked}'
+        program = shlex.quote(str(uv)) if uv.exists() else 'uv'
+        return f'{program} pip install --python {python} {linked}'
     managed = Path(sysconfig.get_path('stdlib')) / 'EXTERNALLY-MANAGED'
     allowed = '--break-system-packages ' if managed.exists() else ''
-    return f'{sys.executable} -m pip install {allowed}{linked}'
+    return f'{python} -m pip install {allowed}{linked}'
 
 
 def write_package(name: str, folder: Path) -> None:
@@ -109,9 +111,8 @@ def write_package(name: str, folder: Path) -> None:
         'name': name,
         'class_name': ''.join(word.capitalize() for word in name.split('_')),
         'distribution': name.strip('_').replace('_', '-'),
-        'folder': str(folder),
+        'test_command': shlex.join([sys.executable, '-m', 'pytest', str(folder)]),
         'install_command': install_command(str(folder)),
-        'python': sys.executable,
     }
     for file, template in FILES.items():
         text = Template((TEMPLATES / template).read_text(encoding='utf-8')).substitute(values)

@@ -3,6 +3,7 @@
 """Common parts of both design methods: options, a free name, tables, JSON, and the files."""
 
 import argparse
+import shlex
 from collections.abc import Iterable, Mapping
 from functools import partial
 from pathlib import Path
@@ -13,7 +14,7 @@ from ddct_controllers.from_file.controller_file import require_name
 from ddct_controllers.from_file.designed import DesignedController, load_designed
 from ddct_controllers.registry import controller_names
 from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.files.output_file import STDOUT, write_text
+from ddct_plant.files.output_file import STDOUT, require_new, write_text
 from ddct_plant.program.command_line import show_and_write
 from ddct_plant.program.table import Table, print_tables
 
@@ -51,8 +52,7 @@ def free_name(options: argparse.Namespace) -> str:
         raise ParameterError(f'--name {name} is taken by another controller: choose another')
     path = _path(options, name)
     if path and path.exists():
-        if not options.overwrite:
-            raise DdctError(f'{path} exists already: choose another --name or add --overwrite')
+        require_new('--name', path, overwrite=options.overwrite)
         load_designed(str(path))
     return name
 
@@ -79,7 +79,8 @@ def write_design(
     write_design_charts(path.parent, designed, specifications)
     write_text(str(path), designed.to_yaml())
     if options.json != STDOUT:
-        print(f'Run it: ddct bringup --controller {path} --out runs/{designed.name}')
+        run_it = ('ddct', 'bringup', '--controller', str(path), '--out', f'runs/{designed.name}')
+        print(f'Run it: {shlex.join(run_it)}')
 
 
 def _path(options: argparse.Namespace, name: str) -> Path | None:

@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Robustness of the sampled loops of controllers: frequency-domain evidence for JSON."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from typing import Literal
 
 import numpy as np
 
@@ -23,6 +24,7 @@ from ddct_controllers.workflows.evidence_types import (
     ActuatorConditions,
     ControllerEntry,
     CornersEntry,
+    EntryWithoutEvidence,
     FrequencyEvidence,
     PointEntry,
     WearInterval,
@@ -36,16 +38,35 @@ from ddct_plant.scenario.file import scenario_digest
 from ddct_plant.scenario.settings import RunSettings
 
 
-def frequency_evidence(controllers: Sequence[Chosen], settings: RunSettings) -> FrequencyEvidence:
+class UnusableModelError(DdctError):
+    """The `linear_model` of a controller cannot be used; its runs need none."""
+
+
+def frequency_evidence(
+    controllers: Sequence[Chosen],
+    settings: RunSettings,
+    report: Callable[[UnusableModelError], None] | None = None,
+) -> FrequencyEvidence:
     """
     Return `conditions` and one entry per controller, in their order.
 
     Driveline and actuator are the scenario's; the wear gain of the settings joins 0.7, 1 and 1.3.
-    A controller that is not linear has an entry with that reason. Raise DdctError for one that
-    cannot be built or whose `linear_model` cannot be used.
+    A controller that is not linear has an entry that says so. One whose `linear_model` cannot be
+    used has such an entry if there is a `report`, which gets the error; else that is raised. Raise
+    DdctError for a controller that cannot be built.
     """
     scenario = settings.scenario
     corners = plant_corners(scenario.driveline, scenario.actuator)
+
+    def entry_of(chosen: Chosen) -> ControllerEntry:
+        try:
+            return _controller_evidence(chosen, settings, corners)
+        except UnusableModelError as error:
+            if report is None:
+                raise
+            report(error)
+            return _without_evidence(controller_label(chosen), linear=None)
+
     return {
         'conditions': {
             'scenario': scenario.name,
@@ -57,7 +78,7 @@ def frequency_evidence(controllers: Sequence[Chosen], settings: RunSettings) -> 
             'corner_spread': PARAMETER_SPREAD,
             'corner_parameters': corners.varied,
         },
-        'controllers': [_controller_evidence(each, settings, corners) for each in controllers],
+        'controllers': [entry_of(each) for each in controllers],
     }
 
 
@@ -73,14 +94,7 @@ def _controller_evidence(
     controller = make_controller(chosen, settings)
     model = _linear_model(name, controller)
     if model is None:
-        return {
-            'controller': name,
-            'linear': False,
-            'nominal': None,
-            'stable_wear_gain': None,
-            'wear': None,
-            'corners': None,
-        }
+        return _without_evidence(name, linear=False)
     scenario = settings.scenario
     try:
         wear = {
@@ -97,6 +111,17 @@ def _controller_evidence(
         'stable_wear_gain': _stable_wear_gain(wear[1.0]),
         'wear': list(wear.values()),
         'corners': worst,
+    }
+
+
+def _without_evidence(name: str, linear: Literal[False] | None) -> EntryWithoutEvidence:
+    return {
+        'controller': name,
+        'linear': linear,
+        'nominal': None,
+        'stable_wear_gain': None,
+        'wear': None,
+        'corners': None,
     }
 
 
@@ -118,9 +143,9 @@ def _linear_model(name: str, controller: Controller) -> StateSpace | None:
     return model
 
 
-def _unusable(name: str, controller: Controller, reason: object) -> DdctError:
+def _unusable(name: str, controller: Controller, reason: object) -> UnusableModelError:
     place = place_of_method(controller, 'linear_model')
-    return DdctError(
+    return UnusableModelError(
         f'controller {name!r}: its linear_model cannot be used: {reason}: mend {place}'
     )
 

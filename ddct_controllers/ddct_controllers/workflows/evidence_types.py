@@ -83,18 +83,19 @@ class LinearEntry(TypedDict):
     corners: CornersEntry
 
 
-class NotLinearEntry(TypedDict):
-    """Entry of a controller that is not linear, which has no evidence."""
+class EntryWithoutEvidence(TypedDict):
+    """Entry of a controller that is not linear, or whose `linear_model` cannot be used."""
 
     controller: str
-    linear: Literal[False]
+    linear: Literal[False] | None
+    """False where it is not linear; None where its `linear_model` cannot be used."""
     nominal: None
     stable_wear_gain: None
     wear: None
     corners: None
 
 
-ControllerEntry = LinearEntry | NotLinearEntry
+ControllerEntry = LinearEntry | EntryWithoutEvidence
 
 
 class FrequencyEvidence(TypedDict):

@@ -62,7 +62,7 @@ def run(options: argparse.Namespace) -> int:
     require_known_controllers(settings.scenario, labels)
     report = partial(complain, 'ddct design')
     names = working_controllers(settings, report) if every else [options.controller]
-    evidence = frequency_evidence(names, settings)
+    evidence = frequency_evidence(names, settings, report if every else None)
     if not linear_entries(evidence):
         raise DdctError(
             f'{options.controller} is not linear: it has no frequency response; '
@@ -74,7 +74,7 @@ def run(options: argparse.Namespace) -> int:
 
 def _show(evidence: FrequencyEvidence, settings: RunSettings) -> None:
     print_table(margins_table(evidence, settings))
-    others = [entry['controller'] for entry in evidence['controllers'] if not entry['linear']]
+    others = [each['controller'] for each in evidence['controllers'] if each['linear'] is False]
     if others:
         print(f'Not linear, without a frequency response: {", ".join(others)}')
 

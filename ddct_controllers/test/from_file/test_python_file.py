@@ -3,7 +3,6 @@
 """A Python file is a controller: the one class of `Controller` that it defines."""
 
 import hashlib
-import sys
 from pathlib import Path
 
 import pytest
@@ -53,13 +52,15 @@ def test_it_is_identified_by_the_digest_of_its_file_and_an_edit_counts_at_once(f
         assert vars(made)['gain'] == (0.1 if '0.1' in text else 0.2)
 
 
-def test_it_is_loaded_once_and_may_import_what_lies_beside_it(file: Path) -> None:
+def test_each_controller_has_the_file_and_what_lies_beside_it_for_itself(file: Path) -> None:
     beside = file.parent / 'beside_mine_7.py'
-    beside.write_text('LOADED = []\n')
-    file.write_text(f'import beside_mine_7\nbeside_mine_7.LOADED.append(1)\n{HEAD}{PROPORTIONAL}')
-    for _ in range(3):
-        make_controller(str(file), SETTINGS)
-    assert sys.modules['beside_mine_7'].LOADED == [1]
+    beside.write_text('MADE = []\n')
+    text = PROPORTIONAL.replace('self.gain = ', 'beside_mine_7.MADE.append(1); self.gain = ')
+    file.write_text(f'import beside_mine_7\n{HEAD}{text}')
+    spec = controller_spec(str(file))
+    made = [make_controller(chosen, SETTINGS) for chosen in (str(file), spec, spec)]
+    for each in made:
+        assert type(each).update.__globals__['beside_mine_7'].MADE == [1]
 
 
 @pytest.mark.parametrize(

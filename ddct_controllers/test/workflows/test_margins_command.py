@@ -18,6 +18,8 @@ from ddct_controllers.workflows import evidence, margins_command
 from ddct_controllers.workflows.evidence_types import ControllerEntry
 from ddct_plant.linear.lti import StateSpace
 from ddct_plant.program.command_line import run_program
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
 
 pytestmark = pytest.mark.slow
 
@@ -211,6 +213,18 @@ def test_a_linear_model_of_the_wrong_kind_is_one_line(stub, capsys, model, compl
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith("ddct design: controller 'ls1': its linear_model cannot be used: ")
     assert complaint in line
+
+
+def test_among_all_a_linear_model_that_cannot_be_used_leaves_the_others(monkeypatch, capsys):
+    names = ['ls8', 'pi']
+    monkeypatch.setattr(margins_command, 'working_controllers', lambda settings, tell: names)
+    broken = type(evidence.make_controller('pi', RunSettings(load_scenario('thesis'))))
+    monkeypatch.setattr(broken, 'linear_model', lambda self: [[1.0]])
+    assert run() == 0
+    shown = capsys.readouterr()
+    assert [*rows(shown.out)] == ['ls8']
+    (line,) = shown.err.splitlines()
+    assert line.startswith("ddct design: controller 'pi': its linear_model cannot be used: it is")
 
 
 def test_a_linear_model_that_fails_is_one_line(stub, monkeypatch, capsys):

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A profile over scenario time, linear between points: engine, brake, road, slip reference."""
 
+from bisect import bisect_right
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -34,16 +35,36 @@ class Profile(OptionGroup):
 
     def at(self, time_s: float) -> float:
         """Return the value at a scenario time in s; the profile must have points."""
-        return float(np.interp(time_s, self.time_s, self._values))
+        times, values = self.time_s, self._values
+        if time_s <= times[0]:
+            return values[0]
+        if time_s >= times[-1]:
+            return values[-1]
+        after = bisect_right(times, time_s)
+        return _between(time_s, times[after - 1], times[after], values[after - 1], values[after])
 
     def over(self, times_s: np.ndarray) -> np.ndarray:
-        """Return the values (n,) at scenario times (n,) in s; the profile must have points."""
-        return np.interp(times_s, self.time_s, self._values)
+        """Return the values (n,) of `at` at scenario times (n,) in s, to the last bit."""
+        times, values = np.array(self.time_s), np.array(self._values)
+        first, last = times_s <= times[0], times_s >= times[-1]
+        found = np.where(first, values[0], values[-1])
+        within = ~(first | last)
+        inner = times_s[within]
+        after = np.searchsorted(times, inner, 'right')
+        before = after - 1
+        found[within] = _between(inner, times[before], times[after], values[before], values[after])
+        return found
 
     @cached_property
-    def _values(self) -> Any:
+    def _values(self) -> tuple[float, ...]:
         # `at` needs them at every step, and for every step of a preview.
-        return getattr(self, value_name(type(self)))
+        values: tuple[float, ...] = getattr(self, value_name(type(self)))
+        return values
+
+
+def _between(time: Any, start: Any, end: Any, first: Any, last: Any) -> Any:
+    """Return the values at times between a start and an end, all numbers or all arrays."""
+    return first + (time - start) / (end - start) * (last - first)
 
 
 def value_name(group: type) -> str:

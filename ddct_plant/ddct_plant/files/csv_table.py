@@ -71,9 +71,10 @@ def read_csv(
     most_bytes: int,
     most_rows: int,
     date_times: Collection[str] = (),
+    optional: Collection[str] = (),
 ) -> CsvTable:
     """
-    Return the columns called `names`, each once.
+    Return the columns called `names`, each once; those in `optional` may be missing.
 
     The first line that is neither empty nor a comment (#) is the header. The delimiter is comma,
     semicolon or tab, whichever is most frequent in it; with the latter two a comma may be the
@@ -84,7 +85,11 @@ def read_csv(
     _, (header,) = next(blocks, ([0], [[]]))
     if not header:
         raise ParameterError('it is empty: give a header and rows of numbers', place=path)
-    places = {name: _column(path, header, name) for name in names}
+    places = {
+        name: _column(path, header, name)
+        for name in names
+        if name in header or name not in optional
+    }
     parts: dict[str, list[np.ndarray]] = {name: [] for name in places}
     instants: dict[str, list[Instant | None]] = {name: [] for name in date_times}
     lines: list[int] = []

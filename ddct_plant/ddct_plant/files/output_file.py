@@ -31,6 +31,14 @@ def require_place(option: str, target: str | None) -> None:
         raise DdctError(f'{option} {target}: cannot be written: choose another place', key=option)
 
 
+def require_new(option: str, target: str | Path, *, overwrite: bool) -> None:
+    """Raise DdctError where `target`, named by an option, exists and may not be replaced."""
+    if not overwrite and Path(target).exists():
+        raise DdctError(
+            f'{target} exists already: choose another {option} or add --overwrite', key=option
+        )
+
+
 def require_picture(option: str, target: str | None) -> None:
     """Raise DdctError, before long work, where no picture can be written to `target`."""
     if target and Path(target).suffix not in _PICTURES:

@@ -11,7 +11,6 @@ from rclpy.context import Context
 from rclpy.signals import SignalHandlerOptions
 
 from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.base.options import require_known
 from ddct_plant.graph.domain import discover_locally, require_domain, require_ros
 from ddct_plant.graph.node import GraphNode
 from ddct_plant.graph.qos import QOS_OVERRIDES
@@ -72,7 +71,7 @@ def require_declared(node: GraphNode) -> None:
                 'name of a topic of this node',
                 key=name,
             )
-    require_known(undeclared, node.own_parameters(), 'parameter')
+    node.require_parameters(undeclared)
 
 
 def node_help(name: str, factory: Callable[[], GraphNode], arguments: Sequence[str]) -> str:

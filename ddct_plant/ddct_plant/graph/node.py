@@ -2,18 +2,20 @@
 # SPDX-License-Identifier: Apache-2.0
 """Base of every node: settings, run information, subscriptions, and the end of the node."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from typing import Any, ClassVar
 
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
+from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile
 from rclpy.task import Future
 from rclpy.timer import Timer
 
 from ddct_plant.bag_file.cdr import stamp_of_cdr
-from ddct_plant.base.errors import DdctError
+from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.base.options import require_known
 from ddct_plant.base.timebase import stamp_of_step
 from ddct_plant.graph.node_names import topic_in_graph
 from ddct_plant.graph.node_reports import run_info_pairs
@@ -27,7 +29,12 @@ from ddct_plant.graph.qos import (
     own_copy,
 )
 from ddct_plant.graph.rare_warnings import RareWarnings, find_sources
-from ddct_plant.graph.settings import declare_scheduling, declare_settings
+from ddct_plant.graph.settings import (
+    UndeclaredParameterError,
+    as_declared,
+    declare_scheduling,
+    declare_settings,
+)
 from ddct_plant.graph.wire import decoder
 from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import (
@@ -62,6 +69,7 @@ class GraphNode(Node):
         the timers of a whole graph.
         """
         self.settings = declare_settings(self, self.DEFAULTS)
+        self.add_pre_set_parameters_callback(self._as_declared)
         # Before anything is made that may start a process, which then has the same.
         declare_scheduling(self, lockstep=self.settings.lockstep).apply()
         self._warnings = RareWarnings(self)
@@ -167,6 +175,24 @@ class GraphNode(Node):
         """Return the names of the parameters that the node itself declares."""
         names = self.list_parameters([], 0).names
         return [name for name in names if not name.startswith(_FOREIGN)]
+
+    def require_parameters(self, names: Iterable[str]) -> None:
+        """Raise ParameterError for a name that the node does not declare, with the known ones."""
+        own = self.own_parameters()
+        for name in names:
+            if not self.has_parameter(name):
+                group, dot, _ = name.rpartition('.')
+                alike = [each for each in own if each.startswith(f'{group}{dot}')]
+                require_known([name], alike or own, 'parameter')
+
+    def _as_declared(self, given: list[Parameter]) -> list[Parameter]:
+        """Return parameters that are set in the run, whole numbers in the types declared."""
+        try:
+            self.require_parameters(each.name for each in given)
+        except ParameterError as error:
+            raise UndeclaredParameterError(error) from error
+        types = [Parameter.Type(self.describe_parameter(each.name).type) for each in given]
+        return [as_declared(*each) for each in zip(given, types, strict=True)]
 
     def undeclared_parameters(self) -> list[str]:
         """Return the names of the given parameters that neither node nor rclpy declares."""

@@ -7,8 +7,13 @@ from dataclasses import replace
 from typing import Any
 
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
-from rclpy.exceptions import InvalidParameterTypeException, InvalidParameterValueException
+from rclpy.exceptions import (
+    InvalidParameterTypeException,
+    InvalidParameterValueException,
+    ParameterNotDeclaredException,
+)
 from rclpy.node import Node
+from rclpy.parameter import Parameter
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import Option, options_of
@@ -87,7 +92,8 @@ def declare(node: Node, name: str, described: Option, *, read_only: bool = True)
     """
     Declare one parameter as an option describes it, and return its checked value.
 
-    A parameter whose default is None has no value unless one is given; the result is then None.
+    A whole number is accepted wherever a number is. A parameter whose default is None has no
+    value unless one is given; the result is then None.
     """
     descriptor = ParameterDescriptor(description=described.description, read_only=read_only)
     lowest = described.above if described.at_least is None else described.at_least
@@ -104,8 +110,38 @@ def declare(node: Node, name: str, described: Option, *, read_only: bool = True)
     # In rclpy a parameter without a value needs dynamic typing; `checked` checks its kind.
     descriptor.dynamic_typing = described.default is None
     start = list(described.default) if described.many else described.default
+    overrides = node._parameter_overrides
+    if name in overrides:
+        usual = described.kind()
+        declared = Parameter.Type.from_parameter_value([usual] if described.many else usual)
+        overrides[name] = as_declared(overrides[name], declared)
     try:
         value = node.declare_parameter(name, start, descriptor).value
     except (InvalidParameterTypeException, InvalidParameterValueException) as error:
         raise ParameterError(f'parameter {name}: {error} ({described.description})') from error
     return None if value is None else described.checked(name, value)
+
+
+def as_declared(given: Parameter, declared: Parameter.Type) -> Parameter:
+    """
+    Return a parameter whose numbers are whole with the type that is declared; others unchanged.
+
+    rclpy compares the types alone: to it 5 is no value of a parameter that is 5.0 elsewhere.
+    """
+    types, value = (given.type_, declared), given.value
+    if types == (Parameter.Type.INTEGER, Parameter.Type.DOUBLE):
+        value = float(value)
+    elif types == (Parameter.Type.INTEGER_ARRAY, Parameter.Type.DOUBLE_ARRAY):
+        value = [float(each) for each in value]
+    elif types == (Parameter.Type.DOUBLE, Parameter.Type.INTEGER) and value.is_integer():
+        value = int(value)
+    else:
+        return given
+    return Parameter(given.name, declared, value)
+
+
+class UndeclaredParameterError(ParameterNotDeclaredException):
+    """A parameter is set that the node does not have; unlike rclpy's error it names both."""
+
+    def __init__(self, reason: ParameterError) -> None:
+        Exception.__init__(self, str(reason))

@@ -87,14 +87,47 @@ class HybridIntegrator:
         forcing = Forcing(self._layout, inputs, kinetic, static)
         return _Motion(self, forcing, v[: len(state)], signs).to_the_end()
 
+    def friction_signs(
+        self, state: Values, signs: Signs, inputs: Values, kinetic: Values, static: Values
+    ) -> list[int]:
+        """
+        Return the signs of the friction torques in an interval without events, 0 for any.
+
+        The arguments are those of `advance`. A torque of which the sign is sure has it throughout.
+        """
+        capacities = self._layout.in_force(signs, kinetic, static)
+        return self.maps[signs].friction_signs(np.array([*state, *inputs, *capacities]))
+
+    def courses(
+        self, state: Values, signs: Signs, inputs: Values, kinetic: Values, static: Values
+    ) -> list[tuple[Course, float]]:
+        """
+        Return the courses of an interval in their order, and the part of a piece each lasts.
+
+        The arguments are those of `advance`. Integrals of anything over the interval are computed
+        from the polynomials of its courses, which end at nodes and events.
+        """
+        forcing = Forcing(self._layout, inputs, kinetic, static)
+        motion = _Motion(self, forcing, np.array(state), signs, keep=True)
+        motion.to_the_end()
+        return motion.courses
+
 
 class _Motion:
-    """State, mode, events and friction work during an interval with events."""
+    """State, mode, events and friction work during an interval."""
 
     def __init__(
-        self, integrator: HybridIntegrator, forcing: Forcing, state: np.ndarray, signs: Signs
+        self,
+        integrator: HybridIntegrator,
+        forcing: Forcing,
+        state: np.ndarray,
+        signs: Signs,
+        keep: bool = False,
     ) -> None:
         self._integrator, self._forcing = integrator, forcing
+        self._keep = keep
+        self.courses: list[tuple[Course, float]] = []
+        """Courses and the part of a piece each lasts; empty unless they are kept."""
         self._state, self._signs = state, signs
         self._events: list[Event] = []
         self._work = [0.0] * len(signs)
@@ -122,6 +155,8 @@ class _Motion:
         )
         count = min(lasts, layout.pieces - first)
         if count:
+            if self._keep:
+                self._keep_pieces(first, [self._state, *ends[: count - 1]])
             self._state = ends[count - 1]
             nodes = values[layout.nodes[first : first + count + 1]]
             for place, element in enumerate(self._integrator.flows[self._signs].slipping):
@@ -131,6 +166,13 @@ class _Motion:
                     before.dot(capacities[:-1]) + after.dot(capacities[1:])
                 )
         return first + count
+
+    def _keep_pieces(self, first: int, starts: Sequence[np.ndarray]) -> None:
+        """Keep the courses of whole pieces from the states (n,) at their starts."""
+        flow = self._integrator.flows[self._signs]
+        for piece, start in enumerate(starts, first):
+            course = flow.course(start, self._forcing.at(self._signs, piece, 0.0))
+            self.courses.append((course, 1.0))
 
     def _through_events(self, piece: int) -> None:
         """Integrate to the end of a piece, from event to event."""
@@ -146,6 +188,8 @@ class _Motion:
                 )
             part, guard, guards = course.first_event(orders, 1.0 - done)
             self._add_work(course, guards, part)
+            if self._keep:
+                self.courses.append((course, part))
             self._state = course.at(part)
             done += part
             if guard is None:

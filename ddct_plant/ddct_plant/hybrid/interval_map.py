@@ -67,6 +67,10 @@ class IntervalMap:
         guards = _over_pieces(flow.guards, starts)
         slips = piece_s * linear_weights(flow.degree) @ guards[:, flow.slip_guards]
         self._slipping = len(flow.slipping)
+        self._sticking = [
+            (i, flow.guarded.index(i)) for i, sign in enumerate(flow.signs) if not sign
+        ]
+        """Index of each sticking element and of its first guard."""
         flat = [part.reshape(layout.pieces, -1, starts.shape[2]) for part in (slips, guards)]
         by_piece = np.concatenate([ends, *flat], axis=1)
         self._by_piece = _product(by_piece.reshape(-1, by_piece.shape[2]))
@@ -126,6 +130,19 @@ class IntervalMap:
         lasts = self._pieces if safe.flat[first] else first // safe.shape[1]
         integrals = values[:, self._states : slips].reshape(self._pieces, self._slipping, 2)
         return values[:, : self._states], integrals, lasts
+
+    def friction_signs(self, v: np.ndarray) -> list[int]:
+        """Return the sign of each friction torque while the mode lasts, 0 where it may change."""
+        signs = list(self._signs)
+        if self._sticking:
+            slips = self._states + 2 * self._slipping
+            values = self._by_piece(v).reshape(self._pieces, -1)[:, slips:]
+            # Bernstein coefficients: no torque lies outside of theirs.
+            guards = values.reshape(self._pieces, len(signs) + len(self._sticking), -1)
+            for element, first in self._sticking:
+                twice = guards[:, first + 1] - guards[:, first]
+                signs[element] = int(twice.min() > 0.0) - int(twice.max() < 0.0)
+        return signs
 
 
 def _product(matrix: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:

@@ -17,6 +17,8 @@ from ddct_plant.hybrid.polynomials import (
 
 LONGEST = 2.0
 """Longest piece, in units of 1 / (the balanced norm of a)."""
+ROUNDING = 2.0**-53
+"""Term of a series that counts as zero, over the sum."""
 CANCELLED = 2.0**-40
 """Entry of a projection that counts as zero, over its terms."""
 
@@ -143,6 +145,14 @@ class Course(NamedTuple):
             slope = slope * part + order * coefficients[order]
         return flow.signs[element] * slope + 0.0  # no zero with a sign
 
+    def friction(self) -> np.ndarray:
+        """Return the coefficients of t^k of the friction torques, (N, d+1)."""
+        flow = self.flow
+        inputs = self.y[flow.states :].reshape(2, -1)
+        torques = flow.force[:, : flow.states].dot(self.states.T)
+        torques[:, :2] += flow.force[:, flow.states :].dot(inputs.T)
+        return torques
+
     def capacities(self) -> tuple[list[float], list[float]]:
         """Return the capacities at t = 0, and their change over a piece, (N,) each."""
         elements = len(self.flow.signs)
@@ -178,19 +188,50 @@ class Course(NamedTuple):
 
 
 def _series_degree(a: np.ndarray, piece_s: float) -> int:
-    """Return the order at which the terms of exp(a piece) are below rounding."""
-    # Only here: most of the graph's nodes do without scipy, whose import would double their start.
-    from scipy.linalg import matrix_balance
+    """
+    Return the order at which the terms of exp(a piece) are below rounding.
 
-    balanced = matrix_balance(a * piece_s)[0]
-    size = float(np.linalg.norm(balanced, 1))
+    The last term is below the rounding of 1 in balanced units. These may differ by many powers of
+    ten, so the next term is below that of the sum in the units of `a` too.
+    """
+    rates = a * piece_s
+    scaled = balanced(rates)
+    size = _norm(scaled)
     if size > LONGEST:
         raise ParameterError(
             f'friction system: it has rates of {size / piece_s:g} rad/s: take pieces of at most '
             f'{LONGEST * piece_s / size:.3g} s in place of {piece_s:g} s'
         )
-    degree, term = 2, balanced @ balanced / 2.0
-    while np.linalg.norm(term, 1) > 2.0**-53:
+    degree, term, scaled_term = 2, rates @ rates / 2.0, scaled @ scaled / 2.0
+    total = np.eye(len(a)) + rates + term
+    while True:
+        following = term @ rates / (degree + 1)
+        if _norm(scaled_term) <= ROUNDING and _norm(following) <= ROUNDING * _norm(total):
+            return degree
         degree += 1
-        term = term @ balanced / degree
-    return degree
+        term, scaled_term = following, scaled_term @ scaled / degree
+        total += term
+
+
+def balanced(a: np.ndarray) -> np.ndarray:
+    """
+    Return `a` (n, n) in other units of its states, with a 1-norm that is not above its own.
+
+    LAPACK's balancing first leaves out the states that drive no other, such as angles, and does
+    not count how these are driven. Where their driver hardly drives anything else, its unit is
+    then set by that little alone, and the norm may grow without bound. All states are balanced
+    together in this case, or the units stay.
+    """
+    # Only here: most of the graph's nodes do without scipy, whose import would double their start.
+    from scipy.linalg import matrix_balance
+
+    # scipy converts units to whole numbers on its way, and warns where one is above 2^63.
+    with np.errstate(invalid='ignore'):
+        reduced = matrix_balance(a)[0]
+        if _norm(reduced) <= min(_norm(a), LONGEST):
+            return reduced
+        return min(a, reduced, matrix_balance(a, permute=False)[0], key=_norm)
+
+
+def _norm(matrix: np.ndarray) -> float:
+    return float(np.linalg.norm(matrix, 1))

@@ -8,6 +8,7 @@ is nowhere negative, so an interior extremum cannot be missed; with one change o
 coefficients it has exactly one root.
 """
 
+from collections.abc import Sequence
 from functools import lru_cache
 from math import comb
 
@@ -69,6 +70,29 @@ def first_negative(powers: np.ndarray, end: float) -> float | None:
         pending.append((middle, high, (left @ coefficients[::-1])[::-1]))
         pending.append((low, middle, left @ coefficients))
     return None
+
+
+def value_at(powers: Sequence[float], at: float) -> float:
+    """Return the value at t = `at` of a polynomial with these coefficients of t^k."""
+    value = 0.0
+    for coefficient in reversed(powers):
+        value = value * at + coefficient
+    return value
+
+
+def roots(powers: Sequence[float], end: float) -> list[float]:
+    """
+    Return where in (0, end) a polynomial with these coefficients of t^k may change its sign.
+
+    `end` is at most 1. They are the real parts of all roots there: two equal ones may be complex
+    by rounding.
+    """
+    if sum(map(abs, powers)) < 2.0 * abs(powers[0]):
+        return []  # the first coefficient outweighs all others
+    sizes = [abs(coefficient) * end**order for order, coefficient in enumerate(powers)]
+    kept = [order for order, size in enumerate(sizes) if size > 2.0**-60 * max(sizes)]
+    found = np.polynomial.polynomial.polyroots(powers[: max(kept, default=0) + 1])
+    return [root.real for root in found.tolist() if 0.0 < root.real < end]
 
 
 def _root(powers: np.ndarray, low: float, high: float) -> float:

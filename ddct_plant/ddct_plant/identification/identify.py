@@ -63,10 +63,11 @@ def _run(argv: list[str]) -> int:
         if options.as_printed:
             raise DdctError('--as-printed is about the thesis, --from about a log: give one')
         return identify_log(options)
-    of_log = ('columns', 'check', 'fix', 'overrides', 'force', 'out')
+    of_log = ('columns', 'check', 'fix', 'overrides', 'force', 'out', 'overwrite')
     if any(getattr(options, name) for name in of_log):
         raise DdctError(
-            '--columns, --check, --fix, --set, --force and --out need a log: give --from LOG'
+            '--columns, --check, --fix, --set, --force, --out and --overwrite need a log: give '
+            '--from LOG'
         )
     coefficients = PRINTED
     if options.as_printed:

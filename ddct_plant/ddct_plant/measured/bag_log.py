@@ -22,13 +22,14 @@ from ddct_plant.signals.topics import (
     ENGINE_TORQUE,
     JOINT_STATES,
     VEHICLE_ACCEL,
+    VEHICLE_SPEED,
     quantities,
 )
 
-_TOPICS = (JOINT_STATES, ENGINE_TORQUE, CLUTCH_TORQUE, CLUTCH_PHASE, VEHICLE_ACCEL)
+_TOPICS = (JOINT_STATES, ENGINE_TORQUE, CLUTCH_TORQUE, CLUTCH_PHASE, VEHICLE_SPEED, VEHICLE_ACCEL)
 _MEASURED = (
     *('engine_speed', 'shaft_speed', 'wheel_speed'),
-    *('engine_torque', 'clutch_torque', 'vehicle_accel'),
+    *('engine_torque', 'clutch_torque', 'vehicle_speed', 'vehicle_accel'),
 )
 """Quantities that are read: those that a car can measure, without C_load."""
 _Rows = Mapping[int, Any]
@@ -39,9 +40,10 @@ def read_bag_signals(bag: Path) -> tuple[np.ndarray, dict[str, np.ndarray]]:
     """
     Return the times in s of the MCAP file of a bag, (n,), and by quantity its values, (n,).
 
-    Speeds, C_m and A_x are sampled every 10 ms. C_f is sampled every 1 ms with the linear clutch;
-    with the stick-slip clutch it is the transmitted torque just before each tick. C_load is
-    omitted, because no car measures it. In a run with sensors the signals are the true ones, too.
+    Speeds, C_m, V_x and A_x are sampled every 10 ms. C_f is sampled every 1 ms with the linear
+    clutch; with the stick-slip clutch it is the transmitted torque just before each tick. C_load
+    is omitted, because no car measures it. In a run with sensors the signals are the true ones,
+    too.
     Raise DdctError for a file that is no recording of this project or is damaged, and for a value
     that is missing, given twice or not finite.
     """

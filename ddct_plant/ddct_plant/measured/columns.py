@@ -67,8 +67,12 @@ QUANTITIES: Mapping[str, LogQuantity] = {
     'torque_request': LogQuantity('', 'requested of the clutch', 'torque_request'),
 }
 
-OWN_HELD = ('engine_torque',)
-"""Quantities with zero-order hold in the output of `score --signals-csv`; others are linear."""
+OWN_HELD = ('engine_torque', 'load_torque')
+"""
+Quantities with zero-order hold in our bags and in the output of `score --signals-csv`.
+
+The plant computes C_m and C_load once in a period of 10 ms; the others are linear.
+"""
 
 
 @dataclass(frozen=True)
@@ -79,8 +83,6 @@ class LogColumn:
     """Name of the column."""
     unit: str
     """Unit of its values."""
-    between: str = LINEAR
-    """Interpolation between samples: LINEAR or HELD."""
     delay_s: float | None = None
     """Known delay of the log in s; None for an unknown one."""
 
@@ -93,6 +95,14 @@ class ColumnMap:
     """Columns by quantity."""
     run: Mapping[str, Any]
     """Information on the run for `score`, by key; empty for `identify`."""
+    held: tuple[str, ...] = ()
+    """
+    Quantities with zero-order hold between samples; the others are linear.
+
+    C_load may be among them without a column: then the part of it that is computed is held.
+    """
+    optional: tuple[str, ...] = ()
+    """Quantities that a log without their column lacks; the other columns must be there."""
 
     @property
     def known_delays(self) -> dict[str, float]:
@@ -101,16 +111,13 @@ class ColumnMap:
         return {name: each for name, each in given.items() if each is not None}
 
 
-def own_columns(*names: str) -> ColumnMap:
+def own_columns(*names: str, optional: tuple[str, ...] = ()) -> ColumnMap:
     """Return the column map of quantities in the output of `score --signals-csv`."""
-    return ColumnMap(
-        {
-            name: LogColumn(each.own_column, each.unit, HELD if name in OWN_HELD else LINEAR)
-            for name in names
-            for each in [QUANTITIES[name]]
-        },
-        {},
-    )
+    quantities_by_name = {name: QUANTITIES[name] for name in (*names, *optional)}
+    columns = {
+        name: LogColumn(each.own_column, each.unit) for name, each in quantities_by_name.items()
+    }
+    return ColumnMap(columns, {}, OWN_HELD, optional)
 
 
 def load_columns(file: str) -> ColumnMap:
@@ -129,7 +136,8 @@ def _column_map(content: Any) -> ColumnMap:
     run = content.get('run') or {}
     if not isinstance(run, dict):
         raise ParameterError('run: give keys and values')
-    return ColumnMap(columns, run)
+    held = [name for name, each in content['columns'].items() if each.get('between') == HELD]
+    return ColumnMap(columns, run, tuple(held))
 
 
 def _column(name: str, content: Any) -> LogColumn:
@@ -148,11 +156,12 @@ def _column(name: str, content: Any) -> LogColumn:
     for part, value in content.items():
         if part != 'delay_s' and not isinstance(value, str):
             raise ParameterError(f'{key}.{part} is {value!r}: give text', key=f'{key}.{part}')
-    found = LogColumn(**content)
-    if found.between not in BETWEEN:
+    between = content.get('between', LINEAR)
+    if between not in BETWEEN:
         raise ParameterError(
-            f'{key}.between is {found.between!r}: choose from linear, held', key=f'{key}.between'
+            f'{key}.between is {between!r}: choose from linear, held', key=f'{key}.between'
         )
+    found = LogColumn(content['column'], content['unit'], delay)
     if name != TIME or found.unit != DATE_TIME:
         with located(key):
             _require_unit(name, found.unit)

@@ -16,7 +16,6 @@ from ddct_plant.files.input_file import mcap_of
 from ddct_plant.measured.bag_log import read_bag_signals
 from ddct_plant.measured.columns import (
     DATE_TIME,
-    HELD,
     OWN_HELD,
     QUANTITIES,
     TIME,
@@ -47,7 +46,7 @@ class MeasuredLog:
     signals: dict[str, np.ndarray]
     """Values in SI units, (n,), by quantity."""
     held: tuple[str, ...] = ()
-    """Quantities with zero-order hold between samples; the others are linear."""
+    """`held` of the column map, OWN_HELD in a bag."""
     _samples: dict[str, tuple[np.ndarray, np.ndarray]] = field(
         default_factory=dict, init=False, repr=False
     )
@@ -69,18 +68,24 @@ class MeasuredLog:
 
     def at(self, name: str, time_s: np.ndarray) -> np.ndarray:
         """Return a quantity at any times in s, interpolated linearly or held."""
-        times, values = self.samples(name)
-        if name not in self.held:
-            return np.interp(time_s, times, values)
-        # The tolerance keeps a time on a sample from falling before it by rounding.
-        before = np.searchsorted(times, time_s + 1e-9, side='right') - 1
-        return values[np.clip(before, 0, len(values) - 1)]
+        return between(*self.samples(name), time_s, held=name in self.held)
 
     def part(self, first: float, last: float) -> 'MeasuredLog':
         """Return the rows from one time in s to another, both included."""
         rows = (self.time_s >= first) & (self.time_s <= last)
         signals = {name: values[rows] for name, values in self.signals.items()}
         return MeasuredLog(self.path, self.digest, self.time_s[rows], signals, self.held)
+
+
+def between(
+    times_s: np.ndarray, values: np.ndarray, at_s: np.ndarray, *, held: bool
+) -> np.ndarray:
+    """Return samples (n,) at any times in s, (m,), held or linear between, constant outside."""
+    if not held:
+        return np.interp(at_s, times_s, values)
+    # The tolerance keeps a time on a sample from falling before it by rounding.
+    before = np.searchsorted(times_s, at_s + 1e-9, side='right') - 1
+    return values[np.clip(before, 0, len(values) - 1)]
 
 
 def read_log(path: Path, columns: ColumnMap, needed: Sequence[str] = ()) -> MeasuredLog:
@@ -111,18 +116,25 @@ def _read_csv_log(path: Path, columns: ColumnMap, needed: Sequence[str]) -> Meas
             raise ParameterError(f'{path}: the column map has no {name}: add columns.{name}')
     names = [each.column for each in columns.columns.values()]
     dated = [each.column for each in columns.columns.values() if each.unit == DATE_TIME]
-    table = read_csv(path, names, most_bytes=MOST_BYTES, most_rows=MOST_ROWS, date_times=dated)
+    table = read_csv(
+        path,
+        names,
+        most_bytes=MOST_BYTES,
+        most_rows=MOST_ROWS,
+        date_times=dated,
+        optional=[columns.columns[name].column for name in columns.optional],
+    )
     signals = {
         name: si_values(table.columns[each.column], _unit(each), QUANTITIES[name].unit)
         for name, each in columns.columns.items()
+        if each.column in table.columns
     }
     _require_rising(table, columns.columns[TIME].column, signals[TIME])
     for name, values in signals.items():
         if QUANTITIES[name].unit == 'rad/s':
             _require_speed(table, columns, name, values)
-    held = tuple(name for name, each in columns.columns.items() if each.between == HELD)
     time_s = signals.pop(TIME)
-    return MeasuredLog(path, _digest(path), time_s, signals, held)
+    return MeasuredLog(path, _digest(path), time_s, signals, columns.held)
 
 
 def _unit(column: LogColumn) -> str:

@@ -3,7 +3,6 @@
 """Engine: a torque that follows the driver's demand or, within limits, a controller's request."""
 
 import math
-from bisect import bisect_right
 from dataclasses import dataclass
 
 from ddct_plant.base.errors import ParameterError
@@ -161,15 +160,7 @@ class Engine:
 
     def demand(self, step: int) -> float:
         """Return the driver's torque demand in N m at step `step`."""
-        times, torques = self._profile.time_s, self._profile.torque_n_m
-        time = time_of_step(step)
-        if time <= times[0]:
-            return torques[0]
-        if time >= times[-1]:
-            return torques[-1]
-        index = bisect_right(times, time)
-        share = (time - times[index - 1]) / (times[index] - times[index - 1])
-        return torques[index - 1] + share * (torques[index] - torques[index - 1])
+        return self._profile.at(time_of_step(step))
 
     def torque(self, step: int, request: float | None = None, speed: float = 0.0) -> float:
         """

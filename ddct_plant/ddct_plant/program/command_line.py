@@ -15,7 +15,12 @@ from typing import Any, NoReturn
 
 from ddct_plant.base.errors import DdctError, printable
 from ddct_plant.files.output_file import STDOUT, write_json
-from ddct_plant.program.supervision import interrupted_by, interruptible, is_first_report
+from ddct_plant.program.supervision import (
+    interrupted_by,
+    interruptible,
+    is_first_report,
+    stems_from_interrupt,
+)
 
 USAGE = 2
 """Exit code after invalid options, as in argparse."""
@@ -71,7 +76,8 @@ def run_program(
     printed on standard error as `<name>: <text>` and gives 1, and so is an error of the operating
     system, such as a name that is too long, a full disk or a full standard output. SIGINT and
     SIGTERM are printed as a line too, one for all of them, and give 128 and the number of the
-    first. After them the process must end where `argv` is None: a further SIGINT ends it at once.
+    first, also where Python or a module has made another exception of them. After them the process
+    must end where `argv` is None: a further SIGINT ends it at once.
     """
     given = sys.argv[1:] if argv is None else argv
 
@@ -99,20 +105,34 @@ def _rare_garbage_collection() -> Iterator[None]:
 def _run_program(name: str, work: Callable[[], int]) -> int:
     try:
         return work()
-    except DdctError as error:
-        complain(name, error)
-        return 1
     except KeyboardInterrupt as error:
-        if is_first_report():
-            complain(name, str(error) or 'interrupted')
-        return 128 + interrupted_by() if interrupted_by() else INTERRUPTED
+        return _interrupted(name, str(error))
     except BrokenPipeError:
         _drop_output()
         return PIPE_CLOSED
-    except OSError as error:
-        complain(name, _io_error_text(error))
-        _drop_output()
+    except (DdctError, OSError) as error:
+        # Its context does not count: what failed after an interruption has to be reported.
+        if stems_from_interrupt(error.__cause__):
+            return _interrupted(name)
+        if isinstance(error, DdctError):
+            complain(name, error)
+        else:
+            complain(name, _io_error_text(error))
+            _drop_output()
         return 1
+    except Exception as error:
+        # Modules in C drop the interruption behind these two.
+        dropped = isinstance(error, ImportError | SystemError) and interrupted_by()
+        if dropped or stems_from_interrupt(error):
+            return _interrupted(name)
+        raise
+
+
+def _interrupted(name: str, text: str = '') -> int:
+    """Report an interruption, unless a program within has done so; return the exit code."""
+    if is_first_report():
+        complain(name, text or 'interrupted')
+    return 128 + interrupted_by() if interrupted_by() else INTERRUPTED
 
 
 def run_subcommands(

@@ -73,6 +73,22 @@ def interrupted_by() -> int:
     return next(iter(_interruptions), 0)
 
 
+def stems_from_interrupt(error: BaseException | None) -> bool:
+    """
+    Return whether an exception is a KeyboardInterrupt, or began as one.
+
+    Python wraps what is raised in `__set_name__`, and some modules report any failure while they
+    are imported as an ImportError.
+    """
+    passed: set[int] = set()
+    while error is not None and id(error) not in passed:
+        if isinstance(error, KeyboardInterrupt):
+            return True
+        passed.add(id(error))
+        error = error.__cause__ or error.__context__
+    return False
+
+
 def is_first_report() -> bool:
     """Return whether no program within the outermost `interruptible` reports it before this."""
     global _reported

@@ -22,6 +22,7 @@ from ddct_plant.shift.engagements import (
 )
 from ddct_plant.shift.gear_pair import GearPair
 from ddct_plant.shift.start import ShiftStart
+from ddct_plant.shift.tie_up import TieUp
 
 _ENGINE, _SHAFT, _OTHER, _OTHER_ANGLE = SHIFT_STATES.places(
     'engine_speed', 'shaft_speed', 'off_going_speed', 'off_going_angle'
@@ -58,6 +59,8 @@ class ShiftOutputs(NamedTuple):
     """Signals of the off-going side."""
     wheel_friction_work: float
     """Exact work in J of rolling resistance and brake in the last period."""
+    tie_up_work: float
+    """Exact work in J of the clutches against each other in the last period, see `TieUp`."""
 
 
 class ShiftDriveline:
@@ -88,6 +91,7 @@ class ShiftDriveline:
         self._wheel_radius = vehicle.wheel_radius_m
         both = both_engaged(gears)
         self._engaged: EngagedGears = off_going_engaged(gears) if preselection_step else both
+        self._tie_up, self._tie_up_work = TieUp(self._engaged), 0.0
         self._changes: dict[int, EngagedGears] = {preselection_step: both}
         if disengagement_step is not None:
             self._changes[disengagement_step] = on_coming_engaged(gears)
@@ -139,7 +143,7 @@ class ShiftDriveline:
             now.work[OFF_GOING],
             self._events(OFF_GOING),
         )
-        return ShiftOutputs(driveline, off_going, now.work[WHEEL])
+        return ShiftOutputs(driveline, off_going, now.work[WHEEL], self._tie_up_work)
 
     def _events(self, element: int) -> tuple[PhaseEvent, ...]:
         events = self.now.events
@@ -165,9 +169,11 @@ class ShiftDriveline:
         kinetic = static = [*kinetic_torque, *off_going_kinetic, holding_torque]
         if static_torque is not kinetic_torque or off_going_static is not off_going_kinetic:
             static = [*static_torque, *off_going_static, holding_torque]
+        before, inputs = self.now, (engine_torque, load_torque)
         now = self.now = self._engaged.integrator.advance(
-            self.now.state, self.now.signs, (engine_torque, load_torque), kinetic, static
+            before.state, before.signs, inputs, kinetic, static
         )
+        self._tie_up_work = self._tie_up.work(before, now, inputs, kinetic, static)
         self._phases = [
             phase_of(now.signs[ON_COMING], kinetic_torque[-1]),
             phase_of(now.signs[OFF_GOING], off_going_kinetic[-1]),
@@ -181,7 +187,7 @@ class ShiftDriveline:
         """Go over to other engaged gears at the present step."""
         now, before = self.now, self._engaged.to_shift(self.now.state)
         now.state = new.of_shift(before)
-        self._engaged = new
+        self._engaged, self._tie_up = new, TieUp(new)
         after = new.to_shift(now.state)
         if after[_SHAFT] != before[_SHAFT]:
             now.signs = (_sign(after[_ENGINE] - after[_SHAFT]), *now.signs[OFF_GOING:])

@@ -18,6 +18,7 @@ from ddct_plant.signals.signal import SignalValue
 _OF_TICK = (
     *DrivelineOutputs._fields,
     *(f'{OFF_GOING}_{name}' for name in OffGoingOutputs._fields),
+    'tie_up_work',
 )
 """Names of the signals of a tick, in the order of the outputs."""
 OPEN_BELOW = 0.01
@@ -39,7 +40,8 @@ def shift_driveline(settings: RunSettings) -> ShiftDriveline:
 
 def shift_signals(outputs: ShiftOutputs) -> dict[str, SignalValue]:
     """Return the signals of a tick by name; those of the off-going side have a prefix."""
-    return dict(zip(_OF_TICK, (*outputs.driveline, *outputs.off_going), strict=True))
+    values = *outputs.driveline, *outputs.off_going, outputs.tie_up_work
+    return dict(zip(_OF_TICK, values, strict=True))
 
 
 def first_request(settings: RunSettings, role: str) -> float:

@@ -27,8 +27,6 @@ class RunKind:
     """Whether the run is a gear shift, with an off-going clutch too."""
     torque_parts: bool = True
     """Whether the controller's node publishes the topics with `Topic.optional`."""
-    earlier: bool = False
-    """Whether its bag has none of the topics with `Topic.later`."""
 
 
 @dataclass(frozen=True)

@@ -97,23 +97,32 @@ def _level(status: Any) -> int:
     return level[0] if isinstance(level, bytes) else level
 
 
+FRICTION_WORK, TIE_UP_WORK = _WORKS = 'friction_work_j', 'tie_up_work_j'
+"""Keys of the works in J that a report on a clutch may have after its phase, in their order."""
+
+
 @dataclass(frozen=True)
 class PhaseReport(MessageKind):
     """
-    Adapter for a DiagnosticArray on the clutch: phase, friction work, events at slip zero.
+    Adapter for a DiagnosticArray on the clutch: phase, works, events at slip zero.
 
     Each event has one pair of kind and time, and one pair of its slip acceleration after it.
     """
 
     numbers_alone: ClassVar[bool] = False
-    _WORK: ClassVar[str] = 'friction_work_j'
+    works: tuple[str, ...] = (FRICTION_WORK,)
+    """Keys of the works of which it has values; a message may have others too."""
     _ACCELERATION: ClassVar[str] = 'slip_acceleration_rad_s2'
 
     def _filler(self, message: Any, class_of: ClassOf) -> Callable[..., None]:
         fill_pairs = Status(self.type, 'clutch')._filler(message, class_of)
 
-        def fill(phase: float, work: float, events: Sequence[PhaseEvent]) -> None:
-            pairs = [('phase', PHASES[int(phase)]), (self._WORK, repr(float(work)))]
+        def fill(phase: float, *works_and_events: Any) -> None:
+            *works, events = works_and_events
+            pairs = [('phase', PHASES[int(phase)])]
+            pairs += [
+                (key, repr(float(work))) for key, work in zip(self.works, works, strict=True)
+            ]
             for event in events:
                 pairs.append((event.kind, repr(event.time_s)))
                 if event.slip_acceleration is not None:
@@ -122,17 +131,16 @@ class PhaseReport(MessageKind):
 
         return fill
 
-    def values(self, message: Any) -> tuple[float, float, tuple[PhaseEvent, ...]]:
-        """Return phase number, friction work in J and events; raise LookupError for bad ones."""
+    def values(self, message: Any) -> tuple[Any, ...]:
+        """Return phase number, works in J and events; raise LookupError for bad ones."""
         pairs = [(pair.key, pair.value) for pair in message.status[0].values]
         try:
-            (_, phase), (key, work), *rest = pairs
-            events = self._events(rest)
-            if key == self._WORK:
-                return float(PHASES.index(phase)), float(work), events
-        except ValueError:
-            pass
-        raise LookupError(f'its status holds {pairs}')
+            (_, phase), *rest = pairs
+            works = {key: float(value) for key, value in rest[: len(_WORKS)] if key in _WORKS}
+            events = self._events(rest[len(works) :])
+            return float(PHASES.index(phase)), *(works[key] for key in self.works), events
+        except (ValueError, KeyError):
+            raise LookupError(f'its status holds {pairs}') from None
 
     def _events(self, pairs: Sequence[tuple[str, str]]) -> tuple[PhaseEvent, ...]:
         """Return the events; older bags have no accelerations. Raise ValueError for a bad pair."""
@@ -150,9 +158,10 @@ class PhaseReport(MessageKind):
     def read(self, topic: str, message: Any) -> float:
         """Return the friction work in J; raise DdctError unless finite and not negative."""
         try:
-            _, work, _ = self.values(message)
+            _, work, *_ = self.values(message)
         except LookupError as error:
             raise DdctError(
-                f'{topic}: {error}: it needs phase, {self._WORK}, then the events', key=topic
+                f'{topic}: {error}: it needs phase, {", ".join(self.works)}, then the events',
+                key=topic,
             ) from error
         return require_number(topic, work, at_least=0.0)

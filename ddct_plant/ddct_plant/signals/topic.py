@@ -35,8 +35,6 @@ class Topic:
     """Condition on the runs that have the topic; None for all of them."""
     sensed: Sensed | None = None
     """Sensors that it carries measurements of; None for a topic of others."""
-    later: bool = False
-    """Whether earlier bags lack it: their signals of this topic are in other messages."""
     optional: bool = False
     """Whether a node in the place of `controller` may leave it out (`RunKind.torque_parts`)."""
 
@@ -62,7 +60,7 @@ class Topic:
 
     def in_run(self, run: RunKind) -> bool:
         """Return whether a run has this topic."""
-        absent = (self.later and run.earlier) or (self.optional and not run.torque_parts)
+        absent = self.optional and not run.torque_parts
         return not absent and (self.when is None or self.when(run))
 
     def signals_in(self, run: RunKind) -> tuple[Signal, ...]:

@@ -36,14 +36,15 @@ VALUES = {
     'actuator/torque': (POINTS,),
     'clutch/torque': (POINTS,),
     'clutch/phase': (1.0, 0.5, ()),
+    'off_going/clutch/phase': (1.0, 0.5, 0.25, ()),
 }
 """Values of a topic; one number per signal for the topics that are not listed."""
 
 
 def values_of(topic):
     """Return values for a topic; those of the off-going side are like those of the other."""
-    name = topic.name.removeprefix('off_going/')
-    return VALUES.get(name, [1.0] * len(topic.signals))
+    same = VALUES.get(topic.name.removeprefix('off_going/'), [1.0] * len(topic.signals))
+    return VALUES.get(topic.name, same)
 
 
 SCALARS = [topic for topic in topics.TOPICS if isinstance(topic.kind, Scalar)]

@@ -16,6 +16,7 @@ from ddct_plant.signals.topics import (
     CLUTCH_TEMPERATURE,
     CLUTCH_TORQUE,
     HOLDING_TORQUE,
+    OFF_GOING_PHASE,
 )
 
 STAMP, LATER = stamp_of_step(123), stamp_of_step(124)
@@ -46,6 +47,19 @@ def test_the_phase_is_a_word_and_each_event_comes_before_its_slip_acceleration()
         ('lock', '0.5'),
         ('slip_acceleration_rad_s2', '-62.5'),
     ]
+
+
+def test_the_report_on_the_off_going_clutch_has_the_tie_up_work_too():
+    values = (1.0, 0.25, 1.0 / 3.0, LOCKS)
+    message = OFF_GOING_PHASE.message(STAMP, *values)
+    pairs = [(pair.key, pair.value) for pair in message.status[0].values]
+    assert pairs[1:3] == [('friction_work_j', '0.25'), ('tie_up_work_j', repr(1.0 / 3.0))]
+    assert OFF_GOING_PHASE.values(message) == values
+    # The node of the off-going clutch reads it as that of its clutch.
+    assert CLUTCH_PHASE.values(message) == (1.0, 0.25, LOCKS)
+    assert CLUTCH_PHASE.read(message) == 0.25
+    with pytest.raises(LookupError, match='its status holds'):
+        OFF_GOING_PHASE.values(CLUTCH_PHASE.message(STAMP, 1.0, 0.25, LOCKS))
 
 
 def test_events_of_bags_recorded_before_have_no_slip_acceleration():

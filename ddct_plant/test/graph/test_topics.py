@@ -36,6 +36,7 @@ def test_signals_are_numbers_then_text_then_what_only_some_runs_have():
         'friction_work',
         'off_going_clutch_phase',
         'off_going_friction_work',
+        'tie_up_work',
         'sensed_joint_speed',
         'sensed_slip_speed',
         'sensed_vehicle_speed',

@@ -30,6 +30,7 @@ VALUES: dict[str, Any] = {
     'actuator/torque': (TORQUES,),
     'clutch/torque': (TORQUES, CAPACITIES),
     'clutch/phase': (1.0, 0.5, ()),
+    'off_going/clutch/phase': (1.0, 0.5, 0.25, ()),
     **dict.fromkeys(('run_info', 'controller/status', 'controller/timing'), (PAIRS,)),
     '/diagnostics': (PAIRS,),
 }
@@ -38,8 +39,10 @@ CHECKED = [topic for topic in topics.TOPICS if topic.every_tick]
 
 
 def _values(topic: Topic) -> Any:
-    name = topic.name.removeprefix('off_going/')
-    return VALUES.get(name, [1.0 + i for i in range(len(topic.signals))])
+    same = VALUES.get(
+        topic.name.removeprefix('off_going/'), [1.0 + i for i in range(len(topic.signals))]
+    )
+    return VALUES.get(topic.name, same)
 
 
 def _changed(values: Any) -> Any:

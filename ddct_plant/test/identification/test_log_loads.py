@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""The fitted C_load of a log is a mean over its time, whatever its gaps."""
+"""C_load of a log: its fitted mean over gaps, and its computed part between the samples."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -11,6 +11,8 @@ import pytest
 from ddct_plant.identification.from_log.fit import fit_log
 from ddct_plant.identification.from_log.model import Sampling, responses
 from ddct_plant.identification.from_log.stretch import TORQUES, Stretch, slip_of
+from ddct_plant.identification.from_log.stretches import stretches_of
+from ddct_plant.measured.columns import OWN_HELD, own_columns
 from ddct_plant.measured.log import SPEEDS, MeasuredLog
 from ddct_plant.models.parameters import DrivelineParameters
 
@@ -72,3 +74,23 @@ def test_columns_of_a_stretch_are_found_by_name() -> None:
     assert stretch.speed('wheel_speed').tolist() == [2.0, 5.0]
     assert stretch.torque('clutch_torque').tolist() == [1.0, 4.0, 7.0, 10.0]
     assert slip_of(stretch.speeds).tolist() == [-1.0, -1.0]
+
+
+@pytest.mark.parametrize('held', [(), OWN_HELD], ids=['of a car', 'of our plant'])
+def test_a_computed_load_is_held_between_samples_in_a_log_of_our_plant_alone(
+    held: tuple[str, ...],
+) -> None:
+    """C_f is sampled ten times as often as the speeds, so that the grid has steps of 1 ms."""
+    rows = np.arange(601)
+    ticks = np.where(rows % 10 == 0, rows, np.nan)
+    signals = dict.fromkeys((*SPEEDS, 'engine_torque'), ticks) | {'clutch_torque': rows + 0.0}
+    log = MeasuredLog(Path('drive.csv'), '', 0.001 * rows, signals, held)
+    (found,) = stretches_of(log, lambda wheels: 2.0 * wheels)
+    inside = (found.grid_s >= -1e-9) & (found.grid_s < 0.5999)
+    expected = 2.0 * (10 * (rows[:600] // 10) if held else rows[:600])
+    assert np.allclose(found.torque('load_torque')[inside], expected, rtol=0.0, atol=1e-6)
+    assert found.held == (bool(held), False, bool(held))
+
+
+def test_bags_and_csv_of_ours_have_the_same_held_quantities() -> None:
+    assert own_columns('time').held == OWN_HELD == ('engine_torque', 'load_torque')

@@ -99,6 +99,19 @@ def test_the_clutch_locks_once_and_carries_what_keeps_the_plates_together():
     )
 
 
+@pytest.mark.parametrize('damping', [5e-324, 1e-60, 7.4e-14, 1e-10])
+def test_almost_no_engine_damping_is_as_none_while_the_plates_stick(damping):
+    """Identification may give such a damping; it slows the engine by less than 1e-7 rad/s."""
+    start = initial(160.0, 160.0)
+    damped = make(start, replace(PARAMETERS, engine_damping=damping))
+    undamped = make(start)
+    for driveline in (damped, undamped):
+        for _ in range(100):
+            driveline.step(60.0, 20.0, [150.0] * 11, [180.0] * 11, ROLLING)
+        assert phase(driveline) == 'locked'
+    assert damped.now.state == pytest.approx(undamped.now.state, rel=1e-9)
+
+
 @pytest.mark.parametrize('engine', [168.0, 152.0])
 @pytest.mark.parametrize(('static', 'kind'), [(180.0, 'lock'), (150.0, 'reverse')])
 def test_the_event_at_slip_zero_has_the_slip_acceleration_just_before_it(engine, static, kind):

@@ -13,6 +13,7 @@ import pytest
 
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.program.command_line import ProgramParser, run_program
+from ddct_plant.program.supervision import stop_signals
 
 
 def raising(error):
@@ -41,6 +42,40 @@ def test_a_mistake_is_one_line_with_the_programs_name(kind, capsys):
 def test_an_interrupt_gives_130(capsys):
     assert run_program('x', raising(KeyboardInterrupt()), []) == 130
     assert capsys.readouterr().err == 'x: interrupted\n'
+
+
+def raising_from_interrupt(error):
+    def main_function(_argv):
+        raise error from KeyboardInterrupt()
+
+    return main_function
+
+
+@pytest.mark.parametrize('error', [DdctError('no'), OSError('no'), RuntimeError('no')])
+def test_an_error_that_an_interrupt_became_gives_130_too(error, capsys):
+    assert run_program('x', raising_from_interrupt(error), []) == 130
+    assert capsys.readouterr().err == 'x: interrupted\n'
+
+
+def test_an_error_on_the_way_out_of_an_interrupt_is_reported(capsys):
+    def main_function(_argv):
+        try:
+            raise KeyboardInterrupt
+        finally:
+            raise DdctError('the disk is full')
+
+    assert run_program('x', main_function, []) == 1
+    assert capsys.readouterr().err == 'x: the disk is full\n'
+
+
+def test_a_fault_after_a_signal_keeps_its_traceback():
+    def main_function(_argv):
+        with stop_signals():
+            os.kill(os.getpid(), signal.SIGINT)
+        raise ZeroDivisionError
+
+    with pytest.raises(ZeroDivisionError):
+        run_program('x', main_function, [])
 
 
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])

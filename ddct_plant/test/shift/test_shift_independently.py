@@ -33,8 +33,9 @@ class Independent:
     """
     A shift by the Dormand-Prince method of order 8, with the equations at the gear output.
 
-    States: w_m, w_g, w_r, theta_sr. Each clutch slips with a sign, or sticks, and then a torque
-    that keeps its slip's acceleration zero replaces its capacity. The wheels roll forward.
+    States: w_m, w_g, w_r, theta_sr, tie-up work. Each clutch slips with a sign, or sticks, and
+    then a torque that keeps its slip's acceleration zero replaces its capacity. The wheels roll
+    forward.
     """
 
     def __init__(self, settings: RunSettings) -> None:
@@ -46,7 +47,7 @@ class Independent:
         self.squares = sum(ratio**2 for ratio in self.ratios)
         self.gear_inertia = self.parameters.shaft_inertia * self.squares
         self.state = np.array(
-            [start.engine_speed, start.wheel_speed, start.wheel_speed, start.twist]
+            [start.engine_speed, start.wheel_speed, start.wheel_speed, start.twist, 0.0]
         )
         self.signs = [1, 0]
         self.load = 0.0
@@ -76,7 +77,7 @@ class Independent:
     def slope_of(self, state: State, torques: Pair, engine: float, load: float) -> list[float]:
         # In numbers of Python: arrays of two or four take several times as long.
         p = self.parameters
-        speed, gear, wheel, twist = state
+        speed, gear, wheel, twist, _ = state
         shaft = p.halfshaft_damping * (gear - wheel) + p.halfshaft_stiffness * twist
         driving = self.ratios[0] * torques[0] + self.ratios[1] * torques[1]
         return [
@@ -84,7 +85,14 @@ class Independent:
             (driving - shaft - p.shaft_damping * self.squares * gear) / self.gear_inertia,
             (shaft - load) / p.vehicle_inertia,
             gear - wheel,
+            self.tie_up_power(gear, torques),
         ]
+
+    def tie_up_power(self, gear: float, torques: Pair) -> float:
+        """Return what the smaller of two opposing torques takes from the wheels."""
+        if torques[0] * torques[1] >= 0.0:
+            return 0.0
+        return min(map(abs, torques)) * abs(gear * (self.ratios[1] - self.ratios[0]))
 
     def advance(self, engine: float, load: float) -> None:
         """Integrate 10 ms, piece by piece between the nodes of the capacities."""
@@ -140,8 +148,13 @@ class Independent:
             self.signs[which] = -before
 
 
-def shift_by_the_other_method(settings: RunSettings) -> np.ndarray:
-    """Return the speeds of engine, gear output and wheels, (N + 1, 3), in closed loop."""
+def shift_by_the_other_method(settings: RunSettings) -> tuple[np.ndarray, np.ndarray]:
+    """
+    Return a shift in closed loop.
+
+    They are the speeds of engine, gear output and wheels, (N + 1, 3), and the tie-up work until
+    each step, (N + 1,).
+    """
     scenario = settings.scenario
     other = Independent(settings)
     first = ShiftPlant(settings).first_request
@@ -150,7 +163,7 @@ def shift_by_the_other_method(settings: RunSettings) -> np.ndarray:
     road = air_and_slope(scenario.load, scenario.vehicle)
     holding = HoldingTorque(RoadLoad(scenario.load, scenario.vehicle), scenario.brake)
     engine = scenario.engine.torque_n_m[0]
-    speeds = [other.state[:3]]
+    states = [other.state]
     resisting = road.torque(other.state[2] * scenario.vehicle.wheel_radius_m) + holding.capacity(0)
     for step in range(scenario.steps):
         slip = 0.0 if other.signs[0] == 0 else float(other.slip(0, other.state))
@@ -163,25 +176,30 @@ def shift_by_the_other_method(settings: RunSettings) -> np.ndarray:
         vehicle_speed = float(other.state[2]) * scenario.vehicle.wheel_radius_m
         resisting = road.torque(vehicle_speed) + holding.capacity(step * PERIOD_S)
         other.advance(engine, resisting)
-        speeds.append(other.state[:3])
-    return np.array(speeds)
+        states.append(other.state)
+    found = np.array(states)
+    return found[:, :3], found[:, -1]
 
 
 @pytest.mark.parametrize('name', ['upshift', 'upshift_light', 'upshift_2_3'])
-def test_a_whole_shift_is_within_1e_9_of_another_integration(name):
+def test_a_whole_shift_and_its_tie_up_are_within_1e_9_of_another_integration(name):
     settings = shift_settings(name)
     found: list[list[float]] = []
+    works: list[float] = []
     kinds: list[str] = []
 
     def tick(step: int, plant: ShiftPlant, outputs: ShiftOutputs, reply: ShiftReply) -> None:
         speeds = outputs.driveline.joint_speed
         gear = gears_of(settings.scenario).off_going.wheel_speed(outputs.off_going.shaft_speed)
         found.append([speeds.engine, gear, speeds.wheel])
+        works.append(outputs.tie_up_work)
         kinds.extend(event.kind for event in outputs.driveline.phase_events)
         kinds.extend(f'off {event.kind}' for event in outputs.off_going.phase_events)
 
     run(settings, tick)
-    expected = shift_by_the_other_method(settings)
+    expected, expected_work = shift_by_the_other_method(settings)
     assert {'lock', 'off release'} <= set(kinds)
     scale = np.abs(expected).max(axis=0)
     assert (np.abs(np.array(found) - expected) / scale).max() < 1e-9
+    assert expected_work[-1] > 1.0
+    assert np.abs(np.cumsum(works) - expected_work).max() < 1e-9

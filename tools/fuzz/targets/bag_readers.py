@@ -19,14 +19,13 @@ from ddct_plant.measured.log import read_log
 from fuzz.reader import Reader
 
 NAME = 'pi.mcap'
-_ROOT = Path(__file__).resolve().parents[3]
-_EARLIER = _ROOT / 'tests' / 'bag' / 'earlier' / 'real_time' / 'pi_0.mcap'
+_REAL_TIME = Path(__file__).resolve().parents[1] / 'real_time' / 'pi_0.mcap'
 """A bag of real time: to record one takes a graph."""
 
 
 def bag_readers(bag: Path, folder: Path) -> list[Reader]:
     """Return the readers of bags; `bag` is the first good one, others are made in a folder."""
-    files = (bag, *(made_bag(folder, run) for run in _further()), _EARLIER)
+    files = (bag, *(made_bag(folder, run) for run in _further()), _REAL_TIME)
     bags = tuple(file.read_bytes() for file in files)
     whole_and_cut = tuple(data for each in bags for data in (each, each[:-4000]))
     log = signals_csv(read_bag(bag)).encode()[:30_000].rpartition(b'\n')[0]

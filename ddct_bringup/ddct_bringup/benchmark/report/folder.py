@@ -42,7 +42,7 @@ def write_result(out: Path, failed: Mapping[str, str]) -> Result:
     result = result_in(out, failed)
     with locked_folders(out):
         write_json(str(out / RESULT), result)
-        write_text(str(out / PAGE), benchmark_page(result, read_update_times(out)))
+        write_text(str(out / PAGE), benchmark_page(result, read_update_times(out), out))
         write_folder_digests(out, BENCHMARK)
     return result
 

@@ -2,6 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The page of a benchmark."""
 
+import shlex
+from pathlib import Path
+
 from markupsafe import Markup
 
 from ddct_bringup.benchmark.report import texts
@@ -30,11 +33,11 @@ RATIO_FORM = '.2f'
 """Format of a ratio to the least."""
 
 
-def benchmark_page(result: Result, update_times: UpdateTimesFile) -> str:
+def benchmark_page(result: Result, update_times: UpdateTimesFile, folder: Path) -> str:
     """
-    Return the HTML page of a benchmark.
+    Return the HTML page of a benchmark in a folder, which its commands name.
 
-    Only the cells of the class `wall` depend on the wall clock.
+    Besides those, only the cells of the class `wall` depend on the wall clock.
     """
     return page_template(_ROOM, 'benchmark.html.j2').render(
         marker=Markup(MARKER),
@@ -47,6 +50,8 @@ def benchmark_page(result: Result, update_times: UpdateTimesFile) -> str:
         notes=list(texts.notes_of(result)),
         warnings=list(texts.warnings_of(result)),
         texts=texts,
+        folder=folder,
+        shell_line=_shell_line,
         campaign_texts=campaign_texts,
         quantities={quantity.key: quantity for quantity in QUANTITIES},
         main=list(MAIN),
@@ -57,6 +62,11 @@ def benchmark_page(result: Result, update_times: UpdateTimesFile) -> str:
         value_text=value_text,
         version=package_version(),
     )
+
+
+def _shell_line(*words: object) -> str:
+    """Return a command as a line for a shell."""
+    return shlex.join(map(str, words))
 
 
 def _further(result: Result) -> list[str]:

@@ -33,6 +33,7 @@ RULES = {
     'below the least at any lock instant are left out. A run that is no success keeps none.',
     'explained': CAMPAIGN_RULES['explained'],
     'drives': CAMPAIGN_RULES['drives'],
+    'most failures': CAMPAIGN_RULES['most failures'],
     'difference': CAMPAIGN_RULES['difference'],
     'difference interval': CAMPAIGN_RULES['difference interval'],
     'not dominated': 'No other controller is at least as good in each of these and better in one: '
@@ -67,7 +68,9 @@ def notes_of(result: Result) -> Iterator[str]:
 
 
 def warnings_of(result: Result) -> Iterator[str]:
-    """Yield what is wrong with a controller, or with its result, a line each."""
+    """Yield what to know of the rows and of controllers before reading the tables, a line each."""
+    if result['cases']['other_code']:
+        yield result['cases']['other_code']
     for judged in result['controllers']:
         yield from _warnings(judged)
 

@@ -11,7 +11,7 @@ from ddct_bringup.campaign.keys import FILE_KEY, HANDOVER, SCENARIO
 from ddct_bringup.campaign.spec import CampaignSpec
 from ddct_bringup.campaign.specification.distributions import VALUES
 from ddct_bringup.campaign.specification.parts import GRID, RANDOM, VARY
-from ddct_controllers.from_file.digests import controller_digests
+from ddct_controllers.from_file.digests import controller_digests, handover_digests
 from ddct_plant.base.errors import DdctError
 from ddct_plant.scenario.file import is_packaged
 from ddct_plant.scenario.settings import is_handover_file
@@ -66,13 +66,24 @@ def digest_of(spec: CampaignSpec) -> str:
     """
     digest = hashlib.sha256(spec.text().encode())
     for path in (*_of_scenarios(spec), *_of_varied_keys(spec)):
-        try:
-            digest.update(hashlib.sha256(path.read_bytes()).digest())
-        except OSError as error:
-            raise DdctError(f'cannot be read ({error.strerror})', place=path) from error
+        digest.update(_content_of(path))
     for chosen in spec.chosen:
-        digest.update(repr(sorted(controller_digests(chosen).items())).encode())
+        digest.update(_digests_text(controller_digests(chosen)))
     return digest.hexdigest()
+
+
+def _content_of(path: Path) -> bytes:
+    """Return what stands for a file in the digest; that of a handover is not its text alone."""
+    if is_handover_file(str(path)):
+        return _digests_text(handover_digests(str(path)))
+    try:
+        return hashlib.sha256(path.read_bytes()).digest()
+    except OSError as error:
+        raise DdctError(f'cannot be read ({error.strerror})', place=path) from error
+
+
+def _digests_text(digests: Mapping[str, str]) -> bytes:
+    return repr(sorted(digests.items())).encode()
 
 
 def _of_scenarios(spec: CampaignSpec) -> Iterator[Path]:

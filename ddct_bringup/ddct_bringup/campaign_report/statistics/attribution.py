@@ -10,8 +10,9 @@ Section 1.2.3): the part of the variance of failure that the key explains by its
 
 It is estimated from the runs as they are, over parts of the key's range with equally many runs
 (Plischke, Borgonovo and Smith 2013), and freed from what chance explains (Kelley's epsilon
-squared). It needs no direction: a key that causes failure at both ends counts too. It misses
-a key that acts through another alone, and is less than S where failure begins within a part.
+squared). A key whose values are names has a part for each name. It needs no direction: a key that
+causes failure at both ends counts too. It misses a key that acts through another alone, and is
+less than S where failure begins within a part.
 
 Whether a key drives failure is tested by permutation: failures are dealt out at random among the
 runs. The p-values are Holm's, so that among all keys of a controller a false one is named in less
@@ -24,27 +25,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from ddct_bringup.campaign_report.statistics.outcome import CONFIDENCE
+from ddct_bringup.campaign_report.statistics.parts import Part, parts_of, worst_of
 
 METHOD = 'main effect of each key, permutation test with Holm correction, bootstrap interval'
 FEWEST = 5
 """Fewest failed runs, and fewest other runs, for an attribution to keys."""
-MOST_PARTS = 10
 _RUNS_IN_PART = 10
 _DEALS = 5000
 _RESAMPLES = 2000
 _SEED = 0
 """Seed of the random numbers, so that the same runs give the same results."""
-
-
-@dataclass(frozen=True)
-class Part:
-    """Runs in one part of a key's range."""
-
-    low: float
-    """Smallest value drawn in the part; `high` is the largest."""
-    high: float
-    runs: int
-    failed: int
 
 
 @dataclass(frozen=True)
@@ -67,8 +57,8 @@ class Effect:
 
     @property
     def worst_part(self) -> Part:
-        """Part of the range with the largest share of failed runs, the first of equals."""
-        return max(self.parts, key=lambda part: part.failed / part.runs)
+        """Part of the range, or group of names, in which failure is most frequent."""
+        return worst_of(self.parts)
 
 
 def too_few(failed: np.ndarray) -> str:
@@ -87,10 +77,10 @@ def effects_of(values: Mapping[str, np.ndarray], failed: np.ndarray) -> list[Eff
     """
     Return the effect of each key, the largest first.
 
-    `values` has by key the (n,) numbers of the runs, `failed` is (n,) and not `too_few`.
+    `values` has by key the (n,) numbers or names of the runs, `failed` is (n,) and not `too_few`.
     """
     random = np.random.default_rng(_SEED)
-    tables = {key: _parts(each, failed) for key, each in values.items()}
+    tables = {key: parts_of(each, failed, _RUNS_IN_PART) for key, each in values.items()}
     chances = {key: _chance(random, parts) for key, parts in tables.items()}
     corrected = holm(chances)
     found = [
@@ -98,26 +88,6 @@ def effects_of(values: Mapping[str, np.ndarray], failed: np.ndarray) -> list[Eff
         for key, parts in tables.items()
     ]
     return sorted(found, key=lambda each: (each.p_value, -each.explained))
-
-
-def _parts(values: np.ndarray, failed: np.ndarray) -> tuple[Part, ...]:
-    """Return the parts of a key's range: one per value if there are few, else of equal size."""
-    distinct = np.unique(values)
-    count = min(MOST_PARTS, max(2, len(values) // _RUNS_IN_PART))
-    edges = distinct
-    if len(distinct) > count:
-        edges = np.unique(np.quantile(values, np.arange(count) / count))
-    place = np.searchsorted(edges, values, side='right')
-    chosen = [place == each for each in np.unique(place)]
-    return tuple(
-        Part(
-            float(values[rows].min()),
-            float(values[rows].max()),
-            int(np.sum(rows)),
-            int(np.sum(failed[rows])),
-        )
-        for rows in chosen
-    )
 
 
 def _counts(parts: tuple[Part, ...]) -> tuple[np.ndarray, np.ndarray]:
@@ -156,6 +126,8 @@ def _explained_with_interval(
     """Return the main effect and the ends of its interval, each within 0 to 1."""
     runs, failed = _counts(parts)
     total, count = int(runs.sum()), len(parts)
+    if count >= total:  # a run in each part: all of the variance lies between them
+        return 0.0, (0.0, 1.0)
     ratio = float(_ratio(runs, failed))
     explained = float(_without_chance(ratio, total, count))
     cells = np.concatenate([failed, runs - failed])

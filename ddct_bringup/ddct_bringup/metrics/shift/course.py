@@ -10,7 +10,6 @@ import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.metrics.lockup import Lockup, step_at
-from ddct_bringup.metrics.signals.integrals import integral
 from ddct_bringup.metrics.zero_slip import LOCKED
 from ddct_plant.base.timebase import time_of_step
 from ddct_plant.models.driveline import LOCK, RELEASE, PhaseEvent
@@ -119,19 +118,15 @@ class ShiftCourse:
     @cached_property
     def tie_up_work(self) -> float | None:
         """
-        Work in J that both clutches do against each other from the start on, by trapezoids.
+        Work in J that both clutches do against each other from the start on, exact.
 
         While their torques have opposite signs, the smaller magnitude of them goes in a circle
         through both gears, and the wheels lose min(|C_1|, |C_2|) |w_p1 - w_p2|.
         """
         if not self.begun:
             return None
-        run = self.trajectory
-        off_going, on_coming = run.off_going_transmitted_torque, run.primary_shaft_effort
-        smaller = np.minimum(np.abs(off_going), np.abs(on_coming))
-        opposing = np.where(off_going * on_coming < 0.0, smaller, 0.0)
-        power = opposing * np.abs(run.off_going_shaft_speed - run.primary_shaft_speed)
-        return float(integral(power[self.start :]))
+        # The work recorded at a step is that of the period before.
+        return float(np.sum(self.trajectory.tie_up_work[self.start + 1 :]))
 
     def events(self, kind: str, *, off_going: bool) -> int | None:
         """Return the number of locks or releases of a clutch from the start of the shift on."""

@@ -16,6 +16,7 @@ from ddct_bringup.tuning.held_out import (
     judged_trials,
 )
 from ddct_bringup.tuning.record import RUNS, TRIALS, rows_bytes
+from ddct_bringup.tuning.report.commands import PageCommands
 from ddct_bringup.tuning.report.page import tuning_page
 from ddct_bringup.tuning.result import TuningResult, result_of
 from ddct_bringup.tuning.trial import Trial
@@ -59,7 +60,8 @@ def write_tuning(
         )
         write_json(str(out / RESULT), result)
         entries = [each.entry(spec) for each in trials]
-        write_text(str(out / PAGE), tuning_page(result, entries, _facts(tuning)))
+        commands = PageCommands.of(tuning, out)
+        write_text(str(out / PAGE), tuning_page(result, entries, _facts(tuning), commands))
         finish_campaign_digests(out)
     return result
 

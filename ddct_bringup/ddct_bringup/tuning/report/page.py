@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from ddct_bringup.campaign_report.texts import p_text
 from ddct_bringup.report.page_parts import MARKER, number_text, page_part, page_template
 from ddct_bringup.tuning.report import texts
+from ddct_bringup.tuning.report.commands import PageCommands
 from ddct_bringup.tuning.report.figures import (
     convergence_figure,
     front_figure,
@@ -27,7 +28,10 @@ _CAMPAIGN = 'ddct_bringup.campaign_report'
 
 
 def tuning_page(
-    result: TuningResult, trials: Sequence[TrialEntry], facts: Mapping[str, str]
+    result: TuningResult,
+    trials: Sequence[TrialEntry],
+    facts: Mapping[str, str],
+    commands: PageCommands,
 ) -> str:
     """Return the HTML page of a tuning; `facts` describe its origin."""
     with chart_style():
@@ -62,6 +66,7 @@ def tuning_page(
         p_text=p_text,
         number_text=number_text,
         facts=facts,
+        commands=commands,
         version=package_version(),
     )
 

@@ -128,7 +128,7 @@ class Library:
     def _require(self, name: str, found: int, expected: int) -> None:
         if found != expected:
             raise LibraryError(
-                f'its {name} is {found}, this ddct has {expected}: compile it with the '
+                f'its {name} is {found}, this version has {expected}: compile it with the '
                 f'{HEADER} of this version, for this machine'
             )
 

@@ -13,12 +13,20 @@ from ddct_plant.identification.from_log.fit import fit_log
 from ddct_plant.identification.from_log.log_fit_report import LogFitReport, content_of, print_fit
 from ddct_plant.identification.from_log.prediction import predict
 from ddct_plant.identification.from_log.result import PARAMETERS
-from ddct_plant.identification.from_log.scenario import load_of, name_of, replay_of
+from ddct_plant.identification.from_log.scenario import (
+    load_of,
+    name_of,
+    radius_of,
+    replay_of,
+    require_new_scenario,
+    with_radius,
+)
 from ddct_plant.identification.from_log.stretch import TORQUES
 from ddct_plant.identification.from_log.stretches import stretches_of
 from ddct_plant.identification.from_log.verdict import reasons_against
 from ddct_plant.measured.columns import TIME, ColumnMap, load_columns, own_columns
 from ddct_plant.measured.log import SPEEDS, MeasuredLog, read_log
+from ddct_plant.measured.wheel_radius import VEHICLE_SPEED
 from ddct_plant.program.command_line import ProgramParser, show_and_write
 from ddct_plant.program.progress import Progress
 from ddct_plant.scenario.file import scenario_to_yaml
@@ -65,6 +73,9 @@ def add_log_options(parser: ProgramParser) -> None:
         help='accept a fit that is refused: write the scenario all the same, exit code 0',
     )
     group.add_argument('--out', metavar='FILE.yaml', help='write a scenario that replays the log')
+    group.add_argument(
+        '--overwrite', action='store_true', help='replace an earlier scenario at --out'
+    )
     add_scenario_options(group, set_example='vehicle.wheel_radius_m=0.31')
 
 
@@ -74,23 +85,32 @@ def identify_log(options: argparse.Namespace) -> int:
         raise DdctError(f'--hold-out is {options.hold_out:g}: give a share from 0.1 to 0.9')
     for option, file in (('--out', options.out), ('--json', options.json)):
         require_place(option, file)
-    base = base_scenario(options, options.overrides)
-    columns = load_columns(options.columns) if options.columns else own_columns(TIME, *NEEDED)
+    require_new_scenario(options.out, overwrite=options.overwrite)
+    start = base_scenario(options, options.overrides)
+    columns = (
+        load_columns(options.columns)
+        if options.columns
+        else own_columns(TIME, *NEEDED, optional=(VEHICLE_SPEED,))
+    )
     fitted, held_out = _logs(options, columns)
+    radius = radius_of(start, options.overrides, fitted)
+    base = with_radius(start, radius)
     known_load, known_delays = load_of(base), columns.known_delays
+    # Before the fit, which takes long, because it raises the errors of the held-out data.
+    predicted = stretches_of(held_out, known_load)
     count, progress = itertools.count(1), Progress('fitting the driveline, evaluations')
     fit = fit_log(
         fitted,
-        base.driveline,
+        start.driveline,
         known_load,
         options.fix,
         known_delays,
         lambda: progress.update(next(count)),
     )
     progress.end()
-    predictions = predict(fit, stretches_of(held_out, known_load))
+    predictions = predict(fit, predicted)
     reasons = reasons_against(fit, predictions, stretches_of(fitted, known_load))
-    report = LogFitReport(fit, predictions, reasons, fitted, held_out)
+    report = LogFitReport(fit, radius, start.name, predictions, reasons, fitted, held_out)
     show_and_write(options.json, content_of(report), lambda: print_fit(report))
     if reasons and not options.force:
         kept = '; no scenario is written' if options.out else ''

@@ -2,18 +2,26 @@
 # SPDX-License-Identifier: Apache-2.0
 """A fit to a log as JSON and as tables."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from ddct_plant.identification.coefficients import SYMBOLS_AND_UNITS
 from ddct_plant.identification.from_log.delays import REFERENCE
 from ddct_plant.identification.from_log.prediction import SpeedPrediction
-from ddct_plant.identification.from_log.result import PARAMETERS, LogFit
+from ddct_plant.identification.from_log.result import (
+    ASSUMED,
+    GIVEN,
+    PARAMETERS,
+    LogFit,
+    WheelRadius,
+)
 from ddct_plant.identification.from_log.stretch import LOAD
 from ddct_plant.identification.from_log.verdict import doubts
 from ddct_plant.measured.log import MeasuredLog
+from ddct_plant.measured.wheel_radius import MeasuredRadius
 from ddct_plant.program.table import Table, print_table, text_or_dash
+from ddct_plant.scenario.rules.consistency import RADIUS
 
 
 @dataclass(frozen=True)
@@ -58,6 +66,9 @@ class LogFitReport:
     """A fit to a log, its prediction of held-out data, and the reasons to refuse it."""
 
     fit: LogFit
+    radius: WheelRadius
+    base: str
+    """Name of the base scenario."""
     predictions: Sequence[SpeedPrediction]
     """Prediction of each speed and of the slip."""
     reasons: Sequence[str]
@@ -70,7 +81,12 @@ class LogFitReport:
     @property
     def notes(self) -> list[str]:
         """Notes on the limits of the fit, as sentences."""
-        return doubts(self.fit, self.predictions)
+        return [*doubts(self.fit, self.predictions), *_on_radius(self.radius, self.base)]
+
+    @property
+    def mass_kg(self) -> float:
+        """Mass J_v / r_w^2 in kg."""
+        return self.fit.parameters.vehicle_inertia / self.radius.value_m**2
 
     @property
     def parameters(self) -> list[ParameterRow]:
@@ -115,6 +131,12 @@ def content_of(report: LogFitReport) -> dict[str, Any]:
         'fitted_s': list(_span(fitted)),
         'parameters': [vars(row) for row in report.parameters],
         'delays': [vars(row) for row in report.delays],
+        'wheel_radius': {
+            'value_m': report.radius.value_m,
+            'state': report.radius.state,
+            'measured': vars(report.radius.measured) if report.radius.measured else None,
+        },
+        'mass_kg': report.mass_kg,
         'load_torque_n_m': fit.load_torque,
         'load_torque_measured': LOAD in fitted.signals,
         'noise_lags': fit.noise.order,
@@ -191,7 +213,38 @@ def print_fit(report: LogFitReport) -> None:
             ],
         )
     )
+    print(f'Wheel radius: {_radius_text(report)}. Mass: {report.mass_kg:.5g} kg, J_v / r_w^2.')
     if report.fit.load_torque is not None:
         print(f'Rolling resistance and slope: {report.fit.load_torque:.4g} N m at the wheels.')
     for note in report.notes:
         print(f'Note: {note}.')
+
+
+def _radius_text(report: LogFitReport) -> str:
+    """Return the wheel radius with its interval and its origin."""
+    radius = report.radius
+    value, found = f'{radius.value_m:.5g} m', radius.measured
+    if radius.state == ASSUMED:
+        return f'{value}, assumed: that of the scenario {report.base}'
+    if radius.state == GIVEN or not found:
+        return f'{value}, given by --set'
+    return f'{value} ({_interval(found)}), measured: vehicle_speed over wheel_speed'
+
+
+def _interval(found: MeasuredRadius) -> str:
+    return f'{found.lowest_m:.5g} to {found.highest_m:.5g}'
+
+
+def _on_radius(radius: WheelRadius, base: str) -> Iterator[str]:
+    """Yield notes on a wheel radius that may be wrong."""
+    if radius.state == ASSUMED:
+        yield (
+            f'the wheel radius of {radius.value_m:.5g} m is an assumption, that of the scenario '
+            f'{base}: the mass, and V_x, A_x and jerk of the new scenario are wrong with it; log '
+            f'vehicle_speed too, or give --set {RADIUS}=...'
+        )
+    if found := radius.contradiction:
+        yield (
+            f'the wheel radius of {radius.value_m:.5g} m is given, and vehicle_speed over '
+            f'wheel_speed is {found.value_m:.5g} m ({_interval(found)})'
+        )

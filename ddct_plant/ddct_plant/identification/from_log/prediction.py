@@ -17,8 +17,16 @@ from ddct_plant.measured.log import SPEEDS
 
 WHITE_FROM = 0.01
 """Least p-value of residuals that count as white."""
+NEGLIGIBLE = 2e-4
+"""Largest negligible r.m.s. in a speed, over its standard deviation in the fitted data."""
 _STILL = 1e-9
 """Standard deviation in rad/s assumed for a speed that does not change."""
+_BEYOND_NOISE = 2.0
+"""Least standard deviation of a speed that varies, over that of its white noise."""
+_REPEATS = 0.25
+"""Least share of equal neighbours in a signal whose resolution shows."""
+_SAME = 1e-9
+"""Largest difference in rad/s of two equal values, by rounding."""
 
 
 @dataclass(frozen=True)
@@ -30,7 +38,9 @@ class SpeedPrediction:
     rms_rad_s: float
     """R.m.s. of measured less predicted speed in rad/s."""
     nrmse: float | None
-    """R.m.s. over the standard deviation of the measured speed; None where that is constant."""
+    """R.m.s. over the standard deviation of the measured speed; None where that does not vary."""
+    no_nrmse: str | None
+    """Reason for an NRMSE of None."""
     error: float
     """R.m.s. without white noise, over the larger standard deviation of held-out and fitted
     data."""
@@ -69,12 +79,14 @@ def predict(fit: LogFit, stretches: Sequence[Stretch]) -> list[SpeedPrediction]:
             float(measured[:, index].std()),
         )
         noise = white_noise(residual[:, index])
+        still = _still(measured[:, index], fit.spreads[name])
         tested = name in SPEEDS
         found.append(
             SpeedPrediction(
                 signal=name,
                 rms_rad_s=rms,
-                nrmse=rms / spread if spread else None,
+                nrmse=None if still else rms / spread,
+                no_nrmse=still,
                 error=math.sqrt(max(rms**2 - noise**2, 0.0))
                 / max(spread, fit.spreads[name], _STILL),
                 whiteness_p=p_values[index] if tested else None,
@@ -82,3 +94,32 @@ def predict(fit: LogFit, stretches: Sequence[Stretch]) -> list[SpeedPrediction]:
             )
         )
     return found
+
+
+def _still(measured: np.ndarray, fitted_spread: float) -> str | None:
+    """
+    Return in which way a speed of the held-out data, (n,), does not vary; None if it does.
+
+    `fitted_spread` is its standard deviation in rad/s in the fitted data.
+    """
+    spread = float(measured.std())
+    if spread <= _SAME:
+        return 'it is constant'
+    least = {
+        'its noise': _BEYOND_NOISE * white_noise(measured),
+        'its resolution': _resolution(measured),
+        f'{100.0 * NEGLIGIBLE:g} % of that in the fitted data': NEGLIGIBLE * fitted_spread,
+    }
+    for name, size in least.items():
+        if spread <= size:
+            return f'its deviation of {spread:.2g} rad/s is not beyond {name}'
+    return None
+
+
+def _resolution(measured: np.ndarray) -> float:
+    """Return the least step of a signal with many equal neighbours, 0 where it has none."""
+    steps = np.abs(np.diff(measured))
+    equal = steps <= _SAME
+    if not steps.size or equal.mean() < _REPEATS or equal.all():
+        return 0.0
+    return float(steps[~equal].min())

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Result of a fit to a log."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,6 +10,8 @@ import numpy as np
 from ddct_plant.identification.from_log.dependence import Dependence
 from ddct_plant.identification.from_log.noise import NoiseModel
 from ddct_plant.identification.from_log.problem import DAMPINGS
+from ddct_plant.measured.wheel_radius import MeasuredRadius
+from ddct_plant.models.gearbox import AGREE
 from ddct_plant.models.parameters import DrivelineParameters
 
 PARAMETERS = tuple(DrivelineParameters().values())
@@ -19,6 +22,28 @@ SIGMAS_95 = 1.96
 """Half-width of a 95 % interval, in standard deviations."""
 NO_DAMPING = 1e-6
 """Damping in N m s/rad that counts as zero: 0.001 N m at 1000 rad/s."""
+MEASURED, GIVEN, ASSUMED = 'measured', 'given', 'assumed'
+"""Origins of a wheel radius: the log, --set, or only the base scenario."""
+
+
+@dataclass(frozen=True)
+class WheelRadius:
+    """Wheel radius that drag, mass and new scenario are computed with."""
+
+    value_m: float
+    """Radius r_w in m."""
+    state: str
+    """Origin: MEASURED, GIVEN or ASSUMED."""
+    measured: MeasuredRadius | None
+    """Radius of V_x over w_r; None where the log does not have both."""
+
+    @property
+    def contradiction(self) -> MeasuredRadius | None:
+        """Measured radius where a given one is outside its interval; None elsewhere."""
+        found = self.measured
+        if not found or self.state != GIVEN or found.lowest_m <= self.value_m <= found.highest_m:
+            return None
+        return None if math.isclose(self.value_m, found.value_m, rel_tol=AGREE) else found
 
 
 @dataclass(frozen=True)

@@ -5,24 +5,37 @@
 import dataclasses
 import math
 import re
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 
 from ddct_plant.base.errors import LONGEST_NAME, DdctError
 from ddct_plant.base.timebase import PERIOD_S, time_of_step
+from ddct_plant.files.output_file import STDOUT, require_new
 from ddct_plant.identification.from_log.delays import residuals_by_name, without_ends
-from ddct_plant.identification.from_log.result import NO_DAMPING, LogFit
+from ddct_plant.identification.from_log.result import (
+    ASSUMED,
+    GIVEN,
+    MEASURED,
+    NO_DAMPING,
+    LogFit,
+    WheelRadius,
+)
 from ddct_plant.identification.from_log.stretch import SPEED_COLUMNS, slip_of
 from ddct_plant.identification.from_log.stretches import KnownLoad, stretches_of
 from ddct_plant.measured.log import MeasuredLog
+from ddct_plant.measured.wheel_radius import measured_radius
 from ddct_plant.models.engine import TorqueProfile
 from ddct_plant.models.gearbox import AGREE
 from ddct_plant.models.load import RoadLoad
 from ddct_plant.models.parameters import DrivelineSection
+from ddct_plant.scenario.content import flat
 from ddct_plant.scenario.csv_profiles import MOST_ROWS
+from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.initial_speeds import InitialSpeeds
-from ddct_plant.scenario.rules.consistency import gear_line
+from ddct_plant.scenario.overrides import parsed_override
+from ddct_plant.scenario.rules.consistency import RADIUS, gear_line
 from ddct_plant.scenario.scenario import Scenario
 
 STEEPEST_RAD = 0.6
@@ -33,6 +46,41 @@ _PIECES = 10
 """Number of instants of a period over which C_m is averaged."""
 _MOVED = ('driveline.', 'vehicle.mass_kg', 'gear')
 """Beginnings of the lines in `adjusted` about values that the log replaces."""
+
+
+def require_new_scenario(target: str | None, *, overwrite: bool) -> None:
+    """Raise DdctError where the `target` of --out exists; `overwrite` replaces a scenario only."""
+    if not target or target == STDOUT or not Path(target).exists():
+        return
+    require_new('--out', target, overwrite=overwrite)
+    try:
+        load_scenario(str(Path(target).resolve()))
+    except DdctError as error:
+        raise DdctError(
+            f'{target} is no scenario, and --overwrite replaces only that: choose another --out '
+            f'({error})',
+            key='--out',
+        ) from error
+
+
+def radius_of(base: Scenario, overrides: Sequence[str], log: MeasuredLog) -> WheelRadius:
+    """Return the wheel radius: that of --set, else that of V_x and w_r, else that of `base`."""
+    measured, of_base = measured_radius(log), base.vehicle.wheel_radius_m
+    if RADIUS in flat(dict(map(parsed_override, overrides))):
+        return WheelRadius(of_base, GIVEN, measured)
+    if measured:
+        return WheelRadius(measured.value_m, MEASURED, measured)
+    return WheelRadius(of_base, ASSUMED, None)
+
+
+def with_radius(base: Scenario, radius: WheelRadius) -> Scenario:
+    """Return `base` with another wheel radius, and a line in `adjusted` if it differs."""
+    before, moved = base.vehicle.wheel_radius_m, radius.value_m
+    adjusted = [line for line in base.adjusted if not line.startswith(RADIUS)]
+    if not math.isclose(before, moved, rel_tol=AGREE):
+        adjusted.append(f'{RADIUS} moved from {before:g} to {moved:g}: V_x over w_r of the log')
+    vehicle = dataclasses.replace(base.vehicle, wheel_radius_m=moved)
+    return dataclasses.replace(base, vehicle=vehicle, adjusted=tuple(adjusted))
 
 
 def load_of(base: Scenario) -> KnownLoad:
@@ -57,10 +105,10 @@ def replay_of(base: Scenario, name: str, fit: LogFit, log: MeasuredLog) -> Scena
     """
     Return `base` with the driveline of the fit and the drive of the log, from its first row on.
 
-    The log gives C_m, the speeds at the start and the duration. The wheel radius stays and the
-    mass is J_v / r_w^2. The slope is set so that rolling resistance and slope give the fitted
-    C_load; it stays where C_load was measured. Moved values have lines in `adjusted`. Raise
-    DdctError for a C_load that no slope gives, and for a log that is too short.
+    The log gives C_m, the speeds at the start and the duration. `base` has the wheel radius of the
+    log, and the mass is J_v / r_w^2. The slope is set so that rolling resistance and slope give
+    the fitted C_load; it stays where C_load was measured. Moved values have lines in `adjusted`.
+    Raise DdctError for a C_load that no slope gives, and for a log that is too short.
     """
     start_s, steps = _span(log, fit)
     moved = _with_car(base, fit)

@@ -9,11 +9,13 @@ import numpy as np
 
 from ddct_plant.base.errors import DdctError
 from ddct_plant.identification.from_log.stretch import LOAD, SPEED_COLUMNS, TORQUES, Stretch
-from ddct_plant.measured.columns import MOST_DELAY_S
-from ddct_plant.measured.log import SPEEDS, MeasuredLog
+from ddct_plant.measured.columns import MOST_DELAY_S, TIME
+from ddct_plant.measured.log import SPEEDS, MeasuredLog, between
 
 FEWEST_SAMPLES = 40
 """Fewest samples of a stretch: 0.4 s at 100 Hz, just over a period of the locked driveline."""
+SAMPLING_S = (1e-4, 0.1)
+"""Shortest and longest sampling period of a signal; of others the unit of the time is wrong."""
 _GAP = 5.0
 """Shortest gap, in median steps of a signal."""
 _UNEVEN = 0.02
@@ -35,7 +37,9 @@ def stretches_of(log: MeasuredLog, known_load: KnownLoad) -> list[Stretch]:
     Return the stretches of a log; raise DdctError when none is long enough.
 
     A sample is a row with all three speeds. Each torque has its own rows. A gap of any of them
-    ends a stretch. Where C_load was not measured `known_load` gives its known part.
+    ends a stretch. Where C_load was not measured `known_load` gives its known part, between the
+    samples of w_r as the log's `held` says. Raise DdctError too where a signal is sampled more
+    slowly or faster than that of a car is.
     """
     speeds = np.column_stack([log.signals[name] for name in SPEEDS])
     rows = np.isfinite(speeds).all(axis=1)
@@ -44,6 +48,7 @@ def stretches_of(log: MeasuredLog, known_load: KnownLoad) -> list[Stretch]:
             f'{rows.sum()} rows have all of {", ".join(SPEEDS)}: give at least {FEWEST_SAMPLES}',
             place=log.path,
         )
+    _require_sampling(log)
     time_s, speeds = log.time_s[rows], speeds[rows]
     torques = {name: log.samples(name) for name in (*TORQUES, LOAD) if name in log.signals}
     number_of = _stretch_numbers(time_s, [time_s, *(times for times, _ in torques.values())])
@@ -62,6 +67,24 @@ def stretches_of(log: MeasuredLog, known_load: KnownLoad) -> list[Stretch]:
             place=log.path,
         )
     return stretches
+
+
+def _require_sampling(log: MeasuredLog) -> None:
+    """Raise DdctError where the sampling period of a signal is none of a log of a car."""
+    lowest, highest = SAMPLING_S
+    for name in (*SPEEDS, *TORQUES, LOAD):
+        if name not in log.signals or len(log.samples(name)[0]) < 2:
+            continue
+        period = log.usual_step(name)
+        if not lowest <= period <= highest:
+            factor = 1e-3 if period > highest else 1e3
+            raise DdctError(
+                f'{name} has a sampling period of {period:.3g} s, and a fit needs {lowest:g} to '
+                f'{highest:g} s: check the unit of columns.{TIME}, with which the period may be '
+                f'{factor * period:.3g} s, or give another log',
+                place=log.path,
+                key=f'columns.{TIME}',
+            )
 
 
 def with_more_torque_noise(log: MeasuredLog, seed: int) -> MeasuredLog:
@@ -125,8 +148,12 @@ def _stretch(
     before = int(np.ceil(2.0 * MOST_DELAY_S / step))
     after = before + int(np.ceil((time_s[-1] - time_s[0]) / step - 1e-6))
     grid_s = time_s[0] + step * np.arange(-before, after + 1)
-    known, wheel_speed = LOAD in log.signals, speeds[:, SPEED_COLUMNS['wheel_speed']]
-    load = log.at(LOAD, grid_s) if known else known_load(np.interp(grid_s, time_s, wheel_speed))
+    known = LOAD in log.signals
+    if known:
+        load = log.at(LOAD, grid_s)
+    else:
+        wheel_speed = speeds[:, SPEED_COLUMNS['wheel_speed']]
+        load = known_load(between(time_s, wheel_speed, grid_s, held=LOAD in log.held))
     second_differences = [_second_difference(log, name, grid_s) for name in TORQUES]
     return Stretch(
         time_s=time_s,

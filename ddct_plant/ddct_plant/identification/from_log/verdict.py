@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from ddct_plant.identification.from_log.prediction import SpeedPrediction
+from ddct_plant.identification.from_log.prediction import NEGLIGIBLE, SpeedPrediction
 from ddct_plant.identification.from_log.problem import DAMPINGS
 from ddct_plant.identification.from_log.result import NO_DAMPING, LogFit
 from ddct_plant.identification.from_log.stretch import TORQUES, Stretch
@@ -30,8 +30,6 @@ MOST_ERROR = 0.1
 """Largest r.m.s. of a prediction without noise, over the standard deviation of the speed."""
 DEPENDS_BELOW = 5e-4
 """p-value below which a residual counts as dependent on the torques."""
-MATERIAL = 2e-4
-"""Largest negligible r.m.s. of a dependent residual, over the standard deviation of the speed."""
 NEGATIVE_SIGMAS = 3.0
 """Standard deviations below 0 at which a damping counts as negative: chance gives one in 700."""
 LEAD_S = 0.02
@@ -121,7 +119,7 @@ def _parameter_reasons(fit: LogFit) -> Iterator[str]:
 
 def _residual_reasons(fit: LogFit) -> Iterator[str]:
     for name, each in fit.dependences.items():
-        material = each.rms_rad_s > MATERIAL * fit.spreads[name]
+        material = each.rms_rad_s > NEGLIGIBLE * fit.spreads[name]
         if material and each.p_value < DEPENDS_BELOW:
             yield (
                 f'what the fit leaves of {name} is not noise, as it follows the torques '
@@ -132,7 +130,13 @@ def _residual_reasons(fit: LogFit) -> Iterator[str]:
 
 def doubts(fit: LogFit, predictions: Sequence[SpeedPrediction]) -> list[str]:
     """Return notes on the limits of a fit, as sentences."""
-    return [*_undetermined(fit), *_coloured(fit, predictions), *_zeroed(fit), *_leading(fit)]
+    return [
+        *_undetermined(fit),
+        *_coloured(fit, predictions),
+        *_still(predictions),
+        *_zeroed(fit),
+        *_leading(fit),
+    ]
 
 
 def _undetermined(fit: LogFit) -> Iterator[str]:
@@ -155,6 +159,12 @@ def _coloured(fit: LogFit, predictions: Sequence[SpeedPrediction]) -> Iterator[s
             f'what is left of {", ".join(coloured)} is not noise alone: the model lacks something '
             'that the log has, which the intervals do not count'
         )
+
+
+def _still(predictions: Sequence[SpeedPrediction]) -> Iterator[str]:
+    for each in predictions:
+        if each.no_nrmse:
+            yield f'the held-out {each.signal} has no NRMSE: {each.no_nrmse}'
 
 
 def _zeroed(fit: LogFit) -> Iterator[str]:

@@ -44,7 +44,6 @@ TORQUE_PARTS = Topic(
         Signal('closing_torque', 'N m', 'share of the closing stage in open_loop_torque'),
     ),
     CLUTCH_LINK,
-    later=True,
     optional=True,
 )
 ENGINE_REQUEST = torque_topic(

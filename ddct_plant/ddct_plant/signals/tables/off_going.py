@@ -6,6 +6,7 @@ from ddct_plant.signals.handover_share import ShareVector
 from ddct_plant.signals.joints import OneShaft
 from ddct_plant.signals.message_kind import Scalar
 from ddct_plant.signals.signal import Signal
+from ddct_plant.signals.statuses import FRICTION_WORK, TIE_UP_WORK, PhaseReport
 from ddct_plant.signals.tables.clutch import ACTUATOR_TORQUE, CLUTCH_TEMPERATURE, CLUTCH_TORQUE
 from ddct_plant.signals.tables.driveline import CLUTCH_PHASE, SLIP
 from ddct_plant.signals.tables.rows import (
@@ -44,11 +45,12 @@ OFF_GOING_SLIP = Topic(
 )
 OFF_GOING_PHASE = Topic(
     'off_going/clutch/phase',
-    CLUTCH_PHASE.kind,
+    PhaseReport(CLUTCH_PHASE.type, (FRICTION_WORK, TIE_UP_WORK)),
     'driveline',
     (
         Signal('off_going_clutch_phase', '1', '0 open, 1 slipping, 2 locked'),
         Signal('off_going_friction_work', 'J', 'exact, of the period that has ended'),
+        Signal('tie_up_work', 'J', 'exact, of both clutches against each other in it'),
         Signal('off_going_phase_events', '', 'what happened at slip zero in it: `PhaseEvent`'),
     ),
     when=if_shift,

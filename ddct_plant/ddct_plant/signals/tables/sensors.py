@@ -64,7 +64,7 @@ def _sensor_status(name: str, *sensed: Topic) -> Topic:
         'diagnostic_msgs/msg/DiagnosticArray', tuple(sensors.statuses for sensors in each)
     )
     flags = tuple(sensors.flags for sensors in each)
-    return Topic(name, kind, sensed[0].publisher, flags, when=if_sensed, later=True)
+    return Topic(name, kind, sensed[0].publisher, flags, when=if_sensed)
 
 
 def _sensors_of(publisher: str) -> tuple[Topic, ...]:

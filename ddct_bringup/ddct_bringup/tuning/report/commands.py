@@ -1,0 +1,67 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""The commands that the page of a tuning names, each as a line for a shell."""
+
+import json
+import shlex
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from ddct_bringup.campaign.keys import SCENARIO, run_options
+from ddct_bringup.tuning.tuned_files import BEST
+from ddct_bringup.tuning.tuning import Tuning
+from ddct_plant.scenario.file import is_packaged
+
+
+@dataclass(frozen=True)
+class PageCommands:
+    """Commands of a tuning in a folder."""
+
+    compare: str
+    """Command that runs the best controller, beside that of before where that was tried."""
+    further_scenarios: Sequence[str]
+    """Scenarios of the cases besides that of `compare`."""
+    verify: str
+    """Command that computes the tuning again."""
+
+    @classmethod
+    def of(cls, tuning: Tuning, out: Path) -> 'PageCommands':
+        """Return the commands of a tuning in the folder `out`."""
+        scenarios = dict.fromkeys(str(_values(tuning, case)[SCENARIO]) for case in tuning.cases)
+        verify = shlex.join(['ddct', 'verify', str(out)])
+        return cls(_compare(tuning, out), list(scenarios)[1:], verify)
+
+
+def _compare(tuning: Tuning, out: Path) -> str:
+    """
+    Return the command that runs the best controller, beside that of before, in the first case.
+
+    Numbers that were drawn at random are left out, so that they have their nominal values.
+    """
+    spec = tuning.campaign.spec
+    given = dict(_values(tuning, tuning.cases[0]))
+    scenario = str(given.pop(SCENARIO))
+    controllers = [str(out / BEST)]
+    if tuning.present:  # else it may lack a value, and the page has no figures of it
+        controllers.insert(0, tuning.judged.path)
+    words = ['ddct', 'compare', '--controllers', ','.join(controllers), '--scenario']
+    words.append(scenario if is_packaged(scenario) else str(spec.folder / scenario))
+    for key, value in given.items():
+        if key not in spec.vary or type(value) not in (int, float):
+            words += _option(key, tuning.campaign.placed(key, value))
+    return shlex.join([*words, '--headless', '--out', 'runs/tuned'])
+
+
+def _values(tuning: Tuning, case: int) -> Mapping[str, object]:
+    """Return the values of a case by key: those of all cases, and those that vary."""
+    (varied,) = tuning.campaign.varied(range(case, case + 1))
+    return {**tuning.campaign.spec.common, **varied}
+
+
+def _option(key: str, value: object) -> Iterator[str]:
+    """Yield the words of an option of `ddct compare` that gives a key its value."""
+    if key in run_options():
+        yield from (f'--{key.replace("_", "-")}', str(value))
+    else:
+        yield from ('--set', f'{key}={json.dumps(value)}')

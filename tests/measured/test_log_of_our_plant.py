@@ -1,0 +1,111 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""A fit to an exact log of our own plant finds its car: driveline, wheel radius and mass."""
+
+import json
+from pathlib import Path
+
+import pytest
+from support.runs import plan, record
+
+from ddct_bringup.scores.csv_text import signals_csv
+from ddct_plant.identification.from_log.command import NEEDED
+from ddct_plant.identification.from_log.fit import fit_log
+from ddct_plant.identification.from_log.scenario import load_of
+from ddct_plant.identification.identify import main
+from ddct_plant.measured.columns import TIME, own_columns
+from ddct_plant.measured.log import read_log
+from ddct_plant.scenario.file import load_scenario
+
+RADIUS_M, MASS_KG = 0.298, 1310.0
+OTHER_CAR = (f'vehicle.wheel_radius_m={RADIUS_M}', f'vehicle.mass_kg={MASS_KG}')
+
+
+@pytest.mark.parametrize('controller', ['pi', 'ls8'])
+def test_all_eight_parameters_of_an_exact_log_are_in_their_intervals(
+    tmp_path: Path, controller: str
+) -> None:
+    """
+    The plant holds C_load over 10 ms. As linear it moves c_prim by 69 half-widths of its interval.
+
+    A twentieth of the intervals miss by chance, and what is left is the rounding of the log.
+    """
+    record(plan(controller, 'headless', duration_s=3.0), tmp_path / controller)
+    log = read_log(tmp_path / controller, own_columns(TIME, *NEEDED), NEEDED)
+    thesis = load_scenario('thesis')
+    fit = fit_log(log, thesis.driveline, load_of(thesis))
+    misses = 0
+    for name, true in thesis.driveline.values().items():
+        lowest, highest = fit.interval(name) or (1.0, -1.0)
+        half = 0.5 * (highest - lowest)
+        assert 0.0 < half < 1e-8 * max(true, 0.01), name
+        assert abs(fit.values[name] - true) < 2.5 * half, name
+        misses += not lowest <= true <= highest
+    assert misses <= 1
+
+
+@pytest.mark.parametrize('kind', ['bag', 'csv'])
+def test_radius_and_mass_of_another_car_come_from_its_speeds(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], kind: str
+) -> None:
+    """With the radius of `thesis`, .3211 m, the mass would be 1128 kg and A_x 8 % high."""
+    log, out = _log(tmp_path, kind), tmp_path / 'mine.yaml'
+    options = ['--from', str(log), '--out', str(out), '--fix', 'engine_damping']
+    assert main([*options, '--json', str(tmp_path / 'fit.json')]) == 0
+    content = json.loads((tmp_path / 'fit.json').read_text())
+    radius = content['wheel_radius']
+    assert radius['state'] == 'measured'
+    assert radius['measured']['lowest_m'] <= RADIUS_M <= radius['measured']['highest_m']
+    assert radius['value_m'] == pytest.approx(RADIUS_M, rel=1e-9)
+    assert content['mass_kg'] == pytest.approx(MASS_KG, rel=1e-3)
+    scenario = load_scenario(str(out))
+    assert scenario.vehicle.wheel_radius_m == pytest.approx(RADIUS_M, rel=1e-9)
+    assert scenario.vehicle.mass_kg == pytest.approx(MASS_KG, rel=1e-3)
+    (line,) = [each for each in scenario.adjusted if each.startswith('vehicle.wheel_radius_m')]
+    assert 'from 0.321134 to 0.298: V_x over w_r of the log' in line
+    printed = capsys.readouterr().out
+    assert 'Wheel radius: 0.298 m (0.298 to 0.298), measured' in printed
+    assert 'assum' not in printed
+
+
+def test_a_radius_without_the_speed_of_the_car_is_called_an_assumption(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    log = _log(tmp_path, 'csv')
+    lines = [line.split(',') for line in log.read_text().splitlines()]
+    place = lines[0].index('vehicle_speed_m_s')
+    log.write_text('\n'.join(','.join(row[:place] + row[place + 1 :]) for row in lines) + '\n')
+    options = ['--from', str(log), '--json', str(tmp_path / 'fit.json'), '--force']
+    assert main(options) == 0
+    content = json.loads((tmp_path / 'fit.json').read_text())
+    assert content['wheel_radius']['state'] == 'assumed'
+    assert content['wheel_radius']['measured'] is None
+    (note,) = [each for each in content['notes'] if 'wheel radius' in each]
+    assert 'is an assumption, that of the scenario thesis' in note
+    assert '--set vehicle.wheel_radius_m=' in note
+    assert 'assumed: that of the scenario thesis' in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(('given', 'contradicts'), [('0.298', False), ('0.31', True)])
+def test_a_given_radius_is_used_and_one_that_the_log_contradicts_has_a_note(
+    tmp_path: Path, given: str, contradicts: bool
+) -> None:
+    log, report = _log(tmp_path, 'csv'), tmp_path / 'fit.json'
+    given_radius = ['--set', f'vehicle.wheel_radius_m={given}']
+    assert main(['--from', str(log), '--json', str(report), '--force', *given_radius]) == 0
+    content = json.loads(report.read_text())
+    assert content['wheel_radius']['state'] == 'given'
+    assert content['wheel_radius']['value_m'] == float(given)
+    mass = MASS_KG * (RADIUS_M / float(given)) ** 2
+    assert content['mass_kg'] == pytest.approx(mass, rel=1e-3)
+    assert any('is given, and vehicle_speed' in each for each in content['notes']) == contradicts
+
+
+def _log(folder: Path, kind: str) -> Path:
+    """Return a run of another car, as a bag or as CSV."""
+    recording = record(plan('pi', 'headless', duration_s=3.0, changes=OTHER_CAR), folder / 'pi')
+    if kind == 'bag':
+        return folder / 'pi'
+    file = folder / 'pi.csv'
+    file.write_text(signals_csv(recording))
+    return file
