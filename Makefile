@@ -2,7 +2,7 @@
 SHELL := /bin/bash
 .SHELLFLAGS := -e -o pipefail -c
 .DELETE_ON_ERROR:
-.PHONY: help setup demo docs fmu tune-extra sbom test test-fast lint fuzz faults bench soak loaded-runs benchmark-rows release \
+.PHONY: help setup demo docs fmu tune-extra sbom test test-fast test-nightly lint fuzz faults bench soak loaded-runs benchmark-rows release \
     site lock clean
 
 ifneq ($(words $(CURDIR)),1)
@@ -32,7 +32,7 @@ NEEDED_AT_RUN := bokeh, control, daqp, jinja2, matplotlib, osqp, scipy.signal, y
     diagnostic_msgs.msg, geometry_msgs.msg, rosgraph_msgs.msg, sensor_msgs.msg, trajectory_msgs.msg
 
 help:
-	@echo 'make setup | fmu | tune-extra | demo | test | test-fast | fuzz | faults | lint | docs | bench | soak | loaded-runs |' \
+	@echo 'make setup | fmu | tune-extra | demo | test | test-fast | test-nightly | fuzz | faults | lint | docs | bench | soak | loaded-runs |' \
 	    'benchmark-rows | sbom | release | site | lock | clean (see docs/use/setup.md)'
 
 setup: $(WORKSPACE_BUILT)
@@ -82,8 +82,14 @@ tune-extra: setup .venv/.tune
 # One session of pytest: one for each package would import and collect everything again, on an idle core at its end.
 # That colcon finds the tests of each package is a test of its own.
 TEST_FOLDERS := $(wildcard tests ddct_*/test)
+NIGHTLY := tests/nightly
 test: fmu tune-extra .venv/.site .venv/.test
-	@$(SOURCED) $(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder $(TEST_FOLDERS)
+	@$(SOURCED) $(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder \
+	    --ignore=$(NIGHTLY) $(TEST_FOLDERS)
+
+# What depends on the wall clock, whole gates and products of lists: before a release.
+test-nightly: fmu tune-extra .venv/.site .venv/.test
+	@$(SOURCED) $(BIN)/python -m pytest -n 2 --dist loadfile $(NIGHTLY)
 
 # Rows of all packaged controllers on the benchmark's development cases, kept with a release: a quarter of an hour.
 # It goes on with what is in runs/benchmark_rows, unless the sources have changed since: then remove that first.
@@ -93,7 +99,7 @@ benchmark-rows: setup
 # Pure tests; the markers are described in pyproject.toml.
 test-fast: setup .venv/.tune
 	@$(SOURCED) $(BIN)/python -m pytest -q -n 2 --dist loadfile \
-	    -m 'not (graph or browser or compiler or slow)' $(TEST_FOLDERS)
+	    -m 'not (graph or browser or compiler or slow)' --ignore=$(NIGHTLY) $(TEST_FOLDERS)
 
 # Damaged inputs for every reader, minutes: SECONDS for each, at random and guided; READERS='bag log' tries only those.
 SECONDS := 20
