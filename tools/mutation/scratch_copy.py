@@ -18,8 +18,8 @@ from mutation.tracing import FOLDER, SOURCE
 TOOLS = Path(__file__).resolve().parents[1]
 _END_S = 10.0
 """Timeout for the end of the tests after Ctrl-C, s."""
-_USAGE, _NO_TESTS = 4, 5
-"""Exit codes of pytest that say nothing about a mutation."""
+_NO_TESTS = 5
+"""Exit code of pytest that says nothing about a mutation."""
 _TRACING = (
     'import os, sys; os.environ.get({folder!r}) and (sys.path.append({tools!r}), '
     "__import__('mutation.tracing', fromlist=['start']).start())\n"
@@ -84,8 +84,8 @@ class ScratchCopy:
             running_s = time.time() - progress.stat().st_mtime
             self._end(process)
             return Ended('late', progress.read_text(encoding='utf-8'), running_s)
-        if process.returncode in (_USAGE, _NO_TESTS):
-            raise RuntimeError(f'pytest in {self.root}: code {process.returncode}: {tests[:3]}')
+        if process.returncode == _NO_TESTS:
+            raise RuntimeError(f'pytest in {self.root} finds none of {tests[:3]}')
         if process.returncode == 0:
             return Ended('passed', '')
         return Ended('failed', progress.read_text(encoding='utf-8'))
@@ -130,6 +130,8 @@ class ScratchCopy:
 
 def _environment() -> dict[str, str]:
     """Return the environment without what another workspace has put in."""
-    left_out = ('AMENT_', 'COLCON_', 'PYTHON', 'VIRTUAL_ENV', 'LD_LIBRARY_PATH')
+    # The ROS wheels find their libraries by these, once in a chain of processes.
+    ros = ('AMENT_', 'COLCON_', 'RMW_', 'ROS_', '_ROS_', 'CMAKE_PREFIX_PATH', 'LD_LIBRARY_PATH')
+    left_out = (*ros, 'PYTHON', 'VIRTUAL_ENV')
     kept = {name: value for name, value in os.environ.items() if not name.startswith(left_out)}
     return {**kept, 'OPENBLAS_NUM_THREADS': '1'}

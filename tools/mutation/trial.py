@@ -70,9 +70,10 @@ def try_mutation(
                 usual_s = durations_s.get(ended.test, 0.0)
                 hangs = ended.running_s > max(HANG_S, HANG_RATIO * usual_s)
                 return outcome(HANGS if hangs else UNDECIDED, ended.test)
-            if not ended.test or copy.run([ended.test], FIRST_S).state == 'passed':
+            failed = ended.test or remaining[0]  # it may fail before there is a test
+            if copy.run([failed], FIRST_S).state == 'passed':
                 return outcome(CAUGHT, ended.test or 'collection')
-            remaining = remaining[remaining.index(ended.test) + 1 :]
+            remaining = remaining[remaining.index(failed) + 1 :]
     return outcome(LIVED)
 
 
