@@ -154,8 +154,18 @@ release: setup
 	@$(TOOL) release --out dist $(if $(MAINTAINER),--maintainer '$(MAINTAINER)')
 
 # The documentation as one folder that opens from disk, with search and a reference: site/index.html.
-site: setup .venv/.site
-	@$(SOURCED) PYTHONPATH="$(CURDIR)/docs:$$PYTHONPATH" $(BIN)/python -P -m website
+# What it shows of results, programs compute first: some minutes, and again only once the sources have changed.
+RESULTS := build/results
+SOURCES := $(shell find ddct_*/ddct_* -name '*.py' -o -name '*.yaml' -o -name '*.parquet')
+site: setup .venv/.site $(RESULTS)/numbers.json $(RESULTS)/benchmark.json $(RESULTS)/studies.json
+	@$(SOURCED) PYTHONPATH="$(CURDIR)/docs:$$PYTHONPATH" $(BIN)/python -P -m website --results '$(RESULTS)'
+
+$(RESULTS)/numbers.json: COMMAND = reproduce numbers --json -
+$(RESULTS)/benchmark.json: COMMAND = benchmark --packaged --json -
+$(RESULTS)/studies.json: COMMAND = reproduce studies --json - --charts $(RESULTS)
+$(RESULTS)/%.json: $(WORKSPACE_BUILT) $(SOURCES)
+	@mkdir -p $(RESULTS)
+	@$(SOURCED) ddct $(COMMAND) > $@
 
 # One numpy and one scipy for all three Pythons, so that figures do not depend on the Python.
 COMPILE := $(BIN)/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes \

@@ -1,29 +1,25 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Write what is generated in the pages: tables, charts, diagrams, results, and notebooks."""
+"""Write what is generated in the pages: tables, diagrams and notebooks."""
 
 import argparse
 import sys
-from pathlib import Path
 
 from generator.drawings.block_diagrams import drawings
 from generator.notebooks import write_notebooks
 from generator.pages import DOCS, fill_pages
-from generator.results import fill_results, results
 from generator.tables import TABLES
 
 from ddct_plant.base.errors import DdctError
 
 DIAGRAMS = 'diagrams'
-RESULTS = 'results'
-"""Kind of the results in sentences, after the tables that they follow from."""
 NOTEBOOKS = 'notebooks'
 
 
 def main() -> None:
     """Write all, or the kinds that are named, and tell which pages have changed."""
     parser = argparse.ArgumentParser(description=__doc__, epilog='all of it takes minutes')
-    kinds = (DIAGRAMS, *TABLES, RESULTS, NOTEBOOKS)
+    kinds = (DIAGRAMS, *TABLES, NOTEBOOKS)
     parser.add_argument('kind', nargs='*', help=f'some of {", ".join(kinds)} (default: all)')
     wanted = parser.parse_args().kind or kinds
     if unknown := set(wanted) - set(kinds):
@@ -34,15 +30,9 @@ def main() -> None:
             for file, drawing in drawings().items():
                 (DOCS / 'images' / file).write_text(drawing, encoding='utf-8')
             continue
-        for page in _written(kind):
+        notebooks = kind == NOTEBOOKS
+        for page in write_notebooks() if notebooks else fill_pages(kind, TABLES[kind]()):
             print(f'docs: {page.relative_to(DOCS.parent)} has changed')
-
-
-def _written(kind: str) -> list[Path]:
-    """Write what a kind has in the pages, or the notebooks, and return what has changed."""
-    if kind == NOTEBOOKS:
-        return write_notebooks()
-    return fill_results(results()) if kind == RESULTS else fill_pages(kind, TABLES[kind]())
 
 
 if __name__ == '__main__':

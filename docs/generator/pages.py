@@ -8,18 +8,19 @@ docs or of a package.
 """
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 
 from ddct_plant.base.errors import DdctError
 from ddct_plant.program.table import Table
+from ddct_plant.program.table import as_markdown as markdown_of
 
 DOCS = Path(__file__).resolve().parents[1]
 
 
 def as_markdown(tables: Mapping[str, Table]) -> dict[str, str]:
     """Return the text of each table by name, with a final line end."""
-    return {name: _markdown(table) for name, table in tables.items()}
+    return {name: markdown_of(table) for name, table in tables.items()}
 
 
 def shown_tables(kind: str, docs: Path = DOCS) -> dict[str, str]:
@@ -69,13 +70,3 @@ def marked_pages(docs: Path = DOCS) -> list[Path]:
 
 def _block(kind: str) -> re.Pattern[str]:
     return re.compile(rf'(<!-- {re.escape(kind)}: (\w+) -->\n)(.*?)(<!-- end -->)', re.DOTALL)
-
-
-def _markdown(table: Table) -> str:
-    separator = ['---'] * len(table.headers)
-    return ''.join(f'{_line(cells)}\n' for cells in (table.headers, separator, *table.rows))
-
-
-def _line(cells: Sequence[str]) -> str:
-    escaped = (cell.replace('|', r'\|') for cell in cells)
-    return f'| {" | ".join(escaped)} |'

@@ -6,16 +6,8 @@ import json
 from collections.abc import Callable, Mapping
 
 from ddct_bringup.reproduction.calibration.record_tables import all_tables
-from ddct_bringup.reproduction.figures.command import NOT_DRAWN, collect_figures
-from ddct_bringup.reproduction.figures.thesis_figure import ThesisFigure
-from ddct_bringup.reproduction.numbers.command import SOURCES, compute
-from ddct_bringup.reproduction.numbers.gate import judge
-from ddct_bringup.reproduction.numbers.gate_tables import page_tables
-from ddct_bringup.reproduction.numbers.number_files import thesis_numbers
-from ddct_bringup.reproduction.studies.command import STUDIES
 from ddct_controllers.design.analysis.loops import continuous_loop, sampled_loop
 from ddct_controllers.design.analysis.worst_corner import PlantCorners
-from ddct_controllers.design.drawing.chart_style import chart_style
 from ddct_controllers.design.h_infinity.recipes import PRINTED_WEIGHTS, THESIS_SPECIFICATIONS
 from ddct_controllers.design.h_infinity.record import (
     design_record,
@@ -39,20 +31,9 @@ from ddct_plant.linear.sampling import discretise_zoh
 from ddct_plant.program.table import Table
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
-from generator.drawings.study_charts import save_study_chart
-from generator.least_jerk.least_jerk_tables import least_jerk_tables
 from generator.option_tables import TABLES as OPTION_TABLES
 from generator.pages import DOCS
-from generator.robustness.robustness_charts import draw_robustness
-from generator.robustness.robustness_map import kept_maps
-from generator.robustness.robustness_tables import robustness_tables
-from generator.runs.benchmark_tables import benchmark_tables
-from generator.runs.feedforward_tables import feedforward_tables
-from generator.runs.floor_tables import floor_tables
-from generator.runs.launch_table import launch_table
-from generator.runs.shift_tables import shift_tables
 from generator.score_tables import score_tables
-from generator.sensor_table import sensor_table
 from generator.tuning_tables import tuning_tables
 
 
@@ -60,20 +41,6 @@ def calibration_tables() -> Mapping[str, Table]:
     """Return the tables of the record that `ddct reproduce calibration --json` has written."""
     record = json.loads((DOCS / 'thesis' / 'calibration.json').read_text(encoding='utf-8'))
     return all_tables(record)
-
-
-def figure_tables(drawn: Mapping[ThesisFigure, str]) -> Mapping[str, Table]:
-    """Return the remark on each figure that is drawn, and the reasons for the others."""
-    shared: dict[str, list[str]] = {}
-    for number, reason in NOT_DRAWN.items():
-        shared.setdefault(reason, []).append(number)
-    rows = [(figure.number, figure.title, remark) for figure, remark in drawn.items()]
-    headers = ('figure', 'shows', 'what agrees, what does not')
-    reasons = [(', '.join(numbers), reason) for reason, numbers in shared.items()]
-    return {
-        'drawn': Table('Figures that are drawn', headers, rows),
-        'not_drawn': Table('Figures that are not drawn', ('figures', 'reason'), reasons),
-    }
 
 
 def h_infinity_tables() -> Mapping[str, Table]:
@@ -119,34 +86,12 @@ def sampled_loops() -> Table:
     return margins_table(frequency_evidence(controller_names(), settings), settings)
 
 
-def studies_and_charts() -> Mapping[str, Table]:
-    """Return every study, and draw the charts of those that have one into `images`."""
-    studies = {name: study() for name, study in STUDIES.items()}
-    for name, study in studies.items():
-        if study.draw is not None:
-            with chart_style():
-                save_study_chart(study.draw(), DOCS / 'images' / f'{name}.png')
-    return studies
-
-
-def robustness_tables_and_charts() -> Mapping[str, Table]:
-    """Return the tables of the maps that `docs/robustness.py` stored, and draw the maps."""
-    maps = kept_maps()
-    draw_robustness(maps)
-    return robustness_tables(maps)
-
-
 def tables_of_missing_messages() -> Mapping[str, Table]:
     """Return what nodes do when a message is missing, with the times of the code."""
     # Only here: the recorder needs ROS, which the other tables do without.
     from generator.missing_tables import missing_tables
 
     return missing_tables()
-
-
-def _drawn() -> dict[ThesisFigure, str]:
-    with chart_style():
-        return {figure: figure.draw()[1] for figure in collect_figures()}
 
 
 TABLES: Mapping[str, Callable[[], Mapping[str, Table]]] = {
@@ -156,20 +101,9 @@ TABLES: Mapping[str, Callable[[], Mapping[str, Table]]] = {
     'plant': plant_tables,
     'loop-shaping': lambda: thesis_tables(thesis_record()),
     'h-infinity': h_infinity_tables,
-    'feedforward': feedforward_tables,
     'margins': lambda: {'sampled_loops': sampled_loops()},
     'calibration': calibration_tables,
-    'robustness': robustness_tables_and_charts,
-    'launches': lambda: {'new_clutch': launch_table()},
-    'floors': floor_tables,
-    'least-jerk': least_jerk_tables,
-    'benchmark': benchmark_tables,
-    'sensors': lambda: {'in_thesis': sensor_table()},
-    'shifts': shift_tables,
     'tuning': tuning_tables,
-    'numbers': lambda: page_tables(judge(thesis_numbers(), compute(SOURCES))),
-    'figures': lambda: figure_tables(_drawn()),
-    'studies': studies_and_charts,
     'missing': tables_of_missing_messages,
 }
-"""Functions by kind, quick ones first; `studies` takes minutes, `figures` some ten seconds."""
+"""Functions by kind."""

@@ -10,14 +10,19 @@ from pathlib import Path
 
 from sphinx.cmd.build import build_main
 
+from ddct_plant.base.errors import DdctError
 from website.staging import ROOT, stage
 
 
-def build(out: Path) -> int:
-    """Build the site into a folder, which is replaced; return the exit code of Sphinx."""
+def build(out: Path, results: Path) -> int:
+    """
+    Build the site into a folder, which is replaced; return the exit code of Sphinx.
+
+    Raise DdctError where `results` lacks a file that the site shows.
+    """
     with tempfile.TemporaryDirectory(prefix='ddct_site_') as made:
         source, html = Path(made, 'source'), Path(made, 'html')
-        stage(source)
+        stage(source, results)
         settings = str(Path(__file__).parent)
         code = build_main(
             ['-q', '-W', '--keep-going', '-b', 'html', '-c', settings, str(source), str(html)]
@@ -33,8 +38,18 @@ def main() -> int:
     """Build, and name the page to open."""
     parser = argparse.ArgumentParser(prog='make site', description=__doc__)
     parser.add_argument('--out', type=Path, default=ROOT / 'site', help='folder of the site')
-    out = parser.parse_args().out
-    code = build(out)
+    parser.add_argument(
+        '--results',
+        type=Path,
+        required=True,
+        help='folder with numbers.json, benchmark.json and studies.json, which programs write',
+    )
+    options = parser.parse_args()
+    out = options.out
+    try:
+        code = build(out, options.results)
+    except DdctError as error:
+        sys.exit(f'make site: {error}')
     print(f'open {out / "index.html"}' if code == 0 else 'the site has warnings: see above')
     return code
 

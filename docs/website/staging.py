@@ -8,6 +8,7 @@ from pathlib import Path
 
 from website.notebook_pages import notebook_page
 from website.reference import write_reference
+from website.results import with_results
 
 ROOT = Path(__file__).resolve().parents[2]
 FRONT = 'README.md'
@@ -32,8 +33,12 @@ _LINK = re.compile(r'(!?)\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^)\s#]+)(#[^)\s]*)?\)'
 _FENCED = re.compile(r'(^```.*?^```)', re.DOTALL | re.MULTILINE)
 
 
-def stage(folder: Path) -> None:
-    """Write the pages, the files that they link to, and the reference into a folder."""
+def stage(folder: Path, results: Path) -> None:
+    """
+    Write the pages, the files that they link to, and the reference into a folder.
+
+    `results` is a folder with the files of `website.results`.
+    """
     folder.mkdir(parents=True)
     patterns = (pattern for room in ROOMS.values() for pattern in room)
     pages = [ROOT / FRONT, *(page for each in patterns for page in sorted(ROOT.glob(each)))]
@@ -45,6 +50,7 @@ def stage(folder: Path) -> None:
         else:
             text = page.read_text(encoding='utf-8')
         text = staged(page, text, folder)
+        text = with_results(text, results, folder / name.parent / 'pictures')
         if name == Path(FRONT):
             name, text = Path('index.md'), text + _sidebar()
         target = folder / name

@@ -2,21 +2,17 @@
 # SPDX-License-Identifier: Apache-2.0
 """Every link leads somewhere, every page is found, every example in Python runs."""
 
-import re
 import subprocess
-import sys
 
 import pytest
-from documented_commands import SHELL_BLOCKS
-from support.documented import PAGES, ROOT, blocks, links
+from support.documented import PAGES, ROOT, blocks, links, run_examples
+from support.documented_commands import SHELL_BLOCKS
 
-from ddct_bringup.programs import compare
-from ddct_bringup.thesis.table_5_1 import PREDICTED, THESIS_TABLE
+from ddct_bringup.campaign.campaign import Campaign
+from ddct_bringup.campaign.spec import read_spec
 
 pytestmark = pytest.mark.slow
 
-PREDICTED_ROWS = [row.controller for row in THESIS_TABLE if row.use == PREDICTED]
-WITHIN_S = 240.0
 CLICKS = 3
 
 
@@ -41,30 +37,18 @@ def test_there_are_commands_to_run():
     'page',
     [
         'README.md',
-        'docs/use/python.md',
         'docs/controllers/writing_a_controller.md',
         'docs/controllers/controller_files.md',
     ],
 )
 def test_python_examples_run(page, tmp_path):
-    """One after the other, as one reads them."""
-    parts = [block.text for block in blocks() if block.page == page and block.language == 'python']
-    assert parts
-    code = '\n'.join(parts)
-    done = subprocess.run(
-        [sys.executable, '-c', code],
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-        timeout=WITHIN_S,
-        check=False,
-    )
-    assert done.returncode == 0, done.stderr
+    """Those of docs/use/python.md take longer: `tests/nightly/docs` runs them."""
+    run_examples(page, tmp_path)
 
 
-@pytest.mark.parametrize('page', PAGES, ids=lambda page: str(page.relative_to(ROOT)))
-def test_links_lead_to_files(page):
-    assert [str(target) for target in links(page) if not target.exists()] == []
+def test_links_lead_to_files():
+    lost = {str(page): [each for each in links(page) if not each.exists()] for page in PAGES}
+    assert {page: targets for page, targets in lost.items() if targets} == {}
 
 
 def test_every_page_is_three_clicks_from_the_top():
@@ -74,17 +58,17 @@ def test_every_page_is_three_clicks_from_the_top():
     assert [str(page) for page in PAGES if page not in found] == []
 
 
-def test_the_table_of_the_readme_is_what_make_demo_prints(tmp_path, capsys):
-    """
-    All but the line that rich draws as wide as its table.
+@pytest.mark.parametrize('path', sorted((ROOT / 'docs' / 'examples').glob('robustness_*.yaml')))
+def test_the_specifications_of_the_robustness_map_can_be_run(path):
+    campaign = Campaign(read_spec(path))
+    settings = campaign.run(campaign.runs - 1).settings
+    assert campaign.runs > 1000 and settings.scenario.name == 'thesis'
 
-    Below the heading of two lines each controller has a row, a predicted one two with its range.
-    """
-    makefile = (ROOT / 'Makefile').read_text(encoding='utf-8')
-    (names,) = re.findall(r'compare \\\n\s+--controllers (\S+) --out runs/demo', makefile)
-    assert compare.main(['--controllers', names, '--headless', '--out', str(tmp_path / 'x')]) == 0
-    printed = {' '.join(line.split()) for line in capsys.readouterr().out.splitlines()}
-    (table,) = [block for block in blocks() if block.page == 'README.md' and 't_a' in block.text]
-    shown = [line for line in table.lines if '─' not in line]
-    assert len(shown) == 2 + sum(2 if name in PREDICTED_ROWS else 1 for name in names.split(','))
-    assert [line for line in shown if line not in printed] == []
+
+def test_the_diff_that_adds_a_metric_fits_the_code():
+    """`tests/nightly/docs` tries what it gives."""
+    page = (ROOT / 'CONTRIBUTING.md').read_text(encoding='utf-8')
+    diff = page.partition('\n### A metric\n')[2].partition('```diff\n')[2].partition('```')[0]
+    command = ['git', 'apply', '--check', '-']
+    done = subprocess.run(command, input=diff, text=True, cwd=ROOT, check=False)
+    assert diff and done.returncode == 0

@@ -3,17 +3,17 @@
 """Every link to a heading arrives, and the list of pages is complete."""
 
 import re
+from functools import cache
 from pathlib import Path
 
-import pytest
 from support.documented import PAGES, ROOT, links
 
 READ = (*PAGES, ROOT / 'CONTRIBUTING.md', ROOT / 'QUALITY_DECLARATION.md', ROOT / 'SECURITY.md')
 FENCED = re.compile(r'^(```+).*?^\1$', re.DOTALL | re.MULTILINE)
 LINK = re.compile(r'\]\(([^)#\s]*)#([^)\s]+)\)')
-EACH_PAGE = pytest.mark.parametrize('page', READ, ids=lambda page: str(page.relative_to(ROOT)))
 
 
+@cache
 def anchors(page: Path) -> set[str]:
     """Return what links to the headings of a page end in, as GitHub makes them."""
     text = FENCED.sub('', page.read_text(encoding='utf-8'))
@@ -24,12 +24,11 @@ def anchors(page: Path) -> set[str]:
     return {re.sub(r'[^\w\- ]', '', each.lower()).replace(' ', '-') for each in headings}
 
 
-@EACH_PAGE
-def test_links_to_headings_arrive(page: Path) -> None:
-    text = FENCED.sub('', page.read_text(encoding='utf-8'))
+def test_links_to_headings_arrive() -> None:
     lost = [
-        f'{target}#{anchor}'
-        for target, anchor in LINK.findall(text)
+        f'{page.relative_to(ROOT)}: {target}#{anchor}'
+        for page in READ
+        for target, anchor in LINK.findall(FENCED.sub('', page.read_text(encoding='utf-8')))
         if '://' not in target
         and anchor not in anchors((page.parent / target).resolve() if target else page)
     ]

@@ -3,11 +3,14 @@
 """Commands and links of the documentation."""
 
 import re
+import subprocess
+import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
+WITHIN_S = 240.0
 PAGES = (ROOT / 'README.md', *sorted((ROOT / 'docs').rglob('*.md')))
 _FENCE = re.compile(r'^(```+)(\w*)\n(.*?)^\1$', re.DOTALL | re.MULTILINE)
 _INDENTED = re.compile(r'(?:^    .*\n)+', re.MULTILINE)
@@ -55,3 +58,18 @@ def links(page: Path) -> list[Path]:
     text = _FENCE.sub('', page.read_text(encoding='utf-8'))
     targets = [target for target in _LINK.findall(text) if '://' not in target]
     return [(page.parent / target).resolve() for target in targets]
+
+
+def run_examples(page: str, folder: Path) -> None:
+    """Run the examples in Python of a page in a folder, one after the other, as one reads them."""
+    parts = [block.text for block in blocks() if block.page == page and block.language == 'python']
+    assert parts
+    done = subprocess.run(
+        [sys.executable, '-c', '\n'.join(parts)],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        timeout=WITHIN_S,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr

@@ -11,6 +11,7 @@ from ddct_bringup.benchmark.conduct import Options, carry_out_benchmark
 from ddct_bringup.benchmark.judged import Judged
 from ddct_bringup.benchmark.report import texts
 from ddct_bringup.benchmark.report.folder import PAGE, RESULT, document_of, write_result
+from ddct_bringup.benchmark.report.packaged import packaged_tables
 from ddct_bringup.benchmark.report.printed import print_result
 from ddct_bringup.benchmark.result_types import Result
 from ddct_bringup.benchmark.update_times import read_update_times, write_update_times
@@ -27,6 +28,7 @@ from ddct_plant.program.command_line import (
     show_and_write,
 )
 from ddct_plant.program.supervision import stop_signals
+from ddct_plant.program.table import print_tables
 
 PROGRAM = 'ddct benchmark'
 _SEED = Option(0, 'seed of a judge', at_least=0, at_most=2**31 - 1)
@@ -38,6 +40,7 @@ examples:
   ddct benchmark a.py b.py ls8 --out results/three        each on its own held-out cases
   ddct benchmark mine.yaml --out results/judged --seed 7  a judge chooses the held-out cases
   ddct verify results/mine                                whether a result comes out again
+  ddct benchmark --packaged                               our controllers, without a run
 
 The development cases are fixed in a release, which has our controllers' rows of them. The seed of
 the held-out cases follows from the digests of controller and release; pi, ls8, hinf_sampled and
@@ -55,6 +58,10 @@ def main(argv: list[str] | None = None) -> int:
 def _benchmark(argv: list[str]) -> int:
     options = _parser().parse_args(argv)
     require_place('--json', options.json)
+    if options.packaged:
+        return _show_packaged(options)
+    if not options.controllers or not options.out:
+        raise ParameterError('give controllers and --out, or --packaged')
     if options.seed is not None:
         _SEED.checked('--seed', options.seed)
     cases = Cases.packaged(quick=options.quick)
@@ -113,6 +120,16 @@ def _show(result: Result, options: argparse.Namespace) -> None:
     show_and_write(options.json, document_of(result, options.out), show)
 
 
+def _show_packaged(options: argparse.Namespace) -> int:
+    """Print or write the figures of the packaged controllers; they come with the release."""
+    if options.controllers or options.out or options.quick or options.seed is not None:
+        raise ParameterError('--packaged runs nothing: give it alone, or with --json')
+    tables = packaged_tables()
+    document = {name: table.as_dict() for name, table in tables.items()}
+    show_and_write(options.json, document, lambda: print_tables(tables.values()))
+    return 0
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = ProgramParser(
         prog=PROGRAM,
@@ -120,9 +137,12 @@ def _parser() -> argparse.ArgumentParser:
         epilog=_EPILOG,
     )
     parser.add_argument(
-        'controllers', nargs='+', metavar='NAME|FILE', help='a controller or a controller file'
+        'controllers', nargs='*', metavar='NAME|FILE', help='a controller or a controller file'
     )
-    parser.add_argument('--out', type=Path, metavar='DIR', required=True, help='folder for it')
+    parser.add_argument('--out', type=Path, metavar='DIR', help='folder for it')
+    parser.add_argument(
+        '--packaged', action='store_true', help="our controllers' figures, out of the release"
+    )
     parser.add_argument('--quick', action='store_true', help='a tenth of the cases')
     parser.add_argument(
         '--seed', type=int, metavar='N', help='held-out cases of a judge; the result has a mark'

@@ -89,6 +89,11 @@ class Table:
     numbers: Sequence[bool] = field(default=(), kw_only=True)
     """Whether each column, from the first on, is aligned to the right; rich only."""
 
+    def as_dict(self) -> dict[str, object]:
+        """Return title, headers and rows for JSON, a row as a mapping from header to cell."""
+        rows = [dict(zip(self.headers, row, strict=True)) for row in self.rows]
+        return {'title': self.title, 'headers': list(self.headers), 'rows': rows}
+
 
 def table_of(title: str, columns: Sequence[Column[Row]], rows: Iterable[Row]) -> Table:
     """Return the table of columns over rows."""
@@ -103,6 +108,17 @@ def table_of(title: str, columns: Sequence[Column[Row]], rows: Iterable[Row]) ->
 def text_or_dash(value: object, form: str) -> str:
     """Return a value in a format, or a dash for None: an undefined value or no limit."""
     return UNDEFINED if value is None else format(value, form)
+
+
+def as_markdown(table: Table) -> str:
+    """Return a table as Markdown, with a final line end."""
+    separator = ['---'] * len(table.headers)
+    return ''.join(f'{_line(cells)}\n' for cells in (table.headers, separator, *table.rows))
+
+
+def _line(cells: Sequence[str]) -> str:
+    escaped = (cell.replace('|', r'\|') for cell in cells)
+    return f'| {" | ".join(escaped)} |'
 
 
 def print_table(table: Table) -> None:

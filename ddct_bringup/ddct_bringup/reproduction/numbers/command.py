@@ -76,12 +76,14 @@ def run(options: argparse.Namespace) -> int:
     require_place('--csv', options.csv)
     rows = judge(thesis_numbers(), compute(SOURCES, partial(complain, 'ddct reproduce numbers')))
     numbers = [row.as_dict() for row in rows]
+    tables = {name: table.as_dict() for name, table in page_tables(rows).items()}
+    document = {'numbers': numbers, 'tables': tables}
     if options.csv:
         write_text(options.csv, csv_text(numbers[0], [list(each.values()) for each in numbers]))
     if options.csv != STDOUT:
-        show_and_write(options.json, {'numbers': numbers}, lambda: _print(rows))
+        show_and_write(options.json, document, lambda: _print(rows))
     elif options.json:
-        write_json(options.json, {'numbers': numbers})
+        write_json(options.json, document)
     require_all(rows)
     return 0
 

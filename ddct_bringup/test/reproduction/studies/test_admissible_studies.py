@@ -1,15 +1,12 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""The tables of docs/thesis/predictions.md are those of the studies and support its text."""
+"""The studies of the admissible scenarios support the text of docs/thesis/predictions.md."""
 
 import pytest
-from generator.pages import as_markdown, shown_tables
 
 from ddct_bringup.reproduction.studies.admissible_scenarios import (
-    admissible_scenarios,
     prediction_ranges,
     score_windows,
-    worn_ranges,
 )
 from ddct_bringup.reproduction.studies.study import Study
 
@@ -18,19 +15,13 @@ pytestmark = pytest.mark.slow
 
 @pytest.fixture(scope='module')
 def studies() -> dict[str, Study]:
-    """Return the studies of the page by name."""
-    functions = (admissible_scenarios, prediction_ranges, worn_ranges, score_windows)
+    """Return the studies by name."""
+    functions = (prediction_ranges, score_windows)
     return {function.__name__: function() for function in functions}
 
 
 def figures(cell: str) -> list[float | None]:
     return [None if part == '-' else float(part) for part in cell.split(' / ')]
-
-
-def test_page_has_the_tables_of_the_studies(studies):
-    """The page has the computed tables; after a change run `make docs KINDS=studies`."""
-    shown = shown_tables('studies')
-    assert {name: shown[name] for name in studies} == as_markdown(studies)
 
 
 def test_no_scenario_has_a_whole_predicted_row(studies):

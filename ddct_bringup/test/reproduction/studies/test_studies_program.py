@@ -6,7 +6,6 @@ import json
 
 import numpy as np
 import pytest
-from generator.pages import shown_tables
 
 from ddct_bringup.programs import reproduce
 from ddct_bringup.reproduction.studies import command
@@ -48,6 +47,7 @@ def test_json_on_standard_output_has_no_other_text_and_a_mapping_per_row(capsys)
     assert json.loads(capsys.readouterr().out) == {
         'first': {
             'title': 'The first',
+            'headers': ['name', 'value'],
             'rows': [{'name': 'a', 'value': '1'}, {'name': 'b', 'value': '2'}],
             'remarks': ['Lower is better.'],
         }
@@ -73,7 +73,3 @@ def test_unknown_study_is_refused_before_the_work(capsys):
     (error,) = capsys.readouterr().err.splitlines()
     assert error.startswith('ddct reproduce: ')
     assert all(name in error for name in ('third', 'first', 'second'))
-
-
-def test_every_study_is_on_one_page_and_no_page_marks_another():
-    assert sorted(shown_tables('studies')) == sorted(STUDIES)

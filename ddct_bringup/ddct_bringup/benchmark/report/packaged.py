@@ -20,23 +20,16 @@ from ddct_bringup.verdict.limits import packaged_limits
 from ddct_bringup.verdict.state import ENGAGED
 from ddct_plant.program.table import Table
 
-CASE_HEADERS = (
-    'engaged',
-    'others',
-    'with releases',
-    'time to lock s',
-    'peak jerk m/s^3',
-    'highest',
-    'over the least',
-    'highest',
-    'friction work kJ',
+_CASE_HEADERS = (
+    *('controller', 'engaged', 'others', 'with releases', 'time to lock s'),
+    *('peak jerk m/s^3', 'highest peak jerk', 'over the least', 'highest over the least'),
+    *('friction work kJ', 'dominated by'),
 )
-"""Headers of `case_cells`."""
 _ALL_HEADERS = ('controller', 'engaged', 'others', 'with releases', 'limits kept', 'not dominated')
 _MARK = 'yes'
 
 
-def benchmark_tables() -> Mapping[str, Table]:
+def packaged_tables() -> Mapping[str, Table]:
     """Return a table over all cases, and one for each scenario, with a row for each controller."""
     release = release_rows(packaged_folder())
     rows = release.rows
@@ -47,7 +40,7 @@ def benchmark_tables() -> Mapping[str, Table]:
     }
 
 
-def case_cells(columns: Columns) -> tuple[str, ...]:
+def _case_cells(columns: Columns) -> tuple[str, ...]:
     """Return the cells of a controller's cases; medians and highest values are of all of them."""
     jerks, ratios = columns['peak_jerk_m_s3'], columns[f'{OVER_FLOOR}peak_jerk']
     return (
@@ -69,18 +62,18 @@ def _overall(release: ReleaseRows) -> list[tuple[str, ...]]:
         share = limits_in(rows, name, release.unavoidable, limits)['share']
         kept = '-' if share is None else f'{100.0 * share:.0f} %'
         chosen = _MARK if name in best else ''
-        found.append((f'`{name}`', *_counts(rows.of(name)), kept, chosen))
+        found.append((f'{name}', *_counts(rows.of(name)), kept, chosen))
     return found
 
 
 def _of_scenario(rows: CaseRows, scenario: str) -> Table:
     cases = np.flatnonzero(rows.columns[SCENARIO][0] == scenario)
     chosen = rows.of_cases(cases)
-    found = [(f'`{name}`', *case_cells(chosen.of(name))) for name in chosen.controllers]
+    found = [(f'{name}', *_case_cells(chosen.of(name))) for name in chosen.controllers]
     dominated = dominated_by(chosen)
     return Table(
         f'Development cases of {scenario}',
-        ('controller', *CASE_HEADERS, 'dominated by'),
+        _CASE_HEADERS,
         [(*row, dominated[name]) for row, name in zip(found, chosen.controllers, strict=True)],
     )
 
@@ -99,7 +92,7 @@ def dominated_by(rows: CaseRows) -> dict[str, str]:
     return {
         name: next(
             (
-                f'`{other}`'
+                other
                 for other, theirs in figures.items()
                 if (theirs <= ours).all() and (theirs < ours).any()
             ),

@@ -2,10 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """The commands of the documentation, sorted by how a test runs them."""
 
+import re
 import shlex
 import subprocess
+from collections import Counter
+from collections.abc import Sequence
 
 from printed_commands import run_words
+
 from support.documented import Block, blocks
 
 NOT_RUN_HERE = {
@@ -14,14 +18,12 @@ NOT_RUN_HERE = {
     'rosdep': "needs apt's ROS 2",
     'colcon': 'make setup has run it',
     '. /opt/ros': "needs apt's ROS 2",
-    'ros2 param': 'the ROS 2 wheels bring no ros2 command; tests/graph sets gains by the service',
-    'ros2 topic': 'the ROS 2 wheels bring no ros2 command',
     'git clone': 'is how one comes here',
     '.venv/bin/': 'would change the environment of the tests; tests/fmu, tests/conformance run it',
     'ddct new-controller': 'takes a name that is free; tests/conformance runs it and what follows',
     'ddct compare --controllers pi,mine.yaml': 'needs an FMU; tests/fmu gives it one',
     'python -m pip': 'would change the environment of the tests',
-    'jupyter lab': 'serves until Ctrl-C; test_notebooks.py executes the notebooks',
+    'jupyter lab': 'serves until Ctrl-C; tests/nightly/docs executes the notebooks',
     'python3 -m venv': 'tests/packaging/test_without_ros.py runs what pip would install',
     '. my-env': 'nothing is installed there by the tests',
     'ddct bringup --mode realtime --controller ls8 --live': (
@@ -30,15 +32,13 @@ NOT_RUN_HERE = {
     'ddct bringup --mode realtime --realtime-priority': (
         'needs a permission; tests/graph/test_scheduling_of_nodes.py does it where there is one'
     ),
-    'ddct live': 'serves until Ctrl-C; tests/live stops it',
     'ddct clutch --ros-args -p qos_overrides': (
         'serves until Ctrl-C; tests/graph/test_qos_overrides.py stops it'
     ),
     'ddct campaign docs/examples/robustness': (
-        'takes minutes; test_robustness_page.py makes some of its runs again'
+        'takes minutes; test_documentation.py reads its specifications'
     ),
-    'python docs/robustness.py': 'takes the folders of those campaigns',
-    'ddct benchmark': 'takes minutes; ddct_bringup/test/benchmark runs a small one',
+    'ddct benchmark mine': 'takes minutes; ddct_bringup/test/benchmark runs a small one',
     'ddct verify results/mine': 'needs that benchmark',
     'ddct tune': 'takes minutes; ddct_bringup/test/tuning runs small ones',
     'ddct compare --controllers pi,tuned/pi/best.yaml': 'needs that tuning',
@@ -47,11 +47,20 @@ NOT_RUN_HERE = {
 """First words of commands and why no test runs them."""
 SHELL_BLOCKS = [block for block in blocks() if block.is_shell]
 SOURCE = '. install/setup.bash'
-_DESIGN = 'ddct design'
 _TOOLS = ('cp ', 'cc ')
 """Commands of others that end by themselves."""
 _OWN_PROCESS = ('&', 'realtime', 'ddct campaign')
 """Parts of commands that need processes of their own; a campaign's workers outlast a test."""
+_WITH_SUBCOMMANDS = {'design', 'reproduce', 'campaign'}
+_NIGHTLY = (
+    'ddct design h-infinity',
+    'ddct reproduce numbers',
+    'ddct reproduce figures',
+    'ddct reproduce studies',
+)
+"""Commands that take more than a few seconds; other tests run parts of them."""
+_LIST = re.compile(r'--controllers (\S+)|=([^\s:]+,\S+)|:(\d+)(?= |$)')
+"""Parts of a command that repeat its work."""
 
 
 def commands_of(block: Block) -> list[str]:
@@ -73,9 +82,49 @@ def in_this_process(block: Block) -> bool:
     )
 
 
-def is_design(block: Block) -> bool:
-    """Say whether all that is run here is design."""
-    return all(line.startswith(_DESIGN) for line in commands_of(block))
+def in_order_of_work(found: Sequence[Block]) -> list[Block]:
+    """Return blocks by the number of runs that their commands make, about."""
+    return sorted(found, key=lambda block: sum(map(_runs, commands_of(block))))
+
+
+def _runs(line: str) -> int:
+    runs = 1
+    for controllers, values, count in _LIST.findall(line):
+        runs *= int(count) if count else len((controllers or values).split(','))
+    return runs
+
+
+def sample_of(found: Sequence[Block]) -> list[Block]:
+    """
+    Return blocks that together have each program with each of the options that all have.
+
+    Blocks with one of the commands of the nightly tier are left out.
+    """
+    shown = {
+        block: {each for line in commands_of(block) for each in _options(line)} for block in found
+    }
+    short = [
+        block
+        for block in found
+        if not any(line.startswith(_NIGHTLY) for line in commands_of(block))
+    ]
+    times = Counter(each for block in short for each in shown[block])
+    sample = []
+    for block in reversed(in_order_of_work(short)):
+        if all(times[each] > 1 for each in shown[block]):
+            times.subtract(shown[block])
+        else:
+            sample.append(block)
+    return sample[::-1]
+
+
+def _options(line: str) -> set[tuple[str, str]]:
+    """Return the program of a line, and the program with each option that the line gives it."""
+    words = shlex.split(line, comments=True)
+    if words[0] != 'ddct':
+        return set()
+    program = ' '.join(words[1:3] if words[1] in _WITH_SUBCOMMANDS else words[1:2])
+    return {(program, word) for word in ('', *words) if word.startswith('--') or not word}
 
 
 def run_here(line: str) -> int:

@@ -1,0 +1,47 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Documented commands in a shell, for those that need one: graphs by hand, several processes."""
+
+import os
+import shutil
+import stat
+import subprocess
+from pathlib import Path
+
+from support.documented import Block
+from support.documented_commands import commands_of
+
+WITHIN_S = 240.0
+ROS2 = """\
+#!{shell}
+[ "$1 $2 $3" = 'run my_actuator my_actuator' ] || exit 2
+shift 3
+exec ddct actuator "$@"
+"""
+
+
+def shell_environment(workplace: Path, install: Path) -> dict[str, str]:
+    """Return the environment of a shell with `ddct`, and a `ros2` for the foreign node."""
+    ros2 = workplace / 'bin' / 'ros2'
+    ros2.parent.mkdir()
+    ros2.write_text(ROS2.format(shell=shutil.which('bash')))
+    ros2.chmod(ros2.stat().st_mode | stat.S_IXUSR)
+    path = f'{ros2.parent}:{install}/ddct_bringup/bin:{os.environ["PATH"]}'
+    return {**os.environ, 'PATH': path}
+
+
+def run_block(block: Block, workplace: Path, environment: dict[str, str]) -> None:
+    """Run the commands of a block in one shell, whose background nodes end with it."""
+    lines = ['set -e', "trap 'kill $(jobs -p) 2>/dev/null || true; wait' EXIT"]
+    script = '\n'.join([*lines, *commands_of(block)])
+    done = subprocess.run(
+        [shutil.which('bash') or 'bash', '-c', script],
+        cwd=workplace,
+        env=environment,
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        timeout=WITHIN_S,
+        check=False,
+    )
+    assert done.returncode == 0, f'{script}\n{done.stdout[-2000:]}\n{done.stderr[-2000:]}'
