@@ -17,7 +17,6 @@ from support.third_party import install
 from ddct_controllers.check import program
 from ddct_controllers.check.checks import CHECKS, FAIL, PASS, SKIPPED, Outcome, check_controller
 from ddct_controllers.interface import Controller
-from ddct_controllers.registry import controller_names
 from ddct_controllers.template.new_controller import install_command
 from ddct_controllers.workflows.evidence import frequency_evidence
 from ddct_controllers.workflows.evidence_types import linear_entries
@@ -129,8 +128,9 @@ def test_there_are_ten_controllers_in_order() -> None:
     assert len(RIGHT) >= 10
 
 
-@pytest.mark.parametrize('name', controller_names())
+@pytest.mark.parametrize('name', ['pi', 'ls8', 'hinf1', 'lqi', 'mpc4', 'least_jerk'])
 def test_a_packaged_controller_fails_no_check(name: str) -> None:
+    """One of each kind; all of them are nightly."""
     outcomes = outcomes_of(name)
     assert failed(outcomes) == {}
     skipped = {each.name for each in outcomes.values() if each.state == SKIPPED}
