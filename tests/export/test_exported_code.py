@@ -125,12 +125,17 @@ def sanitizers_work(folder: Path, flags: list[str]) -> bool:
     return built.returncode == 0 and subprocess.run([folder / 'empty']).returncode == 0
 
 
-@pytest.mark.parametrize('line', ['', '1,2,3', '1,a,0', csv_lines([])])
-def test_the_example_names_a_line_that_it_cannot_read(exported_mpc3, line):
-    folder = exported_mpc3.folder
-    compile_c(folder, 'ddct_mpc.c', 'ddct_mpc_example.c', '-o', 'example')
+@pytest.fixture(scope='module')
+def example(exported_mpc3) -> Path:
+    """Return the compiled example."""
+    compile_c(exported_mpc3.folder, 'ddct_mpc.c', 'ddct_mpc_example.c', '-o', 'example')
+    return exported_mpc3.folder / 'example'
+
+
+@pytest.mark.parametrize('line', ['1,2,3', '1,a,0'])
+def test_the_example_names_a_line_that_it_cannot_read(exported_mpc3, example, line):
     text = csv_lines(exported_mpc3.measurements[:2]) + line + '\n'
-    done = subprocess.run(['./example'], cwd=folder, input=text, capture_output=True, text=True)
+    done = subprocess.run([example], input=text, capture_output=True, text=True)
     assert done.returncode == 1
     assert done.stderr == 'line 3 does not hold 9 numbers with commas between them\n'
 

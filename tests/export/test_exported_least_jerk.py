@@ -1,136 +1,71 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""`least_jerk` as C: the same bits as in Python, in every packaged scenario."""
+"""`least_jerk` as C: the same bits as in Python."""
 
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 from refusals import refused
-from support.exported_mpc import compile_c
+from support.exported_least_jerk import answers, in_c, random_measurement, settings_of
 
-from ddct_bringup.benchmark.cases import Cases
 from ddct_bringup.run.headless import run_headless
-from ddct_controllers.interface import Controller, Measurement
 from ddct_controllers.least_jerk.controller import NAME, SPEC
 from ddct_controllers.least_jerk.export.export_least_jerk import export_least_jerk
 from ddct_controllers.registry import make_controller
 from ddct_controllers.workflows.design_program import main
 from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
 
-COMPILE = ('-O2', '-ffp-contract=off', '-shared', '-fPIC', 'ddct_least_jerk.c', '-lm')
-SCENARIOS = Cases.packaged().whole.values_of('scenario')
+LIMITED = {'deviation_n_m': 40.0, 'slew_n_m_s': 900.0, 'lag_s': 0.03, 'maximum_torque_n_m': 200.0}
+"""Authority of an engine that each limit restricts."""
 
 
-def settings_of(
-    scenario: str, wear_gain: float = 1.0, clutch: str = 'stick_slip', **changes: Any
-) -> RunSettings:
-    """Return a run with the sensors of the benchmark, and sections of the scenario changed."""
-    (sensors,) = Cases.packaged().content['grid']['sensors']
-    changed = load_scenario(scenario, {'sensors': sensors, **changes}, clutch)
-    return RunSettings(changed, clutch=clutch, wear_gain=wear_gain, seed=3)
+@pytest.fixture(scope='module')
+def launch(tmp_path_factory: pytest.TempPathFactory) -> str:
+    """Return the controller file of the C for a launch."""
+    return in_c(settings_of('launch'), tmp_path_factory.mktemp('launch') / 'c')
 
 
-def in_c(settings: RunSettings, folder: Path) -> str:
-    """Return the controller file of the C that is exported for a run, and compiled."""
-    export_least_jerk(make_controller(SPEC, settings), settings, folder)
-    compile_c(folder, *COMPILE, '-o', 'ddct_least_jerk.so')
-    return str(folder / 'least_jerk_in_c.yaml')
-
-
-@pytest.mark.parametrize('scenario', SCENARIOS)
-def test_c_gives_the_bits_of_python_in_every_packaged_scenario(tmp_path, scenario):
-    for wear_gain in (0.7, 1.3):
-        settings = settings_of(scenario, wear_gain)
-        expected = run_headless(settings, NAME)
-        found = run_headless(settings, in_c(settings, tmp_path / str(wear_gain)))
-        assert found.torque_request.tobytes() == expected.torque_request.tobytes()
-        assert np.ptp(expected.closed_loop_torque) > 1.0, 'this run asks nothing of it'
-
-
-def test_the_linear_clutch_too(tmp_path):
-    settings = settings_of('thesis', clutch='linear')
-    expected = run_headless(settings, NAME)
-    found = run_headless(settings, in_c(settings, tmp_path))
-    assert found.torque_request.tobytes() == expected.torque_request.tobytes()
-
-
-def test_the_status_in_c_is_the_phase_of_the_lock(tmp_path):
+def test_c_gives_the_bits_of_python_and_the_phases_of_the_lock(launch):
+    """In a launch; every packaged scenario is tried in a nightly test."""
     settings = settings_of('launch')
     phases = ('slipping', 'confirming', 'closed')
-    expected = [dict(row).get('phase') for row in run_headless(settings, NAME).status]
-    found = [
-        dict(row).get('c_status')
-        for row in run_headless(settings, in_c(settings, tmp_path)).status
-    ]
+    original, copy = (run_headless(settings, each) for each in (NAME, launch))
+    assert copy.torque_request.tobytes() == original.torque_request.tobytes()
+    assert np.ptp(original.closed_loop_torque) > 1.0, 'this run asks nothing of it'
+    expected = [dict(row).get('phase') for row in original.status]
+    found = [dict(row).get('c_status') for row in copy.status]
     start = settings.scenario.control_start_step
     named = [phases[int(status)] for status in found[start:] if status is not None]
     assert named == [phase for phase in expected[start:] if phase is not None]
     assert set(named) >= {'slipping', 'confirming'}
 
 
-def random_measurement(random: np.random.Generator, step: int) -> Measurement:
-    """Return a measurement that no loop gives: the plates part, lock and turn backward."""
-    speed = random.uniform(-5.0, 700.0)
-    return Measurement(
-        step=step,
-        engine_speed=speed,
-        shaft_speed=speed - random.choice([0.1, 3.0, 60.0]) * random.standard_normal(),
-        wheel_speed=random.uniform(-1.0, 60.0),
-        vehicle_speed=3.0,
-        engine_torque=random.uniform(-50.0, 300.0),
-        slip_reference=[random.uniform(-20.0, 100.0)],
-        slip_reference_rate=[random.uniform(-300.0, 50.0)],
-        load_torque=random.uniform(-100.0, 400.0),
-        open_loop_torque=random.uniform(-60.0, 300.0),
-    )
+def test_a_worn_clutch_in_an_upshift_too(tmp_path):
+    settings = settings_of('upshift', 0.7)
+    original, copy = (run_headless(settings, each) for each in (NAME, in_c(settings, tmp_path)))
+    assert copy.torque_request.tobytes() == original.torque_request.tobytes()
+    assert np.ptp(original.closed_loop_torque) > 1.0, 'this run asks nothing of it'
 
 
-def answers(controller: Controller, seed: int) -> list[tuple[float, float | None]]:
-    """Return clutch and engine torques of an episode in N m; in some steps feedback is off."""
-    random = np.random.default_rng(seed)
-    controller.reset()
-    torques = []
-    for step in range(60):
-        measurement = random_measurement(random, step)
-        if random.random() < 0.1 or step < 5:
-            controller.hold(measurement)
-        else:
-            command = controller.update(measurement)
-            torques.append((command.clutch_torque, command.engine_torque))
-    return torques
-
-
-@pytest.mark.parametrize('scenario', ['launch', 'thesis', 'upshift'])
-def test_any_measurements_give_the_bits_of_python(tmp_path, scenario):
-    settings = settings_of(scenario)
-    original = make_controller(SPEC, settings)
-    copy = make_controller(in_c(settings, tmp_path), settings)
-    for seed in range(20):
+def test_any_measurements_give_the_bits_of_python(launch):
+    settings = settings_of('launch')
+    original, copy = (make_controller(each, settings) for each in (SPEC, launch))
+    for seed in range(5):
         assert answers(copy, seed) == answers(original, seed)
 
 
-@pytest.mark.parametrize(
-    'authority',
-    [{}, {'deviation_n_m': 40.0, 'slew_n_m_s': 900.0, 'lag_s': 0.03, 'maximum_torque_n_m': 200.0}],
-    ids=['full', 'limited'],
-)
-def test_the_shaped_demand_has_the_bits_of_python(tmp_path, authority):
-    settings = settings_of('tip_in', engine_authority=authority)
-    original = make_controller(SPEC, settings)
-    copy = make_controller(in_c(settings, tmp_path), settings)
-    for seed in range(10):
+def test_the_shaped_demand_has_the_bits_of_python(tmp_path):
+    settings = settings_of('tip_in', engine_authority=LIMITED)
+    original, copy = (make_controller(each, settings) for each in (SPEC, in_c(settings, tmp_path)))
+    for seed in range(5):
         found = answers(copy, seed)
         assert found == answers(original, seed)
         assert all(engine is not None for _, engine in found)
 
 
-def test_a_measurement_that_is_no_number_ends_the_run_as_in_python(tmp_path):
-    settings = settings_of('launch')
-    copy = make_controller(in_c(settings, tmp_path), settings)
+def test_a_measurement_that_is_no_number_ends_the_run_as_in_python(launch):
+    copy = make_controller(launch, settings_of('launch'))
     bad = random_measurement(np.random.default_rng(1), 0).within(float('nan'), 0.0)
     with pytest.raises(DdctError):
         copy.update(bad)

@@ -46,7 +46,7 @@ class ExportedSolver:
         folder.mkdir()
         (folder / 'solver.c').write_text('\n'.join(parts))
         # Here the function of the controller's part that is not there is not used.
-        flags = ('-O1', '-Wno-unused-function', '-shared', '-fPIC')
+        flags = ('-O0', '-Wno-unused-function', '-shared', '-fPIC')
         compile_c(folder, *flags, 'solver.c', '-o', 'solver.so')
         self._call = ctypes.CDLL(str(folder / 'solver.so')).call
         self._call.argtypes = [*[_VECTOR] * 4, ctypes.POINTER(ctypes.c_int)]

@@ -55,7 +55,7 @@ class ExportedController(Controller):
     def __init__(self, folder: Path) -> None:
         """Compile and load the C code in `folder`."""
         (folder / 'sizes.c').write_text(_SIZES)
-        compile_c(folder, '-O1', '-shared', '-fPIC', 'ddct_mpc.c', 'sizes.c', '-o', 'ddct_mpc.so')
+        compile_c(folder, '-O0', '-shared', '-fPIC', 'ddct_mpc.c', 'sizes.c', '-o', 'ddct_mpc.so')
         self._library = ctypes.CDLL(str(folder / 'ddct_mpc.so'))
         states, moves, references, commands_engine, size = (c_int * 5).in_dll(
             self._library, 'sizes'
