@@ -12,10 +12,8 @@ import subprocess
 import sys
 import tempfile
 import zipfile
-from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from types import MappingProxyType
 
 import pytest
 
@@ -45,6 +43,17 @@ def skip_without_fmus() -> None:
     pytest.importorskip('fmpy', reason='FMPy, an optional extra, is absent: make fmu')
     if shutil.which('cc') is None:
         pytest.skip('there is no C compiler cc')
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Return an empty folder, which is the present one; temporary files go into its `tmp`."""
+    skip_without_fmus()
+    monkeypatch.chdir(tmp_path)
+    Path('tmp').mkdir()
+    monkeypatch.setattr('tempfile.tempdir', str(tmp_path / 'tmp'))
+    monkeypatch.setenv('TMPDIR', str(tmp_path / 'tmp'))
+    return tmp_path
 
 
 @dataclass(frozen=True)
@@ -83,21 +92,17 @@ def write_fmu(
     *changes: tuple[str, str],
     platform: str = '',
     interface: str = '',
-    more: Mapping[str, bytes] = MappingProxyType({}),
 ) -> Path:
     """
     Write the PI as an FMU, its description changed by (old, new) texts.
 
-    `platform` is the name of the binary's folder where it differs from this machine's; `more` are
-    further files by name.
+    `platform` is the name of the binary's folder where it differs from this machine's.
     """
     text = description(version, interface or 'CoSimulation')
     for old, new in changes:
         assert old in text, old
         text = text.replace(old, new)
     with zipfile.ZipFile(path, 'w', zipfile.ZIP_DEFLATED) as file:
-        for name, content in more.items():
-            file.writestr(name, content)
         file.writestr('modelDescription.xml', text)
         file.writestr('resources/read.me', 'nothing')
         file.writestr(f'binaries/{platform or PLATFORMS[version]}/pi.so', _binary(version))
@@ -170,6 +175,16 @@ def controller_file(version: int, *changes: tuple[str, str]) -> str:
         text = text.replace(old, new)
     Path('mine.yaml').write_text(text, encoding='utf-8')
     return 'mine.yaml'
+
+
+def faulty(version: int, fault: int) -> str:
+    """Return the controller file of an FMU with a fault 0.1 s after its start."""
+    return controller_file(version, ('pid.Kp', f'fault: {fault}, fault_time: 0.1, pid.Kp'))
+
+
+def unpacked() -> list[str]:
+    """Return the names of the temporary files and folders of FMUs."""
+    return [each.name for each in Path('tmp').iterdir() if each.name.startswith('ddct_fmu')]
 
 
 if __name__ == '__main__':

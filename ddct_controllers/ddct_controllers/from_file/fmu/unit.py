@@ -8,11 +8,11 @@ FMPy, an optional extra, reads the file and calls the binary in it; nothing else
 
 import math
 import re
+import zipfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from ddct_controllers.from_file.fmu.file_limits import names_in
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.base.timebase import PERIOD_S
 
@@ -29,10 +29,9 @@ class Fmu:
         self.path = path
         self.fmpy = _fmpy()
         try:
-            names = names_in(path)
+            with zipfile.ZipFile(path) as file:
+                names = file.namelist()
             self.description = self.fmpy.read_model_description(path, validate=False)
-        except ParameterError:
-            raise
         except Exception as error:
             raise ParameterError(
                 f'{path} is no FMU ({one_line(error)}): export it again'

@@ -13,8 +13,6 @@ from support.documented import ROOT, blocks
 from support.fmu import write_fmu
 
 from ddct_bringup.programs import compare
-from ddct_controllers.from_file.fmu.fmu_controller import CLUTCH, ENGINE
-from ddct_controllers.from_file.fmu.variables import AHEAD, SCALARS
 from ddct_controllers.registry import controller_spec
 
 PAGE = 'docs/controllers/fmu_controller.md'
@@ -52,9 +50,3 @@ def test_the_option_that_it_changes_is_one(template: str) -> None:
     changed = shlex.split([line for line in LINES if '--set' in line][0])
     key = changed[changed.index('--set') + 1].partition('=')[0]
     assert key.removeprefix('controllers.mine.') in (controller_spec(template).options or {})
-
-
-def test_it_lists_every_name() -> None:
-    text = (ROOT / PAGE).read_text(encoding='utf-8')
-    table = text.partition('## Names')[2].partition('## When')[0]
-    assert [name for name in (*SCALARS, *AHEAD, CLUTCH, ENGINE) if f'`{name}`' not in table] == []
