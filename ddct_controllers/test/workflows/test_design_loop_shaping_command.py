@@ -7,6 +7,7 @@ import json
 
 import pytest
 
+from ddct_controllers.design.drawing import charts
 from ddct_controllers.from_file.designed import load_designed
 from ddct_controllers.registry import make_controller
 from ddct_controllers.workflows import loop_shaping_command
@@ -29,6 +30,12 @@ def main(argv: list[str]) -> int:
         return options.run(options)
 
     return run_program('ddct design', run, argv)
+
+
+@pytest.fixture
+def without_charts(monkeypatch):
+    """Let no chart be drawn, which takes longer than the design."""
+    monkeypatch.setattr(charts, 'write_design_charts', lambda *arguments: None)
 
 
 def test_without_options_it_prints_the_thesis_workflow(capsys):
@@ -63,8 +70,8 @@ def test_a_design_is_written_with_charts_and_is_a_controller(tmp_path, capsys):
     make_controller(str(path), RunSettings(load_scenario('thesis')))
 
 
+@pytest.mark.usefixtures('without_charts')
 def test_an_earlier_design_is_replaced_only_with_overwrite(tmp_path, capsys):
-    pytest.importorskip('matplotlib')
     command = [*OWN, '--out', str(tmp_path)]
     assert main(command) == 0
     assert main(command) == 1

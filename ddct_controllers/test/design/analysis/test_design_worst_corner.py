@@ -81,26 +81,26 @@ def test_its_sensitivity_peak_is_that_of_its_loop(name, corners):
     assert found.sensitivity_peak == pytest.approx(loop_margins(loop).sensitivity_peak, rel=1e-6)
 
 
-@pytest.mark.parametrize('name', ['ls1', 'ls8', 'hinf1'])
+@pytest.mark.parametrize('name', ['ls8'])
 def test_no_corner_and_wear_gain_is_worse(name, corners):
-    """Every eighth corner and four wear gains are tried."""
+    """Every sixteenth corner and two wear gains are tried."""
     controller, worst = sampled(name), worst_of(name).sensitivity_peak
-    for parameters, gain in itertools.product(corners.parameters[::8], (0.7, 0.9, 1.1, 1.3)):
+    for parameters, gain in itertools.product(corners.parameters[::16], (0.7, 1.3)):
         margins = loop_margins(sampled_loop(controller, parameters, gain))
         assert margins.stable
         assert margins.sensitivity_peak <= worst * (1.0 + 1e-6)
 
 
-@pytest.mark.parametrize('name', ['ls1', 'ls8', 'hinf1'])
+@pytest.mark.parametrize('name', ['ls1'])
 def test_nothing_inside_the_corners_is_worse(name, corners):
     """
-    100 random drivelines and wear gains are tried.
+    20 random drivelines and wear gains are tried.
 
     That is no proof: the worst driveline need not be at a corner.
     """
     controller, worst = sampled(name), worst_of(name).sensitivity_peak
     values, random = IDENTIFIED_DRIVELINE.values(), np.random.default_rng(1)
-    for _ in range(100):
+    for _ in range(20):
         factors = random.uniform(1.0 - PARAMETER_SPREAD, 1.0 + PARAMETER_SPREAD, 7)
         parameters = IDENTIFIED_DRIVELINE.with_values(
             **{
@@ -112,7 +112,7 @@ def test_nothing_inside_the_corners_is_worse(name, corners):
         assert loop_margins(loop).sensitivity_peak <= worst
 
 
-@pytest.mark.parametrize('name', ['ls2', 'ls9', 'hinf2'])
+@pytest.mark.parametrize('name', ['hinf2'])
 def test_unstable_corners_are_those_with_an_unstable_pole_at_some_wear_gain(name, corners):
     controller, found = sampled(name), worst_of(name)
     unstable = sum(
