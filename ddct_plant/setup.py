@@ -35,7 +35,6 @@ setup(
     ],
     install_requires=[
         'setuptools',
-        'lz4',
         'mcap',
         'mcap-ros2-support',
         'numpy',

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """`identify` reads a bag by the reader of all programs: whole and undamaged, or not at all."""
 
-import os
 import random
 from pathlib import Path
 
@@ -28,18 +27,12 @@ def test_every_flipped_bit_is_detected(bags, trajectory) -> None:
     whole = file.read_bytes()
     assert np.array_equal(log_of(file).signals['vehicle_accel'][::10], trajectory.vehicle_accel)
     rng = random.Random(7)
-    for place in rng.sample(range(len(whole)), 80):
+    for place in rng.sample(range(len(whole)), 30):
         damaged = bytearray(whole)
         damaged[place] ^= 1 << rng.randrange(8)
         file.write_bytes(damaged)
         with refused(DdctError, place='pi_0.mcap'):
             log_of(file)
-
-
-def test_a_pipe_is_not_waited_for(tmp_path: Path) -> None:
-    os.mkfifo(tmp_path / 'pi_0.mcap')
-    with refused(DdctError, place='pi_0.mcap'):
-        log_of(tmp_path)
 
 
 @pytest.mark.parametrize(

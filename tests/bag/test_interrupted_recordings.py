@@ -11,6 +11,7 @@ import sys
 import textwrap
 
 import pytest
+from bag.conftest import Bags, random_trajectory
 from mcap.reader import make_reader
 from refusals import refused
 
@@ -67,21 +68,29 @@ def copy_bag(source, folder, *, last_step, limit=0):
     )
 
 
-@pytest.fixture
-def source(bags, make_trajectory):
-    return bags.write(make_trajectory(200), folder='source')
-
-
-@pytest.fixture
-def killed(source, tmp_path):
-    """Return the bag of a writer that was killed after 150 of 200 steps."""
-    folder = tmp_path / 'killed'
+@pytest.fixture(scope='module')
+def recorded(tmp_path_factory):
+    """Return a whole bag, and that of a writer that was killed after 150 of 200 steps."""
+    bags = Bags(tmp_path_factory.mktemp('recorded'))
+    source, folder = bags.write(random_trajectory(200), folder='source'), bags.folder / 'killed'
     with copy_bag(source, folder, last_step=150) as process:
         line = process.stdout.readline()
         process.send_signal(signal.SIGKILL)
         assert line == 'waiting to be killed\n', process.stderr.read()
         assert process.wait(timeout=30.0) == -signal.SIGKILL
-    return folder
+    return source, folder
+
+
+@pytest.fixture
+def source(recorded, tmp_path):
+    """Return a copy of the whole bag."""
+    return shutil.copytree(recorded[0], tmp_path / 'source')
+
+
+@pytest.fixture
+def killed(recorded, tmp_path):
+    """Return a copy of the killed writer's bag."""
+    return shutil.copytree(recorded[1], tmp_path / 'killed')
 
 
 def test_a_killed_recording_is_not_taken_for_a_whole_one(killed):
@@ -167,7 +176,7 @@ def test_whatever_bit_is_flipped_only_true_values_are_rescued(bags, trajectory):
     whole = file.read_bytes()
     expected = read_bag(source).trajectory.joint_speed.tolist()
     rng = random.Random(7)
-    for _ in range(25):
+    for _ in range(8):
         damaged = bytearray(whole)
         damaged[rng.randrange(len(whole))] ^= 1 << rng.randrange(8)
         file.write_bytes(damaged)

@@ -30,7 +30,6 @@ FROM_PYPI = {
     'fmpy': ('fmpy', None),
     'foxglove': ('foxglove-sdk', None),
     'jinja2': ('jinja2', 'python3-jinja2'),
-    'lz4': ('lz4', None),
     'markupsafe': ('markupsafe', None),
     'matplotlib': ('matplotlib', 'python3-matplotlib'),
     'mcap': ('mcap', None),

@@ -21,10 +21,9 @@ from mcap.records import Channel, Chunk, McapRecord, Message, Metadata, Schema
 from mcap.stream_reader import StreamReader
 from zstandard import ZstdError
 
-from ddct_plant.bag_file.facts import planned_steps, require_duration
-from ddct_plant.bag_file.limits import MOST_CHANNELS, Allowance
+from ddct_plant.bag_file.facts import require_duration
 from ddct_plant.bag_file.metadata import RECORD_NAME, information_of
-from ddct_plant.bag_file.record_scan import UsedRecord, in_chunk, unpacked_size, used_records
+from ddct_plant.bag_file.record_scan import UsedRecord, in_chunk, used_records
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.input_file import located, read_file
 
@@ -96,12 +95,10 @@ class BagRecords:
                 yield list(batch)
 
     def _batches(self) -> Iterator[Iterator[StoredMessage]]:
-        allowance = self._allowance()
         end = len(self.data) - len(MAGIC) if self.data.endswith(MAGIC) else len(self.data)
-        for record in used_records(self.data, len(MAGIC), end, allowance):
+        for record in used_records(self.data, len(MAGIC), end):
             if isinstance(record, Chunk):
-                allowance.add_bytes(unpacked_size(record))
-                yield self._messages_of(in_chunk(record, allowance))
+                yield self._messages_of(in_chunk(record))
             elif isinstance(record, Message):
                 yield self._messages_of([record])
 
@@ -114,13 +111,12 @@ class BagRecords:
 
     def survey(self) -> None:
         """
-        Add all records but those in chunks, after a check of the file's checksums and size.
+        Add all records but those in chunks, after a check of the file's checksums.
 
         Those in chunks are added too if there is no channel elsewhere. Raise DdctError at damage
         if `strict`, and for a duration that no run has or that the scenario contradicts.
         """
         with self._damage_named():
-            unpacked = []
             # The library verifies the checksum of the data, and reads also what is not used here.
             for record in StreamReader(
                 io.BytesIO(self.data),
@@ -128,14 +124,10 @@ class BagRecords:
                 validate_crcs=self.strict,
                 record_size_limit=len(self.data),
             ).records:
-                if isinstance(record, Chunk):
-                    unpacked.append(unpacked_size(record))
-                else:
+                if not isinstance(record, Chunk):
                     self._add(record)
         with located(str(self.path)):
             require_duration(self.custom_data)
-        with self._damage_named():
-            self._allowance().add_bytes(sum(unpacked))
         if not self.channels:
             for _ in self.messages():
                 pass
@@ -146,13 +138,8 @@ class BagRecords:
             self.schemas.setdefault(record.id, record)
         elif isinstance(record, Channel):
             self.channels.setdefault(record.id, record)
-            if len(self.channels) > MOST_CHANNELS:
-                raise ValueError(f'it has more than {MOST_CHANNELS} channels')
         elif isinstance(record, Metadata) and record.name == RECORD_NAME:
             self.information = information_of(record.metadata) or self.information
-
-    def _allowance(self) -> Allowance:
-        return Allowance(len(self.data), planned_steps(self.custom_data))
 
     @contextlib.contextmanager
     def _damage_named(self) -> Iterator[None]:

