@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from layout_checks import Messages, read_messages
+from support.foxglove_layout import Messages, read_messages
 
 from ddct_bringup.run.execution import execute
 from ddct_bringup.run.plan import RunPlan

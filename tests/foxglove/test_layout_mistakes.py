@@ -5,7 +5,7 @@
 from collections.abc import Callable
 from typing import Any
 
-from layout_checks import Messages, problems, read_layout
+from support.foxglove_layout import Messages, problems, read_layout
 from support.runs import plan
 
 from ddct_bringup.run.plan import RunPlan

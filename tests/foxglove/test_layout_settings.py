@@ -8,7 +8,7 @@ import typing
 from typing import Any
 
 import pytest
-from layout_checks import read_layout
+from support.foxglove_layout import read_layout
 
 OURS = {'foxglovePanelTitle'}
 """What an exported layout has beside a panel's settings; the SDK calls it `title`."""

@@ -15,6 +15,7 @@ def test_compare_ends_with_the_report(tmp_path: Path) -> None:
     limits = tmp_path / 'mine.yaml'
     limits.write_bytes((files('ddct_bringup.verdict') / 'limits.yaml').read_bytes())
     arguments = ['--controllers', 'pi,ls8', '--headless', '--limits', str(limits)]
+    arguments += ['--floors', 'none']
     assert main([*arguments, '--out', str(out)]) == 0
     page = (out / 'report.html').read_text(encoding='utf-8')
     assert '<title>Clutch engagement, thesis: pi, ls8</title>' in page

@@ -11,7 +11,6 @@ from pathlib import Path
 
 import pytest
 from page_reader import PageReader
-from support.processes import Programs
 from support.runs import plan, record
 
 from ddct_bringup.bag.reader import mcap_of
@@ -81,7 +80,7 @@ def test_the_page_judges_by_the_limits_that_are_given(demo: Path, tmp_path: Path
     rules = text[: text.index('limits:')]
     limit = '- {criterion: friction_energy, value: 7, unit: J, applies_to: all, convention: true'
     mine.write_text(f'{rules}limits:\n{limit}, reason: as agreed}}\n', encoding='utf-8')
-    assert main([str(demo), '--limits', str(mine), '--out', str(out)]) == 0
+    assert main([str(demo / 'pi'), *NO_FLOORS, '--limits', str(mine), '--out', str(out)]) == 0
     shown = read(out).text
     assert f'Judged by the limits mine.yaml {load_limits(mine).origin["digest"]}' in shown
     assert 'convention' in shown
@@ -126,18 +125,6 @@ def test_nothing_on_the_page_comes_from_elsewhere(page: Path) -> None:
     assert '@import' not in reader.styles
 
 
-def test_the_page_of_the_same_runs_is_the_same_file(
-    demo: Path, programs: Programs, tmp_path: Path
-) -> None:
-    pages = []
-    for name in ('first.html', 'second.html'):
-        arguments = [str(demo / 'pi'), *NO_FLOORS, '--out', str(tmp_path / name)]
-        program = programs.start_module('ddct_bringup.programs.report', *arguments)
-        assert program.wait() == 0, program.errors()
-        pages.append((tmp_path / name).read_bytes())
-    assert pages[0] == pages[1]
-
-
 def test_a_damaged_bag_is_marked_and_the_others_stay(
     demo: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -146,7 +133,7 @@ def test_a_damaged_bag_is_marked_and_the_others_stay(
     file = mcap_of(runs / 'ls8')
     file.write_bytes(file.read_bytes()[:-10])
     out = tmp_path / 'report.html'
-    assert main([str(runs), '--out', str(out)]) == 1
+    assert main([str(runs), *NO_FLOORS, '--out', str(out)]) == 1
     error = capsys.readouterr().err
     assert error.startswith('ddct report: ls8: ')
     assert 'unfinished' in error
@@ -207,7 +194,10 @@ def test_labels_distinguish_wear_gains_and_architectures_of_one_scenario(
 
 def test_the_same_bag_named_twice_is_one_run(demo: Path, tmp_path: Path) -> None:
     out = tmp_path / 'report.html'
-    assert main([str(demo / 'pi'), str(mcap_of(demo / 'pi').parent), '--out', str(out)]) == 0
+    assert (
+        main([str(demo / 'pi'), str(mcap_of(demo / 'pi').parent), *NO_FLOORS, '--out', str(out)])
+        == 0
+    )
     assert '1 run' in read(out).text
 
 
@@ -284,7 +274,7 @@ def test_a_page_that_cannot_be_written_is_refused_before_work(
 def test_an_earlier_page_of_ours_is_replaced(demo: Path, page: Path, tmp_path: Path) -> None:
     out = tmp_path / 'report.html'
     shutil.copy(page, out)
-    assert main([str(demo / 'pi'), '--out', str(out)]) == 0
+    assert main([str(demo / 'pi'), *NO_FLOORS, '--out', str(out)]) == 0
     assert 'hinf1' not in read(out).text
 
 
@@ -317,7 +307,7 @@ def test_without_the_chart_library_the_program_names_the_package_to_install(
 def test_the_page_goes_to_standard_output_on_request(
     demo: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert main([str(demo / 'pi'), '--out', '-']) == 0
+    assert main([str(demo / 'pi'), *NO_FLOORS, '--out', '-']) == 0
     assert capsys.readouterr().out.startswith('<!DOCTYPE html>')
 
 

@@ -35,7 +35,6 @@ _KINDS = {
 }
 SCHEMA_KEY = 'schema_version'
 """Key of the schema version of a file."""
-_SURROGATE = re.compile(r'\\u[dD][89a-fA-F]')
 _PATH = re.compile(r'[\w-]+(?:\.[\w-]+|\[\d+\])*')
 _PARENT = re.compile(r'(?:\.[\w-]+|\[\d+\])$')
 
@@ -47,8 +46,6 @@ def open_regular(path: Path) -> BufferedReader:
     Raise OSError, whose `strerror` is a message for the user, where that fails or where it is no
     regular file: a pipe may block, a device may never end.
     """
-    if '\0' in str(path):  # a file can give such a name, and Python would raise ValueError
-        raise OSError(errno.EINVAL, 'its name has a null character', str(path))
     # Without O_NONBLOCK opening a pipe blocks.
     descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
     kind = stat.S_IFMT(os.fstat(descriptor).st_mode)
@@ -113,18 +110,15 @@ def parse_json(text: str) -> Any:
     """
     Return the value of JSON text; raise ParameterError with the reason for invalid text.
 
-    Refused beyond the grammar: duplicate keys, NaN and infinity, halves of surrogate pairs, and
-    integers and nesting beyond the limits of Python.
+    Refused beyond the grammar: duplicate keys, NaN and infinity, and integers and nesting beyond
+    the limits of Python.
     """
     try:
-        value = json.loads(text, object_pairs_hook=_object, parse_constant=_refuse_constant)
-        if _SURROGATE.search(text):
-            json.dumps(value, ensure_ascii=False).encode('utf-8')
+        return json.loads(text, object_pairs_hook=_object, parse_constant=_refuse_constant)
     except RecursionError as error:
         raise ParameterError('not valid JSON: nested too deeply') from error
     except ValueError as error:
         raise ParameterError(f'not valid JSON: {error}') from error
-    return value
 
 
 def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:

@@ -38,7 +38,6 @@ def test_a_pipe_is_not_waited_for(pipe):
         ('/dev/zero', 'a device'),
         ('/', 'a folder'),
         ('/nowhere', 'No such file'),
-        ('null\0', 'a null character'),
     ],
 )
 def test_what_is_no_file_is_called_what_it_is(path, what):

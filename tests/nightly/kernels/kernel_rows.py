@@ -3,7 +3,7 @@
 """
 Rows of the packaged controllers on other kernels of OpenBLAS, compared as `verify` compares them.
 
-    . install/setup.bash; .venv/bin/python tests/kernels/kernel_rows.py Haswell Prescott
+    . install/setup.bash; .venv/bin/python tests/nightly/kernels/kernel_rows.py Haswell Prescott
 
 prints for each controller how many quick development cases are the same within the bound, how
 many are within the bound that was measured for them, and which are beyond. It takes ten minutes.

@@ -10,10 +10,10 @@ from typing import Any
 
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
-from message_path import parse
 
 from ddct_plant.signals.message_kind import stamp_ns
 from ddct_plant.signals.topics import TOPICS
+from support.message_path import parse
 
 LAYOUT = Path(__file__).parents[2] / 'ddct_bringup' / 'foxglove' / 'ddct_layout.json'
 
