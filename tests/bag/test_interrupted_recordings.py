@@ -11,9 +11,9 @@ import sys
 import textwrap
 
 import pytest
-from bag.conftest import Bags, random_trajectory
 from mcap.reader import make_reader
 from refusals import refused
+from support.made_bags import Bags, random_trajectory
 
 from ddct_bringup.bag import repair
 from ddct_bringup.bag.reader import mcap_of, read_bag
