@@ -8,12 +8,17 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import pyarrow as pa
+import pyarrow.parquet as parquet
 import pytest
 
+from ddct_bringup.campaign.conduct import RESULTS, SHARDS
 from ddct_bringup.digests.digest_file import file_digest, read_digests
+from ddct_bringup.digests.files import digests_of_files
 from ddct_bringup.programs import bringup, campaign, compare, verify
 
 SPEC = """\
@@ -101,6 +106,24 @@ def edit_json_with_digest(folder: Path, name: str, edit: Callable[[Any], None]) 
     content = json.loads((folder / name).read_text(encoding='utf-8'))
     edit(content)
     edit_with_digest(folder, name, (json.dumps(content, indent=2) + '\n').encode())
+
+
+def edit_rows(folder: Path, name: str, edit: Callable[[list[Any]], list[Any]]) -> None:
+    """Edit a column of the results and of the shards, and their digests too."""
+    for file in (folder / RESULTS, *sorted((folder / SHARDS).iterdir())):
+        table = parquet.read_table(file)
+        place = table.column_names.index(name)
+        values = edit(table[name].to_pylist())
+        column = pa.array(values, table.schema.field(place).type)
+        parquet.write_table(table.set_column(place, table.schema.field(place), column), file)
+    read_digests(folder).with_files(digests_of_files(folder)).write(folder)
+
+
+def of_another_release(folder: Path) -> None:
+    """Give the digests of a result the code of another release."""
+    digests = read_digests(folder)
+    environment = replace(digests.environment, code='f' * 64)
+    replace(digests, environment=environment).write(folder)
 
 
 def verified(
