@@ -2,15 +2,21 @@
 # SPDX-License-Identifier: Apache-2.0
 """A benchmark of few cases: a folder that takes the place of the packaged cases and rows."""
 
+import json
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from ddct_bringup.benchmark import cases, conduct, release, unavoidable
 from ddct_bringup.benchmark.cases import SPECIFICATION, Cases
 from ddct_bringup.benchmark.release import write_release_rows
+from ddct_bringup.benchmark.report.folder import PAGE, RESULT
+from ddct_bringup.digests.digest_file import DIGESTS
 from ddct_bringup.programs import benchmark
 from ddct_bringup.run.headless import run_headless
+from ddct_bringup.run.timing_and_failure import TIMING_FILE
 from ddct_bringup.verification import benchmark as verification
 
 SPEC = """\
@@ -29,6 +35,8 @@ random:
 floors: [friction_energy]
 floor_samples: 1
 """
+WALL_CLOCK = {TIMING_FILE, PAGE, DIGESTS}
+"""Files of a benchmark's folder that depend on the update times."""
 PACKAGED = ('pi', 'ls8', 'hinf1')
 """Controllers of the release with these cases."""
 SEEN = 12
@@ -105,3 +113,31 @@ def write_controller_that_remembers(file: Path) -> Path:
     text = REMEMBERS.format(seen=SEEN, torques=torques)
     file.write_text(text, encoding='utf-8')
     return file
+
+
+def benchmark_of_a_controller_that_remembers(
+    tmp_path_factory: pytest.TempPathFactory,
+) -> Iterator[Path]:
+    """Yield a folder with a small release, a controller that remembers, and its benchmark."""
+    folder = tmp_path_factory.mktemp('small') / "the driver's own"
+    folder.mkdir()
+    with pytest.MonkeyPatch.context() as patch:
+        use_small_release(folder, patch)
+        remembers = write_controller_that_remembers(folder / 'remembers.py')
+        assert judge(folder / 'first', str(remembers)) == 0
+        yield folder
+
+
+def result_in(folder: Path) -> dict[str, Any]:
+    """Return the result in the folder of a benchmark."""
+    found: dict[str, Any] = json.loads((folder / RESULT).read_text(encoding='utf-8'))
+    return found
+
+
+def content_of(folder: Path) -> dict[str, bytes]:
+    """Return the files of a benchmark by path, without those of the wall clock."""
+    return {
+        path.relative_to(folder).as_posix(): path.read_bytes()
+        for path in folder.rglob('*')
+        if path.is_file() and path.relative_to(folder).as_posix() not in WALL_CLOCK
+    }
