@@ -4,15 +4,22 @@
 
 from pathlib import Path
 
-import numpy as np
 import pytest
 from refusals import refused
-from support.logs import drag, drive_log, noisy_log, rows_late, speeds_late
+from support.logs import (
+    NONE_LATE,
+    drag,
+    drive_log,
+    noisy_log,
+    noisy_log_of,
+    rows_late,
+    speeds_late,
+    within,
+)
 from support.other_car import SPEEDS, TRUE, late_log
 
 from ddct_plant.base.errors import DdctError
 from ddct_plant.identification.from_log.fit import fit_log
-from ddct_plant.identification.from_log.result import LogFit
 from ddct_plant.identification.from_log.scenario import load_of
 from ddct_plant.measured.columns import load_columns
 from ddct_plant.measured.log import MeasuredLog
@@ -20,16 +27,6 @@ from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.scenario.file import load_scenario
 
 THESIS = load_scenario('thesis')
-NONE_LATE = {'shaft_speed': 0.0, 'wheel_speed': 0.0, 'engine_torque': 0.0, 'clutch_torque': 0.0}
-SEEDS = 12
-
-
-def within(fit: LogFit, true: dict[str, float]) -> list[bool]:
-    found = []
-    for name, value in true.items():
-        lowest, highest = fit.interval(name) or (np.nan, np.nan)
-        found.append(lowest <= value <= highest)
-    return found
 
 
 @pytest.fixture(scope='module')
@@ -41,27 +38,20 @@ def pi_log(tmp_path_factory: pytest.TempPathFactory) -> MeasuredLog:
     ('late', 'rows', 'true'),
     [
         (('clutch_torque',), 1, NONE_LATE | {'clutch_torque': 0.01}),
-        (SPEEDS, 1, speeds_late(0.01)),
-        (('clutch_torque',), 5, NONE_LATE | {'clutch_torque': 0.05}),
         (SPEEDS, 5, speeds_late(0.05)),
     ],
-    ids=['clutch torque 10 ms', 'speeds 10 ms', 'clutch torque 50 ms', 'speeds 50 ms'],
+    ids=['clutch torque 10 ms', 'speeds 50 ms'],
 )
 def test_signals_that_are_rows_late_move_delays_and_not_parameters(
     pi_log: MeasuredLog, late: tuple[str, ...], rows: int, true: dict[str, float]
 ) -> None:
-    """Of 24 intervals 23 are expected. Without fitted delays it is 16 of 54 parameters."""
-    fits = [
-        fit_log(rows_late(noisy_log(pi_log, seed), late, rows), THESIS.driveline, load_of(THESIS))
-        for seed in (1, 2)
-    ]
-    parameters = THESIS.driveline.values()
-    held = [each for fit in fits for each in within(fit, parameters | true)]
-    assert sum(held) >= 21
-    for fit in fits:
-        assert fit.delays['clutch_torque'] == pytest.approx(true['clutch_torque'], abs=1e-3)
-        assert fit.values['halfshaft_stiffness'] == pytest.approx(6716.3, rel=0.03)
-        assert fit.values['engine_inertia'] == pytest.approx(0.25, rel=0.01)
+    """Of 12 intervals 11 are expected; more logs are in tests/nightly/measured."""
+    log = rows_late(noisy_log(pi_log, 2), late, rows)
+    fit = fit_log(log, THESIS.driveline, load_of(THESIS))
+    assert sum(within(fit, THESIS.driveline.values() | true)) >= 11
+    assert fit.delays['clutch_torque'] == pytest.approx(true['clutch_torque'], abs=1e-3)
+    assert fit.values['halfshaft_stiffness'] == pytest.approx(6716.3, rel=0.03)
+    assert fit.values['engine_inertia'] == pytest.approx(0.25, rel=0.01)
 
 
 @pytest.mark.parametrize('corners_on_rows', [True, False])
@@ -73,7 +63,7 @@ def test_fractional_delays_are_found(corners_on_rows: bool) -> None:
         'clutch_torque': 0.0491,
     }
     times, signals = late_log(1, true, corners_on_rows=corners_on_rows)
-    fit = fit_log(_noisy(times, signals, 3), DrivelineParameters(), drag)
+    fit = fit_log(noisy_log_of(times, signals, 3), DrivelineParameters(), drag)
     assert sum(within(fit, true)) >= 3
     assert fit.delays == pytest.approx({'engine_speed': 0.0, **true}, abs=1.5e-3)
     assert fit.values == pytest.approx(TRUE, rel=0.06)
@@ -84,7 +74,7 @@ def test_rows_that_are_means_over_their_step_are_half_a_step_late() -> None:
     times, signals = late_log(2, {}, mean_of=20)
     _, instants = late_log(2, {})
     signals |= {name: instants[name] for name in SPEEDS}
-    fit = fit_log(_noisy(times, signals, 4), DrivelineParameters(), drag)
+    fit = fit_log(noisy_log_of(times, signals, 4), DrivelineParameters(), drag)
     true = {'clutch_torque': 0.00475, 'engine_torque': 0.00475}
     assert all(within(fit, true))
     assert fit.values == pytest.approx(TRUE, rel=0.06)
@@ -93,29 +83,15 @@ def test_rows_that_are_means_over_their_step_are_half_a_step_late() -> None:
 def test_a_delay_of_all_signals_is_not_identifiable_and_changes_nothing() -> None:
     late = dict.fromkeys((*SPEEDS, *NONE_LATE), 0.0137)
     times, signals = late_log(3, late)
-    fit = fit_log(_noisy(times, signals, 5), DrivelineParameters(), drag)
+    fit = fit_log(noisy_log_of(times, signals, 5), DrivelineParameters(), drag)
     assert sum(within(fit, NONE_LATE)) >= 3
     assert fit.delays == pytest.approx({'engine_speed': 0.0, **NONE_LATE}, abs=1.5e-3)
-
-
-@pytest.mark.slow
-def test_intervals_cover_delays_and_parameters_at_their_rate_on_white_noise() -> None:
-    """The expected number of covering intervals is 136 of 144, with a deviation of 3."""
-    held = []
-    for seed in range(SEEDS):
-        delays = np.random.default_rng(seed).uniform(-0.05, 0.05, len(NONE_LATE)).tolist()
-        true = dict(zip(NONE_LATE, delays, strict=True))
-        times, signals = late_log(seed, true, corners_on_rows=True)
-        fit = fit_log(_noisy(times, signals, seed), DrivelineParameters.from_values(TRUE), drag)
-        held += within(fit, TRUE | true)
-    assert len(held) == 12 * SEEDS
-    assert sum(held) >= 127
 
 
 def test_a_delay_that_is_known_is_not_fitted(tmp_path: Path) -> None:
     true = NONE_LATE | {'clutch_torque': 0.02}
     times, signals = late_log(1, true, corners_on_rows=True)
-    log = _noisy(times, signals, 6)
+    log = noisy_log_of(times, signals, 6)
     given = fit_log(log, DrivelineParameters(), drag, (), {'clutch_torque': 0.02})
     found = fit_log(log, DrivelineParameters(), drag)
     assert given.interval('clutch_torque') is None
@@ -133,7 +109,3 @@ def test_a_column_map_gives_delays(tmp_path: Path) -> None:
         file.write_text(text % f', delay_s: {wrong}')
         with refused(DdctError, 'columns.engine_torque.delay_s', place='map.yaml'):
             load_columns(str(file))
-
-
-def _noisy(times: np.ndarray, signals: dict[str, np.ndarray], seed: int) -> MeasuredLog:
-    return noisy_log(MeasuredLog(Path('a.csv'), '', times, signals), seed)

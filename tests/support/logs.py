@@ -10,11 +10,16 @@ import numpy as np
 
 from ddct_bringup.scores.csv_text import signals_csv
 from ddct_plant.identification.from_log.command import NEEDED
+from ddct_plant.identification.from_log.result import LogFit
 from ddct_plant.identification.from_log.stretch import TORQUES
 from ddct_plant.identification.identify import main
 from ddct_plant.measured.columns import TIME, own_columns
 from ddct_plant.measured.log import SPEEDS, MeasuredLog, read_log
+from support.other_car import TRUE, drive
 from support.runs import plan, record
+
+NONE_LATE = {'shaft_speed': 0.0, 'wheel_speed': 0.0, 'engine_torque': 0.0, 'clutch_torque': 0.0}
+"""Delays of a log without any, against the engine speed."""
 
 
 def drag(wheel_speed: np.ndarray) -> np.ndarray:
@@ -32,6 +37,30 @@ def drive_log(folder: Path, controller: str = 'pi', changes: tuple[str, ...] = (
     return read_log(file, own_columns(TIME, *NEEDED), NEEDED)
 
 
+def log_of(signals: dict[str, np.ndarray], time_s: np.ndarray | None = None) -> MeasuredLog:
+    """Return a log of signals, at the times of `drive` unless there are others."""
+    times = drive().time_s if time_s is None else time_s
+    return MeasuredLog(Path('a.csv'), '', times, signals)
+
+
+def hits(fit: LogFit) -> list[bool]:
+    """Return for each fitted parameter whether its interval has the value of `other_car`."""
+    found = []
+    for name in fit.std:
+        lowest, highest = fit.interval(name) or (np.nan, np.nan)
+        found.append(lowest <= TRUE[name] <= highest)
+    return found
+
+
+def constant_log() -> MeasuredLog:
+    """Return a noisy log of a drive at constant speed."""
+    random, count = np.random.default_rng(5), len(drive().time_s)
+    levels = {'engine_speed': 190.0, 'shaft_speed': 150.0, 'wheel_speed': 12.0}
+    signals = {n: each + 0.1 * random.standard_normal(count) for n, each in levels.items()}
+    torques = ('engine_torque', 'clutch_torque')
+    return log_of(signals | {name: np.full(count, 6.0) for name in torques})
+
+
 def noisy_log(log: MeasuredLog, seed: int, size: float = 0.1) -> MeasuredLog:
     """Return a log with white noise on its speeds, of a size in rad/s."""
     random = np.random.default_rng(seed)
@@ -39,6 +68,20 @@ def noisy_log(log: MeasuredLog, seed: int, size: float = 0.1) -> MeasuredLog:
     for name in SPEEDS:
         signals[name] = signals[name] + size * random.standard_normal(len(log.time_s))
     return replace(log, signals=signals)
+
+
+def noisy_log_of(times: np.ndarray, signals: dict[str, np.ndarray], seed: int) -> MeasuredLog:
+    """Return a log of signals at times, with white noise on its speeds."""
+    return noisy_log(MeasuredLog(Path('a.csv'), '', times, signals), seed)
+
+
+def within(fit: LogFit, true: dict[str, float]) -> list[bool]:
+    """Return for each true value, by name, whether its interval has it."""
+    found = []
+    for name, value in true.items():
+        lowest, highest = fit.interval(name) or (np.nan, np.nan)
+        found.append(lowest <= value <= highest)
+    return found
 
 
 def rows_late(log: MeasuredLog, names: Sequence[str], rows: int) -> MeasuredLog:
