@@ -4,23 +4,24 @@
 
 import numpy as np
 import pytest
-from random_runs import outcome, outcomes
+from support.random_runs import outcome, outcomes
 
-RUNS = 24
+RUNS = 5
+"""More of them are in tests/nightly/floor."""
 
 
 @pytest.mark.slow
 def test_random_runs_satisfy_their_constraints_and_lie_above_their_floors() -> None:
     done = list(outcomes(RUNS, seed=7))
     assert [each for each in done if each.wrong] == []
-    assert sum(each.covered for each in done) >= RUNS // 5
+    assert sum(each.covered for each in done) >= 1
 
 
 @pytest.mark.slow
 def test_random_shifts_satisfy_their_constraints_and_lie_above_their_floors() -> None:
     done = list(outcomes(RUNS, seed=7, shifts=True))
     assert [each for each in done if each.wrong] == []
-    assert sum(each.covered for each in done) >= RUNS // 4
+    assert sum(each.covered for each in done) >= 1
 
 
 def test_a_program_on_which_an_interior_point_method_of_highs_never_ended_gives_a_floor() -> None:

@@ -75,8 +75,9 @@ def test_the_cases_of_the_sample_differ_in_what_is_variable():
     }
 
 
-@pytest.mark.parametrize(('scenario', 'clutch', 'controller'), RUNS[:2] + RUNS[3:])
+@pytest.mark.parametrize(('scenario', 'clutch', 'controller'), [RUNS[0], RUNS[4]])
 def test_no_metric_of_a_run_is_below_its_floor(scenario, clutch, controller):
+    """More runs, of which some are at the engine's limits, are in tests/nightly/floor."""
     settings = settings_of(scenario, clutch)
     run = run_headless(settings, controller)
     metrics = [name for name in METRICS if clutch == 'stick_slip' or name != OF_STICK_SLIP]

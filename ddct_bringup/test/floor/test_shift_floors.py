@@ -5,14 +5,13 @@
 import numpy as np
 import pytest
 from refusals import refused
-from shift_cases import case_with, settings_of
+from shift_cases import case_with, compared_starts, settings_of
 
 from ddct_bringup.floor import computed_floor
 from ddct_bringup.floor.any_lock import lock_times
 from ddct_bringup.floor.cache import digest_of
 from ddct_bringup.floor.case import case_at, case_of_run
 from ddct_bringup.floor.control_start import control_start
-from ddct_bringup.floor.dynamics.start import start_of
 from ddct_bringup.floor.floor import floor_of, floors_of_run
 from ddct_bringup.floor.lock import lock_of
 from ddct_bringup.floor.point import point_of
@@ -20,29 +19,20 @@ from ddct_bringup.floor.values import METRICS, value_of
 from ddct_bringup.metrics.shift.course import ShiftCourse
 from ddct_bringup.metrics.signals.vibration import jerk
 from ddct_bringup.run.execution import recording_in_memory
-from ddct_bringup.run.headless import closed_loop, run_headless, run_loop
+from ddct_bringup.run.headless import run_headless
 from ddct_bringup.scores.scoring import score_run
 from ddct_bringup.verdict.limits import packaged_limits
-from ddct_controllers.handover.laws import HANDOVERS
-from ddct_controllers.registry import make_controller, own_controller_names
 from ddct_plant.base.errors import ParameterError
 
 pytestmark = pytest.mark.slow
 RUNS = (
-    ('upshift', 'model', 'pi', ()),
     ('upshift', 'model', 'mpc1', ()),
     ('upshift', 'timed', 'ls3', ()),
-    ('upshift', 'slip', 'hinf1', ()),
     ('upshift', 'slip', 'mpc3', ('actuator.delay_s=0.013',)),
-    ('upshift', 'model', 'ls8', ('shift.torque_cut_n_m=40',)),
     ('upshift', 'timed', 'ls8', ('shift.torque_cut_n_m=40', 'sensors={}')),
-    ('upshift_2_3', 'timed', 'lqi', ()),
     ('upshift_2_3', 'model', 'mpc_offset_free', ()),
-    ('upshift_hot', 'model', 'mpc1', ()),
     ('upshift_hot', 'slip', 'ls8', ()),
-    ('upshift_light', 'slip', 'hinf2', ()),
     ('upshift_light', 'model', 'mpc_wear', ()),
-    ('upshift_full', 'model', 'mpc_preview', ()),
     ('upshift_full', 'timed', 'pi', ()),
 )
 """Runs whose off-going clutch sticks, flares, slips back and locks again, or is open at once."""
@@ -65,27 +55,10 @@ def test_a_shift_is_a_point_of_the_program_that_bounds_it(
     assert np.all(point[1:] - case.motion.columns.high <= 1e-9)
 
 
-@pytest.mark.parametrize('handover', HANDOVERS)
-def test_all_controllers_of_the_clutch_reach_the_inertia_phase_in_one_state(handover):
-    settings = settings_of(handover=handover)
-    expected = control_start(settings)
-    compared = 0
-    for name in own_controller_names():
-        controller = make_controller(name, settings)
-        if controller.commands_engine:
-            continue
-        run = run_loop(closed_loop(settings, controller), expected.step + 12)
-        start = start_of(settings, run)
-        assert start.step == expected.step, name
-        for field in ('state', 'actuator', 'requests', 'accelerations', 'driving'):
-            np.testing.assert_array_equal(getattr(start, field), getattr(expected, field), name)
-        for field in ('requests', 'effects', 'most'):
-            np.testing.assert_array_equal(
-                getattr(start.off_going, field), getattr(expected.off_going, field), name
-            )
-        assert start.friction_work == pytest.approx(expected.friction_work, rel=1e-9)
-        compared += 1
-    assert compared >= 20
+def test_controllers_of_the_clutch_reach_the_inertia_phase_in_one_state():
+    """All of them do, after each handover: tests/nightly/floor."""
+    names = ('pi', 'mpc3', 'mpc4', 'least_jerk')
+    assert compared_starts('timed', names) == 3, 'one of them commands the engine'
 
 
 def test_the_torque_of_the_off_going_clutch_depends_on_the_controller():
@@ -102,7 +75,7 @@ def test_the_torque_of_the_off_going_clutch_depends_on_the_controller():
 
 @pytest.mark.parametrize(
     ('scenario', 'handover', 'controller'),
-    [('upshift', 'model', 'ls8'), ('upshift_hot', 'slip', 'mpc_preview')],
+    [('upshift_hot', 'slip', 'mpc_preview')],
 )
 def test_no_metric_of_a_shift_is_below_its_floor(scenario, handover, controller):
     settings = settings_of(scenario, handover=handover)

@@ -75,24 +75,13 @@ def test_the_same_run_is_beyond_a_limit_between_the_least_and_its_value() -> Non
         assert (states(run), run.verdict.limits) == ({'weighted_acceleration': state}, state)
 
 
-@pytest.mark.parametrize(
-    ('scenario', 'clutch', 'floors'),
-    [
-        ('thesis', 'linear', ALL),
-        ('launch', 'stick_slip', ALL),
-        ('launch_hot', 'stick_slip', 'peak_acceleration,traction'),
-    ],
-)
-def test_no_metric_is_below_the_least_at_the_same_lock_time(
-    scenario: str, clutch: str, floors: str
-) -> None:
-    run = scored('ls8', settings_of(scenario, clutch), floors)
-    if floors == ALL:
-        without = {'slip_acceleration_at_lock'} if clutch == 'linear' else set()
-        assert set(run.over_floor) == set(METRICS) - without
+def test_no_metric_is_below_the_least_at_the_same_lock_time() -> None:
+    """Other scenarios are in tests/nightly/floor."""
+    run = scored('ls8', settings_of(), ALL)
+    assert set(run.over_floor) == set(METRICS) - {'slip_acceleration_at_lock'}
     assert run.no_floor == ''
     ratios = [ratio for ratio in run.over_floor.values() if ratio is not None]
-    assert len(ratios) >= (7 if floors == ALL else 2)
+    assert len(ratios) >= 7
     assert min(ratios) >= 1.0
     for each in run.verdict.results:
         if each.over_floor is not None and each.name != 'friction_energy':

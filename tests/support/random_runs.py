@@ -3,8 +3,8 @@
 """
 Random runs of all controllers against their floors: no run may lie below.
 
-    python tests/floor/random_runs.py --runs 4000
-    python tests/floor/random_runs.py --runs 1000 --shifts
+    python tests/support/random_runs.py --runs 4000
+    python tests/support/random_runs.py --runs 1000 --shifts
 
 takes some ten minutes; with --shifts they are gear shifts with random handovers. Each run is a
 point of the program that bounds it: its residual in all constraints and its distance to its floor

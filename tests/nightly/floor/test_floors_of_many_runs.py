@@ -1,0 +1,72 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""No metric of a run is below its floor: scenarios with limits of the engine, and shifts."""
+
+import pytest
+from shift_cases import require_all_controllers_start_alike
+from shift_cases import settings_of as shift_of
+
+from ddct_bringup.floor.floor import floors_of_run
+from ddct_bringup.floor.values import METRICS, OF_STICK_SLIP
+from ddct_bringup.run.headless import run_headless
+from ddct_bringup.run.plan import RunPlan
+from ddct_bringup.scores.floors import ALL, floor_metrics, with_floors
+from ddct_bringup.scores.scored_recording import simulate_and_score
+from ddct_bringup.verdict.limits import packaged_limits
+from ddct_controllers.handover.laws import HANDOVERS
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
+
+
+@pytest.fixture(autouse=True)
+def own_cache(tmp_path, monkeypatch):
+    """Compute the floors of each test, and take none from the user's cache."""
+    monkeypatch.setenv('DDCT_CACHE', str(tmp_path / 'cache'))
+
+
+@pytest.mark.parametrize(
+    ('scenario', 'clutch', 'controller'),
+    [
+        ('launch', 'stick_slip', 'ls8'),
+        ('launch_hot', 'stick_slip', 'mpc3'),
+        ('thesis', 'stick_slip', 'hinf1'),
+        ('thesis', 'linear', 'mpc3'),
+    ],
+)
+def test_no_metric_of_a_run_is_below_its_floor(scenario, clutch, controller):
+    settings = RunSettings(load_scenario(scenario), clutch=clutch)
+    run = run_headless(settings, controller)
+    metrics = [name for name in METRICS if clutch == 'stick_slip' or name != OF_STICK_SLIP]
+    for metric, over in floors_of_run(settings, metrics, run).items():
+        assert over.value >= over.floor.least, metric
+
+
+@pytest.mark.parametrize(
+    ('scenario', 'handover', 'controller'),
+    [('upshift', 'model', 'ls8'), ('upshift_hot', 'slip', 'mpc_preview')],
+)
+def test_no_metric_of_a_shift_is_below_its_floor(scenario, handover, controller):
+    settings = shift_of(scenario, handover=handover)
+    run = run_headless(settings, controller)
+    for metric, over in floors_of_run(settings, list(METRICS), run, attain=False).items():
+        assert over.value >= over.floor.least, metric
+
+
+@pytest.mark.parametrize(
+    ('scenario', 'floors', 'least'),
+    [('launch', ALL, 7), ('launch_hot', 'peak_acceleration,traction', 2)],
+)
+def test_no_score_is_below_the_least_at_the_same_lock_time(scenario, floors, least):
+    settings = RunSettings(load_scenario(scenario), clutch='stick_slip')
+    scored = simulate_and_score(RunPlan(settings, 'ls8', 'headless'), packaged_limits())
+    run = with_floors(scored, floor_metrics(floors), packaged_limits()).scores
+    if floors == ALL:
+        assert set(run.over_floor) == set(METRICS)
+    ratios = [ratio for ratio in run.over_floor.values() if ratio is not None]
+    assert len(ratios) >= least
+    assert min(ratios) >= 1.0
+
+
+@pytest.mark.parametrize('handover', HANDOVERS)
+def test_all_controllers_of_the_clutch_reach_the_inertia_phase_in_one_state(handover):
+    require_all_controllers_start_alike(handover)
