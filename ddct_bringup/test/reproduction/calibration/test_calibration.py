@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from refusals import refused
 
+from ddct_bringup.reproduction.calibration import record
 from ddct_bringup.reproduction.calibration.analysis import identifiability
 from ddct_bringup.reproduction.calibration.parameters import (
     BASE,
@@ -52,17 +53,16 @@ def test_problem_builds_the_scenario_that_its_values_came_from():
     assert PROBLEM.scenario(VALUES) == SCENARIO
 
 
-def test_refit_from_the_frozen_scenario_stays_within_one_percent_of_every_range():
+def test_refit_from_the_frozen_scenario_stays_within_one_percent_of_every_range(
+    monkeypatch, optimum
+):
+    """It is that of `optimum`, as the fit takes most of the time."""
+    asked = []
+    monkeypatch.setattr(record, 'fit', lambda *given: asked.append(given) or optimum)
     moved = check_frozen(SCENARIO, quiet)['moved']
+    assert asked == [(dataclasses.replace(PROBLEM, base=SCENARIO), tuple(VALUES))]
     assert len(moved) == len(PARAMETERS) - 1
     assert all(abs(share) < 0.01 for share in moved.values()), moved
-
-
-def test_fit_from_a_displaced_start_returns_to_the_frozen_scenario():
-    start = VALUES + np.array([0.0, -30.0, -0.02, 12.0, 0.03, 0.02])
-    change = (np.array(fit(PROBLEM, start).values) - VALUES) / RANGE
-    assert np.max(np.abs(change[2:])) < 0.01
-    assert abs(change[1] - change[0] * RANGE[0] / RANGE[1]) < 0.01
 
 
 def test_fit_keeps_parameters_that_are_not_free():

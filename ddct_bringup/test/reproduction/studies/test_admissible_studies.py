@@ -1,47 +1,58 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""The studies of the admissible scenarios support the text of docs/thesis/predictions.md."""
+"""The studies of the admissible scenarios, here of few of them; all are in tests/nightly."""
 
 import pytest
 
+from ddct_bringup.reproduction.studies import admissible_scenarios as module
 from ddct_bringup.reproduction.studies.admissible_scenarios import (
     prediction_ranges,
     score_windows,
 )
-from ddct_bringup.reproduction.studies.study import Study
+from ddct_bringup.thesis.predictions import kept_predictions
 
 pytestmark = pytest.mark.slow
+END_S = 1.7
+"""End of the score window of the frozen scenario, in s."""
 
 
-@pytest.fixture(scope='module')
-def studies() -> dict[str, Study]:
-    """Return the studies by name."""
-    functions = (prediction_ranges, score_windows)
-    return {function.__name__: function() for function in functions}
+@pytest.fixture
+def one_member(monkeypatch):
+    """Let the scenario in the middle of the frozen window be the only one."""
+    (one,) = [each for each in module.members() if each.name == f'window_{END_S}']
+    monkeypatch.setattr(module, 'members', lambda: [one])
+    return one
 
 
-def figures(cell: str) -> list[float | None]:
-    return [None if part == '-' else float(part) for part in cell.split(' / ')]
-
-
-def test_no_scenario_has_a_whole_predicted_row(studies):
-    remarks = studies['prediction_ranges'].remarks[1:]
+def test_no_scenario_has_a_whole_predicted_row():
+    remarks = prediction_ranges().remarks[1:]
     assert [remark.split(':')[0] for remark in remarks] == ['MPC3', 'MPC4']
     assert all(' 0 hit all three figures' in remark for remark in remarks)
 
 
-def test_quiet_before_mpc4_acts_is_as_printed_for_the_frozen_end_of_the_window_only(studies):
-    centres = [row for row in studies['score_windows'].rows if row[1] == 'centre']
-    near = [row[0] for row in centres if float(row[-1]) == pytest.approx(0.2, rel=0.15)]
-    assert near == ['1.7']
+def test_a_range_has_the_value_of_the_frozen_scenario_and_those_of_all():
+    found = kept_predictions().by_id['5.2 hinf2 slip_rad_s 0.7']
+    (row,) = [
+        row for row in worn_ranges().rows if row[:2] == ('hinf2', '0.7') and 'rad/s' in row[2]
+    ]
+    assert row[3:] == (f'{found.frozen:.1f}', found.text('.1f'))
 
 
-def test_window_to_the_end_of_the_run_brings_mpc3_per_rad_s_near_the_print_and_mpc4_off(studies):
-    (whole,) = [row for row in studies['score_windows'].rows if row[1] == 'least squares']
-    assert whole[0] == '3.0'
-    assert float(whole[2]) < 13.5
-    time, torsion, acceleration = figures(whole[6])
-    assert (time, torsion, acceleration) == pytest.approx((0.63, 0.9, 0.19), rel=0.1)
-    mpc4 = figures(whole[7])
-    assert mpc4[1] is not None
-    assert mpc4[1] > 3.0 * 0.2
+def test_the_fitted_values_of_a_scenario_are_its_own(one_member):
+    thesis, row = admissible_scenarios().rows
+    assert (thesis[0], row[0]) == ('thesis', one_member.name)
+    assert float(row[1]) == END_S
+    assert float(row[5]) == pytest.approx(one_member.reference.slope_rad_s2, abs=0.05)
+    assert float(row[-1]) < float(thesis[-1])
+
+
+def test_quiet_before_mpc4_acts_is_as_printed_for_the_frozen_end_of_the_window(one_member):
+    study = score_windows()
+    frozen, centre, fitted, _ = study.rows
+    assert [row[:2] for row in (frozen, centre, fitted)] == [
+        (f'{END_S}', 'frozen'),
+        (f'{END_S}', 'centre'),
+        (f'{END_S}', 'least squares'),
+    ]
+    assert float(centre[-1]) == pytest.approx(0.2, rel=0.15)
+    assert float(fitted[2]) == pytest.approx(float(frozen[2]), abs=0.2)
