@@ -2,15 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """`colcon test` runs the tests of a package; `make test` runs them all in one session."""
 
-import subprocess
-import sys
 from pathlib import Path
-from xml.etree import ElementTree
 
 import pytest
-from test_dependencies import PACKAGES, ROOT, setup_of
-
-SMALLEST = 'ddct_reference'
+from support.declared import PACKAGES, ROOT, setup_of
 
 
 @pytest.mark.parametrize('package', PACKAGES)
@@ -18,16 +13,3 @@ def test_colcon_knows_that_the_tests_of_a_package_need_pytest(package: str) -> N
     """Without this it looks for tests of unittest, and finds none."""
     assert 'pytest' in setup_of(package)['extras_require']['test']
     assert list(Path(ROOT, package, 'test').rglob('test_*.py'))
-
-
-@pytest.mark.graph
-def test_colcon_runs_the_tests_of_a_package(tmp_path: Path) -> None:
-    colcon = str(Path(sys.executable).with_name('colcon'))
-    program = [colcon, '--log-base', str(tmp_path / 'log'), 'test', '--packages-select', SMALLEST]
-    results = ['--test-result-base', str(tmp_path / 'results'), '--return-code-on-test-failure']
-    done = subprocess.run([*program, *results], cwd=ROOT, capture_output=True, text=True)
-    assert done.returncode == 0, done.stdout + done.stderr
-    (report,) = (tmp_path / 'results').rglob('pytest.xml')
-    (suite,) = ElementTree.parse(report).getroot().iter('testsuite')
-    assert int(suite.attrib['tests']) > 10
-    assert suite.attrib['errors'] == suite.attrib['failures'] == '0'

@@ -4,22 +4,13 @@
 
 import ast
 import re
-import runpy
 import sys
 import xml.etree.ElementTree as ElementTree
-from pathlib import Path
-from typing import Any
+from functools import cache
 
 import pytest
-import setuptools
+from support.declared import PACKAGES, ROOT, ROS, declared_to_pip, setup_of
 
-ROOT = Path(__file__).resolve().parents[2]
-PACKAGES = ('ddct_plant', 'ddct_reference', 'ddct_controllers', 'ddct_bringup')
-ROS = {
-    *('builtin_interfaces', 'diagnostic_msgs', 'geometry_msgs'),
-    *('rcl_interfaces', 'rclpy', 'rosgraph_msgs', 'sensor_msgs', 'std_msgs', 'trajectory_msgs'),
-}
-"""Modules of ROS packages, which package.xml names as they are and PyPI does not have."""
 FROM_PYPI = {
     'bokeh': ('bokeh', 'python3-bokeh-pip'),
     'cffi': ('cffi', 'python3-cffi'),
@@ -49,6 +40,7 @@ NOT_IMPORTED = {'ddct_reference': {'rclpy'}}
 """Modules that a package declares and does not import: not yet, or only by another's class."""
 
 
+@cache
 def imported(package: str) -> set[str]:
     """
     Return the top-level modules that a package's code imports, other than Python's own.
@@ -71,24 +63,6 @@ def declared_to_ros(package: str) -> set[str]:
     """Return what a package's package.xml needs at run time."""
     tree = ElementTree.parse(ROOT / package / 'package.xml')
     return {element.text for element in tree.iter('exec_depend') if element.text}
-
-
-def setup_of(package: str) -> dict[str, Any]:
-    """Return what a package's setup.py hands to setuptools."""
-    given: dict[str, Any] = {}
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(setuptools, 'setup', lambda **options: given.update(options))
-        patch.chdir(ROOT / package)
-        runpy.run_path('setup.py')
-    return given
-
-
-def declared_to_pip(package: str) -> tuple[set[str], set[str]]:
-    """Return what a package's setup.py requires, and what it has as extras for its users."""
-    given = setup_of(package)
-    extras = given['extras_require'].items()
-    required = set(given['install_requires']) - {'setuptools'}
-    return required, {name for key, names in extras if key != 'test' for name in names}
 
 
 def test_every_module_that_is_imported_is_in_one_of_the_tables() -> None:

@@ -7,6 +7,7 @@ import re
 import subprocess
 import sys
 from collections.abc import Iterator
+from functools import cache
 from graphlib import TopologicalSorter
 from pathlib import Path
 
@@ -24,9 +25,13 @@ MOST_MODULES = 15
 """In one folder, besides __init__.py."""
 
 
-def imports(package: str) -> Iterator[tuple[Path, tuple[str, ...]]]:
-    """Yield each import of our packages: the file in its package, and the parts of the name."""
-    folder = ROOT / package / package
+@cache
+def imports(package: str) -> tuple[tuple[Path, tuple[str, ...]], ...]:
+    """Return each import of our packages: the file in its package, and the parts of the name."""
+    return tuple(_imports(ROOT / package / package))
+
+
+def _imports(folder: Path) -> Iterator[tuple[Path, tuple[str, ...]]]:
     for file in sorted(folder.rglob('*.py')):
         for node in ast.walk(ast.parse(file.read_text(encoding='utf-8'))):
             if isinstance(node, ast.Import):

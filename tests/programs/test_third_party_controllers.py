@@ -12,7 +12,7 @@ import pytest
 from support.complaints import assert_one_line
 from support.processes import Programs
 from support.runs import bag_bytes, expected, plan, record
-from support.third_party import EXAMPLE, example_entry_points, install
+from support.third_party import EXAMPLE, example_entry_points, install, install_broken
 
 from ddct_bringup.programs import bringup, compare, ddct, score, verify
 from ddct_controllers import registry
@@ -23,6 +23,7 @@ from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
 SUPPORT = Path(__file__).parent.parent
+HEADLESS, IN_ONE_PROCESS = '--headless', '--single-process'
 
 
 @pytest.fixture
@@ -32,11 +33,7 @@ def example(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
 
 @pytest.fixture
 def broken(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    answers = ('not_a_number', 'infinite', 'bare_number', 'text', 'raising', 'bad_status')
-    names = (*answers, 'leaving', 'slow', 'bad_linear_model', 'no_controller', 'nothing')
-    targets = {name: f'support.broken_controllers:make_{name}' for name in names}
-    targets['absent'] = 'no_such_package.controllers:make'
-    install(monkeypatch, tmp_path / 'site', SUPPORT, targets)
+    install_broken(monkeypatch, tmp_path / 'site')
 
 
 @pytest.mark.usefixtures('example')
@@ -54,35 +51,18 @@ def test_the_example_controller_runs_in_every_layout_with_the_same_bytes(tmp_pat
 
 
 @pytest.mark.usefixtures('example')
-def test_bringup_lists_and_runs_the_example_controller(programs: Programs, tmp_path: Path) -> None:
-    listing = programs.start_module('ddct_bringup.programs.bringup', '--list')
-    run = programs.start_module(
-        'ddct_bringup.programs.bringup',
-        *('--controller', 'dead_zone', '--headless', '--out', str(tmp_path / 'runs')),
-    )
-    assert listing.wait() == 0, listing.errors()
-    controllers = listing.output().splitlines()[0]
-    assert controllers.startswith('controllers:')
-    assert 'dead_zone' in controllers
-    width = next(line for line in listing.output().splitlines() if 'dead_zone_rpm' in line)
-    assert width.split() == [
-        'dead_zone_rpm',
-        'rpm',
-        '5',
-        'at',
-        'least',
-        '0',
-        'half',
-        'the',
-        'width',
-        'of',
-        'the',
-        'dead',
-        'zone',
-        'dead_zone',
-    ]
-    assert run.wait() == 0, run.errors()
-    assert (tmp_path / 'runs' / 'dead_zone' / 'dead_zone_0.mcap').is_file()
+def test_bringup_lists_and_runs_the_example_controller(
+    capfd: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    assert bringup.main(['--list']) == 0
+    lines = capfd.readouterr().out.splitlines()
+    assert lines[0].startswith('controllers:')
+    assert 'dead_zone' in lines[0]
+    width = ' '.join(next(line for line in lines if 'dead_zone_rpm' in line).split())
+    assert width == 'dead_zone_rpm rpm 5 at least 0 half the width of the dead zone dead_zone'
+    out = tmp_path / 'runs'
+    assert bringup.main(['--controller', 'dead_zone', '--headless', '--out', str(out)]) == 0
+    assert (out / 'dead_zone' / 'dead_zone_0.mcap').is_file()
 
 
 @pytest.mark.usefixtures('example')
@@ -141,17 +121,18 @@ def test_a_controller_that_cannot_be_built_is_named(name: str, words: list[str])
 
 
 @pytest.mark.usefixtures('broken')
-@pytest.mark.parametrize('layout', ['--headless', '--single-process'])
 @pytest.mark.parametrize(
-    ('name', 'words'),
+    ('layout', 'name', 'words'),
     [
-        ('not_a_number', 'torque at step 60 is nan'),
-        ('infinite', 'torque at step 60 is inf'),
-        ('bare_number', 'float'),
-        ('text', "'12.5'"),
-        ('bad_status', "status at step 60 is (('iterations', 3),)"),
-        ('raising', 'failed at step 60 (ZeroDivisionError: float division by zero, in '),
-        ('leaving', 'failed at step 60 (SystemExit: 3, in '),
+        (HEADLESS, 'not_a_number', 'torque at step 60 is nan'),
+        (HEADLESS, 'infinite', 'torque at step 60 is inf'),
+        (HEADLESS, 'bare_number', 'float'),
+        (HEADLESS, 'text', "'12.5'"),
+        (HEADLESS, 'bad_status', "status at step 60 is (('iterations', 3),)"),
+        (HEADLESS, 'raising', 'failed at step 60 (ZeroDivisionError: float division by zero, in '),
+        (HEADLESS, 'leaving', 'failed at step 60 (SystemExit: 3, in '),
+        (IN_ONE_PROCESS, 'bad_status', "status at step 60 is (('iterations', 3),)"),
+        (IN_ONE_PROCESS, 'leaving', 'failed at step 60 (SystemExit: 3, in '),
     ],
 )
 def test_a_command_that_cannot_be_used_ends_the_run_with_one_line(
@@ -164,20 +145,6 @@ def test_a_command_that_cannot_be_used_ends_the_run_with_one_line(
         capfd.readouterr().err, 'ddct bringup', f'controller {name!r}: it', words, place
     )
     assert not (out / name).exists()
-
-
-@pytest.mark.usefixtures('broken')
-def test_a_graph_names_the_controller_whose_status_is_no_text(
-    programs: Programs, tmp_path: Path
-) -> None:
-    run = programs.start_module(
-        'ddct_bringup.programs.bringup',
-        *('--controller', 'bad_status', '--out', str(tmp_path / 'runs')),
-    )
-    assert run.wait() == 1
-    words = "controller 'bad_status': its status at step 60 is (('iterations', 3),)"
-    place = f'{SUPPORT}/support/broken_controllers.py line '
-    assert_one_line(run.errors(), 'ddct bringup', 'node controller', words, place)
 
 
 @pytest.mark.usefixtures('broken')
@@ -219,36 +186,16 @@ def test_compare_runs_and_names_a_controller_whose_linear_model_is_none(
 
 
 @pytest.mark.usefixtures('broken')
-@pytest.mark.parametrize('layout', ['--headless', '--single-process'])
 def test_compare_goes_on_after_a_controller_that_commands_no_number(
-    tmp_path: Path, layout: str
+    tmp_path: Path,
 ) -> None:
     out = tmp_path / 'runs'
-    options = [layout, '--duration', '1', '--out', str(out)]
+    options = ['--headless', '--duration', '1', '--out', str(out)]
     assert compare.main(['--controllers', 'not_a_number,pi', *options]) == 1
     bad, good = json.loads((out / 'scores.json').read_text())['runs']
     assert (bad['controller'], bad['valid']) == ('not_a_number', False)
     assert 'torque at step 60 is nan' in bad['reason']
     assert (good['controller'], good['valid']) == ('pi', True)
-
-
-@pytest.mark.usefixtures('broken')
-def test_compare_keeps_and_names_the_log_of_a_run_that_failed_in_the_graph(
-    programs: Programs, tmp_path: Path
-) -> None:
-    out = tmp_path / 'runs'
-    run = programs.start_module(
-        'ddct_bringup.programs.compare',
-        *('--controllers', 'raising,pi', '--duration', '1', '--out', str(out)),
-    )
-    assert run.wait() == 1
-    log = out / 'raising' / 'work' / 'controller.log'
-    assert str(log) in run.errors()
-    assert 'Traceback' in log.read_text(encoding='utf-8')
-    bad, good = json.loads((out / 'scores.json').read_text())['runs']
-    assert "controller 'raising': it failed at step 60" in bad['reason']
-    assert bad['reason'].endswith('its log is work/controller.log')
-    assert (bad['valid'], good['valid']) == (False, True)
 
 
 @pytest.mark.usefixtures('broken')

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 EXAMPLE = Path(__file__).parent.parent / 'example_controller'
+SUPPORT = Path(__file__).parent
 GROUP = 'ddct.controllers'
 
 
@@ -38,3 +39,12 @@ def install(
     monkeypatch.setenv('PYTHONPATH', os.pathsep.join(filter(None, paths)))
     monkeypatch.syspath_prepend(code)
     monkeypatch.syspath_prepend(site)
+
+
+def install_broken(monkeypatch: pytest.MonkeyPatch, site: Path) -> None:
+    """Make the controllers of `broken_controllers` visible, and one that cannot be imported."""
+    answers = ('not_a_number', 'infinite', 'bare_number', 'text', 'raising', 'bad_status')
+    names = (*answers, 'leaving', 'slow', 'bad_linear_model', 'no_controller', 'nothing')
+    targets = {name: f'support.broken_controllers:make_{name}' for name in names}
+    targets['absent'] = 'no_such_package.controllers:make'
+    install(monkeypatch, site, SUPPORT.parent, targets)

@@ -3,8 +3,6 @@
 """Columns of results are those of pyarrow, without the import of pandas."""
 
 import os
-import subprocess
-import sys
 from pathlib import Path
 from typing import NoReturn
 
@@ -53,29 +51,6 @@ def test_the_columns_of_several_row_groups_are_joined(tmp_path: Path) -> None:
 def test_a_list_and_a_group_of_keys_become_json() -> None:
     column = arrow_column(pa.string(), [[0.6, 1.1], {'csv': 'a.csv'}])
     assert column.to_pylist() == ['[0.6, 1.1]', '{"csv": "a.csv"}']
-
-
-def test_a_worker_writes_and_a_page_reads_rows_without_pandas_or_scipy_stats(
-    tmp_path: Path,
-) -> None:
-    code = (
-        'import sys\nfrom pathlib import Path\n'
-        'from ddct_bringup.campaign.conduct import carry_out\n'
-        'from ddct_bringup.campaign.campaign import Campaign\n'
-        'from ddct_bringup.campaign.spec import spec_of\n'
-        'from ddct_bringup.campaign_report.folder import write_campaign_page\n'
-        'from ddct_bringup.verdict.limits import packaged_limits\n'
-        "content = {'controllers': ['pi', 'ls8'], 'grid': {'wear_gain': [0.8, 0.9, 1.0, 1.1]}}\n"
-        'out = Path(sys.argv[1])\n'
-        'made = Campaign(spec_of(content, Path()))\n'
-        'carry_out(made, packaged_limits(), out, workers=1)\n'
-        'write_campaign_page(out)\n'
-        "assert not {'pandas', 'scipy.stats'} & set(sys.modules)\n"
-    )
-    done = subprocess.run(
-        [sys.executable, '-c', code, str(tmp_path / 'out')], capture_output=True, check=False
-    )
-    assert done.returncode == 0, done.stderr.decode()
 
 
 @pytest.mark.parametrize('kind', ['rows', 'texts'])

@@ -13,7 +13,6 @@ from ddct_bringup.report.evidence import FREQUENCY_FILE
 from ddct_bringup.run.headless import run_headless
 from ddct_controllers.design.analysis.loops import sampled_loop
 from ddct_controllers.design.analysis.step_response import step_response
-from ddct_controllers.design.analysis.worst_corner import plant_corners
 from ddct_controllers.interface import Command, Controller, Measurement
 from ddct_controllers.registry import controller_names, make_controller
 from ddct_controllers.workflows.evidence import frequency_evidence
@@ -108,14 +107,3 @@ def test_a_predictive_controller_has_no_frequency_response(name):
         'linear': False,
         **dict.fromkeys(('nominal', 'stable_wear_gain', 'wear', 'corners')),
     }
-
-
-def test_the_evidence_of_a_repeated_run_is_the_same(tmp_path):
-    texts = []
-    for name in ('first', 'second'):
-        out = tmp_path / name
-        plant_corners.cache_clear()
-        options = ['--floors', 'none', '--headless', '--out', str(out)]
-        assert compare.main(['--controllers', 'ls2', *options]) == 0
-        texts.append((out / FREQUENCY_FILE).read_bytes())
-    assert texts[0] == texts[1]

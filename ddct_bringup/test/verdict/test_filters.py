@@ -2,10 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The filters of the metrics have the coefficients and the bits of scipy.signal."""
 
-import os
-import subprocess
-import sys
-
 import numpy as np
 import pytest
 import scipy
@@ -83,26 +79,3 @@ def test_a_process_that_filters_much_uses_scipy(monkeypatch):
     signal = np.ones(filters.Recursion.STEPS_BEFORE_IMPORT // 2)
     assert recursion(filters.LOW_PASS[0], signal) == pytest.approx(signal)
     assert recursion(filters.LOW_PASS[0], signal) == 'from scipy'
-
-
-SCORED = """
-import sys
-from ddct_bringup.programs.ddct import main
-code = main()
-assert 'scipy.signal' not in sys.modules
-assert 'scipy.stats' not in sys.modules
-sys.exit(code)
-"""
-
-
-def test_a_program_that_scores_a_run_does_without_the_slow_parts_of_scipy(tmp_path):
-    words = ['compare', '--headless', '--controllers', 'pi', '--out', str(tmp_path / 'out')]
-    done = subprocess.run(
-        [sys.executable, '-P', '-c', SCORED, *words],
-        capture_output=True,
-        text=True,
-        timeout=120,
-        check=False,
-        env=os.environ,
-    )
-    assert done.returncode == 0, done.stderr
