@@ -3,8 +3,9 @@
 """
 Every command in a message, an example or a page of ours names a program and options that exist.
 
-Those with the values of a run are run too: here that of a design, in tests/conformance those of a
-new controller, and in ddct_bringup/test those on the pages of a tuning, campaign and benchmark.
+Those with the values of a run are run too: that of a design in tests/nightly, those of a new
+controller in tests/conformance, those on pages of a tuning, campaign and benchmark in
+ddct_bringup/test.
 """
 
 import argparse
@@ -18,7 +19,6 @@ from typing import Any
 from unittest import mock
 
 import pytest
-from printed_commands import printed_commands, run_printed, run_words
 
 from ddct_bringup.programs.ddct import programs
 
@@ -158,20 +158,6 @@ def test_every_command_in_the_sources_is_one_that_its_program_takes(
             checked.add((command, whole))
     assert wrong == [], capfd.readouterr().err
     assert sum(whole for _, whole in checked) > 80
-
-
-@pytest.mark.slow
-def test_the_printed_command_runs_a_design(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    place = tmp_path / "the driver's own"
-    place.mkdir()
-    monkeypatch.chdir(place)
-    design = 'ddct design loop-shaping --rise-time 0.3 --overshoot 10 --name quick --out'
-    assert run_words([*design.split(), 'my designs']) == 0
-    (command,) = printed_commands(capsys.readouterr().out)
-    assert run_printed(command) == 0
-    assert list(place.glob('runs/quick/*/*.mcap'))
 
 
 def test_every_target_of_make_in_a_message_exists() -> None:

@@ -10,11 +10,16 @@ import numpy as np
 
 from ddct_bringup.scores.csv_text import signals_csv
 from ddct_plant.identification.from_log.command import NEEDED
+from ddct_plant.identification.from_log.fit import fit_log
+from ddct_plant.identification.from_log.prediction import SpeedPrediction, predict
 from ddct_plant.identification.from_log.result import LogFit
 from ddct_plant.identification.from_log.stretch import TORQUES
+from ddct_plant.identification.from_log.stretches import stretches_of
+from ddct_plant.identification.from_log.verdict import reasons_against
 from ddct_plant.identification.identify import main
 from ddct_plant.measured.columns import TIME, own_columns
 from ddct_plant.measured.log import SPEEDS, MeasuredLog, read_log
+from ddct_plant.models.parameters import DrivelineParameters
 from support.other_car import TRUE, drive
 from support.runs import plan, record
 
@@ -59,6 +64,18 @@ def constant_log() -> MeasuredLog:
     signals = {n: each + 0.1 * random.standard_normal(count) for n, each in levels.items()}
     torques = ('engine_torque', 'clutch_torque')
     return log_of(signals | {name: np.full(count, 6.0) for name in torques})
+
+
+def judged(
+    signals: dict[str, np.ndarray], times: np.ndarray, known: dict[str, float] | None = None
+) -> tuple[LogFit, list[SpeedPrediction], list[str]]:
+    """Return a fit to 70 % of a log, its prediction of the rest, and the reasons against it."""
+    log = MeasuredLog(Path('a.csv'), '', times, signals)
+    parting = times[0] + 0.7 * (times[-1] - times[0])
+    first, rest = log.part(times[0], parting), log.part(parting, times[-1])
+    fit = fit_log(first, DrivelineParameters(), drag, (), known or {})
+    predictions = predict(fit, stretches_of(rest, drag))
+    return fit, predictions, reasons_against(fit, predictions, stretches_of(first, drag))
 
 
 def noisy_log(log: MeasuredLog, seed: int, size: float = 0.1) -> MeasuredLog:

@@ -16,7 +16,6 @@ from ddct_bringup.api import (
     thesis_numbers,
 )
 from ddct_bringup.api import thesis as module
-from ddct_bringup.reproduction.numbers.gate import OUTCOMES
 from ddct_bringup.reproduction.numbers.thesis_number import Value
 from ddct_bringup.thesis.table_5_1 import TABLE_METRICS, THESIS_TABLE
 
@@ -68,16 +67,6 @@ def test_table_5_2_has_the_sixteen_words_and_whether_they_hold() -> None:
 def test_table_5_2_with_an_unknown_clutch_is_refused() -> None:
     with pytest.raises(ParameterError, match='wet'):
         table_5_2('wet')
-
-
-@pytest.mark.slow
-def test_every_number_of_the_gate_has_its_outcome_and_the_facts_are_counted() -> None:
-    found = thesis_numbers()
-    assert list(found.facts.index) == list(OUTCOMES)
-    assert found.facts['entries'].sum() == len(found.table)
-    assert found.facts['facts'].sum() == found.table['group'].nunique()
-    predicted = found.table[found.table['outcome'] == 'predicted hit']
-    assert predicted['hit'].all() and (predicted['verdict'] == 'predicted').all()
 
 
 def test_a_claim_that_does_not_hold_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -50,7 +50,7 @@ def test_another_seed_searches_elsewhere(finished: Path, tmp_path: Path) -> None
     assert trials[1].values != known[1].values
 
 
-@pytest.mark.parametrize('place', ['rows', 'entries', 'between'])
+@pytest.mark.parametrize('place', ['rows', 'entries'])
 def test_a_killed_tuning_goes_on_to_the_same_bytes(
     finished: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, place: str
 ) -> None:

@@ -10,6 +10,7 @@ from support.logs import (
     drag,
     drive_log,
     hits,
+    judged,
     log_of,
     noisy_log,
     noisy_log_of,
@@ -120,3 +121,12 @@ def test_signals_that_are_rows_late_move_delays_and_not_parameters(
         assert fit.delays['clutch_torque'] == pytest.approx(true['clutch_torque'], abs=1e-3)
         assert fit.values['halfshaft_stiffness'] == pytest.approx(6716.3, rel=0.03)
         assert fit.values['engine_inertia'] == pytest.approx(0.25, rel=0.01)
+
+
+def test_noise_with_a_memory_and_noise_of_the_torques_are_not_taken_for_a_wrong_model() -> None:
+    random = np.random.default_rng(2)
+    for signals in (drive().noisy(1, 1.0), drive().noisy(2)):
+        for name in SPEEDS:
+            slow = np.convolve(random.standard_normal(len(drive().time_s)), 0.9 ** np.arange(40))
+            signals[name] = signals[name] + 0.02 * slow[: len(drive().time_s)]
+        assert judged(signals, drive().time_s)[2] == []

@@ -57,8 +57,13 @@ def test_refit_from_the_frozen_scenario_stays_within_one_percent_of_every_range(
     monkeypatch, optimum
 ):
     """It is that of `optimum`, as the fit takes most of the time."""
-    asked = []
-    monkeypatch.setattr(record, 'fit', lambda *given: asked.append(given) or optimum)
+    asked: list[tuple[object, ...]] = []
+
+    def fit_of(*given: object) -> Fit:
+        asked.append(given)
+        return optimum
+
+    monkeypatch.setattr(record, 'fit', fit_of)
     moved = check_frozen(SCENARIO, quiet)['moved']
     assert asked == [(dataclasses.replace(PROBLEM, base=SCENARIO), tuple(VALUES))]
     assert len(moved) == len(PARAMETERS) - 1
