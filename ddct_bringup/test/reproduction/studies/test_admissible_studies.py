@@ -6,8 +6,10 @@ import pytest
 
 from ddct_bringup.reproduction.studies import admissible_scenarios as module
 from ddct_bringup.reproduction.studies.admissible_scenarios import (
+    admissible_scenarios,
     prediction_ranges,
     score_windows,
+    worn_ranges,
 )
 from ddct_bringup.thesis.predictions import kept_predictions
 
