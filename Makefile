@@ -19,7 +19,7 @@ export OPENBLAS_NUM_THREADS := 1
 
 BIN := .venv/bin
 # Runs an instrument of tools/; some need helpers of tests/support.
-TOOL = PYTHONPATH="$(CURDIR)/tools:$(CURDIR)/tests$${PYTHONPATH:+:$$PYTHONPATH}" $(BIN)/python -P -m
+TOOL = PYTHONPATH="$(CURDIR)/tools:$(CURDIR)/tests:$(CURDIR)/ddct_plant/test/helpers$${PYTHONPATH:+:$$PYTHONPATH}" $(BIN)/python -P -m
 SOURCED := . install/setup.bash;
 VENV_MADE := .venv/.made
 WORKSPACE_BUILT := install/.built

@@ -76,15 +76,15 @@ def programs(tmp_path: Path) -> Iterator[Programs]:
 
 
 @pytest.fixture
-def graph_of(tmp_path: Path) -> Iterator[Callable[[RunPlan], 'InProcessGraph']]:
+def graph_of(tmp_path: Path) -> Iterator[Callable[..., 'InProcessGraph']]:
     """Return a function that prepares a graph in this process for a plan."""
     # The other tests need no ROS.
     from support.in_process_graph import InProcessGraph
 
     graphs: list[InProcessGraph] = []
 
-    def make(plan: RunPlan) -> 'InProcessGraph':
-        graphs.append(InProcessGraph(plan, tmp_path / f'graph{len(graphs)}'))
+    def make(plan: RunPlan, **options: bool) -> 'InProcessGraph':
+        graphs.append(InProcessGraph(plan, tmp_path / f'graph{len(graphs)}', **options))
         return graphs[-1]
 
     yield make

@@ -9,9 +9,9 @@ from typing import Any
 import pytest
 from geometry_msgs.msg import TwistStamped, WrenchStamped
 from sensor_msgs.msg import JointState
+from support.altering import add_altering, changing, remaps
 from support.in_process_graph import GraphOf, InProcessGraph
 from support.runs import plan
-from support.tampering import Tamperer, tampered_remap
 from trajectory_msgs.msg import JointTrajectory
 
 Spoil = Callable[[Any], None]
@@ -98,36 +98,33 @@ def _skip(message: Any) -> None:
     message.header.stamp.sec += 1
 
 
-TORQUE, TRAJECTORY, TWIST = WrenchStamped, JointTrajectory, TwistStamped
-CASES: dict[str, tuple[str, type, str, Spoil, list[str]]] = {
-    'engine torque nan': ('driveline', TORQUE, 'engine/torque', _torque(math.nan), ['nan']),
-    'load torque infinite': ('driveline', TORQUE, 'load/torque', _torque(math.inf), ['inf']),
-    'clutch torque nan': ('driveline', TRAJECTORY, 'clutch/torque', _point(math.nan), ['nan']),
-    'clutch torque short': ('driveline', TRAJECTORY, 'clutch/torque', _five_points, ['5 points']),
-    'clutch torque empty': ('driveline', TRAJECTORY, 'clutch/torque', _no_effort, ['effort']),
-    'two efforts': ('clutch', TRAJECTORY, 'actuator/torque', _two_efforts, ['and no more']),
-    'actuator torque': ('clutch', TRAJECTORY, 'actuator/torque', _point(-math.inf), ['-inf']),
-    'request nan': ('actuator', TORQUE, 'clutch/torque_request', _torque(math.nan), ['nan']),
-    'speed for the load': ('load', TWIST, 'vehicle/twist', _vehicle_speed, ['-inf']),
-    'slip nan': ('reference', TWIST, 'clutch/slip', _slip, ['nan']),
-    'speed nan': ('controller', JointState, 'driveline/joint_states', _joint_speed, ['nan']),
-    'joint order': ('controller', JointState, 'driveline/joint_states', _joint_order, ['order']),
-    'no velocity': ('controller', JointState, 'driveline/joint_states', _no_velocity, ['0 vel']),
+CASES: dict[str, tuple[str, str, Spoil, list[str]]] = {
+    'engine torque nan': ('driveline', 'engine/torque', _torque(math.nan), ['nan']),
+    'load torque infinite': ('driveline', 'load/torque', _torque(math.inf), ['inf']),
+    'clutch torque nan': ('driveline', 'clutch/torque', _point(math.nan), ['nan']),
+    'clutch torque short': ('driveline', 'clutch/torque', _five_points, ['5 points']),
+    'clutch torque empty': ('driveline', 'clutch/torque', _no_effort, ['effort']),
+    'two efforts': ('clutch', 'actuator/torque', _two_efforts, ['and no more']),
+    'actuator torque': ('clutch', 'actuator/torque', _point(-math.inf), ['-inf']),
+    'request nan': ('actuator', 'clutch/torque_request', _torque(math.nan), ['nan']),
+    'speed for the load': ('load', 'vehicle/twist', _vehicle_speed, ['-inf']),
+    'slip nan': ('reference', 'clutch/slip', _slip, ['nan']),
+    'speed nan': ('controller', 'driveline/joint_states', _joint_speed, ['nan']),
+    'joint order': ('controller', 'driveline/joint_states', _joint_order, ['order']),
+    'no velocity': ('controller', 'driveline/joint_states', _no_velocity, ['0 vel']),
     'long effort': (
         'controller',
-        JointState,
         'driveline/joint_states',
         _long_effort,
         ['1000 numbers in effort'],
     ),
-    'speed for control': ('controller', TWIST, 'vehicle/twist', _vehicle_speed, ['-inf']),
-    'torque for control': ('controller', TORQUE, 'engine/torque', _torque(math.nan), ['nan']),
-    'reference nan': ('controller', TRAJECTORY, 'clutch/slip_reference', _reference, ['nan']),
-    'other joint': ('controller', TRAJECTORY, 'clutch/slip_reference', _other_joint, ['wheel']),
-    'no rate': ('controller', TRAJECTORY, 'clutch/slip_reference', _no_rate, ['acceleration']),
+    'speed for control': ('controller', 'vehicle/twist', _vehicle_speed, ['-inf']),
+    'torque for control': ('controller', 'engine/torque', _torque(math.nan), ['nan']),
+    'reference nan': ('controller', 'clutch/slip_reference', _reference, ['nan']),
+    'other joint': ('controller', 'clutch/slip_reference', _other_joint, ['wheel']),
+    'no rate': ('controller', 'clutch/slip_reference', _no_rate, ['acceleration']),
     'no preview': (
         'controller',
-        TRAJECTORY,
         'clutch/slip_reference',
         _no_reference,
         ['0 points', 'preview_steps:=0'],
@@ -135,23 +132,19 @@ CASES: dict[str, tuple[str, type, str, Spoil, list[str]]] = {
 }
 
 
-def _graph_with_tampering(
-    graph: InProcessGraph, reader: str, message_type: type, topic: str, spoil: Spoil
-) -> InProcessGraph:
-    graph.add(reader, cli_args=tampered_remap(topic))
-    where = {'context': graph.context, 'namespace': reader.rpartition('/')[0] or None}
-    graph.add_other(Tamperer(message_type, topic, spoil, FROM_STEP, **where))
+def _spoilt(graph: InProcessGraph, reader: str, topic: str, spoil: Spoil) -> InProcessGraph:
+    """Spoil the messages of a topic, named as in the graph, on their way to a node."""
+    graph.add(reader, cli_args=remaps(reader, [topic]))
+    add_altering(graph, topic, changing(spoil, FROM_STEP), reader=reader)
     graph.add_all()
     return graph
 
 
-@pytest.mark.parametrize(
-    ('reader', 'message_type', 'topic', 'spoil', 'words'), CASES.values(), ids=CASES
-)
+@pytest.mark.parametrize(('reader', 'topic', 'spoil', 'words'), CASES.values(), ids=CASES)
 def test_a_bad_value_ends_its_reader_with_topic_and_stamp(
-    graph_of: GraphOf, reader: str, message_type: type, topic: str, spoil: Spoil, words: list[str]
+    graph_of: GraphOf, reader: str, topic: str, spoil: Spoil, words: list[str]
 ) -> None:
-    graph = _graph_with_tampering(graph_of(plan()), reader, message_type, topic, spoil)
+    graph = _spoilt(graph_of(plan()), reader, topic, spoil)
     node, complaint = graph.first_failure()
     assert node == reader
     for word in (topic, STAMP, *words):
@@ -172,7 +165,7 @@ def test_a_bad_stamp_ends_a_follower_with_its_topic(
     graph_of: GraphOf, spoil: Spoil, words: list[str]
 ) -> None:
     graph = graph_of(plan())
-    _graph_with_tampering(graph, 'clutch', JointTrajectory, 'actuator/torque', spoil)
+    _spoilt(graph, 'clutch', 'actuator/torque', spoil)
     node, complaint = graph.first_failure()
     assert node == 'clutch'
     for word in ('actuator/torque', *words):
@@ -180,19 +173,19 @@ def test_a_bad_stamp_ends_a_follower_with_its_topic(
 
 
 @pytest.mark.parametrize(
-    ('reader', 'message_type', 'topic', 'spoil'),
+    ('reader', 'topic', 'spoil'),
     [
-        ('off_going/clutch', TRAJECTORY, 'actuator/torque', _two_efforts),
-        ('off_going/clutch', TRAJECTORY, 'actuator/torque', _off_grid),
-        ('off_going/actuator', TORQUE, 'clutch/torque_request', _torque(-math.inf)),
-        ('off_going/actuator', TORQUE, 'clutch/torque_request', _skip),
+        ('off_going/clutch', 'actuator/torque', _two_efforts),
+        ('off_going/clutch', 'actuator/torque', _off_grid),
+        ('off_going/actuator', 'clutch/torque_request', _torque(-math.inf)),
+        ('off_going/actuator', 'clutch/torque_request', _skip),
     ],
 )
 def test_a_node_of_the_off_going_side_names_its_topic_as_the_graph_does(
-    graph_of: GraphOf, reader: str, message_type: type, topic: str, spoil: Spoil
+    graph_of: GraphOf, reader: str, topic: str, spoil: Spoil
 ) -> None:
     graph = graph_of(plan('pi', scenario='upshift', clutch='stick_slip'))
-    _graph_with_tampering(graph, reader, message_type, topic, spoil)
+    _spoilt(graph, reader, f'off_going/{topic}', spoil)
     node, complaint = graph.first_failure()
     assert node == reader
     assert f'off_going/{topic}' in complaint
@@ -201,7 +194,7 @@ def test_a_node_of_the_off_going_side_names_its_topic_as_the_graph_does(
 def test_the_driveline_waits_in_vain_for_the_right_stamp(graph_of: GraphOf) -> None:
     graph = graph_of(plan())
     graph.parameters['driveline']['answer_timeout_s'] = 0.5
-    _graph_with_tampering(graph, 'driveline', WrenchStamped, 'load/torque', _off_grid)
+    _spoilt(graph, 'driveline', 'load/torque', _off_grid)
     node, complaint = graph.first_failure()
     assert node == 'driveline'
     assert complaint.startswith(f'no load/torque for stamp {STAMP} (step 30) within 0.5 s')
@@ -209,7 +202,7 @@ def test_the_driveline_waits_in_vain_for_the_right_stamp(graph_of: GraphOf) -> N
 
 def test_a_bad_stamp_ends_the_recorder_with_its_topic(graph_of: GraphOf) -> None:
     graph = graph_of(plan())
-    _graph_with_tampering(graph, 'recorder', TwistStamped, 'clutch/slip', _off_grid)
+    _spoilt(graph, 'recorder', 'clutch/slip', _off_grid)
     node, complaint = graph.first_failure()
     assert node == 'recorder'
     assert complaint.startswith('clutch/slip: stamp 1300000001 ns is not on the grid')

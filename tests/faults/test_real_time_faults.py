@@ -3,7 +3,6 @@
 """In real time bad messages count as missing, and missing ones lead to a safe state."""
 
 import math
-import signal
 from collections.abc import Callable
 from functools import partial
 from typing import Any
@@ -11,11 +10,9 @@ from typing import Any
 import numpy as np
 import pytest
 from geometry_msgs.msg import WrenchStamped
-from support.in_process_graph import GraphOf, InProcessGraph
-from support.patient_clock import PatientClock, realtime_owner
-from support.processes import START_S, Programs
+from support.altering import Silent, add_altering, changing, remaps
+from support.in_process_graph import GraphOf
 from support.runs import expected, plan
-from support.tampering import Tamperer, tampered_remap
 
 from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.run.timing_and_failure import read_timing
@@ -23,7 +20,9 @@ from ddct_bringup.scores.scored_recording import score_recording
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.base.timebase import PERIOD_S, stamp_of_step
 from ddct_plant.fail_safe.request_watch import CLUTCH_TIMEOUT_S, FailSafeSettings
+from ddct_plant.graph.qos import LOOP_QOS
 from ddct_plant.signals.topics import CLUTCH_TORQUE, LOAD_TORQUE, TOPICS
+from ddct_plant.ticks.realtime_owner import RealtimeOwner
 
 CLUTCH, LOAD = CLUTCH_TORQUE.name, LOAD_TORQUE.name
 FROM_STEP = 20
@@ -62,13 +61,9 @@ def test_bad_requests_count_as_missing_and_open_the_clutch(
 ) -> None:
     graph = graph_of(plan(mode='realtime', duration_s=0.9))
     topic = 'clutch/torque_request'
-    graph.add('actuator', cli_args=tampered_remap(topic))
-    graph.add_other(Tamperer(WrenchStamped, topic, spoil, FROM_STEP, context=graph.context))
+    graph.add('actuator', cli_args=remaps('actuator', [topic]))
+    add_altering(graph, topic, changing(spoil, FROM_STEP), reader='actuator')
     graph.add_all()
-    clock = PatientClock(realtime_owner(graph))
-    actuator: Any = graph.nodes['actuator']
-    graph.spin_until(lambda: actuator.refused > 0, 'a refused request')
-    clock.go_on_without(CLUTCH)
     graph.run()
     recording = read_bag(graph.folder)
     opened = FROM_STEP + round(FAIL_SAFE.request_timeout_s / PERIOD_S)
@@ -98,8 +93,7 @@ def test_messages_stamped_in_the_future_change_nothing(graph_of: GraphOf, step: 
     run = plan(mode='realtime', duration_s=0.6)
     graph = graph_of(run)
     graph.add_all()
-    owner = realtime_owner(graph)
-    PatientClock(owner)
+    owner = graph.driveline.owner
     publishers = {
         publisher.topic_name: publisher
         for node in graph.nodes.values()
@@ -119,24 +113,15 @@ def test_messages_stamped_in_the_future_change_nothing(graph_of: GraphOf, step: 
     assert timing.refused_messages == len(FALSE_VALUES)
 
 
-def _stop_when_answered(graph: InProcessGraph, clock: PatientClock, node: str) -> int:
-    """Remove a node right after the clutch has answered a step, and return that step."""
-    owner = realtime_owner(graph)
-    graph.spin_until(lambda: owner.step >= FROM_STEP, f'step {FROM_STEP}')
-    while CLUTCH in owner.missing():
-        graph.spin_until(lambda: CLUTCH not in owner.missing(), 'a clutch torque')
-    last = owner.step
-    graph.remove(node)
-    clock.release()
-    return last
-
-
 def test_the_driveline_opens_the_clutch_itself_when_the_actuator_is_gone(
     graph_of: GraphOf, capfd: pytest.CaptureFixture[str]
 ) -> None:
     graph = graph_of(plan(mode='realtime', duration_s=0.9))
     graph.add_all()
-    last = _stop_when_answered(graph, PatientClock(realtime_owner(graph)), 'actuator')
+    owner = graph.driveline.owner
+    graph.spin_until(lambda: owner.step >= FROM_STEP and CLUTCH not in owner.missing(), 'a torque')
+    last = owner.step
+    graph.remove('actuator')
     graph.run()
     recording = read_bag(graph.folder)
     opened = last + round(CLUTCH_TIMEOUT_S / PERIOD_S) + 1
@@ -151,26 +136,21 @@ def test_the_driveline_opens_the_clutch_itself_when_the_actuator_is_gone(
     assert 'no clutch/torque for longer than clutch_timeout_s' in capfd.readouterr().err
 
 
-@pytest.mark.parametrize(('name', 'topic'), [('load', LOAD), ('clutch', CLUTCH)])
+@pytest.mark.parametrize(
+    ('reader', 'source', 'topic'),
+    [('load', 'vehicle/twist', LOAD), ('clutch', 'actuator/torque', CLUTCH)],
+)
 def test_a_node_that_was_stopped_answers_again_when_it_goes_on(
-    graph_of: GraphOf, programs: Programs, name: str, topic: str
+    graph_of: GraphOf, reader: str, source: str, topic: str
 ) -> None:
-    graph = graph_of(plan(mode='realtime', duration_s=600.0))
-    node = programs.start_node(f'ddct_plant.nodes.{name}_node', graph.parameters['*'])
-    graph.wait_for_publisher(topic, START_S)
-    graph.add_all(without=[name])
-    owner = realtime_owner(graph)
-
-    def reached(step: int) -> bool:
-        return owner.step >= step
-
-    def in_time(step: int) -> bool:
-        return owner._silent_since[topic] >= step
-
-    for _ in range(2):
-        start = owner.step
-        graph.spin_until(partial(reached, start + 50), 'half a second', START_S)
-        node.send(signal.SIGSTOP)
-        graph.spin_until(partial(reached, start + 100), 'half a second more')
-        node.send(signal.SIGCONT)
-        graph.spin_until(partial(in_time, start + 150), f'{topic} in time once more')
+    """It then has the last ten messages in its queue."""
+    graph = graph_of(plan(mode='realtime', duration_s=2.5))
+    stopped = [step for step in range(251) if step % 100 >= 50]
+    graph.add(reader, cli_args=remaps(reader, [source]))
+    add_altering(graph, source, Silent(stopped, LOOP_QOS.depth), reader=reader)
+    graph.add_all()
+    owner = graph.driveline.owner
+    assert isinstance(owner, RealtimeOwner)
+    for missed, steps in ((0, 50), (50, 100), (50, 150), (100, 200), (100, 250)):
+        graph.spin_until(partial(lambda step: owner.step == step, steps), f'step {steps}')
+        assert owner.missed_replies[topic] == missed

@@ -2,13 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """A node that is missing, hangs or starts late: the driveline names what it waits for."""
 
-import signal
-from dataclasses import replace
-
 import pytest
 from support.in_process_graph import GraphOf, InProcessGraph
-from support.patient_clock import PatientClock, realtime_owner
-from support.processes import START_S, Programs
 from support.runs import plan
 
 from ddct_plant.base.timebase import stamp_of_step
@@ -55,29 +50,8 @@ def test_a_node_that_stops_publishing_ends_the_run_at_its_step(graph_of: GraphOf
     graph.remove('load')
     node, complaint = graph.first_failure()
     assert node == 'driveline'
-    step = _step(graph)
-    # The torque of that step may already have been under way.
-    assert step in (20, 21)
-    assert f'no load/torque and no recorder/ack for stamp {10**9 + step * 10**7} ns' in complaint
-
-
-def test_a_process_that_hangs_ends_the_run_at_its_step(
-    graph_of: GraphOf, programs: Programs
-) -> None:
-    graph = graph_of(plan(duration_s=600.0))
-    clutch = programs.start_node('ddct_plant.nodes.clutch_node', graph.parameters['*'])
-    graph.wait_for_publisher('clutch/torque', START_S)
-    graph.add('driveline', {'require_recorder': False})
-    graph.add_all(without=['clutch', 'recorder'])
-    graph.spin_until(lambda: _step(graph) >= 20, 'step 20')
-    clutch.send(signal.SIGSTOP)
-    owner = graph.driveline.owner
-    # Only now: on a busy machine the first answer of another process may take longer.
-    owner._plan = replace(owner._plan, answer_timeout_s=1.0)
-    node, complaint = graph.first_failure()
-    assert node == 'driveline'
-    assert complaint.startswith(f'no clutch/torque for stamp {10**9 + _step(graph) * 10**7} ns')
-    assert 'within 1 s' in complaint
+    assert _step(graph) == 20
+    assert f'no load/torque and no recorder/ack for stamp {10**9 + 20 * 10**7} ns' in complaint
 
 
 @pytest.mark.parametrize('late', ['clutch', 'controller'])
@@ -114,14 +88,10 @@ def test_a_recorder_that_is_started_in_the_middle_ends_with_the_reason(graph_of:
 def test_real_time_gives_up_on_a_torque_that_stays_away(graph_of: GraphOf) -> None:
     graph = _graph(graph_of(plan(mode='realtime', duration_s=600.0)))
     graph.add_all()
-    owner = realtime_owner(graph)
-    clock = PatientClock(owner)
-    graph.spin_until(lambda: owner.step >= 20, 'step 20')
-    while LOAD in owner.missing():
-        graph.spin_until(lambda: LOAD not in owner.missing(), 'a load torque')
+    owner = graph.driveline.owner
+    graph.spin_until(lambda: owner.step >= 20 and LOAD not in owner.missing(), 'step 20')
     last = owner.step
     graph.remove('load')
-    clock.release()
     node, complaint = graph.first_failure()
     assert node == 'driveline'
     assert complaint == (

@@ -10,7 +10,6 @@ from geometry_msgs.msg import WrenchStamped
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
 from support.in_process_graph import GraphOf, InProcessGraph
-from support.processes import START_S
 from support.runs import plan
 
 from ddct_plant.base.timebase import PERIOD_S, stamp_of_step, step_of_stamp
@@ -18,8 +17,6 @@ from ddct_plant.fail_safe.request_watch import REQUEST_TIMEOUT_S
 from ddct_plant.graph.qos import LOOP_QOS
 from ddct_plant.signals.message_kind import stamp_ns
 from ddct_plant.signals.topics import ENGINE_REQUEST, ENGINE_TORQUE, JOINT_STATES
-
-pytestmark = pytest.mark.slow
 
 LITTLE_SLEW = 'engine_authority.slew_n_m_s=500'
 TIMEOUT_STEPS = round(REQUEST_TIMEOUT_S / PERIOD_S)
@@ -63,7 +60,7 @@ def _driven(
     graph.add('engine')
     driver = _Driver(context=graph.context)
     graph.add_other(driver)
-    graph.spin_until(driver.connected, 'the engine', START_S)
+    assert driver.connected()
     return graph, driver
 
 

@@ -1,6 +1,10 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Nodes of the graph inside the test's process; a test can leave out, replace or add some."""
+"""
+Nodes of the graph inside the test's process, in virtual time.
+
+A test can leave out, replace or add some.
+"""
 
 import importlib
 import time
@@ -9,22 +13,26 @@ from pathlib import Path
 from typing import Any
 
 import rclpy
-from rclpy.clock import Clock, ClockType
 from rclpy.context import Context
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.signals import SignalHandlerOptions
 from rclpy.task import Future
+from stepped_time import SteppedTime
 
 from ddct_bringup.processes.graph_nodes import NodeSpec, nodes_of
 from ddct_bringup.run.plan import RunPlan
 from ddct_plant.base.errors import DdctError
 from ddct_plant.graph.node import GraphNode
 from ddct_plant.graph.spin import finish_node, make_executor
+from ddct_plant.graph.steady_time import SteadyTime
 from ddct_plant.nodes.driveline_node import DrivelineNode
+from support.waiting import wait_until
 
+WITHIN_S = 300.0
+"""Longest wait for something in a graph, s."""
 CHECK_PERIOD_S = 0.001
-"""Period of the checks of a condition while the graph spins, s."""
+"""Period of the checks of a condition while a graph with the wall clock spins, s."""
 
 
 def node_spec(path: str) -> NodeSpec:
@@ -39,21 +47,31 @@ def node_class(path: str) -> type[GraphNode]:
 
 
 class InProcessGraph:
-    """Nodes of one run on one executor; as a context manager it destroys them."""
+    """
+    Nodes of one run on one executor; as a context manager it destroys them.
 
-    def __init__(self, plan: RunPlan, folder: Path) -> None:
+    Time stands still while a message waits for its reader; then it goes on to the next timer. So a
+    run does not depend on how fast the machine is. With `wall_clock` it goes on by itself, for a
+    run with nodes in other processes.
+    """
+
+    def __init__(self, plan: RunPlan, folder: Path, *, wall_clock: bool = False) -> None:
         """Prepare for the bag of `plan` in `folder`; `add` and `add_all` build the nodes."""
         folder.mkdir(parents=True, exist_ok=True)
         self.folder = folder
+        self.time = None if wall_clock else SteppedTime()
         self._specs = nodes_of(shift=plan.settings.shift)
         self.parameters = plan.node_parameters(folder, folder)
         self.nodes: dict[str, GraphNode] = {}
         self.context = Context()
         rclpy.init(args=[], context=self.context, signal_handler_options=SignalHandlerOptions.NO)
-        self._watch = Node('watch', context=self.context)
-        self._others = [self._watch]
+        self.watch = Node('watch', context=self.context)
+        """Node that only looks at the graph."""
+        self._others = [self.watch]
         self._executor = make_executor(self.context)
-        self._executor.add_node(self._watch)
+        self._executor.add_node(self.watch)
+        self._an_end = Future()
+        self._mark_waits = False
 
     def __enter__(self) -> 'InProcessGraph':
         return self
@@ -88,10 +106,20 @@ class InProcessGraph:
         values = {**self.parameters['*'], **self.parameters.get(path, {}), **(changes or {})}
         overrides = [Parameter(parameter, value=value) for parameter, value in values.items()]
         options = {'namespace': node_spec(path).namespace or None, **options}
-        node = node_class(path)(context=self.context, parameter_overrides=overrides, **options)
+        node = node_class(path)(
+            context=self.context,
+            parameter_overrides=overrides,
+            steady_time=self.steady_time(),
+            **options,
+        )
+        node.done.add_done_callback(lambda _: self._an_end.done() or self._an_end.set_result(None))
         self.nodes[key or path] = node
         self._executor.add_node(node)
         return node
+
+    def steady_time(self) -> SteadyTime:
+        """Return the time for one more node."""
+        return self.time or SteadyTime()
 
     def add_other(self, node: Node) -> None:
         """Add a node that is no part of the product, built with our `context`."""
@@ -105,9 +133,9 @@ class InProcessGraph:
         self._executor.remove_node(node)
         node.destroy_node()
 
-    def wait_for_publisher(self, topic: str, within_s: float) -> None:
-        """Spin until `topic` has a publisher, perhaps in another process."""
-        self.spin_until(lambda: bool(self._watch.count_publishers(topic)), topic, within_s)
+    def wait_for_publishers(self, topic: str, number: int = 1) -> None:
+        """Wait by the wall clock until a topic has publishers, perhaps in another process."""
+        wait_until(lambda: self.watch.count_publishers(topic) >= number, topic, WITHIN_S)
 
     @property
     def driveline(self) -> DrivelineNode:
@@ -116,42 +144,56 @@ class InProcessGraph:
         assert isinstance(node, DrivelineNode)
         return node
 
-    def spin_until(self, condition: Callable[[], bool], what: str, within_s: float = 30) -> None:
+    def spin_until(self, condition: Callable[[], bool], what: str) -> None:
         """
         Spin until `condition()` holds; fail when it does not in time or a node failed.
 
         It is looked at after each callback, so that the graph is no step further than it asks for.
         """
-        deadline = time.monotonic() + within_s
-        while not (condition() or self.failures()) and time.monotonic() < deadline:
-            self._executor.spin_once(CHECK_PERIOD_S)
+        deadline = self._now() + WITHIN_S
+        while not (condition() or self.failures()) and self._now() < deadline:
+            if self.time is None:
+                self._executor.spin_once(CHECK_PERIOD_S)
+            elif not self._call_next() and not self.time.step():
+                break
         assert not self.failures(), self.failures()
-        assert condition(), f'{what}: not within {within_s:g} s'
+        assert condition(), f'{what}: not within {WITHIN_S:g} s'
 
-    def run(self, within_s: float = 30) -> None:
+    def run(self) -> None:
         """Spin until the driveline has ended the run, then close every node, the recorder last."""
-        self.spin_to_end(within_s)
+        self.spin_to_end()
         assert not self.failures(), self.failures()
         self.finish()
 
-    def spin_to_end(self, within_s: float = 30) -> None:
+    def spin_to_end(self, within_s: float = WITHIN_S) -> None:
         """Spin until the driveline has ended the run or a node failed; fail when neither does."""
 
         def over() -> bool:
             return self.nodes['driveline'].done.done() or bool(self.failures())
 
-        self._spin_until(over, 'the end of the run', within_s)
+        self._spin_to_an_end(over, 'the end of the run', within_s)
 
     def finish(self) -> None:
         """Close every node, the recorder last, so that each publishes or writes the rest."""
         for name in sorted(self.nodes, key=lambda name: name == 'recorder'):
-            finish_node(self._executor, self.nodes[name])
+            node = self.nodes[name]
+            if self.time is None:
+                finish_node(self._executor, node)
+            else:
+                self._drain()
+                node.close()
         assert not self.failures(), self.failures()
 
-    def first_failure(self, within_s: float = 30) -> tuple[str, str]:
+    def first_failure(self) -> tuple[str, str]:
         """Spin until a node fails; return its name and error message."""
-        self._spin_until(lambda: bool(self.failures()), 'a node that fails', within_s)
+        self._spin_to_an_end(lambda: bool(self.failures()), 'a node that fails', WITHIN_S)
         return next(iter(self.failures().items()))
+
+    def pass_time(self, seconds: float) -> None:
+        """Let time pass, and each message arrive when it is sent."""
+        assert self.time is not None
+        self._drain()
+        self.time.advance(seconds, self._drain)
 
     def failures(self) -> dict[str, str]:
         """Return the error messages of the nodes that have ended with an error, by name."""
@@ -160,23 +202,43 @@ class InProcessGraph:
         }
         return {name: str(error) for name, error in errors.items() if isinstance(error, DdctError)}
 
-    def _spin_until(self, condition: Callable[[], bool], what: str, within_s: float) -> None:
-        # A timer checks, because a busy EventsExecutor ignores its timeout; the graph is twice as
-        # fast as with a check after each callback.
-        met: Future = Future()
-        deadline = time.monotonic() + within_s
+    def _spin_to_an_end(self, ended: Callable[[], bool], what: str, within_s: float) -> None:
+        """Spin until `ended()` holds, which the end of a node alone can change."""
+        deadline = self._now() + within_s
+        while not ended() and self._now() < deadline:
+            if self.time is None:
+                self._an_end = Future()
+                self._executor.spin_until_future_complete(self._an_end, CHECK_PERIOD_S)
+            elif not self._drain() and not self.time.step():
+                break
+        assert ended(), f'{what}: not within {within_s:g} s'
 
-        def check() -> None:
-            if not met.done() and (condition() or time.monotonic() > deadline):
-                met.set_result(None)
+    def _now(self) -> float:
+        return time.monotonic() if self.time is None else self.time.monotonic()
 
-        steady = Clock(clock_type=ClockType.STEADY_TIME)
-        timer = self._watch.create_timer(CHECK_PERIOD_S, check, clock=steady)
-        while not met.done():
-            self._executor.spin_until_future_complete(met, within_s)
-        self._watch.destroy_timer(timer)
-        assert condition(), f'{what}: not within {within_s:g} s'
+    def _drain(self) -> bool:
+        """Let every message arrive, and those that follow; return whether a node has ended."""
+        self._an_end = Future()
+        self._executor.spin_until_future_complete(self._an_end, 0.0)
+        return self._an_end.done()
+
+    def _call_next(self) -> bool:
+        """Make the next callback that waits; return False where none waits."""
+        # The first may only have made the executor notice what is new in a node.
+        return self._call_one() or self._call_one()
+
+    def _call_one(self) -> bool:
+        marks = not self._mark_waits
+        if marks:
+            self._mark_waits = True
+            self._executor.create_task(self._take_mark)
+        self._executor.spin_once(0.0)
+        # Callbacks are made in the order in which they came: where the mark is next, none waits.
+        return not marks or self._mark_waits
+
+    def _take_mark(self) -> None:
+        self._mark_waits = False
 
 
-GraphOf = Callable[[RunPlan], InProcessGraph]
-"""Type of the fixture `graph_of`: a function that prepares the graph of a plan."""
+GraphOf = Callable[..., InProcessGraph]
+"""Type of the fixture `graph_of`: a function of a plan that prepares its graph."""

@@ -6,53 +6,39 @@ from collections.abc import Callable
 from pathlib import Path
 
 from support.in_process_graph import InProcessGraph
-from support.patient_clock import PatientClock, realtime_owner
 
-from ddct_plant.graph import sole_publishers
 from faults.case import Case
 from faults.outcome import Observed
-
-PATIENCE_S = 10.0
-"""Wall time in s that the driveline waits for an answer here; 60 s for users."""
-WITHIN_S = 60.0
-"""Wall time in s after which a run counts as hung."""
-CHECK_S = 0.03
-"""Period in s of the check for second publishers here; 0.2 s for users."""
 
 
 def graph_run(
     case: Case,
     folder: Path,
-    arrange: Callable[[InProcessGraph], object],
-    patient_until: int | None = None,
+    arrange: Callable[[InProcessGraph], object] = lambda _: None,
+    act: Callable[[InProcessGraph], object] | None = None,
 ) -> Observed:
     """
-    Record the run of a case; `arrange(graph)` prepares its fault before it begins.
+    Record the run of a case; `arrange(graph)` prepares its fault, `act(graph)` begins it.
 
-    In real time the clock waits for all replies until the fault begins, or until a given step, so
-    that nothing but the fault disturbs the run before.
+    It is in virtual time, so that nothing but the fault disturbs it.
     """
     seen, run = Observed(fault_step=case.begin), case.run
-    before, sole_publishers.CHECK_S = sole_publishers.CHECK_S, CHECK_S
-    try:
-        with InProcessGraph(run, folder) as graph:
-            graph.parameters['driveline']['answer_timeout_s'] = PATIENCE_S
-            arrange(graph)
-            graph.add_all()
-            if case.mode == 'realtime':
-                until = case.begin if patient_until is None else patient_until
-                PatientClock(realtime_owner(graph), until)
-            seen.error = _spin(graph)
-        seen.read(folder, run)
-    finally:
-        sole_publishers.CHECK_S = before
+    with InProcessGraph(run, folder) as graph:
+        arrange(graph)
+        graph.add_all()
+        if act is not None:
+            owner = graph.driveline.owner
+            graph.spin_until(lambda: owner.step >= case.begin and bool(owner.missing()), 'a tick')
+            act(graph)
+        seen.error = _spin(graph)
+    seen.read(folder, run)
     return seen
 
 
 def _spin(graph: InProcessGraph) -> str:
     """Spin until the run is over; return the error of the first node that failed, or ''."""
     try:
-        graph.spin_to_end(WITHIN_S)
+        graph.spin_to_end()
     except AssertionError:
         return f'the run hangs at step {graph.driveline.owner.step}'
     except Exception as error:  # what no node turns into an error of its own is a finding

@@ -6,11 +6,10 @@ from collections.abc import Iterator, Sequence
 from functools import partial
 from pathlib import Path
 
+from support.altering import AlteringNode, add_altering, remaps
 from support.hops import inputs_of
 from support.in_process_graph import InProcessGraph
 
-from ddct_plant.signals.topics import TOPICS
-from faults.altering import AlteringNode
 from faults.case import Case, Where, places
 from faults.graph_runs import graph_run
 from faults.outcome import REFUSED, RUNS_ON, SAME, Observed, either
@@ -79,25 +78,14 @@ def disturb(how: str, reader: str, case: Case, folder: Path) -> Observed:
     hops = [(each, topic) for each in readers for topic in ways[each]]
     last = case.steps - DISTURBED_STEPS
     begins = [(case.begin + number * DISTURBED_STEPS) % last for number in range(len(hops))]
-    known = {topic.name: topic for topic in TOPICS}
 
     def arrange(graph: InProcessGraph) -> None:
         for each in readers:
-            rules = (f'/{topic.lstrip("/")}:={_way(each, topic)}' for topic in ways[each])
-            remaps = [part for rule in rules for part in ('-r', rule)]
-            graph.add(each, cli_args=['--ros-args', *remaps])
+            graph.add(each, cli_args=remaps(each, ways[each]))
         for (each, topic), begin in zip(hops, begins, strict=True):
-            alter = Disturbance(how, begin)
-            node = AlteringNode(
-                known[topic], topic, _way(each, topic), alter, context=graph.context
-            )
-            graph.add_other(node)
+            add_altering(graph, topic, Disturbance(how, begin), reader=each)
 
-    return graph_run(case, folder, arrange, min(begins))
-
-
-def _way(reader: str, topic: str) -> str:
-    return f'/disturbed/{reader}/{topic.lstrip("/")}'
+    return graph_run(case, folder, arrange)
 
 
 def cases() -> Iterator[Case]:

@@ -8,12 +8,10 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from rclpy.serialization import deserialize_message, serialize_message
+from support.altering import add_altering, changing, topic_named
 from support.in_process_graph import InProcessGraph
 from trajectory_msgs.msg import JointTrajectory
 
-from ddct_plant.signals.topic import Topic
-from faults.altering import AlteringNode
 from faults.case import Case, Where, places
 from faults.graph_runs import graph_run
 from faults.outcome import (
@@ -26,7 +24,6 @@ from faults.outcome import (
     named,
     safe_state,
 )
-from faults.stranger_cases import topic_of
 
 NUMBERS: dict[str, Callable[[float], float]] = {
     'value NaN': lambda _: math.nan,
@@ -95,22 +92,13 @@ def spoil_array(change: Callable[[Any], Any], message: Any) -> None:
             return
 
 
-def spoilt(spoil: Callable[[Any], Any], topic: Topic, case: Case, folder: Path) -> Observed:
+def spoilt(spoil: Callable[[Any], Any], topic: str, case: Case, folder: Path) -> Observed:
     """Record a run in which the messages of a topic are changed from a step on."""
-    raw_name = f'/raw{topic.resolved_name}'
-
-    def alter(node: AlteringNode, step: int, cdr: bytes) -> None:
-        if step >= case.begin:
-            message = deserialize_message(cdr, topic.message_class)
-            spoil(message)
-            cdr = serialize_message(message)
-        node.send(cdr)
 
     def arrange(graph: InProcessGraph) -> None:
-        remap = ['--ros-args', '-r', f'{topic.resolved_name}:={raw_name}']
-        graph.add(topic.publisher, cli_args=remap)
-        node = AlteringNode(topic, raw_name, topic.name, alter, context=graph.context)
-        graph.add_other(node)
+        publisher, name = topic_named(topic).publisher, topic_named(topic).resolved_name
+        graph.add(publisher, cli_args=['--ros-args', '-r', f'{name}:=/raw{name}'])
+        add_altering(graph, topic, changing(spoil, case.begin), source=f'/raw{name}')
 
     return graph_run(case, folder, arrange)
 
@@ -133,7 +121,7 @@ def cases() -> Iterator[Case]:
     """Yield each spoilt number or array of each of its topics."""
     for fault, where in SPOILT.items():
         for name, instant, mode, clutches in places(where):
-            topic, refused = topic_of(name), _refused(name, mode)
+            refused = _refused(name, mode)
             if fault in NUMBERS:
                 spoil = partial(spoil_numbers, NUMBERS[fault])
                 stated = refused if fault in NO_NUMBER else either(TAKEN, refused)
@@ -142,7 +130,7 @@ def cases() -> Iterator[Case]:
                 spoil = partial(spoil_array, SIZES[fault])
                 stated = either(refused, NOT_VALID)
             yield Case(
-                *(fault, name, instant, mode, clutches, stated, partial(spoilt, spoil, topic)),
+                *(fault, name, instant, mode, clutches, stated, partial(spoilt, spoil, name)),
                 equipped=clutches == 2,
             )
 

@@ -3,25 +3,25 @@
 """A stranger in the graph: false stamps, a second publisher, another type."""
 
 from collections.abc import Callable, Iterator, Sequence
-from functools import cache, partial
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import rclpy
 from geometry_msgs.msg import PolygonStamped
-from rclpy.clock import Clock, ClockType
 from rclpy.context import Context
 from rclpy.node import Node
-from rclpy.serialization import deserialize_message, serialize_message
 from rclpy.signals import SignalHandlerOptions
+from support.altering import Repeating, add_altering, once_more, topic_named
 from support.in_process_graph import InProcessGraph
+from support.waiting import wait_until
 
-from ddct_plant.base.timebase import PERIOD_NS, step_of_stamp
-from ddct_plant.graph.qos import LOOP_QOS, RECORDER_QOS
+from ddct_plant.base.timebase import PERIOD_NS
+from ddct_plant.graph.qos import LOOP_QOS
+from ddct_plant.graph.sole_publishers import publishers_of
 from ddct_plant.signals.message_kind import set_time, stamp_ns
 from ddct_plant.signals.signal import RunKind
-from ddct_plant.signals.topic import Topic
-from ddct_plant.signals.topics import TOPICS, recorded_topics
+from ddct_plant.signals.topics import recorded_topics
 from faults.case import Case, Where, places
 from faults.graph_runs import graph_run
 from faults.outcome import RUNS_ON, SAME, Observed, Stated, either, named
@@ -57,44 +57,6 @@ OF_ANOTHER_TYPE: Where = {
 """Topics that somebody waits for, that only the recorder reads, and reports."""
 
 
-class Stranger(Node):
-    """Node that receives a topic, and from a step on publishes on it once or repeatedly."""
-
-    def __init__(
-        self,
-        topic: Topic,
-        begin: int,
-        change: Callable[[Any], None] | None,
-        name: str = 'stranger',
-        **options: Any,
-    ) -> None:
-        """Publish the message of step `begin` once, changed, or, without a change, repeatedly."""
-        super().__init__(name, **options)
-        self._type, self._begin, self._change = topic.message_class, begin, change
-        self._publisher = self.create_publisher(self._type, topic.name, RECORDER_QOS)
-        self._last: bytes | None = None
-        self.create_subscription(self._type, topic.name, self._receive, RECORDER_QOS, raw=True)
-        if change is None:
-            self.create_timer(
-                REPEAT_S, self._repeat, clock=Clock(clock_type=ClockType.STEADY_TIME)
-            )
-
-    def _receive(self, cdr: bytes) -> None:
-        message = deserialize_message(cdr, self._type)
-        if self._begin < 0 or step_of_stamp(stamp_ns(message)) < self._begin:
-            return
-        if self._change is None:
-            self._last = cdr
-        else:
-            self._begin = -1
-            self._change(message)
-            self._publisher.publish(serialize_message(message))
-
-    def _repeat(self) -> None:
-        if self._last is not None:
-            self._publisher.publish(self._last)
-
-
 def shift_stamp(by_ns: int, message: Any) -> None:
     """Change the stamp of a message."""
     header = getattr(message, 'header', message)
@@ -102,72 +64,67 @@ def shift_stamp(by_ns: int, message: Any) -> None:
     set_time(time, stamp_ns(message) + by_ns)
 
 
-def false_stamp(by_ns: int, topics: Sequence[Topic], case: Case, folder: Path) -> Observed:
+def false_stamp(by_ns: int, topics: Sequence[str], case: Case, folder: Path) -> Observed:
     """Record a run in which one message of each topic comes once more, with another stamp."""
 
     def arrange(graph: InProcessGraph) -> None:
-        change = partial(shift_stamp, by_ns)
         for number, topic in enumerate(topics):
-            name = f'stranger{number}'
-            stranger = Stranger(topic, case.begin, change, name=name, context=graph.context)
-            graph.add_other(stranger)
-
-    return graph_run(case, folder, arrange, case.steps)
-
-
-def second_publisher(topic: Topic, case: Case, folder: Path) -> Observed:
-    """Record a run in which a second node repeats a topic from a step on."""
-
-    def arrange(graph: InProcessGraph) -> None:
-        graph.add_other(Stranger(topic, case.begin, None, context=graph.context))
+            alter = once_more(partial(shift_stamp, by_ns), case.begin)
+            add_altering(graph, topic, alter, name=f'stranger{number}')
 
     return graph_run(case, folder, arrange)
 
 
-def other_type(topic: Topic, case: Case, folder: Path) -> Observed:
+def second_publisher(topic: str, case: Case, folder: Path) -> Observed:
+    """Record a run in which a second node repeats a topic from a step on."""
+
+    def arrange(graph: InProcessGraph) -> None:
+        add_altering(graph, topic, Repeating(REPEAT_S, case.begin), name='stranger')
+
+    return graph_run(case, folder, arrange)
+
+
+def other_type(topic: str, case: Case, folder: Path) -> Observed:
     """Record a run in which another node publishes a topic with another type."""
     context = Context()
     rclpy.init(args=[], context=context, signal_handler_options=SignalHandlerOptions.NO)
     try:
         stranger = Node('stranger', context=context)
-        stranger.create_publisher(PolygonStamped, topic.name, LOOP_QOS)
-        seen = graph_run(case, folder, lambda _: None)
+        stranger.create_publisher(PolygonStamped, topic, LOOP_QOS)
+
+        def found(graph: InProcessGraph) -> None:
+            wait_until(lambda: '/stranger' in publishers_of(graph.watch, topic), 'its name')
+
+        seen = graph_run(case, folder, found)
         stranger.destroy_node()
     finally:
         context.try_shutdown()
     return seen
 
 
-@cache
-def topic_of(name: str) -> Topic:
-    """Return the topic with a name."""
-    (topic,) = [each for each in TOPICS if each.name == name]
-    return topic
-
-
-def topics_of_a_tick() -> list[Topic]:
+def topics_of_a_tick() -> list[str]:
     """Return the topics of each tick of a run with one clutch."""
-    return [topic for topic in recorded_topics(RunKind()) if topic.every_tick]
+    return [topic.name for topic in recorded_topics(RunKind()) if topic.every_tick]
 
 
 def cases() -> Iterator[Case]:
     """Yield each fault of each of its topics; false stamps in real time for all at once."""
     for fault, by_ns in SHIFTS.items():
         for name, instant, mode, clutches in places(FALSELY_STAMPED[fault]):
-            attempt = partial(false_stamp, by_ns, [topic_of(name)])
+            attempt = partial(false_stamp, by_ns, [name])
             yield _case(fault, name, instant, mode, clutches, either(SAME, named(name)), attempt)
         attempt = partial(false_stamp, FAR * by_ns, topics_of_a_tick())
         yield _case(fault, 'each topic', 'middle', 'realtime', 1, SAME, attempt)
     for name, instant, mode, clutches in places(TWICE_PUBLISHED):
-        attempt = partial(second_publisher, topic_of(name))
+        attempt = partial(second_publisher, name)
         stated = named(name, '/stranger')
         yield _case('second publisher', name, instant, mode, clutches, stated, attempt)
     for name, instant, mode, clutches in places(OF_ANOTHER_TYPE):
         # The middleware may know the type before the name of the node. No node waits for a
         # report, and none receives it with another type.
         harmless = SAME if mode == 'lockstep' else RUNS_ON
-        stated = named(name, 'PolygonStamped') if topic_of(name).every_tick else harmless
-        attempt = partial(other_type, topic_of(name))
+        stated = named(name, 'PolygonStamped') if topic_named(name).every_tick else harmless
+        attempt = partial(other_type, name)
         yield _case('another type', name, instant, mode, clutches, stated, attempt)
 
 

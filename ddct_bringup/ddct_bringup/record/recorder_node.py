@@ -77,7 +77,8 @@ class RecorderNode(GraphNode):
             self._acknowledge,
         )
         if not self.settings.lockstep:
-            self.limit = StampLimit(tick_names(), from_t0=True)
+            clock_ns = self.steady_time.monotonic_ns
+            self.limit = StampLimit(tick_names(), clock_ns, from_t0=True)
         self._wall_clock = WallClockFacts()
         self._ack = create_publisher(self, RECORDER_ACK)
         self._serialise_ack = serialiser(RECORDER_ACK)

@@ -44,7 +44,8 @@ class FollowerNode(GraphNode):
         names = [topic.name for topic in inputs]
         self.join = StampJoin(names, allow_gaps=not lockstep, shown=self.shown)
         if not lockstep:
-            self.limit = StampLimit(tick_names(), shown=self.shown)
+            clock_ns = self.steady_time.monotonic_ns
+            self.limit = StampLimit(tick_names(), clock_ns, shown=self.shown)
         self.replies = StampReplies(
             self.join, self._answer, self.publish_reply, self._on_second_publisher
         )

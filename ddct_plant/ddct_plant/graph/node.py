@@ -6,12 +6,10 @@ from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from typing import Any, ClassVar
 
-from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile
 from rclpy.task import Future
-from rclpy.timer import Timer
 
 from ddct_plant.bag_file.cdr import stamp_of_cdr
 from ddct_plant.base.errors import DdctError, ParameterError
@@ -35,6 +33,7 @@ from ddct_plant.graph.settings import (
     declare_scheduling,
     declare_settings,
 )
+from ddct_plant.graph.steady_time import Cancellable, SteadyTime
 from ddct_plant.graph.wire import decoder
 from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import (
@@ -58,21 +57,16 @@ class GraphNode(Node):
     DEFAULTS: ClassVar[Mapping[str, Any]] = {}
     """Defaults of shared parameters that differ from those of other nodes, by name."""
 
-    def __init__(self, name: str, **kwargs: Any) -> None:
+    def __init__(self, name: str, *, steady_time: SteadyTime | None = None, **kwargs: Any) -> None:
         """Declare the shared parameters; raise ParameterError when one cannot be used."""
         super().__init__(name, **kwargs)
-        self.steady_clock = Clock(clock_type=ClockType.STEADY_TIME)
-        """
-        Clock of the node's timers: a ROS clock would wait for simulated time.
-
-        Each node has its own: rclpy prints a warning on standard output about a clock that has
-        the timers of a whole graph.
-        """
+        self.steady_time = steady_time or SteadyTime()
+        """Time by which the node waits."""
         self.settings = declare_settings(self, self.DEFAULTS)
         self.add_pre_set_parameters_callback(self._as_declared)
         # Before anything is made that may start a process, which then has the same.
         declare_scheduling(self, lockstep=self.settings.lockstep).apply()
-        self._warnings = RareWarnings(self)
+        self._warnings = RareWarnings(self, self.steady_time.monotonic)
         if not self.settings.lockstep:
             find_sources()
         self.limit: StampLimit | None = None
@@ -199,9 +193,9 @@ class GraphNode(Node):
         given = self._parameter_overrides
         return [name for name in given if not self.has_parameter(name)]
 
-    def every(self, period_s: float, callback: Callable[[], None]) -> Timer:
-        """Call `callback` every `period_s` of a steady clock; a DdctError in it ends the node."""
-        return self.create_timer(period_s, self.guarded(callback), clock=self.steady_clock)
+    def every(self, period_s: float, callback: Callable[[], None]) -> Cancellable:
+        """Call `callback` every `period_s` of the steady time; a DdctError in it ends the node."""
+        return self.steady_time.every(self, period_s, self.guarded(callback))
 
     def guarded(self, callback: Callable[..., None]) -> Callable[..., None]:
         """Wrap a callback so that a DdctError ends the node with its one-line reason."""

@@ -3,7 +3,6 @@
 """Warnings of a node in real time, which must not cost its loop any time."""
 
 import inspect
-import time
 from collections.abc import Callable
 
 from rclpy.node import Node
@@ -29,7 +28,7 @@ class RareWarnings:
     it drops, which takes 0.2 ms.
     """
 
-    def __init__(self, node: Node, clock: Callable[[], float] = time.monotonic) -> None:
+    def __init__(self, node: Node, clock: Callable[[], float]) -> None:
         """Warn for a node; `clock` is a steady clock in s."""
         self._node = node
         self._clock = clock

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Check that each topic of the loop has one live publisher."""
 
-import time
 from collections.abc import Callable
 
 from rclpy.node import Node
@@ -50,10 +49,11 @@ def publishers_of(node: Node, topic: str) -> str:
 class _Probe:
     """Reader of the sequence numbers of one topic, which an executor does not pass on."""
 
-    def __init__(self, node: Node, topic: str, type_name: str) -> None:
+    def __init__(self, node: Node, topic: str, type_name: str, clock: Callable[[], float]) -> None:
+        self._clock = clock
         self._with_messages_s = 0.0
         self._silence_s = 0.0
-        self._checked_at = time.monotonic()
+        self._checked_at = clock()
         self.subscription: Subscription = node.create_subscription(
             ros_class(type_name), topic, lambda _: None, RECORDER_QOS, raw=True
         )
@@ -66,7 +66,7 @@ class _Probe:
 
     def two_alive(self) -> bool:
         """Take the messages that have arrived; return whether two publishers sent them."""
-        now = time.monotonic()
+        now = self._clock()
         passed_s = min(now - self._checked_at, CHECK_S)
         self._checked_at = now
         self._silence_s += passed_s
@@ -91,6 +91,7 @@ class SolePublishers:
     def __init__(self, node: GraphNode, repeat: Callable[[], None]) -> None:
         """Check from a timer of `node`; `repeat()` makes every follower repeat its reply."""
         self._node = node
+        self._clock = node.steady_time.monotonic
         self.found: DdctError | None = None
         """Error that names the second publisher; None before one is found."""
         self._topics = {
@@ -153,12 +154,12 @@ class SolePublishers:
             ours = self._types[topic]
             if other := sorted({each.topic_type for each in shown} - {ours}):
                 return f'is published as {other[0]} too, not as {ours} alone, by'
-            self._probes[topic] = _Probe(self._listening(), name, ours)
+            self._probes[topic] = _Probe(self._listening(), name, ours, self._clock)
         return 'has two live publishers, of' if self._probes[topic].two_alive() else None
 
     def _end(self, topic: str, complaint: str) -> None:
         """End the node, in real time with an open clutch before that."""
-        lockstep, now = self._node.settings.lockstep, time.monotonic()
+        lockstep, now = self._node.settings.lockstep, self._clock()
         error = self._error(topic, complaint)
         if self._proved_at is None:
             self._proved_at = now

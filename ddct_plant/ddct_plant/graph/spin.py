@@ -67,7 +67,7 @@ def end_of(nodes: Sequence[GraphNode], stopped: Callable[[], bool]) -> Future:
         if stopped():
             end()
 
-    nodes[0].create_timer(SLICE_S, check, clock=nodes[0].steady_clock)
+    nodes[0].steady_time.every(nodes[0], SLICE_S, check)
     return over
 
 
@@ -116,14 +116,12 @@ def finish_node(executor: Executor, node: GraphNode) -> None:
     """Let the node receive the messages that have already arrived, then flush it."""
     if not node.done.done():
         over: Future = Future()
-        timer = node.create_timer(
-            LAST_SLICE_S,
-            lambda: over.done() or over.set_result(None),
-            clock=node.steady_clock,
+        timer = node.steady_time.every(
+            node, LAST_SLICE_S, lambda: over.done() or over.set_result(None)
         )
         executor.spin_until_future_complete(over, SLICE_S)
         # Else it wakes the executor while the other nodes of the process are finished.
-        node.destroy_timer(timer)
+        timer.cancel()
     node.close()
 
 

@@ -13,7 +13,7 @@ from ddct_plant.graph.node_reports import TICKS, TickCounts, driveline_info
 from ddct_plant.graph.output import Output, SafeStateReport
 from ddct_plant.graph.sole_publishers import SolePublishers
 from ddct_plant.graph.spin import run_node
-from ddct_plant.graph.tick_plan import declare_tick_plan
+from ddct_plant.nodes.tick_plan import declare_tick_plan
 from ddct_plant.scenario.initial_state import initial_state
 from ddct_plant.scenario.plant import driveline_sensors, make_driveline
 from ddct_plant.shift.driveline import ShiftOutputs
@@ -104,7 +104,10 @@ class DrivelineNode(GraphNode):
         self._sole_publishers.close()
 
     def _make_owner(self) -> TickOwner:
-        parts = (self.driveline.step, self.plan, self._publish_tick, self._sole_publishers.finish)
+        parts = (
+            *(self.driveline.step, self.plan, self._publish_tick, self._sole_publishers.finish),
+            self.steady_time.monotonic,
+        )
         if self.settings.lockstep:
             return TickOwner(*parts, over=self._engine_ends_run)
         owner = RealtimeOwner(

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Plausible stamps in real time, judged by a steady clock; independent of ROS."""
 
-import time
 from collections.abc import Callable, Collection
 
 from ddct_plant.base.errors import DdctError
@@ -26,10 +25,10 @@ class StampLimit:
     def __init__(
         self,
         ticks: Collection[str],
+        clock_ns: Callable[[], int],
         *,
         from_t0: bool = False,
         shown: Callable[[str], str] = str,
-        clock_ns: Callable[[], int] = time.monotonic_ns,
     ) -> None:
         """
         Limit the stamps of `ticks`, the topics that the owner of time publishes, and of replies.

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The owner of time: when the driveline steps, and on which replies. Independent of ROS."""
 
-import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -58,7 +57,7 @@ class TickOwner:
         plan: TickPlan,
         publish: Callable[[int], None],
         finish: Callable[[DdctError | None], None],
-        clock: Callable[[], float] = time.monotonic,
+        clock: Callable[[], float],
         over: Callable[[], bool] = lambda: False,
     ) -> None:
         self.step = 0

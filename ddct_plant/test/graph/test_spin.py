@@ -15,8 +15,9 @@ import pytest
 pytest.importorskip('rclpy')
 
 from rclpy.task import Future  # noqa: E402
+from stepped_time import SteppedTime  # noqa: E402
 
-from ddct_plant.graph.spin import end_of, finish_node, spin_until  # noqa: E402
+from ddct_plant.graph.spin import LAST_SLICE_S, SLICE_S, end_of, finish_node, spin_until  # noqa: E402
 
 
 class FakeExecutor:
@@ -54,19 +55,12 @@ def test_the_garbage_collector_is_set_for_the_run_and_then_as_before(fails, froz
 
 
 class FakeNode:
-    """Node whose timer is called by the test."""
+    """Node in virtual time."""
 
     def __init__(self) -> None:
         self.done = Future()
-        self.steady_clock = None
-        self.check: Any = None
+        self.steady_time = SteppedTime()
         self.events: list[str] = []
-
-    def create_timer(self, _period: float, callback: Any, **_options: Any) -> None:
-        self.check = callback
-
-    def destroy_timer(self, _timer: None) -> None:
-        self.check = None
 
     def close(self) -> None:
         self.events.append('closed')
@@ -90,10 +84,9 @@ def test_the_timer_collects_garbage_of_every_age(survived: int, checks: int) -> 
             gc.collect(generation)
         seen = weakref.ref(cycle)
         del cycle
-        for _ in range(checks - 1):
-            node.check()
+        node.steady_time.advance((checks - 1) * SLICE_S)
         assert (seen() is None) == (survived == 0 and checks > 1)
-        node.check()
+        node.steady_time.advance(SLICE_S)
         assert seen() is None
     finally:
         gc.enable()
@@ -103,7 +96,7 @@ def test_the_timer_collects_garbage_of_every_age(survived: int, checks: int) -> 
 def test_the_end_of_any_node_ends_the_nodes_of_a_process(ended: int) -> None:
     nodes: Any = [FakeNode() for _ in range(3)]
     over = end_of(nodes, lambda: False)
-    nodes[0].check()
+    nodes[0].steady_time.advance(10.0 * SLICE_S)
     assert not over.done()
     nodes[ended].done.set_result(None)
     assert over.done()
@@ -117,7 +110,9 @@ class LastMessage:
 
     def spin_until_future_complete(self, over: Any, _timeout: float) -> None:
         self._node.events.append('received')
-        self._node.check()
+        self._node.steady_time.advance(0.9 * LAST_SLICE_S)
+        assert not over.done()
+        self._node.steady_time.advance(0.1 * LAST_SLICE_S)
         assert over.done()
 
 
@@ -132,4 +127,4 @@ def test_a_stopped_node_receives_what_is_on_its_way_and_every_node_is_flushed(
     executor: Any = LastMessage(node)
     finish_node(executor, node)
     assert node.events == (['closed'] if has_ended else ['received', 'closed'])
-    assert node.check is None
+    assert not node.steady_time.step(), 'no timer of it is left'

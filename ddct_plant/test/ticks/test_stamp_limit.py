@@ -17,7 +17,7 @@ class Limit:
 
     def __init__(self, **options):
         self.now = 5_000 * 10**9
-        self._limit = StampLimit([TICK], clock_ns=lambda: self.now, **options)
+        self._limit = StampLimit([TICK], lambda: self.now, **options)
 
     def takes(self, topic, step):
         return not self._limit.why_refused(topic, stamp_of_step(step))

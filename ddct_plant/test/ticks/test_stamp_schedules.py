@@ -34,7 +34,7 @@ class StampMachine(RuleBasedStateMachine):
         self.read_steps = 0
         self.waited_ns = 0
         self.ticks: deque[int] = deque([0], maxlen=QUEUE)
-        self.limit = StampLimit([TICK], from_t0=True, clock_ns=self.clock_ns)
+        self.limit = StampLimit([TICK], self.clock_ns, from_t0=True)
         self.read(1)
         self.waited_ns = waited_ms * 1_000_000
 
