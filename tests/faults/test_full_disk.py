@@ -35,7 +35,7 @@ def small_disk(tmp_path: Path) -> Iterator[Path]:
     subprocess.run(['umount', str(disk)], check=True)
 
 
-@pytest.mark.parametrize('layout', [[], ['--single-process'], ['--headless']])
+@pytest.mark.parametrize('layout', [[], ['--headless']])
 def test_a_full_disk_ends_the_run_with_the_file_and_the_reason(
     programs: Programs,
     small_disk: Path,

