@@ -16,7 +16,7 @@ from ddct_bringup.processes.graph_nodes import GRAPH_NODES
 
 pytestmark = pytest.mark.slow
 
-RUN = plan(layout='headless', duration_s=1.0)
+RUN = plan(layout='headless', duration_s=3.0)
 """Run of nodes whose only parameter is the controller `ls8`."""
 Start = Callable[[str, Mapping[str, object]], Program]
 MODULES = {spec.name: spec.module for spec in GRAPH_NODES}
