@@ -29,7 +29,9 @@ from ddct_bringup.benchmark.cases import Cases
 from ddct_bringup.benchmark.conduct import AGAIN, Options, carry_out_benchmark
 from ddct_bringup.benchmark.judged import Judged
 from ddct_bringup.benchmark.release import ROWS, write_release_rows
+from ddct_bringup.benchmark.report import page as page_module
 from ddct_bringup.benchmark.report.folder import PAGE, RESULT
+from ddct_bringup.campaign_report.printed_summary import MAIN
 from ddct_bringup.digests.origin import CodeOrigin
 from ddct_plant.base.errors import DdctError
 
@@ -110,6 +112,13 @@ def test_verify_computes_all_of_it_again(
     assert {'benchmark.json', 'development.parquet', RESULT} <= found.keys()
     assert f'{NAME}/held_out: {NAME}: rows 0 to 5' in found
     assert set(found.values()) == {'same_bits'}
+
+
+def test_no_main_quantity_is_among_the_further_ones_of_the_page(place: Path) -> None:
+    page: Any = page_module
+    further = page._further(result_in(place / 'first'))
+    assert further
+    assert not {*further} & {*MAIN}
 
 
 def test_the_commands_on_the_page_name_the_folder_and_run(

@@ -13,6 +13,7 @@ from ddct_bringup.campaign_report.statistics import attribution as attribution_m
 from ddct_bringup.campaign_report.statistics.attribution import FEWEST, effects_of, too_few
 from ddct_bringup.campaign_report.statistics.parts import NamesPart, parts_of, worst_of
 from ddct_bringup.campaign_report.summary import summary_of
+from ddct_bringup.campaign_report.texts import p_text
 from ddct_bringup.verdict.state import ENGAGED, INVALID
 
 
@@ -171,3 +172,7 @@ def test_a_run_for_each_name_says_nothing_of_names():
 def test_a_grid_has_no_attribution():
     results = made_results([ENGAGED, 'stalled'], {'wear_gain': [1.0, 0.8]})
     assert summary_of(results)['groups'][0]['attribution'] is None
+
+
+def test_a_p_value_below_its_last_digit_is_a_bound() -> None:
+    assert [p_text(value) for value in (0.0009, 0.001, 0.25)] == ['< 0.001', '0.001', '0.250']

@@ -6,7 +6,10 @@ from pathlib import Path
 
 import pytest
 from in_this_process import in_this_process
+from made_results import made_results
 
+from ddct_bringup.campaign_report.printed_summary import summary_tables
+from ddct_bringup.campaign_report.summary import summary_of
 from ddct_bringup.programs.campaign import main
 
 SPEC = """\
@@ -30,3 +33,24 @@ def test_the_summary_is_printed_at_the_end_and_the_paths_last(
     assert tables
     assert printed.startswith(tables)
     assert 'How often engagement fails' in tables
+
+
+def test_words_are_aligned_to_the_left_and_numbers_to_the_right() -> None:
+    results = made_results(
+        ['engaged'] * 4,
+        {'wear_gain': [0.8, 1.0] * 2},
+        {'peak_jerk_m_s3': [1.0, 2.0, 1.5, 2.5]},
+        controllers=['pi', 'pi', 'ls8', 'ls8'],
+    )
+    aligned = {
+        table.title.split(' (')[0]: [
+            header for header, number in zip(table.headers, table.numbers, strict=False) if number
+        ]
+        for table in summary_tables(summary_of(results))
+    }
+    assert aligned['How often engagement fails'] == [
+        *('failed', '95 % interval', 'runs', 'engaged', 'failed', 'invalid'),
+    ]
+    assert aligned['Differences on the same cases, where both engaged'] == [
+        *('cases', 'P5', 'P50', 'P95'),
+    ]

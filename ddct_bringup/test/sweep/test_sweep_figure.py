@@ -151,6 +151,12 @@ def test_a_map_has_the_first_key_across_and_the_second_up():
     assert (axes.get_xlabel(), axes.get_ylabel()) == ('wear_gain', 'gear')
 
 
+def test_a_map_without_a_controller_is_not_drawn():
+    names = ['pi', 'ls5', 'ls8', 'hinf1']
+    figure = drawn(['wear_gain=0.8,1.2', 'gear=1,2'], names, [(ENGAGED, None)] * 16)
+    assert [axes.axison for axes in figure.axes] == [True] * 4 + [False] * 2
+
+
 @pytest.mark.parametrize(
     ('over', 'shown'),
     [

@@ -8,6 +8,7 @@ import pytest
 from verified import RIPPLED
 
 from ddct_bringup.campaign.campaign import Campaign
+from ddct_bringup.campaign.run_set import ImpossibleRow
 from ddct_bringup.campaign.spec import spec_of
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.verdict.limits import packaged_limits
@@ -45,3 +46,12 @@ def test_a_row_has_the_bound_of_its_metrics() -> None:
     pi, designed = (bound_of_row(run, packaged_limits()) for run in campaign.planned(0, 2))
     assert pi == BOUND
     assert BOUND <= designed < 1e-5
+
+
+def test_a_row_that_cannot_be_built_has_the_common_bound() -> None:
+    # A window that ends after the run.
+    grid = {'duration_s': [1.0], 'control_start_s': [2.4]}
+    content = {'controllers': ['pi'], 'grid': grid}
+    (row,) = Campaign(spec_of(content, Path())).planned(0, 1)
+    assert isinstance(row, ImpossibleRow)
+    assert bound_of_row(row, packaged_limits()) == BOUND
