@@ -45,9 +45,9 @@ class TorqueRequest(NamedTuple):
     """Part of the torque without feedback in N m, that of the closing stage included."""
     closed_loop: float
     """Part of the torque that feedback gives, N m."""
-    closing: float
+    closing: float = 0.0
     """Share of the closing stage in `open_loop`, N m; 0 without one."""
-    engine_torque: float | None
+    engine_torque: float | None = None
     """Request for C_m in N m; None when the controller does not command the engine."""
 
     @property
