@@ -7,6 +7,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from support.exported_checks import (
+    compare_exported,
+    require_binding_limits,
+    require_exported_authority,
+    require_exported_options,
+    require_levels_that_give_way,
+)
 from support.exported_loops import CONTROL_STARTS, compare_loops, pairs
 from support.exported_mpc import exported, run_settings
 
@@ -19,8 +26,7 @@ from ddct_controllers.registry import make_controller
 @pytest.mark.parametrize('name', ['mpc2', 'mpc_preview', 'mpc_torsion'])
 def test_the_c_gives_the_torques_of_the_original(tmp_path, name):
     settings = run_settings(architecture='feedforward', wear=0.7)
-    original = make_controller(name, settings)
-    compare_loops(original, exported(original, name, settings, tmp_path / 'c'), settings)
+    compare_exported(name, settings, tmp_path / 'c')
 
 
 @pytest.mark.parametrize(
@@ -31,29 +37,12 @@ def test_the_c_gives_the_torques_of_the_original(tmp_path, name):
     ],
 )
 def test_options_of_observer_and_cost_are_exported(tmp_path, options):
-    settings = run_settings(*(f'controllers.mpc3.{option}' for option in options))
-    original = make_controller('mpc3', settings)
-    run = compare_loops(original, exported(original, 'mpc3', settings, tmp_path / 'c'), settings)
-    other = run_headless(run_settings(), 'mpc3')
-    assert np.abs(run.torque_request - other.torque_request).max() > 0.5
+    require_exported_options('mpc3', tmp_path / 'c', *options)
 
 
 @pytest.mark.parametrize('name', ['mpc3', 'mpc4'])
 def test_binding_limits_of_torque_and_rate_give_the_same_torques(tmp_path, name):
-    free = run_headless(run_settings(), name).torque_request[CONTROL_STARTS:]
-    highest = float(np.quantile(free, 0.8))
-    rate = 0.5 * 100.0 * float(np.abs(np.diff(free)).max())
-    section = f'controllers.{name}'
-    settings = run_settings(
-        f'{section}.highest_torque_n_m={highest}', f'{section}.torque_rate_n_m_s={rate}'
-    )
-    original = make_controller(name, settings)
-    in_c = exported(original, name, settings, tmp_path / 'c')
-    request = compare_loops(original, in_c, settings).torque_request[CONTROL_STARTS:]
-    at_highest = np.isclose(request, highest, atol=1e-6)
-    at_rate = np.isclose(np.abs(np.diff(request)), rate / 100.0, atol=1e-6)
-    assert at_highest.any()
-    assert at_rate.any()
+    require_binding_limits(name, tmp_path / 'c')
 
 
 @pytest.mark.parametrize(
@@ -64,11 +53,7 @@ def test_binding_limits_of_torque_and_rate_give_the_same_torques(tmp_path, name)
     ],
 )
 def test_the_engines_authority_is_exported(tmp_path, changes):
-    settings = run_settings(*changes)
-    original = make_controller('mpc4', settings)
-    run = compare_loops(original, exported(original, 'mpc4', settings, tmp_path / 'c'), settings)
-    free = run_headless(run_settings(), 'mpc4')
-    assert np.abs(run.engine_torque - free.engine_torque).max() > 1.0
+    require_exported_authority(tmp_path / 'c', changes)
 
 
 @pytest.mark.parametrize('changes', [{'control_steps': 1}, {'preview': True}, {'limits': True}])
@@ -93,29 +78,11 @@ def rebuilt(controller: MpcController, settings: MpcSettings) -> MpcController:
 
 
 def test_levels_give_way_to_the_rate_as_in_the_original(tmp_path):
-    """The open loop starts above the highest torque, farther than the rate returns at once."""
-    name, section = 'mpc4', 'controllers.mpc4'
-    settings = run_settings(
-        f'{section}.highest_torque_n_m=240',
-        f'{section}.torque_rate_n_m_s=100',
-        f'{section}.control_steps=3',
-    )
-    original = make_controller(name, settings)
-    run = compare_loops(original, exported(original, name, settings, tmp_path / 'c'), settings)
-    request = run.torque_request[CONTROL_STARTS - 1 :]
-    assert request[0] > 270.0
-    assert request[-1] <= 240.0 + 1e-6
-    assert np.abs(np.diff(request)).max() <= 1.0 + 1e-6
-    assert set(pairs(run, 'qp_status')) == {None, 'solved'}
+    require_levels_that_give_way('mpc4', tmp_path / 'c')
 
 
 def test_the_lowest_slip_is_exported(tmp_path):
-    name = 'mpc3'
-    settings = run_settings(f'controllers.{name}.lowest_slip_rpm=100')
-    original = make_controller(name, settings)
-    run = compare_loops(original, exported(original, name, settings, tmp_path / 'c'), settings)
-    other = run_headless(run_settings(), name)
-    assert np.abs(run.torque_request - other.torque_request).max() > 0.5
+    require_exported_options('mpc3', tmp_path / 'c', 'lowest_slip_rpm=100')
 
 
 def test_the_iteration_limit_is_the_static_bound(tmp_path):

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from support.exported_mpc import ExportedController, exported, run_settings
+from support.exported_mpc import ExportedController, exported, limited_settings
 
 from ddct_controllers.interface import Controller, Measurement
 from ddct_controllers.mpc.export.export_controller import export_controller
@@ -64,11 +64,10 @@ def answers(controller: Controller, seed: int) -> list[tuple[list[float], tuple[
 
 @pytest.mark.parametrize('name', ['mpc2', 'mpc4', 'mpc_preview'])
 def test_any_measurements_give_the_originals_torques(tmp_path, name):
-    section = f'controllers.{name}'
-    settings = run_settings(
-        f'{section}.highest_torque_n_m={HIGHEST_N_M}',
-        f'{section}.torque_rate_n_m_s=800',
-        f'{section}.control_steps=3',
+    settings = limited_settings(
+        name,
+        HIGHEST_N_M,
+        800,
         'engine_authority.deviation_n_m=60',
         'engine_authority.slew_n_m_s=1000',
         'engine_authority.lag_s=0.02',
@@ -115,12 +114,7 @@ def never_changing_its_active_set(folder: Path) -> ExportedController:
 @pytest.mark.parametrize('name', ['mpc2', 'mpc4'])
 def test_steps_without_a_solution_follow_the_plan_as_the_original_does(tmp_path, name):
     """Some torques are within the limits and some are not, those of the plan neither."""
-    section = f'controllers.{name}'
-    settings = run_settings(
-        f'{section}.highest_torque_n_m=1000',
-        f'{section}.torque_rate_n_m_s=40000',
-        f'{section}.control_steps=3',
-    )
+    settings = limited_settings(name, 1000, 40000)
     original: Any = make_controller(name, settings)
     export_controller(original, name, settings, tmp_path / 'c')
     original._solver = Hasty(original.program.structure)

@@ -114,6 +114,17 @@ def run_settings(*changes: str, architecture: str = 'detailed', wear: float = 1.
     return RunSettings(scenario, architecture=architecture, wear_gain=wear)
 
 
+def limited_settings(name: str, highest: float, rate: float, *changes: str) -> RunSettings:
+    """Return settings with a highest torque and its rate, and three moves, of one controller."""
+    section = f'controllers.{name}'
+    return run_settings(
+        f'{section}.highest_torque_n_m={highest}',
+        f'{section}.torque_rate_n_m_s={rate}',
+        f'{section}.control_steps=3',
+        *changes,
+    )
+
+
 def exported(
     controller: Controller, name: str, settings: RunSettings, folder: Path
 ) -> ExportedController:
