@@ -10,14 +10,13 @@ from support.altering import Repeating, add_altering
 from support.in_process_graph import GraphOf, InProcessGraph
 from support.processes import Programs
 from support.runs import expected, plan
+from support.second_publishers import LOOP, REPEAT_S, require_named_copy, require_named_echo
 
 from ddct_bringup.bag.reader import read_bag
-from ddct_bringup.processes.graph_nodes import GRAPH_NODES
 from ddct_plant.base.timebase import LONGEST_S
 from ddct_plant.graph import sole_publishers
 from ddct_plant.graph.qos import RECORDER_QOS
 from ddct_plant.models.driveline import DrivelineOutputs
-from ddct_plant.signals.signal import RunKind
 from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import (
     CLOCK,
@@ -27,28 +26,15 @@ from ddct_plant.signals.topics import (
     OFF_GOING_CLUTCH_TORQUE,
     RECORDER_ACK,
     SENSED_SLIP,
-    SHIFT_TOPICS,
-    TOPICS,
     VEHICLE_ACCEL,
 )
 
-REPEAT_S = 0.02
-"""Period in s at which a second publisher repeats the last message."""
-LOOP = [topic for topic in TOPICS if topic.every_tick]
 ECHOED = [
     *(CLOCK, ENGINE_TORQUE, CLUTCH_TORQUE, RECORDER_ACK),
     *(ENGINE_REQUEST, SENSED_SLIP, OFF_GOING_CLUTCH_TORQUE),
 ]
 """A tick, replies with and without a recorder, and a topic of each other kind of run."""
-NODE_NAMES = [node.name for node in GRAPH_NODES]
 COPIED = ['driveline', 'controller', 'off_going/actuator']
-
-
-def _graph(graph: InProcessGraph, *, recorded: bool) -> InProcessGraph:
-    if not recorded:
-        graph.add('driveline', {'require_recorder': False})
-    graph.add_all(without=() if recorded else ['recorder'])
-    return graph
 
 
 def _clutch_torque(graph: InProcessGraph) -> float:
@@ -68,21 +54,7 @@ def test_the_publishers_of_every_topic_of_a_tick_are_checked(graph_of: GraphOf) 
 def test_a_second_publisher_of_any_loop_topic_ends_the_run_with_its_name(
     graph_of: GraphOf, topic: Topic
 ) -> None:
-    shift = topic in SHIFT_TOPICS
-    sensed = not shift and not topic.in_run(RunKind(two_input=True, clutch='stick_slip'))
-    clutch = 'linear' if topic.in_run(RunKind(two_input=True, sensed=sensed)) else 'stick_slip'
-    controller = 'ls8' if topic.in_run(RunKind(clutch=clutch, sensed=sensed)) else 'mpc4'
-    changes = ('sensors={}',) if sensed else ()
-    recorded = topic.name in ('recorder/ack', 'engine/torque')
-    scenario = 'upshift' if shift else 'thesis'
-    run = plan(controller, scenario=scenario, duration_s=0.3, clutch=clutch, changes=changes)
-    graph = graph_of(run)
-    add_altering(graph, topic.name, Repeating(REPEAT_S), name='echo')
-    node, complaint = _graph(graph, recorded=recorded).first_failure()
-    assert node == 'driveline', complaint
-    assert complaint.startswith(f'{topic.name} has two live publishers, of the nodes /')
-    assert '/echo' in complaint
-    assert 'another ROS_DOMAIN_ID' in complaint
+    require_named_echo(graph_of, topic)
 
 
 def test_a_process_that_could_not_run_does_not_miss_the_second_publisher(
@@ -108,13 +80,7 @@ def test_a_process_that_could_not_run_does_not_miss_the_second_publisher(
 def test_a_second_copy_of_any_node_ends_the_run_with_its_name(
     graph_of: GraphOf, name: str, recorded: bool
 ) -> None:
-    shift = name not in NODE_NAMES
-    run = plan('pi', scenario='upshift', duration_s=0.3, clutch='stick_slip')
-    graph = graph_of(run if shift else plan(duration_s=0.3))
-    graph.add(name, key='second')
-    _, complaint = _graph(graph, recorded=recorded).first_failure()
-    assert 'has two live publishers, of the nodes ' in complaint
-    assert f'/{name} and /{name}' in complaint
+    require_named_copy(graph_of, name, recorded=recorded)
 
 
 @pytest.mark.parametrize(
