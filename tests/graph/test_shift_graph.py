@@ -5,36 +5,10 @@
 from pathlib import Path
 
 import pytest
-from support.runs import LAYOUTS, bag_bytes, expected, plan, record
-
-from ddct_bringup.run.plan import RunPlan
+from support.runs import LAYOUTS, bag_bytes, expected, record
+from support.shifts_in_a_graph import CONTROLLER, require_shift_from_files, shift
 
 pytestmark = pytest.mark.slow
-
-ROOT = Path(__file__).resolve().parents[2]
-
-
-def shift(
-    controller: str,
-    layout: str,
-    handover: str = 'model',
-    *,
-    changes: tuple[str, ...] = (),
-    mode: str = 'lockstep',
-    off_going_wear_gain: float = 1.0,
-) -> RunPlan:
-    """Return an upshift of 1.3 s, which is over when the on-coming clutch has locked."""
-    return plan(
-        controller,
-        layout,
-        scenario='upshift',
-        duration_s=1.3,
-        clutch='stick_slip',
-        mode=mode,
-        changes=('score_window_s=[0.3, 1.3]', *changes),
-        handover=handover,
-        off_going_wear_gain=off_going_wear_gain,
-    )
 
 
 @pytest.mark.parametrize(
@@ -81,31 +55,5 @@ def test_controller_and_handover_in_files_shift_in_the_graph_as_headless(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    Path('ramps.py').write_text(HANDOVER, encoding='utf-8')
-    Path('mine.py').write_text(PYTHON, encoding='utf-8')
-    run = shift('mine.py', 'single-process', 'ramps.py')
-    trajectory = record(run, tmp_path / 'run').trajectory
-    assert trajectory.sha256() == expected(run).sha256()
-    assert not trajectory.closed_loop_torque[trajectory.handover_share < 1.0].any()
-    assert trajectory.closed_loop_torque[-60:].any()
-
-
-HANDOVER = """
-from ddct_controllers.handover.laws import TimedHandover
-
-
-class Ramps(TimedHandover):
-    pass
-"""
-PYTHON = """
-from ddct_controllers.interface import Command, Controller
-
-
-class Mine(Controller):
-    def reset(self):
-        self.integral = 0.0
-
-    def update(self, measurement):
-        self.integral += 0.01 * measurement.slip_error_rpm
-        return Command(-0.1 * measurement.slip_error_rpm - 0.02 * self.integral)
-"""
+    Path('mine.py').write_text(CONTROLLER, encoding='utf-8')
+    require_shift_from_files('mine.py', 'single-process', tmp_path / 'run')
