@@ -2,14 +2,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """No corner, wear gain of the range, or point inside the corners is worse than the worst one."""
 
-import itertools
-from functools import cache
 from types import SimpleNamespace
 from typing import Any
 
 import control
 import numpy as np
 import pytest
+from corner_checks import (
+    require_counted_unstable_corners,
+    require_no_worse_corner,
+    require_nothing_worse_inside,
+    sampled,
+    worst_of,
+)
 
 from ddct_controllers.design.analysis.driveline_mode import locked_driveline_zero
 from ddct_controllers.design.analysis.loops import IDENTIFIED_DRIVELINE, sampled_loop
@@ -18,15 +23,12 @@ from ddct_controllers.design.analysis.worst_corner import (
     PARAMETER_SPREAD,
     WEAR_GAINS,
     PlantCorners,
-    WorstCorner,
     plant_corners,
     worst_corner,
 )
 from ddct_controllers.design.state_space import frequency_response, scaled
-from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.lti import StateSpace
-from ddct_plant.linear.sampling import discretise_zoh
 from ddct_plant.models.actuator import ActuatorParameters
 
 pytestmark = pytest.mark.slow
@@ -35,15 +37,6 @@ pytestmark = pytest.mark.slow
 @pytest.fixture(scope='module')
 def corners() -> PlantCorners:
     return plant_corners()
-
-
-def sampled(name: str) -> StateSpace:
-    return discretise_zoh(PRINTED_CONTROLLERS[name].to_state_space(), PERIOD_S)
-
-
-@cache
-def worst_of(name: str) -> WorstCorner:
-    return worst_corner(sampled(name), plant_corners())
 
 
 def test_there_is_a_corner_for_every_combination_of_the_seven_parameters(corners):
@@ -81,51 +74,16 @@ def test_its_sensitivity_peak_is_that_of_its_loop(name, corners):
     assert found.sensitivity_peak == pytest.approx(loop_margins(loop).sensitivity_peak, rel=1e-6)
 
 
-@pytest.mark.parametrize('name', ['ls8'])
-def test_no_corner_and_wear_gain_is_worse(name, corners):
-    """Every sixteenth corner and two wear gains are tried."""
-    controller, worst = sampled(name), worst_of(name).sensitivity_peak
-    for parameters, gain in itertools.product(corners.parameters[::16], (0.7, 1.3)):
-        margins = loop_margins(sampled_loop(controller, parameters, gain))
-        assert margins.stable
-        assert margins.sensitivity_peak <= worst * (1.0 + 1e-6)
+def test_no_corner_and_wear_gain_is_worse():
+    require_no_worse_corner('ls8', every=16, gains=(0.7, 1.3))
 
 
-@pytest.mark.parametrize('name', ['ls1'])
-def test_nothing_inside_the_corners_is_worse(name, corners):
-    """
-    20 random drivelines and wear gains are tried.
-
-    That is no proof: the worst driveline need not be at a corner.
-    """
-    controller, worst = sampled(name), worst_of(name).sensitivity_peak
-    values, random = IDENTIFIED_DRIVELINE.values(), np.random.default_rng(1)
-    for _ in range(20):
-        factors = random.uniform(1.0 - PARAMETER_SPREAD, 1.0 + PARAMETER_SPREAD, 7)
-        parameters = IDENTIFIED_DRIVELINE.with_values(
-            **{
-                name: factor * values[name]
-                for name, factor in zip(corners.varied, factors, strict=True)
-            }
-        )
-        loop = sampled_loop(controller, parameters, random.uniform(0.7, 1.3))
-        assert loop_margins(loop).sensitivity_peak <= worst
+def test_nothing_inside_the_corners_is_worse():
+    require_nothing_worse_inside('ls1', count=20)
 
 
-@pytest.mark.parametrize('name', ['hinf2'])
-def test_unstable_corners_are_those_with_an_unstable_pole_at_some_wear_gain(name, corners):
-    controller, found = sampled(name), worst_of(name)
-    unstable = sum(
-        not all(
-            closed_loop_stable(sampled_loop(controller, parameters, gain))
-            for gain in np.linspace(0.7, 1.3, 7)
-        )
-        for parameters in corners.parameters
-    )
-    assert found.unstable_corners == unstable > 0
-    assert found.sensitivity_peak is None
-    worst = sampled_loop(controller, corners.parameters[found.index], found.wear_gain)
-    assert not closed_loop_stable(worst)
+def test_unstable_corners_are_those_with_an_unstable_pole_at_some_wear_gain():
+    require_counted_unstable_corners('hinf2')
 
 
 @pytest.mark.parametrize(('gain', 'unstable'), [(1.0, 1), (1.5, 0)])
