@@ -53,6 +53,11 @@ def blocks() -> Iterator[Block]:
             yield Block(name, '', dedented)
 
 
+def package_page(package: str) -> str:
+    """Return the text of the page of one of our packages."""
+    return (ROOT / package / 'README.md').read_text(encoding='utf-8')
+
+
 def links(page: Path) -> list[Path]:
     """Return the files that a page links to within the repository."""
     text = _FENCE.sub('', page.read_text(encoding='utf-8'))

@@ -7,7 +7,7 @@ import re
 import pytest
 from generator.pages import as_markdown, rows_of, shown_tables
 from generator.parameter_tables import parameter_tables
-from support.documented import ROOT
+from support.documented import package_page
 from support.in_process_graph import GraphOf
 from support.runs import plan
 
@@ -16,7 +16,6 @@ from ddct_plant.base.options import options_of
 from ddct_plant.program.scheduling import Scheduling
 from ddct_plant.scenario.settings import RunSettings
 
-PACKAGES = ('ddct_plant', 'ddct_reference', 'ddct_controllers', 'ddct_bringup')
 SHARED = {'scenario', *options_of(RunSettings), *options_of(Scheduling)}
 OF_ROS = {'/rosout', '/parameter_events', '/run_info'}
 WITH_TARGET = (
@@ -37,13 +36,9 @@ RUNS = (
 """Runs that have every topic between them."""
 
 
-def page(package: str) -> str:
-    return (ROOT / package / 'README.md').read_text(encoding='utf-8')
-
-
 def cells(package: str, node: str) -> list[set[str]]:
     """Return the names in the cells of a node's row: topics read, published."""
-    nodes = page(package).partition('<!-- parameters')[0]
+    nodes = package_page(package).partition('<!-- parameters')[0]
     (row,) = re.findall(rf'^\| `{node}` \|(.*)\|$', nodes, re.MULTILINE)
     return [set(re.findall(r'`([^`]+)`', cell)) for cell in row.split('|')]
 
@@ -69,7 +64,7 @@ def test_the_tables_of_parameters_are_what_the_nodes_declare() -> None:
     shown = shown_tables('parameters')
     assert shown == as_markdown(parameter_tables()), 'run: make docs KINDS=parameters'
     for spec in NODE_PROGRAMS:
-        marked = f'<!-- parameters: {spec.name} -->' in page(spec.module.split('.')[0])
+        marked = f'<!-- parameters: {spec.name} -->' in package_page(spec.module.split('.')[0])
         assert marked == (spec.name in shown)
 
 
