@@ -4,20 +4,16 @@
 
 import json
 
-import numpy as np
 import pytest
 from refusals import refused
+from written_hinf import require_written_as_designed
 
 from ddct_controllers.design.drawing import charts
 from ddct_controllers.from_file.designed import DesignedController, load_designed
 from ddct_controllers.linear import BILINEAR
-from ddct_controllers.registry import make_controller
-from ddct_controllers.synthesised import synthesised_design
 from ddct_controllers.workflows.design_program import main
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.linear.lti import FactoredTransferFunction
-from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
 
 pytestmark = pytest.mark.slow
 
@@ -25,7 +21,6 @@ LACKING = [
     'it overshoots by 12.1 %, 10 % are allowed',
     ' of 128 corners (driveline +-20 %, wear 0.7 to 1.3)',
 ]
-SETTINGS = RunSettings(load_scenario('thesis'))
 
 
 @pytest.fixture
@@ -58,20 +53,7 @@ def test_the_json_has_every_figure(capsys):
 
 
 def test_the_controller_it_writes_runs_as_designed(tmp_path, capsys):
-    """It has the G_c(z) of the registry to the last bit, and three charts."""
-    weights = 'fitted'
-    options = ['h-infinity', '--weights', weights, '--name', 'mine', '--out', str(tmp_path)]
-    assert main([*options, '--write-anyway']) == 0
-    path = tmp_path / 'mine.yaml'
-    assert f'bringup --controller {path}' in capsys.readouterr().out
-    built = make_controller(str(path), SETTINGS).linear_model()
-    expected = synthesised_design(f'hinf_{weights}').sampled
-    for part in 'abcd':
-        assert np.array_equal(getattr(built, part), getattr(expected, part))
-    provenance = load_designed(str(path)).provenance
-    assert provenance['weights']['recipe'] == weights
-    assert provenance['lacks']
-    assert len(list(tmp_path.glob('mine_*.png'))) == 3
+    require_written_as_designed(tmp_path, capsys, 'fitted')
 
 
 @pytest.mark.parametrize(
