@@ -20,6 +20,8 @@ from ddct_plant.graph.domain import own_domain
 if TYPE_CHECKING:
     from support.in_process_graph import InProcessGraph
 
+    from ddct_plant.measured.log import MeasuredLog
+
 
 HERE = Path(__file__).parent
 MARKERS = dict.fromkeys(
@@ -90,3 +92,12 @@ def graph_of(tmp_path: Path) -> Iterator[Callable[..., 'InProcessGraph']]:
     yield make
     for graph in graphs:
         graph.close()
+
+
+@pytest.fixture(scope='module')
+def pi_log(tmp_path_factory: pytest.TempPathFactory) -> 'MeasuredLog':
+    """Return the log of a run with PI control."""
+    # Most tests need no log.
+    from support.logs import drive_log
+
+    return drive_log(tmp_path_factory.mktemp('pi'))

@@ -9,10 +9,8 @@ from refusals import refused
 from support.logs import (
     NONE_LATE,
     drag,
-    drive_log,
-    noisy_log,
     noisy_log_of,
-    rows_late,
+    require_delays_alone,
     speeds_late,
     within,
 )
@@ -20,18 +18,9 @@ from support.other_car import SPEEDS, TRUE, late_log
 
 from ddct_plant.base.errors import DdctError
 from ddct_plant.identification.from_log.fit import fit_log
-from ddct_plant.identification.from_log.scenario import load_of
 from ddct_plant.measured.columns import load_columns
 from ddct_plant.measured.log import MeasuredLog
 from ddct_plant.models.parameters import DrivelineParameters
-from ddct_plant.scenario.file import load_scenario
-
-THESIS = load_scenario('thesis')
-
-
-@pytest.fixture(scope='module')
-def pi_log(tmp_path_factory: pytest.TempPathFactory) -> MeasuredLog:
-    return drive_log(tmp_path_factory.mktemp('pi'))
 
 
 @pytest.mark.parametrize(
@@ -45,16 +34,8 @@ def pi_log(tmp_path_factory: pytest.TempPathFactory) -> MeasuredLog:
 def test_signals_that_are_rows_late_move_delays_and_not_parameters(
     pi_log: MeasuredLog, late: tuple[str, ...], rows: int, true: dict[str, float]
 ) -> None:
-    """Of 24 intervals 23 are expected; more logs are in tests/nightly/measured."""
-    fits = [
-        fit_log(rows_late(noisy_log(pi_log, seed), late, rows), THESIS.driveline, load_of(THESIS))
-        for seed in (1, 2)
-    ]
-    assert sum(sum(within(fit, THESIS.driveline.values() | true)) for fit in fits) >= 21
-    for fit in fits:
-        assert fit.delays['clutch_torque'] == pytest.approx(true['clutch_torque'], abs=1e-3)
-        assert fit.values['halfshaft_stiffness'] == pytest.approx(6716.3, rel=0.03)
-        assert fit.values['engine_inertia'] == pytest.approx(0.25, rel=0.01)
+    """More logs are in tests/nightly/measured."""
+    require_delays_alone(pi_log, late, rows, true)
 
 
 @pytest.mark.parametrize('corners_on_rows', [True, False])

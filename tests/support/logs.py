@@ -7,12 +7,14 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from ddct_bringup.scores.csv_text import signals_csv
 from ddct_plant.identification.from_log.command import NEEDED
 from ddct_plant.identification.from_log.fit import fit_log
 from ddct_plant.identification.from_log.prediction import SpeedPrediction, predict
 from ddct_plant.identification.from_log.result import LogFit
+from ddct_plant.identification.from_log.scenario import load_of
 from ddct_plant.identification.from_log.stretch import TORQUES
 from ddct_plant.identification.from_log.stretches import stretches_of
 from ddct_plant.identification.from_log.verdict import reasons_against
@@ -20,6 +22,7 @@ from ddct_plant.identification.identify import main
 from ddct_plant.measured.columns import TIME, own_columns
 from ddct_plant.measured.log import SPEEDS, MeasuredLog, read_log
 from ddct_plant.models.parameters import DrivelineParameters
+from ddct_plant.scenario.file import load_scenario
 from support.other_car import TRUE, drive
 from support.runs import plan, record
 
@@ -108,6 +111,26 @@ def rows_late(log: MeasuredLog, names: Sequence[str], rows: int) -> MeasuredLog:
         for name, values in log.signals.items()
     }
     return replace(log, time_s=log.time_s[rows:], signals=signals)
+
+
+def require_delays_alone(
+    log: MeasuredLog, late: Sequence[str], rows: int, true: dict[str, float]
+) -> None:
+    """
+    Require that signals that are rows late, in a log of the thesis's car, move delays alone.
+
+    Of 24 intervals 23 are expected. Without fitted delays it is 16 of 54 parameters.
+    """
+    thesis = load_scenario('thesis')
+    fits = [
+        fit_log(rows_late(noisy_log(log, seed), late, rows), thesis.driveline, load_of(thesis))
+        for seed in (1, 2)
+    ]
+    assert sum(sum(within(fit, thesis.driveline.values() | true)) for fit in fits) >= 21
+    for fit in fits:
+        assert fit.delays['clutch_torque'] == pytest.approx(true['clutch_torque'], abs=1e-3)
+        assert fit.values['halfshaft_stiffness'] == pytest.approx(6716.3, rel=0.03)
+        assert fit.values['engine_inertia'] == pytest.approx(0.25, rel=0.01)
 
 
 def speeds_late(late_s: float) -> dict[str, float]:
