@@ -96,10 +96,10 @@ test-nightly: fmu tune-extra .venv/.site .venv/.test
 benchmark-rows: setup
 	@$(SOURCED) $(BIN)/python -m ddct_bringup.benchmark.release
 
-# Pure tests; the markers are described in pyproject.toml.
+# Tests without a marker; tests/plugins/tiers.py selects and checks them.
 test-fast: setup .venv/.tune
 	@$(SOURCED) $(BIN)/python -m pytest -q -n 2 --dist loadfile \
-	    -m 'not (graph or browser or compiler or slow)' --ignore=$(NIGHTLY) $(TEST_FOLDERS)
+	    --fast-tier --ignore=$(NIGHTLY) $(TEST_FOLDERS)
 
 # Damaged inputs for every reader, minutes: SECONDS for each, at random and guided; READERS='bag log' tries only those.
 SECONDS := 20

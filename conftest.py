@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+pytest_plugins = ['tiers']
 VARIABLE = 'DDCT_CACHE'
 """That of `ddct_bringup.floor.cache`, whose import would delay the start of the workers."""
 _FOLDER = pytest.StashKey[Path]()

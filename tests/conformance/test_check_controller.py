@@ -23,6 +23,8 @@ from ddct_controllers.workflows.evidence_types import linear_entries
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
+pytestmark = pytest.mark.slow
+
 HERE = Path(__file__).parent
 SETTINGS = RunSettings(load_scenario('thesis'))
 IN_UPDATE = ['wrong_controllers.py line']

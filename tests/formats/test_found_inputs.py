@@ -13,6 +13,8 @@ from fuzz.loop import FOUND, bounded_time, inputs_in
 from fuzz.reader import Reader
 from fuzz.readers import readers
 
+pytestmark = pytest.mark.slow
+
 NAMES = (
     *('bag', 'bag_as_log', 'repair', 'log', 'controller', 'fmu_description', 'fmu'),
     *('timing', 'failed_run', 'repeated_failure', 'digests', 'scores', 'verified_scores'),

@@ -22,6 +22,8 @@ from ddct_plant.measured.columns import load_columns
 from ddct_plant.measured.log import MeasuredLog
 from ddct_plant.models.parameters import DrivelineParameters
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.mark.parametrize(
     ('late', 'rows', 'true'),

@@ -22,6 +22,8 @@ from ddct_plant.measured.columns import TIME, own_columns
 from ddct_plant.measured.log import read_log
 from ddct_plant.models.parameters import DrivelineParameters
 
+pytestmark = pytest.mark.slow
+
 START = DrivelineParameters()
 """Driveline that differs from the one of the logs."""
 

@@ -17,6 +17,8 @@ from ddct_plant.measured.columns import TIME, own_columns
 from ddct_plant.measured.log import read_log
 from ddct_plant.scenario.file import load_scenario
 
+pytestmark = pytest.mark.slow
+
 RADIUS_M, MASS_KG = 0.298, 1310.0
 OTHER_CAR = (f'vehicle.wheel_radius_m={RADIUS_M}', f'vehicle.mass_kg={MASS_KG}')
 

@@ -16,6 +16,8 @@ from ddct_plant.measured.log import SPEEDS
 from ddct_plant.program import progress
 from ddct_plant.scenario.file import load_scenario
 
+pytestmark = pytest.mark.slow
+
 
 def test_a_fit_prints_its_progress(
     folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch

@@ -17,6 +17,8 @@ from support.runs import plan, record
 from ddct_bringup.programs import report, score
 from ddct_bringup.scores.csv_text import signals_csv
 
+pytestmark = pytest.mark.slow
+
 MAP = """\
 columns:
   time: {column: time_s, unit: s}
@@ -143,6 +145,7 @@ def test_other_times_of_a_log_are_named_at_the_top(folder: Path) -> None:
     assert 'pi, measured : score window 0.6 to 1.7 s, control from 0.7 s' in text
 
 
+@pytest.mark.process
 def test_a_log_of_another_name_is_refused_with_the_key_that_lays_it_over_them(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

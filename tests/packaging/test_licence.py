@@ -23,6 +23,7 @@ def sources() -> list[str]:
     return [name for name in listed.stdout.splitlines() if not name.endswith(GIVEN_AWAY)]
 
 
+@pytest.mark.process
 def test_every_source_file_begins_with_its_copyright_and_licence() -> None:
     without = [
         name

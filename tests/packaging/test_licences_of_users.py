@@ -10,6 +10,8 @@ from email.message import Message
 from importlib.metadata import PackageMetadata, PackageNotFoundError, distribution, metadata
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).parents[2]
 USERS = ('requirements.txt', 'requirements-fmu.txt', 'requirements-uv.txt')
 """Locks that `make setup`, `make demo` and `make fmu` install."""
@@ -75,6 +77,7 @@ def test_the_gpl_is_found_and_the_lgpl_is_not() -> None:
     assert not is_gpl(of(Classifier=lesser))
 
 
+@pytest.mark.process
 def test_the_product_runs_and_designs_without_it() -> None:
     """python-control takes slycot wherever it is installed, so it is hidden here."""
     code = (

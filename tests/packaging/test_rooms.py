@@ -102,6 +102,7 @@ def test_no_folder_has_too_many_modules(package: str) -> None:
         assert len(modules) <= MOST_MODULES, each
 
 
+@pytest.mark.process
 @pytest.mark.parametrize('module', ['registry', 'architecture'])
 def test_controllers_load_no_design_code_before_they_need_it(module: str) -> None:
     code = (

@@ -36,6 +36,7 @@ def test_the_four_packages_have_one_version() -> None:
     assert len({version_of(package) for package in PACKAGES}) == 1
 
 
+@pytest.mark.process
 @pytest.mark.parametrize('package', PACKAGES)
 def test_setup_takes_the_version_from_package_xml(package: str) -> None:
     text = (ROOT / package / 'setup.py').read_text(encoding='utf-8')

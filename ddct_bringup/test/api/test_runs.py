@@ -29,6 +29,8 @@ from ddct_controllers.design.drawing.line_looks import controller_look
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
+pytestmark = pytest.mark.slow
+
 SHORT_S = 2.0
 
 

@@ -17,6 +17,8 @@ from ddct_bringup.verification.rounding_bound import bound_of_row
 from ddct_controllers.registry import own_controller_names
 from ddct_plant.scenario.file import scenario_names
 
+pytestmark = pytest.mark.slow
+
 SYNTHESISED = ('hinf_fitted', 'hinf_sampled', 'hinf_thesis')
 """Controllers that are synthesised in each process: docs/use/verify.md has what that changes."""
 COMMANDS_ENGINE = ('mpc4', 'mpc4_wear', 'torque_estimator', 'decoupled_pid')

@@ -90,6 +90,7 @@ def test_a_handover_file_is_relative_to_the_specification(tmp_path: Path) -> Non
     assert made.run(0).settings.handover == named[1]
 
 
+@pytest.mark.process
 def test_a_changed_handover_is_refused_before_it_runs(tmp_path: Path) -> None:
     manifest = Manifest.of(campaign(tmp_path, **SHIFT), packaged_limits())
     assert manifest.campaign(tmp_path / 'out').runs == 2

@@ -26,6 +26,7 @@ def spec(**changes: Any) -> CampaignSpec:
     return spec_of({**CONTENT, **changes}, Path())
 
 
+@pytest.mark.process
 def test_rows_are_the_same_from_memory_and_from_a_folder_with_any_workers(tmp_path: Path) -> None:
     limits = packaged_limits()
     rows = [[*run_specification(spec(), limits, workers=count)] for count in (1, 2, 3)]

@@ -32,6 +32,7 @@ def processor_with(core: str) -> dict[str, str]:
     return found
 
 
+@pytest.mark.process
 def test_the_kernels_are_those_in_use() -> None:
     first, second = processor_with('Haswell'), processor_with('Prescott')
     kernels = [key for key in first if key.startswith('kernels of ')]

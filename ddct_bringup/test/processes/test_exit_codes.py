@@ -12,6 +12,7 @@ INTERRUPTED = 'raise RuntimeError from KeyboardInterrupt()'
 """What an interrupt of an import in `__set_name__` becomes."""
 
 
+@pytest.mark.process
 @pytest.mark.parametrize(
     ('work', 'code', 'error'),
     [

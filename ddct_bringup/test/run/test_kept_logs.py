@@ -38,6 +38,7 @@ def _leave(work: Path, logs: Mapping[str, str]) -> None:
         (work / f'{name}.log').write_text(text, encoding='utf-8')
 
 
+@pytest.mark.process
 def test_logs_with_a_warning_or_an_error_stay(run: Callable[..., Path]) -> None:
     folder = run(load=QUIET, clutch=WITH_WARNING, actuator=WITH_ERROR)
     logs = [folder / 'work' / 'actuator.log', folder / 'work' / 'clutch.log']
@@ -45,6 +46,7 @@ def test_logs_with_a_warning_or_an_error_stay(run: Callable[..., Path]) -> None:
     assert sorted((folder / 'work').iterdir()) == logs
 
 
+@pytest.mark.process
 def test_without_a_warning_nothing_stays(run: Callable[..., Path]) -> None:
     folder = run(load=QUIET, clutch=QUIET)
     assert kept_logs(folder) == []

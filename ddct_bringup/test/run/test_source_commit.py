@@ -36,15 +36,18 @@ def sources(tmp_path: Path) -> Path:
     return root
 
 
+@pytest.mark.process
 def test_clean_sources_have_the_commit_alone(sources: Path) -> None:
     assert commit_of(sources / MODULE) == git(sources, 'rev-parse', 'HEAD')
 
 
+@pytest.mark.process
 def test_an_installed_link_leads_to_the_sources(sources: Path, tmp_path: Path) -> None:
     (tmp_path / 'installed').symlink_to(sources / MODULE)
     assert commit_of(tmp_path / 'installed') == git(sources, 'rev-parse', 'HEAD')
 
 
+@pytest.mark.process
 @pytest.mark.parametrize('change', ['changed', 'staged', 'deleted', 'new'])
 def test_uncommitted_changes_are_marked(sources: Path, change: str) -> None:
     file = sources / OTHER
@@ -58,6 +61,7 @@ def test_uncommitted_changes_are_marked(sources: Path, change: str) -> None:
     assert commit_of(sources / MODULE) == git(sources, 'rev-parse', 'HEAD') + '-dirty'
 
 
+@pytest.mark.process
 def test_what_is_no_part_of_a_package_marks_nothing(sources: Path) -> None:
     (sources / NOTES).write_text('something else\n')
     (sources / 'runs').mkdir()
@@ -65,6 +69,7 @@ def test_what_is_no_part_of_a_package_marks_nothing(sources: Path) -> None:
     assert commit_of(sources / MODULE) == git(sources, 'rev-parse', 'HEAD')
 
 
+@pytest.mark.process
 @pytest.mark.parametrize('known', ['ignored', 'untracked', 'only staged'])
 def test_a_copy_in_somebody_elses_repository_is_unknown(sources: Path, known: str) -> None:
     copy = sources / 'install' / MODULE
@@ -77,6 +82,7 @@ def test_a_copy_in_somebody_elses_repository_is_unknown(sources: Path, known: st
     assert commit_of(copy) == 'unknown'
 
 
+@pytest.mark.process
 def test_without_a_repository_or_a_commit_it_is_unknown(tmp_path: Path) -> None:
     module = tmp_path / MODULE
     module.parent.mkdir(parents=True)
@@ -87,6 +93,7 @@ def test_without_a_repository_or_a_commit_it_is_unknown(tmp_path: Path) -> None:
     assert commit_of(module) == 'unknown'
 
 
+@pytest.mark.process
 def test_without_git_it_is_unknown(
     sources: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -94,6 +101,7 @@ def test_without_git_it_is_unknown(
     assert commit_of(sources / MODULE) == 'unknown'
 
 
+@pytest.mark.process
 def test_a_hook_of_another_repository_does_not_lead_astray(
     sources: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -104,6 +112,7 @@ def test_a_hook_of_another_repository_does_not_lead_astray(
     assert commit_of(sources / MODULE) == commit
 
 
+@pytest.mark.process
 def test_git_is_called_for_the_first_run_of_a_process_alone(
     sources: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -61,6 +61,7 @@ def test_the_document_has_the_varied_keys(swept):
     assert document['limits']['name'] == 'packaged'
 
 
+@pytest.mark.process
 def test_the_table_has_a_row_per_run_and_fits_a_terminal(capsys):
     over = ['--over', 'load.slope_rad=0:0.1:2', '--over', 'wear_gain=0.8,1']
     assert main([*over, '--controllers', 'ls8', *SHORT]) == 0
@@ -72,6 +73,7 @@ def test_the_table_has_a_row_per_run_and_fits_a_terminal(capsys):
     assert max(map(len, table)) <= 80
 
 
+@pytest.mark.process
 def test_the_csv_has_the_row_of_each_run_with_what_was_varied(swept, capsys):
     over = ['--over', 'vehicle.mass_kg=1200,1800', '--controllers', 'pi,ls8']
     assert main([*over, *SHORT, '--wear-gain', '0.9', '--csv', '-']) == 0
@@ -87,6 +89,7 @@ def test_the_csv_has_the_row_of_each_run_with_what_was_varied(swept, capsys):
     assert 'std w_sr' in printed.err, 'the table goes to standard error then'
 
 
+@pytest.mark.process
 def test_a_run_that_fails_is_a_row_with_its_reason_and_the_exit_code_is_1(tmp_path, capsys):
     file = tmp_path / 'unstable.yaml'
     file.write_text(UNSTABLE)
@@ -160,6 +163,7 @@ class Gained(api.Controller):
         return api.Command(-self.gain * measurement.slip_error_rpm)
 
 
+@pytest.mark.process
 def test_an_option_of_ones_own_controller_can_be_swept():
     mine = chosen_from(Gained, 'mine')
     rows = api.sweep([mine], {'controllers.mine.gain': [0.05, 0.2]}, duration=SHORT_S)
@@ -178,6 +182,7 @@ class Diverging(api.Controller):
         return api.Command(float('nan'))
 
 
+@pytest.mark.process
 def test_a_sweep_from_python_is_a_table_that_takes_objects_and_keeps_failures():
     rows = api.sweep(
         ['pi', chosen_from(Diverging, 'mine')], {'wear_gain': [0.8, 1.0]}, duration=SHORT_S

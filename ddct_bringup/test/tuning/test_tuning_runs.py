@@ -25,6 +25,8 @@ from ddct_bringup.tuning.trial import DOMINATED, FEASIBLE, INFEASIBLE, Trial
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.scenario.file import load_scenario, scenario_to_yaml
 
+pytestmark = pytest.mark.slow
+
 SAME = ('front.json', 'trials.json', RUNS, 'best.yaml', 'held_out/results.parquet')
 
 

@@ -17,6 +17,8 @@ from ddct_bringup.verification.rounding_bound import LARGEST, bound_of_row, boun
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
+pytestmark = pytest.mark.slow
+
 
 def plan_of(place: Path, ripple_n_m: float) -> RunPlan:
     """Return the plan of a controller with a ripple of that size."""

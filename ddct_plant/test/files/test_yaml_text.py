@@ -128,6 +128,7 @@ def test_no_other_module_of_the_product_reads_yaml_or_json():
             assert file.name in allowed or not any(word in text for word in words), file
 
 
+@pytest.mark.process
 def test_refusing_needs_less_than_a_gigabyte():
     program = (
         'import resource, sys\n'

@@ -91,6 +91,7 @@ def test_a_fault_of_the_program_keeps_its_traceback():
         run_program('x', raising(ZeroDivisionError()), [])
 
 
+@pytest.mark.process
 @pytest.mark.parametrize(
     ('work', 'expected'),
     [
@@ -139,6 +140,7 @@ def test_control_characters_on_the_command_line_do_not_reach_the_terminal(capsys
     assert capsys.readouterr().err == 'x: unrecognized arguments: --\\x1b[31m: see x --help\n'
 
 
+@pytest.mark.process
 def test_a_reader_that_has_gone_ends_the_program_quietly():
     program = (
         'import sys; from ddct_plant.program.command_line import run_program\n'

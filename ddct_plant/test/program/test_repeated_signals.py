@@ -113,6 +113,7 @@ def test_a_program_in_another_thread_leaves_signals_alone():
     assert codes == [3]
 
 
+@pytest.mark.process
 @pytest.mark.parametrize(
     'end',
     [

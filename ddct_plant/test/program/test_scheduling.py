@@ -13,6 +13,8 @@ from refusals import refused
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.program.scheduling import Scheduling, cpus_in, scheduling_restored
 
+pytestmark = pytest.mark.slow
+
 CORES = sorted(os.sched_getaffinity(0))
 LOCKED = (
     'from ddct_plant.program.scheduling import Scheduling, scheduling_restored\n'

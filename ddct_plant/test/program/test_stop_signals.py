@@ -58,6 +58,7 @@ def test_a_signal_that_was_ignored_stays_ignored():
         signal.signal(signal.SIGINT, before)
 
 
+@pytest.mark.process
 def test_a_process_whose_parent_has_ended_before_ends_too():
     """The kernel sends no death signal for an end before the process has asked for one."""
     reader, writer = os.pipe()

@@ -15,17 +15,20 @@ from ddct_plant.base.errors import DdctError
 from ddct_plant.program.workers import in_processes
 
 
+@pytest.mark.process
 def test_results_come_in_order_whatever_the_number_of_workers():
     for workers in (1, 2, 3):
         with in_processes(lambda index: index**2, 40, workers) as results:
             assert list(results) == [index**2 for index in range(40)]
 
 
+@pytest.mark.process
 def test_work_is_done_in_other_processes():
     with in_processes(lambda _: os.getpid(), 4, 2) as results:
         assert os.getpid() not in set(results)
 
 
+@pytest.mark.process
 def test_a_killed_worker_is_reported_in_a_line():
     with (
         pytest.raises(DdctError, match='killed'),
@@ -34,6 +37,7 @@ def test_a_killed_worker_is_reported_in_a_line():
         list(results)
 
 
+@pytest.mark.process
 def test_a_pool_that_is_closed_leaves_no_thread_for_pythons_exit():
     before = {*threading.enumerate()}
     # More than once: the pool's own thread may end while its processes are awaited.
@@ -43,6 +47,7 @@ def test_a_pool_that_is_closed_leaves_no_thread_for_pythons_exit():
         assert {*threading.enumerate()} <= before
 
 
+@pytest.mark.process
 def test_ctrl_c_while_workers_are_ended_leaves_none(monkeypatch):
     kill = BaseProcess.kill
 
@@ -61,6 +66,7 @@ def test_ctrl_c_while_workers_are_ended_leaves_none(monkeypatch):
         assert not multiprocessing.active_children()
 
 
+@pytest.mark.process
 def test_a_worker_whose_start_was_interrupted_is_ended_too():
     with in_processes(lambda _: time.sleep(60.0), 4, 2):
         # The pool does not know it: Ctrl-C came between its fork and the entry in the pool's list.

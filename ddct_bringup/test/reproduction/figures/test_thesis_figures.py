@@ -28,6 +28,8 @@ from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_controllers.registry import controller_spec
 from ddct_plant.linear.lti import FactoredTransferFunction
 
+pytestmark = pytest.mark.slow
+
 TRANSFER_FUNCTION = Path(__file__).parents[4] / 'docs' / 'templates' / 'transfer_function.yaml'
 WITHOUT_RUN = (*LOOP_SHAPING_FIGURES, *H_INFINITY_FIGURES)
 

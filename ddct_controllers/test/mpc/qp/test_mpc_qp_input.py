@@ -106,6 +106,7 @@ def test_a_missing_solver_is_named(name, monkeypatch):
         make_backend(name, ONE, 1000)
 
 
+@pytest.mark.process
 def test_a_solver_is_imported_only_when_it_is_chosen():
     """Every process of a graph would pay for it."""
     program = (
