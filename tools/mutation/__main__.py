@@ -50,7 +50,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     step.add_argument('records', type=Path, help='a new folder')
     step.add_argument('pytest', nargs='*', help='arguments of pytest, after --')
     step.set_defaults(work=_cover)
-    step = steps.add_parser('draw', help='draw mutations')
+    step = steps.add_parser('draw', help='draw mutations, of a copy in which none is tried')
     step.add_argument('copy', type=Path)
     step.add_argument('records', type=Path)
     step.add_argument('--out', type=Path, required=True)
