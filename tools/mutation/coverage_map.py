@@ -49,10 +49,8 @@ class CoverageMap:
     def _read(self, record: Path) -> None:
         beside = record.with_suffix('.test')
         of_process = beside.read_text(encoding='utf-8') if beside.exists() else ''
-        if of_process.endswith(SETUP):
-            of_process = of_process.removesuffix(SETUP) + SETUP
-        else:
-            of_process = of_process.rpartition(' (')[0]
+        if not of_process.endswith(SETUP):
+            of_process = of_process.rpartition(' (')[0]  # the phase of its call or its end
         connection = sqlite3.connect(record)
         try:
             rows = connection.execute(_QUERY).fetchall()
