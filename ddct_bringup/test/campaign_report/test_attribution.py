@@ -6,7 +6,7 @@ from itertools import combinations
 
 import numpy as np
 import pytest
-from made_failures import KEYS, NAMES, RUNS, blamed, drawn
+from made_failures import KEYS, NAMES, RUNS, blamed, covered_effects, drawn, wrongly_blamed
 from made_results import made_results
 
 from ddct_bringup.campaign_report.statistics import attribution as attribution_module
@@ -81,24 +81,11 @@ def test_few_campaigns_attribute_failures_that_no_key_causes_to_a_key(monkeypatc
     """Of 200 campaigns at most 18 do: tests/nightly/campaign_report."""
     # The intervals, which take most of the time, are drawn after all p-values and not compared.
     monkeypatch.setattr(attribution_module, '_RESAMPLES', 1)
-    wrong = 0
-    for seed in range(15):
-        failed = np.random.default_rng([1, seed]).random(RUNS) < 0.1
-        names = np.random.default_rng([4, seed]).choice(NAMES, RUNS)
-        wrong += bool(blamed({**drawn(seed), 'scenario': names}, failed))
-    assert wrong <= 3  # more come by chance in 0.5 % of the cases
+    assert wrongly_blamed(15) <= 3  # more come by chance in 0.5 % of the cases
 
 
 def test_the_interval_covers_the_main_effect():
-    slope, mean = 0.4, 0.2
-    true = slope**2 / 12 / (mean * (1 - mean))  # failure has the chance 0.4 (1 - wear)
-    covered = 0
-    for seed in range(20):
-        values = drawn(seed)['wear_gain']
-        failed = np.random.default_rng([2, seed]).random(RUNS) < slope * (1.0 - values)
-        (wear,) = effects_of({'wear_gain': values}, failed)
-        covered += wear.interval[0] <= true <= wear.interval[1]
-    assert covered >= 16
+    assert covered_effects(20) >= 16
 
 
 def test_invalid_runs_take_no_part():

@@ -21,3 +21,26 @@ def drawn(seed, runs=RUNS):
 def blamed(values, failed):
     """Return the keys that drive failure."""
     return [each.key for each in effects_of(values, failed) if each.drives]
+
+
+def wrongly_blamed(campaigns):
+    """Return in how many campaigns a key drives failures that no key causes."""
+    wrong = 0
+    for seed in range(campaigns):
+        failed = np.random.default_rng([1, seed]).random(RUNS) < 0.1
+        names = np.random.default_rng([4, seed]).choice(NAMES, RUNS)
+        wrong += bool(blamed({**drawn(seed), 'scenario': names}, failed))
+    return wrong
+
+
+def covered_effects(campaigns):
+    """Return in how many campaigns the interval of the wear gain covers its main effect."""
+    slope, mean = 0.4, 0.2
+    true = slope**2 / 12 / (mean * (1 - mean))  # failure has the chance 0.4 (1 - wear)
+    covered = 0
+    for seed in range(campaigns):
+        values = drawn(seed)['wear_gain']
+        failed = np.random.default_rng([2, seed]).random(RUNS) < slope * (1.0 - values)
+        (wear,) = effects_of({'wear_gain': values}, failed)
+        covered += wear.interval[0] <= true <= wear.interval[1]
+    return covered
