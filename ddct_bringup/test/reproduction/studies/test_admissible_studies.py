@@ -4,6 +4,8 @@
 
 import pytest
 
+from ddct_bringup.metrics.catalogue import METRICS
+from ddct_bringup.reproduction.calibration.predicted_values import OPEN_LOOP
 from ddct_bringup.reproduction.studies import admissible_scenarios as module
 from ddct_bringup.reproduction.studies.admissible_scenarios import (
     admissible_scenarios,
@@ -12,6 +14,7 @@ from ddct_bringup.reproduction.studies.admissible_scenarios import (
     worn_ranges,
 )
 from ddct_bringup.thesis.predictions import kept_predictions
+from ddct_bringup.thesis.table_5_1 import FORMS
 
 pytestmark = pytest.mark.slow
 END_S = 1.7
@@ -30,6 +33,15 @@ def test_no_scenario_has_a_whole_predicted_row():
     remarks = prediction_ranges().remarks[1:]
     assert [remark.split(':')[0] for remark in remarks] == ['MPC3', 'MPC4']
     assert all(' 0 hit all three figures' in remark for remark in remarks)
+
+
+def test_both_deviations_of_the_clutch_without_feedback_have_a_range_and_no_print():
+    alone = [row for row in prediction_ranges().rows if row[0] == OPEN_LOOP]
+    kept = kept_predictions().by_id
+    for row, name in zip(alone, ('torsion_speed_std_rpm', 'acceleration_std_m_s2'), strict=True):
+        found = kept[f'5.1 {OPEN_LOOP} {name}']
+        assert row[1:3] == (METRICS[name].heading, f'{found.frozen:{FORMS[name]}}')
+        assert row[3:] == (found.text(FORMS[name]), '-', '-', '-')
 
 
 def test_a_range_has_the_value_of_the_frozen_scenario_and_those_of_all():
