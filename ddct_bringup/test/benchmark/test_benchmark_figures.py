@@ -14,6 +14,7 @@ from ddct_bringup.benchmark.cases import Cases
 from ddct_bringup.benchmark.comparison import figures_of, non_dominated, pairs_of
 from ddct_bringup.benchmark.evaluation import causes_in, evaluations_of
 from ddct_bringup.benchmark.gaps import fisher_p_value, gaps_of
+from ddct_bringup.benchmark.report.printed import _p95
 from ddct_bringup.benchmark.update_times import read_update_times
 from ddct_bringup.campaign.keys import SCENARIO
 from ddct_bringup.campaign_report.printed_summary import MAIN
@@ -21,6 +22,7 @@ from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.base.errors import DdctError
 
 CASES = 6
+STATES = 'engaged', 'stalled'
 
 
 def rows_of(**controllers: dict[str, Any]) -> CaseRows:
@@ -179,6 +181,29 @@ def test_the_test_of_quantities_is_that_of_scipy_and_says_which_set_is_worse() -
     larger = 1.0 - expected.statistic / CASES**2
     assert found['peak_jerk_m_s3']['worse'] == pytest.approx(larger)
     assert found['success'] == {'name': 'success', 'p_value': 1.0, 'worse': 0.5, 'differs': False}
+
+
+def test_a_set_without_an_engaged_run_has_no_gap_of_quantities() -> None:
+    some, none = (rows_of(ours={'verdict_state': state}).of('ours') for state in STATES)
+    for sets in ((some, none), (none, some)):
+        found = {gap['name']: gap for gap in gaps_of(*sets)}
+        assert found['peak_jerk_m_s3'] == {
+            **{'name': 'peak_jerk_m_s3', 'p_value': None, 'worse': None},
+            'differs': False,
+        }
+        assert found['success']['differs']
+
+
+def test_each_printed_quantile_is_that_of_its_own_quantity() -> None:
+    values = {name: float(place) for place, name in enumerate(MAIN, 2)}
+    (found,) = evaluations_of(
+        rows_of(ours={**values, 'over_floor.peak_jerk': 1.5}),
+        *({}, packaged_limits(), ['wear_gain'], 'ours'),
+    )
+    printed = {name: _p95(found, name) for name in MAIN}
+    assert {name: float(value) for name, (value, _) in printed.items()} == values
+    assert [name for name, (_, ratio) in printed.items() if ratio == '1.50'] == ['peak_jerk_m_s3']
+    assert _p95({**found, 'quantities': []}, MAIN[0]) == ('-', '-')
 
 
 def test_an_honest_controller_is_rarely_marked() -> None:

@@ -51,6 +51,9 @@ def test_words_are_aligned_to_the_left_and_numbers_to_the_right() -> None:
     assert aligned['How often engagement fails'] == [
         *('failed', '95 % interval', 'runs', 'engaged', 'failed', 'invalid'),
     ]
+    assert aligned['Engaged runs: quantiles with sign, CVaR and worst by magnitude'] == [
+        *('n', 'P5', 'P50', 'P95', 'CVaR', 'worst engaged', 'run', 'worst', 'run'),
+    ]
     assert aligned['Differences on the same cases, where both engaged'] == [
         *('cases', 'P5', 'P50', 'P95'),
     ]

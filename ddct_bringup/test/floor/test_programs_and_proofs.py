@@ -20,6 +20,7 @@ from ddct_bringup.floor.program.linear_program import (
     proven,
     require_proof,
 )
+from ddct_bringup.floor.program.newton import Iterate, Newton
 from ddct_bringup.floor.program.peak import late_peaks, peak_program
 from ddct_bringup.floor.program.solve import solve
 from ddct_plant.base.errors import DdctError
@@ -267,3 +268,27 @@ def test_a_variable_whose_box_has_no_width_keeps_its_value():
     solution = solution_of(program)
     assert solution.point == pytest.approx([0.0, 2.0], abs=1e-6)
     assert solution.certificate.claim == pytest.approx(0.0, abs=1e-6)
+
+
+def test_the_direction_of_newton_does_not_depend_on_the_units_of_the_variables():
+    draw = np.random.default_rng(5)
+    program = random_program(draw)
+    n, m, p = len(program.cost), len(program.limits), len(program.equal_values)
+    sizes = {'x': n, 's': m, 'equal': p, 'rows': m, 'low': n, 'high': n}
+    now = Iterate(**{name: draw.uniform(0.1, 1.0, size) for name, size in sizes.items()})
+    now = now._replace(x=(program.low + program.high) / 2.0)
+    residuals = [draw.standard_normal(size) for size in (n, m, p)]
+    wanted = [draw.standard_normal(size) for size in (m, n, n)]
+    usual = Newton(program, now, *residuals).direction(wanted)
+    unit = 10.0 ** draw.integers(-6, 7, n)
+    scaled = replace(
+        program,
+        rows=program.rows * unit,
+        equal_rows=program.equal_rows * unit,
+        low=program.low / unit,
+        high=program.high / unit,
+    )
+    there = now._replace(x=now.x / unit, low=now.low * unit, high=now.high * unit)
+    found = Newton(scaled, there, residuals[0] * unit, *residuals[1:]).direction(wanted)
+    assert found.x * unit == pytest.approx(usual.x, rel=1e-6)
+    assert found.rows == pytest.approx(usual.rows, rel=1e-6)

@@ -46,6 +46,12 @@ def test_the_best_is_nearest_to_the_best_of_every_objective() -> None:
     assert best_of(front[:1], SPEC).number == 4
 
 
+def test_the_best_is_the_same_when_an_objective_has_another_origin() -> None:
+    for origin in (0.0, 100.0):
+        front = [trial(4, origin, 2.0), trial(5, origin + 0.3, 1.2), trial(6, origin + 1.0, 1.0)]
+        assert best_of(front, SPEC).number == 5
+
+
 @pytest.mark.parametrize(
     ('trials', 'words'),
     [
