@@ -38,6 +38,7 @@ def test_the_runs_with_a_floor_are_above_the_line_of_the_least() -> None:
     heights = [y for _, y in view.line]
     assert heights == sorted(heights, reverse=True)
     ls8, sampled = view.runs
+    assert max(ls8.x, sampled.x) < view.line[-1][0] - 0.1
     assert ls8.y > sampled.y > max(y for x, y in view.line if x >= ls8.x - 0.1)
     least = re.search(r'lock 1.121 s after control start, 11.27 m/s³, least (.*) m/s³', ls8.text)
     assert least is not None

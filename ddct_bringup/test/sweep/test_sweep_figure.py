@@ -117,6 +117,14 @@ def test_an_engaged_run_without_a_value_is_a_ring_and_no_cross():
     assert by_marker(panel, 'x').get_xdata().tolist() == [1.2]
 
 
+@pytest.mark.parametrize('names', [['pi'], ['pi', 'ls8', 'mpc3']], ids=len)
+def test_title_and_legends_take_no_height_from_a_panel_and_leave_none_unused(names):
+    figure = drawn(['wear_gain=0.9,1'], names, [(ENGAGED, 1.0), (RUNAWAY, 2.0)] * len(names))
+    figure.canvas.draw()
+    height_in = figure.axes[0].get_position().height * figure.get_figheight()
+    assert height_in == pytest.approx(2.3, abs=0.3)
+
+
 @pytest.mark.filterwarnings('error')
 def test_the_layout_is_kept_where_no_run_needs_a_mark(tmp_path):
     save_chart(drawn(['wear_gain=0.9,1'], ['pi'], [(ENGAGED, 1.0)] * 2), tmp_path / 'x.png')

@@ -13,7 +13,12 @@ from ddct_bringup.campaign.spec import spec_of
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_bringup.verification.comparison import BOUND
-from ddct_bringup.verification.rounding_bound import LARGEST, bound_of_row, bound_of_run
+from ddct_bringup.verification.rounding_bound import (
+    LARGEST,
+    _with_other_last_bits,
+    bound_of_row,
+    bound_of_run,
+)
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
@@ -36,6 +41,16 @@ def test_the_bound_follows_from_the_effect_of_the_last_bits(
     tmp_path: Path, ripple_n_m: float, least: float, most: float
 ) -> None:
     assert least <= bound_of_run(plan_of(tmp_path, ripple_n_m)) <= most
+
+
+def test_the_inertia_is_changed_by_one_to_four_last_bits_to_both_sides() -> None:
+    settings = RunSettings(load_scenario('thesis'))
+    own = settings.scenario.given_driveline.engine_inertia
+    changes = [
+        (each.scenario.given_driveline.engine_inertia / own - 1.0) * 2.0**50
+        for each in _with_other_last_bits(settings)
+    ]
+    assert sorted(changes) == pytest.approx([-4, -3, -2, -1, 1, 2, 3, 4], abs=0.3)
 
 
 def test_a_row_has_the_bound_of_its_metrics() -> None:

@@ -29,6 +29,9 @@ from ddct_bringup.bag.trajectory_bag import write_trajectory
 from ddct_bringup.digests.digest_file import DIGESTS, read_digests
 from ddct_bringup.digests.files import digests_of_files
 from ddct_bringup.programs import compare, report, score, verify
+from ddct_bringup.verdict.limits import packaged_limits
+from ddct_bringup.verification.request import VerificationRequest
+from ddct_bringup.verification.runs import verified_runs
 from ddct_controllers.from_file.with_options import with_options_text
 from ddct_plant.signals.gain_changes import GainChange
 
@@ -51,6 +54,13 @@ def test_an_untouched_folder_is_the_same_to_the_last_bit_wherever_it_is(
     assert {file['state'] for file in document['files']} == {'same'}
     assert (document['same'], document['bound']) == (True, 0.0)
     assert document['by_digest'] == ['report.html', 'timing.json']
+
+
+def test_a_bag_without_digests_is_different_and_the_reason_is_named(runs: Path) -> None:
+    digests = replace(read_digests(runs), runs={})
+    (found,) = verified_runs(VerificationRequest(runs / 'pi', digests, packaged_limits()))
+    assert (found.run, found.state) == ('pi', 'different')
+    assert found.first_difference == {'reason': 'no digests of this run'}
 
 
 def test_a_bag_in_its_own_folder_has_digests_too(

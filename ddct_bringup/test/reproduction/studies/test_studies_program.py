@@ -68,6 +68,21 @@ def test_charts_come_as_picture_and_drawing_with_their_data(monkeypatch, tmp_pat
     assert data[1:] == ['0,2,3,4', '0.01,1,2,3', '0.02,0.5,1.5,2.5']
 
 
+def range_of_panels(*states: str) -> tuple[float, float]:
+    """Return the range in rpm of slips from -20 to 80 rpm, of which others grow without limit."""
+    good, bad = np.array([80.0, 20.0, -20.0]), np.array([80.0, 1e4, 1e6])
+    slips = [
+        Slip('pi', f'{place}', state, 1, good if state == 'engaged' else bad)
+        for place, state in enumerate(states)
+    ]
+    return engagement_chart('Drawn', slips).axes[0].get_ylim()
+
+
+def test_the_panels_leave_a_margin_around_engaged_runs_and_no_room_for_others():
+    assert range_of_panels('engaged', 'engaged', 'engaged') == pytest.approx((-35.0, 95.0))
+    assert range_of_panels('engaged', 'runaway', 'runaway') == pytest.approx((-35.0, 95.0))
+
+
 def test_unknown_study_is_refused_before_the_work(capsys):
     assert reproduce.main(['studies', '--study', 'first', '--study', 'third']) == 1
     (error,) = capsys.readouterr().err.splitlines()
