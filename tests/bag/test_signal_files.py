@@ -49,6 +49,14 @@ def test_the_same_run_gives_the_same_bytes(bags, trajectory, tmp_path):
     assert b'Created on' not in first.read_bytes()[:128]
 
 
+def test_the_text_of_a_mat_file_leaves_the_eight_bytes_after_it_empty(bags, trajectory, tmp_path):
+    """Bytes 117 to 124 of a MAT file of version 5 are the place of further data: zero is none."""
+    assert main([str(bags.write(trajectory)), '--signals-mat', str(tmp_path / 'mat')]) == 0
+    content = next((tmp_path / 'mat').iterdir()).read_bytes()
+    assert content[:116].rstrip() == b'MATLAB 5.0 MAT-file, written by ddct score'
+    assert content[116:124] == bytes(8)
+
+
 def test_every_signal_has_a_name_that_matlab_takes():
     scenario = load_scenario('launch', {'sensors.engine_speed.noise_rad_s': 0.1})
     settings = RunSettings(scenario, 'detailed', 'stick_slip', 1.0, 'lockstep', 0)

@@ -224,6 +224,7 @@ def test_the_program_reports_every_check_of_a_controller_in_a_file(
     assert report['controller'] == str(file)
     assert [each['name'] for each in report['checks']] == [each.name for each in CHECKS]
     assert all(each.keys() == {'name', 'state', 'detail'} for each in report['checks'])
+    assert all(each['detail'] for each in report['checks'])
     states = {each['name']: each['state'] for each in report['checks']}
     assert (states['linear model'], states['stability']) == (PASS, PASS)
 

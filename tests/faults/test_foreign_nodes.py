@@ -5,6 +5,7 @@
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from itertools import count
+from typing import Any
 
 import pytest
 import rclpy
@@ -39,6 +40,15 @@ def test_a_waiting_recorder_names_the_missing_nodes(
     assert 'no run_info came from' in words
     for node in set(NODE_NAMES) - {'recorder'} | {'bench'}:
         assert node in words
+
+
+def test_a_recorder_that_recorded_nothing_names_the_cause(graph_of: GraphOf) -> None:
+    graph = graph_of(plan())
+    recorder: Any = graph.add('recorder', {'nodes': ['recorder']})
+    graph.spin_until(lambda: not recorder._nodes.missing(), 'its own run_info')
+    recorder.close()
+    words = f'{graph.folder}: nothing was recorded, no whole tick came: start it first, or '
+    assert graph.failures()['recorder'].startswith(words)
 
 
 @pytest.mark.parametrize(('node', 'key'), [('controller', 'controller'), ('driveline', 'steps')])

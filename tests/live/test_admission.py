@@ -2,7 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Who may connect to the live view: programs and Foxglove, and no other web page."""
 
+import asyncio
 import socket
+import threading
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from pathlib import Path
@@ -120,6 +122,25 @@ def test_a_connection_without_first_lines_is_closed(gate: tuple[str, list[str]])
     url, lines = gate
     assert answer(url, b'GET / HTTP/1.1') == b''
     assert not lines
+
+
+async def accepted_one() -> None:
+    """Wait until a connection has a task besides this one."""
+    while len(asyncio.all_tasks()) < 2:
+        await asyncio.sleep(0.01)
+
+
+def test_a_gate_that_stops_does_not_wait_for_a_silent_connection(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr('ddct_bringup.live.gate._HEAD_S', 3600.0)
+    gate = Gate(Admission('127.0.0.1'), 0, ('127.0.0.1', 1), lambda line: None)
+    stopping = threading.Thread(target=gate.stop, daemon=True)
+    with socket.create_connection(('127.0.0.1', gate.port), 30.0):
+        asyncio.run_coroutine_threadsafe(accepted_one(), gate._loop).result(30.0)
+        stopping.start()
+        stopping.join(30.0)
+        assert not stopping.is_alive()
 
 
 def test_a_refusal_that_comes_again_is_printed_once(gate: tuple[str, list[str]]) -> None:

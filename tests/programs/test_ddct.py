@@ -44,9 +44,12 @@ def test_help_lists_every_program_with_what_it_does(capsys: pytest.CaptureFixtur
     text = help_text(capsys)
     packages = re.findall(r'^(\w+):\n((?:  .*\n)+)', text, re.MULTILINE)
     assert tuple(name for name, _ in packages if name.startswith('ddct_')) == PACKAGES
+    columns = set()
     for name in programs():
-        (task,) = re.findall(rf'^  {name}  +(.*)', text, re.MULTILINE)
+        ((before, task),) = re.findall(rf'^(  {name}  +)(.*)', text, re.MULTILINE)
         assert len(task.split()) >= 4 and 'cannot be read' not in task
+        columns.add(len(before))
+    assert len(columns) == 1
 
 
 def test_the_page_of_programs_names_every_program() -> None:

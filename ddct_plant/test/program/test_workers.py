@@ -7,12 +7,13 @@ import os
 import signal
 import threading
 import time
+from contextlib import closing
 from multiprocessing.process import BaseProcess
 
 import pytest
 
 from ddct_plant.base.errors import DdctError
-from ddct_plant.program.workers import in_processes
+from ddct_plant.program.workers import WorkerPool, in_processes
 
 
 @pytest.mark.process
@@ -35,6 +36,17 @@ def test_a_killed_worker_is_reported_in_a_line():
         in_processes(lambda _: os.kill(os.getpid(), signal.SIGKILL), 2, 2) as results,
     ):
         list(results)
+
+
+@pytest.mark.process
+def test_a_new_pool_ends_the_processes_of_the_former_one():
+    with closing(WorkerPool(1)) as pool:
+        former = pool.executor()
+        former.submit(os.getpid).result()
+        (worker,) = multiprocessing.active_children()
+        pool.executor()
+        assert not worker.is_alive()
+        assert not multiprocessing.active_children()
 
 
 @pytest.mark.process

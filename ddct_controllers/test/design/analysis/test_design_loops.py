@@ -166,6 +166,8 @@ def test_series_refuses_different_periods_and_several_outputs():
     two = StateSpace(lag.a, lag.b, np.ones((2, 1)), np.zeros((2, 1)))
     with pytest.raises(ParameterError, match='1 inputs and 2 outputs'):
         close_loop(two)
+    with pytest.raises(ParameterError, match='1 inputs and 2 outputs'):
+        frequency_response(two, OMEGA)
 
 
 def test_a_loop_whose_feedthrough_is_minus_one_is_refused():

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from matplotlib.text import Text
 
+from ddct_controllers.design.drawing import charts
 from ddct_controllers.design.drawing.chart_style import (
     chart_style,
     figure_data,
@@ -16,9 +17,15 @@ from ddct_controllers.design.drawing.chart_style import (
     new_chart,
     save_figure,
 )
-from ddct_controllers.design.drawing.charts import draw_nichols, draw_step_response
+from ddct_controllers.design.drawing.charts import (
+    draw_nichols,
+    draw_step_response,
+    write_design_charts,
+)
 from ddct_controllers.design.drawing.nichols import nichols_curve
 from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
+from ddct_controllers.from_file.designed import DesignedController
+from ddct_controllers.printed import PRINTED_CONTROLLERS
 
 TIME = np.linspace(0.0, 1.0, 5)
 
@@ -68,6 +75,20 @@ def test_a_reference_across_the_panel_is_no_data():
     headings = [heading for heading, _ in figure_data(figure)]
     assert len(headings) == 2
     assert headings[0] == 'Time, s'
+
+
+def test_the_step_chart_has_lines_at_the_specified_rise_time_and_overshoot(monkeypatch, tmp_path):
+    figures = {}
+    monkeypatch.setattr(
+        charts, 'save_figure', lambda figure, folder, name: figures.update({name: figure})
+    )
+    designed = DesignedController('mine', PRINTED_CONTROLLERS['ls8'])
+    write_design_charts(tmp_path, designed, TimeSpecifications(rise_time_s=0.3, overshoot=0.08))
+    assert list(figures) == ['mine_nyquist', 'mine_nichols', 'mine_step']
+    lines = [line.get_data() for line in figures['mine_step'].axes[0].lines]
+    across = [y[0] for x, y in lines if list(x) == [0.0, 1.0]]
+    upright = [x[0] for x, y in lines if list(y) == [0.0, 1.0]]
+    assert (across, upright) == ([1.08, 1.0], [0.3])
 
 
 def grid_labels() -> dict[str, tuple[float, float]]:
