@@ -3,8 +3,10 @@
 """Controllers by name: our own, those of other packages, and those in a file."""
 
 import importlib.metadata
+import sys
 from collections.abc import Callable, Iterable, Mapping
-from functools import partial
+from functools import lru_cache, partial
+from pathlib import Path
 from typing import Any
 
 from ddct_controllers.factories import factory_spec
@@ -176,4 +178,18 @@ def _third_party(name: str) -> ControllerSpec[Controller]:
 
 
 def _entry_points() -> importlib.metadata.EntryPoints:
+    return _entry_points_in(tuple((folder, _changed_ns(folder)) for folder in sys.path))
+
+
+@lru_cache(maxsize=1)
+def _entry_points_in(_folders: tuple[tuple[str, int], ...]) -> importlib.metadata.EntryPoints:
+    """Read the metadata of all packages, which takes as long as a short run."""
     return importlib.metadata.entry_points(group=ENTRY_POINT_GROUP)
+
+
+def _changed_ns(folder: str) -> int:
+    """Return when a package was last added to a folder or removed from it, 0 without one."""
+    try:
+        return Path(folder).stat().st_mtime_ns
+    except OSError:
+        return 0

@@ -98,6 +98,27 @@ def test_a_third_partys_controller_is_listed_and_built(add_entry_point):
     assert type(make_controller('third', SETTINGS)).__name__ == 'Third'
 
 
+def test_installed_packages_are_searched_once_until_another_is_added(tmp_path, monkeypatch):
+    searches = []
+    search = importlib.metadata.entry_points
+
+    def counted(**group):
+        searches.append(group)
+        return search(**group)
+
+    monkeypatch.setattr(importlib.metadata, 'entry_points', counted)
+    monkeypatch.syspath_prepend(str(tmp_path))
+    before = [controller_names() for _ in range(3)]
+    assert len(searches) == 1
+    assert all('later' not in names for names in before)
+    added = tmp_path / 'later-1.0.dist-info'
+    added.mkdir()
+    (added / 'METADATA').write_text('Metadata-Version: 2.1\nName: later\nVersion: 1.0\n')
+    (added / 'entry_points.txt').write_text(f'[{ENTRY_POINT_GROUP}]\nlater = later:make\n')
+    assert 'later' in controller_names()
+    assert len(searches) == 2
+
+
 def test_a_third_party_cannot_replace_one_of_ours(add_entry_point):
     add_entry_point('pi', f'{__name__}:make_third')
     assert controller_names().count('pi') == 1
