@@ -6,6 +6,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 from ddct_bringup.tuning.conduct import carry_out_tuning
 from ddct_bringup.tuning.report.folder import write_tuning
 from ddct_bringup.tuning.specification.spec import tuning_spec_of
@@ -42,6 +44,11 @@ def tuning(controller: str = 'pi', folder: Path | None = None, **changes: Any) -
     content = {**CONTENT, **changes}
     spec = tuning_spec_of(content, folder or Path.cwd(), controller_spec(controller))
     return tuning_of(controller, spec, packaged_limits())
+
+
+def leave_out_pictures(patch: pytest.MonkeyPatch) -> None:
+    """Draw no figure on the pages of tunings, which takes half of the time of a small one."""
+    patch.setattr('ddct_bringup.tuning.report.page._picture', lambda figure: '')
 
 
 def made_tuning(out: Path, **changes: Any) -> Path:

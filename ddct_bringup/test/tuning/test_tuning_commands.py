@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 from printed_commands import run_printed
-from small_tuning import made_tuning
+from small_tuning import leave_out_pictures, made_tuning
 from tuning_pages import ENGAGED, FILE, VARIED, commands_of, compared_settings
 
 from ddct_plant.scenario.file import load_scenario, scenario_to_yaml
@@ -23,6 +23,7 @@ def test_the_commands_run_for_a_controller_and_a_scenario_from_files_with_all_op
     place = tmp_path / "the driver's own"
     place.mkdir()
     monkeypatch.chdir(place)
+    leave_out_pictures(monkeypatch)
     scenario = load_scenario('thesis', ['duration_s=2.9'])
     Path('my car.yaml').write_text(scenario_to_yaml(scenario), encoding='utf-8')
     Path('my pi.yaml').write_text(

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 from python_controllers import IMPORTS, PROPORTIONAL
-from small_tuning import made_tuning
+from small_tuning import leave_out_pictures, made_tuning
 from verified import copied, edit_json_with_digest, edit_with_digest
 
 from ddct_bringup.programs.verify import main as verify
@@ -17,9 +17,16 @@ from ddct_controllers.from_file.with_options import with_options_text
 pytestmark = pytest.mark.slow
 
 
+@pytest.fixture(autouse=True)
+def no_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
+    leave_out_pictures(monkeypatch)
+
+
 @pytest.fixture(scope='module')
 def finished(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return made_tuning(tmp_path_factory.mktemp('tuning') / 'out', trials=10)
+    with pytest.MonkeyPatch.context() as patch:
+        leave_out_pictures(patch)
+        return made_tuning(tmp_path_factory.mktemp('tuning') / 'out', trials=10)
 
 
 def states(folder: Path, to: Path) -> dict[str, str]:
