@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pyarrow.parquet as parquet
 import pytest
-from made_campaign import GRID, make_campaign, seal
+from made_campaign import GRID, leave_out_figure, make_campaign, seal
 
 from ddct_bringup.api import DdctError, read_campaign
 from ddct_bringup.campaign.conduct import RESULTS
@@ -20,6 +20,13 @@ from ddct_bringup.programs.campaign import main
 from ddct_bringup.verdict.state import ENGAGED, INVALID
 
 pytestmark = pytest.mark.slow
+
+
+@pytest.fixture(autouse=True)
+def no_figure(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Only test_campaign_page.py is about the figure of a page."""
+    leave_out_figure(monkeypatch)
+
 
 RANDOM = {
     'controllers': ['pi'],

@@ -8,7 +8,7 @@ from pathlib import Path
 import pyarrow as pa
 import pyarrow.parquet as parquet
 import pytest
-from made_campaign import GRID, make_campaign, seal
+from made_campaign import GRID, leave_out_figure, make_campaign, seal
 
 from ddct_bringup.api import DdctError, read_campaign
 from ddct_bringup.campaign.conduct import RESULTS
@@ -17,6 +17,12 @@ from ddct_bringup.campaign_report.folder import PAGE
 from ddct_bringup.programs.campaign import main
 
 ABSENT, UNKNOWN = 'peak_jerk_m_s3', 'metric_of_tomorrow'
+
+
+@pytest.fixture(autouse=True)
+def no_figure(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Only test_campaign_page.py is about the figure of a page."""
+    leave_out_figure(monkeypatch)
 
 
 @pytest.fixture

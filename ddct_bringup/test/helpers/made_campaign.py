@@ -6,6 +6,8 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.columns import schema_of, shard_bytes
 from ddct_bringup.campaign.conduct import RESULTS
@@ -55,6 +57,11 @@ def make_campaign(
     Manifest.of(campaign, packaged_limits()).write(folder)
     (folder / RESULTS).write_bytes(shard_bytes(schema, rows))
     return seal(folder)
+
+
+def leave_out_figure(patch: pytest.MonkeyPatch) -> None:
+    """Draw no figure on the pages of campaigns, which takes most of the time of a page."""
+    patch.setattr('ddct_bringup.campaign_report.folder._distributions', lambda *given: '')
 
 
 def seal(folder: Path) -> Path:
