@@ -123,6 +123,7 @@ def test_the_manifest_describes_the_campaign(whole: Path) -> None:
     assert Campaign(manifest.campaign_spec()).digest() == manifest.spec_digest
 
 
+@pytest.mark.slow
 def test_what_an_interruption_left_is_completed_without_loss_or_duplicates(
     whole: Path, tmp_path: Path, use
 ) -> None:
@@ -149,6 +150,7 @@ def test_a_refused_sample_ends_the_campaign_before_anything_is_written(tmp_path:
     assert not (tmp_path / 'out').exists()
 
 
+@pytest.mark.slow
 def test_a_sample_refused_after_the_start_is_a_row_with_its_reason(
     tmp_path: Path, use, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -170,6 +172,7 @@ def test_planning_can_be_interrupted(tmp_path: Path) -> None:
     assert not (tmp_path / 'out').exists()
 
 
+@pytest.mark.slow
 def test_a_worker_that_dies_costs_only_the_time(whole: Path, tmp_path: Path, use) -> None:
     deaths = {3: 2, 5: 1}
 
@@ -201,6 +204,7 @@ def test_an_error_of_a_worker_is_reported_with_its_runs(tmp_path: Path, use) -> 
         carried_out(tmp_path / 'out')
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('full_at', ['00000002.parquet', RESULTS])
 def test_a_full_disk_ends_it_with_a_line_and_it_goes_on_later(
     whole: Path, tmp_path: Path, use, monkeypatch: pytest.MonkeyPatch, full_at: str
@@ -326,6 +330,7 @@ def test_a_damaged_edited_or_lost_shard_is_computed_again(
     assert all(str(shard_files[number]) in errors for number in (1, 3))
 
 
+@pytest.mark.slow
 def test_a_shard_without_its_digest_is_computed_again(whole: Path, tmp_path: Path, use) -> None:
     out = shutil.copytree(whole, tmp_path / 'out')
     (out / DIGESTS).unlink()
@@ -369,6 +374,7 @@ def test_what_is_linear_is_computed_at_once_and_all_else_step_by_step(
     assert [differences(row, other) for row, other in zip(rows, again, strict=True)] == [[]] * 8
 
 
+@pytest.mark.slow
 def test_a_run_that_fails_is_a_row_with_its_reason(tmp_path: Path, use) -> None:
     (tmp_path / 'wild.yaml').write_text(WILD, encoding='utf-8')
     use(OneByOne())

@@ -27,6 +27,7 @@ def test_slip_is_within_1e_4_of_its_peak_of_a_tight_tolerance_integration(name):
     assert error < 1e-4 * np.abs(slip).max()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('name', controller_names())
 def test_a_run_repeats_to_the_last_bit(name):
     assert run_headless(SETTINGS, name).sha256() == run_headless(SETTINGS, name).sha256()

@@ -37,6 +37,7 @@ def peak_error_rad_s(trajectory: Trajectory) -> float:
     return float(np.abs(trajectory.slip_reference[:, 0] - trajectory.slip_speed).max())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('architecture', ARCHITECTURES)
 @pytest.mark.parametrize('name', controller_names())
 def test_every_controller_runs_in_every_architecture(architecture, name):

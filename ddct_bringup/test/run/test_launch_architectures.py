@@ -20,6 +20,7 @@ def run(name, architecture, wear_gain=1.0):
     return run_headless(settings, 'hinf1')
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('architecture', ALL_BUT_DETAILED)
 @pytest.mark.parametrize('name', FOR_STICK_SLIP)
 def test_the_reference_is_the_slip_of_the_nominal_detailed_run_with_the_same_clutch(

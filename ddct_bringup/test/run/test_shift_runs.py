@@ -69,6 +69,7 @@ def test_until_then_the_on_coming_clutch_gets_its_share_of_c_fol_from_zero_on():
         assert run.torque_request[step] == pytest.approx(expected, rel=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('controller', own_controller_names())
 def test_every_controller_shifts(controller):
     run = run_headless(settings(), controller)
@@ -104,6 +105,7 @@ def test_late_sensors_hardly_move_what_the_handover_measures(wear_gain):
     assert 1.0 + run.on_coming_wear_deviation[-1] == pytest.approx(wear_gain, abs=0.04)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('controller', ['pi', 'ls8', 'mpc3', 'least_jerk'])
 def test_a_worn_clutch_shifts_as_a_new_one_with_the_handover_that_measures(controller):
     new, worn, unknown = (

@@ -12,6 +12,7 @@ EVERY = 8
 """Distance of the runs of the sample; `tests/nightly/verdict` has all 372."""
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings('ignore::RuntimeWarning')  # a slip of 1e6 rpm
 def test_the_states_of_a_sample_are_those_by_eye_or_the_second_label() -> None:
     # A chart does not show whether plates that hardly slip are locked.
