@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
-from support.processes import TEST_ID, Programs, processes_left
+from support.processes import TEST_ID, Programs, note_processes, processes_left
 from support.shared_memory import segments_there
 
 from ddct_bringup.processes.shared_memory import remove_segments
@@ -58,6 +58,7 @@ def isolated(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     monkeypatch.setenv(TEST_ID, uuid.uuid4().hex)
     monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
     monkeypatch.delenv('ROS_DOMAIN_ID', raising=False)
+    note_processes()
     handlers = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
     with own_domain():
         yield

@@ -4,16 +4,15 @@
 
 import os
 import resource
-import signal
 import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from support.complaints import assert_one_line
-from support.processes import Programs, processes_left
+from support.processes import processes_left
 
-from ddct_bringup.programs import score
+from ddct_bringup.programs import bringup, compare, score
 from ddct_bringup.run.output_folder import mark_folder
 
 ROOM_KB = 200
@@ -37,54 +36,43 @@ def small_disk(tmp_path: Path) -> Iterator[Path]:
 
 @pytest.mark.parametrize('layout', [[], ['--headless']])
 def test_a_full_disk_ends_the_run_with_the_file_and_the_reason(
-    programs: Programs,
-    small_disk: Path,
-    capfd: pytest.CaptureFixture[str],
-    layout: list[str],
+    small_disk: Path, capfd: pytest.CaptureFixture[str], layout: list[str]
 ) -> None:
     out = small_disk / 'runs'
-    bringup = programs.start_module(
-        'ddct_bringup.programs.bringup', *RUN, *layout, '--out', str(out)
-    )
-    assert bringup.wait() == 1
+    assert bringup.main([*RUN, *layout, '--out', str(out)]) == 1
     assert not processes_left()
-    assert_one_line(bringup.errors(), 'ddct bringup', 'No space left on device', 'ls8_0.mcap')
+    errors = capfd.readouterr().err
+    assert_one_line(errors, 'ddct bringup', 'No space left on device', 'ls8_0.mcap')
     assert not (out / 'ls8').exists()
     assert score.main([str(out / 'ls8.partial')]) == 1
     assert 'unfinished' in capfd.readouterr().err
 
 
 def test_a_limit_on_the_size_of_files_ends_the_run_with_the_file_and_the_reason(
-    programs: Programs, tmp_path: Path
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    def limit() -> None:
-        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-        resource.setrlimit(resource.RLIMIT_FSIZE, (ROOM_KB * 1024, ROOM_KB * 1024))
-
     out = tmp_path / 'runs'
-    bringup = programs.start_module(
-        'ddct_bringup.programs.bringup', *RUN, '--headless', '--out', str(out), preexec_fn=limit
-    )
-    assert bringup.wait() == 1
-    assert_one_line(bringup.errors(), 'ddct bringup', 'File too large', 'ls8_0.mcap')
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (ROOM_KB * 1024, hard))
+    try:
+        assert bringup.main([*RUN, '--headless', '--out', str(out)]) == 1
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+    assert_one_line(capfd.readouterr().err, 'ddct bringup', 'File too large', 'ls8_0.mcap')
     assert not (out / 'ls8').exists()
 
 
 def test_a_compare_whose_disk_fills_up_ends_and_takes_no_old_result_away(
-    programs: Programs, small_disk: Path
+    small_disk: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
     out = small_disk / 'runs'
     mark_folder(out)
     (out / 'scores.json').write_text('an old result', encoding='utf-8')
     before = {path: path.read_bytes() for path in out.rglob('*') if path.is_file()}
-    compare = programs.start_module(
-        'ddct_bringup.programs.compare',
-        *('--controllers', 'pi,ls8,ls1', '--headless', '--overwrite'),
-        *('--duration', '1', '--out', str(out)),
-    )
-    assert compare.wait() == 1
+    arguments = ['--controllers', 'pi,ls8,ls1', '--headless', '--overwrite', '--duration', '1']
+    assert compare.main([*arguments, '--out', str(out)]) == 1
     assert (small_disk / 'runs.partial' / 'pi' / 'metadata.yaml').is_file(), 'the first one fits'
-    first, last = compare.errors().splitlines()[-2:]
+    first, last = capfd.readouterr().err.splitlines()[-2:]
     assert first.startswith('ddct compare: ls8: ')
     assert 'No space left on device' in first
     assert last.startswith(f'ddct compare: {small_disk}/runs.partial/ls8/failed_run.json: ')

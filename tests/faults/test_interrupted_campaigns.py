@@ -4,47 +4,22 @@
 
 import os
 import signal
-import socket
 import sys
-import threading
-from concurrent.futures import ThreadPoolExecutor
-from contextlib import nullcontext
+from collections.abc import Iterator
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 
 import pytest
 from refusals import refused
 from support.complaints import assert_one_line
-from support.processes import START_S, Program, Programs, children_of
-from support.waiting import wait_until
+from support.processes import Programs, children_of
+from support.short_campaign import RUNS, SPEC, InThisProcess, shards, wait_for_shards
 
 from ddct_bringup.campaign import conduct, executors
-from ddct_bringup.campaign.conduct import RESULTS, SHARDS
+from ddct_bringup.campaign.conduct import RESULTS
 from ddct_bringup.programs import campaign
 from ddct_bringup.run.output_folder import SUFFIX
 from ddct_plant.base.errors import DdctError
-
-RUNS = 10
-SPEC = f"""\
-controllers: [ls8]
-clutch: stick_slip
-grid: {{duration_s: [6]}}
-random:
-  samples: {RUNS}
-  vary:
-    vehicle.mass_kg: {{distribution: uniform, low: 1000, high: 2000}}
-"""
-
-
-class InThisProcess:
-    """Workers as threads of this process."""
-
-    count = 1
-
-    def executor(self) -> ThreadPoolExecutor:
-        return ThreadPoolExecutor(1)
-
-    def require_alive(self) -> None:
-        pass
 
 
 @pytest.fixture
@@ -55,37 +30,15 @@ def spec(tmp_path: Path) -> Path:
     return file
 
 
-def start_cluster(programs: Programs) -> tuple[str, list[Program]]:
-    """Start a Dask scheduler and two workers; return its address, and the workers."""
-    with socket.socket() as free:
-        free.bind(('127.0.0.1', 0))
-        port = free.getsockname()[1]
-    address = f'tcp://127.0.0.1:{port}'
-    place = ('--host', '127.0.0.1', '--no-dashboard')
-    programs.start_module('distributed.cli.dask_scheduler', *place, '--port', str(port))
-    worker = (address, *place, '--nthreads', '1', '--no-nanny')
-    return address, [
-        programs.start_module('distributed.cli.dask_worker', *worker) for _ in range(2)
-    ]
-
-
-def shards(out: Path) -> int:
-    return len(list((out / SHARDS).glob('*.parquet')))
-
-
-def wait_for_shards(out: Path, count: int) -> None:
-    wait_until(lambda: shards(out) >= count, f'{count} shards', START_S)
-
-
-def test_processes_that_die_and_ctrl_c_cost_a_campaign_only_time(
+def test_a_worker_that_dies_and_ctrl_c_cost_a_campaign_only_time_and_dask_goes_on_with_it(
     spec: Path,
     tmp_path: Path,
     programs: Programs,
     capfd: pytest.CaptureFixture[str],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
+    """That workers of a cluster may die is in tests/nightly."""
     whole, out = tmp_path / 'whole', tmp_path / 'out'
-    address, workers = start_cluster(programs)
     arguments = (str(spec), '--out', str(out))
     local = programs.start_module('ddct_bringup.programs.campaign', *arguments, '--workers', '1')
     wait_for_shards(out, 1)
@@ -103,20 +56,28 @@ def test_processes_that_die_and_ctrl_c_cost_a_campaign_only_time(
     assert not (out / RESULTS).exists()
 
     done = shards(out)
-    assert done < RUNS - 2, 'the cluster has nothing left to do'
-    killer = threading.Thread(target=_kill_when, args=(workers[0], out, done + 1))
-    killer.start()
-    assert campaign.main([*arguments, '--resume', '--scheduler', address]) == 0
-    killer.join()
+    assert done < RUNS, 'the cluster has nothing left to do'
+    with cluster() as address:
+        assert campaign.main([*arguments, '--resume', '--scheduler', address]) == 0
     monkeypatch.setattr(conduct, 'workers_of', lambda *_: nullcontext(InThisProcess()))
     assert campaign.main([str(spec), '--out', str(whole)]) == 0
     assert (out / RESULTS).read_bytes() == (whole / RESULTS).read_bytes()
 
 
-def _kill_when(worker: Program, out: Path, count: int) -> None:
-    """Kill a worker while shards are computed."""
-    wait_for_shards(out, count)
-    worker.send(signal.SIGKILL)
+@contextmanager
+def cluster() -> Iterator[str]:
+    """Yield the address of a Dask scheduler whose worker is a thread of this process."""
+    from distributed import LocalCluster
+
+    with LocalCluster(
+        n_workers=1,
+        threads_per_worker=1,
+        processes=False,
+        protocol='tcp',
+        host='127.0.0.1',
+        dashboard_address=None,
+    ) as made:
+        yield made.scheduler_address
 
 
 @pytest.mark.parametrize('address', ['tcp://127.0.0.1:9', 'no such place'])

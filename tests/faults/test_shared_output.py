@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from refusals import refused
 from support.complaints import assert_one_line
-from support.processes import START_S, Programs
+from support.processes import Programs
 from support.waiting import wait_until
 
 from ddct_bringup.bag.reader import read_bag
@@ -38,12 +38,10 @@ def test_a_second_compare_is_refused_while_the_first_one_lives(
     compared: Path, programs: Programs, capfd: pytest.CaptureFixture[str]
 ) -> None:
     again = ['--controllers', 'pi', '--headless', '--overwrite', '--out', str(compared)]
-    first = programs.start_module('ddct_bringup.programs.compare', *again, '--duration', '3600')
+    first = programs.fork('ddct_bringup.programs.compare', *again, '--duration', '3600')
     marker = compared.with_name('runs.partial') / 'pi' / MARKER
     # From its marker on, which is made empty, the run writes nothing until it ends.
-    wait_until(
-        lambda: marker.exists() and marker.read_bytes() != b'', 'a compare under way', START_S
-    )
+    wait_until(lambda: marker.exists() and marker.read_bytes() != b'', 'a compare under way')
     before = _files(compared.parent)
     assert compare.main([*again, *SHORT, '--wear-gain', '0.7']) == 1
     words = ('ddct compare', f'{compared}: process {first.process.pid} is writing there')

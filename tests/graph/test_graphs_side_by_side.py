@@ -20,7 +20,7 @@ def test_two_bringups_at_once_receive_nothing_from_each_other(
     started = [
         programs.fork(
             'ddct_bringup.programs.bringup',
-            *('--controller', controller, '--duration', '3.0', '--single-process'),
+            *('--controller', controller, '--duration', '1.5', '--single-process'),
             *('--out', str(out)),
         )
         for controller in ('ls8', 'pi')
@@ -28,7 +28,7 @@ def test_two_bringups_at_once_receive_nothing_from_each_other(
     for controller, program in zip(('ls8', 'pi'), started, strict=True):
         assert program.wait() == 0, program.errors()
         trajectory = read_bag(out / controller).trajectory
-        assert trajectory.sha256() == expected(plan(controller, duration_s=3.0)).sha256()
+        assert trajectory.sha256() == expected(plan(controller, duration_s=1.5)).sha256()
 
 
 def test_a_graph_in_a_namespace_leaves_the_same_bytes(graph_of: GraphOf) -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from support.nodes_by_hand import MODULES, RUN, finish_nodes, start_nodes
 from support.observer import Observing
-from support.processes import START_S, Programs
+from support.processes import Programs
 from support.runs import expected
 from support.waiting import wait_until
 
@@ -23,7 +23,7 @@ def test_a_driveline_that_starts_long_before_the_others_waits_for_them(
     with Observing() as observing:
         nodes = start_nodes(programs.start_node, ['driveline'], bag)
         ticks = observing.observer.joints
-        wait_until(lambda: observing.listen() and 0 in ticks, 'the first tick', START_S)
+        wait_until(lambda: observing.listen() and 0 in ticks, 'the first tick')
     others = [name for name in MODULES if name not in ('driveline', 'recorder')]
     nodes |= start_nodes(programs.start_node, [*others, 'recorder'], bag)
     finish_nodes(nodes)

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from support.documented import ROOT, blocks
+from support.waiting import WITHIN_S
 
 from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.run.headless import run_headless
@@ -21,7 +22,6 @@ PAGE = 'docs/develop/own_node.md'
 EXAMPLES = sorted((ROOT / 'docs' / 'examples').glob('own_*.py'))
 MOST_LINES = 40
 """Largest number of lines of code of an example, as on the page; comments are none."""
-WITHIN_S = 120.0
 _KILLED_AT_EXIT = "trap 'kill -KILL $(jobs -p) 2>/dev/null || true; wait' EXIT"
 """An example may hang as it leaves the graph: no supervisor ends it, as it ends a node of ours."""
 

@@ -14,7 +14,7 @@ from support.runs import plan, record
 from ddct_plant.signals.signal import RunKind
 from ddct_plant.signals.topics import recorded_topics
 
-STEPS = 300
+STEPS = 100
 STAMPS = [1_000_000_000 + step * 10_000_000 for step in range(STEPS + 1)]
 
 

@@ -4,29 +4,36 @@
 
 import os
 import signal
-import sys
-import time
 from contextlib import suppress
 from pathlib import Path
 
 import pytest
 from support.complaints import assert_one_line
 from support.processes import Programs, processes_left
+from support.waiting import wait_until
 
 from ddct_bringup.processes.graph_nodes import GRAPH_NODES
 from ddct_bringup.programs import bringup
 from ddct_plant.base.errors import DdctError
 from ddct_plant.program.scheduling import Scheduling
 
-BRINGUP = [sys.executable, '-m', 'ddct_bringup.programs.bringup', '--mode', 'realtime']
 MODULES = {node.module: node.name for node in GRAPH_NODES}
 CORE = min(os.sched_getaffinity(0))
 PRIORITY = 3
-WITHIN_S = 60.0
 
 
 def scheduling_of(pid: int) -> tuple[set[int], int]:
     return os.sched_getaffinity(pid), os.sched_getparam(pid).sched_priority
+
+
+def scheduling_of_nodes() -> dict[str, tuple[set[int], int]]:
+    found = {}
+    for pid, command in processes_left().items():
+        for module in MODULES.keys() & command.split():
+            # A process may end during the scan.
+            with suppress(ProcessLookupError):
+                found[MODULES[module]] = scheduling_of(pid)
+    return found
 
 
 def test_the_nodes_have_cores_and_priority_and_the_recorder_has_one_priority_less(
@@ -38,20 +45,13 @@ def test_the_nodes_have_cores_and_priority_and_the_recorder_has_one_priority_les
     except DdctError:
         priority = 0
     options = ['--cpus', str(CORE), '--realtime-priority', str(priority)]
-    run = programs.start([*BRINGUP, *options, '--duration', '600', '--out', str(tmp_path / 'run')])
+    run = programs.fork(
+        *('ddct_bringup.programs.bringup', '--mode', 'realtime', *options),
+        *('--duration', '600', '--out', str(tmp_path / 'run')),
+    )
     wanted = {name: ({CORE}, priority) for name in MODULES.values()}
     wanted['recorder'] = ({CORE}, max(priority - 1, 0))
-    found: dict[str, tuple[set[int], int]] = {}
-    deadline = time.monotonic() + WITHIN_S
-    while found != wanted and time.monotonic() < deadline:
-        with suppress(ProcessLookupError):
-            found = {
-                MODULES[word]: scheduling_of(pid)
-                for pid, command in processes_left().items()
-                for word in command.split()
-                if word in MODULES
-            }
-    assert found == wanted
+    wait_until(lambda: scheduling_of_nodes() == wanted, f'{wanted}')
     run.send(signal.SIGINT)
     assert run.wait() == 130
 

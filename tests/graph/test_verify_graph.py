@@ -22,7 +22,8 @@ def test_a_run_of_the_graph_is_verified_in_its_mode(
 ) -> None:
     out = str(tmp_path / 'runs')
     # A loaded machine may miss steps in real time, which leaves the run in its partial folder.
-    code = bringup.main(['--duration', '0.8', '--mode', mode, '--out', out])
+    arguments = ['--single-process', '--duration', '0.8', '--mode', mode]
+    code = bringup.main([*arguments, '--out', out])
     assert code == 0 or mode == 'realtime'
     capfd.readouterr()
     assert verify.main([out, '--json', str(tmp_path / 'found.json')]) == 0

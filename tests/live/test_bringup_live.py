@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from support.complaints import assert_one_line
-from support.processes import START_S, Programs
+from support.processes import Programs
 from support.waiting import wait_until
 
 from ddct_bringup.programs import bringup
@@ -38,9 +38,7 @@ def test_ctrl_c_ends_the_wait_for_a_viewer(programs: Programs, tmp_path: Path) -
     program = programs.start_module(
         'ddct_bringup.programs.bringup', '--live', '0', '--out', str(tmp_path / 'runs')
     )
-    wait_until(
-        lambda: 'ws://' in program.errors(), 'the address of the live view', within_s=START_S
-    )
+    wait_until(lambda: 'ws://' in program.errors(), 'the address of the live view')
     program.send(signal.SIGINT)
     assert program.wait() == 130
     (last,) = program.errors().splitlines()[1:]

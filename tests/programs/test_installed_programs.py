@@ -22,8 +22,8 @@ def test_every_program_is_installed_in_the_folder_of_ros2_run(package: str, prog
 
 def test_the_installed_bringup_runs_and_scores(programs: Programs, tmp_path: Path) -> None:
     out = str(tmp_path / 'runs')
-    command = [installed('ddct_bringup', 'bringup'), '--duration', '1', '--out', out]
-    bringup = programs.start(command)
+    options = ['--single-process', '--duration', '0.7', '--out', out]
+    bringup = programs.start([installed('ddct_bringup', 'bringup'), *options])
     assert bringup.wait() == 0, bringup.errors()
     score = programs.start([installed('ddct_bringup', 'score'), out])
     assert score.wait() == 0, score.errors()

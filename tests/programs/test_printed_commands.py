@@ -39,6 +39,7 @@ _PART = re.compile(r'\bddct [a-z][a-z-]*(?: --[a-z-]+)*')
 """A program with options of it, in a sentence."""
 _NAMED = re.compile(r'ddct [a-z][a-z-]*(?: (?:--)?[a-z-]+)*')
 """A program that is named alone, or with a subcommand and options without their values."""
+_WORTH_PARSING = re.compile(r'\bddct\b|\bmake ')
 _MAKE = re.compile(r'(?:run |`)make ([a-z-]+)')
 
 
@@ -49,6 +50,8 @@ class ParsedError(Exception):
 def texts_of(source: Path) -> Iterator[str]:
     """Yield the texts of a file, with a word in the place of each value that is filled in."""
     content = source.read_text(encoding='utf-8')
+    if not _WORTH_PARSING.search(content):
+        return
     if source.suffix != '.py':
         yield re.sub(r'\{\{.*?\}\}|\$\w+', FILLED_IN, content)
         return

@@ -10,7 +10,6 @@ from pathlib import Path
 
 import pytest
 from support.complaints import assert_one_line
-from support.processes import Programs
 from support.runs import bag_bytes, expected, plan, record
 from support.third_party import EXAMPLE, example_entry_points, install, install_broken
 
@@ -200,16 +199,14 @@ def test_compare_goes_on_after_a_controller_that_commands_no_number(
 
 @pytest.mark.usefixtures('broken')
 def test_bringup_names_the_controller_that_raised_and_keeps_its_traceback_in_a_log(
-    programs: Programs, tmp_path: Path
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
     out = tmp_path / 'runs'
-    run = programs.start_module(
-        'ddct_bringup.programs.bringup', *('--controller', 'raising', '--out', str(out))
-    )
-    assert run.wait() == 1
+    assert bringup.main(['--controller', 'raising', '--out', str(out)]) == 1
+    errors = capfd.readouterr().err
     words = "controller 'raising': it failed at step 60 (ZeroDivisionError: float division by zero"
-    assert_one_line(run.errors(), 'ddct bringup', 'node controller', words)
+    assert_one_line(errors, 'ddct bringup', 'node controller', words)
     log = out / 'raising.partial' / 'work' / 'controller.log'
-    assert str(log) in run.errors()
+    assert str(log) in errors
     assert 'Traceback' in log.read_text(encoding='utf-8')
     assert not (out / 'raising').exists()

@@ -9,8 +9,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from support.waiting import WITHIN_S
+
 ROOT = Path(__file__).resolve().parents[2]
-WITHIN_S = 240.0
 PAGES = (ROOT / 'README.md', *sorted((ROOT / 'docs').rglob('*.md')))
 _FENCE = re.compile(r'^(```+)(\w*)\n(.*?)^\1$', re.DOTALL | re.MULTILINE)
 _INDENTED = re.compile(r'(?:^    .*\n)+', re.MULTILINE)

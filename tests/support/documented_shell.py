@@ -10,8 +10,8 @@ from pathlib import Path
 
 from support.documented import Block
 from support.documented_commands import commands_of
+from support.waiting import WITHIN_S
 
-WITHIN_S = 240.0
 ROS2 = """\
 #!{shell}
 [ "$1 $2 $3" = 'run my_actuator my_actuator' ] || exit 2

@@ -16,10 +16,10 @@ from ddct_bringup.processes.forked_process import ForkedProcess
 from ddct_bringup.processes.graph_nodes import NodeSpec
 from ddct_bringup.processes.jobs import Job
 from support.shared_parent import TEST_ID, is_shared, shared_parent
-from support.waiting import wait_until
+from support.waiting import WITHIN_S, wait_until
 
-START_S = 60.0
-"""Timeout for the start or end of a node or program on a loaded machine, s."""
+_before: set[int] = set()
+"""Ids of the processes that were there before this test."""
 
 
 @dataclass
@@ -34,7 +34,7 @@ class Program:
         """Send it a signal."""
         self.process.send_signal(number)
 
-    def wait(self, within_s: float = START_S) -> int:
+    def wait(self, within_s: float = WITHIN_S) -> int:
         """Wait for its end and return the exit code, which is -n after signal n."""
         return self.process.wait(within_s)
 
@@ -128,15 +128,24 @@ def ros_arguments(parameters: Mapping[str, object]) -> list[str]:
     return arguments
 
 
+def note_processes() -> None:
+    """Note the processes that are there before a test: it has started none of them."""
+    _before.clear()
+    _before.update(_all_processes())
+
+
+def _all_processes() -> list[int]:
+    return [int(each.name) for each in Path('/proc').iterdir() if each.name.isdigit()]
+
+
 def processes_left() -> dict[int, str]:
     """Return the command line by id of every other process that this test has started."""
     mark = f'{TEST_ID}={os.environ[TEST_ID]}'.encode()
     left = {}
-    for folder in Path('/proc').iterdir():
-        if not folder.name.isdigit() or int(folder.name) == os.getpid():
+    for pid in _all_processes():
+        if pid in _before or pid == os.getpid() or is_shared(pid):
             continue
-        if is_shared(pid := int(folder.name)):
-            continue
+        folder = Path(f'/proc/{pid}')
         # A process may end, or belong to another user, during the scan.
         with contextlib.suppress(OSError):
             command = (folder / 'cmdline').read_bytes().replace(b'\0', b' ').decode().strip()
@@ -171,6 +180,6 @@ def node_of(module: str) -> int:
         found[:] = [pid for pid, command in processes_left().items() if module in command]
         return bool(found)
 
-    wait_until(find, f'a process of {module}', START_S)
+    wait_until(find, f'a process of {module}')
     assert len(found) == 1, f'{module} runs {len(found)} times'
     return found[0]

@@ -13,6 +13,7 @@ from typing import Any
 import pytest
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
+from support.waiting import WITHIN_S
 
 from ddct_bringup.bag.reader import mcap_of
 
@@ -41,9 +42,11 @@ def reader_script(tmp_path_factory):
             shutil.copy(file, folder)
     command = ['npm', 'ci', '--ignore-scripts', '--no-audit', '--no-fund', '--fetch-retries=1']
     try:
-        result = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=120.0)
+        result = subprocess.run(
+            command, cwd=folder, capture_output=True, text=True, timeout=WITHIN_S
+        )
     except subprocess.TimeoutExpired:
-        pytest.skip('npm ci did not end within 120 s: the package registry may be unreachable')
+        pytest.skip('npm ci did not end in time: the package registry may be unreachable')
     codes = set(re.findall(r'\bcode (\w+)', result.stderr))
     if codes & UNREACHABLE:
         pytest.skip(f'the npm package registry cannot be reached ({", ".join(sorted(codes))})')
@@ -70,7 +73,7 @@ def by_topic(messages):
 def test_foxglove_libraries_read_the_same_values(bags, trajectory, reader_script):
     file = mcap_of(bags.write(trajectory))
     result = subprocess.run(
-        ['node', str(reader_script), str(file)], capture_output=True, text=True, timeout=60.0
+        ['node', str(reader_script), str(file)], capture_output=True, text=True, timeout=WITHIN_S
     )
     assert result.returncode == 0, result.stderr
     lines = [json.loads(line) for line in result.stdout.splitlines()]

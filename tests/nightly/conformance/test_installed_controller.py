@@ -8,10 +8,9 @@ import sys
 from pathlib import Path
 
 import pytest
+from support.waiting import WITHIN_S
 
 from ddct_controllers.template import new_controller
-
-WITHIN_S = 120.0
 
 
 def python(site: Path, code: str) -> str:

@@ -7,6 +7,7 @@ import subprocess
 import sys
 
 import pytest
+from support.waiting import WITHIN_S
 from written_hinf import require_written_as_designed
 
 from ddct_controllers.synthesised import SYNTHESISED, synthesised_design
@@ -34,7 +35,7 @@ def test_another_process_synthesises_the_same_controller_to_the_bit():
         '    print(*(getattr(model, part).tobytes().hex() for part in "abcd"))\n'
     )
     found = subprocess.run(
-        [sys.executable, '-c', code], capture_output=True, text=True, check=True, timeout=120
+        [sys.executable, '-c', code], capture_output=True, text=True, check=True, timeout=WITHIN_S
     )
     expected = [
         ' '.join(

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from support.nodes_by_hand import MODULES, RUN, finish_nodes, start_nodes
 from support.observer import Observing
-from support.processes import START_S, Program, Programs, ros_arguments
+from support.processes import Program, Programs, ros_arguments
 from support.runs import bag_bytes, expected, record
 from support.waiting import wait_until
 
@@ -37,12 +37,12 @@ def test_nodes_without_a_recorder_run_the_same_trajectory(programs: Programs) ->
         # The run must not be over before the observer, for which no node waits, has joined it.
         nodes = start_nodes(programs.start_node, [*names[:3], 'driveline', *names[3:-1]], None)
         ticks = observing.observer.joints
-        wait_until(lambda: observing.listen() and 0 in ticks, 'the first tick', START_S)
+        wait_until(lambda: observing.listen() and 0 in ticks, 'the first tick')
         nodes |= start_nodes(programs.start_node, names[-1:], None)
         driveline = nodes['driveline'].process
-        wait_until(lambda: observing.listen() and driveline.poll() is not None, 'the end', START_S)
+        wait_until(lambda: observing.listen() and driveline.poll() is not None, 'the end')
         replies = observing.observer.clutch_torque
-        wait_until(lambda: observing.listen() and RUN.steps in replies, 'the last reply', START_S)
+        wait_until(lambda: observing.listen() and RUN.steps in replies, 'the last reply')
         finish_nodes(nodes)
         observing.observer.require_same(expected(RUN))
         assert len(observing.observer.joints) > 50

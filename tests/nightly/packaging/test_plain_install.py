@@ -11,6 +11,7 @@ import sysconfig
 from pathlib import Path
 
 import pytest
+from support.waiting import WITHIN_S
 
 pytestmark = pytest.mark.slow
 
@@ -22,7 +23,7 @@ IGNORED = shutil.ignore_patterns('test', '__pycache__', '*.egg-info', 'build')
 def run(*command: str | Path) -> str:
     environment = {name: value for name, value in os.environ.items() if name != 'PYTHONPATH'}
     done = subprocess.run(
-        command, env=environment, capture_output=True, text=True, timeout=120.0, check=False
+        command, env=environment, capture_output=True, text=True, timeout=WITHIN_S, check=False
     )
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout

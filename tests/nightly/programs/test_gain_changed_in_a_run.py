@@ -12,7 +12,7 @@ from rcl_interfaces.msg import SetParametersResult
 from rcl_interfaces.srv import SetParameters
 from rclpy.parameter import Parameter
 from support.observer import Observing
-from support.processes import START_S, Programs
+from support.processes import Programs
 from support.waiting import wait_until
 
 from ddct_bringup.bag.reader import read_bag
@@ -27,12 +27,12 @@ def set_in_the_run(observing: Observing, values: dict[str, Any]) -> Sequence[Set
     """Set parameters of the controller, as `ros2 param set` does, once step 70 is observed."""
     client = observing.observer.create_client(SetParameters, '/controller/set_parameters')
     ticks = observing.observer.joints
-    wait_until(lambda: observing.listen() and client.service_is_ready(), 'the service', START_S)
-    wait_until(lambda: observing.listen() and max(ticks, default=0) > 70, 'step 70', START_S)
+    wait_until(lambda: observing.listen() and client.service_is_ready(), 'the service')
+    wait_until(lambda: observing.listen() and max(ticks, default=0) > 70, 'step 70')
     given = [Parameter(name, value=value) for name, value in values.items()]
     parameters = [each.to_parameter_msg() for each in given]
     answer = client.call_async(SetParameters.Request(parameters=parameters))
-    wait_until(lambda: observing.listen() and answer.done(), 'the answer', START_S)
+    wait_until(lambda: observing.listen() and answer.done(), 'the answer')
     results: Sequence[SetParametersResult] = answer.result().results
     return results
 

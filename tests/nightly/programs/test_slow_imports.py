@@ -7,6 +7,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+from support.waiting import WITHIN_S
+
 SCORED = """
 import sys
 from ddct_bringup.programs.ddct import main
@@ -23,7 +25,7 @@ def test_a_program_that_scores_a_run_does_without_the_slow_parts_of_scipy(tmp_pa
         [sys.executable, '-P', '-c', SCORED, *words],
         capture_output=True,
         text=True,
-        timeout=120,
+        timeout=WITHIN_S,
         check=False,
         env=os.environ,
     )

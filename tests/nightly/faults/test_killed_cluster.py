@@ -1,0 +1,55 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""A Dask cluster that loses a worker in the middle of a campaign."""
+
+import signal
+import socket
+import threading
+from contextlib import nullcontext
+from pathlib import Path
+
+import pytest
+from support.processes import Program, Programs
+from support.short_campaign import SPEC, InThisProcess, wait_for_shards
+
+from ddct_bringup.campaign import conduct
+from ddct_bringup.campaign.conduct import RESULTS
+from ddct_bringup.programs import campaign
+
+
+def start_cluster(programs: Programs) -> tuple[str, list[Program]]:
+    """Start a Dask scheduler and two workers; return its address, and the workers."""
+    with socket.socket() as free:
+        free.bind(('127.0.0.1', 0))
+        port = free.getsockname()[1]
+    address = f'tcp://127.0.0.1:{port}'
+    place = ('--host', '127.0.0.1', '--no-dashboard')
+    programs.start_module('distributed.cli.dask_scheduler', *place, '--port', str(port))
+    worker = (address, *place, '--nthreads', '1', '--no-nanny')
+    return address, [
+        programs.start_module('distributed.cli.dask_worker', *worker) for _ in range(2)
+    ]
+
+
+def test_a_worker_of_a_cluster_that_dies_costs_a_campaign_only_time(
+    tmp_path: Path,
+    programs: Programs,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    whole, out = tmp_path / 'whole', tmp_path / 'out'
+    spec = tmp_path / 'mass.yaml'
+    spec.write_text(SPEC, encoding='utf-8')
+    address, workers = start_cluster(programs)
+    killer = threading.Thread(target=_kill_when, args=(workers[0], out, 1))
+    killer.start()
+    assert campaign.main([str(spec), '--out', str(out), '--scheduler', address]) == 0
+    killer.join()
+    monkeypatch.setattr(conduct, 'workers_of', lambda *_: nullcontext(InThisProcess()))
+    assert campaign.main([str(spec), '--out', str(whole)]) == 0
+    assert (out / RESULTS).read_bytes() == (whole / RESULTS).read_bytes()
+
+
+def _kill_when(worker: Program, out: Path, count: int) -> None:
+    """Kill a worker while shards are computed."""
+    wait_for_shards(out, count)
+    worker.send(signal.SIGKILL)

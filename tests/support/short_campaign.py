@@ -1,0 +1,40 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""A short campaign, and how far it is."""
+
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+from ddct_bringup.campaign.conduct import SHARDS
+from support.waiting import wait_until
+
+RUNS = 10
+SPEC = f"""\
+controllers: [ls8]
+clutch: stick_slip
+grid: {{duration_s: [6]}}
+random:
+  samples: {RUNS}
+  vary:
+    vehicle.mass_kg: {{distribution: uniform, low: 1000, high: 2000}}
+"""
+
+
+class InThisProcess:
+    """Workers as threads of this process."""
+
+    count = 1
+
+    def executor(self) -> ThreadPoolExecutor:
+        return ThreadPoolExecutor(1)
+
+    def require_alive(self) -> None:
+        pass
+
+
+def shards(out: Path) -> int:
+    return len(list((out / SHARDS).glob('*.parquet')))
+
+
+def wait_for_shards(out: Path, count: int) -> None:
+    wait_until(lambda: shards(out) >= count, f'{count} shards')
