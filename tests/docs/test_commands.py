@@ -1,7 +1,7 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
 """
-Documented commands run: each program with each option once, and every run can be planned.
+Documented commands run: those of each program once, and every run can be planned.
 
 `tests/nightly/docs` runs all of them.
 """
@@ -31,9 +31,7 @@ RUNS = ('ddct bringup --', 'ddct compare --')
 
 
 @pytest.mark.parametrize('block', SAMPLE, ids=label)
-def test_each_program_runs_with_each_option_that_a_page_shows(
-    block: Block, shared_runs: Path
-) -> None:
+def test_each_program_runs_as_a_page_shows(block: Block, shared_runs: Path) -> None:
     for line in commands_of(block):
         assert run_here(line) == 0, line
 

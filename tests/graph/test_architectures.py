@@ -1,6 +1,10 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Every architecture is one loop: both graph layouts and headless agree to the last bit."""
+"""
+Every architecture is one loop: the graph in one process and headless agree to the last bit.
+
+That of many processes is in tests/nightly.
+"""
 
 from pathlib import Path
 
@@ -17,16 +21,16 @@ SCENARIO = load_scenario('thesis', ['duration_s=0.8', 'reference.reference_end_s
 
 
 @pytest.mark.parametrize('architecture', ARCHITECTURES)
-def test_every_layout_leaves_the_same_bytes_and_the_headless_trajectory(
+def test_both_layouts_leave_the_same_bytes_and_the_headless_trajectory(
     tmp_path: Path, architecture: str
 ) -> None:
     bags = []
-    for layout in LAYOUTS:
+    for layout in LAYOUTS[1:]:
         run = RunPlan(RunSettings(SCENARIO, architecture, wear_gain=0.9), 'hinf2', layout)
         recording = record(run, tmp_path / layout)
         assert recording.trajectory.sha256() == expected(run).sha256(), layout
         bags.append(bag_bytes(tmp_path / layout))
-    assert bags[0] == bags[1] == bags[2]
+    assert bags[0] == bags[1]
 
 
 @pytest.mark.parametrize('name', ['launch', 'tip_in'])

@@ -1,6 +1,10 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""A run with sensors is the same in every layout, and control reads sensor values."""
+"""
+A run with sensors is the same in one process and headless, and control reads sensor values.
+
+That of many processes is in tests/nightly.
+"""
 
 from pathlib import Path
 
@@ -16,9 +20,9 @@ DURATION_S = 0.7
 SEED = 2**31 - 1
 
 
-def test_every_layout_leaves_the_same_bytes_and_the_headless_trajectory(tmp_path: Path) -> None:
+def test_both_layouts_leave_the_same_bytes_and_the_headless_trajectory(tmp_path: Path) -> None:
     bags = []
-    for layout in LAYOUTS:
+    for layout in LAYOUTS[1:]:
         run = plan('pi', layout, duration_s=DURATION_S, seed=SEED, changes=(ALL_ON,))
         folder = tmp_path / layout
         trajectory = record(run, folder).trajectory

@@ -96,13 +96,11 @@ def _runs(line: str) -> int:
 
 def sample_of(found: Sequence[Block]) -> list[Block]:
     """
-    Return blocks that together have each program with each of the options that all have.
+    Return blocks that together have each program that all have, with little work.
 
     Blocks with one of the commands of the nightly tier are left out.
     """
-    shown = {
-        block: {each for line in commands_of(block) for each in _options(line)} for block in found
-    }
+    shown = {block: {_program(line) for line in commands_of(block)} - {''} for block in found}
     short = [
         block
         for block in found
@@ -118,13 +116,12 @@ def sample_of(found: Sequence[Block]) -> list[Block]:
     return sample[::-1]
 
 
-def _options(line: str) -> set[tuple[str, str]]:
-    """Return the program of a line, and the program with each option that the line gives it."""
+def _program(line: str) -> str:
+    """Return the program of a line, with its subcommand; empty where it is none of ours."""
     words = shlex.split(line, comments=True)
     if words[0] != 'ddct':
-        return set()
-    program = ' '.join(words[1:3] if words[1] in _WITH_SUBCOMMANDS else words[1:2])
-    return {(program, word) for word in ('', *words) if word.startswith('--') or not word}
+        return ''
+    return ' '.join(words[1:3] if words[1] in _WITH_SUBCOMMANDS else words[1:2])
 
 
 def run_here(line: str) -> int:
