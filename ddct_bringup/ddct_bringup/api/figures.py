@@ -4,9 +4,7 @@
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import NamedTuple
-
-from matplotlib.figure import Figure
+from typing import TYPE_CHECKING, NamedTuple
 
 from ddct_bringup.api.result import Run, as_runs
 from ddct_bringup.campaign.manifest import Manifest
@@ -25,12 +23,15 @@ from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import require_known
 from ddct_plant.scenario.differences import scenario_title
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
 _WIDTH_IN, _CHART_IN, _TITLE_IN = 8.0, 2.6, 0.6
 
 
 def figure(
     runs: Run | Iterable[Run], quantities: Sequence[str] = ('w_d', 'w_sr', 'A_x')
-) -> Figure:
+) -> 'Figure':
     """
     Return a figure with a chart per quantity over time, all runs in each.
 
@@ -39,6 +40,8 @@ def figure(
     w_d, error, w_sr, A_x, C_f_request; with a clutch that sticks also `temperature` and others.
     Raise ParameterError for another.
     """
+    from matplotlib.figure import Figure
+
     shown = as_runs(runs)
     if not shown or not quantities:
         raise ParameterError('a figure needs a run and a quantity')
@@ -58,7 +61,7 @@ def figure(
     return drawing
 
 
-def campaign_figure(folder: str | Path) -> Figure:
+def campaign_figure(folder: str | Path) -> 'Figure':
     """
     Return the distributions of a finished campaign: a chart per metric, a curve per controller.
 
@@ -74,7 +77,7 @@ def campaign_figure(folder: str | Path) -> Figure:
 class ThesisDrawing(NamedTuple):
     """One figure of the thesis, drawn again."""
 
-    figure: Figure
+    figure: 'Figure'
     remark: str
     """What agrees with the thesis and what does not, as in docs/thesis/figures.md."""
 

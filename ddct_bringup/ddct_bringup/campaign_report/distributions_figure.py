@@ -4,10 +4,9 @@
 
 from pathlib import Path
 from textwrap import fill
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from ddct_bringup.campaign_report.results import Group, Results
 from ddct_bringup.metrics.catalogue import FURTHER, TABLE_5_1
@@ -17,6 +16,10 @@ from ddct_controllers.design.drawing.chart_style import chart_style, save_chart
 from ddct_controllers.design.drawing.line_looks import looks_of
 from ddct_controllers.design.drawing.line_styles import LineStyle, look_style
 from ddct_plant.program.table import Quantity
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 _DRAWN = (
     *(quantity.key for quantity in TABLE_5_1),
@@ -39,13 +42,15 @@ def write_distributions(results: Results, scenario: str, path: Path) -> None:
         save_chart(distributions_figure(results, scenario), path)
 
 
-def distributions_figure(results: Results, scenario: str) -> Figure:
+def distributions_figure(results: Results, scenario: str) -> 'Figure':
     """
     Return the figure: a panel for each main metric, a curve for each controller.
 
     A curve is the share of the valid runs that engaged with at most this value. It ends at the
     share of the runs that engaged and have a value; the rest up to 1 failed, or has no value.
     """
+    from matplotlib.figure import Figure
+
     metrics = [each for each in (*TABLE_5_1, *FURTHER) if each.key in _DRAWN]
     metrics = [each for each in metrics if each in results.quantities]
     rows = max(1, -(-len(metrics) // _ACROSS))
@@ -81,7 +86,7 @@ def _conditions(results: Results) -> str:
 
 
 def _draw(
-    axes: Axes, results: Results, group: Group, quantity: Quantity, style: LineStyle
+    axes: 'Axes', results: Results, group: Group, quantity: Quantity, style: LineStyle
 ) -> None:
     """Draw one curve; a controller without an engaged run has a line at zero."""
     outcomes = results.outcomes[group.rows]

@@ -4,9 +4,9 @@
 
 from base64 import b64encode
 from collections.abc import Mapping, Sequence
+from functools import cache
 from pathlib import Path
 
-import matplotlib as mpl
 from markupsafe import Markup
 
 from ddct_bringup.campaign.keys import COMMON, SCENARIO
@@ -41,10 +41,6 @@ from ddct_plant.program.command_line import package_version
 SUMMARY, PAGE = 'summary.json', 'report.html'
 THESIS = 'thesis'
 _ROOM, _REPORT = 'ddct_bringup.campaign_report', 'ddct_bringup.report'
-_RAMP = tuple(mpl.colors.to_hex(mpl.colormaps['cividis'](place / 15)) for place in range(16))
-"""
-Colours from dark to light, readable for colour-blind people (Nunez, Anderton and Renslow 2018).
-"""
 _SHOWN_FIRST = (FAILED_SHARE, 'peak_jerk_m_s3')
 """Quantities that the maps show when the page opens, the first available one of these."""
 
@@ -101,7 +97,7 @@ def campaign_page(
         marker=Markup(MARKER),
         style=page_part(_REPORT, 'page.css') + page_part(_ROOM, 'campaign.css'),
         script=page_part(_REPORT, 'common.js') + page_part(_ROOM, 'campaign.js'),
-        data=json_data({'maps': maps, 'ramp': _RAMP, 'replay': replay}),
+        data=json_data({'maps': maps, 'ramp': _ramp(), 'replay': replay}),
         maps=maps,
         chosen=_chosen(maps['quantities']) if maps else 0,
         summary=summary,
@@ -132,3 +128,15 @@ def _chosen(quantities: Sequence[MapScale]) -> int:
     """Return the index of the quantity that the maps show when the page opens."""
     keys = [each['key'] for each in quantities]
     return next((keys.index(key) for key in _SHOWN_FIRST if key in keys), 0)
+
+
+@cache
+def _ramp() -> tuple[str, ...]:
+    """
+    Return colours from dark to light, readable for colour-blind people.
+
+    They are those of Nunez, Anderton and Renslow 2018.
+    """
+    import matplotlib as mpl
+
+    return tuple(mpl.colors.to_hex(mpl.colormaps['cividis'](place / 15)) for place in range(16))

@@ -4,16 +4,18 @@
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from ddct_bringup.floor.front import ControllerRow
 from ddct_bringup.floor.values import METRICS, Floor
 from ddct_controllers.design.drawing.chart_style import chart_style, save_chart
 from ddct_controllers.design.drawing.line_styles import BLACK, GREY, LineStyle, controller_style
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 _WIDTH_IN, _PANEL_IN, _MARGINS_IN = 8.0, 2.6, 1.1
 _LEGEND_COLUMNS = 5
@@ -38,12 +40,14 @@ def front_figure(
     rows: Sequence[ControllerRow],
     title: str,
     counted_from: str = 'control start',
-) -> Figure:
+) -> 'Figure':
     """
     Return the figure with one panel for each metric, from floors and rows of controllers.
 
     Lock times count from the instant that `counted_from` names.
     """
+    from matplotlib.figure import Figure
+
     metrics = list(dict.fromkeys(floor.metric for floor in floors))
     drawing = Figure(figsize=(_WIDTH_IN, _PANEL_IN * len(metrics) + _MARGINS_IN))
     panels = drawing.subplots(len(metrics), sharex=True, squeeze=False)[:, 0]
@@ -74,7 +78,7 @@ def _marks(rows: Sequence[ControllerRow], metric: str) -> list[_Mark]:
     ]
 
 
-def _draw(axes: Axes, floors: Sequence[Floor], marks: Sequence[_Mark]) -> None:
+def _draw(axes: 'Axes', floors: Sequence[Floor], marks: Sequence[_Mark]) -> None:
     """Draw the proven least as an edge of what is impossible, the attained values as circles."""
     times = np.array([floor.lock_time_s for floor in floors])
     least = np.array([np.nan if floor.least is None else floor.least for floor in floors])

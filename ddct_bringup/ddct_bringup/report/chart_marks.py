@@ -5,12 +5,7 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
-
-from bokeh.models import CDSView, ColumnDataSource, IndexFilter
-from bokeh.models.annotations import BoxAnnotation, Span
-from bokeh.models.renderers import DataRenderer, GlyphRenderer
-from bokeh.plotting import figure
+from typing import TYPE_CHECKING, Any
 
 from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.trajectory import Trajectory
@@ -19,6 +14,11 @@ from ddct_bringup.report.chart_signals import ChartSignal
 from ddct_controllers.design.drawing.line_looks import LineLook
 from ddct_plant.base.timebase import steps_in, time_of_step
 from ddct_plant.models.driveline import LOCK, RELEASE
+
+if TYPE_CHECKING:
+    from bokeh.models import ColumnDataSource
+    from bokeh.models.renderers import DataRenderer, GlyphRenderer
+    from bokeh.plotting import figure
 
 _MARK_SPACING = 0.12
 """Distance between the marks of a line, as a share of the run."""
@@ -52,8 +52,10 @@ class ChartRun:
         return course if course.begun else None
 
 
-def mark_window(chart: figure, facts: RunFacts) -> None:
+def mark_window(chart: 'figure', facts: RunFacts) -> None:
     """Mark the score window, and where control starts."""
+    from bokeh.models.annotations import BoxAnnotation, Span
+
     first, last = facts.score_window_s
     chart.add_layout(
         BoxAnnotation(left=first, right=last, fill_color=NEUTRAL, fill_alpha=0.10, line_color=None)
@@ -70,9 +72,11 @@ def mark_window(chart: figure, facts: RunFacts) -> None:
 
 
 def mark_line(
-    chart: figure, quantity: ChartSignal, run: ChartRun, source: ColumnDataSource
+    chart: 'figure', quantity: ChartSignal, run: ChartRun, source: 'ColumnDataSource'
 ) -> None:
     """Draw the marks of a line that has some, at separate times for each run."""
+    from bokeh.models import CDSView, IndexFilter
+
     steps = len(run.trajectory.time_s)
     spacing = max(1, round(_MARK_SPACING * steps))
     first = round(0.37 * run.index % 1.0 * spacing)
@@ -90,7 +94,7 @@ def mark_line(
     switch(marks, [run], fill=run.look.filled)
 
 
-def mark_thesis(chart: figure, runs: Sequence[ChartRun]) -> None:
+def mark_thesis(chart: 'figure', runs: Sequence[ChartRun]) -> None:
     """Mark the times at which w_d reaches zero by Table 5.1."""
     for run in runs:
         if run.thesis_engagement_time_s is not None:
@@ -106,8 +110,10 @@ def mark_thesis(chart: figure, runs: Sequence[ChartRun]) -> None:
             switch(mark, [run])
 
 
-def mark_feedback(chart: figure, runs: Sequence[ChartRun]) -> None:
+def mark_feedback(chart: 'figure', runs: Sequence[ChartRun]) -> None:
     """Mark where the inertia phase of gear shifts begins, and feedback with it."""
+    from bokeh.models.annotations import Span
+
     courses = (run.course for run in runs)
     steps = {course.feedback_start for course in courses if course and course.handed_over}
     for step in sorted(steps):
@@ -122,7 +128,7 @@ def mark_feedback(chart: figure, runs: Sequence[ChartRun]) -> None:
         )
 
 
-def mark_events(chart: figure, runs: Sequence[ChartRun], side: str = '') -> None:
+def mark_events(chart: 'figure', runs: Sequence[ChartRun], side: str = '') -> None:
     """Mark locks and releases of a clutch where its slip is zero."""
     for run in runs:
         if getattr(run.trajectory, f'{side}clutch_phase') is not None:
@@ -131,7 +137,7 @@ def mark_events(chart: figure, runs: Sequence[ChartRun], side: str = '') -> None
 
 
 def draw_events(
-    chart: figure, run: Trajectory, height: float, colour: str, side: str = ''
+    chart: 'figure', run: Trajectory, height: float, colour: str, side: str = ''
 ) -> 'Iterator[GlyphRenderer[Any]]':
     """
     Mark the locks and releases of a clutch at a height of the chart, and yield the marks.
@@ -153,7 +159,7 @@ def draw_events(
             )
 
 
-def switch(mark: DataRenderer, runs: Sequence[ChartRun], **tag: Any) -> None:
+def switch(mark: 'DataRenderer', runs: Sequence[ChartRun], **tag: Any) -> None:
     """Let the page switch a mark with its runs; its tag has their colour, or None if neutral."""
     mark.visible = any(run.shown for run in runs)
     mark.tags = [{'runs': [run.index for run in runs], 'colour': runs[0].look.colour, **tag}]

@@ -3,12 +3,9 @@
 """Time charts of the page: one per signal with all runs, on one time axis."""
 
 from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
-from bokeh.document import Document
-from bokeh.models import ColumnDataSource, CrosshairTool, DataRange1d, Range1d
-from bokeh.models.annotations import Span
-from bokeh.plotting import figure
 
 from ddct_bringup.bag.run_facts import MEASURED
 from ddct_bringup.bag.trajectory import Trajectory
@@ -33,6 +30,11 @@ from ddct_bringup.report.phase_lanes import LANES, draw_lanes
 from ddct_bringup.report.shift_signals import OFF_GOING, SHIFT_SIGNALS
 from ddct_plant.base.units import rpm_from_rad_s
 
+if TYPE_CHECKING:
+    from bokeh.models import ColumnDataSource, Range1d
+    from bokeh.models.annotations import Span
+    from bokeh.plotting import figure
+
 _HEIGHT_PX = 300
 FAINT = 0.6
 """Opacity of a limit next to the line that it bounds."""
@@ -40,6 +42,10 @@ FAINT = 0.6
 
 def chart_document(runs: Sequence[ChartRun]) -> tuple[Mapping[str, object], dict[str, str]]:
     """Return the Bokeh document as JSON, and the id of each chart in it."""
+    from bokeh.document import Document
+    from bokeh.models import Range1d
+    from bokeh.models.annotations import Span
+
     time_axis = Range1d(start=0.0, end=max(run.trajectory.time_s[-1] for run in runs))
     cursor = Span(dimension='height', line_color=NEUTRAL, line_width=1)
     drawn = _drawn(runs)
@@ -99,8 +105,10 @@ def _drawn(runs: Sequence[ChartRun]) -> list[tuple[ChartSignal, ...]]:
     return [chart_signals_of(run.trajectory, with_log=with_log) for run in runs]
 
 
-def _source(trajectory: Trajectory, quantities: Sequence[ChartSignal]) -> ColumnDataSource:
+def _source(trajectory: Trajectory, quantities: Sequence[ChartSignal]) -> 'ColumnDataSource':
     """Return the data of the charts; single precision draws the same and halves the page."""
+    from bokeh.models import ColumnDataSource
+
     columns = {'t': trajectory.time_s}
     for quantity in quantities:
         columns[quantity.key] = quantity.values(trajectory)
@@ -111,8 +119,11 @@ def _source(trajectory: Trajectory, quantities: Sequence[ChartSignal]) -> Column
 
 
 def _chart(
-    key: str, unit: str, time_axis: Range1d, cursor: Span, runs: Sequence[ChartRun]
-) -> figure:
+    key: str, unit: str, time_axis: 'Range1d', cursor: 'Span', runs: Sequence[ChartRun]
+) -> 'figure':
+    from bokeh.models import CrosshairTool, DataRange1d
+    from bokeh.plotting import figure
+
     chart = figure(
         height=_HEIGHT_PX,
         sizing_mode='stretch_width',
@@ -140,7 +151,9 @@ def _chart(
     return chart
 
 
-def _line(chart: figure, quantity: ChartSignal, run: ChartRun, source: ColumnDataSource) -> None:
+def _line(
+    chart: 'figure', quantity: ChartSignal, run: ChartRun, source: 'ColumnDataSource'
+) -> None:
     line = chart.line(
         't',
         quantity.key,
@@ -166,7 +179,7 @@ def _line(chart: figure, quantity: ChartSignal, run: ChartRun, source: ColumnDat
 
 
 def _draw_references(
-    chart: figure, runs: Sequence[ChartRun], sources: Sequence[ColumnDataSource]
+    chart: 'figure', runs: Sequence[ChartRun], sources: 'Sequence[ColumnDataSource]'
 ) -> None:
     """Draw each distinct slip reference once; it is visible while one of its runs is."""
     groups: dict[bytes, list[int]] = {}

@@ -6,8 +6,6 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from functools import cache
 
-import bokeh
-from bokeh.resources import Resources
 from markupsafe import Markup
 
 from ddct_bringup.bag.recording import Recording
@@ -53,6 +51,8 @@ def report_page(
 
     `limits` are those that judged them.
     """
+    import bokeh
+
     shown = page_runs(runs)
     thesis_rows = [run.thesis for run in shown]
     charted = chart_runs(shown)
@@ -144,5 +144,7 @@ def _sensors(runs: Sequence[ScoredRecording]) -> str | None:
 @cache
 def _library() -> Markup:
     """Return BokehJS from the installed package."""
+    from bokeh.resources import Resources
+
     # At a lower log level it warns about charts without a visible line.
     return Markup('\n'.join(Resources('inline', components=['bokeh'], log_level='error').js_raw))

@@ -4,11 +4,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
-
-from bokeh.models import ColumnDataSource, HoverTool, Range1d
-from bokeh.models.renderers import DataRenderer, GlyphRenderer
-from bokeh.plotting import figure
+from typing import TYPE_CHECKING, Any
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.metrics.shift.course import ShiftCourse
@@ -17,6 +13,10 @@ from ddct_bringup.report.chart_marks import NEUTRAL, ChartRun, draw_events, swit
 from ddct_bringup.report.shift_signals import OFF_GOING
 from ddct_plant.base.timebase import time_of_step
 from ddct_plant.models.driveline import LOCK, RELEASE
+
+if TYPE_CHECKING:
+    from bokeh.models.renderers import DataRenderer, GlyphRenderer
+    from bokeh.plotting import figure
 
 LANES = 'phases'
 """Name of the chart of the phases."""
@@ -74,9 +74,11 @@ def shift_spans(course: ShiftCourse) -> list[PhaseSpan]:
 
 
 def draw_phases(
-    chart: figure, spans: Sequence[PhaseSpan], lane: int, colour: str
+    chart: 'figure', spans: Sequence[PhaseSpan], lane: int, colour: str
 ) -> 'GlyphRenderer[Any]':
     """Draw the spans as boxes around the height `lane`, more opaque for closer plates."""
+    from bokeh.models import ColumnDataSource
+
     begins, ends, phases = zip(*spans, strict=True)
     opacity = {**OPACITY, **SHIFT_OPACITY}
     source = ColumnDataSource(
@@ -123,8 +125,10 @@ def _lanes_of(run: ChartRun) -> list[_Lane]:
     ]
 
 
-def draw_lanes(chart: figure, runs: Sequence[ChartRun]) -> None:
+def draw_lanes(chart: 'figure', runs: Sequence[ChartRun]) -> None:
     """Shade the phases of each run in rows of its own, with locks and releases."""
+    from bokeh.models import HoverTool, Range1d
+
     lanes = [lane for run in runs for lane in _lanes_of(run)]
     height = _LANE_PX if len(lanes) <= _MOST_WIDE else _NARROW_LANE_PX
     chart.height = _LANES_FRAME_PX + height * len(lanes)

@@ -6,8 +6,6 @@ import io
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
-from scipy.io import savemat
-
 from ddct_bringup.bag.recording import Recording
 from ddct_bringup.scores.bags import bag_name
 from ddct_bringup.scores.csv_text import signal_columns, signals_csv
@@ -24,6 +22,8 @@ def signals_mat(recording: Recording) -> bytes:
 
     The file contains no date, so the same run gives the same bytes.
     """
+    from scipy.io import savemat
+
     buffer = io.BytesIO()
     savemat(buffer, signal_columns(recording.trajectory), format='5', oned_as='column')
     return _MAT_TEXT.ljust(_MAT_TEXT_BYTES) + buffer.getvalue()[_MAT_TEXT_BYTES:]

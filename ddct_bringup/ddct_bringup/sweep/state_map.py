@@ -3,14 +3,9 @@
 """Map of the states of runs: coloured cells over values, one colour per state."""
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.artist import Artist
-from matplotlib.axes import Axes
-from matplotlib.colors import ListedColormap
-from matplotlib.figure import Figure
-from matplotlib.patches import Patch
 
 from ddct_bringup.sweep.axis import Axis, value_text
 from ddct_bringup.verdict.state import (
@@ -26,6 +21,11 @@ from ddct_bringup.verdict.state import (
 )
 from ddct_controllers.design.drawing.line_styles import BLACK, ORANGE, PURPLE, VERMILLION
 from ddct_plant.models.engine_limits import OVER_REVVED, STALLED
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 STATE_COLOURS: Mapping[str, str] = {
     ENGAGED: '#d3e8f5',
@@ -43,8 +43,12 @@ STATE_COLOURS: Mapping[str, str] = {
 _MOST_TICKS, _MOST_COLUMNS = 8, 5
 
 
-def draw_states(axes: Axes, edges: Sequence[np.ndarray], states: Sequence[Sequence[str]]) -> None:
+def draw_states(
+    axes: 'Axes', edges: Sequence[np.ndarray], states: Sequence[Sequence[str]]
+) -> None:
     """Draw (m, n) states as cells between n + 1 edges across and m + 1 edges up."""
+    from matplotlib.colors import ListedColormap
+
     numbers = np.array([[STATES.index(state) for state in row] for row in states])
     axes.pcolormesh(
         edges[0],
@@ -59,8 +63,10 @@ def draw_states(axes: Axes, edges: Sequence[np.ndarray], states: Sequence[Sequen
     axes.grid(visible=False)
 
 
-def state_legend(figure: Figure, states: set[str], marks: Sequence[Artist] = ()) -> None:
+def state_legend(figure: 'Figure', states: set[str], marks: 'Sequence[Artist]' = ()) -> None:
     """Draw the legend of the states that occur below the figure, followed by other marks."""
+    from matplotlib.patches import Patch
+
     handles: list[Artist] = [
         Patch(facecolor=STATE_COLOURS[state], edgecolor='#7f7f7f', label=state.replace('_', ' '))
         for state in STATES

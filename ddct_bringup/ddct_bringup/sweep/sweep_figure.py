@@ -4,11 +4,9 @@
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
 from ddct_bringup.campaign.scored import ScoredRow
 from ddct_bringup.report.page_parts import unit_text
@@ -30,6 +28,11 @@ from ddct_controllers.design.drawing.chart_style import (
 from ddct_controllers.design.drawing.line_styles import GREY, LineStyle, controller_style
 from ddct_controllers.registry import controller_label
 from ddct_plant.program.table import Quantity
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
 
 _WIDTH_IN, _PANEL_IN, _LANE_IN = 8.0, 2.3, 0.32
 _MAP_IN, _ACROSS = 3.0, 3
@@ -64,8 +67,10 @@ def _title(sweep: Sweep, names: Sequence[str], width_in: float) -> str:
     return headed(f'{controllers_text(names)} {sweep.varied}', sweep.conditions, width_in)
 
 
-def sweep_figure(sweep: Sweep, runs: Sequence[ScoredRow], metrics: Sequence[Quantity]) -> Figure:
+def sweep_figure(sweep: Sweep, runs: Sequence[ScoredRow], metrics: Sequence[Quantity]) -> 'Figure':
     """Return the figure of the runs of a sweep over one axis or two, in its order."""
+    from matplotlib.figure import Figure
+
     names = [controller_label(each) for each in sweep.controllers]
     states = np.array([run.scores.verdict.state for run in runs]).reshape(len(names), -1)
     if len(sweep.axes) > 1:
@@ -91,14 +96,16 @@ def sweep_figure(sweep: Sweep, runs: Sequence[ScoredRow], metrics: Sequence[Quan
     return drawing
 
 
-def _legend_mark(mark: LineStyle, meaning: str) -> Line2D:
+def _legend_mark(mark: LineStyle, meaning: str) -> 'Line2D':
+    from matplotlib.lines import Line2D
+
     line = Line2D([], [], color=GREY, label=meaning)
     line.set(**mark)
     return line
 
 
 def _draw_metric(
-    axes: Axes,
+    axes: 'Axes',
     places: np.ndarray,
     names: Sequence[str],
     values: np.ndarray,
@@ -131,7 +138,7 @@ def _draw_metric(
 
 
 def _draw_apart(
-    axes: Axes, places: np.ndarray, values: np.ndarray, name: str, style: LineStyle
+    axes: 'Axes', places: np.ndarray, values: np.ndarray, name: str, style: LineStyle
 ) -> None:
     """Draw a mark for each of (n,) values, and through it a line that reaches no neighbour."""
     across = places[:, np.newaxis] + np.array([-_HALF_LINE, 0.0, _HALF_LINE, np.nan])
@@ -140,7 +147,9 @@ def _draw_apart(
     line.set_markevery(slice(1, None, across.shape[1]))
 
 
-def _draw_lanes(axes: Axes, places: np.ndarray, names: Sequence[str], states: np.ndarray) -> None:
+def _draw_lanes(
+    axes: 'Axes', places: np.ndarray, names: Sequence[str], states: np.ndarray
+) -> None:
     """Draw the (controllers, places) states, a lane per controller, the first on top."""
     rows = np.arange(len(names))
     draw_states(axes, (edges_of(places), edges_of(rows.astype(float))), states.tolist())
@@ -149,8 +158,10 @@ def _draw_lanes(axes: Axes, places: np.ndarray, names: Sequence[str], states: np
     axes.set_ylabel('state')
 
 
-def _maps(sweep: Sweep, names: Sequence[str], states: np.ndarray) -> Figure:
+def _maps(sweep: Sweep, names: Sequence[str], states: np.ndarray) -> 'Figure':
     """Draw a map of states per controller, the first axis across, the second up."""
+    from matplotlib.figure import Figure
+
     across, up = sweep.axes
     columns = min(_ACROSS, len(names))
     rows = -(-len(names) // columns)

@@ -3,10 +3,10 @@
 """Figures 3.3 and 3.5 to 3.9: the uncertainty, S_n and T_n with their bounds, and G_c's loop."""
 
 from functools import cache, partial
+from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy
-from matplotlib.axes import Axes
 
 from ddct_bringup.reproduction.figures.thesis_figure import (
     ThesisFigure,
@@ -31,6 +31,9 @@ from ddct_controllers.design.h_infinity.uncertainty import (
 )
 from ddct_controllers.printed import H_INFINITY_CONTROLLERS
 from ddct_plant.linear.lti import FactoredTransferFunction
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 _G_C = H_INFINITY_CONTROLLERS['hinf1']
 _W_S, _W_T = PRINTED_WEIGHTS.sensitivity, PRINTED_WEIGHTS.complementary
@@ -62,7 +65,7 @@ def _gain_of_the_printed_norms() -> float:
 
 
 def _draw_bounded(
-    axes: Axes, function: str, name: str, weight: FactoredTransferFunction, printed_norm: float
+    axes: 'Axes', function: str, name: str, weight: FactoredTransferFunction, printed_norm: float
 ) -> str:
     """Draw S_n or T_n of the loop with G_c, and the bound: the inverse of the weight `name`."""
     omega = np.geomspace(0.01, 1000.0, 800)
@@ -82,7 +85,7 @@ def _draw_bounded(
     )
 
 
-def _draw_uncertainty(axes: Axes) -> str:
+def _draw_uncertainty(axes: 'Axes') -> str:
     omega = np.geomspace(1.0, 1e6, 600)
     nominal, family = plant_in_rpm(), wear_family()
     for wear_gain, worn, style in zip(WEAR_RANGE, family, _ERROR_LINES, strict=True):

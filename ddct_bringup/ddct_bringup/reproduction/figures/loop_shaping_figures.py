@@ -8,9 +8,9 @@ They are the prototype's rise time, the sign of K_c, the two networks, and L of 
 
 from collections.abc import Callable
 from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.axes import Axes
 
 from ddct_bringup.reproduction.figures.thesis_figure import (
     ThesisFigure,
@@ -32,6 +32,9 @@ from ddct_controllers.design.loop_shaping.specifications import rise_time_crosso
 from ddct_controllers.printed import LOOP_SHAPING_CONTROLLERS
 from ddct_plant.linear.lti import FactoredTransferFunction
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
 _PRINTED_PRODUCT = 2.02
 """Product t_r w_c that Section 2.2 reads off the curve for its zeta."""
 _G_C1 = LOOP_SHAPING_CONTROLLERS['ls2']
@@ -43,7 +46,7 @@ _INDENTATION = np.exp(0.5j * np.pi * np.linspace(0.0, 1.0, 200))
 """Values of s / radius on the quarter circle that passes the poles at 0 on the right."""
 
 
-def _draw_rise_time_crossover(axes: Axes) -> str:
+def _draw_rise_time_crossover(axes: 'Axes') -> str:
     damping = np.linspace(0.1, 0.95, 341)
     product = np.array([rise_time_crossover_product(value) for value in damping])
     axes.plot(damping, product, color=BLUE, label='second-order prototype')
@@ -66,7 +69,7 @@ def _draw_rise_time_crossover(axes: Axes) -> str:
     )
 
 
-def _draw_nyquist(whole: Axes, zoom: Axes, gain: float, printed_encirclements: int) -> str:
+def _draw_nyquist(whole: 'Axes', zoom: 'Axes', gain: float, printed_encirclements: int) -> str:
     loop = continuous_loop(integrators(gain, 1))
     values = loop.response(np.geomspace(_SLOWEST_RAD_S, _FASTEST_RAD_S, 6000))
     around_zero = loop.transfer_function.at(_SLOWEST_RAD_S * _INDENTATION)
@@ -107,7 +110,7 @@ def _compressed(values: np.ndarray) -> np.ndarray:
 
 
 def _draw_network(
-    *panels: Axes,
+    *panels: 'Axes',
     name: str,
     ratio_name: str,
     corner: str,

@@ -4,9 +4,9 @@
 
 from collections.abc import Sequence
 from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.axes import Axes
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.reproduction.figures.figure_groups import FIGURE_GROUPS, FigureGroup
@@ -16,6 +16,9 @@ from ddct_bringup.thesis.table_5_1 import CALIBRATED, PREDICTED, thesis_row
 from ddct_controllers.design.drawing.line_styles import REFERENCE_LINE, LineStyle, controller_style
 from ddct_controllers.registry import controller_label
 from ddct_plant.base.units import rpm_from_rad_s
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 _FIRST_S = 0.5
 """Start of the time axis in s: "before 0.6 seconds" (Section 2.3)."""
@@ -59,7 +62,7 @@ def _legend(chosen: str, wear_gain: float, group: FigureGroup) -> str:
     return name + (f' (K_usura = {wear_gain:g})' if len(group.wear_gains) > 1 else '')
 
 
-def _draw(axes: Axes, group: FigureGroup, quantity: str, own: Sequence[str]) -> str:
+def _draw(axes: 'Axes', group: FigureGroup, quantity: str, own: Sequence[str]) -> str:
     runs: dict[str, StudyRun] = {}
     styles: dict[str, LineStyle] = {'reference': REFERENCE_LINE}
     for chosen in (*group.controllers, *own):

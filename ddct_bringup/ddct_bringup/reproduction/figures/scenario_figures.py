@@ -3,9 +3,9 @@
 """Figures of Chapter 1 that can be computed: references, engine torque, comparison of plants."""
 
 import dataclasses
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.axes import Axes
 
 from ddct_bringup.reproduction.figures.thesis_figure import ThesisFigure, draw_over_time
 from ddct_bringup.reproduction.study_run import (
@@ -25,6 +25,9 @@ from ddct_plant.base.timebase import steps_in
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.simplified.plants import printed_lti_slip
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 _LAST_S = 2.2
 _SHOWN = steps_in('time shown', _LAST_S) + 1
@@ -46,7 +49,7 @@ def _tanh_run(end_s: float) -> StudyRun:
     return study_run(RunSettings(scenario, 'feedforward_tanh'), 'pi')
 
 
-def _draw_reference(axes: Axes) -> str:
+def _draw_reference(axes: 'Axes') -> str:
     start_s = THESIS_SCENARIO.control_start_s
     reference = _reference_rpm(thesis_run('pi', 'detailed', 1.0))
     start = np.array([start_s, start_s]), np.array([0.0, 1.0])
@@ -67,7 +70,7 @@ def _draw_reference(axes: Axes) -> str:
     )
 
 
-def _draw_engine_torque(axes: Axes) -> str:
+def _draw_engine_torque(axes: 'Axes') -> str:
     run = thesis_run('pi', 'detailed', 1.0).trajectory
     torque = run.engine_torque[:_SHOWN]
     lines = {'C_m': (run.time_s[:_SHOWN], torque)}
@@ -78,7 +81,7 @@ def _draw_engine_torque(axes: Axes) -> str:
     )
 
 
-def _draw_plants(axes: Axes) -> str:
+def _draw_plants(axes: 'Axes') -> str:
     run = thesis_run('pi', 'detailed', 1.0).trajectory
     printed = {_PRINTED_PLANT: printed_lti_slip}
     slips = {
@@ -100,7 +103,7 @@ def _draw_plants(axes: Axes) -> str:
     )
 
 
-def _draw_tanh(axes: Axes) -> str:
+def _draw_tanh(axes: 'Axes') -> str:
     lines = {
         f'tanh, zero at {end_s:.1f} s': _reference_rpm(_tanh_run(end_s)) for end_s in _END_TIMES_S
     }

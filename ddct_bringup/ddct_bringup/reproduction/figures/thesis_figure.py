@@ -4,10 +4,9 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from ddct_controllers.design.analysis.loop_curve import LoopCurve
 from ddct_controllers.design.analysis.loops import continuous_loop
@@ -25,6 +24,10 @@ from ddct_controllers.design.drawing.nichols import nichols_curve
 from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
 from ddct_controllers.design.loop_shaping.verification import contours
 from ddct_plant.linear.lti import FactoredTransferFunction
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 _STEP_DURATION_S = 4.0
 
@@ -49,7 +52,7 @@ class ThesisFigure:
         """Title with the figure's number."""
         return f'Figure {self.number}: {self.title}'
 
-    def draw(self) -> tuple[Figure, str]:
+    def draw(self) -> 'tuple[Figure, str]':
         """Return the drawing and the remark."""
         figure, axes = new_chart(self.heading, self.panels)
         return figure, self.draw_on(*axes)
@@ -62,7 +65,7 @@ def figure_order(number: str) -> tuple[int, int]:
 
 
 def draw_over_time(
-    axes: Axes,
+    axes: 'Axes',
     quantity: str,
     range_s: tuple[float, float],
     lines: Mapping[str, tuple[np.ndarray, np.ndarray]],
@@ -101,7 +104,7 @@ def nichols_figure(
     `styled_as` is the controller's registry name, None for one that has none.
     """
 
-    def draw(axes: Axes) -> str:
+    def draw(axes: 'Axes') -> str:
         loop = continuous_loop(controller)
         curve = LoopCurve(loop)
         styles = [_solid(styled_as)] if styled_as else None
@@ -138,7 +141,7 @@ def step_figure(
     `styled_as` is the controller's registry name.
     """
 
-    def draw(axes: Axes) -> str:
+    def draw(axes: 'Axes') -> str:
         time, output = step_response(continuous_loop(controller), _STEP_DURATION_S)
         draw_step_response(axes, {name: (time, output)}, [_solid(styled_as)])
         return (

@@ -6,10 +6,9 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from ddct_bringup.reproduction.studies.study import (
     WEAR_GAINS,
@@ -30,6 +29,10 @@ from ddct_plant.program.table import Column
 from ddct_plant.program.workers import in_processes
 from ddct_plant.scenario.file import load_scenario, scenario_names
 from ddct_plant.scenario.settings import RunSettings
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 PANELS_IN_A_ROW = 5
 PANEL_INCHES = (2.2, 1.45)
@@ -104,8 +107,10 @@ def _engagements(scenario: str, clutch: str) -> Study:
     )
 
 
-def engagement_chart(title: str, slips: Sequence[Slip]) -> Figure:
+def engagement_chart(title: str, slips: Sequence[Slip]) -> 'Figure':
     """Return a panel per controller with all its runs over time in s, and their states."""
+    from matplotlib.figure import Figure
+
     panels: dict[str, list[Slip]] = {}
     for slip in slips:
         panels.setdefault(slip.controller, []).append(slip)
@@ -124,7 +129,7 @@ def engagement_chart(title: str, slips: Sequence[Slip]) -> Figure:
     return figure
 
 
-def _draw(axes: Axes, panel: Sequence[Slip]) -> None:
+def _draw(axes: 'Axes', panel: Sequence[Slip]) -> None:
     axes.set_title(panel[0].controller, fontsize=9.0)
     axes.tick_params(labelsize=7.0)
     axes.set_xlabel('Time, s', visible=False)  # for the chart's data; the title shows it

@@ -4,8 +4,8 @@
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-import matplotlib.figure
 import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
@@ -15,6 +15,9 @@ from ddct_bringup.thesis.table_5_1 import FORMS
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.program.table import Column, Quantity, Table
+
+if TYPE_CHECKING:
+    import matplotlib.figure
 
 WEAR_GAINS = (0.7, 1.0, 1.3)
 """Wear gains: the ends of the thesis's Table 5.2, and a new clutch."""
@@ -31,7 +34,7 @@ class Study(Table):
     """Table with remarks for its readers."""
 
     remarks: tuple[str, ...] = ()
-    draw: Callable[[], matplotlib.figure.Figure] | None = None
+    draw: 'Callable[[], matplotlib.figure.Figure] | None' = None
     """Function that returns the chart of the study, None without one."""
 
     def as_dict(self) -> dict[str, object]:

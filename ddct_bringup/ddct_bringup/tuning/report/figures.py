@@ -3,16 +3,18 @@
 """Figures of a tuning: the front, convergence, and what each parameter decides."""
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.ticker import LogLocator, NullFormatter
 
 from ddct_bringup.report.page_parts import unit_text
 from ddct_bringup.tuning.result import Figures, FrontEntry, GoalEntry, TuningResult
 from ddct_bringup.tuning.specification.parameters import LOG
 from ddct_bringup.tuning.trial import FEASIBLE, TrialEntry
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 _SIZE = (5.6, 4.2)
 """Width and height in inches: small, so that letters stay legible on a phone."""
@@ -24,8 +26,10 @@ _SPREAD = 3.0
 
 def front_figure(
     result: TuningResult, trials: Sequence[TrialEntry], across: int, up: int
-) -> Figure:
+) -> 'Figure':
     """Return the trials over two objectives, those of the front with their held-out figures."""
+    from matplotlib.figure import Figure
+
     goals = result['objectives']
     first, second = goals[across], goals[up]
     figure = Figure(figsize=_SIZE)
@@ -51,7 +55,13 @@ def front_figure(
 
 
 def _draw_pair(
-    axes: Axes, entry: FrontEntry, first: GoalEntry, second: GoalEntry, colour: str, *, best: bool
+    axes: 'Axes',
+    entry: FrontEntry,
+    first: GoalEntry,
+    second: GoalEntry,
+    colour: str,
+    *,
+    best: bool,
 ) -> None:
     marker = 's' if colour == _BEFORE else 'o'
     ours = _place(entry['development'], first, second)
@@ -77,7 +87,7 @@ def _place(
     return None if x is None or y is None else (x, y)
 
 
-def _limit(axes: Axes, result: TuningResult, first: GoalEntry, second: GoalEntry) -> None:
+def _limit(axes: 'Axes', result: TuningResult, first: GoalEntry, second: GoalEntry) -> None:
     """Leave out what is far from the front, which would press it into a corner."""
     drawn = [*result['front'], *([result['before']] if result['before'] else [])]
     for goal, setting in ((first, axes.set_xlim), (second, axes.set_ylim)):
@@ -98,8 +108,10 @@ def _limit(axes: Axes, result: TuningResult, first: GoalEntry, second: GoalEntry
         )
 
 
-def convergence_figure(result: TuningResult, goal: GoalEntry) -> Figure:
+def convergence_figure(result: TuningResult, goal: GoalEntry) -> 'Figure':
     """Return the best value of an objective so far over the number of trials."""
+    from matplotlib.figure import Figure
+
     figure = Figure(figsize=_SIZE)
     axes = figure.subplots()
     values = np.array(result['convergence'][goal['name']], dtype=float)
@@ -111,8 +123,11 @@ def convergence_figure(result: TuningResult, goal: GoalEntry) -> Figure:
 
 def sensitivity_figure(
     result: TuningResult, trials: Sequence[TrialEntry], goal: GoalEntry
-) -> Figure:
+) -> 'Figure':
     """Return the value of an objective over each parameter, a panel for each."""
+    from matplotlib.figure import Figure
+    from matplotlib.ticker import LogLocator, NullFormatter
+
     names = list(result['parameters'])
     across = min(2, len(names))
     rows = -(-len(names) // across)

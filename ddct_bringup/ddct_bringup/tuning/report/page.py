@@ -5,9 +5,9 @@
 from base64 import b64encode
 from collections.abc import Mapping, Sequence
 from itertools import combinations
+from typing import TYPE_CHECKING
 
 from markupsafe import Markup
-from matplotlib.figure import Figure
 
 from ddct_bringup.campaign_report.texts import p_text
 from ddct_bringup.report.page_parts import MARKER, number_text, page_part, page_template
@@ -22,6 +22,9 @@ from ddct_bringup.tuning.result import TuningResult
 from ddct_bringup.tuning.trial import TrialEntry
 from ddct_controllers.design.drawing.chart_style import chart_bytes, chart_style
 from ddct_plant.program.command_line import package_version
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _ROOM, _REPORT = 'ddct_bringup.tuning.report', 'ddct_bringup.report'
 _CAMPAIGN = 'ddct_bringup.campaign_report'
@@ -71,6 +74,6 @@ def tuning_page(
     )
 
 
-def _picture(figure: Figure) -> str:
+def _picture(figure: 'Figure') -> str:
     """Return a figure as SVG, encoded for a data URI."""
     return b64encode(chart_bytes(figure, 'svg')).decode()

@@ -9,18 +9,18 @@ from contextlib import AbstractContextManager
 from itertools import zip_longest
 from pathlib import Path
 from textwrap import wrap
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import matplotlib
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
-from matplotlib.text import Text
 
 from ddct_controllers.design.drawing.line_styles import LINE_WIDTH
 from ddct_plant.files.csv_table import csv_text
 from ddct_plant.files.output_file import write_bytes, write_text
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
 
 INDEXED_SYMBOL = re.compile(r'(?<!\w)([A-Za-zζωσ])_([A-Za-z0-9]+)(?:\^(-?\d+))?')
 """Pattern of a symbol with an index and optionally a power, such as W_s^-1."""
@@ -53,11 +53,15 @@ _STYLE: dict[Any, Any] = {
 
 def chart_style() -> AbstractContextManager[None]:
     """Return the context with the style of charts, in which charts are made and saved."""
+    import matplotlib
+
     return matplotlib.rc_context(_STYLE)
 
 
-def new_chart(title: str, panels: int = 1) -> tuple[Figure, list[Axes]]:
+def new_chart(title: str, panels: int = 1) -> 'tuple[Figure, list[Axes]]':
     """Return a figure with this title and `panels` axes side by side."""
+    from matplotlib.figure import Figure
+
     figure = Figure()
     figure.suptitle(title)
     axes = figure.subplots(1, panels, squeeze=False)
@@ -75,7 +79,7 @@ def controllers_text(names: Sequence[str]) -> str:
     return ', '.join(names) if len(names) <= _MOST_NAMED else f'{len(names)} controllers'
 
 
-def save_chart(figure: Figure, path: Path) -> None:
+def save_chart(figure: 'Figure', path: Path) -> None:
     """
     Write the figure to a file of the kind of its extension, `.png` or `.svg`.
 
@@ -84,8 +88,10 @@ def save_chart(figure: Figure, path: Path) -> None:
     write_bytes(str(path), chart_bytes(figure, path.suffix.removeprefix('.')))
 
 
-def chart_bytes(figure: Figure, kind: str) -> bytes:
+def chart_bytes(figure: 'Figure', kind: str) -> bytes:
     """Return the figure as a file of a kind, `png` or `svg`, with its symbols typeset."""
+    from matplotlib.text import Text
+
     for text in figure.findobj(Text):
         text.set_text(typeset(text.get_text()))
     content = io.BytesIO()
@@ -111,7 +117,7 @@ def figure_files(folder: Path, name: str) -> list[Path]:
     return [folder / f'{name}{ending}' for ending in ENDINGS]
 
 
-def save_figure(figure: Figure, folder: Path, name: str) -> None:
+def save_figure(figure: 'Figure', folder: Path, name: str) -> None:
     """
     Write a figure as NAME.png, NAME.svg and NAME.csv into the folder.
 
@@ -126,7 +132,7 @@ def save_figure(figure: Figure, folder: Path, name: str) -> None:
     save_chart(figure, drawing)
 
 
-def figure_data(figure: Figure) -> list[CsvColumn]:
+def figure_data(figure: 'Figure') -> list[CsvColumn]:
     """
     Return the labelled lines of a figure as columns.
 
@@ -144,7 +150,7 @@ def figure_data(figure: Figure) -> list[CsvColumn]:
     return list(columns.values())
 
 
-def _panel_data(axes: Axes) -> Iterator[CsvColumn]:
+def _panel_data(axes: 'Axes') -> Iterator[CsvColumn]:
     groups: dict[bytes, list[Line2D]] = {}
     for line in axes.get_lines():
         labelled = not str(line.get_label()).startswith('_')

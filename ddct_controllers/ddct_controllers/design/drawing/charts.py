@@ -5,9 +5,9 @@
 import math
 from collections.abc import Iterable, Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.axes import Axes
 
 from ddct_controllers.design.analysis.loop_curve import LoopCurve
 from ddct_controllers.design.analysis.loops import ContinuousLoop, continuous_loop, sampled_loop
@@ -40,6 +40,9 @@ from ddct_controllers.design.loop_shaping.specifications import TimeSpecificatio
 from ddct_controllers.from_file.designed import DesignedController
 from ddct_plant.linear.lti import StateSpace
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
 _PHASE_DEG, _MAGNITUDE_DB = (-360.0, 0.0), (-40.0, 40.0)
 """Ranges of open-loop phase in degrees and magnitude in dB of a Nichols chart."""
 _BOUNDED_LINES = ((BLUE, DASHES[0]), (GREEN, DASHES[2]))
@@ -48,7 +51,7 @@ _STEP_RISE_TIMES = 8.0
 
 
 def draw_nichols(
-    axes: Axes,
+    axes: 'Axes',
     curves: Mapping[str, NicholsCurve],
     specifications: TimeSpecifications,
     *,
@@ -79,7 +82,7 @@ def draw_nichols(
 
 
 def draw_step_response(
-    axes: Axes,
+    axes: 'Axes',
     responses: Mapping[str, tuple[np.ndarray, np.ndarray]],
     styles: Iterable[LineStyle] | None = None,
 ) -> None:
@@ -104,7 +107,7 @@ def draw_step_response(
 
 
 def draw_bound(
-    axes: Axes,
+    axes: 'Axes',
     omega: np.ndarray,
     functions: Mapping[str, np.ndarray],
     bound: tuple[str, np.ndarray],
@@ -119,7 +122,7 @@ def draw_bound(
     axes.legend(loc='best')
 
 
-def label_time_axis(axes: Axes, quantity: str, range_s: tuple[float, float]) -> None:
+def label_time_axis(axes: 'Axes', quantity: str, range_s: tuple[float, float]) -> None:
     """Label axes whose lines are drawn over time, and add the legend."""
     axes.set(xlim=range_s, xlabel='Time, s', ylabel=quantity)
     names = axes.get_legend_handles_labels()[1]
@@ -162,7 +165,7 @@ def write_design_charts(
 
 
 def _draw_nyquist(
-    axes: Axes, curves: dict[str, np.ndarray], specifications: TimeSpecifications
+    axes: 'Axes', curves: dict[str, np.ndarray], specifications: TimeSpecifications
 ) -> None:
     for (label, values), style in zip(curves.items(), line_styles(), strict=False):
         axes.plot(values.real, values.imag, label=label, **style)

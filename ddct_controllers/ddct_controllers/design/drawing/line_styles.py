@@ -8,11 +8,12 @@ The colours are distinct for colour-blind readers.
 
 from collections.abc import Iterator
 from itertools import cycle
-from typing import TypedDict
-
-from matplotlib.transforms import Transform
+from typing import TYPE_CHECKING, TypedDict
 
 from ddct_controllers.design.drawing.line_looks import DASHES, DOTS, LineLook, controller_look
+
+if TYPE_CHECKING:
+    from matplotlib.transforms import Transform
 
 Dash = str | tuple[int, tuple[float, ...]]
 """Matplotlib's `linestyle`: its name, or offset with lengths of line and gap in line widths."""
@@ -36,7 +37,7 @@ class LineStyle(TypedDict, total=False):
     """Width of the edge of a mark in points."""
     zorder: float
     """Order of drawing; a larger one is in front."""
-    transform: Transform
+    transform: 'Transform'
     """Transform of the points, where it is not that of the axes' data."""
 
 

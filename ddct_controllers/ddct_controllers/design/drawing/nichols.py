@@ -4,13 +4,15 @@
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.axes import Axes
 
 from ddct_controllers.design.drawing.line_styles import LineStyle
 from ddct_plant.base.errors import require_number
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 _CURVE_POINTS = 720
 _UNIT_CIRCLE = np.exp(2j * math.pi * (np.arange(_CURVE_POINTS) + 0.5) / _CURVE_POINTS)
@@ -80,7 +82,7 @@ def nichols_curve(values: np.ndarray, *, unwrap: bool = True) -> NicholsCurve:
 
 
 def draw_nichols_grid(
-    axes: Axes, phase_deg: tuple[float, float], magnitude_db: tuple[float, float]
+    axes: 'Axes', phase_deg: tuple[float, float], magnitude_db: tuple[float, float]
 ) -> None:
     """Draw the contours of |T| and arg T within the range of the chart, each with its value."""
     axes.plot([], [], label=_LABEL, **_LINE)
@@ -99,7 +101,7 @@ def draw_nichols_grid(
 
 
 def draw_turns(
-    axes: Axes,
+    axes: 'Axes',
     curve: NicholsCurve,
     phase_deg: tuple[float, float],
     label: str | None = None,
@@ -138,7 +140,7 @@ def _place(level_db: float, curve: NicholsCurve, top_db: float) -> tuple[float, 
 
 
 def _label(
-    axes: Axes, at_deg: float, at_db: float, text: str, phase_deg: tuple[float, float]
+    axes: 'Axes', at_deg: float, at_db: float, text: str, phase_deg: tuple[float, float]
 ) -> None:
     for turn in _turns(phase_deg):
         if phase_deg[0] < at_deg + turn * TURN_DEG < phase_deg[1]:
