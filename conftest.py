@@ -44,7 +44,13 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     items.sort(key=lambda item: item.path not in slow)
 
 
+def pytest_collection() -> None:
+    """Search for no garbage meanwhile: next to nothing that is loaded is."""
+    gc.disable()
+
+
 def pytest_collection_finish() -> None:
     """Exempt what the collected tests have loaded from each later search for garbage."""
     gc.collect()
     gc.freeze()
+    gc.enable()

@@ -2,10 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Controllers out of Python objects."""
 
-import control
 import numpy as np
 import pytest
-import scipy.signal
 from refusals import refused
 
 from ddct_controllers.from_python import chosen_from
@@ -69,6 +67,9 @@ def test_an_object_is_used_itself_and_reset_for_each_run():
 
 @pytest.mark.parametrize('library', ['scipy', 'control'])
 def test_a_continuous_system_is_discretised_as_the_printed_ones(library):
+    import control
+    import scipy.signal
+
     zeros, poles, gain = [-2.0], [0.0, -10.0], -3.0
     if library == 'scipy':
         system = scipy.signal.ZerosPolesGain(zeros, poles, gain)
@@ -87,6 +88,9 @@ def test_a_continuous_system_is_discretised_as_the_printed_ones(library):
 
 @pytest.mark.parametrize('library', ['scipy', 'control'])
 def test_a_sampled_system_is_taken_as_it_is(library):
+    import control
+    import scipy.signal
+
     tools = scipy.signal.dlti if library == 'scipy' else control.tf
     dt = {'dt': 0.01}
     ours = model_of(tools([-0.5, 0.4], [1.0, -1.0], **dt))
@@ -107,8 +111,6 @@ def test_our_own_forms_are_taken():
         (Mine, 'pi', 'pi', ''),
         (Mine, 'a b', 'controller name', ''),
         (lambda context: Mine(), '', 'controller name', ''),
-        (control.tf([1], [1, 2], True), '', 'dt', "controller 'linear'"),
-        (control.tf([1, 2, 3], [1, 2]), 'steep', 'zeros', "controller 'steep'"),
     ],
 )
 def test_an_object_that_is_no_controller_is_refused_by_name(given, name, key, place):
@@ -116,18 +118,36 @@ def test_an_object_that_is_no_controller_is_refused_by_name(given, name, key, pl
         chosen_from(given, name)
 
 
+def test_a_system_that_is_no_controller_is_refused_by_name():
+    import control
+
+    with refused(ParameterError, 'dt', "controller 'linear'"):
+        chosen_from(control.tf([1], [1, 2], True), '')
+    with refused(ParameterError, 'zeros', "controller 'steep'"):
+        chosen_from(control.tf([1, 2, 3], [1, 2]), 'steep')
+
+
 @pytest.mark.parametrize(
     ('given', 'key'),
     [
         (lambda context: 1, '<lambda>'),
         (lambda: 1, '<lambda>'),
-        (control.tf([1], [1, 2], 0.02), 'dt'),
-        (control.ss([[0]], [[1, 1]], [[1]], [[0, 0]]), 'state space'),
     ],
 )
 def test_a_factory_of_no_controller_fails_when_it_is_called(given, key):
     with refused(DdctError, key):
         make_controller(chosen_from(given, 'mine'), SETTINGS)
+
+
+def test_a_system_of_another_period_or_two_inputs_fails_when_it_is_made():
+    import control
+
+    for system, key in (
+        (control.tf([1], [1, 2], 0.02), 'dt'),
+        (control.ss([[0]], [[1, 1]], [[1]], [[0, 0]]), 'state space'),
+    ):
+        with refused(DdctError, key):
+            make_controller(chosen_from(system, 'mine'), SETTINGS)
 
 
 def test_a_spec_is_taken_as_it_is():

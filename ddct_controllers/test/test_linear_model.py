@@ -4,6 +4,7 @@
 
 import numpy as np
 import pytest
+from linear_controllers import LINEAR
 
 from ddct_controllers.interface import Command, Controller, Measurement
 from ddct_controllers.registry import controller_names, make_controller
@@ -12,11 +13,6 @@ from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
 SETTINGS = RunSettings(load_scenario('thesis'))
-LINEAR = [
-    name
-    for name in controller_names()
-    if make_controller(name, SETTINGS).linear_model() is not None
-]
 
 
 def torque(controller: Controller, error_rpm: float) -> float:
@@ -35,6 +31,11 @@ def torque(controller: Controller, error_rpm: float) -> float:
 
 def test_the_printed_controllers_and_the_pi_are_linear():
     assert {'pi', *(f'ls{i}' for i in range(1, 10)), 'hinf1', 'hinf2', 'hinf3'} <= set(LINEAR)
+
+
+def test_the_linear_controllers_are_those_with_a_linear_model():
+    made = {name: make_controller(name, SETTINGS) for name in controller_names()}
+    assert [name for name in made if made[name].linear_model() is not None] == LINEAR
 
 
 @pytest.mark.parametrize('name', LINEAR)

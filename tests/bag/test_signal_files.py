@@ -8,7 +8,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scipy.io import loadmat
 
 from ddct_bringup.programs.score import main
 from ddct_bringup.run.headless import run_headless
@@ -27,6 +26,8 @@ KEYWORDS = ('break', 'case', 'catch', 'end', 'for', 'function', 'global', 'if', 
 def test_signals_come_as_mat_to_the_last_bit_under_the_names_of_the_csv(
     bags, trajectory, tmp_path
 ):
+    from scipy.io import loadmat
+
     bags.write(trajectory, folder='demo/pi')
     folders = ['--signals-mat', str(tmp_path / 'out'), '--signals-csv', str(tmp_path / 'out')]
     assert main([str(tmp_path / 'demo'), *folders]) == 0

@@ -7,7 +7,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scipy.signal import lfilter
 from support.logs import constant_log, drag, hits, log_of
 from support.other_car import LASTS_S, NOISE_RAD_S, ROLLING_N_M, SPEEDS, TRUE, drive
 from support.runs import plan, record
@@ -50,6 +49,8 @@ def test_noise_of_the_torques_widens_the_intervals_from_another_start_too(fit: L
 
 def test_noise_with_a_memory_widens_the_intervals(fit: LogFit) -> None:
     """Correlated noise of the same size, over 0.08 s, has more weight at low frequencies."""
+    from scipy.signal import lfilter
+
     random = np.random.default_rng(1)
     noise = lfilter([np.sqrt(1.0 - 0.9**2)], [1.0, -0.9], random.standard_normal((3, 601)))
     signals = dict(drive().signals)

@@ -9,8 +9,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from bokeh.document import Document
-from bokeh.models import ColumnDataSource
 from support.other_car import COLUMNS, drive, write_csv
 from support.runs import plan, record
 
@@ -57,6 +55,9 @@ def visible(page: str) -> str:
 
 def lines(page: str) -> Iterator[tuple[str, str, np.ndarray]]:
     """Yield chart, name and values of each line that is drawn."""
+    from bokeh.document import Document
+    from bokeh.models import ColumnDataSource
+
     (data,) = re.findall(r'<script type="application/json" id="data">(.*?)</script>', page)
     for chart in Document.from_json(json.loads(data)['document']).roots:
         for each in chart.renderers:  # type: ignore[attr-defined]

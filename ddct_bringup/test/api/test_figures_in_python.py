@@ -3,16 +3,19 @@
 """Figures of the thesis and of campaigns in Python are those of the programs."""
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
-from matplotlib.figure import Figure
 
 from ddct_bringup.api import DdctError, ParameterError, campaign, campaign_figure, thesis_figure
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 SPEC = {'controllers': ['pi', 'ls8'], 'grid': {'wear_gain': [0.9, 1.0, 1.1]}}
 
 
-def curves(figure: Figure) -> set[str]:
+def curves(figure: 'Figure') -> set[str]:
     return {str(line.get_label()) for axes in figure.axes for line in axes.get_lines()}
 
 

@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scipy import stats
 
 from ddct_bringup.benchmark.case_rows import CaseRows
 from ddct_bringup.benchmark.cases import Cases
@@ -164,11 +163,15 @@ def test_the_worst_case_and_the_ratio_to_the_least_are_those_of_engaged_runs() -
 
 @pytest.mark.parametrize('table', [(8, 0, 0, 8), (5, 3, 2, 6), (40, 0, 38, 2), (3, 0, 3, 0)])
 def test_the_exact_test_is_that_of_scipy(table: tuple[int, int, int, int]) -> None:
+    from scipy import stats
+
     expected = stats.fisher_exact([table[:2], table[2:]]).pvalue
     assert fisher_p_value(*table) == pytest.approx(expected, rel=1e-9)
 
 
 def test_the_test_of_quantities_is_that_of_scipy_and_says_which_set_is_worse() -> None:
+    from scipy import stats
+
     ours = [1.0, 2.0, 2.0, 3.0, 4.0, 5.0]
     theirs = [2.0, 4.0, 6.0, 7.0, 8.0, 9.0]
     gaps = gaps_of(

@@ -3,6 +3,7 @@
 """Columns of results are those of pyarrow, without the import of pandas."""
 
 import os
+from collections.abc import Callable
 from pathlib import Path
 from typing import NoReturn
 
@@ -90,18 +91,26 @@ def nothing_is_read(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize(
     ('column', 'most_rows', 'why'),
     [
-        (pa.array([0, 1]), 1, 'it has 2 rows, not 1'),
-        (pa.array(['x' * 50_000_000]), 1, 'bytes cannot have 1 rows of 1 columns'),
-        (pa.array([[0] * 2_000_000]), 1, 'the column a is of type list<element: int64>'),
-        (pa.nulls(2_000_000, pa.float64()), None, 'bytes cannot have 2000000 rows of 1 columns'),
+        (lambda: pa.array([0, 1]), 1, 'it has 2 rows, not 1'),
+        (lambda: pa.array(['x' * 50_000_000]), 1, 'bytes cannot have 1 rows of 1 columns'),
+        (lambda: pa.array([[0] * 2_000_000]), 1, 'the column a is of type list<element: int64>'),
+        (
+            lambda: pa.nulls(2_000_000, pa.float64()),
+            None,
+            'bytes cannot have 2000000 rows of 1 columns',
+        ),
     ],
     ids=['too many rows', 'a text', 'a list', 'nulls'],
 )
 def test_a_file_is_refused_before_its_rows_are_read(
-    tmp_path: Path, nothing_is_read: None, column: pa.Array, most_rows: int | None, why: str
+    tmp_path: Path,
+    nothing_is_read: None,
+    column: Callable[[], pa.Array],
+    most_rows: int | None,
+    why: str,
 ) -> None:
     file = tmp_path / 'results.parquet'
-    parquet.write_table(pa.table({'a': column}), file, compression='zstd')
+    parquet.write_table(pa.table({'a': column()}), file, compression='zstd')
     assert file.stat().st_size < 50_000
     with pytest.raises(pa.ArrowInvalid, match=why):
         read_parquet(file, most_rows)

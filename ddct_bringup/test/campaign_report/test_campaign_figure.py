@@ -7,7 +7,6 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from made_results import made_results
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from ddct_bringup.campaign_report.distributions_figure import distributions_figure
 from ddct_bringup.verdict.state import ENGAGED, INVALID
@@ -69,6 +68,8 @@ def test_a_curve_of_very_many_runs_keeps_its_ends():
 
 @pytest.mark.parametrize('highest', [0.0123, 9.9, 123.0, 100_000.0, 123_456.0, 987_654.0])
 def test_tick_labels_of_the_x_axis_do_not_overlap(highest):
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
     results = made_results(
         [ENGAGED, ENGAGED],
         {'wear_gain': [0.7, 0.8]},

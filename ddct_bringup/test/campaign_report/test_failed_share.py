@@ -5,7 +5,6 @@
 import numpy as np
 import pytest
 from made_results import made_results
-from scipy.stats import binomtest
 
 from ddct_bringup.campaign_report.statistics import outcome
 from ddct_bringup.campaign_report.statistics.outcome import Share, count_outcomes, outcomes_of
@@ -22,6 +21,8 @@ def test_every_state_but_a_success_and_invalid_is_a_failed_engagement():
 
 
 def test_a_success_of_second_rank_is_no_failure_and_not_engaged(monkeypatch):
+    from scipy.stats import binomtest
+
     monkeypatch.setattr(outcome, 'SUCCESSES', (ENGAGED, 'nearly_engaged'))
     states = [ENGAGED, 'nearly_engaged', 'nearly_engaged', 'not_engaged']
     results = made_results(states, {'wear_gain': [0.7, 0.8, 0.9, 1.0]}, random=['wear_gain'])
@@ -48,6 +49,8 @@ def test_a_run_that_does_not_count_is_invalid_whatever_state_it_has():
     ('failed', 'runs'), [(0, 1), (1, 1), (0, 50), (3, 50), (49, 50), (50, 50), (7, 100000)]
 )
 def test_the_interval_is_that_of_scipy(failed, runs):
+    from scipy.stats import binomtest
+
     exact = binomtest(failed, runs).proportion_ci(confidence_level=0.95, method='exact')
     found = Share(failed, 0, runs).interval()
     assert found == pytest.approx((exact.low, exact.high), abs=4e-12)  # scipy searches: xtol 2e-12
@@ -59,6 +62,8 @@ def test_none_of_n_failed_leaves_up_to_the_closed_form():
 
 
 def test_invalid_runs_are_in_no_share_and_widen_the_interval_to_both_sides():
+    from scipy.stats import binomtest
+
     counts = count_outcomes(np.array([ENGAGED] * 6 + ['failed'] * 2 + [INVALID] * 2))
     assert (counts.runs, counts.engaged, counts.failed, counts.invalid) == (10, 6, 2, 2)
     assert counts.failed_share.share == 2 / 8

@@ -5,7 +5,6 @@
 import numpy as np
 import pytest
 from made_results import made_results
-from scipy.stats import quantile_test
 
 from ddct_bringup.campaign_report.statistics.paired import difference_of, median_interval
 from ddct_bringup.campaign_report.summary import summary_of
@@ -60,6 +59,8 @@ def test_a_case_without_a_value_is_left_out():
 
 @pytest.mark.parametrize('runs', [6, 7, 19, 40, 133])
 def test_the_interval_of_the_median_is_that_of_scipy(runs):
+    from scipy.stats import quantile_test
+
     values = np.random.default_rng(runs).normal(size=runs)
     exact = quantile_test(values, p=0.5).confidence_interval(0.95)
     assert median_interval(values) == (exact.low, exact.high)

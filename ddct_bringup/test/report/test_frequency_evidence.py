@@ -7,6 +7,7 @@ import json
 
 import numpy as np
 import pytest
+from linear_controllers import LINEAR
 
 from ddct_bringup.programs import compare
 from ddct_bringup.report.evidence import FREQUENCY_FILE
@@ -14,7 +15,7 @@ from ddct_bringup.run.headless import run_headless
 from ddct_controllers.design.analysis.loops import sampled_loop
 from ddct_controllers.design.analysis.step_response import step_response
 from ddct_controllers.interface import Command, Controller, Measurement
-from ddct_controllers.registry import controller_names, make_controller
+from ddct_controllers.registry import make_controller
 from ddct_controllers.workflows.evidence import frequency_evidence
 from ddct_plant.base.units import rad_s_from_rpm, rpm_from_rad_s
 from ddct_plant.scenario.file import load_scenario
@@ -26,11 +27,6 @@ STEP_RPM = 1.0
 AT_STEP = 100
 """Step index of the step of the error, after control start at 0.6 s; 200 steps and more follow."""
 SCENARIO = load_scenario('thesis')
-LINEAR = [
-    name
-    for name in controller_names()
-    if make_controller(name, RunSettings(SCENARIO)).linear_model() is not None
-]
 
 
 class SteppedError(Controller):

@@ -3,13 +3,10 @@
 """Each chart of the report draws the signal in its title, with its sign and unit."""
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
-from bokeh.document import Document
-from bokeh.models import ColumnDataSource
-from bokeh.models.renderers import GlyphRenderer
 from made_run import made_facts
 
 from ddct_bringup.bag.trajectory import Trajectory
@@ -19,6 +16,9 @@ from ddct_bringup.report.phase_lanes import LANES, OPACITY, phase_spans
 from ddct_controllers.design.drawing.line_looks import LineLook
 from ddct_plant.models.driveline import PhaseEvent
 from ddct_plant.signals.topics import SHIFT_TOPICS, all_signals
+
+if TYPE_CHECKING:
+    from bokeh.models.renderers import GlyphRenderer
 
 pytestmark = pytest.mark.slow
 
@@ -76,20 +76,24 @@ SHOWN = {
 @pytest.fixture(scope='module')
 def charts():
     """Return the charts by name, as the page loads them."""
+    from bokeh.document import Document
+
     run = ChartRun(0, 'pi', LineLook(0, ()), RUN, FACTS, True, thesis_engagement_time_s=0.088)
     document: Any = chart_document([run])[0]
     return {chart.name: chart for chart in Document.from_json(document).roots}
 
 
-def drawn(renderer: GlyphRenderer) -> tuple[np.ndarray, np.ndarray]:
+def drawn(renderer: 'GlyphRenderer') -> tuple[np.ndarray, np.ndarray]:
     """Return x and y of a line or mark."""
+    from bokeh.models import ColumnDataSource
+
     source, glyph = renderer.data_source, renderer.glyph
     assert isinstance(source, ColumnDataSource)
     x, y = (np.asarray(source.data[spec.field]) for spec in (glyph.x, glyph.y))
     return x, y
 
 
-def lines(chart) -> list[GlyphRenderer]:
+def lines(chart) -> 'list[GlyphRenderer]':
     return [line for line in chart.renderers if line.glyph.__class__.__name__ == 'Line']
 
 
@@ -116,6 +120,8 @@ def test_the_slip_chart_has_the_present_reference_and_the_thesis_s_zero(charts):
 
 
 def test_marks_of_a_line_lie_on_it_and_follow_its_colour():
+    from bokeh.document import Document
+
     look = LineLook(3, (2, 2), 'star', filled=True)
     document: Any = chart_document([ChartRun(1, 'mine', look, RUN, FACTS, shown=False)])[0]
     chart: Any = Document.from_json(document).roots[2]
@@ -155,6 +161,8 @@ STICK_SLIP = sticking_run()
 @pytest.fixture(scope='module')
 def both():
     """Return the charts of a linear run together with one with a stick-slip clutch."""
+    from bokeh.document import Document
+
     runs = [
         ChartRun(0, 'linear', LineLook(0, ()), RUN, FACTS, True),
         ChartRun(1, 'sticks', LineLook(1, ()), STICK_SLIP, FACTS, True),

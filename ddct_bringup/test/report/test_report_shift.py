@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from bokeh.document import Document
 from made_scores import made_scores
 
 from ddct_bringup.campaign.rows import METRIC_COLUMNS, result_row, scored_headless
@@ -57,6 +56,8 @@ def runs() -> list[ScoredRecording]:
 @pytest.fixture(scope='module')
 def charts(runs: list[ScoredRecording]) -> dict[str, Any]:
     """Return the charts of the page by name, as it loads them."""
+    from bokeh.document import Document
+
     document: Any = chart_document(chart_runs(page_runs(runs)))[0]
     return {chart.name: chart for chart in Document.from_json(document).roots}
 

@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 import pytest
 from made_scores import made_scores, made_verdict
-from matplotlib.colors import to_hex
 
 from ddct_bringup.campaign.scored import ScoredRow
 from ddct_bringup.metrics.catalogue import TABLE_5_1
@@ -131,6 +130,8 @@ def test_the_layout_is_kept_where_no_run_needs_a_mark(tmp_path):
 
 
 def cells(axes: Any) -> list[list[str]]:
+    from matplotlib.colors import to_hex
+
     (mesh,) = axes.collections
     colours = [to_hex(colour) for colour in mesh.to_rgba(mesh.get_array().ravel())]
     names = {colour: state for state, colour in STATE_COLOURS.items()}

@@ -7,7 +7,6 @@ from dataclasses import asdict, replace
 import numpy as np
 import pytest
 from made_run import CONTROL_START, RAD_S_PER_RPM, made_run, times
-from scipy.signal import butter, sosfiltfilt
 
 from ddct_bringup.metrics.catalogue import CRITERION_UNITS
 from ddct_bringup.metrics.engagement import Engagement
@@ -131,6 +130,8 @@ def test_the_limit_of_judder_does_not_apply_to_a_slip_that_is_too_short_for_it(s
 @pytest.mark.parametrize('samples', [15, 50, 51, 100, 101])
 @pytest.mark.parametrize('clutch', ['linear', 'stick_slip'])
 def test_judder_needs_half_a_second_of_slipping_one_period_of_2_hz(clutch, samples):
+    from scipy.signal import butter, sosfiltfilt
+
     speed = 9.0 * np.sin(50.0 * T)
     if clutch == 'linear':
         slip = np.where((60 + samples) / 100.0 - 1e-9 > T, 300.0, -1e-9)

@@ -5,7 +5,6 @@
 import numpy as np
 import pytest
 from refusals import refused
-from scipy import signal
 
 from ddct_controllers.design.state_space import factored_form, frequency_response
 from ddct_controllers.printed import PRINTED_CONTROLLERS
@@ -41,6 +40,8 @@ def model(write):
 
 def forms(zeros, poles, gain):
     """Return the forms of one system as YAML, by kind, made by scipy."""
+    from scipy import signal
+
     num, den = signal.zpk2tf(zeros, poles, gain)
     a, b, c, d = (np.asarray(matrix).tolist() for matrix in signal.zpk2ss(zeros, poles, gain))
     roots = [[str(complex(root)).strip('()') for root in side] for side in (zeros, poles)]
@@ -56,6 +57,8 @@ def forms(zeros, poles, gain):
 @pytest.mark.parametrize('kind', ['polynomial', 'zeros_poles_gain', 'state_space'])
 @pytest.mark.parametrize('method', ['hold', 'bilinear'])
 def test_every_form_is_the_same_controller_as_scipy_samples_it(model, kind, method):
+    from scipy import signal
+
     text = forms(LS8.zeros, LS8.poles, LS8.gain)[kind]
     found = frequency_response(model(f'{text}discretisation: {method}\n'), OMEGA)
     names = {'hold': 'zoh', 'bilinear': 'bilinear'}

@@ -7,11 +7,9 @@ import json
 import re
 from pathlib import Path
 
-import control
 import numpy as np
 import pytest
 from generator.pages import as_markdown, shown_tables
-from scipy.io import loadmat
 
 from ddct_controllers.workflows.design_program import main
 from ddct_controllers.workflows.plant_command import paper_tables
@@ -25,6 +23,8 @@ STIFFER = ['driveline.halfshaft_stiffness=8000']
 
 
 def test_the_actuator_is_the_scenarios(capsys: pytest.CaptureFixture[str]) -> None:
+    import control
+
     changes = ['actuator.delay_s=0.023', 'actuator.bandwidth_factor=1.3']
     scenario = load_scenario('thesis', changes)
     paper = plant_on_paper(scenario)
@@ -39,6 +39,8 @@ def test_the_actuator_is_the_scenarios(capsys: pytest.CaptureFixture[str]) -> No
 
 
 def test_the_transfer_functions_are_those_of_the_state_space() -> None:
+    import control
+
     paper = plant_on_paper(load_scenario('thesis', STIFFER))
     space = paper['state_space']
     system = control.ss(*(space[name] for name in MATRICES))
@@ -79,6 +81,8 @@ def test_the_factors_add_up_to_the_static_torque(equilibrium: str) -> None:
 def test_every_export_holds_the_same_numbers(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    from scipy.io import loadmat
+
     exports = [f'--export={tmp_path / name}' for name in ('p.json', 'p.m', 'p.mat')]
     assert main(['plant', '--set', *STIFFER, *exports, '--json', '-']) == 0
     paper = json.loads(capsys.readouterr().out)

@@ -2,12 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Realisation and discretisation against independent routes, and the thesis's printed G_c(z)."""
 
-import control
 import numpy as np
 import pytest
 from refusals import refused
 from scipy.integrate import solve_ivp
-from scipy.signal import cont2discrete
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
@@ -115,6 +113,9 @@ def test_a_sampled_system_is_not_sampled_again():
 
 @pytest.mark.parametrize('name', ['LS7', 'Hinf1', 'G_a', 'P2'])
 def test_zero_order_hold_agrees_with_scipy_and_control(name):
+    import control
+    from scipy.signal import cont2discrete
+
     model = SYSTEMS[name].to_state_space()
     sampled = discretise_zoh(model, 0.01)
     by_scipy = cont2discrete((model.a, model.b, model.c, model.d), 0.01)

@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from refusals import refused
-from scipy.signal import lfilter
 
 from ddct_plant.base.errors import DdctError
 from ddct_plant.measured.log import MeasuredLog
@@ -19,6 +18,8 @@ ROWS, STEP_S = 600, 0.008
 
 def log_of(seed: int, late_s: float = 0.0, memory: float = 0.0, noise: float = 1.0) -> MeasuredLog:
     """Return a drive with random acceleration; V_x is late, with noise that has a memory."""
+    from scipy.signal import lfilter
+
     random = np.random.default_rng(seed)
     time_s = np.arange(ROWS) * STEP_S
     points = np.arange(0.0, 5.5, 0.24)

@@ -7,7 +7,6 @@ import pytest
 from refusals import refused
 from scipy.integrate import solve_ivp
 from scipy.linalg import expm
-from scipy.signal import lsim
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.models.driveline_model import driveline_matrices
@@ -82,6 +81,8 @@ def test_lti_blocks_with_the_free_response_agree_to_1e_11_of_the_slip_peak(detai
 
 def by_lsim(poles: np.ndarray) -> np.ndarray:
     """Return w_d by scipy: P_1, P_2 and P_3 typed from Section 1.6.2, and the free response."""
+    from scipy.signal import lsim
+
     time = np.arange(10 * PERIODS + 1) * 0.001
     clutch = np.append(CLUTCH[:, :10].ravel(), CLUTCH[-1, -1])
     engine, load = (np.append(np.repeat(held, 10), held[-1]) for held in (ENGINE, LOAD))

@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Closed-loop figures of the thesis, and whether every figure is drawn or explained."""
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 import pytest
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from tight_tolerance import tight_tolerance_run
 
 from ddct_bringup.metrics.metric import Metrics
@@ -20,18 +20,22 @@ from ddct_bringup.thesis.table_5_1 import thesis_row
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.scenario.settings import RunSettings
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
 pytestmark = pytest.mark.slow
 
 TABLE_METRICS = {figure.number: figure for figure in collect_figures()}
 LS4_TO_9 = ('ls8', 'ls4', 'ls5', 'ls6', 'ls7', 'ls9')
 
 
-def drawing(number: str) -> tuple[Figure, str]:
+def drawing(number: str) -> 'tuple[Figure, str]':
     """Return the chart of a figure and the remark on it."""
     return TABLE_METRICS[number].draw()
 
 
-def lines(axes: Axes) -> dict[str, np.ndarray]:
+def lines(axes: 'Axes') -> dict[str, np.ndarray]:
     """Return x and y, (2, n), by label."""
     return {str(line.get_label()): np.array(line.get_data()) for line in axes.get_lines()}
 

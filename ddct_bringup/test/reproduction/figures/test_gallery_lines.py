@@ -6,7 +6,6 @@ from itertools import combinations
 from typing import Any
 
 import pytest
-from matplotlib.colors import to_hex
 
 from ddct_bringup.reproduction.figures.command import collect_figures
 from ddct_controllers.design.drawing.chart_style import chart_style
@@ -43,6 +42,8 @@ def of_the_legend(axes):
 
 @pytest.mark.parametrize('number', FIGURES)
 def test_each_line_of_a_figure_has_its_own_colour_and_its_own_dash(number):
+    from matplotlib.colors import to_hex
+
     with chart_style():
         chart, _ = FIGURES[number].draw()
     for axes in chart.axes:

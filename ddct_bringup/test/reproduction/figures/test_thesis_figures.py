@@ -6,10 +6,10 @@ import csv
 import re
 from collections.abc import Callable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
 
 from ddct_bringup.programs import reproduce
 from ddct_bringup.reproduction.figures.command import collect_figures
@@ -28,24 +28,27 @@ from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_controllers.registry import controller_spec
 from ddct_plant.linear.lti import FactoredTransferFunction
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
 pytestmark = pytest.mark.slow
 
 TRANSFER_FUNCTION = Path(__file__).parents[4] / 'docs' / 'templates' / 'transfer_function.yaml'
 WITHOUT_RUN = (*LOOP_SHAPING_FIGURES, *H_INFINITY_FIGURES)
 
 
-def drawing(number: str) -> tuple[Figure, str]:
+def drawing(number: str) -> 'tuple[Figure, str]':
     """Return the chart of a figure and the remark on it."""
     return next(figure for figure in WITHOUT_RUN if figure.number == number).draw()
 
 
-def line(figure: Figure, label: str, panel: int = 0) -> np.ndarray:
+def line(figure: 'Figure', label: str, panel: int = 0) -> np.ndarray:
     """Return x and y of the line with this label, (2, n)."""
     lines = {found.get_label(): found for found in figure.axes[panel].get_lines()}
     return np.array(lines[label].get_data())
 
 
-def labels(figure: Figure, panel: int = 0) -> tuple[str, str]:
+def labels(figure: 'Figure', panel: int = 0) -> tuple[str, str]:
     return figure.axes[panel].get_xlabel(), figure.axes[panel].get_ylabel()
 
 

@@ -3,8 +3,8 @@
 """Margins are exact: against closed forms, python-control, and the closed loop's poles."""
 
 import math
+from typing import TYPE_CHECKING
 
-import control
 import numpy as np
 import pytest
 
@@ -22,6 +22,9 @@ from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
 from ddct_plant.linear.sampling import discretise_zoh
 
+if TYPE_CHECKING:
+    import control
+
 NAMES = sorted(PRINTED_CONTROLLERS)
 
 
@@ -30,7 +33,9 @@ def sampled(name: str, wear_gain: float = 1.0) -> StateSpace:
     return sampled_loop(discretise_zoh(controller, PERIOD_S), wear_gain=wear_gain)
 
 
-def of_control(loop: StateSpace) -> control.StateSpace:
+def of_control(loop: StateSpace) -> 'control.StateSpace':
+    import control
+
     return control.ss(loop.a, loop.b, loop.c, loop.d, loop.period_s or 0)
 
 
@@ -73,6 +78,8 @@ def test_peaks_and_bandwidth_of_a_second_order_loop_in_closed_form():
 @pytest.mark.parametrize('name', ['ls3', 'ls8', 'hinf2'])
 def test_they_are_those_of_python_control(name):
     """python-control interpolates between 3000 points; its disk margin is the least of theirs."""
+    import control
+
     for loop in (continuous_loop(PRINTED_CONTROLLERS[name]).to_state_space(), sampled(name)):
         found = loop_margins(loop)
         last = math.pi / loop.period_s if loop.period_s else 1e3
@@ -305,6 +312,8 @@ def test_dead_time_around_an_integrator_moves_two_poles_at_a_time(delay_s, poles
 
 def test_dead_time_can_stabilise_a_loop_that_is_unstable_without():
     """L = -0.5/(s^2 - 0.02 s + 1): a delay makes the feedback of position one of speed."""
+    import control
+
     oscillator = FactoredTransferFunction(-0.5, (), ((-0.02, 1.0),))
     stable = [closed_loop_stable(ContinuousLoop(oscillator, delay)) for delay in (0.0, 1.0, 6.2)]
     pade = [0]
@@ -319,6 +328,8 @@ def test_dead_time_can_stabilise_a_loop_that_is_unstable_without():
 @pytest.mark.parametrize('name', ['ls2', 'ls7', 'hinf2'])
 @pytest.mark.parametrize('delay_s', [0.01, 0.03, 0.05])
 def test_dead_time_counts_as_a_high_order_pade_approximation_does(name, delay_s):
+    import control
+
     controller = PRINTED_CONTROLLERS[name]
     loop = of_control(continuous_loop(controller).to_state_space())
     pade = control.tf2ss(*control.pade(delay_s, 6))

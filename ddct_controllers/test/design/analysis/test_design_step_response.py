@@ -4,7 +4,6 @@
 
 import math
 
-import control
 import numpy as np
 import pytest
 from refusals import refused
@@ -70,6 +69,8 @@ def test_hinf2_overshoots_by_three_quarters_in_the_loop_as_it_runs():
 @pytest.mark.parametrize('as_run', [False, True])
 def test_every_point_is_that_of_python_control(name, as_run, points):
     """The points where one block ends and the next begins are included."""
+    import control
+
     controller = PRINTED_CONTROLLERS[name]
     continuous = continuous_loop(controller)
     sampled = sampled_loop(discretise_zoh(controller.to_state_space(), PERIOD_S))

@@ -5,7 +5,6 @@
 from types import SimpleNamespace
 from typing import Any
 
-import control
 import numpy as np
 import pytest
 from corner_checks import (
@@ -94,6 +93,8 @@ def test_a_loop_unstable_only_between_the_ends_of_the_wear_range_counts(gain, un
     s^3 + k s^2 + k s + 1.7 k - 0.72 is stable where (k - 0.8)(k - 0.9) > 0, by Routh. The bilinear
     map keeps that; 1.5 times the gain moves the gap out of the range.
     """
+    import control
+
     loop = control.c2d(
         control.ss(control.tf([1.0, 1.0, 1.7], [1.0, 0.0, 0.0, -0.72])), 0.1, 'tustin'
     )

@@ -7,7 +7,6 @@ import re
 
 import numpy as np
 import pytest
-from matplotlib.text import Text
 
 from ddct_controllers.design.drawing import charts
 from ddct_controllers.design.drawing.chart_style import (
@@ -93,6 +92,8 @@ def test_the_step_chart_has_lines_at_the_specified_rise_time_and_overshoot(monke
 
 def grid_labels() -> dict[str, tuple[float, float]]:
     """Return phase and magnitude of the open loop at each label of the grid."""
+    from matplotlib.text import Text
+
     figure, (axes,) = new_chart('Nichols')
     loop = nichols_curve(1.0 / (1j * np.geomspace(0.1, 10.0, 50)))
     draw_nichols(axes, {'L': loop}, TimeSpecifications(rise_time_s=0.3, overshoot=0.08))

@@ -7,7 +7,6 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
 
 from ddct_controllers.design.drawing.chart_style import chart_style
 from ddct_controllers.design.drawing.line_looks import (
@@ -143,6 +142,8 @@ def test_runs_of_one_controller_share_colour_and_dash_and_differ_in_the_mark(nam
 
 @pytest.mark.parametrize('name', ['pi', 'ls4', 'my_controller'])
 def test_the_sample_of_the_page_and_the_line_of_a_figure_agree(name):
+    from matplotlib.figure import Figure
+
     look = controller_look(name)
     sample, style = ElementTree.fromstring(sample_svg(look)), controller_style(name)
     line, *marks = sample

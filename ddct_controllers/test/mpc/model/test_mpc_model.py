@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The predictive controllers' model is the plant they run in, and their observer follows it."""
 
-import control
 import numpy as np
 import pytest
 
@@ -175,6 +174,8 @@ def test_an_estimate_that_starts_at_zero_corrects_with_the_first_measurement():
 
 
 def test_gain_is_the_stationary_kalman_filter():
+    import control
+
     noise = NoiseLevels()
     gain = kalman_gain(MODEL, noise)
     torque = np.column_stack([MODEL.b[:, ENGINE_TORQUE], MODEL.b[:, LOAD_TORQUE], MODEL.clutch])
