@@ -12,25 +12,12 @@ from pathlib import Path
 
 import numpy as np
 import pyarrow as pa
-import pyarrow.compute as compute
 import pyarrow.parquet as parquet
 
-from ddct_plant.files.input_file import read_file
+from ddct_plant.files.input_file import open_file
 
-MOST_BYTES = 4_000_000_000
-"""Largest size of a Parquet file in bytes; a million rows have a twentieth of that."""
-MOST_EXPANSION = 400
-"""Most bytes of memory per byte of a file; a million failed runs with one seed need 340."""
-SMALL_BYTES = 10_000_000
-"""Bytes of memory that any file may need."""
-MOST_COLUMNS = 2000
-"""Most columns of a file."""
-MOST_TEXT_BYTES = 500_000_000
-"""Largest size of all texts of a file in bytes; a million rows have a fifth of that."""
 _NUMBERS = {pa.int64(): np.int64, pa.float64(): np.float64}
 _TYPES = (*_NUMBERS, pa.bool_(), pa.string())
-_VALUE_BYTES = 8
-"""Bytes of a value in memory, for a text those of its place."""
 _BATCH_ROWS = 65536
 """Rows that are read at once."""
 
@@ -39,43 +26,21 @@ def read_parquet(path: Path, most_rows: int | None = None) -> pa.Table:
     """
     Return all rows of a Parquet file, which may have `most_rows` where that is given.
 
-    Raise OSError or ArrowException where that fails, ArrowException also for texts that are none,
-    and for a small file that would fill the memory: runs of equal values take next to no bytes.
+    Raise OSError or ArrowException where that fails, ArrowException also for texts that are none.
     """
-    data = read_file(path, MOST_BYTES)
     try:
-        return _table_of(data, most_rows)
+        with open_file(path) as opened, parquet.ParquetFile(opened) as file:
+            rows = file.metadata.num_rows
+            if most_rows is not None and rows > most_rows:
+                raise pa.ArrowInvalid(f'it has {rows} rows, not {most_rows}')
+            for field in file.schema_arrow:
+                if field.type not in _TYPES:
+                    raise pa.ArrowInvalid(f'the column {field.name} is of type {field.type}')
+            table = _rows_in(file, rows)
     except UnicodeDecodeError as error:
         raise pa.ArrowInvalid(f'its names are no text ({error})') from error
-
-
-def _table_of(data: bytes, most_rows: int | None) -> pa.Table:
-    with parquet.ParquetFile(pa.BufferReader(data)) as file:
-        rows, columns = file.metadata.num_rows, file.metadata.num_columns
-        if most_rows is not None and rows > most_rows:
-            raise pa.ArrowInvalid(f'it has {rows} rows, not {most_rows}')
-        for field in file.schema_arrow:  # a list may have any number of values in a row
-            if field.type not in _TYPES:
-                raise pa.ArrowInvalid(f'the column {field.name} is of type {field.type}')
-        most = max(SMALL_BYTES, MOST_EXPANSION * len(data))
-        if columns > MOST_COLUMNS or _needed_bytes(file.metadata) > most:
-            raise pa.ArrowInvalid(
-                f'{len(data)} bytes cannot have {rows} rows of {columns} columns'
-            )
-        texts = [field.name for field in file.schema_arrow if pa.types.is_string(field.type)]
-    # As dictionaries, texts take no more memory than they have in the file.
-    with parquet.ParquetFile(pa.BufferReader(data), read_dictionary=texts) as file:
-        table = _without_dictionaries(_rows_in(file, rows))
     table.validate(full=True)  # texts of a damaged file may be no UTF-8
     return table
-
-
-def _needed_bytes(metadata: parquet.FileMetaData) -> int:
-    """Return the memory for all values of a file and for its bytes without compression."""
-    # Of its groups only, as pyarrow aborts the process for some damage of a group's columns.
-    groups = map(metadata.row_group, range(metadata.num_row_groups))
-    unpacked = sum(abs(group.total_byte_size) for group in groups)
-    return metadata.num_rows * metadata.num_columns * _VALUE_BYTES + unpacked
 
 
 def _rows_in(file: parquet.ParquetFile, rows: int) -> pa.Table:
@@ -88,23 +53,6 @@ def _rows_in(file: parquet.ParquetFile, rows: int) -> pa.Table:
         batches.append(batch)
     table = pa.Table.from_batches(batches) if batches else file.read()
     return table.replace_schema_metadata(file.schema_arrow.metadata)
-
-
-def _without_dictionaries(table: pa.Table) -> pa.Table:
-    """Return a table with its texts in full; raise ArrowException where they are too large."""
-    size = 0
-    for place, field in enumerate(table.schema):
-        if not pa.types.is_dictionary(field.type):
-            continue
-        for chunk in table[place].chunks:
-            lengths = compute.binary_length(chunk.dictionary).take(chunk.indices)
-            size += compute.sum(lengths).as_py() or 0
-        if size > MOST_TEXT_BYTES:
-            raise pa.ArrowInvalid(f'its texts have more than {MOST_TEXT_BYTES} bytes')
-        chunks = [chunk.dictionary_decode() for chunk in table[place].chunks]
-        column = pa.chunked_array(chunks, field.type.value_type)
-        table = table.set_column(place, field.with_type(field.type.value_type), column)
-    return table
 
 
 def arrow_column(kind: pa.DataType, values: Sequence[object]) -> pa.Array:

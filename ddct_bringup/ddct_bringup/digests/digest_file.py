@@ -12,7 +12,7 @@ from typing import Any
 from ddct_bringup.digests.environment import Environment
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.files.input_file import (
-    open_regular,
+    open_file,
     parse_json,
     read_text_file,
     require_schema_version,
@@ -120,7 +120,7 @@ def read_digests(folder: Path) -> Digests:
 def file_digest(path: Path) -> str:
     """Return the SHA-256 of a file; raise DdctError when it cannot be read."""
     try:
-        with open_regular(path) as file:
+        with open_file(path) as file:
             return hashlib.file_digest(file, 'sha256').hexdigest()
     except OSError as error:
         raise DdctError(f'{path}: cannot be read ({error.strerror})') from error

@@ -161,7 +161,7 @@ def test_a_file_that_is_written_replaces_a_pipe_or_a_link(
 
 def test_a_pipe_that_is_not_written_is_named(out: Path) -> None:
     os.mkfifo(out / 'notes.txt')
-    with pytest.raises(DdctError, match=r'notes.txt: cannot be read \(it is a pipe: give a reg'):
+    with pytest.raises(DdctError, match=r'notes.txt: cannot be read \(it is a pipe: give a file'):
         resumed(out)
 
 

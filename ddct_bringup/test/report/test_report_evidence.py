@@ -96,8 +96,6 @@ def test_evidence_of_another_shape_is_computed_anew(remark, whole, path, value):
     assert remark(json.dumps(content)) == COMPUTED
 
 
-@pytest.mark.parametrize(
-    'text', ['', '[1]', '[' * 100_000, '{"controllers": 1, "controllers": 2}']
-)
+@pytest.mark.parametrize('text', ['', '[1]', '{"controllers": 1, "controllers": 2}'])
 def test_a_file_that_is_no_evidence_counts_as_none(remark, text):
     assert remark(text) == COMPUTED

@@ -3,16 +3,14 @@
 """
 Read files of users, and report the place of an error in them.
 
-Only regular files of a bounded size are read. JSON of files and bags is read here only; YAML has
+JSON of files and bags is read here only; YAML has
 its own module.
 """
 
 import codecs
 import errno
 import json
-import os
 import re
-import stat
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from functools import partial
@@ -26,45 +24,30 @@ from ddct_plant.base.errors import DdctError, ParameterError
 MOST_TEXT_BYTES = 1_000_000
 """Largest size in bytes of a scenario, controller or page: hundreds of times the usual one."""
 _BLOCK_BYTES = 1_000_000
-_KINDS = {
-    stat.S_IFDIR: 'a folder',
-    stat.S_IFIFO: 'a pipe',
-    stat.S_IFCHR: 'a device',
-    stat.S_IFBLK: 'a device',
-    stat.S_IFSOCK: 'a socket',
-}
 SCHEMA_KEY = 'schema_version'
 """Key of the schema version of a file."""
 _PATH = re.compile(r'[\w-]+(?:\.[\w-]+|\[\d+\])*')
 _PARENT = re.compile(r'(?:\.[\w-]+|\[\d+\])$')
 
 
-def open_regular(path: Path) -> BufferedReader:
+def open_file(path: Path) -> BufferedReader:
     """
-    Open a regular file to read it.
+    Open a file to read it; raise OSError where that fails, and for a pipe, which may never end.
 
-    Raise OSError, whose `strerror` is a message for the user, where that fails or where it is no
-    regular file: a pipe may block, a device may never end.
+    The `strerror` of the error is a message for the user.
     """
-    # Without O_NONBLOCK opening a pipe blocks.
-    descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
-    kind = stat.S_IFMT(os.fstat(descriptor).st_mode)
-    if kind != stat.S_IFREG:
-        os.close(descriptor)
-        what = _KINDS.get(kind, 'no file')
-        raise OSError(errno.EINVAL, f'it is {what}: give a regular file', str(path))
-    return os.fdopen(descriptor, 'rb')
+    if path.is_fifo():
+        raise OSError(errno.EINVAL, 'it is a pipe: give a file', str(path))
+    return path.open('rb')
 
 
 def read_file(path: Path, most_bytes: int) -> bytes:
-    """Return the content of a file; raise OSError as `open_regular`, and above `most_bytes`."""
-    with open_regular(path) as file:
-        size = os.fstat(file.fileno()).st_size
-        # In blocks, as some files of the system have a size of 0 and are not empty.
+    """Return the content of a file; raise OSError as `open_file`, and above `most_bytes`."""
+    with open_file(path) as file:
+        # In blocks: in one go Python would reserve memory for as many bytes as there may be.
         blocks = iter(partial(file.read, _BLOCK_BYTES), b'')
-        most_blocks = most_bytes // _BLOCK_BYTES + 1 if size <= most_bytes else 0
-        data = b''.join(islice(blocks, most_blocks))
-    if max(len(data), size) > most_bytes:
+        data = b''.join(islice(blocks, most_bytes // _BLOCK_BYTES + 1))
+    if len(data) > most_bytes:
         raise OSError(errno.EFBIG, f'it is larger than {most_bytes} bytes', str(path))
     return data
 
@@ -110,13 +93,11 @@ def parse_json(text: str) -> Any:
     """
     Return the value of JSON text; raise ParameterError with the reason for invalid text.
 
-    Refused beyond the grammar: duplicate keys, NaN and infinity, and integers and nesting beyond
-    the limits of Python.
+    Refused beyond the grammar: duplicate keys, NaN and infinity, and integers beyond the limit of
+    Python.
     """
     try:
         return json.loads(text, object_pairs_hook=_object, parse_constant=_refuse_constant)
-    except RecursionError as error:
-        raise ParameterError('not valid JSON: nested too deeply') from error
     except ValueError as error:
         raise ParameterError(f'not valid JSON: {error}') from error
 

@@ -15,18 +15,11 @@ import yaml
 
 from ddct_plant.base.errors import ParameterError
 
-MOST_CHARACTERS = 1_000_000
-"""Most characters of one document."""
-MOST_VALUES = 100_000
-"""Most values of one document: numbers, texts, lists and mappings together."""
-MOST_DEPTH = 20
-"""Deepest nesting of lists and mappings."""
 MOST_DIGITS = 40
 """Most characters of a number; a double needs 24."""
 
 _PARSER = getattr(yaml, 'CSafeLoader', yaml.SafeLoader)
 _EMITTER = getattr(yaml, 'CSafeDumper', yaml.SafeDumper)
-_SURROGATE = re.compile('[\ud800-\udfff]')
 _WORDS = {
     **dict.fromkeys(('', '~', 'null', 'Null', 'NULL')),
     **dict.fromkeys(('true', 'True', 'TRUE'), True),
@@ -52,15 +45,12 @@ def parse_yaml_with_lines(text: str) -> tuple[Any, dict[str, int]]:
     keys and of items of lists, by their path: `engine.time_s`, `engine.time_s[2]`.
 
     Raise ParameterError with the line for invalid YAML, a duplicate key, aliases and tags, and
-    beyond the limits above.
+    numbers that are too long.
     """
-    if len(text) > MOST_CHARACTERS:
-        raise ParameterError(f'not valid YAML: longer than {MOST_CHARACTERS} characters')
     try:
-        text.encode('utf-8')
         document = _Document(yaml.parse(text, Loader=_PARSER))
         return document.value(), document.lines
-    except UnicodeEncodeError as error:
+    except UnicodeEncodeError as error:  # an argument in another encoding
         raise ParameterError('not valid YAML: it is not UTF-8 text') from error
     except yaml.MarkedYAMLError as error:
         line = error.problem_mark.line + 1
@@ -93,7 +83,6 @@ class _Document:
 
     def __init__(self, events: Iterator[yaml.Event]) -> None:
         self._events = events
-        self._values = 0
         self.lines: dict[str, int] = {}
         """Line numbers of keys and items, from 1, by path."""
 
@@ -103,50 +92,45 @@ class _Document:
         event = next(self._events)
         if isinstance(event, yaml.StreamEndEvent):
             return None
-        value = self._value(next(self._events), 0, '')
+        value = self._value(next(self._events), '')
         next(self._events)
         after = next(self._events)
         if not isinstance(after, yaml.StreamEndEvent):
             raise _bad_yaml(after, 'a second document begins: give one')
         return value
 
-    def _value(self, event: yaml.Event, depth: int, path: str) -> Any:
-        self._values += 1
-        if self._values > MOST_VALUES:
-            raise _bad_yaml(event, f'more than {MOST_VALUES} values')
+    def _value(self, event: yaml.Event, path: str) -> Any:
         if isinstance(event, yaml.AliasEvent):
             raise _bad_yaml(event, f'the alias *{event.anchor}: write out what it stands for')
         if event.tag is not None:
             raise _bad_yaml(event, f'the tag {event.tag}: write the value without it')
         if isinstance(event, yaml.ScalarEvent):
             return _scalar(event)
-        if depth == MOST_DEPTH:
-            raise _bad_yaml(event, f'nested more than {MOST_DEPTH} deep')
         if isinstance(event, yaml.SequenceStartEvent):
-            return self._sequence(depth, path)
-        return self._mapping(depth, path)
+            return self._sequence(path)
+        return self._mapping(path)
 
-    def _sequence(self, depth: int, path: str) -> list[Any]:
+    def _sequence(self, path: str) -> list[Any]:
         content: list[Any] = []
         for event in self._until(yaml.SequenceEndEvent):
             item_path = f'{path}[{len(content)}]'
             self.lines[item_path] = _line(event)
-            content.append(self._value(event, depth + 1, item_path))
+            content.append(self._value(event, item_path))
         return content
 
-    def _mapping(self, depth: int, path: str) -> dict[Any, Any]:
+    def _mapping(self, path: str) -> dict[Any, Any]:
         content: dict[Any, Any] = {}
         lines: dict[Any, int] = {}
         for event in self._until(yaml.MappingEndEvent):
             if not isinstance(event, (yaml.ScalarEvent, yaml.AliasEvent)):
                 raise _bad_yaml(event, 'a list or mapping is used as a key: give text')
-            key = self._value(event, depth, '')
+            key = self._value(event, '')
             if key in lines:
                 first = lines[key]
                 raise _bad_yaml(event, f'the key {key!r} is given twice, first in line {first}')
             key_path = f'{path}.{key}' if path else str(key)
             lines[key] = self.lines[key_path] = _line(event)
-            content[key] = self._value(next(self._events), depth + 1, key_path)
+            content[key] = self._value(next(self._events), key_path)
         return content
 
     def _until(self, end: type[yaml.Event]) -> Iterator[yaml.Event]:
@@ -156,8 +140,6 @@ class _Document:
 
 def _scalar(event: yaml.ScalarEvent) -> Any:
     text = event.value
-    if _SURROGATE.search(text):
-        raise _bad_yaml(event, 'half of a surrogate pair is no character')
     if not event.implicit[0]:  # in quotes, or a block of text
         return text
     if text in _WORDS:

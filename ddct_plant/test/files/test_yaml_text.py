@@ -1,27 +1,15 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""YAML becomes plain values as YAML 1.2 has them, or is refused with its line, at once."""
+"""YAML becomes plain values as YAML 1.2 has them, or is refused with its line."""
 
 import math
-import subprocess
-import sys
-import time
 
 import pytest
 import yaml
 
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files import yaml_text
-from ddct_plant.files.yaml_text import MOST_DEPTH, dump_yaml, parse_yaml, parse_yaml_with_lines
-
-MOST_VALUES = 1000
-"""Limit of values in the tests, below the real one, for which the Python parser takes 5 s."""
-BOMB = 'a: &a [x]\n' + ''.join(
-    f'{new}: &{new} [{", ".join([f"*{old}"] * 10)}]\n'
-    for old, new in zip('abcdefgh', 'bcdefghi', strict=True)
-)
-AT_ONCE_S = 10.0
-"""Bound of the processor time in s on slow machines; a refusal takes a thousandth of it."""
+from ddct_plant.files.yaml_text import dump_yaml, parse_yaml, parse_yaml_with_lines
 
 
 @pytest.fixture(params=['C', 'Python'])
@@ -29,7 +17,6 @@ def parser(request, monkeypatch):
     """Try both parsers: PyYAML may come without the one in C."""
     name = {'C': 'CSafeLoader', 'Python': 'SafeLoader'}[request.param]
     monkeypatch.setattr(yaml_text, '_PARSER', getattr(yaml, name))
-    monkeypatch.setattr(yaml_text, 'MOST_VALUES', MOST_VALUES)
 
 
 @pytest.mark.usefixtures('parser')
@@ -49,7 +36,6 @@ def parser(request, monkeypatch):
         ('{a: {b: [c]}, <<: d}', {'a': {'b': ['c']}, '<<': 'd'}),
         ('|\n 12\n', '12\n'),
         ('"\\e[31m \\u00e4"', '\x1b[31m ä'),
-        ('[' * MOST_DEPTH + ']' * MOST_DEPTH, eval('[' * MOST_DEPTH + ']' * MOST_DEPTH)),
     ],
 )
 def test_the_values_are_those_of_yaml_1_2(text, value):
@@ -67,16 +53,10 @@ def test_nan_is_a_number():
         ('a: 1\nb: 2\na: 3', 3, "the key 'a' is given twice, first in line 1"),
         ('a: {b: 1,\n b: 2}', 2, "the key 'b' is given twice, first in line 1"),
         ('a: 1\n"a": 2', 2, "the key 'a' is given twice"),
-        ('[' * 2000, 1, f'nested more than {MOST_DEPTH} deep'),
-        ('{a: ' * 2000, 1, f'nested more than {MOST_DEPTH} deep'),
-        ('[' * (MOST_DEPTH + 1) + ']' * (MOST_DEPTH + 1), 1, 'nested more than'),
         ('a: ' + '9' * 5000, 1, 'a number of 5000 digits'),
         ('a: 0.' + '9' * 5000, 1, 'a number of 5002 digits'),
-        (r'a: "\uD800"', 1, ''),
-        ('a: \udcff', 0, 'not UTF-8'),
-        (BOMB, 2, 'the alias *a: write out'),
-        ('a: ' + 'x' * 10_000_000, 0, 'longer than 1000000 characters'),
-        ('[' + '1,' * MOST_VALUES + ']', 1, f'more than {MOST_VALUES} values'),
+        ('a: \udcff', 0, 'not UTF-8|special characters'),
+        ('a: &a 1\nb: *a', 2, 'the alias *a: write out'),
         ('a: !!python/object/apply:os.getcwd []', 1, 'the tag tag:yaml.org,2002:python/'),
         ('a: !!python/name:os.getcwd', 1, 'the tag'),
         ('!mine 1', 1, 'the tag !mine'),
@@ -86,11 +66,9 @@ def test_nan_is_a_number():
         ('a: \x1b[31m', 0, 'control characters|special characters'),
     ],
 )
-def test_what_could_do_harm_is_refused_at_once_in_one_line(text, line, complaint):
-    started = time.process_time()
+def test_what_is_no_plain_value_is_refused_in_one_line_with_its_place(text, line, complaint):
     with pytest.raises(DdctError) as caught:
         parse_yaml(text)
-    assert time.process_time() - started < AT_ONCE_S
     message = str(caught.value)
     assert caught.value.place == (f'line {line}' if line else '')
     assert any(each in message for each in complaint.split('|')), message
@@ -111,7 +89,7 @@ def test_an_object_that_occurs_twice_is_written_out_twice():
 
 def test_no_other_module_of_the_product_reads_yaml_or_json():
     """
-    `parse_yaml` and `parse_json` bound what they read.
+    `parse_yaml` and `parse_json` refuse what they cannot read in one line.
 
     The warm parent takes its requests from its own supervisor alone, with environments that
     `parse_json` refuses, as their bytes need not be UTF-8. The processes of compiled code of
@@ -126,29 +104,6 @@ def test_no_other_module_of_the_product_reads_yaml_or_json():
         for file in (root / package / package).rglob('*.py'):
             text = file.read_text(encoding='utf-8')
             assert file.name in allowed or not any(word in text for word in words), file
-
-
-@pytest.mark.process
-def test_refusing_needs_less_than_a_gigabyte():
-    program = (
-        'import resource, sys\n'
-        'from ddct_plant.files.yaml_text import parse_yaml\n'
-        'from ddct_plant.base.errors import DdctError\n'
-        'resource.setrlimit(resource.RLIMIT_AS, (2**30, 2**30))\n'
-        'for text in (sys.stdin.read(), "[" * 900_000):\n'
-        '    try: parse_yaml(text)\n'
-        '    except DdctError: pass\n'
-        '    else: sys.exit("taken")\n'
-    )
-    done = subprocess.run(
-        [sys.executable, '-c', program],
-        input=BOMB,
-        capture_output=True,
-        text=True,
-        check=False,
-        env={'PYTHONPATH': ':'.join(filter(None, sys.path)), 'OPENBLAS_NUM_THREADS': '1'},
-    )
-    assert done.returncode == 0, done.stderr
 
 
 def test_each_key_and_item_has_the_line_in_which_it_begins():
