@@ -18,6 +18,8 @@ from ddct_plant.identification.identify import main
 from ddct_plant.scenario.file import load_scenario, scenario_to_yaml
 from ddct_plant.scenario.settings import RunSettings
 
+pytestmark = pytest.mark.slow
+
 
 def test_a_foreign_log_gives_tables_json_and_a_scenario_that_runs(
     folder: Path, capsys: pytest.CaptureFixture[str]

@@ -16,6 +16,8 @@ from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
 
+pytestmark = pytest.mark.slow
+
 OTHER_CAR = (
     'vehicle.mass_kg=1900',
     'driveline.engine_inertia=0.3',

@@ -23,6 +23,8 @@ from ddct_bringup.scores.scored_recording import score_recording
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.measured.columns import QUANTITIES, load_columns
 
+pytestmark = pytest.mark.slow
+
 OURS = """\
 columns:
   time: {column: time_s, unit: s}

@@ -11,6 +11,8 @@ from functools import cache
 import pytest
 from support.declared import PACKAGES, ROOT, ROS, declared_to_pip, setup_of
 
+pytestmark = pytest.mark.slow
+
 FROM_PYPI = {
     'bokeh': ('bokeh', 'python3-bokeh-pip'),
     'cffi': ('cffi', 'python3-cffi'),

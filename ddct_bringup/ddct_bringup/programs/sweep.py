@@ -114,10 +114,10 @@ def _planned(options: argparse.Namespace) -> Sweep:
 
 
 def _carried_out(sweep: Sweep) -> list[ScoredRow]:
-    started = time.monotonic()
+    started = time.perf_counter()
     with sweep.runs() as runs:
         done = list(with_progress(runs, len(sweep), f'{len(sweep)} runs'))
-    complain(PROGRAM, f'{len(done)} runs in {time.monotonic() - started:.1f} s')
+    complain(PROGRAM, f'{len(done)} runs in {time.perf_counter() - started:.1f} s')
     return done
 
 

@@ -65,13 +65,13 @@ def run_with_progress(
     _print_loop_summary(plan)
     scenario = plan.settings.scenario
     what = f'{label}{plan.name}: {scenario.duration_s:g} s of {scenario.name}'
-    started = time.monotonic()
+    started = time.perf_counter()
     with stop_signals() as stops, Console(file=sys.stderr).status(f'{what}, {plan.layout}'):
         execute(plan, folder, lambda: bool(stops), live, parent)
     if stops:
         # The signal came after the end of the run: whatever would follow is cancelled.
         raise KeyboardInterrupt
-    elapsed = time.monotonic() - started
+    elapsed = time.perf_counter() - started
     print(f'{what} in {elapsed:.1f} s ({plan.layout})', file=sys.stderr, flush=True)
 
 

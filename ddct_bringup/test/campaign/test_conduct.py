@@ -33,6 +33,8 @@ from ddct_bringup.verdict.limits import limits_of_text, packaged_limits
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.files import output_file
 
+pytestmark = pytest.mark.slow
+
 SPEC: dict[str, Any] = {
     'controllers': ['pi', 'ls8'],
     'grid': {'wear_gain': [0.7, 1.0], 'duration_s': [0.7]},

@@ -16,6 +16,8 @@ from ddct_bringup.campaign_report.summary import summary_of
 from ddct_bringup.campaign_report.texts import p_text
 from ddct_bringup.verdict.state import ENGAGED, INVALID
 
+pytestmark = pytest.mark.slow
+
 
 def attribution(values, failed, **invalid):
     states = np.where(failed, 'not_engaged', ENGAGED).astype(object)

@@ -21,6 +21,8 @@ from ddct_bringup.campaign_report.folder import (
 from ddct_bringup.campaign_report.summary import summary_of
 from ddct_bringup.verdict.state import ENGAGED, INVALID
 
+pytestmark = pytest.mark.slow
+
 EVIL = '</script></style>--><evil onload="x"> \'"&amp;'
 """Text that closes every open element and opens one that no page has."""
 

@@ -16,6 +16,8 @@ from ddct_bringup.campaign.manifest import MANIFEST
 from ddct_bringup.campaign_report.folder import PAGE
 from ddct_bringup.programs.campaign import main
 
+pytestmark = pytest.mark.slow
+
 ABSENT, UNKNOWN = 'peak_jerk_m_s3', 'metric_of_tomorrow'
 
 

@@ -8,6 +8,8 @@ import pytest
 from altered_bytes import kinds_of_files, not_found
 from verified import make_runs, make_small_campaign
 
+pytestmark = pytest.mark.slow
+
 COUNT = 60
 
 

@@ -25,6 +25,8 @@ from ddct_bringup.floor.program.peak import late_peaks, peak_program
 from ddct_bringup.floor.program.solve import solve
 from ddct_plant.base.errors import DdctError
 
+pytestmark = pytest.mark.slow
+
 
 def solution_of(program):
     """Return the solution with all variables free and all rows used."""

@@ -17,6 +17,8 @@ from ddct_plant.base.errors import DdctError
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
+pytestmark = pytest.mark.slow
+
 SETTINGS = RunSettings(load_scenario('thesis'))
 
 

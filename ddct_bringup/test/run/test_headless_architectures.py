@@ -15,6 +15,8 @@ from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import ARCHITECTURES, RunSettings
 
+pytestmark = pytest.mark.slow
+
 SCENARIO = load_scenario('thesis')
 START = SCENARIO.control_start_step
 ALL_BUT_DETAILED = [name for name in ARCHITECTURES if name != 'detailed']

@@ -10,6 +10,8 @@ from ddct_plant.models.clutch import CLUTCHES
 from ddct_plant.scenario.file import load_scenario, scenario_names
 from ddct_plant.scenario.settings import ARCHITECTURES, RunSettings
 
+pytestmark = pytest.mark.slow
+
 ALL_BUT_DETAILED = [name for name in ARCHITECTURES if name != 'detailed']
 WITH_ONE_CLUTCH = [name for name in scenario_names() if not load_scenario(name).shift]
 FOR_STICK_SLIP = [name for name in WITH_ONE_CLUTCH if load_scenario(name).of_stick_slip]

@@ -25,6 +25,8 @@ from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.scenario.shift_rules import gears_of
 
+pytestmark = pytest.mark.slow
+
 
 def settings(*overrides, **values):
     scenario = load_scenario('upshift', overrides, clutch='stick_slip')

@@ -7,6 +7,8 @@ from labelled_runs import labelled_runs
 
 from ddct_bringup.verdict.state import ENGAGED, NEARLY_ENGAGED
 
+pytestmark = pytest.mark.slow
+
 PARTS = ('development', 'first_check', 'held_out', 'rev_limiter')
 EVERY = 8
 """Distance of the runs of the sample; `tests/nightly/verdict` has all 372."""

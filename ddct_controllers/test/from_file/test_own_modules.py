@@ -215,6 +215,7 @@ def test_an_error_of_a_helper_in_a_run_is_found_with_its_line(tmp_path: Path) ->
     assert f'in {tmp_path / "helper.py"} line 2' in checks['answers'].detail
 
 
+@pytest.mark.process
 def test_a_clock_that_a_helper_reads_is_found(tmp_path: Path) -> None:
     text = controller('from helper import now', '1e-11 * now()')
     written(tmp_path, {'mine.py': text, 'helper.py': 'from time import time as now\n'})

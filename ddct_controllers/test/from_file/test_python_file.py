@@ -119,6 +119,7 @@ def test_an_error_in_it_is_found_with_its_line(file: Path) -> None:
     assert f'change the sign in {file} line 14; ' in found['sign']
 
 
+@pytest.mark.process
 @pytest.mark.parametrize(
     ('wrong', 'check', 'words'),
     [

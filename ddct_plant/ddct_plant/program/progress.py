@@ -27,7 +27,7 @@ class Progress:
         *,
         done: int = 0,
         stream: TextIO | None = None,
-        clock: Callable[[], float] = time.monotonic,
+        clock: Callable[[], float] = time.perf_counter,
     ) -> None:
         """
         Start the clock; `done` of `total` steps are from before and not in the rate.

@@ -22,6 +22,8 @@ from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.ticks.durations import DurationHistogram
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).resolve().parents[3]
 KEYS = {'since_ns', 'worst_tick_lateness_us'}
 OWNER = 'node_reports.py'

@@ -19,6 +19,8 @@ from stepped_time import SteppedTime  # noqa: E402
 
 from ddct_plant.graph.spin import LAST_SLICE_S, SLICE_S, end_of, finish_node, spin_until  # noqa: E402
 
+pytestmark = pytest.mark.slow
+
 
 class FakeExecutor:
     """Executor that stores the garbage collector's settings during a spin, and ends the spin."""

@@ -13,6 +13,8 @@ from scipy.optimize import brentq
 from ddct_plant.hybrid.friction_system import FrictionSystem
 from ddct_plant.hybrid.integrator import HybridIntegrator
 
+pytestmark = pytest.mark.slow
+
 PIECE_S, PIECES, INTERVALS = 2e-5, 50, 1500
 STATIC_RATIO = 1.1
 END_S = 1.5

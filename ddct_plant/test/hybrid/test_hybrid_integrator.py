@@ -13,6 +13,8 @@ from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.hybrid.friction_system import FrictionSystem
 from ddct_plant.hybrid.integrator import HybridIntegrator
 
+pytestmark = pytest.mark.slow
+
 PIECE_S, PIECES = 0.001, 10
 
 

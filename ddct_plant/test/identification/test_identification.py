@@ -32,6 +32,8 @@ from ddct_plant.models.printed import (
     PrintedTransferFunction,
 )
 
+pytestmark = pytest.mark.slow
+
 FIT = identify_driveline()
 COEFFICIENTS = PrintedCoefficients(CLUTCH_TO_SLIP, LOAD_TO_SLIP)
 DEFAULT_DIGITS = 8

@@ -8,6 +8,8 @@ import pytest
 
 from ddct_plant.identification.identify import main
 
+pytestmark = pytest.mark.slow
+
 
 def run_json(capsys, *options):
     code = main(['--json', '-', *options])

@@ -21,6 +21,8 @@ from ddct_plant.shift.engagements import OFF_GOING, ON_COMING, WHEEL, both_engag
 from ddct_plant.shift.gear_pair import GearPair
 from ddct_plant.shift.start import ShiftStart, driving_start
 
+pytestmark = pytest.mark.slow
+
 PARAMETERS, VEHICLE = DrivelineParameters(), VehicleParameters()
 FIRST = C635.gear(1)
 GEARS = GearPair(PARAMETERS, FIRST)

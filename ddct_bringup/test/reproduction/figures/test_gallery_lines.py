@@ -10,6 +10,8 @@ import pytest
 from ddct_bringup.reproduction.figures.command import collect_figures
 from ddct_controllers.design.drawing.chart_style import chart_style
 
+pytestmark = pytest.mark.slow
+
 FIGURES = {figure.number: figure for figure in collect_figures()}
 
 

@@ -25,6 +25,8 @@ from ddct_plant.linear.sampling import discretise_zoh
 if TYPE_CHECKING:
     import control
 
+pytestmark = pytest.mark.slow
+
 NAMES = sorted(PRINTED_CONTROLLERS)
 
 

@@ -26,6 +26,8 @@ from ddct_controllers.design.loop_shaping.specifications import TimeSpecificatio
 from ddct_controllers.from_file.designed import DesignedController
 from ddct_controllers.printed import PRINTED_CONTROLLERS
 
+pytestmark = pytest.mark.slow
+
 TIME = np.linspace(0.0, 1.0, 5)
 
 
