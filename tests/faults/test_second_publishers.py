@@ -87,7 +87,7 @@ def test_a_second_copy_of_any_node_ends_the_run_with_its_name(
     ('name', 'changes'), [('controller', {'controller': 'pi'}), ('clutch', {}), ('load', {})]
 )
 def test_in_real_time_a_second_publisher_opens_the_clutch_before_it_is_named(
-    graph_of: GraphOf, name: str, changes: dict[str, str]
+    graph_of: GraphOf, name: str, changes: dict[str, str], capfd: pytest.CaptureFixture[str]
 ) -> None:
     graph = graph_of(plan('ls8', mode='realtime', duration_s=60.0))
     graph.add_all()
@@ -98,6 +98,8 @@ def test_in_real_time_a_second_publisher_opens_the_clutch_before_it_is_named(
     assert node == 'driveline'
     assert f' has two live publishers, of the nodes /{name} and /other' in complaint
     assert abs(_clutch_torque(graph)) < 1e-6
+    (logged,) = [line for line in capfd.readouterr().err.splitlines() if 'two live' in line]
+    assert '[ERROR]' in logged and logged.endswith(': opening the clutch')
 
 
 def test_a_killed_node_that_is_still_in_the_graph_is_no_second_publisher(

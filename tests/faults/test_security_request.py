@@ -3,6 +3,7 @@
 """A request for DDS security is refused where there is none; discovery is local by default."""
 
 import os
+import sys
 from pathlib import Path
 from types import ModuleType
 
@@ -64,6 +65,20 @@ def test_only_a_middleware_with_security_passes(
     without_security.write_bytes(b'Fast DDS')
     monkeypatch.setenv('RMW_IMPLEMENTATION', 'rmw_cyclonedds_cpp')
     require_security_if_asked()
+
+
+def test_the_error_has_the_library_or_that_none_is_found(
+    without_security: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with refused(DdctError, REQUEST) as caught:
+        require_security_if_asked()
+    assert f'({without_security})' in str(caught.value)
+    without_security.unlink()
+    monkeypatch.setenv('AMENT_PREFIX_PATH', str(without_security.parents[1]))
+    monkeypatch.setattr(sys, 'prefix', str(without_security.parents[1]))
+    with refused(DdctError, REQUEST) as caught:
+        require_security_if_asked()
+    assert '(not found)' in str(caught.value)
 
 
 def test_a_library_with_security_behind_the_one_that_is_loaded_does_not_count(

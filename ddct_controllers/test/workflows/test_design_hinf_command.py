@@ -48,6 +48,7 @@ def test_the_json_has_every_figure(capsys):
     assert found['corners']['unstable'] == 0
     assert found['corners']['sensitivity_peak'] < 2.0
     assert found['uncertainty']['largest_error'] == pytest.approx(0.3)
+    assert found['uncertainty']['printed_falls_short_by'] == pytest.approx(0.0043, abs=1e-4)
     assert found['synthesis']['gamma'] >= found['synthesis']['lower_bound']
     assert len(found['pulse_transfer_function']['denominator']) > 5
 

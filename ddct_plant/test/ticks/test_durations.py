@@ -10,6 +10,7 @@ from ddct_plant.ticks.durations import (
     LAST_BIN,
     DurationHistogram,
     TickDurations,
+    checked,
     upper_end_us,
 )
 
@@ -44,6 +45,19 @@ def test_any_duration_has_a_bin():
         histogram.add(duration_s)
     assert histogram.counts == {0: 3, LAST_BIN: 1}
     assert upper_end_us(LAST_BIN - 1) > 3600e6
+
+
+def test_durations_of_the_first_and_the_last_bin_are_read_back_from_their_text():
+    histogram = DurationHistogram()
+    for duration_s in (0.0, 1e9):
+        histogram.add(duration_s)
+    assert DurationHistogram.of(histogram.text()) == histogram
+
+
+@pytest.mark.parametrize('place', [-1, LAST_BIN + 1])
+def test_a_count_beyond_the_bins_is_impossible(place):
+    with pytest.raises(ValueError, match=f'bin {place} has the count 1'):
+        checked(1.0, {place: 1})
 
 
 def test_without_durations_there_is_no_percentile():
