@@ -3,6 +3,7 @@
 """Tables of a campaign for the terminal."""
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TypeVar
 
@@ -15,9 +16,11 @@ from ddct_bringup.campaign_report.summary_types import (
     Summary,
 )
 from ddct_bringup.metrics.catalogue import METRICS, OF_SHIFT, TABLE_5_1
-from ddct_plant.base.errors import printable
-from ddct_plant.program.table import UNDEFINED, Table, print_tables, text_or_dash
+from ddct_plant.program.printed_table import print_note, print_tables
+from ddct_plant.program.table import UNDEFINED, Table, Weight, text_or_dash, with_reasons
 
+_OF_TWO = (Weight.IDENTIFYING, Weight.IDENTIFYING)
+"""Weights of a table whose first two columns identify a row."""
 Entry = TypeVar('Entry')
 MAIN = (
     *(metric.key for metric in TABLE_5_1),
@@ -29,13 +32,26 @@ MAIN = (
 
 def summary_tables(summary: Summary) -> list[Table]:
     """Return the tables of failed runs, boundaries or causes, quantities, and differences."""
-    return [
+    tables = (
         _failed(summary),
         *_boundaries(summary),
         *_attribution(summary),
         _quantities(summary),
         *_differences(summary),
-    ]
+    )
+    return [replace(with_reasons(table, _dash_reason), complete='--json FILE') for table in tables]
+
+
+def _dash_reason(header: str, row: Sequence[str]) -> str:
+    """Return the reason of a dash by its column."""
+    return {
+        'failed': 'every run is invalid',
+        '95 % interval': 'the cases are no random sample',
+        'as': 'no run failed',
+        'others at': 'no other key is varied',
+        'most failures': 'the key has no evidence',
+        '95 % interval of P50': 'too few cases',
+    }.get(header, 'no engaged run has a value')
 
 
 def print_summary(summary: Summary, folder: Path) -> None:
@@ -43,7 +59,7 @@ def print_summary(summary: Summary, folder: Path) -> None:
     limits = Manifest.read(folder).limits
     print_tables(summary_tables(summary))
     for note in texts.notes_of(summary):
-        print(printable(note))
+        print_note(note)
     print(f'the bag of a run: {texts.replay_command(str(folder), "I", limits)}')
 
 
@@ -62,7 +78,11 @@ def _failed(summary: Summary) -> Table:
     method = summary['interval']['method']
     headers = 'controller', 'failed', '95 % interval', 'runs', 'engaged', 'failed', 'invalid', 'as'
     title = f'How often engagement fails (intervals: {method})'
-    return Table(title, headers, rows, numbers=[False, *[True] * 6])
+    weights = (
+        *(Weight.IDENTIFYING, Weight.NEEDED, Weight.NEEDED, Weight.USEFUL),
+        *(Weight.DETAIL, Weight.USEFUL, Weight.USEFUL, Weight.NEEDED),
+    )
+    return Table(title, headers, rows, numbers=[False, *[True] * 6], weights=weights)
 
 
 def _boundaries(summary: Summary) -> Iterator[Table]:
@@ -83,7 +103,9 @@ def _boundaries(summary: Summary) -> Iterator[Table]:
     ]
     headers = 'varied', 'controller', 'from', 'below', 'fails at', 'above', 'fails at', 'others at'
     if rows:
-        yield Table('Where failure begins, along lines of the grid', headers, rows)
+        yield Table(
+            'Where failure begins, along lines of the grid', headers, rows, weights=_OF_TWO
+        )
 
 
 def _attribution(summary: Summary) -> Iterator[Table]:
@@ -106,7 +128,7 @@ def _attribution(summary: Summary) -> Iterator[Table]:
         'most failures',
     )
     if rows:
-        yield Table('Which keys drive failure', headers, rows)
+        yield Table('Which keys drive failure', headers, rows, weights=_OF_TWO)
 
 
 def _by_place(
@@ -129,7 +151,11 @@ def _quantities(summary: Summary) -> Table:
         *('worst', 'run'),
     )
     title = 'Engaged runs: quantiles with sign, CVaR and worst by magnitude'
-    return Table(title, headers, rows, numbers=[False, False, *[True] * 9])
+    weights = (
+        *(*_OF_TWO, Weight.DETAIL, Weight.USEFUL, Weight.NEEDED, Weight.NEEDED, Weight.USEFUL),
+        *[Weight.DETAIL] * 4,
+    )
+    return Table(title, headers, rows, numbers=[False, False, *[True] * 9], weights=weights)
 
 
 def _quantile_cells(found: Quantiles, form: str) -> Iterator[str]:
@@ -178,6 +204,7 @@ def _differences(summary: Summary) -> Iterator[Table]:
     ]
     headers = 'quantity', 'controllers', 'cases', 'P5', 'P50', 'P95', '95 % interval of P50'
     title = 'Differences on the same cases, where both engaged (interval: sign test)'
-    yield Table(title, headers, rows, numbers=[False, False, *[True] * 4])
+    weights = (*_OF_TWO, Weight.USEFUL)
+    yield Table(title, headers, rows, numbers=[False, False, *[True] * 4], weights=weights)
     both = [(texts.pair_label(pair), texts.joint_outcomes_text(pair)) for pair in pairs]
     yield Table('Cases of these differences', ('controllers', 'both engaged'), both)

@@ -27,8 +27,8 @@ from ddct_plant.program.command_line import (
     run_program,
     show_and_write,
 )
+from ddct_plant.program.printed_table import print_tables
 from ddct_plant.program.supervision import stop_signals
-from ddct_plant.program.table import print_tables
 
 PROGRAM = 'ddct benchmark'
 _SEED = Option(0, 'seed of a judge', at_least=0, at_most=2**31 - 1)

@@ -31,11 +31,13 @@ from ddct_bringup.scores.shift_conditions import shift_conditions
 from ddct_controllers.registry import controller_label, working_controllers
 from ddct_plant.files.output_file import STDOUT, require_picture, require_place, write_json
 from ddct_plant.program.command_line import complain, run_program
+from ddct_plant.program.printed_table import print_note, print_table
 from ddct_plant.program.progress import with_progress
-from ddct_plant.program.table import Table, print_table, text_or_dash
+from ddct_plant.program.table import UNDEFINED, Table, Weight, text_or_dash, with_reasons
 from ddct_plant.scenario.settings import RunSettings
 
 PROGRAM = 'ddct limit'
+_COMPLETE = '--json FILE'
 
 
 def main(argv: list[str] | None = None) -> int:
@@ -113,48 +115,73 @@ def _document(
 def _print(
     floors: Sequence[Floor], rows: Sequence[ControllerRow], capped: Sequence[LeastLockTime]
 ) -> None:
-    print_table(
-        Table(
-            'least value of each metric by lock time, and what a run attains',
-            ('lock s', 'metric', 'unit', 'least', 'attained', 'gap %', 'proof'),
+    least = Table(
+        'least value of each metric by lock time, and what a run attains',
+        ('lock s', 'metric', 'unit', 'least', 'attained', 'gap %', 'proof'),
+        [
+            (
+                f'{floor.lock_time_s:.2f}',
+                floor.metric,
+                METRICS[floor.metric],
+                text_or_dash(floor.least, '.4g'),
+                text_or_dash(floor.attained, '.4g'),
+                text_or_dash(floor.gap, '.1f'),
+                floor.certificate['kind'],
+            )
+            for floor in floors
+        ],
+        weights=(
+            *(Weight.IDENTIFYING, Weight.IDENTIFYING, *[Weight.NEEDED] * 4),
+            Weight.DETAIL,
+        ),
+        complete=_COMPLETE,
+    )
+    print_table(with_reasons(least, _no_floor))
+    if rows:
+        ratios = Table(
+            'controllers, over the least at their own lock time',
+            ('controller', 'lock s', 'metric', 'value', 'least', 'over least'),
             [
                 (
-                    f'{floor.lock_time_s:.2f}',
-                    floor.metric,
-                    METRICS[floor.metric],
-                    text_or_dash(floor.least, '.4g'),
-                    text_or_dash(floor.attained, '.4g'),
-                    text_or_dash(floor.gap, '.1f'),
-                    floor.certificate['kind'],
+                    row['controller'],
+                    text_or_dash(row['lock_time_s'], '.3f'),
+                    row['metric'],
+                    text_or_dash(row['value'], '.4g'),
+                    text_or_dash(row['least'], '.4g'),
+                    text_or_dash(row['over_floor'], '.2f'),
                 )
-                for floor in floors
+                for row in rows
             ],
+            weights=(Weight.IDENTIFYING, Weight.NEEDED, Weight.IDENTIFYING),
+            complete=_COMPLETE,
         )
-    )
-    if rows:
-        print_table(
-            Table(
-                'controllers, over the least at their own lock time',
-                ('controller', 'lock s', 'metric', 'value', 'least', 'over least'),
-                [
-                    (
-                        row['controller'],
-                        text_or_dash(row['lock_time_s'], '.3f'),
-                        row['metric'],
-                        text_or_dash(row['value'], '.4g'),
-                        text_or_dash(row['least'], '.4g'),
-                        text_or_dash(row['over_floor'], '.2f'),
-                    )
-                    for row in rows
-                ],
-            )
-        )
+        print_table(with_reasons(ratios, _no_ratio))
     for each in capped:
         found = each['lock_time_s']
         text = 'no lock time of the grid' if found is None else f'a lock at {found:g} s'
         before = each['excluded_before_s']
         proof = 'proven for none' if before is None else f'impossible before {before:g} s'
-        print(f'{each["metric"]} of {each["cap"]:g} at most: {text}; {proof}')
+        print_note(f'{each["metric"]} of {each["cap"]:g} at most: {text}; {proof}')
+
+
+def _no_floor(header: str, row: Sequence[str]) -> str:
+    """Return the reason of a dash in the table of the front."""
+    *_, least, attained, _, _ = row
+    if least == UNDEFINED:
+        return 'no torque request locks the plates at that time'
+    if attained == UNDEFINED:
+        return 'no run with that lock was found'
+    return 'the least is 0'
+
+
+def _no_ratio(header: str, row: Sequence[str]) -> str:
+    """Return the reason of a dash in the table of controllers."""
+    _, lock, _, value, least, _ = row
+    if lock == UNDEFINED:
+        return 'the clutch does not lock for good'
+    if value == UNDEFINED:
+        return 'the run has no value of this metric'
+    return 'no least is known at that lock time' if least == UNDEFINED else 'the least is 0'
 
 
 def _title(settings: RunSettings) -> str:

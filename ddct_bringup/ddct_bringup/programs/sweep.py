@@ -8,8 +8,6 @@ import time
 from functools import partial
 from pathlib import Path
 
-from rich.text import Text
-
 from ddct_bringup.campaign.scored import ScoredRow
 from ddct_bringup.metrics.catalogue import METRICS, TABLE_5_1
 from ddct_bringup.run.options import (
@@ -21,7 +19,6 @@ from ddct_bringup.run.options import (
     print_choices,
 )
 from ddct_bringup.run.run_base import base_of
-from ddct_bringup.scores.run_table import table_console
 from ddct_bringup.sweep.axis import axis_of
 from ddct_bringup.sweep.sweep import (
     Sweep,
@@ -32,7 +29,7 @@ from ddct_bringup.sweep.sweep import (
 )
 from ddct_bringup.verdict.limits import add_limits_option, load_limits
 from ddct_controllers.registry import controller_label, working_controllers
-from ddct_plant.base.errors import ParameterError, printable
+from ddct_plant.base.errors import ParameterError
 from ddct_plant.files.output_file import (
     STDOUT,
     require_one_for_stdout,
@@ -42,8 +39,8 @@ from ddct_plant.files.output_file import (
     write_text,
 )
 from ddct_plant.program.command_line import ProgramParser, complain, run_program
+from ddct_plant.program.printed_table import print_note, print_table
 from ddct_plant.program.progress import with_progress
-from ddct_plant.program.table import drawn_by_rich
 
 PROGRAM = 'ddct sweep'
 _MOST_DRAWN = 2
@@ -84,10 +81,10 @@ def _sweep(argv: list[str]) -> int:
         write_json(options.json, sweep_document(sweep, runs))
     if options.csv:
         write_text(options.csv, sweep_csv(runs))
-    console = table_console(sys.stderr if STDOUT in (options.json, options.csv) else sys.stdout)
-    console.print(drawn_by_rich(sweep_table(sweep, runs, metrics), ruled=True))
-    for text in sweep_notes(runs, metrics):
-        console.print(Text(printable(text)), soft_wrap=True)
+    stream = sys.stderr if STDOUT in (options.json, options.csv) else sys.stdout
+    print_table(sweep_table(sweep, runs, metrics), stream)
+    for text in sweep_notes(runs):
+        print_note(text, stream)
     if options.figure:
         # Only here: matplotlib takes long to import.
         from ddct_bringup.sweep.sweep_figure import write_sweep_figure

@@ -14,13 +14,14 @@ from ddct_controllers.registry import (
     controller_names,
     controller_spec,
 )
-from ddct_plant.base.errors import DdctError, ParameterError, printable
-from ddct_plant.base.option import OPTION_HEADERS, option_rows
+from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.base.option import option_rows
 from ddct_plant.base.options import Option, options_of, require_known
 from ddct_plant.files.input_file import located
 from ddct_plant.models.clutch import CLUTCHES
+from ddct_plant.program.printed_table import print_note, print_table
 from ddct_plant.program.scheduling import Scheduling
-from ddct_plant.program.table import Table, print_table
+from ddct_plant.program.table import Table, Weight, with_reasons
 from ddct_plant.scenario.file import scenario_names
 from ddct_plant.scenario.options import add_option, add_scenario_options
 from ddct_plant.scenario.settings import ARCHITECTURES, MODES, RunSettings
@@ -147,7 +148,7 @@ def print_choices() -> None:
         ('modes', MODES),
     )
     for title, names in rows:
-        print(f'{title + ":":15}{printable(", ".join(names))}')
+        print_note(f'{title}: {", ".join(names)}')
     print()
     print_computed_from(controller_names(), sys.stdout)
     print()
@@ -164,7 +165,7 @@ def print_computed_from(names: Sequence[Chosen], stream: TextIO) -> None:
         except DdctError:  # a third party's controller that cannot be loaded
             found.setdefault(_NOT_LOADED, []).append(str(name))
     for origin, labels in found.items():
-        print(origin.format(printable(', '.join(labels))), file=stream)
+        print_note(origin.format(', '.join(labels)), stream)
 
 
 def _origin(spec: ControllerSpec[Controller]) -> str:
@@ -184,8 +185,17 @@ def controller_options_table() -> Table:
             options = {'-': Option(None, str(error))}
         for row in option_rows(options):
             takers.setdefault(row[:-1], []).append(name)
-    return Table(
+    table = Table(
         'options of controllers, set by --set controllers.NAME.KEY=VALUE',
-        ('KEY', *OPTION_HEADERS[1:-1], 'NAME'),
-        [(*row, ', '.join(names)) for row, names in takers.items()],
+        ('KEY', 'NAME', 'default', 'meaning', 'unit', 'range'),
+        [
+            (key, ', '.join(names), default, meaning, unit, limits)
+            for (key, unit, default, limits, meaning), names in takers.items()
+        ],
+        numbers=[False] * 6,
+        weights=(
+            *(Weight.IDENTIFYING, Weight.IDENTIFYING, Weight.NEEDED, Weight.NEEDED),
+            *(Weight.USEFUL, Weight.DETAIL),
+        ),
     )
+    return with_reasons(table, lambda header, row: 'the controller cannot be loaded')

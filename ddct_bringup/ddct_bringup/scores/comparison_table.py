@@ -29,14 +29,15 @@ from ddct_bringup.thesis.table_5_1 import (
     is_thesis_run,
     thesis_row,
 )
+from ddct_plant.program.printed_table import print_note
 from ddct_plant.program.table import Column, Quantity
 from ddct_plant.scenario.differences import changed_values, scenario_title
 from ddct_plant.scenario.settings import RunSettings
 
 _NOTE = (
     'thesis: Table 5.1. calibrated: this scenario was fitted to the row, so its agreement is a '
-    'fit residual;\npredicted: the row took no part in the fit. Below our figure is its range '
-    'over the admissible scenarios,\n'
+    'fit residual; predicted: the row took no part in the fit. Below our figure is its range '
+    'over the admissible scenarios, '
     f'below the print hit (within {100 * PREDICTION_TOLERANCE:.0f} % of it) or miss.'
 )
 _NO_ROW = 'Table 5.1 has no row of this controller'
@@ -61,14 +62,14 @@ def print_comparison(
                 for ours, quantity in zip(columns[1:], TABLE_5_1, strict=True)
                 for column in (_with_range(ours, quantity.key), _thesis(quantity))
             ),
-            Column('thesis row', '', _use, number=False, undefined=_NO_ROW),
+            Column('thesis row', '', _use, number=False, undefined=lambda run: _NO_ROW),
         ]
     columns += [FINAL_SLIP, PEAK_JERK, *FURTHER_COLUMNS, VALID]
     if settings.shift:
         columns = [CONTROLLER, *SHIFT_COLUMNS]
     print_runs(runs, columns, stream, _title(settings, overrides))
     if compared and any(thesis_row(run.controller or '') for run in runs):
-        print(_NOTE, file=stream)
+        print_note(_NOTE, stream)
 
 
 def _title(settings: RunSettings, overrides: Sequence[str]) -> str:
@@ -101,7 +102,9 @@ def _thesis(quantity: Quantity) -> RunColumn:
             return ''
         return row.verdict(quantity.key, run.metrics[quantity.key])
 
-    return Column(f'thesis\n{quantity.unit}', '.2f', value, below=below)
+    return Column(
+        f'thesis\n{quantity.unit}', '.2f', value, below=below, undefined=lambda run: _NO_ROW
+    )
 
 
 def _use(run: ScoredRun) -> str | None:

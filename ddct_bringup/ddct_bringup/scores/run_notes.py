@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Notes below a table of runs: dashes, invalid runs, limits that are exceeded, floors."""
+"""Notes below a table of runs: invalid runs, limits that are exceeded, floors."""
 
 from collections.abc import Sequence
 
@@ -8,18 +8,7 @@ from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.verdict.state import SUCCESSES
 from ddct_bringup.verdict.verdict import BEYOND, NO_LIMIT, UNAVOIDABLE
 from ddct_plant.base.timebase import PERIOD_S
-from ddct_plant.program.table import UNDEFINED, Column
 from ddct_plant.signals.gain_changes import changes_note
-
-
-def dash_notes(runs: Sequence[ScoredRun], columns: Sequence[Column[ScoredRun]]) -> list[str]:
-    """Return a note on the meaning of the dash for each column where a readable run has one."""
-    read = [run for run in runs if run.metrics['steps'] is not None]
-    return [
-        f"{column.heading.splitlines()[0]} '-': {column.undefined}."
-        for column in columns
-        if column.undefined and any(column.text(run) == UNDEFINED for run in read)
-    ]
 
 
 def run_notes(run: ScoredRun) -> list[str]:

@@ -3,30 +3,23 @@
 """Tables of scored runs for the terminal; plain text where the output is not a terminal."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TextIO
-
-from rich.console import Console
-from rich.text import Text
 
 from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.metrics.catalogue import METRICS, OF_EVERY_RUN, OF_SHIFT, TABLE_5_1
 from ddct_bringup.metrics.metric import NO_TIMING
 from ddct_bringup.scores.run_notes import (
     beyond_notes,
-    dash_notes,
     in_ms,
     no_floor_notes,
     run_notes,
     unavoidable_notes,
 )
 from ddct_bringup.scores.scored_run import ScoredRun
-from ddct_plant.base.errors import printable
-from ddct_plant.program.table import Column, Quantity, drawn_by_rich, table_of
+from ddct_plant.program.printed_table import print_note, print_table
+from ddct_plant.program.table import Column, Quantity, Weight, table_of
 from ddct_plant.scenario.differences import scenario_title
-
-_PIPED_WIDTH = 200
-"""Width in characters of a table written to a file or pipe."""
-
 
 RunColumn = Column[ScoredRun]
 """One column of a table of runs."""
@@ -38,26 +31,28 @@ def metric(quantity: Quantity, heading: str = '') -> RunColumn:
         heading or f'{quantity.symbol}\n{quantity.unit}',
         quantity.form,
         lambda run: run.metrics[quantity.key],
-        undefined=quantity.undefined,
+        undefined=lambda run: quantity.undefined,
     )
 
 
-BAG: RunColumn = Column('bag', '', lambda run: run.bag, number=False)
-CONTROLLER: RunColumn = Column('controller', '', lambda run: run.controller, number=False)
+BAG: RunColumn = Column('bag', '', lambda run: run.bag, number=False, weight=Weight.IDENTIFYING)
+CONTROLLER: RunColumn = Column(
+    'controller', '', lambda run: run.controller, number=False, weight=Weight.IDENTIFYING
+)
 WEAR: RunColumn = Column('wear', 'g', lambda run: run.facts.wear_gain if run.facts else None)
 SHIFT_CONDITIONS: tuple[RunColumn, ...] = (
     Column(
         'off-going\nwear',
         'g',
         lambda run: run.facts.off_going_wear_gain if isinstance(run.facts, RunFacts) else None,
-        undefined='the run is no gear shift',
+        undefined=lambda run: 'the run is no gear shift',
     ),
     Column(
         'handover',
         '',
         lambda run: run.facts.handover if isinstance(run.facts, RunFacts) else None,
         number=False,
-        undefined='the run is no gear shift',
+        undefined=lambda run: 'the run is no gear shift',
     ),
 )
 """Columns of the conditions that only a gear shift has."""
@@ -77,7 +72,7 @@ OVER_FLOOR: RunColumn = Column(
     'jerk\n/least',
     '.2f',
     lambda run: run.over_floor.get('peak_jerk'),
-    undefined='peak jerk over the least at the same lock time has no value: the run has no floor',
+    undefined=lambda run: 'the run has no floor',
 )
 """Column of tables in which a run has its peak jerk over the least that any could have."""
 VALID: RunColumn = Column('valid', '', lambda run: 'yes' if run.valid else 'NO', number=False)
@@ -115,10 +110,10 @@ SHIFT_COLUMNS = (
 STATE: RunColumn = Column('state', '', lambda run: run.verdict.state, number=False)
 VERDICT_COLUMNS: tuple[RunColumn, ...] = (
     STATE,
-    Column('limits', '', lambda run: run.verdict.limits, number=False),
+    Column('limits', '', lambda run: run.verdict.limits, number=False, weight=Weight.USEFUL),
 )
 """
-Columns of the verdict, before the last column of a wide terminal; else in lines below the table.
+Columns of the verdict, before the last column.
 """
 REALTIME_COLUMNS: tuple[RunColumn, ...] = (
     metric(METRICS['missed_steps'], 'missed\nsteps'),
@@ -126,14 +121,14 @@ REALTIME_COLUMNS: tuple[RunColumn, ...] = (
         'latest\nms',
         '.2f',
         lambda run: in_ms(run.metrics['worst_lateness_us']),
-        undefined=f'it ran in lock-step, or {NO_TIMING}',
+        undefined=lambda run: f'it ran in lock-step, or {NO_TIMING}',
     ),
     Column(
         'safe state',
         '',
         lambda run: _safe_state(run),
         number=False,
-        undefined='it ran in lock-step',
+        undefined=lambda run: 'it ran in lock-step',
     ),
 )
 """Additional columns of a table with at least one real-time run."""
@@ -153,12 +148,6 @@ def columns_of(runs: Sequence[ScoredRun]) -> tuple[RunColumn, ...]:
     return SHIFT_COLUMNS if all(shifts) else tuple(dict.fromkeys((*COLUMNS[:-1], *SHIFT_COLUMNS)))
 
 
-def table_console(stream: TextIO) -> Console:
-    """Return the console for tables of runs: as wide as the terminal, unlimited elsewhere."""
-    width = None if stream.isatty() else _PIPED_WIDTH
-    return Console(file=stream, width=width, highlight=False)
-
-
 def print_runs(
     runs: Sequence[ScoredRun],
     columns: Sequence[RunColumn],
@@ -168,7 +157,7 @@ def print_runs(
     """
     Print one row per run with its verdict, then explanatory notes.
 
-    The notes explain dashes, invalid runs, criteria beyond their limits, and floors. The default
+    The notes explain invalid runs, criteria beyond their limits, and floors. The default
     title is the scenario with its changes; where the runs have several scenarios each row has its
     own below it.
     """
@@ -180,27 +169,22 @@ def print_runs(
     if PEAK_JERK in columns and any('peak_jerk' in run.over_floor for run in runs):
         place = list(columns).index(PEAK_JERK) + 1
         columns = [*columns[:place], OVER_FLOOR, *columns[place:]]
-    console = table_console(stream)
-    wide = [*columns[:-1], *VERDICT_COLUMNS, columns[-1]]
-    table = drawn_by_rich(table_of(title or '', wide, runs), ruled=True)
-    unbounded = console.options.update(max_width=10 * _PIPED_WIDTH)
-    wide_enough = console.measure(table, options=unbounded).maximum <= console.width
-    if not wide_enough:
-        table = drawn_by_rich(table_of(title or '', columns, runs), ruled=True)
-    console.print(table)
-    for text in dash_notes(runs, columns):
-        console.print(Text(text), soft_wrap=True)
+    shown = [_with_reason(each) for each in (*columns[:-1], *VERDICT_COLUMNS, columns[-1])]
+    print_table(table_of(title or '', shown, runs, complete='--json FILE'), stream)
     for run in runs:
-        verdict = [] if wide_enough else [_verdict_text(run)]
         scenario = [_scenario(run)] if title is None and run.scenario is not None else []
-        for text in [*scenario, *verdict, *run_notes(run)]:
-            console.print(Text(printable(f'{run.bag}: {text}'), 'bold'), soft_wrap=True)
+        for text in [*scenario, *run_notes(run)]:
+            print_note(f'{run.bag}: {text}', stream)
     for text in [*beyond_notes(runs), *unavoidable_notes(runs), *no_floor_notes(runs)]:
-        console.print(Text(printable(text), 'bold'), soft_wrap=True)
+        print_note(text, stream)
 
 
-def _verdict_text(run: ScoredRun) -> str:
-    return ', '.join(f'{each.heading} {each.text(run)}' for each in VERDICT_COLUMNS)
+def _with_reason(column: RunColumn) -> RunColumn:
+    """Return a column whose dashes have the reason of an invalid run, where that is the cause."""
+    return replace(
+        column,
+        undefined=lambda run: column.undefined(run) if run.valid else f'not valid: {run.reason}',
+    )
 
 
 def _scenario(run: ScoredRun) -> str:

@@ -16,14 +16,13 @@ from ddct_bringup.campaign.scored import ScoredRow, scored_runs
 from ddct_bringup.run.run_base import RunBase
 from ddct_bringup.scores.csv_text import rows_csv
 from ddct_bringup.scores.document import run_entry
-from ddct_bringup.scores.run_notes import dash_notes
 from ddct_bringup.scores.run_table import CONTROLLER, STATE, RunColumn, metric
 from ddct_bringup.scores.shift_conditions import shift_conditions
 from ddct_bringup.sweep.axis import MOST, Axis, value_text
 from ddct_bringup.verdict.limits import Limits
 from ddct_controllers.registry import Chosen, controller_label, controller_spec
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.program.table import Column, Quantity, Table, table_of
+from ddct_plant.program.table import Column, Quantity, Table, Weight, table_of
 from ddct_plant.scenario.differences import scenario_title
 from ddct_plant.scenario.settings import RunSettings
 
@@ -140,26 +139,45 @@ def sweep_table(sweep: Sweep, runs: Sequence[ScoredRow], metrics: Sequence[Quant
     title = f'{sweep.conditions}; {sweep.varied}'
     of_runs = [_of_swept(each) for each in (CONTROLLER, *map(metric, metrics), STATE)]
     columns = [of_runs[0], *map(_place, sweep.axes), *of_runs[1:]]
-    return table_of(title, columns, runs)
+    return table_of(title, columns, runs, complete='--json FILE')
 
 
 def _of_swept(column: RunColumn) -> Column[ScoredRow]:
     """Return the column of the scores of swept runs."""
-    return Column(column.heading, column.form, lambda run: column.value(run.scores), column.number)
+    return Column(
+        column.heading,
+        column.form,
+        lambda run: column.value(run.scores),
+        number=column.number,
+        undefined=lambda run: _no_value(run, column),
+        weight=column.weight,
+    )
+
+
+def _no_value(run: ScoredRow, column: RunColumn) -> str:
+    """Return the reason for which a run has no value in a column."""
+    if not run.scores.valid:
+        return f'not valid: {run.scores.reason}'
+    return column.undefined(run.scores)
 
 
 def _place(axis: Axis) -> Column[ScoredRow]:
     heading = f'{axis.key}\n{axis.unit}' if axis.unit else axis.key
-    return Column(heading, '', lambda run: value_text(run.varied[axis.key]), number=axis.numeric)
+    return Column(
+        heading,
+        '',
+        lambda run: value_text(run.varied[axis.key]),
+        number=axis.numeric,
+        weight=Weight.IDENTIFYING,
+    )
 
 
-def sweep_notes(runs: Sequence[ScoredRow], metrics: Sequence[Quantity]) -> list[str]:
-    """Return notes on dashes, and on invalid runs with their values, as `wear_gain=0.7`."""
+def sweep_notes(runs: Sequence[ScoredRow]) -> list[str]:
+    """Return notes on invalid runs with their values, as `wear_gain=0.7`."""
     failed: dict[str, list[str]] = {}
     for run in runs:
         if not run.scores.valid:
             reason = f'{run.scores.controller} is not valid: {run.scores.reason}'
             place = ', '.join(f'{key}={value_text(value)}' for key, value in run.varied.items())
             failed.setdefault(reason, []).append(place)
-    notes = [f'{reason} (at {"; ".join(places)})' for reason, places in failed.items()]
-    return [*dash_notes([run.scores for run in runs], [metric(each) for each in metrics]), *notes]
+    return [f'{reason} (at {"; ".join(places)})' for reason, places in failed.items()]

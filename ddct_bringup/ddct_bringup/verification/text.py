@@ -15,7 +15,8 @@ from ddct_bringup.verification.comparison import (
 from ddct_bringup.verification.folder import Verification
 from ddct_bringup.verification.result import RepetitionResult
 from ddct_plant.base.errors import printable
-from ddct_plant.program.table import Table, print_table
+from ddct_plant.program.printed_table import print_note, print_table
+from ddct_plant.program.table import Table
 
 _WORDS = {
     SAME_BITS: 'same bits',
@@ -34,12 +35,12 @@ def print_verification(found: Verification) -> None:
         rows = [(run.run, _word(run), _detail(run)) for run in found.runs]
         print_table(Table(f'{folder}, repeated', ('run', 'state', 'detail'), rows))
     if found.repeated:
-        print(_bound(found))
+        print_note(_bound(found))
         if by_digest := found.by_digest:
-            print(f'By their digests alone: {printable(", ".join(by_digest))}.')
+            print_note(f'By their digests alone: {", ".join(by_digest)}.')
     if found.same:
         what = 'every run is the same' if found.repeated else 'no run could be repeated'
-        print(f'{folder}: {len(found.files)} files are as their digests; {what}.')
+        print_note(f'{folder}: {len(found.files)} files are as their digests; {what}.')
 
 
 def complaints(found: Verification) -> Iterator[str]:

@@ -9,13 +9,17 @@ def value_under(text: str, heading: str, controller: str, place: int = 0) -> tup
     """
     Return (unit, value in the row of `controller`) of a column of numbers.
 
-    Numbers end where their headings end. Of headings that read the same it is the one at `place`.
+    Numbers end where their headings end. Of headings that read the same it is the one at `place`,
+    in all blocks of the table.
     """
     lines = text.splitlines()
-    rule = next(number for number, line in enumerate(lines) if '──' in line)
-    names, units = lines[rule - 2 : rule]
-    end = [match.end() for match in re.finditer(re.escape(heading), names)][place]
-    (row,) = [line for line in lines[rule:] if controller in line.split()]
+    number, end = [
+        (number, match.end())
+        for number, line in enumerate(lines)
+        for match in re.finditer(rf'(?<=  ){re.escape(heading)}(?=  |$)', line)
+    ][place]
+    row = next(line for line in lines[number:] if controller in line.split())
+    units = next(line for line in lines[number:] if 'controller' in line.split())
     return _word_that_ends(units, end), _word_that_ends(row, end)
 
 

@@ -7,9 +7,10 @@ from collections.abc import Sequence
 from dataclasses import asdict
 
 from ddct_controllers.check.checks import FAIL, Outcome, check_controller
-from ddct_plant.base.errors import printable
 from ddct_plant.files.output_file import require_place
 from ddct_plant.program.command_line import ProgramParser, complain, run_program, show_and_write
+from ddct_plant.program.printed_table import print_table
+from ddct_plant.program.table import Table, Weight
 from ddct_plant.scenario.options import add_scenario_options, scenario_of
 from ddct_plant.scenario.settings import RunSettings
 
@@ -49,13 +50,12 @@ def _check(argv: list[str]) -> int:
 
 
 def _print(outcomes: Sequence[Outcome]) -> None:
-    """Print a line per check; those that are skipped for one reason share theirs."""
+    """Print a row per check; those with the same state and detail share theirs."""
     alike: dict[tuple[str, str], list[str]] = {}
     for each in outcomes:
         alike.setdefault((each.state, each.detail), []).append(each.name)
-    for (state, detail), names in alike.items():
-        shared = ':' if len(names) > 1 else ''
-        print(f'{state:8} {", ".join(names) + shared:14} {printable(detail)}')
+    rows = [(state, ', '.join(names), detail) for (state, detail), names in alike.items()]
+    print_table(Table('', ('state', 'checks', 'detail'), rows, weights=(Weight.NEEDED,)))
 
 
 if __name__ == '__main__':

@@ -16,7 +16,8 @@ from ddct_controllers.registry import controller_names
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.files.output_file import STDOUT, require_new, write_text
 from ddct_plant.program.command_line import show_and_write
-from ddct_plant.program.table import Table, print_tables
+from ddct_plant.program.printed_table import print_tables
+from ddct_plant.program.table import Table
 
 OptionTable = Mapping[str, Mapping[str, Any]]
 """Arguments of `add_argument` by the option's name."""

@@ -3,6 +3,7 @@
 """Subcommand `design margins`: the robustness of linear controllers in the loop as it runs."""
 
 import argparse
+from collections.abc import Sequence
 from functools import partial
 from typing import Any
 
@@ -20,11 +21,28 @@ from ddct_controllers.workflows.evidence_types import (
 )
 from ddct_plant.base.errors import DdctError
 from ddct_plant.program.command_line import complain, show_and_write
-from ddct_plant.program.table import Table, print_table, text_or_dash
+from ddct_plant.program.printed_table import print_note, print_table
+from ddct_plant.program.table import Table, Weight, text_or_dash, with_reasons
 from ddct_plant.scenario.differences import changed_values, scenario_title
 from ddct_plant.scenario.options import add_scenario_options, scenario_of
 from ddct_plant.scenario.settings import RunSettings
 
+_UNDEFINED = {
+    'w_c': '|L| is below 1 at every frequency',
+    'w_b': '|T| is above 0.71 at every frequency',
+    **dict.fromkeys(('mode', 'damping', 'w_sr'), 'no pole pair is near the zeros of P_2'),
+}
+"""Reasons of dashes by symbol."""
+_BY_QUANTITY = {
+    **dict.fromkeys(('phase_margin_deg', 'delay_margin_s', 'sensitivity_peak'), Weight.NEEDED),
+    **dict.fromkeys(('gain_margin_db', 'disk_margin', 'crossover_rad_s'), Weight.USEFUL),
+}
+"""Weight in the table of each quantity; those of the others are DETAIL."""
+_WEIGHTS = (
+    *(Weight.IDENTIFYING, Weight.NEEDED),
+    *(_BY_QUANTITY.get(key, Weight.DETAIL) for key in LOOP_QUANTITY_OF),
+    *(Weight.NEEDED, Weight.USEFUL, Weight.NEEDED),
+)
 _DESCRIPTION = """\
 Compute the margins of the sampled loop: the hold, the actuator with its delay, and the driveline,
 both of the scenario. At one wear gain: gain, phase, delay and disk margins, M_s, M_t, crossover,
@@ -76,7 +94,7 @@ def _show(evidence: FrequencyEvidence, settings: RunSettings) -> None:
     print_table(margins_table(evidence, settings))
     others = [each['controller'] for each in evidence['controllers'] if each['linear'] is False]
     if others:
-        print(f'Not linear, without a frequency response: {", ".join(others)}')
+        print_note(f'Not linear, without a frequency response: {", ".join(others)}')
 
 
 def margins_table(evidence: FrequencyEvidence, settings: RunSettings) -> Table:
@@ -89,7 +107,23 @@ def margins_table(evidence: FrequencyEvidence, settings: RunSettings) -> Table:
         *('wear below', 'corner M_s', f'unstable of {evidence["conditions"]["corners"]}'),
     )
     rows = [_row(entry, settings.wear_gain) for entry in linear_entries(evidence)]
-    return Table(f'Sampled loop, wear gain {settings.wear_gain:g}, {changed}', headers, rows)
+    title = f'Sampled loop, wear gain {settings.wear_gain:g}, {changed}'
+    table = Table(
+        title, headers, rows, numbers=(False, False), weights=_WEIGHTS, complete='--json FILE'
+    )
+    return with_reasons(table, _dash_reason)
+
+
+def _dash_reason(header: str, row: Sequence[str]) -> str:
+    """Return the reason of a dash, from its column and its row."""
+    if header == 'wear below':
+        return 'stable at no wear gain, or at the highest that is tried'
+    if header == 'corner M_s':
+        return 'a corner is unstable'
+    if row[1] == 'no':
+        return 'the loop is not stable'
+    kind = header.split()[0]
+    return _UNDEFINED.get(kind, 'no change of this kind makes it unstable')
 
 
 def _row(entry: LinearEntry, wear_gain: float) -> list[str]:

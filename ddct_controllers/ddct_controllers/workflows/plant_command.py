@@ -12,7 +12,8 @@ from ddct_controllers.workflows.plant_text import as_mat, as_matlab, factored_te
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.files.output_file import require_place, write_bytes, write_json, write_text
 from ddct_plant.program.command_line import show_and_write
-from ddct_plant.program.table import Table, print_tables
+from ddct_plant.program.printed_table import print_tables
+from ddct_plant.program.table import Table
 from ddct_plant.scenario.options import add_scenario_options, scenario_of
 
 _DESCRIPTION = """\

@@ -3,7 +3,7 @@
 """The identified driveline as JSON and as tables."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -11,7 +11,8 @@ import numpy as np
 from ddct_plant.identification.checks import IdentificationCheck
 from ddct_plant.identification.coefficients import FITTED, SYMBOLS_AND_UNITS
 from ddct_plant.identification.fit import Identification
-from ddct_plant.program.table import Table, print_tables, text_or_dash
+from ddct_plant.program.printed_table import print_note, print_tables
+from ddct_plant.program.table import UNDEFINED, Table, Weight, text_or_dash, with_reasons
 
 
 @dataclass(frozen=True)
@@ -98,6 +99,7 @@ def print_identification(
                 )
                 for row in parameters
             ],
+            weights=(*(Weight.IDENTIFYING, Weight.USEFUL, Weight.NEEDED, Weight.DETAIL),),
         ),
         Table(
             'Printed coefficients',
@@ -112,6 +114,7 @@ def print_identification(
                 )
                 for row in identification.coefficients
             ],
+            weights=(Weight.IDENTIFYING, Weight.IDENTIFYING),
         ),
         Table(
             'Checks',
@@ -126,10 +129,24 @@ def print_identification(
             ],
         ),
     ]
-    print_tables(tables)
+    print_tables(
+        replace(with_reasons(table, _dash_reason), complete='--json FILE') for table in tables
+    )
     weakest = ', '.join(
         f'{SYMBOLS_AND_UNITS[name][0]} {share:+.2f}'
         for name, share in _weakest(identification).items()
     )
-    print(f'Condition number {identification.condition:.0f}; least determined together:')
-    print(f'  {weakest} (relative changes)')
+    print_note(
+        f'Condition number {identification.condition:.0f}; least determined together: {weakest} '
+        '(relative changes)'
+    )
+
+
+def _dash_reason(header: str, row: Sequence[str]) -> str:
+    """Return the reason of a dash, from its column and its row."""
+    if header == 'std':
+        return 'not fitted'
+    if row[-1] in ('yes', 'no'):
+        return 'the check has no such limit, or no value'
+    fitted = row[3] != UNDEFINED
+    return 'no driveline fits all printed digits' if fitted else 'not fitted'

@@ -1,18 +1,11 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Quantities, tables of them, and their print: rich on a terminal, plain in a pipe or a file."""
+"""Quantities, and tables of them; `printed_table` prints a table."""
 
-import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import zip_longest
+from enum import IntEnum
 from typing import Any, Generic, TypeVar
-
-from rich.box import SIMPLE
-from rich.console import Console
-from rich.markup import escape
-from rich.table import Table as RichTable
-from rich.text import Text
 
 from ddct_plant.base.errors import printable
 
@@ -20,6 +13,19 @@ PURE = '1'
 """Unit of a pure number."""
 UNDEFINED = '-'
 """Text of an undefined value."""
+
+
+class Weight(IntEnum):
+    """How much a column matters where a table is wider than its output."""
+
+    DETAIL = 0
+    """Left out first."""
+    USEFUL = 1
+    """Left out where it does not fit."""
+    NEEDED = 2
+    """Always shown, in a further block where it does not fit."""
+    IDENTIFYING = 3
+    """Needed to know which row it is: shown in every block."""
 
 
 @dataclass(frozen=True)
@@ -63,11 +69,14 @@ class Column(Generic[Row]):
     value: Callable[[Row], Any]
     """Function from a row to its value; None, shown as a dash, where it is undefined."""
     number: bool = True
-    """Whether the column is aligned to the right, where rich draws the table."""
+    """Whether the column is aligned to the right and its values are never wrapped."""
     below: Callable[[Row], str] = lambda row: ''
     """Function from a row to the second line beneath the value; empty for none."""
-    undefined: str = ''
-    """Reason for an undefined value."""
+    undefined: Callable[[Row], str] = lambda row: ''
+    """Function from a row to the reason for which its value is undefined."""
+    remark: Callable[[Row], str] = lambda row: ''
+    """Function from a row to a reservation about its value, shown as a star; empty for none."""
+    weight: Weight = Weight.NEEDED
 
     def text(self, row: Row) -> str:
         """Return the text of a row's value."""
@@ -78,6 +87,10 @@ class Column(Generic[Row]):
         lines = (self.text(row), self.below(row))
         return '\n'.join(printable(line) for line in lines if line)
 
+    def reason(self, row: Row) -> str:
+        """Return the reason of a row's dash or star, empty for none."""
+        return self.undefined(row) if self.value(row) is None else self.remark(row)
+
 
 @dataclass(frozen=True)
 class Table:
@@ -87,7 +100,16 @@ class Table:
     headers: Sequence[str]
     rows: Sequence[Sequence[str]]
     numbers: Sequence[bool] = field(default=(), kw_only=True)
-    """Whether each column, from the first on, is aligned to the right; rich only."""
+    """
+    Whether each column, from the first on, is aligned to the right and never wrapped; of others,
+    those that have nothing but numbers are.
+    """
+    weights: Sequence[Weight] = field(default=(Weight.IDENTIFYING,), kw_only=True)
+    """Weight of each column, from the first on; those of the others are NEEDED."""
+    reasons: Mapping[tuple[int, int], str] = field(default_factory=dict, kw_only=True)
+    """Reason by row and column of each dash, and of each other cell that gets a star."""
+    complete: str = field(default='', kw_only=True)
+    """Output that has every column and reason, such as '--json FILE'; empty for none."""
 
     def as_dict(self) -> dict[str, object]:
         """Return title, headers and rows for JSON, a row as a mapping from header to cell."""
@@ -95,14 +117,39 @@ class Table:
         return {'title': self.title, 'headers': list(self.headers), 'rows': rows}
 
 
-def table_of(title: str, columns: Sequence[Column[Row]], rows: Iterable[Row]) -> Table:
-    """Return the table of columns over rows."""
+def table_of(
+    title: str, columns: Sequence[Column[Row]], rows: Iterable[Row], complete: str = ''
+) -> Table:
+    """Return the table of columns over rows; `complete` names an output with all of it."""
+    rows = list(rows)
     return Table(
         title,
         [column.heading for column in columns],
         [[column.cell(row) for column in columns] for row in rows],
         numbers=[column.number for column in columns],
+        weights=[column.weight for column in columns],
+        reasons={
+            (line, place): reason
+            for line, row in enumerate(rows)
+            for place, column in enumerate(columns)
+            if (reason := column.reason(row))
+        },
+        complete=complete,
     )
+
+
+AnyTable = TypeVar('AnyTable', bound=Table)
+
+
+def with_reasons(table: AnyTable, reason: Callable[[str, Sequence[str]], str]) -> AnyTable:
+    """Return a table with the reason of every dash, a function of its header and its row."""
+    found = {
+        (line, place): reason(table.headers[place], row)
+        for line, row in enumerate(table.rows)
+        for place, cell in enumerate(row)
+        if cell == UNDEFINED
+    }
+    return replace(table, reasons={**table.reasons, **found})
 
 
 def text_or_dash(value: object, form: str) -> str:
@@ -119,42 +166,3 @@ def as_markdown(table: Table) -> str:
 def _line(cells: Sequence[str]) -> str:
     escaped = (cell.replace('|', r'\|') for cell in cells)
     return f'| {" | ".join(escaped)} |'
-
-
-def print_table(table: Table) -> None:
-    """Print a table on standard output, the control characters of its cells made visible."""
-    rows = [[printable(cell) for cell in row] for row in table.rows]
-    table = replace(table, title=printable(table.title), rows=rows)
-    if sys.stdout.isatty():
-        Console(highlight=False).print(drawn_by_rich(table), '')
-        return
-    columns = zip(table.headers, *rows, strict=True)
-    widths = [max(len(cell) for cell in column) for column in columns]
-    print(table.title)
-    for row in (table.headers, *rows):
-        cells = [cell.ljust(width) for cell, width in zip(row, widths, strict=True)]
-        print('  ' + '  '.join(cells).rstrip())
-    print()
-
-
-def print_tables(tables: Iterable[Table]) -> None:
-    """Print one table after the other."""
-    for table in tables:
-        print_table(table)
-
-
-def drawn_by_rich(table: Table, *, ruled: bool = False) -> RichTable:
-    """Return the table of rich; with `ruled` it has a rule below its headers, and cells wrap."""
-    drawn = RichTable(
-        title=escape(table.title) or None,
-        title_justify='center' if ruled else 'left',
-        box=SIMPLE if ruled else None,
-        collapse_padding=True,
-        pad_edge=False,
-        header_style='table.header' if ruled else 'bold underline',
-    )
-    for header, number in zip_longest(table.headers, table.numbers):
-        drawn.add_column(Text(header), justify='right' if number else 'left', no_wrap=not ruled)
-    for row in table.rows:
-        drawn.add_row(*(Text(cell) for cell in row))
-    return drawn

@@ -7,7 +7,8 @@ import pickle
 import pytest
 
 from ddct_plant.base.errors import LONGEST_LINE, DdctError, ParameterError, printable
-from ddct_plant.program.table import Table, print_table
+from ddct_plant.program.printed_table import print_table
+from ddct_plant.program.table import Table
 
 RED = '\x1b[31mred\x1b[0m'
 

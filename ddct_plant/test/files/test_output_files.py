@@ -11,15 +11,17 @@ from refusals import refused
 
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.output_file import require_place, write_json
-from ddct_plant.program.table import Table, print_table
+from ddct_plant.program.printed_table import print_table
+from ddct_plant.program.table import Table
 
 
 def test_columns_of_a_plain_table_line_up(capsys):
     print_table(Table('Title', ('a', 'long header'), [('wide cell', '1'), ('x', '22')]))
     lines = capsys.readouterr().out.splitlines()
     assert lines[0] == 'Title'
-    starts = [line.index(cell) for line, cell in zip(lines[1:4], ('long', '1', '22'), strict=True)]
-    assert starts == [13, 13, 13]
+    cells = ('long header', '1', '22')
+    ends = [line.index(cell) + len(cell) for line, cell in zip(lines[1:4], cells, strict=True)]
+    assert ends == [24, 24, 24]
 
 
 def test_table_on_a_terminal_shows_every_cell_with_its_brackets(capsys, monkeypatch):

@@ -3,7 +3,8 @@
 """Tables of all packaged controllers on the development cases, from the rows of the release."""
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -18,12 +19,16 @@ from ddct_bringup.campaign.rows import CRITERION
 from ddct_bringup.scores.csv_text import OVER_FLOOR
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_bringup.verdict.state import ENGAGED
-from ddct_plant.program.table import Table
+from ddct_plant.program.table import Table, Weight, with_reasons
 
 _CASE_HEADERS = (
     *('controller', 'engaged', 'others', 'with releases', 'time to lock s'),
     *('peak jerk m/s^3', 'highest peak jerk', 'over the least', 'highest over the least'),
     *('friction work kJ', 'dominated by'),
+)
+_CASE_WEIGHTS = (
+    *(Weight.IDENTIFYING, Weight.NEEDED, Weight.USEFUL, Weight.USEFUL, Weight.NEEDED),
+    *(Weight.NEEDED, Weight.DETAIL, Weight.NEEDED, Weight.DETAIL, Weight.NEEDED, Weight.USEFUL),
 )
 _ALL_HEADERS = ('controller', 'engaged', 'others', 'with releases', 'limits kept', 'not dominated')
 _MARK = 'yes'
@@ -34,10 +39,24 @@ def packaged_tables() -> Mapping[str, Table]:
     release = release_rows(packaged_folder())
     rows = release.rows
     scenarios = Cases.packaged().whole.values_of(SCENARIO)
-    return {
+    tables = {
         'all': Table('All development cases', _ALL_HEADERS, _overall(release)),
         **{name: _of_scenario(rows, name) for name in scenarios},
     }
+    return {name: _complete(table) for name, table in tables.items()}
+
+
+def _complete(table: Table) -> Table:
+    """Return a table with the reasons of its dashes, and the option that writes all of it."""
+    return replace(with_reasons(table, _dash_reason), complete='--json FILE')
+
+
+def _dash_reason(header: str, row: Sequence[str]) -> str:
+    """Return the reason of a dash by its column."""
+    return {
+        'others': 'every run is engaged',
+        'limits kept': 'no limit can be kept',
+    }.get(header, 'no run has a value')
 
 
 def _case_cells(columns: Columns) -> tuple[str, ...]:
@@ -75,6 +94,7 @@ def _of_scenario(rows: CaseRows, scenario: str) -> Table:
         f'Development cases of {scenario}',
         _CASE_HEADERS,
         [(*row, dominated[name]) for row, name in zip(found, chosen.controllers, strict=True)],
+        weights=_CASE_WEIGHTS,
     )
 
 

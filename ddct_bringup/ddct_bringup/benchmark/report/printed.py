@@ -10,9 +10,14 @@ from ddct_bringup.benchmark.update_times import UpdateTimesFile
 from ddct_bringup.campaign_report.printed_summary import MAIN
 from ddct_bringup.campaign_report.texts import interval_text, p_text, share_text
 from ddct_bringup.metrics.catalogue import METRICS
-from ddct_plant.base.errors import printable
-from ddct_plant.program.table import UNDEFINED, Table, print_tables, text_or_dash
+from ddct_plant.program.printed_table import print_note, print_tables
+from ddct_plant.program.table import UNDEFINED, Table, Weight, text_or_dash, with_reasons
 
+_NO_QUANTITY = {
+    **dict.fromkeys(('development', 'held out'), 'no engaged run has a value'),
+    '/least': 'the quantity has no least value',
+}
+"""Reasons of dashes by header."""
 _TITLES = 'development', '95 % interval', 'held out', '95 % interval'
 
 
@@ -23,9 +28,9 @@ def print_result(result: Result, update_times: UpdateTimesFile) -> None:
             print_tables(_tables(judged, judged['development'], judged['held_out']))
     for name, found in update_times['controllers'].items():
         ratio = text_or_dash(found['ratio_to_pi'], '.2f')
-        print(f'update time of {printable(name)} over that of pi: {ratio}')
+        print_note(f'update time of {name} over that of pi: {ratio}')
     best = [row['controller'] for row in result['board'] if row['non_dominated']]
-    print(printable(f'not dominated on the development cases: {", ".join(best)}'))
+    print_note(f'not dominated on the development cases: {", ".join(best)}')
 
 
 def _tables(
@@ -38,7 +43,7 @@ def _tables(
         for first, second in both
     ]
     yield Table(f'{name}: successful engagements', ('controller', *_TITLES), rows)
-    yield Table(
+    over_least = Table(
         f'{name}: P95 of engaged runs, and over the least',
         ('quantity', 'controller', 'development', '/least', 'held out', '/least'),
         [
@@ -46,12 +51,14 @@ def _tables(
             for key in MAIN
             for first, second in both
         ],
+        weights=(Weight.IDENTIFYING, Weight.IDENTIFYING),
     )
+    yield with_reasons(over_least, lambda header, row: _NO_QUANTITY[header])
     kept = [
         (first['controller'], _limit_text(first), _limit_text(second)) for first, second in both
     ]
     yield Table(f'{name}: avoidable limits kept', ('controller', *_TITLES[::2]), kept)
-    yield Table(
+    gaps = Table(
         f'{name}: development beside held out',
         ('figure', 'a held-out run is worse', 'p', 'beyond chance'),
         [
@@ -64,6 +71,7 @@ def _tables(
             for gap in judged['gaps'] or ()
         ],
     )
+    yield with_reasons(gaps, lambda header, row: 'too few runs have a value')
 
 
 def _share_cells(share: RunShare) -> tuple[str, str]:

@@ -28,7 +28,8 @@ from ddct_bringup.thesis.predictions import FILE as PREDICTIONS_FILE
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.output_file import STDOUT, require_place, write_json, write_text
 from ddct_plant.program.command_line import complain
-from ddct_plant.program.table import Table, print_tables
+from ddct_plant.program.printed_table import print_tables
+from ddct_plant.program.table import Table
 from ddct_plant.scenario.file import load_scenario
 
 _DESCRIPTION = """\

@@ -26,7 +26,7 @@ from ddct_plant.files.output_file import (
     write_text,
 )
 from ddct_plant.program.command_line import complain, show_and_write
-from ddct_plant.program.table import print_tables
+from ddct_plant.program.printed_table import print_tables
 
 Source = Callable[[], Mapping[str, Value | None]]
 """Function that returns values by the ids of the gate's files, None for an undefined one."""

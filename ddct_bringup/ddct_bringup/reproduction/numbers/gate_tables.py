@@ -3,13 +3,13 @@
 """Rows of the gate as tables of text, for the terminal and the page of documentation."""
 
 from collections import Counter, defaultdict
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from operator import attrgetter
 
 from ddct_bringup.reproduction.numbers.gate import OUTCOMES, GateRow
 from ddct_bringup.reproduction.numbers.thesis_number import ERRATUM, Finding, is_number
 from ddct_plant.models.printed import PrintedNumber
-from ddct_plant.program.table import Table, text_or_dash
+from ddct_plant.program.table import Column, Table, Weight, table_of
 
 _CHAPTERS = ('1', '2', '3', '4', '5', '6')
 
@@ -20,7 +20,7 @@ def page_tables(rows: Sequence[GateRow]) -> dict[str, Table]:
     return {
         'facts': facts_table(rows),
         'summary': summary_table(rows),
-        'errata': _table('Errata of the thesis', _ERRATUM_CELLS, errata),
+        'errata': table_of('Errata of the thesis', _ERRATUM_COLUMNS, errata, _COMPLETE),
         **chapter_tables(rows, reasons=True),
     }
 
@@ -29,11 +29,12 @@ def summary_table(rows: Sequence[GateRow]) -> Table:
     """Return how many numbers of each chapter have each verdict."""
     counts = Counter((_chapter(row), row.outcome) for row in rows)
     counts.update(('all', row.outcome) for row in rows)
+    chapters = (*_CHAPTERS, 'all')
     lines = [
-        (chapter, *(str(counts[chapter, outcome]) for outcome in OUTCOMES))
-        for chapter in (*_CHAPTERS, 'all')
+        (outcome, *(str(counts[chapter, outcome]) for chapter in chapters)) for outcome in OUTCOMES
     ]
-    return Table('Printed numbers by verdict', ('chapter', *OUTCOMES), lines)
+    headers = ('verdict', *(f'chapter {chapter}' for chapter in _CHAPTERS), 'all')
+    return Table('Printed numbers by verdict', headers, lines)
 
 
 def facts_table(rows: Sequence[GateRow]) -> Table:
@@ -59,22 +60,23 @@ def count_facts(rows: Sequence[GateRow]) -> Counter[str]:
 def chapter_tables(rows: Sequence[GateRow], *, reasons: bool) -> dict[str, Table]:
     """Return one table per chapter by the name `chapter_N`; `reasons` adds groups and reasons."""
     return {
-        f'chapter_{chapter}': _table(
+        f'chapter_{chapter}': table_of(
             f'Chapter {chapter}',
-            {**_CELLS, **_REASON_CELLS} if reasons else _CELLS,
+            (*_COLUMNS, *_REASON_COLUMNS) if reasons else _COLUMNS,
             [row for row in rows if _chapter(row) == chapter],
+            _COMPLETE,
         )
         for chapter in _CHAPTERS
     }
 
 
-def computed_text(row: GateRow) -> str:
-    """Return the computed value with one digit more than the print; - without one."""
+def computed_text(row: GateRow) -> str | None:
+    """Return the computed value with one digit more than the print; None without one."""
     value = row.computed
     if isinstance(value, Finding):
         return value.evidence
     if value is None or isinstance(value, str):
-        return value or '-'
+        return value or None
     if not row.hit and row.number.verdict != ERRATUM:
         return f'{value:.5g}'
     stated = [text for text in (row.number.printed, row.number.ours) if text and is_number(text)]
@@ -82,37 +84,61 @@ def computed_text(row: GateRow) -> str:
     return f'{round(value / unit) * unit:.7g}'
 
 
-def _tolerance_text(row: GateRow) -> str:
-    return text_or_dash(row.number.absolute_tolerance, '.3g')
-
-
-def _group_text(row: GateRow) -> str:
-    return row.number.group or '-'
-
-
 def _chapter(row: GateRow) -> str:
     return row.number.section[:1]
 
 
-_Cells = Mapping[str, Callable[[GateRow], str]]
-"""Functions that return the cell of a row, by header."""
-_VALUE_CELLS: _Cells = {
-    'section': attrgetter('number.section'),
-    'item': attrgetter('number.item'),
-    'printed': attrgetter('number.printed'),
-    'computed': computed_text,
-    'unit': attrgetter('number.unit'),
-}
-_CELLS: _Cells = {**_VALUE_CELLS, 'tolerance': _tolerance_text, 'verdict': attrgetter('outcome')}
-_REASON_CELLS: _Cells = {'group': _group_text, 'reason': attrgetter('number.reason')}
-_ERRATUM_CELLS: _Cells = {
-    **_VALUE_CELLS,
-    'group': _group_text,
-    'what is wrong': attrgetter('number.reason'),
-}
+def _not_computed(row: GateRow) -> str:
+    """Return the reason for which a number has no computed value."""
+    return {
+        'given': 'an input of the thesis, which nothing is computed for',
+        'not_reproducible': 'the thesis does not print the inputs of this result',
+    }.get(row.number.verdict, 'our model has no such value')
 
 
-def _table(title: str, cells: _Cells, rows: Sequence[GateRow]) -> Table:
-    return Table(
-        title, tuple(cells), [tuple(cell(row) for cell in cells.values()) for row in rows]
-    )
+def _no_tolerance(row: GateRow) -> str:
+    """Return the reason for which a number has no tolerance."""
+    if row.computed is None:
+        return _not_computed(row)
+    return 'a statement, which holds or does not'
+
+
+_GateColumn = Column[GateRow]
+
+
+def _text(
+    heading: str, value: Callable[[GateRow], str | None], weight: Weight = Weight.NEEDED
+) -> _GateColumn:
+    return Column(heading, '', value, number=False, undefined=_not_computed, weight=weight)
+
+
+_COMPLETE = '--json FILE'
+_VALUE_COLUMNS = (
+    _text('section', attrgetter('number.section'), Weight.IDENTIFYING),
+    _text('item', attrgetter('number.item'), Weight.IDENTIFYING),
+    _text('printed', attrgetter('number.printed')),
+    _text('computed', computed_text),
+    _text('unit', attrgetter('number.unit'), Weight.USEFUL),
+)
+_COLUMNS = (
+    *_VALUE_COLUMNS[:2],
+    _text('verdict', attrgetter('outcome')),
+    *_VALUE_COLUMNS[2:],
+    Column(
+        'tolerance',
+        '.3g',
+        attrgetter('number.absolute_tolerance'),
+        undefined=_no_tolerance,
+        weight=Weight.DETAIL,
+    ),
+)
+_GROUP: _GateColumn = Column(
+    'group',
+    '',
+    lambda row: row.number.group or None,
+    number=False,
+    undefined=lambda row: 'the number has no group',
+    weight=Weight.DETAIL,
+)
+_REASON_COLUMNS = (_GROUP, _text('reason', attrgetter('number.reason')))
+_ERRATUM_COLUMNS = (*_VALUE_COLUMNS, _GROUP, _text('what is wrong', attrgetter('number.reason')))

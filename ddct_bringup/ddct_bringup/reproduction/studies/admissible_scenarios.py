@@ -10,7 +10,13 @@ from ddct_bringup.reproduction.calibration.parameters import largest_residual, v
 from ddct_bringup.reproduction.calibration.predicted_values import OPEN_LOOP
 from ddct_bringup.reproduction.calibration.problem import Problem, fit
 from ddct_bringup.reproduction.studies.readings import READINGS
-from ddct_bringup.reproduction.studies.study import TABLE_5_1, Study, cells
+from ddct_bringup.reproduction.studies.study import (
+    AS_PRINTED,
+    TABLE_5_1,
+    Study,
+    cells,
+    identified_by,
+)
 from ddct_bringup.reproduction.study_run import (
     THESIS_SCENARIO,
     StaticControllerAlone,
@@ -90,9 +96,10 @@ def prediction_ranges() -> Study:
         ('row', 'figure', 'value', 'range', 'printed', 'verdict', 'print within the range'),
         rows,
         (
-            "The end '-': some of the scenarios have no t_a, as w_d does not reach zero.",
+            "The end '-' of a range: some scenarios have no t_a, as w_d does not reach zero.",
             *(_hits_at_once(row) for row in PREDICTED_ROWS),
         ),
+        weights=identified_by(2),
     )
 
 
@@ -131,6 +138,7 @@ def worn_ranges() -> Study:
         ('controller', 'K_usura', 'word or figure', 'value', 'range'),
         rows,
         ('A verdict on a word has beside it in how many of the scenarios it is that.',),
+        weights=identified_by(3),
     )
 
 
@@ -167,9 +175,10 @@ def score_windows() -> Study:
         ),
         [
             *(_window_row(label, scenario) for label, scenario in scenarios),
-            ('-', 'as the thesis prints it', '-', '-', *3 * [_print('mpc3')], _print('mpc4'), '-'),
+            ('-', AS_PRINTED, '-', '-', *3 * [_print('mpc3')], _print('mpc4'), '-'),
         ],
         ('A controller has t_a in s / std w_sr in rpm / std A_x in m/s^2.',),
+        weights=identified_by(2),
     )
 
 

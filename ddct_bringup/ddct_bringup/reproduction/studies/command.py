@@ -5,6 +5,7 @@
 import argparse
 import textwrap
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -17,12 +18,13 @@ from ddct_bringup.reproduction.studies import (
     table_5_2,
     wear,
 )
-from ddct_bringup.reproduction.studies.study import Study, StudyFunction
+from ddct_bringup.reproduction.studies.study import Study, StudyFunction, dash_reason
 from ddct_controllers.design.drawing.chart_style import chart_style, save_figure
 from ddct_plant.base.errors import DdctError, require_choice
 from ddct_plant.files.output_file import STDOUT, write_json
 from ddct_plant.program.command_line import complain
-from ddct_plant.program.table import print_table
+from ddct_plant.program.printed_table import print_note, print_table
+from ddct_plant.program.table import with_reasons
 
 _ABOUT: Mapping[StudyFunction, str] = {
     admissible_scenarios.admissible_scenarios: 'the scenarios that fit Table 5.1 as well',
@@ -119,8 +121,8 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _print(study: Study) -> None:
-    print_table(study)
+    print_table(with_reasons(replace(study, complete='--json FILE'), dash_reason))
     for remark in study.remarks:
-        print(f'  {remark}')
+        print_note(remark)
     if study.remarks:
         print()

@@ -18,6 +18,7 @@ from ddct_bringup.reproduction.studies.study import (
     cells,
     friction_kj,
     headers,
+    identified_by,
 )
 from ddct_bringup.reproduction.study_run import THESIS_SCENARIO, StudyRun, study_run
 from ddct_bringup.verdict.state import SUCCESSES
@@ -103,6 +104,7 @@ def _engagements(scenario: str, clutch: str) -> Study:
         title,
         ('K_usura', 'controller', *headers(COLUMNS)),
         rows,
+        weights=identified_by(2),
         draw=partial(engagement_chart, title, slips),
     )
 

@@ -17,11 +17,14 @@ from ddct_bringup.reproduction.studies.changed_loops import (
     slow_times_s,
 )
 from ddct_bringup.reproduction.studies.study import (
+    AS_PRINTED,
+    TWO_INPUT_WEIGHTS,
     TWO_INPUTS,
     WEAR_GAINS,
     Study,
     cells,
     headers,
+    identified_by,
 )
 from ddct_bringup.reproduction.study_run import (
     THESIS_SCENARIO,
@@ -148,9 +151,10 @@ def mpc4_readings() -> Study:
         [
             *rows,
             ('C_fOL alone, C_m as demanded', *alone, *none),
-            ('MPC4 as the thesis prints it', time, '-', torsion, acceleration, '-', '-', *none),
+            (f'MPC4 {AS_PRINTED}', time, '-', torsion, acceleration, '-', '-', *none),
         ],
         ('Growth is that of the fastest mode of plant, filter and feedback per period of 10 ms.',),
+        weights=(*identified_by(1), *TWO_INPUT_WEIGHTS),
     )
 
 
@@ -186,4 +190,5 @@ def torque_level() -> Study:
         ),
         rows,
         (f'One of the slowest modes, {COASTING_S:g} s, is the vehicle that coasts.',),
+        weights=(*identified_by(1), *TWO_INPUT_WEIGHTS),
     )

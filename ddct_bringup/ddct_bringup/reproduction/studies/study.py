@@ -14,7 +14,7 @@ from ddct_bringup.reproduction.study_run import StudyRun
 from ddct_bringup.thesis.table_5_1 import FORMS
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.base.units import rpm_from_rad_s
-from ddct_plant.program.table import Column, Quantity, Table
+from ddct_plant.program.table import Column, Quantity, Table, Weight
 
 if TYPE_CHECKING:
     import matplotlib.figure
@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 WEAR_GAINS = (0.7, 1.0, 1.3)
 """Wear gains: the ends of the thesis's Table 5.2, and a new clutch."""
 FINER_WEAR_GAINS = (0.7, 0.85, 1.0, 1.15, 1.3)
+AS_PRINTED = 'as the thesis prints it'
+"""Label of a row of printed values."""
 CLOSE_RPM = 10.0
 """
 Slip in rpm that counts as close to zero: 2 % of that at control start in the thesis scenario, a
@@ -65,7 +67,22 @@ def run_study(
 ) -> Study:
     """Return the table with a row per case: its cells below the keys, then the columns."""
     rows = [(*labels, *cells(columns, run)) for labels, run in cases]
-    return Study(title, (*keys, *headers(columns)), rows, remarks)
+    weights = (*identified_by(len(keys)), *(column.weight for column in columns))
+    return Study(title, (*keys, *headers(columns)), rows, remarks, weights=weights)
+
+
+def identified_by(count: int) -> tuple[Weight, ...]:
+    """Return the weights of a table whose first columns identify a row."""
+    return (Weight.IDENTIFYING,) * count
+
+
+def dash_reason(header: str, row: Sequence[str]) -> str:
+    """Return the reason of a dash in a study, from its column and its row."""
+    if any(AS_PRINTED in cell for cell in row):
+        return 'the thesis does not print it'
+    if header.startswith('growth'):
+        return 'C_fOL alone has no feedback'
+    return _UNDEFINED.get(header, 'does not apply to this row')
 
 
 def close_time_s(trajectory: Trajectory, start: int) -> float | None:
@@ -87,14 +104,23 @@ def friction_kj(run: StudyRun) -> float | None:
     return None if energy is None else energy / 1000.0
 
 
-def metric_column(quantity: Quantity, form: str, heading: str = '') -> StudyColumn:
+def metric_column(
+    quantity: Quantity, form: str, heading: str = '', weight: Weight = Weight.NEEDED
+) -> StudyColumn:
     """Return the column of a metric; the heading defaults to its symbol and unit."""
-    return Column(heading or quantity.heading, form, lambda run: run.metrics[quantity.key])
+    return Column(
+        heading or quantity.heading, form, lambda run: run.metrics[quantity.key], weight=weight
+    )
 
 
 def close_column(header: str) -> StudyColumn:
     """Return the column of `close_time_s`."""
-    return Column(header, '.2f', lambda run: close_time_s(run.trajectory, run.start))
+    return Column(
+        header,
+        '.2f',
+        lambda run: close_time_s(run.trajectory, run.start),
+        weight=Weight.DETAIL,
+    )
 
 
 TABLE_5_1 = tuple(metric_column(METRICS[name], form) for name, form in FORMS.items())
@@ -104,6 +130,31 @@ TWO_INPUTS: tuple[StudyColumn, ...] = (
     close_column(f'|w_d| < {CLOSE_RPM:g} rpm s'),
     *TABLE_5_1[1:],
     metric_column(METRICS['slip_final_rpm'], '.1f', 'w_d at end rpm'),
-    Column('C_m - demand N m', '', lambda run: deviation_range(run.trajectory)),
+    Column(
+        'C_m - demand N m',
+        '',
+        lambda run: deviation_range(run.trajectory),
+        weight=Weight.USEFUL,
+    ),
 )
 """Columns for a controller of clutch and engine."""
+TWO_INPUT_WEIGHTS = tuple(column.weight for column in TWO_INPUTS)
+_UNDEFINED = {
+    **{metric.heading: metric.undefined for metric in METRICS.values()},
+    **dict.fromkeys(
+        (f'|w_d| < {CLOSE_RPM:g} rpm s', f'within {CLOSE_RPM:g} rpm s'),
+        f'|w_d| is {CLOSE_RPM:g} rpm or more at the end',
+    ),
+    'lock s': 'the clutch does not lock, or w_d does not reach zero',
+    'peak jerk m/s^3': METRICS['peak_jerk_m_s3'].undefined,
+    'friction kJ': METRICS['friction_energy_j'].undefined,
+    'releases': 'the clutch never locked, or cannot',
+    'value': 'w_d does not reach zero',
+    **dict.fromkeys(
+        ('printed', 'verdict', 'print within the range'), 'the thesis prints no such row'
+    ),
+    **dict.fromkeys(
+        ('w_d, printed', 'w_sr and A_x, printed'), 'the thesis rates no clutch of this wear'
+    ),
+}
+"""Reason of a dash by header."""

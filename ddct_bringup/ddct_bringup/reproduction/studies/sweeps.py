@@ -29,7 +29,7 @@ from ddct_controllers.mpc.costs import BASIS, default_torsion_weight
 from ddct_controllers.state_of_art.controllers import STATE_OF_ART
 from ddct_controllers.state_of_art.pedal_mpc import engagement_time_s
 from ddct_plant.models.engine import EngineAuthority
-from ddct_plant.program.table import Column
+from ddct_plant.program.table import Column, Weight
 from ddct_plant.scenario.settings import RunSettings
 
 TORSION_FACTORS = (0.0, 1.0, 3.0, 6.0, 12.0, 20.0, 40.0)
@@ -154,8 +154,8 @@ def engine_authority() -> Study:
         ('controller', 'authority'),
         (
             *TWO_INPUTS,
-            metric_column(METRICS['peak_jerk_m_s3'], '.1f'),
-            Column('friction kJ', '.2f', friction_kj),
+            metric_column(METRICS['peak_jerk_m_s3'], '.1f', weight=Weight.USEFUL),
+            Column('friction kJ', '.2f', friction_kj, weight=Weight.USEFUL),
         ),
         [((name, case), study_run(settings[case], name)) for name, case in cases],
     )

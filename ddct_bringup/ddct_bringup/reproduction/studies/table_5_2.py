@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from ddct_bringup.reproduction.numbers.thesis_number import Finding
-from ddct_bringup.reproduction.studies.study import FINER_WEAR_GAINS, Study
+from ddct_bringup.reproduction.studies.study import FINER_WEAR_GAINS, Study, identified_by
 from ddct_bringup.reproduction.study_run import THESIS_SCENARIO, study_run
 from ddct_bringup.reproduction.values.orders import (
     OSCILLATION_RATINGS,
@@ -77,6 +77,7 @@ def table_5_2_in_numbers() -> Study:
             'w_sr and A_x, printed',
         ),
         [row for clutch in CLUTCHES for gain in FINER_WEAR_GAINS for row in rows_of(clutch, gain)],
+        weights=identified_by(3),
     )
 
 

@@ -6,15 +6,15 @@ from collections.abc import Iterator
 
 from ddct_bringup.tuning.report.texts import goal_text, notes_of
 from ddct_bringup.tuning.result import FrontEntry, TuningResult
-from ddct_plant.base.errors import printable
-from ddct_plant.program.table import UNDEFINED, Table, print_tables
+from ddct_plant.program.printed_table import print_note, print_tables
+from ddct_plant.program.table import UNDEFINED, Table, Weight, with_reasons
 
 
 def print_tuning(result: TuningResult) -> None:
     """Print the front with its held-out figures, and what decides the objectives."""
     print_tables(list(_tables(result)))
     for note in notes_of(result):
-        print(printable(note))
+        print_note(note)
 
 
 def _tables(result: TuningResult) -> Iterator[Table]:
@@ -38,14 +38,25 @@ def _tables(result: TuningResult) -> Iterator[Table]:
         ]
     ]
     headers = ('trial', 'cases', *result['parameters'], *(each['title'] for each in goals))
-    yield Table(f'Front of {result["controller"]}', headers, rows, numbers=_numbers(len(headers)))
+    parameters = len(result['parameters'])
+    front = Table(
+        f'Front of {result["controller"]}',
+        headers,
+        rows,
+        numbers=_numbers(len(headers)),
+        weights=(*[Weight.IDENTIFYING] * 2, *[Weight.USEFUL] * parameters),
+        complete='--json FILE',
+    )
+    yield with_reasons(front, lambda header, row: 'no run has a value')
     effects = [
         (goal['title'], each['parameter'], f'{each["explained"]:.2f}', f'{each["p_value"]:.3f}')
         for goal in result['objectives']
         for each in result['sensitivity'][goal['name']]
     ]
     if effects:
-        yield Table('What decides', ('objective', 'parameter', 'explains', 'p'), effects)
+        weights = [Weight.IDENTIFYING] * 2
+        headers = ('objective', 'parameter', 'explains', 'p')
+        yield Table('What decides', headers, effects, weights=weights)
 
 
 def _label(result: TuningResult, entry: FrontEntry) -> str:

@@ -203,5 +203,5 @@ def test_page_has_every_number_in_the_table_of_its_chapter_and_errata_twice():
     tables = page_tables(rows)
     assert [cells[1] for cells in tables['chapter_2'].rows] == ['zeta', 'other']
     assert [cells[1] for cells in tables['errata'].rows] == ['other']
-    summary = dict(zip(tables['summary'].headers, tables['summary'].rows[-1], strict=True))
+    summary = {row[0]: row[-1] for row in tables['summary'].rows}
     assert (summary['reproduced'], summary['erratum'], summary['given']) == ('1', '1', '0')

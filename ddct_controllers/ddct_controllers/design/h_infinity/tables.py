@@ -13,7 +13,7 @@ from ddct_controllers.design.h_infinity.record_types import (
     UncertaintyRecord,
 )
 from ddct_controllers.design.state_space import factors_text
-from ddct_plant.program.table import Table, text_or_dash
+from ddct_plant.program.table import Table, Weight, text_or_dash, with_reasons
 
 _LOOP_QUANTITIES = [
     DESIGN_QUANTITY_OF[name]
@@ -43,7 +43,7 @@ def design_tables(
     records: Sequence[HinfRecord], uncertainty: UncertaintyRecord
 ) -> dict[str, Table]:
     """Return the tables of designs for one specification, by their names on the page."""
-    return {
+    tables = {
         'specifications': _specification_table(records[0]['specifications']),
         'weights': _weight_table(records),
         'uncertainty': _uncertainty_table(uncertainty),
@@ -61,6 +61,16 @@ def design_tables(
         'loops': loop_table({record['name']: record for record in records}),
         'corners': _corner_table(records),
     }
+    return {name: with_reasons(table, _dash_reason) for name, table in tables.items()}
+
+
+def _dash_reason(header: str, row: Sequence[str]) -> str:
+    """Return the reason of a dash by its column."""
+    if header.startswith(('effort', 'from')):
+        return 'the recipe has no weight of the effort'
+    if row[1].startswith(('continuous', 'sampled')):
+        return 'the loop has no such value: nothing makes it unstable, or it never gets there'
+    return 'the loop is unstable at a corner'
 
 
 def loop_table(loops: Mapping[str, LoopsEntry]) -> Table:
@@ -77,6 +87,11 @@ def loop_table(loops: Mapping[str, LoopsEntry]) -> Table:
             )
             if loop
         ],
+        weights=(
+            *(Weight.IDENTIFYING, Weight.IDENTIFYING, *[Weight.NEEDED] * 6),
+            *[Weight.USEFUL] * len(_LOOP_QUANTITIES),
+        ),
+        complete='--json FILE',
     )
 
 

@@ -16,7 +16,7 @@ from ddct_controllers.design.loop_shaping.specifications import (
     TimeSpecifications,
     rise_time_crossover_product,
 )
-from ddct_plant.program.table import Table, text_or_dash
+from ddct_plant.program.table import Table, Weight, text_or_dash, with_reasons
 
 _LOOP_QUANTITIES = [
     DESIGN_QUANTITY_OF[name]
@@ -39,7 +39,7 @@ _TRANSLATED = (
 
 def thesis_tables(record: ThesisRecord) -> dict[str, Table]:
     """Return the tables of `thesis_record` by their names in docs/controllers/loop_shaping.md."""
-    return {
+    tables = {
         'specifications': _specification_table(),
         'network_steps': Table(
             'From K_c/s to G_c1, continuous and without delay',
@@ -51,8 +51,18 @@ def thesis_tables(record: ThesisRecord) -> dict[str, Table]:
             'Both controllers, and the curves of 14 % overshoot',
             ('controller', 'loop', *_LOOP_HEADERS),
             [(row['controller'], row['loop'], *_loop_cells(row)) for row in record['loops']],
+            weights=(Weight.IDENTIFYING, Weight.IDENTIFYING),
         ),
     }
+    return {name: with_reasons(table, _no_loop_value) for name, table in tables.items()}
+
+
+def _no_loop_value(header: str, row: Sequence[str]) -> str:
+    """Return the reason of a dash in a table of loops."""
+    unstable = row[1] if row[1].isdigit() else row[2]
+    return (
+        'no change of this kind makes it unstable' if unstable == '0' else 'the loop is unstable'
+    )
 
 
 def design_tables(record: LoopShapingRecord) -> tuple[Table, Table]:
@@ -84,7 +94,14 @@ def design_tables(record: LoopShapingRecord) -> tuple[Table, Table]:
             ('denominator', _factors(controller['denominator'])),
         ],
     )
-    return quantities, parts
+    return with_reasons(quantities, _no_quantity), parts
+
+
+def _no_quantity(header: str, row: Sequence[str]) -> str:
+    """Return the reason of a dash in the table of specified and reached quantities."""
+    if header == 'specified':
+        return 'follows from the others'
+    return 'the loop is unstable, or nothing of this kind makes it so'
 
 
 def _specification_table() -> Table:

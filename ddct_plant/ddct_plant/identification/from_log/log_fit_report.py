@@ -3,7 +3,7 @@
 """A fit to a log as JSON and as tables."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from ddct_plant.identification.coefficients import SYMBOLS_AND_UNITS
@@ -20,7 +20,8 @@ from ddct_plant.identification.from_log.stretch import LOAD
 from ddct_plant.identification.from_log.verdict import doubts
 from ddct_plant.measured.log import MeasuredLog
 from ddct_plant.measured.wheel_radius import MeasuredRadius
-from ddct_plant.program.table import Table, print_table, text_or_dash
+from ddct_plant.program.printed_table import print_note, print_table
+from ddct_plant.program.table import Table, Weight, text_or_dash, with_reasons
 from ddct_plant.scenario.rules.consistency import RADIUS
 
 
@@ -159,9 +160,9 @@ def print_fit(report: LogFitReport) -> None:
     if report.reasons:
         print('REFUSED. Do not use this fit:')
         for reason in report.reasons:
-            print(f'- {reason}')
+            print_note(f'- {reason}')
     begin, end = _span(report.fitted)
-    print_table(
+    _print_table(
         Table(
             f'Driveline from {report.fitted.path}, {begin:g} to {end:g} s; intervals of 95 %',
             ('parameter', 'symbol', 'value', 'lowest', 'highest', 'unit', 'state', 'new scenario'),
@@ -176,9 +177,13 @@ def print_fit(report: LogFitReport) -> None:
                 )
                 for row in report.parameters
             ],
+            weights=(
+                *(Weight.IDENTIFYING, Weight.USEFUL, Weight.NEEDED, Weight.NEEDED, Weight.NEEDED),
+                *(Weight.NEEDED, Weight.NEEDED, Weight.USEFUL),
+            ),
         )
     )
-    print_table(
+    _print_table(
         Table(
             'How late the log has each signal, against the engine speed',
             ('signal', 'delay ms', 'lowest', 'highest', 'state'),
@@ -196,7 +201,7 @@ def print_fit(report: LogFitReport) -> None:
         )
     )
     begin, end = _span(report.held_out)
-    print_table(
+    _print_table(
         Table(
             f'Prediction of {report.held_out.path}, {begin:g} to {end:g} s',
             ('signal', 'RMS rad/s', 'NRMSE', 'whiteness p', 'torque p', 'residual'),
@@ -213,11 +218,28 @@ def print_fit(report: LogFitReport) -> None:
             ],
         )
     )
-    print(f'Wheel radius: {_radius_text(report)}. Mass: {report.mass_kg:.5g} kg, J_v / r_w^2.')
+    print_note(
+        f'Wheel radius: {_radius_text(report)}. Mass: {report.mass_kg:.5g} kg, J_v / r_w^2.'
+    )
     if report.fit.load_torque is not None:
-        print(f'Rolling resistance and slope: {report.fit.load_torque:.4g} N m at the wheels.')
+        print_note(
+            f'Rolling resistance and slope: {report.fit.load_torque:.4g} N m at the wheels.'
+        )
     for note in report.notes:
-        print(f'Note: {note}.')
+        print_note(f'Note: {note}.')
+
+
+def _print_table(table: Table) -> None:
+    print_table(replace(with_reasons(table, _dash_reason), complete='--json FILE'))
+
+
+def _dash_reason(header: str, row: Sequence[str]) -> str:
+    """Return the reason of a dash, from its column and its row."""
+    if 'not determined' in row:
+        return 'the log does not determine it'
+    if header in ('lowest', 'highest'):
+        return 'not fitted'
+    return 'the log has too few values for this test'
 
 
 def _radius_text(report: LogFitReport) -> str:

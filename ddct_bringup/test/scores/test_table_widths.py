@@ -1,0 +1,92 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Tables of every program fit 80 columns, 120 in a file, and each of their dashes has a reason."""
+
+import io
+import re
+import sys
+from collections.abc import Callable, Sequence
+from functools import cache
+
+import pytest
+from made_results import made_results
+
+from ddct_bringup.campaign_report.printed_summary import summary_tables
+from ddct_bringup.campaign_report.summary import summary_of
+from ddct_bringup.programs import benchmark, limit, reproduce, sweep
+from ddct_controllers.check import program as check_controller
+from ddct_controllers.workflows import design_program
+from ddct_plant.identification import identify
+from ddct_plant.program.printed_table import MOST_NOTES, print_tables
+
+SHORT = ('--set', 'duration_s=1.2', '--set', 'score_window_s=[0.6, 1.1]')
+
+
+def _campaign() -> None:
+    states = ['engaged', 'not_engaged'] * 4
+    results = made_results(
+        states,
+        {'wear_gain': [0.8, 0.8, 1.0, 1.0] * 2, 'vehicle.mass_kg': [1400.0] * 4 + [1800.0] * 4},
+        {'peak_jerk_m_s3': [float(number) for number in range(8)]},
+        controllers=['pi', 'ls8'] * 4,
+    )
+    print_tables(summary_tables(summary_of(results)))
+
+
+def _sweep() -> None:
+    over = ('--over', 'wear_gain=0.5,1', '--over', 'load.slope_rad=0,0.1')
+    metrics = 'engagement_time_s,slip_final_rpm,slip_rmse_rpm,peak_jerk_m_s3,friction_energy_j'
+    sweep.main([*over, '--controllers', 'pi', '--metrics', metrics])
+
+
+PROGRAMS: dict[str, Callable[[], object]] = {
+    'benchmark --packaged': lambda: benchmark.main(['--packaged']),
+    'campaign': _campaign,
+    'check-controller': lambda: check_controller.main(['pi']),
+    'design loop-shaping': lambda: design_program.main(['loop-shaping']),
+    'design margins': lambda: design_program.main(['margins', '--controller', 'ls8']),
+    'design plant': lambda: design_program.main(['plant']),
+    'identify': lambda: identify.main([]),
+    'identify --as-printed': lambda: identify.main(['--as-printed']),
+    'limit': lambda: limit.main(
+        ['--scenario', 'launch', '--clutch', 'stick_slip', '--lock-times', '1.0']
+        + ['--metrics', 'friction_energy', '--controllers', 'pi']
+    ),
+    'reproduce numbers': lambda: reproduce.main(['numbers']),
+    'reproduce studies': lambda: reproduce.main(['studies', '--study', 'torsion_weight']),
+    'sweep': _sweep,
+    'sweep --list': lambda: sweep.main(['--list']),
+}
+
+
+@cache
+def _shown(name: str, *, is_terminal: bool) -> Sequence[str]:
+    """Return the lines that a program prints on a terminal or into a file."""
+    stream = io.StringIO()
+    stream.isatty = lambda: is_terminal  # type: ignore[method-assign]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv('COLUMNS', '80')
+        patch.setattr(sys, 'stdout', stream)
+        PROGRAMS[name]()
+    return re.sub(r'\x1b\[[0-9;]*m', '', stream.getvalue()).splitlines()
+
+
+@pytest.mark.process
+@pytest.mark.parametrize(('is_terminal', 'width'), [(True, 80), (False, 120)])
+@pytest.mark.parametrize('name', PROGRAMS)
+def test_no_line_is_too_wide_and_no_cell_is_cut(name: str, width: int, is_terminal: bool) -> None:
+    lines = _shown(name, is_terminal=is_terminal)
+    assert lines
+    assert [line for line in lines if len(line) > width] == []
+    assert [line for line in lines if '…' in line or '...' in line] == []
+
+
+@pytest.mark.process
+@pytest.mark.parametrize('name', PROGRAMS)
+def test_each_dash_has_a_reason_below_its_table(name: str) -> None:
+    for table in '\n'.join(_shown(name, is_terminal=False)).split('\n\n'):
+        cells = {cell for line in table.splitlines() for cell in re.split('  +', line.strip())}
+        notes = [line for line in table.splitlines() if re.match(r'  (-+|\*+)  ', line)]
+        dashes = {cell for cell in cells if re.fullmatch('-+', cell)}
+        assert {note.split()[0] for note in notes} >= dashes, table
+        assert len(notes) <= MOST_NOTES

@@ -1,0 +1,177 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""A printed table fits its output, and loses nothing: each column is shown or named."""
+
+import io
+import re
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from ddct_plant.program.printed_table import (
+    MOST_NOTES,
+    REDIRECTED_WIDTH,
+    print_note,
+    print_table,
+    table_lines,
+)
+from ddct_plant.program.table import Column, Table, Weight, table_of, with_reasons
+
+WORDS = st.text('abcdefgh', min_size=1, max_size=40)
+TEXTS = st.lists(WORDS, min_size=1, max_size=6).map(' '.join)
+NUMBERS = st.integers(-(10**9), 10**9).map(str)
+
+
+@st.composite
+def tables(draw: st.DrawFn) -> Table:
+    """Return a table whose headings and cells all differ, so that each can be found."""
+    count = draw(st.integers(2, 9))
+    weights = [Weight.IDENTIFYING, *draw(st.tuples(*[st.sampled_from(Weight)] * (count - 1)))]
+    kinds = draw(st.tuples(*[st.booleans()] * count))
+    headers = [f'h{place}{draw(WORDS)} {draw(WORDS)}' for place in range(count)]
+    rows = [
+        [
+            f'{line}{place}{draw(NUMBERS).lstrip("-")}'
+            if number
+            else f'c{line}{place}{draw(TEXTS)}'
+            for place, number in enumerate(kinds)
+        ]
+        for line in range(draw(st.integers(1, 3)))
+    ]
+    return Table('', headers, rows, numbers=kinds, weights=weights)
+
+
+@given(tables(), st.integers(40, 200))
+def test_no_line_is_wider_and_each_column_is_shown_or_named(table: Table, width: int) -> None:
+    lines = table_lines(table, width)
+    assert max(len(line) for line, _ in lines) <= width
+    text = ' '.join(line for line, _ in lines)
+    note = text.partition('not shown: ')[2]
+    letters = sorted(re.sub(r'\s', '', text.partition('not shown: ')[0]))
+    for place, (header, weight) in enumerate(zip(table.headers, table.weights, strict=True)):
+        named = header.replace(' ', '') in re.sub(r'\s', '', note)
+        assert not (named and weight >= Weight.NEEDED)
+        cells = [header, *(row[place] for row in table.rows)]
+        for letter in sorted(re.sub(r'\s', '', ''.join(cells))) if not named else ():
+            letters.remove(letter)
+    repeated = {
+        letter
+        for header, *cells in zip(table.headers, *table.rows, strict=True)
+        if table.weights[list(table.headers).index(header)] == Weight.IDENTIFYING
+        for letter in ''.join((header, *cells))
+    }
+    assert set(letters) <= repeated
+
+
+@given(tables())
+def test_a_wide_output_shows_every_column_without_a_wrapped_line(table: Table) -> None:
+    headings = [line for line, is_heading in table_lines(table, 10**4) if is_heading]
+    assert len(headings) == 1
+    assert headings[0].split() == ' '.join(table.headers).split()
+    assert len(table_lines(table, 10**4)) == 1 + len(table.rows)
+
+
+WIDE = Table(
+    'Title',
+    ('name', 'first', 'second', 'third'),
+    [('pi', '1' * 20, '2' * 20, '3' * 20), ('ls8', '4' * 20, '5' * 20, '6' * 20)],
+    weights=(Weight.IDENTIFYING, Weight.NEEDED, Weight.DETAIL, Weight.USEFUL),
+)
+
+
+def texts(table: Table, width: int) -> list[str]:
+    """Return the lines of a table."""
+    return [line for line, _ in table_lines(table, width)]
+
+
+def test_the_lightest_column_is_left_out_first_and_named_with_the_width_that_shows_it() -> None:
+    assert texts(WIDE, 74)[-1] == f'  ls8   {"4" * 20}  {"5" * 20}  {"6" * 20}'
+    assert texts(WIDE, 60)[-1] == '  not shown: second; all on a terminal of 72 columns'
+    assert ' '.join(texts(WIDE, 40)[-2:]).startswith('  not shown: second, third; all on a')
+    assert max(map(len, texts(WIDE, 72))) <= 72 and 'not shown' not in texts(WIDE, 72)[-1]
+
+
+def test_the_note_names_the_file_where_there_is_one() -> None:
+    table = Table(
+        WIDE.title, WIDE.headers, WIDE.rows, weights=WIDE.weights, complete='--json FILE'
+    )
+    assert texts(table, 60)[-1] == '  not shown: second; all with --json FILE'
+
+
+def test_needed_columns_that_do_not_fit_are_blocks_with_the_name_in_each() -> None:
+    lines = texts(Table('Title', WIDE.headers, WIDE.rows), 60)
+    assert lines[1].split() == ['name', 'first', 'second']
+    assert lines[4] == ''
+    assert lines[5].split() == ['name', 'third']
+    assert [line.split()[0] for line in lines[6:]] == ['pi', 'ls8']
+
+
+COLUMNS = (
+    Column[tuple[str, float | None, str]]('run', '', lambda row: row[0], number=False),
+    Column[tuple[str, float | None, str]](
+        'jerk',
+        '.1f',
+        lambda row: row[1],
+        undefined=lambda row: row[2],
+        remark=lambda row: row[2],
+    ),
+)
+
+
+def test_each_star_and_dash_has_the_reason_of_its_cell_once() -> None:
+    rows = [
+        *(('a', None, 'no lock'), ('b', None, 'no floor'), ('c', None, 'no lock')),
+        *(('d', 1.0, ''), ('e', 22.0, 'commands the engine')),
+    ]
+    assert texts(table_of('', COLUMNS, rows), 80) == [
+        '  run   jerk',
+        '  a       -',
+        '  b      --',
+        '  c       -',
+        '  d     1.0',
+        '  e    22.0*',
+        '  *  commands the engine',
+        '  -  no lock',
+        '  --  no floor',
+    ]
+
+
+def test_a_footer_has_at_most_six_lines_and_counts_the_rest() -> None:
+    rows = [(str(number), None, f'reason {number}') for number in range(9)]
+    table = table_of('', COLUMNS, rows, complete='--json FILE')
+    footer = texts(table, 80)[1 + len(rows) :]
+    assert len(footer) == MOST_NOTES
+    assert footer[-1] == '  4 more reasons, with --json FILE'
+
+
+def test_a_column_that_is_left_out_has_no_reason_below() -> None:
+    table = with_reasons(
+        Table('', ('a', 'b'), [('x' * 30, '-')], weights=(Weight.IDENTIFYING, Weight.DETAIL)),
+        lambda header, row: 'none',
+    )
+    assert texts(table, 80)[-1] == '  -  none'
+    narrow = Table('', ('a', 'b' * 30), table.rows, weights=table.weights, reasons=table.reasons)
+    assert not any('none' in line for line in texts(narrow, 40))
+
+
+def _yes() -> bool:
+    return True
+
+
+def _no() -> bool:
+    return False
+
+
+@pytest.mark.parametrize('width', [80, 100, REDIRECTED_WIDTH])
+def test_a_terminal_gives_the_width_and_a_file_is_at_most_120_wide(
+    width: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv('COLUMNS', str(width))
+    for is_terminal, most in ((True, width), (False, REDIRECTED_WIDTH)):
+        stream = io.StringIO()
+        monkeypatch.setattr(stream, 'isatty', {True: _yes, False: _no}[is_terminal])
+        print_table(Table('title ' * 40, ('text',), [('word ' * 60,)]), stream)
+        print_note('note ' * 60, stream)
+        lines = re.sub(r'\x1b\[[0-9;]*m', '', stream.getvalue()).splitlines()
+        assert most - 8 <= max(map(len, lines)) <= most
