@@ -13,7 +13,7 @@ from ddct_controllers.registry import factory_spec
 def printed(*names):
     stream = io.StringIO()
     print_computed_from(names, stream)
-    return stream.getvalue().splitlines()
+    return stream.getvalue().replace('\n  ', ' ').splitlines()
 
 
 def of_class(computed_from=None):

@@ -31,6 +31,7 @@ _CASE_WEIGHTS = (
     *(Weight.NEEDED, Weight.DETAIL, Weight.NEEDED, Weight.DETAIL, Weight.NEEDED, Weight.USEFUL),
 )
 _ALL_HEADERS = ('controller', 'engaged', 'others', 'with releases', 'limits kept', 'not dominated')
+_ALL_WEIGHTS = (Weight.IDENTIFYING, Weight.NEEDED, Weight.DETAIL, Weight.USEFUL)
 _MARK = 'yes'
 
 
@@ -40,7 +41,9 @@ def packaged_tables() -> Mapping[str, Table]:
     rows = release.rows
     scenarios = Cases.packaged().whole.values_of(SCENARIO)
     tables = {
-        'all': Table('All development cases', _ALL_HEADERS, _overall(release)),
+        'all': Table(
+            'All development cases', _ALL_HEADERS, _overall(release), weights=_ALL_WEIGHTS
+        ),
         **{name: _of_scenario(rows, name) for name in scenarios},
     }
     return {name: _complete(table) for name, table in tables.items()}
