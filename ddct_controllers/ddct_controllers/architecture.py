@@ -201,11 +201,12 @@ class Architecture:
 
 def make_architecture(settings: RunSettings, controller: Controller) -> Architecture:
     """
-    Build the run's architecture around `controller`.
+    Build the run's architecture around `controller`, from the known settings.
 
     In `detailed` feedback starts at the scenario's `control_start_s`, in a shift with the share 1
     of its handover, in the other architectures at t = 0.
     """
+    settings = settings.known
     scenario = settings.scenario
     static = StaticTorque(scenario.controlled_driveline, scenario.equilibrium)
     return Architecture(

@@ -53,6 +53,7 @@ class ControllerNode(FollowerNode):
     may be changed while it runs, which `controller/status` says from then on.
     """
 
+    KNOWN_ONLY: ClassVar[bool] = True
     EXAMPLES: ClassVar[tuple[str, ...]] = (
         '-p controller:=ls8',
         '-p controller:=pi -p gains.proportional_gain:=0.2',

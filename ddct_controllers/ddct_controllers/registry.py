@@ -110,13 +110,14 @@ def make_controller(
     chosen: Chosen, settings: RunSettings, changes: Mapping[str, Any] | None = None
 ) -> Controller:
     """
-    Build a controller for a run.
+    Build a controller for a run, from its known settings.
 
     `changes` go before the scenario's section `controllers.<name>`. Raise ParameterError for an
     unknown name or an option that the controller does not have, and DdctError when a file cannot
     be read or a third party's factory fails.
     """
     spec = controller_spec(chosen)
+    settings = settings.known
     given = {**settings.scenario.controllers.get(spec.name, {}), **(changes or {})}
     controller = spec(ControllerContext(settings, given))
     controller.registered_name = spec.name

@@ -20,12 +20,13 @@ from ddct_reference.slip_reference import NEVER, DescendingReference, SlipRefere
 
 def make_reference(settings: RunSettings, preview_steps: int = 0) -> SlipReference:
     """
-    Build the reference of a run, with a preview of `preview_steps` periods.
+    Build the reference of a run from its known settings, with a preview of so many periods.
 
     `detailed` follows the slip speed until control starts, and starts from the one measured then.
     In a shift control starts with the first period whose share of C_fOL is 1.
     The other architectures have a stored function of time, that of the nominal detailed run.
     """
+    settings = settings.known
     scenario = settings.scenario
     start_step = NEVER if settings.shift else scenario.control_start_step
     if settings.reference_shape == ENGINE_SPEED_TARGET:

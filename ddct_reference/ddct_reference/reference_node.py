@@ -25,6 +25,7 @@ class ReferenceNode(FollowerNode):
     `clutch/handover_share` too, and starts with the first period whose share is 1.
     """
 
+    KNOWN_ONLY: ClassVar[bool] = True
     EXAMPLES: ClassVar[tuple[str, ...]] = ('-p preview_steps:=22',)
 
     def __init__(self, **kwargs: Any) -> None:

@@ -12,14 +12,16 @@ from ddct_bringup.bag.realtime_facts import RealtimeFacts
 from ddct_bringup.bag.run_facts import MEASURED, RunFacts
 from ddct_bringup.bag.run_info import CONTROLLER_NODE, DRIVELINE_NODE, RunInfoOfNodes
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_plant.bag_file.facts import contradiction, recorded_scenario
+from ddct_plant.bag_file.facts import KNOWN_SCENARIO, contradiction, recorded_scenario
 from ddct_plant.base.errors import DdctError, require_choice
+from ddct_plant.base.options import options_of
 from ddct_plant.files.input_file import SCHEMA_KEY
-from ddct_plant.graph.node_reports import CONTROLLER, DIGEST, STEPS
+from ddct_plant.graph.node_reports import CONTROL_NODES, CONTROLLER, DIGEST, STEPS
 from ddct_plant.models.clutch import CLUTCHES
 from ddct_plant.scenario.content import scenario_from_mapping
 from ddct_plant.scenario.file import content_digest
-from ddct_plant.scenario.settings import MODES, RunSettings
+from ddct_plant.scenario.scenario import Scenario
+from ddct_plant.scenario.settings import MODES, UNKNOWN, RunSettings
 from ddct_plant.signals.gain_changes import GainChange, gain_changes
 
 _OF_NODES = ('scenario', 'architecture', 'clutch', 'mode', 'seed')
@@ -66,6 +68,7 @@ class Recording:
                 facts.mode,
                 facts.seed,
                 **facts.of_shift,
+                known_scenario=self._known_scenario,
             )
         except (DdctError, TypeError, ValueError):
             return None
@@ -88,23 +91,28 @@ class Recording:
     @property
     def recorded_digest(self) -> str:
         """Digest of the recorded scenario as it is in the bag; 'missing' where there is none."""
-        try:
-            return content_digest(self._scenario)
-        except (AttributeError, TypeError):
-            return 'missing'
+        return _digest(self._scenario)
 
     @cached_property
     def _scenario(self) -> Any:
         """Content of the recorded scenario; None without a readable one."""
         return recorded_scenario(self.custom_data)
 
+    @property
+    def _known_scenario(self) -> Scenario | None:
+        """Scenario that controllers knew, where the bag has one of its own."""
+        if KNOWN_SCENARIO not in self.custom_data:
+            return None
+        return scenario_from_mapping(recorded_scenario(self.custom_data, KNOWN_SCENARIO))
+
 
 def require_consistent(recording: Recording) -> None:
     """
     Raise DdctError for a fact that the bag's scenario or one of its nodes contradicts.
 
-    All three were written by one recorder from one set of settings. Where they differ, the bag was
-    edited, and its scores would be those of another run.
+    All three were written by one recorder from one set of settings, of which control nodes have
+    the known part. Where they differ, the bag was edited, and its scores would be those of another
+    run.
     """
     facts = recording.facts
     require_choice('mode', facts.mode, MODES)
@@ -117,12 +125,31 @@ def require_consistent(recording: Recording) -> None:
             _require(name, ours, theirs, 'the recorded scenario')
     of_all = {name: str(getattr(facts, name)) for name in _OF_NODES}
     of_all |= {'wear_gain': repr(float(facts.wear_gain)), DIGEST: recording.recorded_digest}
+    known = of_all | _known(recording)
     of_one = {CONTROLLER_NODE: {CONTROLLER: facts.controller}}
     of_one[DRIVELINE_NODE] = {STEPS: str(facts.steps)}
     for node, pairs in recording.run_info.items():
+        of_node = known if node in CONTROL_NODES else of_all
         # Nodes of earlier versions and of third parties need not publish each of them.
-        for name, text in (of_all | of_one.get(node, {})).items():
+        for name, text in (of_node | of_one.get(node, {})).items():
             _require(name, text, pairs.get(name, text), f'node {node}')
+
+
+def _digest(content: Any) -> str:
+    try:
+        return content_digest(content)
+    except (AttributeError, TypeError):
+        return 'missing'
+
+
+def _known(recording: Recording) -> dict[str, str]:
+    """Return the facts on `run_info` of control nodes that differ from the true ones."""
+    options = options_of(RunSettings)
+    found = {name: str(options[name].default) for name in UNKNOWN if name in _OF_NODES}
+    found['wear_gain'] = repr(options['wear_gain'].default)
+    if KNOWN_SCENARIO in recording.custom_data:
+        found[DIGEST] = _digest(recorded_scenario(recording.custom_data, KNOWN_SCENARIO))
+    return found
 
 
 def _require(name: str, ours: object, theirs: object, whose: str) -> None:

@@ -45,7 +45,11 @@ def why_not_batchable(settings: RunSettings, controller: Controller) -> str:
 
     The controller is not changed except for a reset.
     """
-    return _why_not_plant(settings) or _why_not_controller(controller)
+    return (
+        _why_not_plant(settings)
+        or _why_not_plant(settings.known)
+        or _why_not_controller(controller)
+    )
 
 
 def _why_not_plant(settings: RunSettings) -> str:

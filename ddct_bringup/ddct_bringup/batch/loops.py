@@ -27,7 +27,7 @@ _SIGNALS = (
 )
 """Signals that are recorded at each step, in the order of the values of a step."""
 OpenLoops = Callable[[int, np.ndarray], np.ndarray]
-"""Function of step and C_load that returns the open-loop torques in N m, (R,)."""
+"""Function of step and known C_load that returns the open-loop torques in N m, (R,)."""
 
 
 def simulate_batch(runs: Sequence[RunSettings], feedback: Sequence[StateSpace]) -> Trajectory:
@@ -37,10 +37,11 @@ def simulate_batch(runs: Sequence[RunSettings], feedback: Sequence[StateSpace]) 
     `feedback` is the `linear_model` of each controller. All runs have one length, architecture,
     equilibrium, control start and kind of reference; all models have one order.
     """
-    steps, start = runs[0].scenario.steps, runs[0].scenario.control_start_step
+    known = [run.known for run in runs]
+    steps, start = runs[0].scenario.steps, known[0].scenario.control_start_step
     plants = Plants(runs, [run.scenario.actuator for run in runs], steps)
-    references = References(runs, steps)
-    open_loop, filters = _open_loops(runs, plants), Filters(feedback)
+    references = References(known, steps)
+    open_loop, filters = _open_loops(known, plants), Filters(feedback)
     feedback_start = start if runs[0].detailed else 0
     rows = _rows()
     record = np.empty((steps + 1, max(each.stop for each in rows.values()), len(runs)))
@@ -48,7 +49,7 @@ def simulate_batch(runs: Sequence[RunSettings], feedback: Sequence[StateSpace]) 
         now = plants.outputs()
         load = plants.load_torque(step)
         reference = references.at(step, now.slip_speed)
-        request = open_loop(step, load)
+        request = open_loop(step, plants.known_load_torque(step))
         if step >= feedback_start:
             request = request + filters.update(rpm_from_rad_s(reference - now.slip_speed))
         record[step] = [
@@ -62,7 +63,7 @@ def simulate_batch(runs: Sequence[RunSettings], feedback: Sequence[StateSpace]) 
 
 
 def _open_loops(runs: Sequence[RunSettings], plants: Plants) -> OpenLoops:
-    """Return the open loops of the runs, as `make_architecture` makes them for one run."""
+    """Return the open loops of runs, given by known settings, as `make_architecture` does."""
     if runs[0].detailed:
         return plants.static_torque
     if runs[0].architecture == 'base':
@@ -107,7 +108,11 @@ def reference_kind(settings: RunSettings) -> str:
 
 
 class References:
-    """Slip references as columns, without preview: R runs of one kind, architecture and start."""
+    """
+    Slip references as columns, without preview.
+
+    The R runs, given by their known settings, have one kind, architecture and start.
+    """
 
     def __init__(self, runs: Sequence[RunSettings], steps: int) -> None:
         """Compute everything that does not depend on the slip, up to step `steps`."""

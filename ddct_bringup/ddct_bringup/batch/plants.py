@@ -33,10 +33,10 @@ _EARLIER, _LATER = 4, 5
 
 class Plants:
     """
-    Plants of R runs as columns, the counterpart of `WholePlant`.
+    Plants of R runs as columns, the counterpart of `WholePlant`, and C_fOL of the known cars.
 
-    All runs have one equilibrium, a linear clutch and an engine without limits. Angles are left
-    out: no score depends on them.
+    All runs have one equilibrium, and their known settings one; a linear clutch and an engine
+    without limits. Angles are left out: no score depends on them.
     """
 
     def __init__(
@@ -45,17 +45,14 @@ class Plants:
         """Start in the initial states; profiles of engine and road extend to step `steps`."""
         scenarios = [run.scenario for run in runs]
         self._driveline = stacked([scenario.driveline for scenario in scenarios])
-        self._static: Any = StaticTorque(self._driveline, scenarios[0].equilibrium)
+        known = [run.known for run in runs]
+        self._static: Any = StaticTorque(
+            stacked([run.scenario.driveline for run in known]), known[0].scenario.equilibrium
+        )
         start = stacked([initial_state(run) for run in runs])
         self._wear = np.array([run.wear_gain for run in runs])
-        loads = [make_load(run) for run in runs]
-        self._wheel_radius: Any = np.array([load.wheel_radius for load in loads])
-        self._drag = np.array([load.drag for load in loads])
-        self._wind = np.array([load.wind for load in loads])
+        self._loads, self._known_loads = Loads(runs, steps), Loads(known, steps)
         times = np.arange(steps + 1) / STEPS_PER_S
-        known = times if any(scenario.slope.given for scenario in scenarios) else times[:1]
-        forces = np.stack([load.forces(known) for load in loads], axis=-1)
-        self._forces = np.broadcast_to(forces, (steps + 1, len(runs)))
         engines = [scenario.engine for scenario in scenarios]
         first, places = distinct(engines)
         profiles = [engines[index].over(times) for index in first]
@@ -71,17 +68,23 @@ class Plants:
     def outputs(self) -> Any:
         """Return `DrivelineOutputs` at the current step, each value (R,); the angles are NaN."""
         states: Any = [*self._values[_STATES], *_NO_ANGLES]
-        return driveline_outputs(self._driveline, self._wheel_radius, states, self._torques)
+        return driveline_outputs(self._driveline, self._loads.wheel_radius, states, self._torques)
 
     def load_torque(self, step: int) -> np.ndarray:
         """Return C_load in N m, (R,), at step `step` in the current state."""
-        vehicle_speed = self._wheel_radius * self._values[STATES['wheel_speed']]
-        return resisting_torque(
-            self._drag, self._wind, self._forces[step], self._wheel_radius, vehicle_speed
-        )
+        return self._loads.torque(step, self._vehicle_speed)
+
+    def known_load_torque(self, step: int) -> np.ndarray:
+        """Return C_load in N m, (R,), of the cars that controllers know, at the true speed."""
+        return self._known_loads.torque(step, self._vehicle_speed)
+
+    @property
+    def _vehicle_speed(self) -> np.ndarray:
+        speed: np.ndarray = self._loads.wheel_radius * self._values[STATES['wheel_speed']]
+        return speed
 
     def static_torque(self, step: int, load_torque: np.ndarray) -> np.ndarray:
-        """Return C_fOL in N m, (R,), for C_load in N m in the current state."""
+        """Return C_fOL of the known cars in N m, (R,), for C_load in N m in the current state."""
         engine_speed, shaft_speed = self._values[STATES.places('engine_speed', 'shaft_speed')]
         return self._static.torque(
             self.engine_torque[step], load_torque, engine_speed, shaft_speed
@@ -95,6 +98,29 @@ class Plants:
         values[_ACTUATOR] = self._actuators.values
         values[_STATES] = product(self._step, values)
         self._torques = (engine_torque, self._wear * self._actuators.advance(), load_torque)
+
+
+class Loads:
+    """Road loads of R cars as columns, the counterpart of `RoadLoad`."""
+
+    def __init__(self, runs: Sequence[RunSettings], steps: int) -> None:
+        """Extend the profiles of the roads to step `steps`."""
+        loads = [make_load(run) for run in runs]
+        self.wheel_radius: Any = np.array([load.wheel_radius for load in loads])
+        """Wheel radii r_w in m, (R,)."""
+        self._drag = np.array([load.drag for load in loads])
+        self._wind = np.array([load.wind for load in loads])
+        times = np.arange(steps + 1) / STEPS_PER_S
+        with_slope = times if any(run.scenario.slope.given for run in runs) else times[:1]
+        forces = np.stack([load.forces(with_slope) for load in loads], axis=-1)
+        self._forces = np.broadcast_to(forces, (steps + 1, len(runs)))
+
+    def torque(self, step: int, vehicle_speed: np.ndarray) -> np.ndarray:
+        """Return C_load in N m, (R,), at step `step` at speeds in m/s, (R,)."""
+        torque: np.ndarray = resisting_torque(
+            self._drag, self._wind, self._forces[step], self.wheel_radius, vehicle_speed
+        )
+        return torque
 
 
 def _step_matrices(drivelines: Sequence[DrivelineParameters], nodes: np.ndarray) -> np.ndarray:

@@ -87,14 +87,14 @@ def _stack(runs: Sequence[_Linear]) -> Trajectory:
 
 def _alike(settings: RunSettings, model: StateSpace) -> Hashable:
     """Return the key that runs computed together share."""
-    scenario = settings.scenario
+    scenario, known = settings.scenario, settings.known
     return (
         scenario.steps,
-        scenario.control_start_step,
+        known.scenario.control_start_step,
         scenario.score_window_s,
-        scenario.equilibrium,
+        (scenario.equilibrium, known.scenario.equilibrium),
         settings.architecture,
-        reference_kind(settings),
+        reference_kind(known),
         len(model.a),
     )
 

@@ -138,7 +138,9 @@ class RunSet:
     ) -> PlannedRow | ImpossibleRow:
         base = self.bases[given.pop(SCENARIO)]
         try:
-            settings = base.at({key: self.placed(key, given[key]) for key in given})
+            settings = base.at(
+                {key: self.placed(key, given[key]) for key in given}, drawn=self.vary
+            )
         except DdctError as error:
             named = error.at(_name(index, varied))
             return ImpossibleRow(index, controller, varied, given.get(SEED, 0), named)

@@ -15,6 +15,7 @@ from ddct_bringup.bag.run_info import (
 from ddct_plant.base.errors import DdctError
 from ddct_plant.graph.node_names import name_in_graph
 from ddct_plant.graph.node_reports import (
+    CONTROL_NODES,
     CONTROLLER,
     PARTS,
     ROLE,
@@ -22,6 +23,7 @@ from ddct_plant.graph.node_reports import (
     TWO_INPUT,
     flag,
     run_info_pairs,
+    settings_of_node,
 )
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.shift.roles import OFF_GOING, ON_COMING
@@ -49,10 +51,11 @@ class RunInfoCollector:
         Raise DdctError when its settings differ from the recorder's, or its pairs from
         earlier ones.
         """
-        for key, ours in run_info_pairs(self._settings).items():
+        for key, ours in run_info_pairs(settings_of_node(self._settings, node)).items():
             if pairs.get(key, ours) != ours:
                 raise DdctError(
-                    f'node {node} runs with {key} {pairs[key]} and the recorder with {ours}: '
+                    f'node {node} runs with {key} {pairs[key]} and the recorder with {ours}'
+                    f'{" for its controllers" if node in CONTROL_NODES else ""}: '
                     'start every node with the same settings',
                     key=key,
                 )

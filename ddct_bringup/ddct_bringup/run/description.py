@@ -10,6 +10,7 @@ from pathlib import Path
 from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.run_info import RunInfoOfNodes
 from ddct_controllers.interface import Controller
+from ddct_plant.bag_file.facts import KNOWN_SCENARIO, SCENARIO
 from ddct_plant.base.timebase import time_of_step
 from ddct_plant.graph.node_names import name_in_graph
 from ddct_plant.graph.node_reports import node_info
@@ -45,11 +46,16 @@ def facts_of(settings: RunSettings, controller: str, steps: int) -> RunFacts:
 
 
 def custom_data(settings: RunSettings, controller: str, steps: int) -> dict[str, str]:
-    """Return the bag's custom data: the facts of the run, its whole scenario and the version."""
-    scenario = settings.scenario
+    """
+    Return the bag's custom data: the facts of the run, its whole scenario and the version.
+
+    The scenario that controllers know is there where it differs.
+    """
+    scenario, known = settings.scenario, settings.known_scenario
     return {
         **facts_of(settings, controller, steps).to_custom_data(),
-        'scenario_yaml': scenario_to_yaml(scenario),
+        SCENARIO: scenario_to_yaml(scenario),
+        **({KNOWN_SCENARIO: scenario_to_yaml(known)} if known else {}),
         'adjusted': '\n'.join(scenario.adjusted),
         'version': package_version(),
         'commit': source_commit(),

@@ -13,9 +13,12 @@ from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import options_of
 from ddct_plant.files.yaml_text import dump_yaml
 from ddct_plant.graph.domain import require_domain, require_ros
+from ddct_plant.graph.node_names import name_in_graph
+from ddct_plant.graph.node_reports import CONTROL_NODES
 from ddct_plant.program.scheduling import Scheduling
 from ddct_plant.scenario.file import scenario_to_yaml
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.scenario import Scenario
+from ddct_plant.scenario.settings import UNKNOWN, RunSettings
 from ddct_plant.shift.roles import OFF_GOING
 
 
@@ -64,19 +67,14 @@ class RunPlan:
         """
         Return the ROS parameters by node path for a bag in `folder`; '*' is every node.
 
-        The scenario, changes included, is written into the folder `work` for the nodes to read.
+        Every node has the known settings, and those that do not control the true ones besides.
+        The scenarios, changes included, are written into the folder `work` for the nodes to read.
         """
-        scenario_file = work / f'{self.settings.scenario.name}.yaml'
-        scenario_file.write_text(scenario_to_yaml(self.settings.scenario), encoding='utf-8')
         controller = make_controller(self.controller, self.settings)
         two_input = controller.commands_engine
-        return {
+        parameters: dict[str, dict[str, object]] = {
             '*': {
-                'scenario': str(scenario_file),
-                **{
-                    name: option.kind(getattr(self.settings, name))
-                    for name, option in options_of(RunSettings).items()
-                },
+                **_settings_parameters(self.settings.known, work),
                 # Only these: an empty text is no value on the command line of a node.
                 **self.scheduling.chosen,
             },
@@ -90,12 +88,15 @@ class RunPlan:
             'reference': {'preview_steps': controller.preview_steps},
             'controller': {'controller': self.controller},
             'driveline': {'require_recorder': True, 'answer_timeout_s': ANSWER_TIMEOUT_S},
-            **{
-                node.path: {'role': OFF_GOING}
-                for node in nodes_of(shift=self.settings.shift)
-                if node.namespace
-            },
         }
+        true = _true_parameters(self.settings, work)
+        for node in nodes_of(shift=self.settings.shift):
+            own = parameters.setdefault(node.path, {})
+            if node.namespace:
+                own['role'] = OFF_GOING
+            if name_in_graph(node.path) not in CONTROL_NODES:
+                own.update(true)
+        return parameters
 
     def write_parameter_file(self, folder: Path, work: Path) -> Path:
         """Write `node_parameters` as a ROS 2 parameter file into `work` and return its path."""
@@ -106,6 +107,39 @@ class RunPlan:
         }
         path.write_text(dump_yaml(content), encoding='utf-8')
         return path
+
+
+def _settings_parameters(settings: RunSettings, work: Path) -> dict[str, object]:
+    """Return the parameters of settings that controllers know; write the scenario into `work`."""
+    return {
+        'scenario': _written(settings.scenario, work),
+        **{
+            name: option.kind(getattr(settings, name))
+            for name, option in options_of(RunSettings).items()
+            if name not in UNKNOWN
+        },
+    }
+
+
+def _true_parameters(settings: RunSettings, work: Path) -> dict[str, object]:
+    """Return the parameters that controllers do not have; write the scenario into `work`."""
+    options = options_of(RunSettings)
+    true: dict[str, object] = {
+        name: options[name].kind(getattr(settings, name)) for name in UNKNOWN
+    }
+    if settings.known_scenario is not None:
+        true |= {
+            'scenario': _written(settings.scenario, work, 'true_'),
+            'known_scenario': _written(settings.known_scenario, work),
+        }
+    return true
+
+
+def _written(scenario: Scenario, work: Path, prefix: str = '') -> str:
+    """Write a scenario into `work`; return the path of its file."""
+    file = work / f'{prefix}{scenario.name}.yaml'
+    file.write_text(scenario_to_yaml(scenario), encoding='utf-8')
+    return str(file)
 
 
 def require_headless(settings: RunSettings) -> None:

@@ -3,8 +3,8 @@
 """Settings of runs from a scenario, changed keys and options; the only constructor of them."""
 
 import argparse
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from ddct_controllers.registry import require_known_controllers
@@ -15,9 +15,20 @@ from ddct_plant.scenario.options import print_adjusted
 from ddct_plant.scenario.overrides import parsed_override
 from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.sensors.parameters import SensorParameters
 
 _SETTINGS = options_of(RunSettings)
 _NOTHING: Mapping[str, Any] = {}
+_KNOWN = (
+    *('architecture', 'clutch', 'handover', 'controllers', 'sensors'),
+    *('name', 'description', 'duration_s', 'control_start_s', 'score_window_s', 'pedal_position'),
+    *('reference', 'slip_reference', 'engine_speed_reference', 'closing'),
+)
+"""
+Keys, and sections, that are known where they vary: what a row is, and what no plant has.
+
+To vary a reference for the plant alone would change nothing. Drawn sensors are not known.
+"""
 
 
 @dataclass(frozen=True)
@@ -36,18 +47,43 @@ class RunBase:
         default_factory=dict, init=False, repr=False, compare=False
     )
     """Scenario of the runs without changes, by clutch."""
+    _last_known: dict[str, Scenario] = field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
+    """The known scenario of the last runs that had one, by its changes and clutch."""
 
-    def at(self, varied: Mapping[str, Any] = _NOTHING) -> RunSettings:
+    def at(self, varied: Mapping[str, Any] = _NOTHING, drawn: Collection[str] = ()) -> RunSettings:
         """
         Return the settings with values by key: those of `RunSettings`, or dotted scenario keys.
 
-        Dependent values change with them, as with `--set`. Raise DdctError for values that cannot
-        be used.
+        Dependent values change with them, as with `--set`. What controllers know has of `varied`
+        the keys of `_KNOWN` alone, and of them no sensors that are `drawn`. Raise DdctError for
+        values that cannot be used.
         """
         settings = {**self.settings, **{key: varied[key] for key in varied if key in _SETTINGS}}
+        clutch = settings.get('clutch', LINEAR)
+        of_scenario = {key: varied[key] for key in varied if key not in _SETTINGS}
+        known = {key: of_scenario[key] for key in of_scenario if _is_known(key, drawn)}
+        scenario = self._scenario(self._with(of_scenario), clutch)
+        if len(known) == len(of_scenario):
+            return RunSettings(scenario, **settings)
+        known_scenario = self._known_scenario(self._with(known), clutch)
+        if scenario.sensors is not None and known_scenario.sensors is None:
+            # That there are sensors is known, since other topics carry their measurements.
+            known_scenario = replace(known_scenario, sensors=SensorParameters())
+        return RunSettings(scenario, **settings, known_scenario=known_scenario)
+
+    def _with(self, varied: Mapping[str, Any]) -> Mapping[str, Any]:
         ours = {key: value for key, value in self.changes.items() if key not in varied}
-        changes = ours | {key: varied[key] for key in varied if key not in _SETTINGS}
-        return RunSettings(self._scenario(changes, settings.get('clutch', LINEAR)), **settings)
+        return {**ours, **varied}
+
+    def _known_scenario(self, changes: Mapping[str, Any], clutch: str) -> Scenario:
+        """Return the scenario that controllers know, which most runs share, with some changes."""
+        key = repr((changes, clutch))
+        if key not in self._last_known:
+            self._last_known.clear()
+            self._last_known[key] = self._scenario(changes, clutch)
+        return self._last_known[key]
 
     def _scenario(self, changes: Mapping[str, Any], clutch: str) -> Scenario:
         """Return the scenario with changes by dotted key; without any it is built once."""
@@ -59,6 +95,12 @@ class RunBase:
         if not changes:
             self._unchanged[key] = scenario
         return scenario
+
+
+def _is_known(key: str, drawn: Collection[str]) -> bool:
+    """Return whether controllers know the value of a varied key."""
+    section = key.partition('.')[0]
+    return section in _KNOWN and not (section == 'sensors' and key in drawn)
 
 
 def base_of(options: argparse.Namespace, labels: Sequence[str]) -> RunBase:

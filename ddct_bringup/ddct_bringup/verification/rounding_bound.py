@@ -20,6 +20,7 @@ from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.verdict.limits import Limits
 from ddct_bringup.verification.comparison import BOUND, Comparison, plain_json
 from ddct_plant.base.errors import FOREIGN_FAILURES
+from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.signals.gain_changes import GainChange
 
@@ -77,8 +78,16 @@ def _bound(settings: RunSettings, compare: Callable[[RunSettings], Comparison]) 
 
 
 def _with_other_last_bits(settings: RunSettings) -> Iterator[RunSettings]:
-    driveline = settings.scenario.given_driveline
+    known = settings.known_scenario
     for change in _CHANGES:
-        inertia = driveline.engine_inertia * (1.0 + change)
-        changed = replace(driveline, engine_inertia=inertia)
-        yield replace(settings, scenario=replace(settings.scenario, given_driveline=changed))
+        yield replace(
+            settings,
+            scenario=_changed(settings.scenario, change),
+            known_scenario=_changed(known, change) if known else None,
+        )
+
+
+def _changed(scenario: Scenario, change: float) -> Scenario:
+    driveline = scenario.given_driveline
+    inertia = driveline.engine_inertia * (1.0 + change)
+    return replace(scenario, given_driveline=replace(driveline, engine_inertia=inertia))

@@ -39,7 +39,10 @@ def test_varied_values_are_set_as_by_set_with_their_dependent_values():
     scenario = load_scenario(
         'thesis', ['duration_s=2.0', 'vehicle.mass_kg=1800.0'], clutch='stick_slip'
     )
-    assert settings == RunSettings(scenario, clutch='stick_slip', wear_gain=0.8)
+    known = load_scenario('thesis', ['duration_s=2.0'], clutch='stick_slip')
+    assert settings == RunSettings(
+        scenario, clutch='stick_slip', wear_gain=0.8, known_scenario=known
+    )
     inertia = settings.scenario.driveline.vehicle_inertia
     assert inertia == pytest.approx(1800.0 * settings.scenario.vehicle.wheel_radius_m**2)
 

@@ -9,8 +9,13 @@ import pytest
 from refusals import refused
 
 from ddct_bringup import api
+from ddct_bringup.campaign.rows import scored_headless
 from ddct_bringup.programs.sweep import main
+from ddct_bringup.run.run_base import RunBase
+from ddct_bringup.scores.document import run_entry
+from ddct_bringup.verdict.limits import packaged_limits
 from ddct_controllers.from_python import chosen_from
+from ddct_plant.scenario.file import ScenarioFile
 
 SHORT_S = 1.0
 SHORT = ['--duration', str(SHORT_S)]
@@ -41,13 +46,16 @@ def test_rows_are_those_of_the_runs_alone_with_what_belongs_to_the_key(swept):
         ('ls8', 1800.0),
     ]
     row = rows[3]
-    with pytest.warns(match='vehicle_inertia moved'):
-        alone = api.run('ls8', duration=SHORT_S, wear_gain=0.9, set={'vehicle.mass_kg': 1800.0})
-    assert row['verdict'] == alone.verdict
-    assert row['metrics']['slip_final_rpm'] == alone.metrics['slip_final_rpm']
-    assert row['scenario_changes'] == list(alone.scores.scenario_changes)
+    base = RunBase(
+        ScenarioFile.read('thesis'), {'duration_s': SHORT_S}, {'wear_gain': 0.9}, ['ls8']
+    )
+    settings = base.at({'vehicle.mass_kg': 1800.0})
+    alone = run_entry(scored_headless(settings, 'ls8', packaged_limits()))
+    assert row['verdict'] == alone['verdict']
+    assert row['metrics']['slip_final_rpm'] == alone['metrics']['slip_final_rpm']
+    assert row['scenario_changes'] == list(alone['scenario_changes'])
     assert any(
-        change.startswith('driveline.vehicle_inertia') for change in alone.scores.scenario_changes
+        change.startswith('driveline.vehicle_inertia') for change in row['scenario_changes']
     )
     assert rows[2]['metrics']['slip_final_rpm'] != row['metrics']['slip_final_rpm']
 

@@ -64,7 +64,7 @@ CHECKS = (
 def check_controller(name: str, settings: RunSettings) -> list[Outcome]:
     """Return an outcome per check of CHECKS for a controller of the registry or in a file."""
     printed = OutputMonitor()
-    subject = Subject(name, settings, printed)
+    subject = Subject(name, settings.known, printed)
     outcomes: dict[str, Outcome] = {}
     causes: dict[str, str] = {}
     with contextlib.redirect_stdout(printed):

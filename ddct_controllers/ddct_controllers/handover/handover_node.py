@@ -32,6 +32,7 @@ class HandoverNode(FollowerNode):
     is then that of the on-coming one times the ratio of the gears.
     """
 
+    KNOWN_ONLY: ClassVar[bool] = True
     DEFAULTS: ClassVar[Mapping[str, Any]] = {'scenario': 'upshift', 'clutch': STICK_SLIP}
 
     def __init__(self, **kwargs: Any) -> None:

@@ -156,9 +156,10 @@ HANDOVERS: Mapping[str, Callable[[RunSettings], Handover]] = {
 
 def make_handover(settings: RunSettings) -> Handover:
     """
-    Return the handover of a run: one of ours by name, or a third party's.
+    Return the handover of a run, from its known settings: one of ours by name, or a third party's.
 
     Raise ParameterError for an unknown name, DdctError for code of others that fails.
     """
+    settings = settings.known
     made = HANDOVERS.get(settings.handover)
     return made(settings) if made else third_party_handover(settings, HANDOVERS)

@@ -12,7 +12,7 @@ from ddct_plant.files.yaml_text import parse_yaml
 
 DURATION = 'duration_s'
 """Key of the planned duration in s, in the custom data and in the scenario."""
-SCENARIO = 'scenario_yaml'
+SCENARIO, KNOWN_SCENARIO = 'scenario_yaml', 'known_scenario_yaml'
 """Key of the scenario's text in the custom data."""
 _LARGEST = 2.0**31
 """Upper bound of any number, in its unit; the largest seed is one less."""
@@ -34,10 +34,10 @@ def parsed_fact(name: str, text: str) -> Any:
     return value
 
 
-def recorded_scenario(custom_data: Mapping[str, str]) -> Any:
-    """Return the content of the recorded scenario; None without a readable one."""
+def recorded_scenario(custom_data: Mapping[str, str], key: str = SCENARIO) -> Any:
+    """Return the content of the scenario recorded under a key; None without a readable one."""
     try:
-        return parse_yaml(custom_data.get(SCENARIO, ''))
+        return parse_yaml(custom_data.get(key, ''))
     except DdctError:
         return None
 

@@ -56,13 +56,15 @@ class GraphNode(Node):
     """Arguments after `--ros-args` that `--help` shows as examples for this node."""
     DEFAULTS: ClassVar[Mapping[str, Any]] = {}
     """Defaults of shared parameters that differ from those of other nodes, by name."""
+    KNOWN_ONLY: ClassVar[bool] = False
+    """Whether the node controls: it has the known settings of the run, and no others."""
 
     def __init__(self, name: str, *, steady_time: SteadyTime | None = None, **kwargs: Any) -> None:
         """Declare the shared parameters; raise ParameterError when one cannot be used."""
         super().__init__(name, **kwargs)
         self.steady_time = steady_time or SteadyTime()
         """Time by which the node waits."""
-        self.settings = declare_settings(self, self.DEFAULTS)
+        self.settings = declare_settings(self, self.DEFAULTS, known_only=self.KNOWN_ONLY)
         self.add_pre_set_parameters_callback(self._as_declared)
         # Before anything is made that may start a process, which then has the same.
         declare_scheduling(self, lockstep=self.settings.lockstep).apply()

@@ -17,6 +17,7 @@ from ddct_plant.fail_safe.request_watch import (
     REQUEST_TIMEOUT_S,
     FailSafeSettings,
 )
+from ddct_plant.graph.node_names import name_in_graph
 from ddct_plant.program.command_line import package_version
 from ddct_plant.scenario.file import scenario_digest
 from ddct_plant.scenario.settings import RunSettings
@@ -30,6 +31,10 @@ CONTROLLER, STEPS, TWO_INPUT = 'controller', 'steps', 'two_input'
 """Keys on `run_info` without which there is no recording, or which the recorder compares."""
 DIGEST = 'scenario_digest'
 """Key on `run_info` of the digest of a node's scenario."""
+KNOWN_DIGEST = 'known_scenario_digest'
+"""Key on `run_info`, but of control nodes, of the scenario that they know where it differs."""
+CONTROL_NODES = ('/controller', '/reference', '/handover')
+"""Full names within the graph of the nodes that have the known settings alone."""
 ROLE = 'role'
 """Key on `run_info` of a clutch and an actuator in a gear shift: the side on which they are."""
 PARTS = 'torque_parts'
@@ -50,10 +55,12 @@ def run_info_pairs(settings: RunSettings, own: Mapping[str, str] | None = None) 
 
     Only a run with a gear shift has the settings of the off-going side and the handover.
     """
+    known = settings.known_scenario
     return {
         'version': package_version(),
         'scenario': settings.scenario.name,
         DIGEST: scenario_digest(settings.scenario),
+        **({KNOWN_DIGEST: scenario_digest(known)} if known else {}),
         'architecture': settings.architecture,
         'clutch': settings.clutch,
         'wear_gain': repr(settings.wear_gain),
@@ -62,6 +69,11 @@ def run_info_pairs(settings: RunSettings, own: Mapping[str, str] | None = None) 
         **(_of_shift(settings) if settings.shift else {}),
         **(own or {}),
     }
+
+
+def settings_of_node(settings: RunSettings, node: str) -> RunSettings:
+    """Return the settings of a run that a node has, by its full name within the graph."""
+    return settings.known if node in CONTROL_NODES else settings
 
 
 def _of_shift(settings: RunSettings) -> Pairs:
@@ -127,7 +139,10 @@ def node_info(
             f'{OFF_GOING}/clutch': role,
             f'{OFF_GOING}/actuator': {**role, **actuator_info()},
         }
-    return {node: run_info_pairs(settings, pairs) for node, pairs in own.items()}
+    return {
+        node: run_info_pairs(settings_of_node(settings, name_in_graph(node)), pairs)
+        for node, pairs in own.items()
+    }
 
 
 def flag(value: bool) -> str:

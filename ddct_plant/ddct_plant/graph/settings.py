@@ -20,30 +20,39 @@ from ddct_plant.base.options import Option, options_of
 from ddct_plant.fail_safe.request_watch import FailSafeSettings
 from ddct_plant.program.scheduling import Scheduling
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import UNKNOWN, RunSettings
 from ddct_plant.shift.roles import OFF_GOING, ON_COMING, ROLES
 
 _SCENARIO = Option('thesis', 'name of a packaged scenario, or path of a YAML file')
+_KNOWN_SCENARIO = Option(
+    '', 'scenario that controllers know, as `scenario` is given; empty: the same as `scenario`'
+)
 _ROLE = Option(
     ON_COMING, 'side of a gear shift; a run without a shift has the first alone', choices=ROLES
 )
 _FAIL_SAFE = options_of(FailSafeSettings)
 
 
-def declare_settings(node: Node, defaults: Mapping[str, Any]) -> RunSettings:
+def declare_settings(
+    node: Node, defaults: Mapping[str, Any], *, known_only: bool = False
+) -> RunSettings:
     """
     Declare the shared parameters on `node`, with other `defaults` by name where given.
 
-    Raise ParameterError for a value out of range.
+    A node with `known_only` has no parameters for what controllers do not know. Raise
+    ParameterError for a value out of range.
     """
+    shared = {'scenario': _SCENARIO, 'known_scenario': _KNOWN_SCENARIO, **options_of(RunSettings)}
     values = {
         name: declare(node, name, replace(each, default=defaults.get(name, each.default)))
-        for name, each in {'scenario': _SCENARIO, **options_of(RunSettings)}.items()
+        for name, each in shared.items()
+        if not known_only or name not in ('known_scenario', *UNKNOWN)
     }
     scenario = load_scenario(values.pop('scenario'))
     for line in scenario.adjusted:
         node.get_logger().info(line)
-    return RunSettings(scenario, **values)
+    known = values.pop('known_scenario', '')
+    return RunSettings(scenario, **values, known_scenario=load_scenario(known) if known else None)
 
 
 def declare_scheduling(node: Node, *, lockstep: bool) -> Scheduling:

@@ -3,6 +3,7 @@
 """The state of a run at t_0 by its settings, and the request before it."""
 
 from dataclasses import replace
+from typing import NamedTuple
 
 from ddct_plant.models.clutch import LinearClutch
 from ddct_plant.models.driveline import OPEN
@@ -18,40 +19,56 @@ def initial_request(settings: RunSettings) -> float:
     Return the request in N m of the clutch before the run; in a shift that of the on-coming one.
 
     It is C_fOL in `detailed`, and where the scenario starts with a clutch that is locked or
-    slipping. It is zero for an open clutch, as is the on-coming one of a shift.
+    slipping, of the car that a controller knows. It is zero for an open clutch, as is the
+    on-coming one of a shift.
     """
-    return 0.0 if settings.shift else initial_state(settings).torque_request
+    return 0.0 if settings.shift else _before(settings.known).torque_request
+
+
+class _Before(NamedTuple):
+    """The drive before t_0 of a run that is no shift, in N m and rad/s."""
+
+    static: StaticTorque
+    wheel_speed: float
+    load_torque: float
+    engine_torque: float
+    torque_request: float
+
+
+def _before(settings: RunSettings) -> _Before:
+    """Return the drive before t_0, with the request that these settings give."""
+    scenario, initial = settings.scenario, settings.scenario.initial
+    wheel_speed = scenario.driveline.gear.wheel_speed(initial.shaft_speed_rad_s)
+    load_torque = RoadLoad(scenario.load, scenario.vehicle, scenario.slope).torque(
+        wheel_speed * scenario.vehicle.wheel_radius_m
+    )
+    engine_speed = initial.engine_speed_rad_s
+    engine_torque = make_engine(settings).torque(0, speed=engine_speed)
+    static = StaticTorque(scenario.driveline, scenario.equilibrium)
+    carried = static.torque(engine_torque, load_torque, engine_speed, initial.shaft_speed_rad_s)
+    phase = initial.clutch_phase
+    engaged = settings.detailed if phase is None else phase != OPEN
+    request = max(carried, 0.0) if engaged else 0.0
+    return _Before(static, wheel_speed, load_torque, engine_torque, request)
 
 
 def initial_state(settings: RunSettings) -> InitialState:
     """
     Return the state at t_0 of a run with these settings that is no shift.
 
-    Before the run the request is C_fOL in `detailed`, and where the scenario starts with a clutch
-    that is locked or slipping.
+    The car is the true one; its actuator is at rest at the request of the known settings.
     """
-    scenario = settings.scenario
-    driveline = scenario.driveline
-    wheel_speed = driveline.gear.wheel_speed(scenario.initial.shaft_speed_rad_s)
-    load_torque = RoadLoad(scenario.load, scenario.vehicle, scenario.slope).torque(
-        wheel_speed * scenario.vehicle.wheel_radius_m
-    )
-    engine_speed = scenario.initial.engine_speed_rad_s
-    engine_torque = make_engine(settings).torque(0, speed=engine_speed)
-    static = StaticTorque(driveline, scenario.equilibrium)
-    shaft_speed = scenario.initial.shaft_speed_rad_s
-    static_torque = static.torque(engine_torque, load_torque, engine_speed, shaft_speed)
-    phase = scenario.initial.clutch_phase
-    engaged = settings.detailed if phase is None else phase != OPEN
-    torque_request = max(static_torque, 0.0) if engaged else 0.0
+    initial_speeds = settings.scenario.initial
+    before, torque_request = _before(settings), initial_request(settings)
+    shaft_speed = initial_speeds.shaft_speed_rad_s
     clutch_torque = LinearClutch(settings.wear_gain).transmit([torque_request])[0]
     initial = InitialState(
-        engine_speed=engine_speed,
+        engine_speed=initial_speeds.engine_speed_rad_s,
         shaft_speed=shaft_speed,
-        wheel_speed=wheel_speed,
-        twist=static.twist(clutch_torque, load_torque, shaft_speed),
-        engine_torque=engine_torque,
-        load_torque=load_torque,
+        wheel_speed=before.wheel_speed,
+        twist=before.static.twist(clutch_torque, before.load_torque, shaft_speed),
+        engine_torque=before.engine_torque,
+        load_torque=before.load_torque,
         torque_request=torque_request,
         clutch_torque=clutch_torque,
     )

@@ -2,7 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The settings that every node of one run shares."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Any, Self
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import OptionGroup, option, option_field, options_of
@@ -17,6 +19,8 @@ ARCHITECTURES = ('base', 'feedforward', 'feedforward_tanh', 'detailed')
 MODES = ('lockstep', 'realtime')
 """Modes of a run: lock-step waits for every reply; real time steps at 100 Hz and counts misses."""
 _PYTHON = '.py'
+UNKNOWN = ('wear_gain', 'seed', 'off_going_wear_gain')
+"""Settings that no controller knows; those that it knows have their defaults."""
 OF_SHIFTS = ('off_going_wear_gain', 'handover')
 """Settings that only a gear shift has."""
 
@@ -28,7 +32,11 @@ def is_handover_file(handover: str) -> bool:
 
 @dataclass(frozen=True)
 class RunSettings(OptionGroup):
-    """Settings of one run, the same in every node of the graph."""
+    """
+    True settings of one run, which its plant has; `known` is the part that a controller gets.
+
+    Handover, reference, controllers and the first request are made from `known` alone.
+    """
 
     scenario: Scenario
     architecture: str = option('detailed', 'control architecture', choices=ARCHITECTURES)
@@ -51,6 +59,8 @@ class RunSettings(OptionGroup):
         'how the torque goes from the off-going to the on-coming clutch, in a gear shift only: '
         'timed, slip, model, adaptive, one of another package, or a Python file',
     )
+    known_scenario: Scenario | None = field(default=None, repr=False)
+    """Scenario that controllers know where it differs from the true one, else None."""
 
     def __post_init__(self) -> None:
         """Check every setting; raise ParameterError that names a bad one and the choices."""
@@ -58,6 +68,23 @@ class RunSettings(OptionGroup):
         self._require_reference()
         self._require_clutch()
         self._require_shift()
+        self._require_known()
+
+    @cached_property
+    def known(self) -> Self:
+        """
+        Settings that a controller knows: the known scenario, clutches without wear, no seed.
+
+        They are these settings themselves where they do not differ, and know of no others.
+        """
+        changes: dict[str, Any] = {
+            name: described.default
+            for name, described in options_of(RunSettings).items()
+            if name in UNKNOWN and getattr(self, name) != described.default
+        }
+        if self.known_scenario is not None:
+            changes |= {'scenario': self.known_scenario, 'known_scenario': None}
+        return replace(self, **changes) if changes else self
 
     @property
     def detailed(self) -> bool:
@@ -128,6 +155,23 @@ class RunSettings(OptionGroup):
                 'the architecture detailed',
                 key='architecture',
             )
+
+    def _require_known(self) -> None:
+        """Refuse known settings of another kind of run, whose topics would not fit together."""
+        if self.known_scenario is None:
+            return
+        for section in ('sensors', 'shift'):
+            ours, known = (
+                getattr(each, section) is not None for each in (self.scenario, self.known.scenario)
+            )
+            if ours != known:
+                raise ParameterError(
+                    f'{section} is varied for the plant alone, but what controllers know of '
+                    f'scenario {self.scenario.name} has {"one" if known else "none"}: give the '
+                    f'section {section} in the scenario'
+                    + (', or in the grid' if section == 'sensors' else ''),
+                    key=section,
+                )
 
     def _require_defaults_of_a_shift(self) -> None:
         options = options_of(RunSettings)

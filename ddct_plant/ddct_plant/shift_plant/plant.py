@@ -79,7 +79,7 @@ class ShiftPlant:
         """Start in the drive before the shift; `two_input`: the controller commands C_m."""
         self._scenario = settings.scenario
         self._two_input = two_input
-        self._ratio = gears_of(settings.scenario).ratio
+        self._ratio = gears_of(settings.known.scenario).ratio
         self.driveline = shift_driveline(settings)
         self.first_request = first_request(settings, OFF_GOING)
         """Request of the off-going clutch before t_0 in N m, which keeps it locked."""
@@ -104,7 +104,7 @@ class ShiftPlant:
         Return the measurements of a handover at step k: speeds, and its slip in rad/s.
 
         No sensor is at the off-going shaft: in a run with sensors its speed is that of the
-        on-coming shaft times the ratio of the gears, which both are engaged in a handover.
+        on-coming shaft times the known ratio of the gears, which both are engaged in a handover.
         """
         true = outputs.driveline
         if self._sensors is None:

@@ -48,11 +48,12 @@ def first_request(settings: RunSettings, role: str) -> float:
     """
     Return the request before t_0 in N m of the clutch with a role.
 
-    That of the off-going clutch keeps it locked.
+    That of the off-going clutch keeps it locked, in the car that a controller knows.
     """
     if role == ON_COMING:
         return initial_request(settings)
-    return locked_request(settings.scenario, shift_start(settings).off_going_torque)
+    known = settings.known
+    return locked_request(known.scenario, shift_start(known).off_going_torque)
 
 
 def side_actuator(settings: RunSettings, role: str) -> Actuator:

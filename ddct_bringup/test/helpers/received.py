@@ -1,0 +1,120 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""A controller that keeps all that it receives, and a search for true values in it."""
+
+import sys
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+
+from ddct_bringup.run.run_base import RunBase
+from ddct_plant.base.options import options_of
+from ddct_plant.scenario.file import ScenarioFile
+from ddct_plant.scenario.settings import RunSettings
+
+UNKNOWN = {
+    'wear_gain': 1.1375,
+    'seed': 424243,
+    'vehicle.mass_kg': 1789.25,
+    'actuator.delay_s': 0.013,
+}
+"""Values that no controller knows, and that no other quantity has."""
+UNKNOWN_IN_A_SHIFT = {**UNKNOWN, 'off_going_wear_gain': 0.9125}
+_FILE = """
+import received_objects
+
+from ddct_controllers.interface import Command, Controller
+
+
+class Keeper(Controller):
+    def __init__(self, context):
+        self.context, self.measurements = context, []
+        received_objects.KEPT.append(self)
+
+    def reset(self):
+        pass
+
+    def hold(self, measurement):
+        self.measurements.append(measurement)
+
+    def update(self, measurement):
+        self.measurements.append(measurement)
+        return Command(-0.1 * measurement.slip_error_rpm)
+"""
+
+
+def keeper_file(folder: Path) -> tuple[str, list[Any]]:
+    """Write the controller that keeps all; return its file, and a list of the objects made."""
+    module = ModuleType('received_objects')
+    kept: list[Any] = []
+    module.__dict__['KEPT'] = kept
+    sys.modules['received_objects'] = module
+    file = folder / 'keeper.py'
+    file.write_text(_FILE, encoding='utf-8')
+    return str(file), kept
+
+
+def settings_with(
+    varied: dict[str, Any], scenario: str = 'launch', **settings: Any
+) -> RunSettings:
+    """Return the settings of a run whose plant alone has the values that vary."""
+    changes = {'duration_s': settings.pop('duration_s', 1.2)}
+    of_run = {'clutch': 'stick_slip', **settings}
+    assert set(of_run) <= set(options_of(RunSettings))
+    return RunBase(ScenarioFile.read(scenario), changes, of_run, ['Keeper']).at(varied)
+
+
+def true_values(settings: RunSettings) -> list[float]:
+    """Return the values that differ from what a controller knows, the derived inertia too."""
+    values = [settings.wear_gain, settings.seed, settings.off_going_wear_gain]
+    values += [settings.scenario.vehicle.mass_kg, settings.scenario.actuator.delay_s]
+    values += [settings.scenario.driveline.vehicle_inertia]
+    known = settings.known
+    ours = [known.wear_gain, known.seed, known.off_going_wear_gain]
+    ours += [known.scenario.vehicle.mass_kg, known.scenario.actuator.delay_s]
+    ours += [known.scenario.driveline.vehicle_inertia]
+    return [value for value, other in zip(values, ours, strict=True) if value != other]
+
+
+def found_in(root: object, values: Iterable[float]) -> list[float]:
+    """Return which of the values are somewhere in an object, as a number or in a text."""
+    numbers: set[float] = set()
+    texts: list[str] = []
+    for each in _within(root):
+        if isinstance(each, str):
+            texts.append(each)
+        elif isinstance(each, np.ndarray):
+            numbers.update(np.asarray(each, dtype=float).ravel().tolist())
+        else:
+            numbers.add(float(each))  # type: ignore[arg-type]
+    whole = '\n'.join(texts)
+    return [value for value in values if value in numbers or repr(value) in whole]
+
+
+def _within(root: object) -> Iterator[object]:
+    """Yield numbers, texts and arrays of numbers in an object, at any depth."""
+    waiting, before = [root], set()
+    while waiting:
+        each = waiting.pop()
+        if isinstance(each, str | bool | int | float | np.number):
+            yield each
+            continue
+        if isinstance(each, np.ndarray) and each.dtype.kind in 'fiu':
+            yield each
+            continue
+        if id(each) in before or isinstance(each, type | ModuleType):
+            continue
+        before.add(id(each))
+        if isinstance(each, dict):
+            waiting += [*each.keys(), *each.values()]
+        elif isinstance(each, list | tuple | set | frozenset):
+            waiting += each
+        else:
+            waiting += vars(each).values() if hasattr(each, '__dict__') else ()
+            slots = [
+                name for kind in type(each).__mro__ for name in getattr(kind, '__slots__', ())
+            ]
+            waiting += [getattr(each, name) for name in slots if hasattr(each, name)]
