@@ -116,6 +116,7 @@ class ControllerContext:
     """Arguments of a controller's factory."""
 
     settings: RunSettings
+    """Known settings of the run: without wear, seed and what varies for the plant alone."""
     gains: Mapping[str, Any]
     """
     Options from the scenario's section `controllers.<name>`, by name.

@@ -54,7 +54,7 @@ class Measurement:
     slip_reference_rate: Sequence[float]
     """Rates of the slip reference in rad/s^2, (P + 1,), at the same times."""
     load_torque: float = 0.0
-    """Load torque C_load in N m, which the architecture computes from V_x and the slope."""
+    """Load torque C_load in N m of the known car, which the architecture computes from V_x."""
     open_loop_torque: float = 0.0
     """Torque in N m that the architecture adds to the controller's clutch torque."""
 
