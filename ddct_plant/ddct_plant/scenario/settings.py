@@ -4,7 +4,7 @@
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any, Self
+from typing import Self
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import OptionGroup, option, option_field, options_of
@@ -77,14 +77,16 @@ class RunSettings(OptionGroup):
 
         They are these settings themselves where they do not differ, and know of no others.
         """
-        changes: dict[str, Any] = {
-            name: described.default
-            for name, described in options_of(RunSettings).items()
-            if name in UNKNOWN and getattr(self, name) != described.default
-        }
-        if self.known_scenario is not None:
-            changes |= {'scenario': self.known_scenario, 'known_scenario': None}
-        return replace(self, **changes) if changes else self
+        options = options_of(RunSettings)
+        known = replace(
+            self,
+            scenario=self.known_scenario or self.scenario,
+            known_scenario=None,
+            wear_gain=options['wear_gain'].default,
+            seed=options['seed'].default,
+            off_going_wear_gain=options['off_going_wear_gain'].default,
+        )
+        return self if known == self else known
 
     @property
     def detailed(self) -> bool:
