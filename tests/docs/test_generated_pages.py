@@ -78,7 +78,7 @@ def test_the_tables_of_options_are_what_the_code_declares() -> None:
     assert shown_tables('options') == as_markdown(OPTION_TABLES), 'run: make docs KINDS=options'
 
 
-def test_metrics_criteria_and_limits_are_those_of_the_programs() -> None:
+def test_figures_metrics_and_limits_are_those_of_the_programs() -> None:
     assert shown_tables('scores') == as_markdown(score_tables()), 'run: make docs KINDS=scores'
 
 

@@ -7,13 +7,9 @@ from pathlib import Path
 
 from support.documented import ROOT
 
-from ddct_bringup.metrics.catalogue import METRICS
+from ddct_bringup.metrics.catalogue import FIGURES, OTHERS
 from ddct_bringup.scores.document import run_entry
 from ddct_bringup.scores.scoring import run_without_score
-from ddct_bringup.verdict.state import STATES
-from ddct_bringup.verdict.verdict import BEYOND, FAILED, NO_LIMIT, UNAVOIDABLE, WITHIN
-
-WORDS = (BEYOND, WITHIN, UNAVOIDABLE, NO_LIMIT, FAILED)
 
 USE = ROOT / 'docs' / 'use'
 
@@ -25,14 +21,12 @@ def named(page: Path, heading: str) -> list[str]:
     return [name for row in rows for name in re.findall(r'`(\w+)`', row)]
 
 
+def test_every_figure_is_on_the_page_of_the_verdict() -> None:
+    assert named(USE / 'verdict.md', 'Figures') == [each.key for each in FIGURES]
+
+
 def test_every_metric_and_every_other_key_of_a_run_is_on_the_page() -> None:
     page = USE / 'metrics_and_symbols.md'
-    assert sorted(named(page, 'Metrics of scores.json')) == sorted(METRICS)
+    assert named(page, 'Metrics of scores.json') == [each.key for each in OTHERS]
     others = run_entry(run_without_score('bag', None, 'why')).keys() - {'metrics'}
     assert sorted(named(page, 'Other keys of a run')) == sorted(others)
-
-
-def test_every_state_and_every_word_on_limits_is_on_the_page() -> None:
-    page = USE / 'metrics_and_symbols.md'
-    assert named(page, 'States') == list(STATES)
-    assert sorted(named(page, 'Words on limits')) == sorted(WORDS)

@@ -28,8 +28,9 @@ from ddct_bringup.floor.lock import Lock, lock_of
 from ddct_bringup.floor.objectives import OBJECTIVES, Signals
 from ddct_bringup.floor.program.peak import peak_program
 from ddct_bringup.floor.program.solve import solve
-from ddct_bringup.floor.values import engagements_a_day, value_of
+from ddct_bringup.floor.values import value_of
 from ddct_bringup.run.headless import run_headless
+from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.base.timebase import time_of_step
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.plant import holding_torque, make_load
@@ -54,6 +55,7 @@ def hill_case(settings: RunSettings, start: Start, lock_s: float, breakaway: int
         rigid_tube(settings, start, lock_s),
         False,
         capacity_range(settings, start.temperature_c),
+        packaged_limits().rules,
         MOST_REQUEST,
         (demand_law(settings, start.step, len(steps)), load),
     )
@@ -67,7 +69,7 @@ def least_peak(case: Case, breakaway: int | None, *, within: bool = False) -> fl
     friction of a wheel at rest changes with the shaft.
     """
     motion, columns = case.motion, case.motion.columns
-    signals = Signals.of_motion(motion, case.settings.scenario, engagements_a_day())
+    signals = Signals.of_motion(motion, case.settings.scenario)
     periods = columns.load.stop - columns.load.start if within else 0
     ends = np.zeros((periods, signals.acceleration.shape[1]))
     steps, held = np.arange(periods), case.load.high[:periods]
@@ -126,7 +128,7 @@ def main() -> int:
             print(f'  at rest for {breakaway} periods {_text(least_peak(case, breakaway))}')
     for name in options.controllers.split(','):
         run = run_headless(settings, name)
-        lock = lock_of(run, start.step)
+        lock = lock_of(run, start.step, packaged_limits().rules)
         turns = int(np.argmax(run.wheel_speed > 0.0)) - start.step
         value = value_of(settings, METRIC, run, start.step)
         print(

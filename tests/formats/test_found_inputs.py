@@ -19,7 +19,7 @@ NAMES = (
     *('bag', 'bag_as_log', 'repair', 'log', 'controller', 'fmu_description', 'fmu'),
     *('timing', 'failed_run', 'repeated_failure', 'digests', 'scores', 'verified_scores'),
     *('frequency', 'campaign', 'manifest', 'results', 'result_row', 'summary'),
-    *('benchmark', 'benchmark_rows', 'benchmark_limits', 'update_times', 'floor'),
+    *('benchmark', 'benchmark_rows', 'update_times', 'floor'),
     *('tuning_mpc_thesis', 'tuning_pi_launches', 'tuning_manifest', 'tuning_trials'),
     *('tuning_runs', 'scenario', 'profile', 'limits', 'columns', 'parquet'),
     *('live_head', 'live_frames'),

@@ -53,7 +53,7 @@ def test_own_nodes_give_the_trajectory_of_ours_by_the_lines_of_the_page(tmp_path
         timeout=WITHIN_S,
     )
     assert done.returncode == 0, done.stderr
-    assert re.search(r'own_pi .* engaged .* yes *$', done.stdout, re.MULTILINE), 'and valid'
+    assert re.search(r'own_pi .* engaged *$', done.stdout, re.MULTILINE), 'and valid'
 
     gains = ('proportional_gain=0.2', 'integral_gain=0.6')
     scenario = load_scenario('thesis', [f'controllers.pi.{gain}' for gain in gains])

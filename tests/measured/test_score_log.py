@@ -4,6 +4,7 @@
 
 import json
 import re
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +15,7 @@ from support.other_car import COLUMNS, LASTS_S, TRUE, drive, write_csv
 from support.runs import plan, record
 
 from ddct_bringup.bag.measured_run import read_measured_run
-from ddct_bringup.metrics.catalogue import CRITERION_UNITS, METRICS, NEEDED_BY
+from ddct_bringup.metrics.catalogue import METRICS, NEEDED_BY
 from ddct_bringup.programs import report, score
 from ddct_bringup.run.timing_and_failure import NOTE_FILE
 from ddct_bringup.scores.csv_text import signals_csv
@@ -36,6 +37,8 @@ columns:
   vehicle_accel: {column: vehicle_accel_m_s2, unit: m/s^2}
   slip_reference: {column: slip_reference_rad_s, unit: rad/s}
   torque_request: {column: torque_request_n_m, unit: N m}
+  engine_torque: {column: engine_torque_n_m, unit: N m}
+  torque_demand: {column: torque_demand_n_m, unit: N m}
 run: {controller: pi, scenario: bench, control_start_s: 0.6, score_window_s: [0.6, 1.7]}
 """
 
@@ -59,6 +62,12 @@ def scored(folder: Path, *options: str) -> dict[str, Any]:
     return run
 
 
+def values_of(run: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the figures and metrics of an entry by key."""
+    values = {**run['figures'], **run['metrics']}
+    return {key: value for key, value in values.items() if key != 'least_is_bound'}
+
+
 def test_our_own_signals_as_a_foreign_log_have_the_scores_of_the_bag(tmp_path: Path) -> None:
     recording = record(plan('pi', 'headless', duration_s=3.0), tmp_path / 'pi')
     assert recording.settings is not None
@@ -67,21 +76,20 @@ def test_our_own_signals_as_a_foreign_log_have_the_scores_of_the_bag(tmp_path: P
     (tmp_path / 'map.yaml').write_text(OURS.replace('run: {', f'run: {{total_ratio: {ratio!r}, '))
     scores = score_recording(recording, 'pi', packaged_limits()).scores
     found, wanted = scored(tmp_path), run_entry(scores)
-    of_time = ('update_time_median_us', 'update_time_p99_us', 'missed_steps', 'resends')
-    for name, value in wanted['metrics'].items():
-        if name not in (*of_time, 'worst_lateness_us'):
+    of_plant = {
+        'friction_work_over_least': 'a log has no inertias of the car',
+        'driving_acceleration_m_s2': 'the plant is not known',
+    }
+    ours, theirs = values_of(wanted), values_of(found)
+    assert ours.keys() == theirs.keys()
+    for name, value in ours.items():
+        if name in of_plant:
+            assert theirs[name] is None
+            assert found['null_reasons'][name] == of_plant[name]
+        elif not METRICS[name].from_timing:
             same = None if value is None else pytest.approx(value, rel=1e-9)
-            assert found['metrics'][name] == same, name
-    assert found['verdict']['state'] == wanted['verdict']['state']
-    for ours, theirs in zip(
-        wanted['verdict']['criteria'], found['verdict']['criteria'], strict=True
-    ):
-        if ours['name'] == 'friction_work_over_least':  # the log has no inertias
-            assert (theirs['value'], theirs['state']) == (None, 'no_limit')
-        elif ours['name'] != 'deadline_misses':
-            same = None if ours['value'] is None else pytest.approx(ours['value'], rel=1e-9)
-            assert theirs['value'] == same, ours['name']
-    assert found['not_computed'] == {}
+            assert theirs[name] == same, name
+    assert (found['state'], found['why']) == (wanted['state'], wanted['why'])
     log = read_measured_run(tmp_path / 'drive.csv', load_columns(str(tmp_path / 'map.yaml')))
     np.testing.assert_allclose(
         log.trajectory.joint_speed[:, 3], recording.trajectory.joint_speed[:, 3], atol=1e-9
@@ -93,7 +101,7 @@ def test_what_the_columns_do_not_allow_is_null_with_its_reason(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     run = scored(folder)
-    metrics, reasons = run['metrics'], run['not_computed']
+    metrics, reasons = values_of(run), run['null_reasons']
     assert run['valid'] is True
     assert metrics['steps'] == round(100 * LASTS_S)
     exact = drive(1)
@@ -102,14 +110,15 @@ def test_what_the_columns_do_not_allow_is_null_with_its_reason(
     twist_speed = exact.speeds[:, 1] / TRUE['total_ratio'] - exact.speeds[:, 2]
     true_std = 30.0 / np.pi * np.hypot(np.std(twist_speed[window]), np.hypot(0.2 / 12.5, 0.02))
     assert metrics['torsion_speed_std_rpm'] == pytest.approx(true_std, rel=0.2)
-    slip = exact.speeds[:, 0] - exact.speeds[:, 1]
-    work = np.trapezoid(np.abs(slip * exact.clutch_torque), exact.time_s)
-    assert metrics['friction_energy_j'] == pytest.approx(work, rel=0.01)
-    assert metrics['slip_rmse_rpm'] is None
-    assert reasons['slip_rmse_rpm'] == 'the log has no slip_reference'
-    assert reasons['request_variation'] == 'the log has no torque_request'
-    assert 'friction_energy_j' not in reasons
-    assert 'the log has no slip_reference: no slip_rmse_rpm' in capsys.readouterr().out
+    power = np.abs((exact.speeds[:, 0] - exact.speeds[:, 1]) * exact.clutch_torque)
+    work = np.trapezoid(power[window], exact.time_s[window])
+    assert metrics['friction_work_j'] == pytest.approx(work, rel=0.01)
+    assert 'friction_work_j' not in reasons
+    assert metrics['torque_late_s'] is None
+    assert reasons['torque_late_s'] == 'the log has no torque_demand'
+    assert reasons['releases'] == 'a log has no phases of the plates'
+    assert reasons['peak_jerk_over_least'] == 'a log has no scenario, and no floor'
+    assert 'the log has no torque_demand' in ' '.join(capsys.readouterr().out.split())
 
 
 def test_a_log_of_two_speeds_alone_still_has_its_engagement(folder: Path) -> None:
@@ -117,14 +126,11 @@ def test_a_log_of_two_speeds_alone_still_has_its_engagement(folder: Path) -> Non
     (folder / 'map.yaml').write_text(''.join(lines[:4]))
     run = scored(folder)
     assert run['metrics']['slip_final_rpm'] is not None
-    assert set(run['not_computed']) == {
-        name
-        for names in NEEDED_BY.values()
-        for name in names
-        if {**run['metrics'], **_values(run)}[name] is None
+    assert set(run['null_reasons']) == {
+        name for name, value in values_of(run).items() if value is None
     }
-    assert run['not_computed']['peak_jerk'] == 'the log has no vehicle_accel'
-    assert 'run.total_ratio' in run['not_computed']['torsion_speed_std_rpm']
+    assert run['null_reasons']['peak_jerk_m_s3'] == 'the log has no vehicle_accel'
+    assert 'run.total_ratio' in run['null_reasons']['torsion_speed_std_rpm']
 
 
 def test_files_next_to_a_log_do_not_belong_to_it(folder: Path) -> None:
@@ -142,13 +148,13 @@ def test_the_page_lists_the_quantities_with_their_units() -> None:
             assert QUANTITIES[name].unit in units.split(', '), name
 
 
-def test_every_named_quantity_is_a_metric_or_a_criterion() -> None:
+def test_every_name_of_what_needs_a_quantity_is_a_metric() -> None:
     named = {name for names in NEEDED_BY.values() for name in names}
-    assert named <= set(METRICS) | set(CRITERION_UNITS)
+    assert named <= set(METRICS)
 
 
 @pytest.mark.parametrize(
-    'column', ['vehicle_accel', 'clutch_torque', 'driveshaft_torque', 'slip_reference']
+    'column', ['vehicle_accel', 'clutch_torque', 'engine_torque', 'torque_demand']
 )
 def test_each_value_that_is_lost_with_a_column_has_a_reason(tmp_path: Path, column: str) -> None:
     (tmp_path / 'drive.csv').write_text(
@@ -158,16 +164,10 @@ def test_each_value_that_is_lost_with_a_column_has_a_reason(tmp_path: Path, colu
     whole = scored(tmp_path)
     (tmp_path / 'map.yaml').write_text(re.sub(f'  {column}: .*\n', '', OURS))
     without = scored(tmp_path)
-    lost = {name for name, value in whole['metrics'].items() if value is not None} - {
-        name for name, value in without['metrics'].items() if value is not None
-    }
-    for before, after in zip(
-        whole['verdict']['criteria'], without['verdict']['criteria'], strict=True
-    ):
-        if before['value'] is not None and after['value'] is None:
-            lost.add(before['name'])
+    before, after = values_of(whole), values_of(without)
+    lost = [name for name in before if before[name] is not None and after[name] is None]
     assert lost
-    assert lost <= set(without['not_computed'])
+    assert all(without['null_reasons'][name] == f'the log has no {column}' for name in lost)
 
 
 def test_the_report_shows_a_log_and_the_reason_of_each_empty_cell(folder: Path) -> None:
@@ -176,7 +176,7 @@ def test_the_report_shows_a_log_and_the_reason_of_each_empty_cell(folder: Path) 
     assert report.main([str(folder / 'drive.csv'), *columns, '--out', str(page)]) == 0
     text = page.read_text()
     assert 'drive.csv' in text
-    assert 'the log has no torque_request' in text
+    assert 'the log has no torque_demand' in text
 
 
 def test_a_fast_log_is_averaged_and_a_slow_acceleration_refused(folder: Path) -> None:
@@ -194,7 +194,9 @@ def test_a_fast_log_is_averaged_and_a_slow_acceleration_refused(folder: Path) ->
     (folder / 'map.yaml').write_text('\n'.join(lines) + '\n')
     run = scored(folder, '--signals-csv', str(folder / 'signals'))
     assert run['valid'], run['reason']
-    assert run['not_computed']['peak_jerk'].startswith('the samples of vehicle_accel are 0.05 s')
+    assert run['null_reasons']['peak_jerk_m_s3'].startswith(
+        'the samples of vehicle_accel are 0.05 s'
+    )
     (file,) = (folder / 'signals').iterdir()
     table = np.genfromtxt(file, delimiter=',', names=True)
     left = table['slip_speed_rad_s'] - (40.0 - 20.0 * table['time_s'])
@@ -244,7 +246,3 @@ def test_a_hole_in_the_log_is_reported_and_a_log_needs_its_map(
     (folder / 'drive.csv').write_text(''.join([*lines[:200], *lines[250:]]))
     run = scored(folder)
     assert 'has no sample from 701.576 to 701.984 s, more than 0.1 s' in run['reason']
-
-
-def _values(run: dict[str, Any]) -> dict[str, Any]:
-    return {each['name']: each['value'] for each in run['verdict']['criteria']}

@@ -108,14 +108,14 @@ def test_compare_keeps_the_valid_runs_and_prints_the_reasons_of_the_others(
     printed = capfd.readouterr()
     assert 'ddct compare: not valid: ls8: the table and the report say why' in printed.err
     rows = {line.split()[0]: line.split()[-1] for line in printed.out.splitlines() if line.split()}
-    assert (rows['pi'], rows['ls8']) == ('yes', 'NO')
-    assert f'ls8: not valid: {reason}\n' in printed.out
+    assert (rows['pi'], rows['ls8']) == ('not_engaged', 'invalid')
+    assert f'ls8: not valid: {reason}' in ' '.join(printed.out.split())
     good, bad = _scores(out)
     assert (good['controller'], good['valid'], good['reason']) == ('pi', True, '')
     assert good['metrics']['steps'] == 100
     assert (bad['controller'], bad['bag'], bad['valid']) == ('ls8', 'ls8', False)
     assert bad['reason'] == reason
-    assert [run['verdict']['state'] for run in (good, bad)] == ['not_engaged', 'invalid']
+    assert [run['state'] for run in (good, bad)] == ['not_engaged', 'invalid']
     assert not out.with_name('runs.partial').exists()
     page = (out / 'report.html').read_text()
     assert '1 of 2 runs is invalid' in page
@@ -155,13 +155,13 @@ def test_a_run_that_failed_after_a_whole_recording_has_no_score(
     assert (out / 'ls8' / 'ls8_0.mcap').is_file()
     _, bad = _scores(out)
     assert (bad['valid'], bad['reason']) == (False, 'node clutch was killed by SIGKILL')
-    assert bad['verdict'] == {
-        'state': 'invalid',
-        'limits': 'failed',
-        'criteria': [],
-        'traction': None,
+    assert (bad['state'], bad['why'], bad['limits']) == ('invalid', '', [])
+    values = {**bad['figures'], **bad['metrics']}
+    assert set(values.values()) == {None}
+    assert bad['null_reasons'] == {
+        **dict.fromkeys(values.keys() - {'least_is_bound'}, 'the run has no scores'),
+        'peak_jerk_over_least': bad['reason'],
     }
-    assert set(bad['metrics'].values()) == {None}
     page = (out / 'report.html').read_text()
     assert page.count('class="chip"') == 2, 'its signals can be looked at'
     assert page.count('no update times beside this bag') == 1

@@ -12,7 +12,7 @@ from report.headless_chromium import PICTURE, visit
 WIDTH_PX, HEIGHT_PX = 1280, 9000
 """Size of the window in pixels, high enough that nothing scrolls while the picture is taken."""
 BETWEEN_PX = 16
-PLACES = """['#summary details', '#signals', '#signals figure'].map((name) => {
+PLACES = """['#figures details', '#signals', '#signals figure'].map((name) => {
   const {top, bottom} = document.querySelector(name).getBoundingClientRect();
   return [Math.floor(top + scrollY), Math.ceil(bottom + scrollY)];
 })"""

@@ -44,7 +44,7 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
     release = release_rows(packaged_folder()).of(cases)
     manifest = BenchmarkManifest.of([Judged.of('ls8')], cases, 3)
     rows = release.rows.only(['ls8', 'pi', 'hinf_sampled', 'mpc_wear'])
-    judged = {'ls8': JudgedRows(None, rows, release.unavoidable)}
+    judged = {'ls8': JudgedRows(None, rows)}
     result = result_of(manifest, release, judged, {})
     file = tmp_path_factory.mktemp('benchmark') / 'report.html'
     file.write_text(

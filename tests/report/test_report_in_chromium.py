@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from report.headless_chromium import PRINT, Visitor, chromium
-from support.runs import plan
+from support.runs import plan, record
 
 from ddct_bringup.bag.trajectory_bag import write_trajectory
 from ddct_bringup.programs.report import main
@@ -59,6 +59,18 @@ def five(demo: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return out
 
 
+@pytest.fixture(scope='module')
+def launch(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a page with a run that commands the engine, and one of the clutch alone."""
+    folder = tmp_path_factory.mktemp('launch')
+    for name in ('torque_estimator', 'ls8'):
+        run = plan(name, 'headless', scenario='launch', clutch='stick_slip', duration_s=2.5)
+        record(run, folder / name)
+    out = folder / 'report.html'
+    assert main([str(folder), '--out', str(out)]) == 0
+    return out
+
+
 @pytest.mark.parametrize(('width', 'scheme'), [(390, 'dark'), (1280, 'light'), (1920, 'dark')])
 def test_the_page_draws_every_chart_without_error_or_request(
     page: Path, width: int, scheme: str, visit: Visitor
@@ -86,6 +98,33 @@ def test_on_a_phone_only_tables_scroll_sideways(five: Path, visit: Visitor) -> N
     assert visited.values[2] == [True] * 5
     assert visited.values[4] <= PHONE_PX
     assert visited.errors == []
+
+
+AREAS = """Bokeh.documents[0].roots().find((chart) => chart.name === 'C_m').renderers
+  .filter((item) => item.tags[0]?.area)"""
+
+
+def test_a_yardstick_has_its_star_and_hollow_point_and_the_withheld_torque_its_shade(
+    launch: Path, visit: Visitor
+) -> None:
+    stars = """[...document.querySelectorAll('.figures tbody tr')].map((row) => [
+      row.querySelector('.run').textContent.trim(), row.querySelector('.star') !== null])"""
+    hollow = """[...document.querySelectorAll('.floor-front [data-run]')].map((point) => [
+      point.querySelector('text').textContent, point.querySelector('.hollow') !== null])"""
+    painted = f'{AREAS}.map((area) => area.glyph.fill_color.value)'
+    withheld = f"""{AREAS}.map(({{data_source: {{data}}}}) =>
+      Math.max(...data.with_withheld.map((top, tick) => top - data.C_m[tick])))"""
+    page_px = 'document.scrollingElement.scrollWidth'
+    scripts = [stars, hollow, painted, withheld, page_px, OUTSIDE]
+    visited = visit(launch, width=PHONE_PX, scheme='dark', scripts=scripts)
+    assert visited.errors == []
+    expected = [['ls8', False], ['torque_estimator', True]]
+    assert sorted(visited.values[0]) == sorted(visited.values[1]) == expected
+    order = [name for name, _ in visited.values[0]]
+    assert visited.values[2] == [controller_look(name).dark for name in order]
+    assert [most > 10.0 for most in visited.values[3]] == [n != 'ls8' for n in order]
+    assert visited.values[4] <= PHONE_PX
+    assert visited.values[5] == []
 
 
 def test_a_print_of_five_runs_has_four_pages_at_most_with_the_definitions(
@@ -202,11 +241,11 @@ def test_a_table_sorts_by_a_pressed_heading(page: Path, visit: Visitor) -> None:
     assert visited.values[4] == ['pi', 'hinf1', 'ls8']
 
 
-def test_the_two_criteria_of_the_pareto_view_are_chosen(page: Path, visit: Visitor) -> None:
+def test_the_two_figures_of_the_pareto_view_are_chosen(page: Path, visit: Visitor) -> None:
     points = """[...document.querySelectorAll('.pareto .point')].map((point) => [
       point.style.left, point.style.bottom, point.classList.contains('best'), point.title])"""
     titles = "[...document.querySelectorAll('.pareto .title')].map((each) => each.textContent)"
-    choose = """['peak_jerk', 'friction_energy'].forEach((name, index) => {
+    choose = """['peak_jerk_m_s3', 'friction_work_j'].forEach((name, index) => {
       const select = document.querySelectorAll('.pareto-choice select')[index];
       select.value = name;
       select.dispatchEvent(new Event('change'));

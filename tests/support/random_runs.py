@@ -26,8 +26,9 @@ from ddct_bringup.floor.control_start import control_start
 from ddct_bringup.floor.lock import lock_of
 from ddct_bringup.floor.objectives import OBJECTIVES, Signals
 from ddct_bringup.floor.point import point_of
-from ddct_bringup.floor.values import engagements_a_day, value_of
+from ddct_bringup.floor.values import value_of
 from ddct_bringup.run.headless import run_headless
+from ddct_bringup.verdict.limits import packaged_limits
 from ddct_controllers.handover.laws import HANDOVERS
 from ddct_controllers.interface import Controller
 from ddct_controllers.registry import controller_names, make_controller
@@ -50,7 +51,7 @@ SHIFTS = tuple(
     (name, 'stick_slip')
     for name in ('upshift', 'upshift_2_3', 'upshift_hot', 'upshift_light', 'upshift_full')
 )
-QUICK = ('peak_jerk', 'peak_acceleration', 'mean_jerk', 'acceleration_std_m_s2')
+QUICK = ('peak_jerk', 'peak_acceleration', 'acceleration_std_m_s2')
 """Metrics whose bound takes about a tenth of a second; every tenth run has another one."""
 SLOW = tuple(name for name in OBJECTIVES if name not in QUICK)
 
@@ -114,7 +115,7 @@ def outcome(random: np.random.Generator, index: int, *, shifts: bool = False) ->
         start = control_start(settings)
     except DdctError:
         return Outcome(text, covered=False)
-    lock = lock_of(run, start.step)
+    lock = lock_of(run, start.step, packaged_limits().rules)
     if lock is not None and start.off_going and lock.time_s <= start.off_going.open_s:
         return Outcome(text, covered=False)
     case = None
@@ -133,7 +134,7 @@ def outcome(random: np.random.Generator, index: int, *, shifts: bool = False) ->
     )
     pool = SLOW if index % 10 == 0 else QUICK
     metric = pool[random.integers(len(pool))]
-    signals = Signals.of_motion(case.motion, settings.scenario, engagements_a_day())
+    signals = Signals.of_motion(case.motion, settings.scenario)
     bound = bound_of(case, OBJECTIVES[metric], signals)
     value = value_of(settings, metric, run, start.scored_from)
     if bound is None or value is None:

@@ -26,7 +26,7 @@ class Proportional(Controller):
 
 
 mine = run(Proportional, wear_gain=0.9)
-state: str = mine.verdict['state']
+state: str = mine.state
 time_s = mine.metrics['engagement_time_s']
 print(state, time_s)
 """

@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 
 from ddct_bringup.run.run_base import RunBase
-from ddct_bringup.scores.floors import floor_metrics
 from ddct_controllers.from_python import chosen_from
 from ddct_controllers.registry import (
     Chosen,
@@ -36,11 +35,6 @@ def controllers_from(controllers: str | Iterable[Any] | Mapping[str, Any]) -> li
     if not chosen:
         raise ParameterError('controllers is empty: name at least one', key='controllers')
     return chosen
-
-
-def metrics_of_floors(floors: str | Iterable[str]) -> tuple[str, ...] | None:
-    """Return the metrics of the argument `floors`, None for no floors; raise ParameterError."""
-    return floor_metrics(floors if isinstance(floors, str) else ','.join(floors))
 
 
 def ready_settings(labels: list[str], *options: Any, **given: Any) -> RunSettings:

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 from ddct_bringup.api.result import pandas_module
 from ddct_bringup.benchmark.cases import Cases
 from ddct_bringup.benchmark.conduct import DEVELOPMENT, HELD_OUT, Options, carry_out_benchmark
+from ddct_bringup.benchmark.evaluated import MAIN
 from ddct_bringup.benchmark.judged import Judged
 from ddct_bringup.benchmark.report.folder import PAGE, write_result
 from ddct_bringup.benchmark.result_types import Evaluation, Result
@@ -24,8 +25,8 @@ class BenchmarkResults(NamedTuple):
     """
     pandas DataFrame with a row per controller: the judged one, then those that run beside it.
 
-    Columns for the sets `development` and `held_out`: `SET.success`, the share of successful
-    engagements, 0 to 1, and `SET.limits_kept`, the share of the avoidable limits that were kept.
+    Columns for the sets `development` and `held_out`: `SET.success`, the share of successes, 0 to
+    1, and `SET.FIGURE`, the median of each of the five figures over the successes.
     """
     result: Result
     """Content of `result.json`."""
@@ -59,17 +60,22 @@ def benchmark(
     result = write_result(folder, failed)
     (found,) = result['controllers']
     columns = {
-        f'{part}.{name}': share
+        f'{part}.{name}': values
         for part, each in ((DEVELOPMENT, found['development']), (HELD_OUT, found['held_out']))
-        for name, share in _shares(each or []).items()
+        for name, values in _columns(each or []).items()
     }
     table = pandas.DataFrame(columns).rename_axis('controller')
     return BenchmarkResults(table, result, folder / PAGE)
 
 
-def _shares(controllers: list[Evaluation]) -> dict[str, dict[str, float | None]]:
-    """Return the two shares by controller."""
-    return {
-        'success': {each['controller']: each['success']['share'] for each in controllers},
-        'limits_kept': {each['controller']: each['limits']['share'] for each in controllers},
-    }
+def _columns(controllers: list[Evaluation]) -> dict[str, dict[str, float | None]]:
+    """Return the share of successes, and the median of each figure, by controller."""
+    found = {'success': {each['controller']: each['success']['share'] for each in controllers}}
+    for key in MAIN:
+        found[key] = {
+            each['controller']: quantity['p50']
+            for each in controllers
+            for quantity in each['quantities']
+            if quantity['name'] == key
+        }
+    return found

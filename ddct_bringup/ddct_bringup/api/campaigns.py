@@ -79,8 +79,8 @@ def sweep(
 
     `controllers` are as for `compare`, `options` as for `run`. `over` maps a key to its values, or
     to the text 'START:STOP:COUNT'; with several keys every combination runs. A row per run has the
-    controller, the values under their keys, every metric, `valid` and `reason`, `verdict_state`,
-    `verdict_limits`, and the criteria as `criterion.NAME`.
+    controller, the values under their keys, every figure and metric, `valid`, `reason`, `state`,
+    `why` and `least_is_bound`.
     """
     chosen = controllers_from(controllers)
     base = base_from([controller_label(each) for each in chosen], **options)

@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""A run as scripts and notebooks get it: its signals, metrics and verdict."""
+"""A run as scripts and notebooks get it: its signals, figures, metrics and state."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
@@ -12,11 +12,11 @@ from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.metrics.metric import Metrics
 from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_bringup.scores.csv_text import score_row, signal_columns
-from ddct_bringup.scores.document import run_entry, verdict_entry
-from ddct_bringup.scores.floors import with_floors
+from ddct_bringup.scores.document import figures_entry, run_entry
+from ddct_bringup.scores.floors import with_least
 from ddct_bringup.scores.scored_recording import ScoredRecording
 from ddct_bringup.scores.scored_run import ScoredRun
-from ddct_bringup.verdict.limits import Limits
+from ddct_bringup.verdict.limits import LimitResult, Limits
 from ddct_controllers.registry import Chosen
 from ddct_controllers.workflows.evidence import frequency_evidence
 from ddct_controllers.workflows.evidence_types import ControllerEntry
@@ -37,11 +37,9 @@ class Run:
         """Return one line on the run, which a notebook prints after a cell that ends with it."""
         facts = self.recording.facts
         counts = 'valid' if self.valid else f'not valid: {self.reason}'
-        verdict = self.scores.verdict
         return (
             f'<Run of {self.controller}: {facts.scenario}, {facts.duration_s:g} s, wear gain '
-            f'{facts.wear_gain:g}, {verdict.state}, limits {verdict.limits}, '
-            f'{counts}>'
+            f'{facts.wear_gain:g}, {self.state}, {counts}>'
         )
 
     @property
@@ -52,7 +50,7 @@ class Run:
 
     @property
     def scores(self) -> ScoredRun:
-        """Facts, metrics and verdict of the run."""
+        """Facts, metrics, state and limits of the run."""
         return self.scored.scores
 
     @property
@@ -88,14 +86,29 @@ class Run:
         return run_entry(self.scores)
 
     @property
+    def figures(self) -> Mapping[str, float | bool | None]:
+        """Figures of `scores.json` by name; None for an undefined one."""
+        return figures_entry(self.scores)
+
+    @property
     def metrics(self) -> Metrics:
-        """Metrics of `scores.json` by name; None for an undefined one."""
+        """Figures and further metrics of `scores.json` by name; None for an undefined one."""
         return self.scores.metrics
 
     @property
-    def verdict(self) -> Mapping[str, Any]:
-        """Verdict with `state`, `limits` and `criteria`, as in docs/use/verdict.md."""
-        return verdict_entry(self.scores.verdict)
+    def state(self) -> str:
+        """State of the run, as in docs/use/verdict.md: `engaged` is the only success."""
+        return self.scores.state
+
+    @property
+    def why(self) -> str:
+        """Reason of the state; empty where its name says all."""
+        return self.scores.why
+
+    @property
+    def limits(self) -> tuple[LimitResult, ...]:
+        """Metrics beside their limits."""
+        return self.scores.limits
 
     @property
     def valid(self) -> bool:
@@ -111,15 +124,9 @@ class Run:
         """Return the signals as a pandas DataFrame: a row per 10 ms, indexed by `time_s`."""
         return pandas_module().DataFrame(signal_columns(self.trajectory)).set_index('time_s')
 
-    @property
-    def over_floor(self) -> Mapping[str, float | None]:
-        """Metric over the least at the run's own lock time, by name; None where it has none."""
-        return self.scores.over_floor
-
-    def with_floors(self, metrics: Iterable[str] | None, limits: Limits) -> 'Run':
-        """Return the run with the floors of metrics beside its scores; itself for None."""
-        scored = with_floors(self.scored, None if metrics is None else tuple(metrics), limits)
-        return replace(self, scored=scored)
+    def with_least(self, limits: Limits) -> 'Run':
+        """Return the run with its peak jerk over the least of its case."""
+        return replace(self, scored=with_least(self.scored, limits))
 
     def frequency(self) -> ControllerEntry:
         """
@@ -133,7 +140,7 @@ class Run:
 
 
 def table(runs: Run | Iterable[Run]) -> Any:
-    """Return a pandas DataFrame with a row per run: its facts, metrics and verdict."""
+    """Return a pandas DataFrame with a row per run: its facts, metrics and state."""
     return pandas_module().DataFrame([score_row(each.scores) for each in as_runs(runs)])
 
 

@@ -12,7 +12,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from ddct_bringup.api.arguments import controllers_from, metrics_of_floors, ready_settings
+from ddct_bringup.api.arguments import controllers_from, ready_settings
 from ddct_bringup.api.result import Run
 from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.bag.writer import bag_file
@@ -20,7 +20,6 @@ from ddct_bringup.processes.warm_parent import WarmParent
 from ddct_bringup.run.execution import execute, parent_for
 from ddct_bringup.run.output_folder import run_folder
 from ddct_bringup.run.plan import RunPlan
-from ddct_bringup.scores.floors import NONE
 from ddct_bringup.scores.scored_recording import (
     ScoredRecording,
     run_and_score,
@@ -51,7 +50,7 @@ def run(
     out: str | Path | None = None,
     overwrite: bool = False,
     limits: str | Path | None = None,
-    floors: str | Iterable[str] = NONE,
+    floors: bool = False,
     beside: Iterable[str] = (),
     **settings: Any,
 ) -> Run:
@@ -63,18 +62,18 @@ def run(
     options of the controller among them, as {'controllers.NAME.KEY': value}. `settings` are those
     of `RunSettings`: architecture, clutch, wear_gain, mode, seed. Without `headless` the ROS graph
     runs, each node a process. With `out` the bag is kept as `<out>/<name>/`; a run that is not
-    valid, with its `reason`, is kept as `<out>/<name>.partial/`. `floors` names the metrics that
-    are compared with the least that any controller could have, as --floors does: 'usual', 'all',
-    or names; they take seconds the first time. `beside` names other controllers
-    whose options `set` may hold too.
+    valid, with its `reason`, is kept as `<out>/<name>.partial/`. With `floors` the peak jerk is
+    compared with the least of its case, which takes a second the first time. `beside` names other
+    controllers whose options `set` may hold too.
     """
     chosen = chosen_from(controller, name)
     ready = ready_settings(
         [controller_label(chosen), *beside], scenario, set, duration, **settings
     )
     plan = RunPlan(ready, chosen, _layout(headless))
-    judged_by, metrics = load_limits(limits), metrics_of_floors(floors)
-    return _run(plan, out, judged_by, overwrite=overwrite).with_floors(metrics, judged_by)
+    judged_by = load_limits(limits)
+    found = _run(plan, out, judged_by, overwrite=overwrite)
+    return found.with_least(judged_by) if floors else found
 
 
 def _layout(headless: bool) -> str:
@@ -106,7 +105,7 @@ def compare(
     out: str | Path | None = None,
     overwrite: bool = False,
     limits: str | Path | None = None,
-    floors: str | Iterable[str] = NONE,
+    floors: bool = False,
     **options: Any,
 ) -> list[Run]:
     """
@@ -122,18 +121,15 @@ def compare(
     chosen = controllers_from(controllers)
     ready = ready_settings([controller_label(each) for each in chosen], **options)
     layout, judged_by = _layout(headless), load_limits(limits)
-    metrics = metrics_of_floors(floors)
     with parent_for(layout) as parent:
         runs = [
             _run(RunPlan(ready, each, layout), out, judged_by, parent, overwrite=overwrite)
             for each in chosen
         ]
-    return [each.with_floors(metrics, judged_by) for each in runs]
+    return [each.with_least(judged_by) for each in runs] if floors else runs
 
 
-def load(
-    bag: str | Path, *, limits: str | Path | None = None, floors: str | Iterable[str] = NONE
-) -> Run:
+def load(bag: str | Path, *, limits: str | Path | None = None, floors: bool = False) -> Run:
     """
     Return the run in a bag, given as its folder or .mcap file, scored with `limits`.
 
@@ -141,7 +137,8 @@ def load(
     """
     path, judged_by = Path(bag), load_limits(limits)
     scored = score_recording(read_bag(path), path.as_posix(), judged_by)
-    return _run_of(scored).with_floors(metrics_of_floors(floors), judged_by)
+    found = _run_of(scored)
+    return found.with_least(judged_by) if floors else found
 
 
 def _kept(

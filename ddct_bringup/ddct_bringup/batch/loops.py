@@ -23,7 +23,7 @@ from ddct_reference.factory import make_descent
 RAMP = 'ramp'
 _SIGNALS = (
     *('joint_speed', 'joint_effort', 'slip_speed', 'vehicle_accel'),
-    *('load_torque', 'slip_reference', 'torque_request', 'torque_demand'),
+    *('load_torque', 'slip_reference', 'torque_request', 'torque_demand', 'engine_torque'),
 )
 """Signals that are recorded at each step, in the order of the values of a step."""
 OpenLoops = Callable[[int, np.ndarray], np.ndarray]
@@ -56,7 +56,7 @@ def simulate_batch(runs: Sequence[RunSettings], feedback: Sequence[StateSpace]) 
             *now.joint_speed,
             *now.joint_effort,
             *(now.slip_speed, now.vehicle_accel, load, reference, request),
-            plants.engine_torque[step],
+            *(plants.engine_torque[step],) * 2,
         ]
         plants.advance(step, load, request)
     return _trajectory(record, rows)

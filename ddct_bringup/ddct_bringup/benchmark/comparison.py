@@ -1,55 +1,78 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Comparison of controllers on the same cases: who is not dominated, and paired differences."""
+"""Comparison of controllers on the same cases, and of one on development and held-out cases."""
+
+import math
 
 import numpy as np
 
 from ddct_bringup.benchmark.case_rows import CaseRows
-from ddct_bringup.benchmark.outcomes import outcomes_in, successes_in
-from ddct_bringup.campaign_report.evaluated_quantities import QUANTITIES
-from ddct_bringup.campaign_report.printed_summary import MAIN
-from ddct_bringup.campaign_report.results import is_number
+from ddct_bringup.benchmark.evaluated import EVALUATED, Columns, values_of
+from ddct_bringup.benchmark.outcomes import case_figures_in, outcomes_in
+from ddct_bringup.benchmark.result_types import FigureInCases, Gap, PairedResult
+from ddct_bringup.benchmark.statistics.case_figures import CaseFigures
+from ddct_bringup.benchmark.statistics.dominance import FigureComparison, compare
+from ddct_bringup.benchmark.statistics.held_out_gaps import gaps_of
+from ddct_bringup.campaign.keys import SCENARIO
 from ddct_bringup.campaign_report.statistics import paired
 from ddct_bringup.campaign_report.summary_types import DifferenceSummary, PairSummary
-from ddct_bringup.verdict.state import ENGAGED
-
-COMPARED = ('share of runs that are no success', *(f'P50 of {name}' for name in MAIN))
-"""
-Figures of a controller that decide whether it is dominated; of each less is better.
-
-A median is over all cases, and a run that did not engage counts as worse than any value. Among
-engaged runs alone a controller that fails in the hard cases would look better.
-"""
 
 
-def figures_of(rows: CaseRows, controller: str) -> tuple[float, ...]:
-    """Return the figures `COMPARED` of a controller, infinite where half of the runs fail."""
-    columns = rows.of(controller)
-    engaged = outcomes_in(columns) == ENGAGED
-    found = [1.0 - float(np.mean(successes_in(columns)))]
-    for name in MAIN:
-        values = np.where(engaged, np.abs(columns[name]), np.inf)
-        values = values[~np.isnan(values)]
-        found.append(float(np.quantile(values, 0.5, method='higher')) if len(values) else np.inf)
-    return tuple(found)
+def figures_in(rows: CaseRows) -> dict[str, CaseFigures]:
+    """Return the successes and the five figures of each controller, by its name."""
+    return {name: case_figures_in(rows.of(name)) for name in rows.controllers}
 
 
-def non_dominated(rows: CaseRows) -> set[str]:
-    """
-    Return the controllers that no other one dominates.
+def paired_results(figures: dict[str, CaseFigures], judged: str) -> list[PairedResult]:
+    """Return the comparison of the judged controller with each of the others."""
+    return [_paired_result(figures, judged, other) for other in figures if other != judged]
 
-    One dominates another if none of its figures `COMPARED` is worse and one is better.
-    """
-    figures = {name: figures_of(rows, name) for name in rows.controllers}
+
+def _paired_result(figures: dict[str, CaseFigures], judged: str, other: str) -> PairedResult:
+    ours = compare(figures[judged], figures[other])
+    theirs = compare(figures[other], figures[judged])
     return {
-        name
-        for name, ours in figures.items()
-        if not any(_dominates(theirs, ours) for theirs in figures.values())
+        'other': other,
+        'cases': ours.cases,
+        'dominates': ours.dominates(among=len(figures)),
+        'dominated': theirs.dominates(among=len(figures)),
+        'figures': [_figure_in_cases(each) for each in ours.figures],
     }
 
 
-def _dominates(first: tuple[float, ...], second: tuple[float, ...]) -> bool:
-    return first != second and all(a <= b for a, b in zip(first, second, strict=True))
+def _figure_in_cases(found: FigureComparison) -> FigureInCases:
+    median = found.median_difference
+    return {
+        'name': found.name,
+        'better': found.better,
+        'worse': found.worse,
+        'left_out': found.null,
+        'median_difference': median if math.isfinite(median) else None,
+    }
+
+
+def gaps_between(development: Columns, held_out: Columns) -> list[Gap]:
+    """
+    Return the gap of each of the five figures between the runs of both sets.
+
+    The ranks are those within the scenarios, which a column names where there are several.
+    """
+    ours, theirs = ((case_figures_in(each), _scenarios(each)) for each in (development, held_out))
+    return [
+        {
+            'name': gap.name,
+            'p_value': gap.p_value,
+            'worse': gap.worse,
+            'left_out': gap.null,
+            'differs': gap.differs,
+        }
+        for gap in gaps_of(ours, theirs)
+    ]
+
+
+def _scenarios(columns: Columns) -> np.ndarray:
+    one = np.full(len(columns['valid']), '')
+    return columns.get(SCENARIO, one).astype(str)
 
 
 def pairs_of(rows: CaseRows, judged: str) -> list[PairSummary]:
@@ -62,13 +85,14 @@ def _pair(rows: CaseRows, first: str, second: str) -> PairSummary:
     outcomes = outcomes_in(ours), outcomes_in(theirs)
     joint = paired.joint_outcomes(*outcomes)
     differences: list[DifferenceSummary] = []
-    for quantity in QUANTITIES:
-        if not is_number(ours.get(quantity.key)):
+    for key, quantity in EVALUATED.items():
+        mine, others = values_of(ours, key), values_of(theirs, key)
+        if mine is None or others is None:
             continue
-        found = paired.difference_of(ours[quantity.key], theirs[quantity.key], outcomes)
+        found = paired.difference_of(mine, others, outcomes)
         differences.append(
             {
-                'name': quantity.key,
+                'name': key,
                 'unit': quantity.unit,
                 'cases': found.cases,
                 **found.quantiles,

@@ -3,7 +3,7 @@
 """Carry out a benchmark: the campaigns of each judged controller, one after the other."""
 
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,8 +11,7 @@ from ddct_bringup.benchmark.case_rows import CaseRows
 from ddct_bringup.benchmark.cases import Cases, packaged_folder
 from ddct_bringup.benchmark.judged import Judged
 from ddct_bringup.benchmark.manifest import MANIFEST, BenchmarkManifest
-from ddct_bringup.benchmark.release import COPIED, copy_release_rows, release_rows
-from ddct_bringup.benchmark.unavoidable import unavoidable_limits, unavoidable_of
+from ddct_bringup.benchmark.release import ROWS, copy_release_rows, release_rows
 from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.conduct import RESUME, carry_out
 from ddct_bringup.campaign.manifest import MANIFEST as CAMPAIGN_MANIFEST
@@ -25,15 +24,11 @@ from ddct_bringup.run.output_folder import (
     require_ours_or_empty,
 )
 from ddct_bringup.verdict.limits import packaged_limits
-from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.files.input_file import read_text_file
-from ddct_plant.files.output_file import write_json
+from ddct_plant.base.errors import DdctError
 
 DEVELOPMENT, HELD_OUT = 'development', 'held_out'
 """Names of the folders of a judged controller's campaigns."""
 AGAIN = 'what is done stays: start the same benchmark again'
-UNAVOIDABLE = 'unavoidable.json'
-"""Name of the file with the limits that no controller can keep in the held-out cases."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,8 +39,6 @@ class JudgedRows:
     """Its rows of the development cases; None of a packaged one, whose rows the release has."""
     held_out: CaseRows
     """Rows of held-out cases, its own first."""
-    unavoidable: Mapping[int, list[str]]
-    """Limits that no controller can keep, for each held-out case with floors."""
 
 
 @dataclass(frozen=True)
@@ -94,7 +87,7 @@ def _begin(manifest: BenchmarkManifest, out: Path) -> None:
     if (out / MANIFEST).exists():
         BenchmarkManifest.read(out).require_same(manifest, out)
         return
-    begun = {MARKER, *COPIED}  # what a start that was killed may leave
+    begun = {MARKER, ROWS}  # what a start that was killed may leave
     if out.is_dir() and {each.name for each in out.iterdir()} - begun:
         raise DdctError(f'{out} holds other results: choose another --out')
     mark_folder(out)
@@ -112,11 +105,10 @@ def campaigns_of(judged: Judged, cases: Cases, held_out_seed: int) -> dict[str, 
 
 
 def _compute(judged: Judged, seed: int, cases: Cases, folder: Path, options: Options) -> None:
-    """Compute what is missing of a judged controller's runs, and of the limits of its cases."""
-    campaigns = campaigns_of(judged, cases, seed)
+    """Compute what is missing of a judged controller's runs."""
     if not (folder / MARKER).exists():
         mark_folder(folder)
-    for name, campaign in campaigns.items():
+    for name, campaign in campaigns_of(judged, cases, seed).items():
         print(f'{judged.name}: {name}, {campaign.runs} runs', file=sys.stderr, flush=True)
         carry_out(
             campaign,
@@ -126,26 +118,12 @@ def _compute(judged: Judged, seed: int, cases: Cases, folder: Path, options: Opt
             resume=(folder / name / CAMPAIGN_MANIFEST).exists(),
             stopped=options.stopped,
         )
-    if not (folder / UNAVOIDABLE).exists():
-        found = unavoidable_limits(
-            campaigns[HELD_OUT], packaged_limits(), options.workers, options.stopped
-        )
-        content = {str(case): names for case, names in found.items()}
-        write_json(str(folder / UNAVOIDABLE), content)
 
 
 def read_judged_rows(folder: Path) -> JudgedRows:
     """Return the rows in the folder of a judged controller; raise DdctError where some miss."""
-    path = folder / UNAVOIDABLE
     development = _rows(folder / DEVELOPMENT) if (folder / DEVELOPMENT).exists() else None
-    held_out = _rows(folder / HELD_OUT)
-    try:
-        unavoidable = unavoidable_of(read_text_file(path), held_out.cases)
-    except (OSError, ParameterError) as error:
-        raise DdctError(
-            f'cannot be read ({error}): start the benchmark again', place=path
-        ) from error
-    return JudgedRows(development, held_out, unavoidable)
+    return JudgedRows(development, _rows(folder / HELD_OUT))
 
 
 def _rows(folder: Path) -> CaseRows:

@@ -1,19 +1,24 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Result of one controller on one set of cases: states, quantities, limits, causes of failure."""
+"""Result of one controller on one set of cases: states, quantities, causes of failure."""
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
-from ddct_bringup.benchmark.case_rows import CaseRows
-from ddct_bringup.benchmark.comparison import non_dominated
-from ddct_bringup.benchmark.kept_limits import limits_in
-from ddct_bringup.benchmark.outcomes import (
+from ddct_bringup.benchmark.case_rows import IS_BOUND, CaseRows
+from ddct_bringup.benchmark.evaluated import (
+    EVALUATED,
+    MAIN,
+    OVER_LEAST,
     Columns,
+    values_of,
+)
+from ddct_bringup.benchmark.outcomes import (
     outcomes_in,
     share_of,
+    share_of_successes,
     spread_in,
     successes_in,
 )
@@ -26,25 +31,21 @@ from ddct_bringup.benchmark.result_types import (
     ScenarioResult,
 )
 from ddct_bringup.campaign.keys import SCENARIO
-from ddct_bringup.campaign_report.evaluated_quantities import QUANTITIES
+from ddct_bringup.campaign.rows import STATE
 from ddct_bringup.campaign_report.failure_summary import MOST_REASONS
-from ddct_bringup.campaign_report.printed_summary import MAIN
-from ddct_bringup.campaign_report.results import is_number
 from ddct_bringup.campaign_report.statistics import attribution
 from ddct_bringup.campaign_report.summary_types import Reason
 from ddct_bringup.campaign_report.texts import where_text
-from ddct_bringup.floor.values import METRICS as FLOOR_METRICS
-from ddct_bringup.metrics.catalogue import METRICS
-from ddct_bringup.scores.csv_text import OVER_FLOOR
-from ddct_bringup.verdict.limits import Limits
 from ddct_bringup.verdict.state import INVALID, STATES
-from ddct_plant.program.table import Quantity
+
+SHOWN = (*MAIN, OVER_LEAST)
+"""Quantities of each scenario, and of all controllers beside one another."""
 
 
 def states_in(columns: Columns) -> dict[str, RunShare]:
     """Return the share of each state that occurred, those of another version last."""
     valid = outcomes_in(columns) != INVALID
-    states = np.where(valid, columns['verdict_state'], INVALID)
+    states = np.where(valid, columns[STATE], INVALID)
     found = Counter(states.tolist())
     return {
         str(state): share_of(found[state], len(states))
@@ -59,10 +60,9 @@ def scenarios_in(columns: Columns) -> dict[str, ScenarioResult]:
     names = columns[SCENARIO]
     for name in dict.fromkeys(names.tolist()):
         part = {key: column[names == name] for key, column in columns.items()}
-        success = successes_in(part)
         found[str(name)] = {
-            'success': share_of(int(success.sum()), len(success)),
-            'quantities': quantities_in(part, MAIN),
+            'success': share_of_successes(part),
+            'quantities': quantities_in(part, SHOWN),
         }
     return found
 
@@ -77,29 +77,20 @@ def reasons_in(columns: Columns) -> list[Reason]:
     ]
 
 
-def floor_of(quantity: Quantity) -> str | None:
-    """Return the name of the floor of a metric or criterion, None for one without floors."""
-    metric = METRICS.get(quantity.key)
-    names = (metric.criterion, metric.key) if metric else (quantity.key.rpartition('.')[2],)
-    return next((name for name in names if name in FLOOR_METRICS), None)
-
-
 def quantities_in(columns: Columns, names: Sequence[str] = ()) -> list[QuantityResult]:
-    """Return the distributions of all quantities or those named, and of their floor ratios."""
+    """Return the distributions of all quantities, or of those named."""
     found: list[QuantityResult] = []
-    for quantity in QUANTITIES:
-        if not is_number(columns.get(quantity.key)) or (names and quantity.key not in names):
-            continue
-        over = columns.get(f'{OVER_FLOOR}{floor_of(quantity)}')
-        found.append(
-            {
-                'name': quantity.key,
-                'unit': quantity.unit,
-                **spread_in(columns, columns[quantity.key]),
-                'over_floor': None if over is None else spread_in(columns, over),
-            }
-        )
+    for key in names or EVALUATED:
+        values = values_of(columns, key)
+        if values is not None:
+            spread = spread_in(columns, values)
+            found.append({'name': key, 'unit': EVALUATED[key].unit, **spread})
     return found
+
+
+def least_is_no_bound_in(columns: Columns) -> int:
+    """Return the number of successes whose peak jerk the least of the case does not bound."""
+    return int(np.sum(successes_in(columns) & np.equal(columns[IS_BOUND], False)))
 
 
 def causes_in(columns: Columns, varied: list[str]) -> Causes:
@@ -131,20 +122,12 @@ def _effect(effect: attribution.Effect) -> KeyEffect:
     }
 
 
-def evaluations_of(
-    rows: CaseRows,
-    unavoidable: Mapping[int, list[str]],
-    limits: Limits,
-    varied: list[str],
-    judged: str,
-) -> list[Evaluation]:
+def evaluations_of(rows: CaseRows, varied: list[str], judged: str) -> list[Evaluation]:
     """
     Return the evaluation of each controller of some rows, in their order.
 
-    `unavoidable` has the limits that no controller can keep for each case with floors. Only the
-    failures of the controller `judged` are attributed to the keys `varied`.
+    Only the failures of the controller `judged` are attributed to the keys `varied`.
     """
-    best = non_dominated(rows)
     found: list[Evaluation] = []
     for name in rows.controllers:
         columns = rows.of(name)
@@ -152,14 +135,13 @@ def evaluations_of(
             {
                 'controller': name,
                 'runs': rows.cases,
-                'success': share_of(int(np.sum(successes_in(columns))), rows.cases),
+                'success': share_of_successes(columns),
                 'states': states_in(columns),
                 'scenarios': scenarios_in(columns),
                 'reasons': reasons_in(columns),
                 'quantities': quantities_in(columns),
-                'limits': limits_in(rows, name, unavoidable, limits),
+                'least_is_no_bound': least_is_no_bound_in(columns),
                 'causes': causes_in(columns, varied) if name == judged else None,
-                'non_dominated': name in best,
             }
         )
     return found

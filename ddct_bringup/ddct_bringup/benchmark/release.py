@@ -8,9 +8,7 @@ Rows of the packaged controllers on the development cases, which are kept with a
 computes them and writes them into the sources. It goes on with what an interruption left.
 """
 
-import json
 import sys
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from importlib.resources.abc import Traversable
 from pathlib import Path
@@ -19,33 +17,29 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as parquet
 
-from ddct_bringup.benchmark.case_rows import CaseRows
+from ddct_bringup.benchmark.case_rows import IS_BOUND, CaseRows
 from ddct_bringup.benchmark.cases import Cases, packaged_folder
-from ddct_bringup.benchmark.unavoidable import unavoidable_limits, unavoidable_of
 from ddct_bringup.campaign.arrow_columns import read_parquet
 from ddct_bringup.campaign.columns import CONTROLLER, SEED
 from ddct_bringup.campaign.conduct import carry_out
 from ddct_bringup.campaign.manifest import MANIFEST, Manifest
-from ddct_bringup.campaign.rows import CRITERION
+from ddct_bringup.campaign.rows import STATE
 from ddct_bringup.campaign.spec import CampaignSpec
 from ddct_bringup.campaign_report.evaluated_quantities import QUANTITIES
 from ddct_bringup.campaign_report.reading import read_table
 from ddct_bringup.digests.origin import CodeOrigin
-from ddct_bringup.scores.csv_text import OVER_FLOOR
-from ddct_bringup.verdict.limits import TRACTION, packaged_limits
+from ddct_bringup.verdict.limits import packaged_limits
 from ddct_controllers.registry import own_controller_names
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.output_file import write_bytes
 from ddct_plant.program.command_line import run_program
 
 ROWS = 'development.parquet'
-UNAVOIDABLE = 'development_unavoidable.json'
-COPIED = (ROWS, UNAVOIDABLE)
-"""Files of the release that each benchmark has a copy of."""
+"""File with the rows, of which each benchmark has a copy."""
 _PROGRAM = 'make benchmark-rows'
 _CASES, _CODE = b'cases_digest', b'code_digest'
 _VERSION, _COMMIT = b'version', b'commit'
-_VERDICT = ('valid', 'reason', 'verdict_state', 'verdict_limits')
+_OUTCOME = ('valid', 'reason', STATE, 'why', IS_BOUND)
 
 
 @dataclass(frozen=True)
@@ -53,8 +47,6 @@ class ReleaseRows:
     """Rows of the controllers of a release on the development cases."""
 
     rows: CaseRows
-    unavoidable: Mapping[int, list[str]]
-    """Limits that no controller can keep, for each case with floors."""
     cases_digest: str
     """Digest of the cases that were run."""
     origin: CodeOrigin
@@ -77,15 +69,11 @@ class ReleaseRows:
         campaign = cases.planned
         samples, each = campaign.samples, cases.whole.samples
         whole = [case // samples * each + case % samples for case in range(campaign.cases)]
-        with_floors = {
-            case: whole[case] for case in range(len(whole)) if campaign.has_floors(case)
-        }
-        if max(whole) >= self.rows.cases or {*with_floors.values()} - self.unavoidable.keys():
-            raise DdctError(f'{ROWS} or {UNAVOIDABLE} lacks cases: run {_PROGRAM}')
-        unavoidable = {case: self.unavoidable[number] for case, number in with_floors.items()}
+        if max(whole) >= self.rows.cases:
+            raise DdctError(f'{ROWS} lacks cases: run {_PROGRAM}')
         floors = np.array([campaign.has_floors(case) for case in range(campaign.cases)])
         rows = self.rows.of_cases(whole).with_floors_in(floors)
-        return replace(self, rows=rows, unavoidable=unavoidable)
+        return replace(self, rows=rows)
 
 
 def columns_kept(spec: CampaignSpec) -> list[str]:
@@ -93,9 +81,7 @@ def columns_kept(spec: CampaignSpec) -> list[str]:
     varied = [key for key in spec.vary if key != SEED]
     grid = [key for key, values in spec.grid.items() if len(values) > 1]
     quantities = [each.key for each in QUANTITIES]
-    floors = [f'{OVER_FLOOR}{name}' for name in spec.floors]
-    traction = f'{CRITERION}{TRACTION}'
-    return [CONTROLLER, SEED, *grid, *varied, *_VERDICT, *quantities, traction, *floors]
+    return [CONTROLLER, SEED, *grid, *varied, *_OUTCOME, *quantities]
 
 
 def release_rows(folder: Traversable | Path) -> ReleaseRows:
@@ -103,11 +89,9 @@ def release_rows(folder: Traversable | Path) -> ReleaseRows:
     try:
         table = read_parquet(Path(str(folder / ROWS)))
         known, rows = table.schema.metadata, CaseRows.of_table(table)
-        text = (folder / UNAVOIDABLE).read_text(encoding='utf-8')
-        unavoidable = unavoidable_of(text, rows.cases)
         version, commit, code = (known[key].decode() for key in (_VERSION, _COMMIT, _CODE))
         cases = known[_CASES].decode()
-        return ReleaseRows(rows, unavoidable, cases, CodeOrigin(version, commit, code))
+        return ReleaseRows(rows, cases, CodeOrigin(version, commit, code))
     except (OSError, pa.ArrowException, LookupError, TypeError, ValueError) as error:
         why = next(iter(str(error).splitlines()), type(error).__name__)
         raise DdctError(f'{folder}: its rows of the release cannot be read ({why})') from error
@@ -115,8 +99,7 @@ def release_rows(folder: Traversable | Path) -> ReleaseRows:
 
 def copy_release_rows(target: Path) -> None:
     """Write the rows of this release into a folder; raise DdctError when that fails."""
-    for name in COPIED:
-        write_bytes(str(target / name), (packaged_folder() / name).read_bytes())
+    write_bytes(str(target / ROWS), (packaged_folder() / ROWS).read_bytes())
 
 
 def write_release_rows(work: Path, target: Path, workers: int | None = None) -> None:
@@ -126,7 +109,7 @@ def write_release_rows(work: Path, target: Path, workers: int | None = None) -> 
     The runs of an earlier start with the same code are taken. Raise DdctError where that fails,
     and for a folder `work` with runs of other code.
     """
-    cases, limits = Cases.packaged(), packaged_limits()
+    cases = Cases.packaged()
     campaign = cases.development(own_controller_names(), Path())
     resume = (work / MANIFEST).exists()
     if resume and (before := Manifest.read(work).origin).code != CodeOrigin.here().code:
@@ -134,17 +117,14 @@ def write_release_rows(work: Path, target: Path, workers: int | None = None) -> 
             f'it has runs of other code, {before.text}: remove it, and run {_PROGRAM} again',
             place=work,
         )
-    carry_out(campaign, limits, work, workers=workers, resume=resume)
+    carry_out(campaign, packaged_limits(), work, workers=workers, resume=resume)
     manifest = Manifest.read(work)
     table = read_table(work, manifest).select(columns_kept(campaign.spec))
     origin = manifest.origin
     texts = {_VERSION: origin.version, _COMMIT: origin.commit, _CODE: origin.code}
     texts[_CASES] = cases.digest
     table = table.replace_schema_metadata({key: text.encode() for key, text in texts.items()})
-    unavoidable = unavoidable_limits(campaign, limits, workers)
     _write_table(table, target / ROWS)
-    text = json.dumps({str(case): names for case, names in unavoidable.items()}, indent=0)
-    (target / UNAVOIDABLE).write_text(text + '\n', encoding='utf-8')
 
 
 def _write_table(table: pa.Table, path: Path) -> None:

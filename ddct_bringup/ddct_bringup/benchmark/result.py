@@ -2,22 +2,20 @@
 # SPDX-License-Identifier: Apache-2.0
 """Result of a benchmark from its rows: the content of `result.json`."""
 
-import math
 from collections.abc import Mapping
 
-from ddct_bringup.benchmark import gaps
 from ddct_bringup.benchmark.case_rows import CaseRows
 from ddct_bringup.benchmark.comparison import (
-    COMPARED,
-    figures_of,
-    non_dominated,
+    figures_in,
+    gaps_between,
+    paired_results,
     pairs_of,
 )
 from ddct_bringup.benchmark.conduct import JudgedRows
-from ddct_bringup.benchmark.evaluation import evaluations_of
-from ddct_bringup.benchmark.kept_limits import limits_in
+from ddct_bringup.benchmark.evaluated import MAIN
+from ddct_bringup.benchmark.evaluation import SHOWN, evaluations_of, quantities_in
 from ddct_bringup.benchmark.manifest import BenchmarkManifest, JudgedEntry
-from ddct_bringup.benchmark.outcomes import share_of, successes_in
+from ddct_bringup.benchmark.outcomes import share_of_successes
 from ddct_bringup.benchmark.release import ReleaseRows
 from ddct_bringup.benchmark.result_types import (
     BoardRow,
@@ -26,12 +24,13 @@ from ddct_bringup.benchmark.result_types import (
     Method,
     Result,
 )
+from ddct_bringup.benchmark.statistics.case_figures import CaseFigures
+from ddct_bringup.benchmark.statistics.dominance import dominators_of, level_among
+from ddct_bringup.benchmark.statistics.held_out_gaps import METHOD as GAP_METHOD
 from ddct_bringup.campaign.keys import SCENARIO
-from ddct_bringup.campaign_report.printed_summary import MAIN
 from ddct_bringup.campaign_report.statistics import attribution, outcome, paired
-from ddct_bringup.verdict.limits import packaged_limits
 
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
 """Schema version of `result.json`."""
 
 
@@ -47,17 +46,21 @@ def result_of(
     `release` has the rows of the development cases that ran, `rows` those of the judged
     controllers by name, `failed` the reasons of those that have none.
     """
+    board = _board_rows(manifest, release, rows)
+    figures = None if manifest.quick else figures_in(board)
     return {
         'schema_version': SCHEMA_VERSION,
         'release': manifest.origin.entry(),
         'cases': _cases(manifest, release),
         'judge_seed': manifest.judge_seed,
-        'method': _method(),
+        'method': _method(figures),
         'controllers': [
-            _judged(entry, manifest, release, rows.get(entry.name), failed.get(entry.name))
+            _judged(entry, manifest, release, rows[entry.name], figures)
+            if entry.name in rows
+            else _not_judged(entry, failed.get(entry.name))
             for entry in manifest.controllers
         ],
-        'board': _board(manifest, release, rows),
+        'board': _board(board, rows, figures),
     }
 
 
@@ -77,27 +80,21 @@ def _cases(manifest: BenchmarkManifest, release: ReleaseRows) -> CasesResult:
     }
 
 
-def _method() -> Method:
+def _method(figures: dict[str, CaseFigures] | None) -> Method:
     return {
         'share_interval': outcome.METHOD,
         'difference_interval': paired.METHOD,
-        'gap_of_shares': gaps.OF_SHARES,
-        'gap_of_quantities': gaps.OF_QUANTITIES,
+        'gap': GAP_METHOD,
         'causes': attribution.METHOD,
         'confidence': outcome.CONFIDENCE,
-        'non_dominated': list(COMPARED),
+        'figures': list(MAIN),
+        'dominance_level': level_among(len(figures)) if figures else None,
     }
 
 
-def _judged(
-    entry: JudgedEntry,
-    manifest: BenchmarkManifest,
-    release: ReleaseRows,
-    rows: JudgedRows | None,
-    error: str | None,
-) -> JudgedResult:
-    """Return the result of one controller; all its parts are None without its rows."""
-    found: JudgedResult = {
+def _not_judged(entry: JudgedEntry, error: str | None) -> JudgedResult:
+    """Return the result of a controller without rows."""
+    return {
         'controller': entry.name,
         'digests': dict(entry.digests),
         'held_out_seed': entry.held_out_seed,
@@ -105,25 +102,31 @@ def _judged(
         'development': None,
         'held_out': None,
         'gaps': None,
+        'dominance': None,
         'development_pairs': None,
         'held_out_pairs': None,
     }
-    if rows is None:
-        return found
+
+
+def _judged(
+    entry: JudgedEntry,
+    manifest: BenchmarkManifest,
+    release: ReleaseRows,
+    rows: JudgedRows,
+    figures: dict[str, CaseFigures] | None,
+) -> JudgedResult:
+    """Return the result of one controller; `figures` has those of all on development cases."""
+    name = entry.name
     development = _development(rows, release).only(rows.held_out.controllers)
     varied = list(manifest.run_cases.planned.spec.vary)
-    sets = ((development, release.unavoidable), (rows.held_out, rows.unavoidable))
-    ours, theirs = (
-        evaluations_of(each, unavoidable, packaged_limits(), varied, entry.name)
-        for each, unavoidable in sets
-    )
     return {
-        **found,
-        'development': ours,
-        'held_out': theirs,
-        'gaps': gaps.gaps_of(development.of(entry.name), rows.held_out.of(entry.name)),
-        'development_pairs': pairs_of(development, entry.name),
-        'held_out_pairs': pairs_of(rows.held_out, entry.name),
+        **_not_judged(entry, None),
+        'development': evaluations_of(development, varied, name),
+        'held_out': evaluations_of(rows.held_out, varied, name),
+        'gaps': gaps_between(development.of(name), rows.held_out.of(name)),
+        'dominance': paired_results(figures, name) if figures else None,
+        'development_pairs': pairs_of(development, name),
+        'held_out_pairs': pairs_of(rows.held_out, name),
     }
 
 
@@ -134,33 +137,34 @@ def _development(rows: JudgedRows, release: ReleaseRows) -> CaseRows:
     return rows.development.beside(release.rows)
 
 
-def _board(
+def _board_rows(
     manifest: BenchmarkManifest, release: ReleaseRows, rows: Mapping[str, JudgedRows]
-) -> list[BoardRow]:
-    """Return every controller on the development cases, the judged ones first."""
+) -> CaseRows:
+    """Return the rows of every controller on the development cases, the judged ones first."""
     together = release.rows
     for each in rows.values():
         if each.development is not None:
             together = each.development.beside(together)
     judged = [entry.name for entry in manifest.controllers if entry.name in rows]
     others = [name for name in together.controllers if name not in judged]
-    together = together.only([*judged, *others])
-    best = non_dominated(together)
+    return together.only([*judged, *others])
+
+
+def _board(
+    together: CaseRows, judged: Mapping[str, JudgedRows], figures: dict[str, CaseFigures] | None
+) -> list[BoardRow]:
+    """Return every controller on the development cases."""
+    dominators = dominators_of(figures) if figures else {}
     found: list[BoardRow] = []
     for name in together.controllers:
         columns = together.of(name)
-        success = int(successes_in(columns).sum())
         found.append(
             {
                 'controller': name,
                 'judged': name in judged,
-                'success': share_of(success, together.cases),
-                'limits': limits_in(together, name, release.unavoidable, packaged_limits()),
-                'medians': {
-                    key: value if math.isfinite(value) else None
-                    for key, value in zip(MAIN, figures_of(together, name)[1:], strict=True)
-                },
-                'non_dominated': name in best,
+                'success': share_of_successes(columns),
+                'quantities': quantities_in(columns, SHOWN),
+                'dominated_by': dominators.get(name),
             }
         )
     return found

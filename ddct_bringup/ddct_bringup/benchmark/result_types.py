@@ -24,19 +24,17 @@ class WorstCase(TypedDict):
 
 
 class ValueSpread(Quantiles):
-    """Distribution over the engaged runs that have a value."""
+    """Distribution over the successes that have a value."""
 
     with_value: int
     worst: WorstCase
 
 
 class QuantityResult(ValueSpread):
-    """Distribution of one metric or criterion, and of its ratio to the floor."""
+    """Distribution of one quantity."""
 
     name: str
     unit: str
-    over_floor: ValueSpread | None
-    """Value over the least at the run's own lock instant; null for a quantity without floors."""
 
 
 class ScenarioResult(TypedDict):
@@ -44,23 +42,7 @@ class ScenarioResult(TypedDict):
 
     success: RunShare
     quantities: list[QuantityResult]
-    """Main quantities only."""
-
-
-class LimitsResult(TypedDict):
-    """Limits in the cases with floors, without those that no controller can keep."""
-
-    runs: int
-    """Number of runs in cases with floors."""
-    unavoidable: int
-    """Number of limits that no controller can keep, over these cases."""
-    avoidable: int
-    """Number of the other limits, over these cases."""
-    kept: int
-    share: float | None
-    """Share of the avoidable limits that were kept."""
-    all_kept: RunShare
-    """Runs that kept all avoidable limits, among those in cases with floors."""
+    """The five figures, and the peak jerk over the least."""
 
 
 class KeyEffect(TypedDict):
@@ -90,17 +72,17 @@ class Evaluation(TypedDict):
     controller: str
     runs: int
     success: RunShare
-    """Runs that are engaged or nearly engaged."""
+    """Runs that are engaged."""
     states: dict[str, RunShare]
     """Every state that occurred, `invalid` included."""
     scenarios: dict[str, ScenarioResult]
     reasons: list[Reason]
     """Reasons for invalid runs."""
     quantities: list[QuantityResult]
-    limits: LimitsResult
+    least_is_no_bound: int
+    """Number of successes whose peak jerk the least of the case does not bound."""
     causes: Causes | None
     """Null of a controller that only runs beside the judged one."""
-    non_dominated: bool
 
 
 class BoardRow(TypedDict):
@@ -109,14 +91,35 @@ class BoardRow(TypedDict):
     controller: str
     judged: bool
     success: RunShare
-    limits: LimitsResult
-    medians: dict[str, float | None]
-    """
-    Median of each main quantity over all cases, in its unit.
+    quantities: list[QuantityResult]
+    """The five figures, and the peak jerk over the least."""
+    dominated_by: list[str] | None
+    """Controllers that dominate it; null in a quick benchmark."""
 
-    A run that did not engage counts as worse than any value; null where half of them or more are.
-    """
-    non_dominated: bool
+
+class FigureInCases(TypedDict):
+    """One figure of the judged controller and another one, case by case."""
+
+    name: str
+    better: int
+    """Number of cases in which the judged one is better."""
+    worse: int
+    left_out: int
+    """Number of cases left out, since the figure is null by the case."""
+    median_difference: float | None
+    """Median of judged less other; null where failures of one alone decide it."""
+
+
+class PairedResult(TypedDict):
+    """The judged controller and another one on the same cases."""
+
+    other: str
+    cases: int
+    dominates: bool
+    """Whether the judged controller dominates the other one."""
+    dominated: bool
+    """Whether the other one dominates the judged controller."""
+    figures: list[FigureInCases]
 
 
 class Gap(TypedDict):
@@ -124,11 +127,13 @@ class Gap(TypedDict):
 
     name: str
     p_value: float | None
-    """Probability of such a difference by chance; null without values."""
+    """Probability that held-out runs are so much worse by chance; null without values."""
     worse: float | None
     """
     Probability that a held-out run is worse than one of development; 0.5 where they are alike.
     """
+    left_out: int
+    """Number of successes left out, since they have no value."""
     differs: bool
     """Whether it is beyond chance, with all figures of the controller taken together."""
 
@@ -147,6 +152,8 @@ class JudgedResult(TypedDict):
     held_out: list[Evaluation] | None
     """The same on the held-out cases."""
     gaps: list[Gap] | None
+    dominance: list[PairedResult] | None
+    """Comparison with each other controller on the development cases; null where it is quick."""
     development_pairs: list[PairSummary] | None
     """The judged controller less each of the others, on the same cases."""
     held_out_pairs: list[PairSummary] | None
@@ -173,12 +180,13 @@ class Method(TypedDict):
 
     share_interval: str
     difference_interval: str
-    gap_of_shares: str
-    gap_of_quantities: str
+    gap: str
     causes: str
     confidence: float
-    non_dominated: list[str]
-    """Figures that are compared to find who is not dominated."""
+    figures: list[str]
+    """Figures that are compared."""
+    dominance_level: float | None
+    """Level of one figure of one ordered pair of controllers; null in a quick benchmark."""
 
 
 class Result(TypedDict):

@@ -14,30 +14,30 @@ import pyarrow.parquet as parquet
 from ddct_bringup.campaign.arrow_columns import arrow_column, read_parquet
 from ddct_bringup.campaign.rows import (
     CONTROLLER,
-    CRITERION_COLUMNS,
     INDEX,
     METRIC_COLUMNS,
     PATH,
     SEED,
     SERIAL,
+    STATE,
     Row,
 )
 from ddct_bringup.campaign.spec import CampaignSpec
-from ddct_bringup.scores.csv_text import OVER_FLOOR
 from ddct_plant.base.errors import DdctError
 
-SCHEMA_VERSION = 2
-"""Schema version of the columns; from version 2 on each row has its `seed`."""
+SCHEMA_VERSION = 3
+"""Schema version of the columns."""
 _COMPRESSION = 'zstd'
 _ROW_GROUP = 50_000
 """Smallest number of rows in a row group except the last: each group costs a reader memory."""
-_VERDICT = (
+_OUTCOME = (
     ('valid', pa.bool_()),
     ('reason', pa.string()),
-    ('verdict_state', pa.string()),
-    ('verdict_limits', pa.string()),
+    (STATE, pa.string()),
+    ('why', pa.string()),
+    ('least_is_bound', pa.bool_()),
 )
-COMPARED = (SEED, *METRIC_COLUMNS, *(name for name, _ in _VERDICT), *CRITERION_COLUMNS)
+COMPARED = (SEED, *METRIC_COLUMNS, *(name for name, _ in _OUTCOME))
 """Columns that a repeated run is compared in with its row."""
 VECTORISED_RTOL = 1e-9
 """Largest difference of a row of the vectorised path, relative to the larger value."""
@@ -52,9 +52,7 @@ def schema_of(spec: CampaignSpec) -> pa.Schema:
         (SEED, pa.int64()),
         *((key, _type(spec, key)) for key in spec.keys if key != SEED),
         *((name, pa.float64()) for name in METRIC_COLUMNS),
-        *_VERDICT,
-        *((name, pa.float64()) for name in CRITERION_COLUMNS),
-        *((f'{OVER_FLOOR}{name}', pa.float64()) for name in spec.floors),
+        *_OUTCOME,
     ]
     return pa.schema(fields, {'schema_version': str(SCHEMA_VERSION)})
 
@@ -133,8 +131,7 @@ def differences(row: Mapping[str, Any], again: Mapping[str, Any]) -> list[str]:
     """
     Return the differences of a repeated run from its row, as text.
 
-    Its seed and every metric, criterion and state of the verdict are compared: for a serial row to
-    the last bit.
+    Its seed, every metric and its state are compared: for a serial row to the last bit.
     """
     rtol = 0.0 if row[PATH] == SERIAL else VECTORISED_RTOL
     return [

@@ -5,7 +5,7 @@ Run a campaign specification from Python and iterate over its rows.
 
     from ddct_bringup.campaign.run_specification import run_specification
     for row in run_specification(spec_of({...}, Path.cwd()), packaged_limits()):
-        print(row['wear_gain'], row['verdict_state'])
+        print(row['wear_gain'], row['state'])
 """
 
 from collections.abc import Callable, Generator, Iterator

@@ -4,7 +4,7 @@
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from itertools import chain
 from typing import Any
 
@@ -67,8 +67,8 @@ class Scorer:
     limits: Limits
     at_once: bool = True
     """Whether linear runs are computed together, to 1e-9 of the run step by step."""
-    floors: tuple[str, ...] = ()
-    """Metrics that are set beside the least; runs with floors are computed step by step."""
+    floors: bool = False
+    """Whether peak jerks are compared with the least; such runs are computed step by step."""
     _shared: dict[str, Controller] = field(default_factory=dict)
 
     def scored(self, runs: Iterable[PlannedRow | ImpossibleRow]) -> list[ScoredRow]:
@@ -89,9 +89,8 @@ class Scorer:
             path, scores = SERIAL, run_without_score(name, None, str(run.error))
         elif scores is None:
             path = SERIAL
-            floors = self.floors if run.has_floors else ()
-            scores = scored_headless(run.settings, run.controller, self.limits, floors)
-        scores = replace(scores, over_floor={**dict.fromkeys(self.floors), **scores.over_floor})
+            floors = self.floors and run.has_floors
+            scores = scored_headless(run.settings, run.controller, self.limits, floors=floors)
         return ScoredRow(run.index, name, run.seed, run.varied, scores, path)
 
     def _together(self, runs: Sequence[PlannedRow]) -> dict[int, ScoredRun]:
@@ -150,13 +149,13 @@ def scored_runs(
     *,
     workers: int | None = None,
     at_once: bool = True,
-    floors: tuple[str, ...] = (),
+    floors: bool = False,
 ) -> Iterator[Iterator[ScoredRow]]:
     """
     Yield an iterator over all runs with their scores, in the order of their indices.
 
     They are computed while it is consumed, by `workers` processes, by default one per core; none
-    is kept. `floors` are the metrics that are set beside the least. Call `RunSet.require_sound`
+    is kept. With `floors` peak jerks are compared with the least. Call `RunSet.require_sound`
     before: here a run that cannot be built has its reason.
     """
     scorer = Scorer(limits, at_once, floors)

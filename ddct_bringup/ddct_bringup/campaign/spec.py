@@ -57,7 +57,7 @@ class CampaignSpec:
     """Distributions of the keys that are drawn in each sample, by key."""
     of: int = 1
     """Number of samples of the whole campaign; the first `samples` of them run."""
-    floors: tuple[str, ...] = ()
+    floors: bool = False
     """Metrics that are set beside the least that any controller could have."""
     floor_samples: int = 1
     """Number of samples, the first at each point of the grid, whose runs have floors."""

@@ -85,8 +85,7 @@
     const worth = value === null ? `${quantity.title}: no value` : `${quantity.title}: ${number(value, 4)}`;
     const interval = panel.intervals?.[place].map((end) => number(100 * end, 3)).join(' to ');
     const came = runs > 1 ? `${failed} of ${runs} runs failed (95 % interval ${interval} %)${invalid ? `, ${invalid} invalid` : ''}` : state_text(state);
-    const second = !lost && !share && state !== 'engaged' ? state : '';
-    return {value, word, alone: runs === 1, state: lost ? state : value === null ? UNDEFINED : '', second, index, text: `${data.groups[panel.group]}, ${at.join(', ')}: ${came}. ${worth}. Run ${index}.`};
+    return {value, word, alone: runs === 1, state: lost ? state : value === null ? UNDEFINED : '', index, text: `${data.groups[panel.group]}, ${at.join(', ')}: ${came}. ${worth}. Run ${index}.`};
   }
 
   function axisOf(values, start, length, cells) {
@@ -144,7 +143,7 @@
     const rect = listening(element('rect', {...box, class: 'cell', 'stroke-width': Math.min(width, height) < LINE ? 0 : 1}), cell);
     if (cell.state) return [rect, hatched(cell.state, box)];
     rect.setAttribute('fill', colourOf(cell.value, quantity));
-    return cell.second ? [rect, hatched(cell.second, box)] : [rect];
+    return [rect];
   }
 
   // The word of all neighbours in a row that share it, where there is room; rows too low for text have
@@ -170,12 +169,11 @@
 
   function dot(cell, quantity) {
     const {x, y} = cell;
-    if (!cell.state && !cell.second) {
+    if (!cell.state) {
       return [listening(element('circle', {cx: x, cy: y, r: 4.5, fill: colourOf(cell.value, quantity), class: 'cell'}), cell)];
     }
     const box = {x: x - 5, y: y - 5, width: 10, height: 10};
-    const fill = cell.second ? {fill: colourOf(cell.value, quantity)} : {};
-    return [listening(element('rect', {...box, ...fill, class: 'cell lost'}), cell), hatched(cell.state || cell.second, box)];
+    return [listening(element('rect', {...box, class: 'cell lost'}), cell), hatched(cell.state, box)];
   }
 
   function axes(svg, map, x, upward, up, width, height) {
@@ -195,10 +193,8 @@
   }
 
   function legend(map, quantity) {
-    const drawn = new Set(map.panels.flatMap((panel, group) => panel.index.flatMap((_, at) => {
-      const {state, second} = cellOf(map, {...panel, group}, at, quantity);
-      return [state, second];
-    })));
+    const drawn = new Set(map.panels.flatMap((panel, group) => panel.index.map(
+      (_, at) => cellOf(map, {...panel, group}, at, quantity).state)));
     document.getElementById('low').textContent = number(quantity.low, 4);
     document.getElementById('high').textContent = number(quantity.high, 4);
     document.querySelector('.ramp').style.background = `linear-gradient(to right, ${ramp.join(',')})`;

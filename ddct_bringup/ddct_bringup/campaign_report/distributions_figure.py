@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ddct_bringup.campaign_report.results import Group, Results
-from ddct_bringup.metrics.catalogue import FURTHER, TABLE_5_1
+from ddct_bringup.metrics.catalogue import FIGURES, TABLE_5_1
 from ddct_bringup.report.page_parts import unit_text
 from ddct_bringup.verdict.state import ENGAGED, INVALID
 from ddct_controllers.design.drawing.chart_style import chart_style, save_chart
@@ -21,10 +21,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_DRAWN = (
-    *(quantity.key for quantity in TABLE_5_1),
-    *('slip_rmse_rpm', 'peak_jerk_m_s3', 'friction_energy_j'),
-)
 _ACROSS = 3
 _WIDTH_IN, _PANEL_IN, _LINE_IN = 11.0, 2.7, 0.25
 _LEGEND_COLUMNS = 5
@@ -51,8 +47,7 @@ def distributions_figure(results: Results, scenario: str) -> 'Figure':
     """
     from matplotlib.figure import Figure
 
-    metrics = [each for each in (*TABLE_5_1, *FURTHER) if each.key in _DRAWN]
-    metrics = [each for each in metrics if each in results.quantities]
+    metrics = [each for each in (*TABLE_5_1, *FIGURES) if each in results.quantities]
     rows = max(1, -(-len(metrics) // _ACROSS))
     legend = -(-len(results.groups) // _LEGEND_COLUMNS)
     figure = Figure(figsize=(_WIDTH_IN, _PANEL_IN * rows + _LINE_IN * legend + 1.1))

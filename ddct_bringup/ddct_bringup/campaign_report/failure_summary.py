@@ -6,6 +6,7 @@ from collections import Counter
 
 import numpy as np
 
+from ddct_bringup.campaign.rows import STATE
 from ddct_bringup.campaign_report.results import Group, Results
 from ddct_bringup.campaign_report.statistics import attribution
 from ddct_bringup.campaign_report.statistics.boundaries import FailureBoundary, boundaries
@@ -51,7 +52,7 @@ def _states(
 ) -> dict[str, StateSummary]:
     """Return the number of valid runs in each state, those of another version last."""
     valid = group.rows[results.outcomes[group.rows] != INVALID]
-    found = Counter(results.columns['verdict_state'][valid].tolist())
+    found = Counter(results.columns[STATE][valid].tolist())
     return {
         str(state): {
             'runs': found[state],
@@ -150,5 +151,5 @@ def _reference(results: Results, rows: np.ndarray, place: int | None) -> RunRefe
     row = rows[place]
     return {
         'index': int(results.columns['index'][row]),
-        'state': str(results.columns['verdict_state'][row]),
+        'state': str(results.columns[STATE][row]),
     }

@@ -18,7 +18,6 @@ from ddct_bringup.campaign_report.maps import FAILED_SHARE, campaign_maps
 from ddct_bringup.campaign_report.printed_summary import MAIN
 from ddct_bringup.campaign_report.reading import read_table, results_of
 from ddct_bringup.campaign_report.results import Results
-from ddct_bringup.campaign_report.statistics.outcome import FAILED
 from ddct_bringup.campaign_report.summary import summary_of
 from ddct_bringup.campaign_report.summary_types import Summary
 from ddct_bringup.digests.writing import keep_digests
@@ -32,7 +31,6 @@ from ddct_bringup.report.page_parts import (
     value_text,
 )
 from ddct_bringup.run.output_folder import locked_folders
-from ddct_bringup.verdict.state import ENGAGED, INVALID
 from ddct_controllers.design.drawing.chart_style import chart_bytes, chart_style
 from ddct_plant.files.output_file import write_json, write_text
 from ddct_plant.files.yaml_text import dump_yaml
@@ -105,7 +103,6 @@ def campaign_page(
         lines=results.lines,
         distributions=_distributions(results, facts[SCENARIO]),
         main=MAIN,
-        second_rank=len(set(results.outcomes.tolist()) - {ENGAGED, FAILED, INVALID}) > 0,
         texts=texts,
         value_text=value_text,
         number_text=number_text,

@@ -7,6 +7,7 @@ from itertools import combinations
 
 import numpy as np
 
+from ddct_bringup.campaign.rows import STATE
 from ddct_bringup.campaign_report.map_types import (
     CampaignMaps,
     CellMap,
@@ -17,7 +18,7 @@ from ddct_bringup.campaign_report.map_types import (
 from ddct_bringup.campaign_report.results import Results
 from ddct_bringup.campaign_report.statistics.outcome import FAILED, Outcomes, count_outcomes
 from ddct_bringup.report.page_parts import unit_text
-from ddct_bringup.verdict.state import ENGAGED, INVALID, SUCCESSES
+from ddct_bringup.verdict.state import ENGAGED, INVALID
 
 FAILED_SHARE = 'failed_share'
 """Key of the share of failed engagements in a cell."""
@@ -25,7 +26,7 @@ MOST_MAPS = 10
 """Largest number of maps on the page: all pairs of five numbers."""
 MOST_POINTS = 2500
 """Largest number of points of a group in a map of samples; a note gives the number of runs."""
-_FIRST = (INVALID, FAILED, *SUCCESSES[::-1])
+_FIRST = (INVALID, FAILED, ENGAGED)
 """Outcomes that mark a cell of several runs, in order of precedence."""
 _DIGITS, _PLACE_DIGITS = 4, 9
 """Significant digits of values and of coordinates."""
@@ -149,7 +150,7 @@ def _panel(
     counts = _counts(results.outcomes, parts)
     repeated = any(len(rows) > 1 for rows in parts)
     marking = [_marking(results, rows) for rows in parts]
-    states, index = results.columns['verdict_state'], results.columns['index']
+    states, index = results.columns[STATE], results.columns['index']
     worst = {quantity.key: _worst(results, quantity.key, parts) for quantity in results.quantities}
     return {
         'at': [_places(results.columns[key], parts) for key in keys],

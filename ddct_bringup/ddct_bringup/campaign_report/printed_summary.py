@@ -15,19 +15,15 @@ from ddct_bringup.campaign_report.summary_types import (
     QuantitySummary,
     Summary,
 )
-from ddct_bringup.metrics.catalogue import METRICS, OF_SHIFT, TABLE_5_1
+from ddct_bringup.metrics.catalogue import FIGURES, METRICS, TABLE_5_1
 from ddct_plant.program.printed_table import print_note, print_tables
 from ddct_plant.program.table import UNDEFINED, Table, Weight, text_or_dash, with_reasons
 
 _OF_TWO = (Weight.IDENTIFYING, Weight.IDENTIFYING)
 """Weights of a table whose first two columns identify a row."""
 Entry = TypeVar('Entry')
-MAIN = (
-    *(metric.key for metric in TABLE_5_1),
-    *('peak_jerk_m_s3', 'friction_energy_j'),
-    *(metric.key for metric in OF_SHIFT if metric.column),
-)
-"""Main metrics, whose differences are shown, those of gear shifts where the runs have them."""
+MAIN = tuple(each.key for each in (*FIGURES, *TABLE_5_1))
+"""Figures and metrics of Table 5.1, whose differences are shown where the runs have them."""
 
 
 def summary_tables(summary: Summary) -> list[Table]:
@@ -140,11 +136,10 @@ def _by_place(
 
 
 def _quantities(summary: Summary) -> Table:
-    """Return the table of the metrics; the page has the other criteria too."""
+    """Return the table of the figures and metrics that a run has."""
     rows = [
         _quantity(texts.label_of(group), found)
         for group, found in _by_place(summary, lambda group: group['quantities'])
-        if found['name'] in METRICS
     ]
     headers = (
         *('quantity', 'controller', 'n', 'P5', 'P50', 'P95', 'CVaR', 'worst engaged', 'run'),

@@ -12,17 +12,17 @@ from ddct_bringup.campaign.columns import COMPARED, CONTROLLER, INDEX, PATH, SCH
 from ddct_bringup.campaign.conduct import RESULTS
 from ddct_bringup.campaign.keys import COMMON, SCENARIO, option_of
 from ddct_bringup.campaign.manifest import MANIFEST, Manifest
+from ddct_bringup.campaign.rows import STATE
 from ddct_bringup.campaign.spec import CampaignSpec
 from ddct_bringup.campaign_report.results import OtherVersion, Results
 from ddct_bringup.digests.files import require_unaltered
-from ddct_bringup.scores.csv_text import OVER_FLOOR
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.files.input_file import SCHEMA_KEY, require_schema_version
 from ddct_plant.models.clutch import LINEAR
 from ddct_plant.scenario.differences import values_by_key
 from ddct_plant.scenario.settings import RunSettings
 
-REQUIRED = (INDEX, CONTROLLER, 'valid', 'reason', 'verdict_state')
+REQUIRED = (INDEX, CONTROLLER, 'valid', 'reason', STATE)
 """Required columns, besides those of the varied keys."""
 _DIGEST_ADVICE = (
     'put the original back, or give --resume to ddct campaign, which computes the rows again'
@@ -78,7 +78,7 @@ def read_table(folder: Path, manifest: Manifest) -> pa.Table:
 
 def _require_types(table: pa.Table, path: Path) -> None:
     """Raise DdctError for a required column of another type."""
-    for name, kind in ((CONTROLLER, 'string'), ('verdict_state', 'string'), ('valid', 'bool')):
+    for name, kind in ((CONTROLLER, 'string'), (STATE, 'string'), ('valid', 'bool')):
         if name in table.column_names and str(table.schema.field(name).type) != kind:
             raise DdctError(f'its column {name} is no {kind}: {_RESUME_ADVICE}', place=path)
 
@@ -95,9 +95,7 @@ def results_of(manifest: Manifest, table: pa.Table) -> Results:
     columns = {name: numpy_column(table[name]) for name in table.column_names}
     expected = (*REQUIRED, PATH, *COMPARED, *manifest.grid, *manifest.random)
     absent = tuple(name for name in COMPARED if name not in columns)
-    unknown = tuple(
-        name for name in columns if name not in expected and not name.startswith(OVER_FLOOR)
-    )
+    unknown = tuple(name for name in columns if name not in expected)
     nominal: dict[str, float] = {}
     why = ''
     try:

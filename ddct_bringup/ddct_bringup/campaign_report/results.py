@@ -10,6 +10,7 @@ from itertools import combinations
 import numpy as np
 
 from ddct_bringup.campaign.columns import CONTROLLER, INDEX, SEED
+from ddct_bringup.campaign.rows import STATE
 from ddct_bringup.campaign_report.evaluated_quantities import QUANTITIES
 from ddct_bringup.campaign_report.statistics.outcome import outcomes_of
 from ddct_plant.program.table import Quantity
@@ -49,7 +50,7 @@ class Results:
     @cached_property
     def outcomes(self) -> np.ndarray:
         """Outcome of each run, (n,)."""
-        return outcomes_of(self.columns['valid'], self.columns['verdict_state'])
+        return outcomes_of(self.columns['valid'], self.columns[STATE])
 
     @cached_property
     def quantities(self) -> list[Quantity]:

@@ -22,8 +22,8 @@ from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.program.table import UNDEFINED
 
 RULES = {
-    'failed': 'The run is valid, and the state of its verdict is neither engaged nor nearly '
-    'engaged. A criterion beyond its limit is no failed engagement.',
+    'failed': 'The run is valid, and its state is not engaged. A metric beyond its limit is no '
+    'failed engagement.',
     'invalid': 'The run does not count: it is neither engaged nor failed, and stands apart.',
     'share': 'Failed runs among the valid ones. Beside it are the runs of each other state.',
     'interval': f'{METHOD}, {100.0 * CONFIDENCE:g} %, of runs that are a random sample. Invalid '

@@ -73,12 +73,12 @@ def bound_of(case: Case, objective: Peak | RootMeanSquare, signals: Signals) -> 
     rows = np.ascontiguousarray(mapped.T)
     if isinstance(objective, Peak):
         return _peak(case, rows, objective.one_sided)
-    if not objective.sliding:
-        return _mean_square(case, rows, objective, signals)
-    length = len(objective.weights(signals))
+    length = objective.samples
+    if not length:
+        return _mean_square(case, rows)
     first, best = 0, None
     for _ in range(_WINDOWS):
-        found = _mean_square(case, rows[first : first + length], objective, signals)
+        found = _mean_square(case, rows[first : first + length])
         if found.point is None or found.least is None:
             return found
         squares = np.cumsum(np.concatenate([[0.0], (rows @ found.point) ** 2]))
@@ -134,11 +134,9 @@ def _peak(case: Case, rows: np.ndarray, one_sided: bool) -> Bound:
     )
 
 
-def _mean_square(
-    case: Case, rows: np.ndarray, objective: RootMeanSquare, signals: Signals
-) -> Bound:
+def _mean_square(case: Case, rows: np.ndarray) -> Bound:
     """
-    Return the bound of the weighted r.m.s. of `rows` (n, columns) times the variables.
+    Return the bound of the r.m.s. of `rows` (n, columns) times the variables.
 
     f(z) >= f(z_0) + f'(z_0) (z - z_0) for a convex f. So the proof is that of the linear program
     with the slope at the solution z_0 as cost.
@@ -146,7 +144,7 @@ def _mean_square(
     inequalities = case.inequalities
     limiting, limits = inequalities.rows, inequalities.limits
     columns = case.motion.columns
-    weighted = np.sqrt(objective.weights(signals))[:, np.newaxis] * rows
+    weighted = rows / np.sqrt(len(rows))
     middle = np.concatenate([[1.0], (columns.low + columns.high) / 2.0])
     free = np.concatenate([[False], free_columns(case)])
     fixed = middle * ~free
@@ -179,13 +177,11 @@ def _mean_square(
     require_proof(solution.certificate, program)
     if solution.point is None:
         return Bound(None, RAY, None, None, solution.certificate, program)
-    scale = objective.scale(signals)
-    least = scale * float(np.sqrt(max(solution.certificate.claim, 0.0)))
     return Bound(
-        least,
+        float(np.sqrt(max(solution.certificate.claim, 0.0))),
         LINEARISED,
         point,
-        scale * float(np.sqrt(square)),
+        float(np.sqrt(square)),
         solution.certificate,
         program,
         _engine_price(case, solution.certificate, square),

@@ -39,21 +39,22 @@ def cache_folder() -> Path | None:
     return Path(home) / 'ddct' / 'floors'
 
 
-def digest_of(case: Case, metric: str, engagements_a_day: float, attain: bool) -> str:
+def digest_of(case: Case, metric: str, attain: bool) -> str:
     """Return the SHA-256 of the case, the metric, the code of all packages, and the solvers."""
     digest = hashlib.sha256(f'{code_digest()} {scipy.__version__}'.encode())
     settings = case.settings
     texts = (
         metric,
-        repr(engagements_a_day),
         repr(attain),
         repr(settings.scenario),
+        repr(settings.known_scenario),
         settings.clutch,
         repr(settings.wear_gain),
         repr(settings.off_going_wear_gain),
         _handover(settings.handover),
         repr(case.lock.time_s),
         repr(case.limited),
+        repr(case.rules),
         repr(case.most_request),
     )
     for text in texts:

@@ -17,6 +17,8 @@ from ddct_bringup.floor.dynamics.torque_cut import cuts_as_usual, gives_demand
 from ddct_bringup.floor.dynamics.tube import Tube, rigid_tube
 from ddct_bringup.floor.lock import Lock
 from ddct_bringup.floor.rows import Rows, band_rows, clutch_rows, engine_rows
+from ddct_bringup.verdict.limits import packaged_limits
+from ddct_bringup.verdict.rules import Rules
 from ddct_plant.scenario.settings import RunSettings
 
 MOST_REQUEST = 2000.0
@@ -39,6 +41,8 @@ class Case:
     limited: bool
     """Whether C_m may differ from the demand, as where limits of the engine act."""
     capacity: CapacityRange
+    rules: Rules
+    """Thresholds of the states; a linear clutch locks within their band."""
     most_request: float = MOST_REQUEST
     near_run: tuple[EngineLaw, Law] | None = None
     """Laws of C_m and of the load near one run, which the runs of a replay have; None: those of
@@ -80,7 +84,7 @@ class Case:
         """Rows of the slip and the capacity, the first of `inequalities`."""
         if self.settings.stick_slip:
             return clutch_rows(self.motion, self.capacity)
-        return band_rows(self.motion, self.lock)
+        return band_rows(self.motion, self.lock, self.rules.engaged_slip_rad_s)
 
     @cached_property
     def inequalities(self) -> Rows:
@@ -95,13 +99,18 @@ class Case:
 
 
 def case_at(
-    settings: RunSettings, start: Start, lock_time_s: float, *, limited: bool = True
+    settings: RunSettings,
+    start: Start,
+    lock_time_s: float,
+    rules: Rules | None = None,
+    *,
+    limited: bool = True,
 ) -> Case:
     """
     Return the runs that lock `lock_time_s` after control start, near a rigid car.
 
     C_m is a variable where limits of the engine can act, unless `limited` is False: then these are
-    the runs in which it is the demand throughout.
+    the runs in which it is the demand throughout. Without rules they are the packaged ones.
     """
     return Case(
         settings,
@@ -110,10 +119,13 @@ def case_at(
         rigid_tube(settings, start, lock_time_s),
         limited,
         capacity_range(settings, start.temperature_c),
+        rules or packaged_limits().rules,
     )
 
 
-def case_of_run(settings: RunSettings, start: Start, lock: Lock, run: Trajectory) -> Case | None:
+def case_of_run(
+    settings: RunSettings, start: Start, lock: Lock, run: Trajectory, rules: Rules | None = None
+) -> Case | None:
     """
     Return the runs that lock when `run` does, which include it; None where none can.
 
@@ -140,5 +152,6 @@ def case_of_run(settings: RunSettings, start: Start, lock: Lock, run: Trajectory
         rigid_tube(settings, start, lock.time_s).with_run(run, first),
         limited,
         capacity,
+        rules or packaged_limits().rules,
         max(MOST_REQUEST, float(run.torque_request[first:].max())),
     )

@@ -15,7 +15,7 @@ from ddct_bringup.floor.objectives import Signals
 from ddct_bringup.floor.program.linear_program import CLOSED_FORM, RAY
 from ddct_bringup.floor.program.one_thread import one_thread
 from ddct_bringup.floor.replays.attained import Replays, replays_of
-from ddct_bringup.floor.values import FRICTION, Floor, engagements_a_day, objective_of
+from ddct_bringup.floor.values import FRICTION, Floor, objective_of
 from ddct_plant.base.errors import ParameterError
 
 DEMAND, LIMITS = (
@@ -44,7 +44,7 @@ def computed_floor(
     case: Case, metric: str, begin: Trajectory | None = None, *, attain: bool = True
 ) -> ComputedFloor:
     """Return the floor of a case, from the cache where it is there."""
-    digest = digest_of(case, metric, engagements_a_day(), attain)
+    digest = digest_of(case, metric, attain)
     known = cached(digest)
     if known is not None:
         return ComputedFloor(Floor(**known['floor']), known['limited'])
@@ -63,7 +63,7 @@ def _closed_form(case: Case) -> ComputedFloor:
 
 def _computed(case: Case, metric: str, begin: Trajectory | None, attain: bool) -> ComputedFloor:
     objective, settings = objective_of(metric), case.settings
-    signals = Signals.of_motion(case.motion, settings.scenario, engagements_a_day())
+    signals = Signals.of_motion(case.motion, settings.scenario)
     covers = LIMITS if case.limited else DEMAND
     bound = bound_of(case, objective, signals)
     if bound is None:

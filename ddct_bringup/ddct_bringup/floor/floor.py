@@ -13,6 +13,7 @@ from ddct_bringup.floor.control_start import control_start
 from ddct_bringup.floor.dynamics.start import Start
 from ddct_bringup.floor.lock import lock_of
 from ddct_bringup.floor.values import Floor, OverFloor, value_of
+from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.scenario.settings import RunSettings
 
@@ -76,7 +77,8 @@ def floors_of_run(
     """
     none: dict[str, OverFloor | None] = dict.fromkeys(metrics)
     start = control_start(settings) if start is None else start
-    lock = lock_of(run, start.step)
+    rules = packaged_limits().rules
+    lock = lock_of(run, start.step, rules)
     if lock is None or run.steps < settings.scenario.steps:
         return none
     case = case_of_run(settings, start, lock, run)

@@ -7,13 +7,13 @@ from typing import TypedDict
 
 import numpy as np
 
-from ddct_bringup.floor.case import case_at
 from ddct_bringup.floor.dynamics.start import Start
-from ddct_bringup.floor.floor import floor_of_case, floors_at, floors_of_run
+from ddct_bringup.floor.floor import floors_at, floors_of_run
 from ddct_bringup.floor.lock import lock_of
 from ddct_bringup.floor.objectives import window_of
 from ddct_bringup.floor.values import Floor, OverFloor, value_of
 from ddct_bringup.run.headless import run_headless
+from ddct_bringup.verdict.limits import packaged_limits
 from ddct_controllers.registry import Chosen, controller_label
 from ddct_plant.scenario.settings import RunSettings
 
@@ -36,23 +36,6 @@ def front(
     """Yield the floors of all metrics for each lock time."""
     for time_s in lock_times_s:
         yield floors_at(settings, metrics, time_s, start)
-
-
-def least_values(
-    settings: RunSettings,
-    metric: str,
-    lock_times_s: Sequence[float],
-    start: Start,
-    *,
-    limited: bool,
-) -> Iterator[Floor]:
-    """
-    Yield the floor for each lock time, without a run near it.
-
-    With `limited` they cover runs in which limits of the engine act, too.
-    """
-    for time_s in lock_times_s:
-        yield floor_of_case(case_at(settings, start, time_s, limited=limited), metric)
 
 
 class LeastLockTime(TypedDict):
@@ -105,7 +88,7 @@ def controller_rows(
     Least and ratio are None where the run does not lock once and stay locked.
     """
     run = run_headless(settings, controller)
-    lock = lock_of(run, start.step)
+    lock = lock_of(run, start.step, packaged_limits().rules)
     over: Mapping[str, OverFloor | None] = floors_of_run(settings, metrics, run, start)
     rows: list[ControllerRow] = []
     for metric in metrics:

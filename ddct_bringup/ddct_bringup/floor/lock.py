@@ -8,15 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.metrics.lockup import Lockup
 from ddct_bringup.metrics.zero_slip import LOCKED, events_of, first_lock
+from ddct_bringup.verdict.rules import Rules
 from ddct_plant.base.timebase import PERIOD_S, time_of_step
-from ddct_plant.base.units import rad_s_from_rpm
 from ddct_plant.models.driveline import LOCK
 from ddct_plant.scenario.settings import RunSettings
-
-BAND_RPM, SETTLED_S = 50.0, 0.3
-"""Slip within which a linear clutch counts as locked, and for how long: the rules of verdicts."""
-BAND_RAD_S = rad_s_from_rpm(BAND_RPM)
 
 
 @dataclass(frozen=True)
@@ -37,18 +34,18 @@ def counted_from(settings: RunSettings) -> str:
     return 'the start of the inertia phase' if settings.shift else 'control start'
 
 
-def lock_of(run: Trajectory, start: int) -> Lock | None:
+def lock_of(run: Trajectory, start: int, rules: Rules) -> Lock | None:
     """
     Return the lock of a run that locks once after step `start` and stays locked, else None.
 
     In a gear shift it is that of the on-coming clutch. Plates that stick lock at the exact
-    instant, and slip one way before. A linear clutch locks
-    with the first sample from which the slip stays within the band to the end.
+    instant, and slip one way before. A linear clutch locks with the first sample from which the
+    slip stays within the band of the rules to the end.
     """
     if run.steps <= start:
         return None
     if run.clutch_phase is None:
-        return _settled(run.slip_speed[start:])
+        return _settled(run.slip_speed[start:], rules)
     lock = first_lock(run, start)
     events = [event for step in (run.phase_events or ())[start + 1 :] for event in step]
     if lock is None or len(events) != 1 or run.clutch_phase[-1] != LOCKED:
@@ -57,9 +54,23 @@ def lock_of(run: Trajectory, start: int) -> Lock | None:
     return Lock(lock.time_s - time_of_step(start))
 
 
-def _settled(slip: np.ndarray) -> Lock | None:
-    outside = np.flatnonzero(np.abs(slip) > BAND_RAD_S)
+def final_lock_of(run: Trajectory, start: int, rules: Rules) -> Lock | None:
+    """
+    Return the last lock of a run after step `start`, after which it stays locked, else None.
+
+    None too where the plates never part after `start`, or lock before.
+    """
+    if run.steps <= start:
+        return None
+    if run.clutch_phase is None:
+        return _settled(run.slip_speed[start:], rules)
+    time_s = Lockup(run, start).final_lock_s
+    return Lock(time_s) if time_s else None
+
+
+def _settled(slip: np.ndarray, rules: Rules) -> Lock | None:
+    outside = np.flatnonzero(np.abs(slip) > rules.engaged_slip_rad_s)
     first = int(outside[-1]) + 1 if outside.size else 0
-    if first == 0 or (len(slip) - 1 - first) * PERIOD_S < SETTLED_S - 1e-9:
+    if first == 0 or (len(slip) - 1 - first) * PERIOD_S < rules.settled_time - 1e-9:
         return None
     return Lock(first * PERIOD_S)

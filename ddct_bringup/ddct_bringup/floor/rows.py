@@ -9,7 +9,7 @@ import numpy as np
 from ddct_bringup.floor.dynamics.capacity import CapacityRange
 from ddct_bringup.floor.dynamics.engine_laws import EngineLaw
 from ddct_bringup.floor.dynamics.motion import Motion
-from ddct_bringup.floor.lock import BAND_RAD_S, Lock
+from ddct_bringup.floor.lock import Lock
 
 _BAND_SHARE = 0.01
 """Share of the band of a linear clutch that points keep clear of."""
@@ -62,7 +62,7 @@ def clutch_rows(motion: Motion, capacity: CapacityRange) -> Rows:
     return Rows(np.vstack(rows), every, deferred, np.zeros(len(every)))
 
 
-def band_rows(motion: Motion, lock: Lock) -> Rows:
+def band_rows(motion: Motion, lock: Lock, band_rad_s: float) -> Rows:
     """
     Return the rows of a linear clutch, which stays within the band from its lock on.
 
@@ -72,9 +72,9 @@ def band_rows(motion: Motion, lock: Lock) -> Rows:
     count = 2 * len(after)
     return Rows(
         np.vstack([after, -after]),
-        np.full(count, BAND_RAD_S),
+        np.full(count, band_rad_s),
         np.zeros(count, dtype=bool),
-        np.full(count, _BAND_SHARE * BAND_RAD_S),
+        np.full(count, _BAND_SHARE * band_rad_s),
     )
 
 

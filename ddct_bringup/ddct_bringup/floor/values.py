@@ -4,14 +4,12 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cache
 from typing import Any
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.floor.objectives import OBJECTIVES, Objective
 from ddct_bringup.floor.replays.attained import signals_of_run
 from ddct_bringup.metrics.friction_work import friction_work
-from ddct_bringup.verdict.limits import load_limits
 from ddct_plant.base.errors import require_choice
 from ddct_plant.scenario.settings import RunSettings
 
@@ -84,15 +82,7 @@ def value_of(settings: RunSettings, metric: str, run: Trajectory, start: int) ->
     """Return the value of a metric of a run, for friction that of the work after control start."""
     if metric == FRICTION:
         return float(friction_work(run, start))
-    scenario = settings.scenario
-    signals = signals_of_run(start, engagements_a_day(), scenario, run)
-    return objective_of(metric).value(signals)
-
-
-@cache
-def engagements_a_day() -> float:
-    """Return the number of engagements of a day that the rules of verdicts have."""
-    return load_limits(None).rules.engagements_a_day
+    return objective_of(metric).value(signals_of_run(start, settings.scenario, run))
 
 
 def objective_of(metric: str) -> Objective:

@@ -1,14 +1,16 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Metrics of the controller: variation of its request, and its times on the wall clock."""
+"""Metrics of the length of a run and of its times on the wall clock."""
 
 from collections.abc import Sequence
 
 import numpy as np
 
 from ddct_bringup.metrics.engagement import Engagement, Values
-from ddct_bringup.metrics.metric import NO_TIMING, NOT_FINITE, Metric
+from ddct_bringup.metrics.metric import NO_TIMING, Metric, Null
 from ddct_plant.program.table import PURE
+
+_NO_TIMING = Null(NO_TIMING, lambda engagement: engagement.timing is None)
 
 
 def update_times_us(engagement: Engagement) -> Sequence[float] | None:
@@ -30,19 +32,6 @@ def update_time_p99(engagement: Engagement) -> Values | None:
 
 QUANTITIES = (
     Metric(
-        key='torque_total_variation_n_m',
-        symbol='variation C_f',
-        unit='N m',
-        form='.0f',
-        meaning='sum of all changes of the torque request, whole run',
-        undefined=NOT_FINITE,
-        value=lambda engagement: np.sum(
-            np.abs(np.diff(engagement.trajectory.torque_request)), axis=-1
-        ),
-        criterion='request_variation',
-        needs=('torque_request',),
-    ),
-    Metric(
         key='steps',
         symbol='steps',
         unit=PURE,
@@ -57,7 +46,7 @@ QUANTITIES = (
         unit='us',
         form='.1f',
         meaning='median time of a controller update',
-        undefined=NO_TIMING,
+        nulls=(_NO_TIMING,),
         value=update_time_median,
         from_timing=True,
     ),
@@ -67,7 +56,7 @@ QUANTITIES = (
         unit='us',
         form='.1f',
         meaning='99th percentile of the time of a controller update',
-        undefined=NO_TIMING,
+        nulls=(_NO_TIMING,),
         value=update_time_p99,
         from_timing=True,
     ),
@@ -77,11 +66,10 @@ QUANTITIES = (
         unit=PURE,
         form='d',
         meaning='steps that went on without a reply',
-        undefined=NO_TIMING,
+        nulls=(_NO_TIMING,),
         value=lambda engagement: (
             None if engagement.timing is None else engagement.timing.missed_steps
         ),
-        criterion='deadline_misses',
         from_timing=True,
     ),
     Metric(
@@ -90,7 +78,7 @@ QUANTITIES = (
         unit=PURE,
         form='d',
         meaning='ticks that the driveline sent again, in lock-step',
-        undefined=NO_TIMING,
+        nulls=(_NO_TIMING,),
         value=lambda engagement: getattr(engagement.timing, 'resends', None),
         from_timing=True,
     ),
@@ -100,7 +88,7 @@ QUANTITIES = (
         unit='us',
         form='.1f',
         meaning='largest delay of a step of the driveline after its due time',
-        undefined=f'the run was in lock-step, or {NO_TIMING}',
+        nulls=(_NO_TIMING, Null('the run was in lock-step', lambda _engagement: True)),
         value=lambda engagement: (
             None if engagement.timing is None else engagement.timing.worst_lateness_us
         ),

@@ -36,6 +36,14 @@ def work_over_least(
     return np.where(slips, friction_work(trajectory, start), np.nan) / np.where(slips, least, 1.0)
 
 
+def work_of_both(trajectory: Trajectory, start: int) -> np.ndarray:
+    """Return the friction work in J of all clutches of a run from step `start` on, (...)."""
+    own = friction_work(trajectory, start)
+    if not trajectory.shift:
+        return own
+    return own + np.sum(trajectory.off_going_friction_work[start + 1 :])
+
+
 def friction_work(trajectory: Trajectory, start: int = 0) -> np.ndarray:
     """
     Return the friction work in J from step `start` on, (...): exact where the run records it.

@@ -18,7 +18,7 @@ from ddct_bringup.metrics.zero_slip import (
     locked_at,
 )
 from ddct_plant.base.timebase import PERIOD_S, time_of_step
-from ddct_plant.models.driveline import RELEASE
+from ddct_plant.models.driveline import LOCK, RELEASE
 
 
 @dataclass(frozen=True)
@@ -89,22 +89,24 @@ class Lockup:
         return lock.time_s if lock else None
 
     @property
-    def time_to_lock_s(self) -> float | None:
+    def final_lock_s(self) -> float | None:
         """
-        Time in s from `start` to the first lock.
+        Exact time in s from `start` to the last lock, 0 where the plates never part after it.
 
-        None without a lock, and when the plates are locked at `start`.
+        None where the plates are not locked at the end, and for a linear clutch.
         """
-        lock = first_lock(self.trajectory, self.start)
-        return lock.time_s - time_of_step(self.start) if lock else None
+        run = self.trajectory
+        if run.steps < self.start or not locked_at(run, run.steps):
+            return None
+        locks = [event.time_s for event in events_of(run, LOCK, after=self.start)]
+        return locks[-1] - time_of_step(self.start) if locks else 0.0
 
     @property
     def releases(self) -> int | None:
-        """Number of releases after `locks_from_s`; None without a lock."""
-        if self.locks_from_s is None:
+        """Number of releases after `start`; None for a linear clutch."""
+        if not self.sticks:
             return None
-        releases = events_of(self.trajectory, RELEASE)
-        return sum(event.time_s >= self.locks_from_s for event in releases)
+        return sum(1 for _ in events_of(self.trajectory, RELEASE, after=self.start))
 
     @cached_property
     def together_from(self) -> np.ndarray:

@@ -1,8 +1,7 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Parameters of the plant that the verdict uses besides the signals of a run."""
+"""Parameters of the plant that metrics and limits use besides the signals of a run."""
 
-import math
 from dataclasses import dataclass
 
 from ddct_plant.models.gearbox import EngagedGear
@@ -13,7 +12,7 @@ from ddct_plant.scenario.shift_rules import gears_of
 
 @dataclass(frozen=True)
 class JudgedPlant:
-    """Inertias, gear and limits of the simulated car, in SI units."""
+    """Inertias and gear of the simulated car, in SI units."""
 
     engine_inertia: float
     """Engine inertia J_m in kg m^2."""
@@ -27,10 +26,6 @@ class JudgedPlant:
     """Wheel radius r_w in m."""
     gravity: float
     """Gravitational acceleration g in m/s^2."""
-    cut_speed: float = math.inf
-    """
-    Engine speed w_m in rad/s above which the rev limiter cuts the fuel; infinite without one.
-    """
 
     @classmethod
     def of(cls, scenario: Scenario) -> 'JudgedPlant':
@@ -38,16 +33,13 @@ class JudgedPlant:
         driveline = (
             scenario.driveline if scenario.shift is None else gears_of(scenario).both_engaged
         )
-        return cls.of_parameters(driveline, scenario.vehicle, scenario.cut_speed)
+        return cls.of_parameters(driveline, scenario.vehicle)
 
     @classmethod
     def of_parameters(
-        cls,
-        driveline: DrivelineParameters,
-        vehicle: VehicleParameters,
-        cut_speed: float = math.inf,
+        cls, driveline: DrivelineParameters, vehicle: VehicleParameters
     ) -> 'JudgedPlant':
-        """Return the plant with a driveline, a vehicle and a rev limiter."""
+        """Return the plant with a driveline and a vehicle."""
         return cls(
             engine_inertia=driveline.engine_inertia,
             rest_inertia=driveline.vehicle_side_inertia,
@@ -55,7 +47,6 @@ class JudgedPlant:
             mass=vehicle.mass_kg,
             wheel_radius=vehicle.wheel_radius_m,
             gravity=vehicle.gravity_m_s2,
-            cut_speed=cut_speed,
         )
 
     @property

@@ -1,16 +1,16 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Values of the metrics and criteria of one run, or of a stack of runs."""
+"""Values of the metrics of one run, or of a stack of runs."""
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 
 import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.metrics.catalogue import CRITERIA, METRICS
+from ddct_bringup.metrics.catalogue import JERK_OVER_LEAST, METRICS
 from ddct_bringup.metrics.engagement import Engagement, Values
-from ddct_bringup.metrics.metric import Computed, Metrics, finite
+from ddct_bringup.metrics.metric import Metrics, finite
 from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_plant.base.timebase import steps_in
 
@@ -44,39 +44,19 @@ def metrics_of(engagement: Engagement) -> Metrics:
     return {key: finite(value) for key, value in raw_metrics(engagement).items()}
 
 
-def criteria_of(
-    engagement: Engagement, metrics: Mapping[str, Values | None]
-) -> dict[str, float | int | None]:
-    """Return the value of every criterion of one run by name, None where it is not defined."""
-    return {key: finite(value) for key, value in raw_criteria(engagement, metrics).items()}
+def null_reasons(engagement: Engagement, metrics: Metrics) -> Mapping[str, str]:
+    """Return the reason of every metric without a value of one run, by its key."""
+    return {
+        key: METRICS[key].why_null(engagement)
+        for key, value in metrics.items()
+        if value is None and key != JERK_OVER_LEAST.key
+    }
 
 
 def raw_metrics(engagement: Engagement) -> dict[str, Values | None]:
     """Return the values of all metrics by key, (R,) for many runs, not finite where undefined."""
-    return _raw(METRICS.values(), engagement)
-
-
-def raw_criteria(
-    engagement: Engagement, metrics: Mapping[str, Values | None]
-) -> dict[str, Values | None]:
-    """
-    Return the values of all criteria by name, (R,) for many runs, not finite where undefined.
-
-    A criterion that is a metric too has the value in `metrics`.
-    """
-    own = _raw((each for each in CRITERIA if not each.metric), engagement)
-    return {each.key: metrics[each.metric] if each.metric else own[each.key] for each in CRITERIA}
-
-
-def existing(engagement: Engagement) -> dict[str, bool | np.ndarray]:
-    """Return by criterion whether it is defined for the plant, (R,) for many runs."""
-    with np.errstate(all='ignore'):
-        return {criterion.key: criterion.exists(engagement) for criterion in CRITERIA}
-
-
-def _raw(quantities: Iterable[Computed], engagement: Engagement) -> dict[str, Values | None]:
     with np.errstate(all='ignore'):  # what is not finite becomes None
-        return {each.key: each.of(engagement) for each in quantities}
+        return {each.key: each.of(engagement) for each in METRICS.values()}
 
 
 def rows_of(

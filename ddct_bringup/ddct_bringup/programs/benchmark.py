@@ -11,7 +11,7 @@ from ddct_bringup.benchmark.conduct import Options, carry_out_benchmark
 from ddct_bringup.benchmark.judged import Judged
 from ddct_bringup.benchmark.report import texts
 from ddct_bringup.benchmark.report.folder import PAGE, RESULT, document_of, write_result
-from ddct_bringup.benchmark.report.packaged import packaged_tables
+from ddct_bringup.benchmark.report.packaged import packaged_lines, packaged_tables
 from ddct_bringup.benchmark.report.printed import print_result
 from ddct_bringup.benchmark.result_types import Result
 from ddct_bringup.benchmark.update_times import read_update_times, write_update_times
@@ -27,7 +27,7 @@ from ddct_plant.program.command_line import (
     run_program,
     show_and_write,
 )
-from ddct_plant.program.printed_table import print_tables
+from ddct_plant.program.printed_table import print_note, print_tables
 from ddct_plant.program.supervision import stop_signals
 
 PROGRAM = 'ddct benchmark'
@@ -126,7 +126,13 @@ def _show_packaged(options: argparse.Namespace) -> int:
         raise ParameterError('--packaged runs nothing: give it alone, or with --json')
     tables = packaged_tables()
     document = {name: table.as_dict() for name, table in tables.items()}
-    show_and_write(options.json, document, lambda: print_tables(tables.values()))
+
+    def show() -> None:
+        print_tables(tables.values())
+        for line in packaged_lines():
+            print_note(line)
+
+    show_and_write(options.json, document, show)
     return 0
 
 

@@ -4,7 +4,6 @@
 
 import argparse
 import sys
-from collections.abc import Sequence
 from contextlib import nullcontext
 from functools import partial
 from pathlib import Path
@@ -16,7 +15,7 @@ from ddct_bringup.run.options import add_run_options, print_choices, scheduling_
 from ddct_bringup.run.output_folder import StagedFolder, run_folder
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.run.run_base import settings_of
-from ddct_bringup.scores.floors import add_floors_option, floor_metrics, with_floors
+from ddct_bringup.scores.floors import NONE, add_floors_option, with_least
 from ddct_bringup.scores.run_notes import slow_notes
 from ddct_bringup.scores.scored_recording import ScoredRecording, run_and_score
 from ddct_bringup.scores.validity import realtime_summary
@@ -58,13 +57,13 @@ def _bringup(argv: list[str]) -> int:
         raise ParameterError('--out is missing: name the folder for the bag')
     # The warm parent imports while the run is planned.
     with parent_for(options.layout) as parent:
-        limits, metrics = load_limits(options.limits), floor_metrics(options.floors)
+        limits = load_limits(options.limits)
         settings = settings_of(options, [controller_label(options.controller)])
         plan = RunPlan(settings, options.controller, options.layout, scheduling_of(options))
         if options.live is not None and plan.layout != 'processes':
             raise ParameterError(f'--live shows a process per node: drop it or --{plan.layout}')
         with run_folder(options.out, plan.name, overwrite=options.overwrite) as folder:
-            _run(plan, folder, options, limits, metrics, parent)
+            _run(plan, folder, options, limits, parent)
     return 0
 
 
@@ -73,7 +72,6 @@ def _run(
     folder: StagedFolder,
     options: argparse.Namespace,
     limits: Limits,
-    metrics: Sequence[str] | None,
     parent: WarmParent | None,
 ) -> None:
     with (
@@ -89,15 +87,16 @@ def _run(
         raise DdctError(f'{folder.path}: not valid: {scores.reason}')
     folder.commit()
     print(folder.final, flush=True)
-    scores = with_floors(run, metrics, limits).scores
+    if options.floors != NONE:
+        scores = with_least(run, limits).scores
     if changes := scores.scenario_changes:
         title = scenario_title(plan.settings.scenario.name, changes)
         print(f'{PROGRAM}: {title}', file=sys.stderr)
     _print_notes(run, folder.final)
     for note in filter(None, (changes_note(scores.gain_changes), *slow_notes(scores))):
         print(f'{PROGRAM}: {note}', file=sys.stderr)
-    verdict = scores.verdict
-    print(f'{PROGRAM}: state {verdict.state}, limits {verdict.limits}', file=sys.stderr)
+    why = f': {scores.why}' if scores.why else ''
+    print(f'{PROGRAM}: {scores.state}{why}', file=sys.stderr)
 
 
 def _print_notes(run: ScoredRecording, folder: Path) -> None:

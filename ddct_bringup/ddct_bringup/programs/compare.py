@@ -29,7 +29,7 @@ from ddct_bringup.run.run_base import settings_of
 from ddct_bringup.run.timing_and_failure import note_failure
 from ddct_bringup.scores.comparison_table import print_comparison
 from ddct_bringup.scores.document import scores_document
-from ddct_bringup.scores.floors import add_floors_option, floor_metrics, with_floors
+from ddct_bringup.scores.floors import add_floors_option, with_floors
 from ddct_bringup.scores.scored_recording import ScoredRecording, run_and_score, score_any_bag
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.verdict.limits import Limits, add_limits_option, load_limits
@@ -39,7 +39,6 @@ from ddct_controllers.workflows.evidence_types import FrequencyEvidence
 from ddct_plant.base.errors import DdctError, ParameterError, printable
 from ddct_plant.files.output_file import STDOUT, require_place, write_json
 from ddct_plant.program.command_line import ProgramParser, complain, run_program
-from ddct_plant.program.progress import with_progress
 
 PROGRAM = 'ddct compare'
 SCORES_FILE = 'scores.json'
@@ -73,7 +72,6 @@ def _compare(argv: list[str]) -> int:
         raise ParameterError('--out is missing: name the folder for the bags')
     require_chart_library()
     require_place('--json', options.json)
-    floor_metrics(options.floors)
     unusable: list[DdctError] = []
     # The warm parent imports while the runs are planned, and serves them all.
     with parent_for(options.layout) as parent:
@@ -114,8 +112,7 @@ def _run_all(
         _run(plan, folder.path, f'{index} of {len(plans)}, ', limits, parent)
         for index, plan in enumerate(plans, start=1)
     ]
-    metrics = floor_metrics(options.floors)
-    runs = [with_floors(run, metrics, limits) for run in with_progress(runs, len(runs), 'floors')]
+    runs = with_floors(runs, limits, options.floors)
     scored = [run.scores for run in runs]
     write_json(str(folder.path / SCORES_FILE), scores_document(scored, limits))
     _report(scored, plans, options, limits)

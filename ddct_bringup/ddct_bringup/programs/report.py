@@ -17,7 +17,7 @@ from ddct_bringup.report.page_parts import MARKER
 from ddct_bringup.report.run_labels import in_order, require_one_scenario
 from ddct_bringup.run.output_folder import is_ours, locked_folders
 from ddct_bringup.scores.bags import bags_in
-from ddct_bringup.scores.floors import add_floors_option, floor_metrics, with_floors
+from ddct_bringup.scores.floors import add_floors_option, with_floors
 from ddct_bringup.scores.scored_recording import ScoredRecording, score_any_bag
 from ddct_bringup.verdict.limits import Limits, add_limits_option, load_limits
 from ddct_plant.base.errors import DdctError
@@ -53,7 +53,7 @@ def _report(argv: list[str]) -> int:
     options = _parser().parse_args(argv)
     require_chart_library()
     _require_writable(options.out)
-    limits, metrics = load_limits(options.limits), floor_metrics(options.floors)
+    limits = load_limits(options.limits)
     places = [] if options.out == STDOUT else [Path(options.out).parent]
     with locked_folders(*filter(is_ours, places)):
         bags = bags_in(options.runs)
@@ -63,9 +63,7 @@ def _report(argv: list[str]) -> int:
             for bag in with_progress(bags, len(bags), 'reading')
         ]
         require_one_scenario(runs)
-        floored = [
-            with_floors(run, metrics, limits) for run in with_progress(runs, len(runs), 'floors')
-        ]
+        floored = with_floors(runs, limits, options.floors)
         write_report(in_order(floored), options.out, limits)
         keep_digests([options.out] if places else [])
     for run in runs:

@@ -11,13 +11,12 @@ from ddct_bringup.bag.measured_run import add_columns_option, is_log, read_recor
 from ddct_bringup.bag.recording import Recording
 from ddct_bringup.bag.repair import repair_bag
 from ddct_bringup.digests.writing import keep_digests
-from ddct_bringup.metrics.comfort import VDV_WEIGHTING
 from ddct_bringup.run.output_folder import is_ours, locked_folders
 from ddct_bringup.scores.bags import bag_name, bags_in
 from ddct_bringup.scores.csv_text import scores_csv
 from ddct_bringup.scores.document import scores_document
-from ddct_bringup.scores.floors import add_floors_option, floor_metrics, with_floors
-from ddct_bringup.scores.run_table import columns_of, identifying_columns, print_runs
+from ddct_bringup.scores.floors import NONE, add_floors_option, with_least
+from ddct_bringup.scores.run_table import figure_columns, identifying_columns, print_runs
 from ddct_bringup.scores.scored_recording import score_recording
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.scores.scoring import unreadable_run
@@ -47,8 +46,7 @@ The exit code is 0 only if every bag was scored and valid: whole, of the length 
 run was meant to have, every value finite; in real time also at most {MISS_TOLERANCE:.0%} of the
 steps without a reply, and no node in its safe state. A run that a stalled or over-revved
 engine ended is valid: that is its state.
-peak_jerk_m_s3: control start to the end, 20 Hz low-pass without delay. vdv_m_s1_75 is weighted by
-{VDV_WEIGHTING}.
+Figures run from control start to the end. Jerk: A_x through a 20 Hz low-pass without delay.
 """
 
 
@@ -72,7 +70,7 @@ def _score(argv: list[str]) -> int:
         written += [file for file in (options.json, options.csv) if file not in (None, STDOUT)]
         keep_digests(written)
     table = sys.stderr if STDOUT in (options.json, options.csv) else sys.stdout
-    print_runs(runs, (*identifying_columns(runs), *columns_of(runs)), table)
+    print_runs(runs, (*identifying_columns(runs), *figure_columns(runs)), table)
     return 0 if all(run.valid for run in runs) else 1
 
 
@@ -93,7 +91,6 @@ def _scored(
 ) -> list[ScoredRun]:
     """Return the scores of bags; write signals if requested, and add the files to `written`."""
     runs = []
-    metrics = floor_metrics(options.floors)
     folders = {ending: each for ending, each in _signal_folders(options).items() if each}
     stems = signal_file_stems(bags) if folders else {}
     columns = load_columns(options.columns) if options.columns else None
@@ -105,7 +102,7 @@ def _scored(
             for line in recording.custom_data.get('adjusted', '').splitlines():
                 complain(PROGRAM, f'{name}: {line}')
             scored = score_recording(recording, name, limits)
-            runs.append(with_floors(scored, metrics, limits).scores)
+            runs.append((scored if options.floors == NONE else with_least(scored, limits)).scores)
         except DdctError as error:
             unreadable = unreadable_run(bag, error, relative_to=folder)
             complain(PROGRAM, unreadable.reason)

@@ -95,7 +95,7 @@ CHART_SIGNALS = (
         'Engine torque',
         'C_m',
         'N m',
-        'above zero it drives the engine.',
+        'above zero it drives the engine. What it lacks of the demand C_dem is shaded.',
         lambda run: run.engine_torque,
     ),
 )

@@ -38,6 +38,8 @@ if TYPE_CHECKING:
 _HEIGHT_PX = 300
 FAINT = 0.6
 """Opacity of a limit next to the line that it bounds."""
+_SHADE = 0.2
+"""Opacity of the area between the demand and an engine torque below it."""
 
 
 def chart_document(runs: Sequence[ChartRun]) -> tuple[Mapping[str, object], dict[str, str]]:
@@ -49,7 +51,7 @@ def chart_document(runs: Sequence[ChartRun]) -> tuple[Mapping[str, object], dict
     time_axis = Range1d(start=0.0, end=max(run.trajectory.time_s[-1] for run in runs))
     cursor = Span(dimension='height', line_color=NEUTRAL, line_width=1)
     drawn = _drawn(runs)
-    sources = [_source(run.trajectory, of) for run, of in zip(runs, drawn, strict=True)]
+    sources = [_source(run, of) for run, of in zip(runs, drawn, strict=True)]
     charts = {}
     for quantity in charted_signals(runs):
         chart = _chart(quantity.key, quantity.unit, time_axis, cursor, runs)
@@ -57,9 +59,12 @@ def chart_document(runs: Sequence[ChartRun]) -> tuple[Mapping[str, object], dict
             if quantity in of:
                 _line(chart, quantity, run, source)
         if quantity.key == 'w_d':
-            _draw_references(chart, runs, sources)
+            _draw_shared(chart, runs, sources, 'reference')
             mark_thesis(chart, runs)
             mark_events(chart, runs)
+        if quantity.key == 'C_m':
+            _draw_shared(chart, runs, sources, 'demand')
+            _shade_withheld(chart, runs, sources)
         if quantity.key == 'w_d1':
             mark_events(chart, runs, OFF_GOING)
         charts[quantity.key] = chart
@@ -94,9 +99,14 @@ def chart_signals_of(trajectory: Trajectory, *, with_log: bool = False) -> tuple
     )
 
 
-def has_reference(runs: Sequence[ChartRun]) -> bool:
-    """Return whether any run has a slip reference; only some logs have one."""
-    return any(np.isfinite(run.trajectory.at_tick('slip_reference')).any() for run in runs)
+def dashed_lines(runs: Sequence[ChartRun]) -> list[str]:
+    """Return the names of the dashed lines that some run has; only some logs have a reference."""
+    signals = {'reference': 'slip_reference', 'demand': 'torque_demand'}
+    return [
+        name
+        for name, signal in signals.items()
+        if any(np.isfinite(run.trajectory.at_tick(signal)).any() for run in runs)
+    ]
 
 
 def _drawn(runs: Sequence[ChartRun]) -> list[tuple[ChartSignal, ...]]:
@@ -105,16 +115,21 @@ def _drawn(runs: Sequence[ChartRun]) -> list[tuple[ChartSignal, ...]]:
     return [chart_signals_of(run.trajectory, with_log=with_log) for run in runs]
 
 
-def _source(trajectory: Trajectory, quantities: Sequence[ChartSignal]) -> 'ColumnDataSource':
+def _source(run: ChartRun, quantities: Sequence[ChartSignal]) -> 'ColumnDataSource':
     """Return the data of the charts; single precision draws the same and halves the page."""
     from bokeh.models import ColumnDataSource
 
+    trajectory = run.trajectory
     columns = {'t': trajectory.time_s}
     for quantity in quantities:
         columns[quantity.key] = quantity.values(trajectory)
         if quantity.limit:
             columns[quantity.limit_key] = quantity.limit(trajectory)
     columns['reference'] = rpm_from_rad_s(trajectory.at_tick('slip_reference'))
+    columns['demand'] = trajectory.torque_demand
+    controlled = trajectory.time_s >= run.facts.control_start_s
+    withheld = np.where(controlled, trajectory.torque_demand - trajectory.engine_torque, 0.0)
+    columns['with_withheld'] = trajectory.engine_torque + np.fmax(withheld, 0.0)
     return ColumnDataSource({key: values.astype(np.float32) for key, values in columns.items()})
 
 
@@ -178,23 +193,41 @@ def _line(
         switch(limit, [run], alpha=FAINT)
 
 
-def _draw_references(
-    chart: 'figure', runs: Sequence[ChartRun], sources: 'Sequence[ColumnDataSource]'
+def _draw_shared(
+    chart: 'figure', runs: Sequence[ChartRun], sources: 'Sequence[ColumnDataSource]', column: str
 ) -> None:
-    """Draw each distinct slip reference once; it is visible while one of its runs is."""
+    """Draw each distinct line of a column once; it is visible while one of its runs is."""
     groups: dict[bytes, list[int]] = {}
     for position, source in enumerate(sources):
-        if not has_reference([runs[position]]):
-            continue
-        groups.setdefault(np.asarray(source.data['reference']).tobytes(), []).append(position)
+        values = np.asarray(source.data[column])
+        if np.isfinite(values).any():
+            groups.setdefault(values.tobytes(), []).append(position)
     for positions in groups.values():
         members = [runs[position] for position in positions]
         line = chart.line(
             't',
-            'reference',
+            column,
             source=sources[positions[0]],
             line_width=1.4,
             line_color=NEUTRAL,
             line_dash=[5, 4],
         )
         switch(line, members, colour=None)
+
+
+def _shade_withheld(
+    chart: 'figure', runs: Sequence[ChartRun], sources: 'Sequence[ColumnDataSource]'
+) -> None:
+    """Shade what C_m lacks of the demand from control start on, as `torque_late_s` counts it."""
+    for run, source in zip(runs, sources, strict=True):
+        if 'C_m' not in source.data:
+            continue
+        area = chart.varea(
+            't',
+            'C_m',
+            'with_withheld',
+            source=source,
+            fill_color=run.look.light,
+            fill_alpha=_SHADE,
+        )
+        switch(area, [run], area=True, alpha=_SHADE)

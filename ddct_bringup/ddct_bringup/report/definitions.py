@@ -5,9 +5,10 @@
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from ddct_bringup.metrics.catalogue import CRITERIA, METRICS, OF_EVERY_RUN, OF_SHIFT, TABLE_5_1
+from ddct_bringup.metrics.catalogue import FIGURES, METRICS, OTHERS
 from ddct_bringup.report.chart_signals import ChartSignal
 from ddct_bringup.report.page_parts import unit_text
+from ddct_bringup.scores.scored_run import YARDSTICK
 from ddct_controllers.design.analysis.loop_quantities import LOOP_QUANTITIES
 from ddct_plant.program.table import Quantity
 
@@ -42,8 +43,17 @@ _READING = (
         'zero at t_a and end below it: the engine is then slower than the shaft. A clutch that '
         'sticks locks at zero and stays there.',
     ),
-    Definition('score window', 'the span of time that σ, jerk, VDV and RMSE are taken over.', 's'),
-    Definition('control start', 'when feedback is switched on. Before it the open loop acts.'),
+    Definition('score window', 'the span of time that σ is taken over.', 's'),
+    Definition(
+        'control start',
+        'when feedback is switched on. Before it the open loop acts. Figures count from there to '
+        'the end of the run.',
+    ),
+    Definition('C_dem', 'torque that the driver demands of the engine.', 'N m'),
+    Definition(
+        '*', f'the run {YARDSTICK}. The least is of a run of the clutch alone that locks once.'
+    ),
+    Definition('▲', 'the value is beyond its limit.'),
 )
 _THESIS = (
     Definition(
@@ -57,14 +67,18 @@ _THESIS = (
     ),
 )
 _STATES = (
-    Definition('engaged', 'the plates turn as one at the end, or never parted.'),
     Definition(
-        'nearly engaged',
-        'plates that stick keep within 10 rpm of zero at the end, but are not locked.',
+        'engaged',
+        'the only success: plates that stick are locked at the end, or the slip of a linear '
+        'clutch stays near zero, and none of the others holds.',
     ),
-    Definition('not engaged', 'the plates do not turn as one, and none of the following holds.'),
-    Definition('oscillating', 'the slip swings to and fro and has not settled.'),
-    Definition('runaway', 'the plates are driven apart.'),
+    Definition('late', 'the plates are locked at the end, but not for long enough.'),
+    Definition(
+        'withheld, added',
+        "a controller that commands the engine takes too much of the driver's torque away, or "
+        'adds too much.',
+    ),
+    Definition('not engaged', 'the plates slip at the end.'),
     Definition('stalled, over revved', 'the engine reached this limit, which ended the run.'),
     Definition(
         'tied up, flared',
@@ -72,19 +86,15 @@ _STATES = (
     ),
     Definition('invalid', 'the run does not count. Its reason stands at the top of the page.'),
     Definition(
-        'within, beyond, unavoidable, no limit',
-        'how a value stands to a limit that is published or a convention. Most have none.',
+        'limit', 'a largest magnitude, published or a convention. It does not change the state.'
     ),
-    Definition('failed', 'the word on limits of a run that neither engaged nor nearly engaged.'),
-    Definition('traction', 'driving force at the wheels over the mass of the car.', 'm/s²'),
 )
 
 _SHIFT = (
     Definition('on-coming, off-going', 'clutch of the gear after the shift, and of that before.'),
     Definition(
         'control start',
-        'in a gear shift its start. Feedback starts at the share 1; t_a and the criteria of the '
-        'lock count from there.',
+        'in a gear shift its start. Feedback starts at the share 1; t_a counts from there.',
     ),
 )
 
@@ -128,27 +138,18 @@ def definitions(
     signals = tuple(
         Definition(each.symbol, f'{each.title}: {each.meaning}', each.unit) for each in quantities
     )
+    of_shift = (_defined(each) for each in METRICS.values() if each.of_shift)
     return {
         'Reading the tables': reading,
         'Signals': signals,
-        'Metrics': tuple(map(_defined, (*TABLE_5_1, *OF_EVERY_RUN))),
-        **({'Gear shift': (*_SHIFT, *map(_defined, OF_SHIFT))} if shift else {}),
-        'Criteria': _criteria(),
+        'Figures': tuple(_defined(each) for each in FIGURES if not each.of_shift),
+        'Metrics': tuple(_defined(each) for each in OTHERS if not each.of_shift),
+        **({'Gear shift': (*_SHIFT, *of_shift)} if shift else {}),
         'States and limits': _STATES,
         'Frequency': (*_LOOPS, *map(_defined, LOOP_QUANTITIES)),
         'Update times': _TIMES,
         'Origin': _ORIGIN,
     }
-
-
-def _criteria() -> tuple[Definition, ...]:
-    """Return the definitions of the criteria; one that is a metric too refers to it."""
-    return tuple(
-        Definition(each.symbol, f'the metric {METRICS[each.metric].symbol}.', unit_text(each.unit))
-        if each.metric
-        else _defined(each)
-        for each in CRITERIA
-    )
 
 
 def _defined(quantity: Quantity) -> Definition:

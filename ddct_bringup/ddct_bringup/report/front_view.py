@@ -1,31 +1,37 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Front: the least peak jerk over the time of the lock, with the runs on it."""
+"""
+Front: the least peak jerk over the time of the lock, with the runs beside it.
 
+The scale of the jerk is logarithmic: the distance of a run from the least is its ratio.
+"""
+
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from ddct_bringup.floor.computed_floor import LIMITS
+from ddct_bringup.floor.case import case_at
 from ddct_bringup.floor.control_start import control_start
 from ddct_bringup.floor.dynamics.start import Start
-from ddct_bringup.floor.floor import floors_of_run
-from ddct_bringup.floor.front import least_values, usual_lock_times
-from ddct_bringup.floor.lock import counted_from
-from ddct_bringup.floor.values import OverFloor
+from ddct_bringup.floor.floor import floor_of_case
+from ddct_bringup.floor.front import usual_lock_times
+from ddct_bringup.floor.lock import counted_from, final_lock_of
+from ddct_bringup.metrics.catalogue import JERK_OVER_LEAST
 from ddct_bringup.report.page_parts import value_text
 from ddct_bringup.report.pareto import round_numbers
+from ddct_bringup.scores.floors import PEAK_JERK
 from ddct_bringup.scores.scored_recording import ScoredRecording
+from ddct_bringup.verdict.limits import packaged_limits
+from ddct_bringup.verdict.rules import Rules
 from ddct_plant.base.errors import DdctError
 from ddct_plant.scenario.settings import RunSettings
 
-METRIC = 'peak_jerk'
-"""Metric of the front."""
 _POINTS = 8
-"""Number of lock times whose least is computed."""
-_HEADROOM = 1.1
-"""Top of the drawing over the largest value of a run."""
+"""Number of lock times whose least is computed besides those of the runs."""
+_HEADROOM = 1.2
+"""Top of the drawing over the largest value of a run, and least value over its bottom."""
 
 
 @dataclass(frozen=True)
@@ -36,6 +42,8 @@ class FrontPoint:
     """Position in the report."""
     x: float
     y: float
+    bound: bool
+    """Whether the least is a bound for the run."""
     text: str
     """Lock time, value and least as text."""
 
@@ -46,86 +54,115 @@ class FrontView:
 
     counted_from: str
     """Words for the instant from which lock times count."""
-    covers: str
-    """Runs that the least is proven for."""
     line: tuple[tuple[float, float], ...]
     """Points of the least, from the earliest lock time on."""
     runs: tuple[FrontPoint, ...]
     across: tuple[tuple[str, float], ...]
     """Text and place of each tick of the lock time in s."""
     up: tuple[tuple[str, float], ...]
-    """Text and place of each tick of the metric."""
+    """Text and place of each tick of the peak jerk in m/s^3."""
 
 
-def front_view(runs: Sequence[ScoredRecording]) -> FrontView | None:
+@dataclass(frozen=True)
+class _Placed:
+    """Final lock time in s, peak jerk and its least in m/s^3 of one run."""
+
+    lock_time_s: float
+    value: float
+    least: float
+    bound: bool
+
+
+def front_view(runs: Sequence[ScoredRecording], rules: Rules | None = None) -> FrontView | None:
     """
-    Return the drawing for the runs that have a floor, None without one.
+    Return the drawing for the runs whose peak jerk has a least, None without one.
 
     Runs of other settings than the first of them are not on it: another clutch has another front.
+    `rules` judged the runs; without rules they are the packaged ones.
     """
-    with_floor = [
-        index
+    with_least = {
+        index: run
         for index, run in enumerate(runs)
-        if run.settings is not None and run.scores.over_floor.get(METRIC) is not None
-    ]
-    if not with_floor:
+        if run.settings is not None and run.scores.metrics[JERK_OVER_LEAST.key] is not None
+    }
+    if not with_least:
         return None
-    settings = runs[with_floor[0]].settings
+    settings = next(iter(with_least.values())).settings
     assert settings is not None
+    rules = rules or packaged_limits().rules
     try:
-        return _drawn(settings, {i: runs[i] for i in with_floor if runs[i].settings == settings})
+        start = control_start(settings)
+        placed = {
+            index: _placed(run, start, rules)
+            for index, run in with_least.items()
+            if run.settings == settings
+        }
+        return _drawn(settings, start, placed, rules)
     except DdctError:
         return None
 
 
-def _drawn(settings: RunSettings, runs: Mapping[int, ScoredRecording]) -> FrontView | None:
-    start = control_start(settings)
-    found = {index: over for index, run in runs.items() if (over := _over(settings, start, run))}
-    limited = any(over.floor.certificate['covers'] == LIMITS for over in found.values())
+def _placed(run: ScoredRecording, start: Start, rules: Rules) -> _Placed:
+    assert run.recording is not None
+    lock = final_lock_of(run.recording.trajectory, start.step, rules)
+    assert lock is not None, 'without a final lock there is no least'
+    value, ratio = (run.scores.metrics[key] for key in ('peak_jerk_m_s3', JERK_OVER_LEAST.key))
+    assert value is not None
+    assert ratio is not None
+    return _Placed(lock.time_s, value, value / ratio, run.scores.least_is_bound is True)
+
+
+def _drawn(
+    settings: RunSettings, start: Start, runs: Mapping[int, _Placed], rules: Rules
+) -> FrontView:
     usual = usual_lock_times(settings, start)
-    latest = max(over.floor.lock_time_s for over in found.values())
+    latest = max(run.lock_time_s for run in runs.values())
     times = np.round(np.linspace(usual[0], max(usual[-1], latest), _POINTS), 2).tolist()
-    floors = [
-        floor
-        for floor in least_values(settings, METRIC, times, start, limited=limited)
-        if floor.least is not None
-    ]
-    if len(floors) < 2:
-        return None
+    leasts = {run.lock_time_s: run.least for run in runs.values()}
+    for time_s in times:
+        # As in the runs' own least, the engine gives the demand.
+        case = case_at(settings, start, time_s, rules, limited=False)
+        least = floor_of_case(case, PEAK_JERK).least
+        if least is not None:
+            leasts[time_s] = least
     right = max(times[-1], latest)
     across = (0.0, right + 0.05 * right)
-    top = _HEADROOM * max(over.value for over in found.values())
+    up = (
+        math.log10(min(leasts.values()) / _HEADROOM),
+        math.log10(_HEADROOM * max(run.value for run in runs.values())),
+    )
     return FrontView(
         counted_from=counted_from(settings),
-        covers=floors[0].certificate['covers'],
         line=tuple(
-            (_share(floor.lock_time_s, *across), min(_share(floor.least or 0.0, 0.0, top), 1.0))
-            for floor in floors
+            (_share(time_s, *across), min(_share(math.log10(leasts[time_s]), *up), 1.0))
+            for time_s in sorted(leasts)
         ),
         runs=tuple(
             FrontPoint(
                 index,
-                _share(over.floor.lock_time_s, *across),
-                _share(over.value, 0.0, top),
-                f'lock {over.floor.lock_time_s:.3f} s after {counted_from(settings)}, '
-                f'{value_text(over.value)} m/s³, least {value_text(over.floor.least)} m/s³',
+                _share(run.lock_time_s, *across),
+                _share(math.log10(run.value), *up),
+                run.bound,
+                f'final lock {run.lock_time_s:.3f} s after {counted_from(settings)}, '
+                f'{value_text(run.value)} m/s³, least {value_text(run.least)} m/s³',
             )
-            for index, over in found.items()
+            for index, run in runs.items()
         ),
-        across=_ticks(*across),
-        up=_ticks(0.0, top),
+        across=tuple((f'{tick:g}', _share(tick, *across)) for tick in round_numbers(*across)),
+        up=_logarithmic_ticks(*up),
     )
-
-
-def _over(settings: RunSettings, start: Start, run: ScoredRecording) -> OverFloor | None:
-    assert run.recording is not None
-    trajectory = run.recording.trajectory
-    return floors_of_run(settings, [METRIC], trajectory, start, attain=False)[METRIC]
 
 
 def _share(value: float, first: float, last: float) -> float:
     return round((value - first) / (last - first), 4)
 
 
-def _ticks(first: float, last: float) -> tuple[tuple[str, float], ...]:
-    return tuple((f'{tick:g}', _share(tick, first, last)) for tick in round_numbers(first, last))
+def _logarithmic_ticks(first: float, last: float) -> tuple[tuple[str, float], ...]:
+    """Return 1, 2 and 5 times the powers of ten between two decimal logarithms."""
+    powers = range(math.floor(first), math.ceil(last))
+    ticks = (factor * 10.0**power for power in powers for factor in (1, 2, 5))
+    return tuple(
+        (f'{tick:g}', _share(math.log10(tick), first, last))
+        for tick in ticks
+        if first <= math.log10(tick) <= last
+    )

@@ -51,9 +51,10 @@
 
   // A line stands out while the pointer is on its chip.
   function emphasise(run) {
-    drawn.forEach(({glyph, tags}) => {
-      const faint = run !== null && !tags[0].runs.includes(run);
-      glyph.line_alpha = {value: faint ? 0.15 : tags[0].alpha ?? 1.0};
+    drawn.forEach(({glyph, tags: [{runs, alpha = 1.0, area}]}) => {
+      const faint = run !== null && !runs.includes(run);
+      if (area) glyph.fill_alpha = faint ? 0.15 * alpha : alpha;
+      else glyph.line_alpha = {value: faint ? 0.15 : alpha};
     });
   }
   if (matchMedia('(hover: hover)').matches) {
@@ -85,8 +86,8 @@
   const [across, up] = document.querySelectorAll('.pareto-choice select');
 
   function placeRuns() {
-    const {criteria, fronts} = data.pareto;
-    const [x, y] = [criteria[across.value], criteria[up.value]];
+    const {figures, fronts} = data.pareto;
+    const [x, y] = [figures[across.value], figures[up.value]];
     const front = fronts[[across.value, up.value].sort().join(' ')];
     document.querySelectorAll('.pareto .point').forEach((point) => {
       const run = runOf(point);
@@ -98,47 +99,59 @@
       point.classList.toggle('best', front.includes(run));
       point.title = `${x.values[run]}, ${y.values[run]}`;
     });
-    [[x, 'across', 'left'], [y, 'up', 'bottom']].forEach(([criterion, name, side]) => {
-      document.querySelector(`.pareto .title.${name}`).textContent = criterion.title;
+    [[x, 'across', 'left'], [y, 'up', 'bottom']].forEach(([figure, name, side]) => {
+      document.querySelector(`.pareto .title.${name}`).textContent = figure.title;
       document.querySelector(`.pareto .ticks.${name}`).replaceChildren(
-        ...criterion.ticks.map(([text, place]) => {
+        ...figure.ticks.map(([text, place]) => {
           const tick = document.createElement('i');
           tick.textContent = text;
           tick.style[side] = `${100 * place}%`;
           return tick;
         }));
     });
-    partLabels();
+    partParetoLabels();
+  }
+
+  function partParetoLabels() {
+    const points = [...document.querySelectorAll('.pareto .point:not([hidden])')];
+    const parts = points.map((point) => [point.querySelector('b'), point.querySelector('.dot')]);
+    partLabels(document.querySelector('.pareto .field'), parts, 1);
+  }
+
+  // A drawing has its own unit of length, which is `scale` pixels.
+  function partFrontLabels(drawing) {
+    const points = [...drawing.querySelectorAll('[data-run]')];
+    const parts = points.map((point) => [point.querySelector('text'), point.querySelector('circle')]);
+    partLabels(drawing, parts, drawing.getBoundingClientRect().width / drawing.viewBox.baseVal.width);
   }
 
   // A label that would cover another one or a dot moves to the nearest free place above or below,
-  // within the chart where there is one.
-  function partLabels() {
-    const points = [...document.querySelectorAll('.pareto .point:not([hidden])')];
-    const field = document.querySelector('.pareto .field').getBoundingClientRect();
-    const taken = points.map((point) => point.querySelector('.dot').getBoundingClientRect());
-    points.forEach((point) => {
-      const label = point.querySelector('b');
+  // within the place where there is one.
+  function partLabels(place, parts, scale) {
+    const field = place.getBoundingClientRect();
+    const taken = parts.map(([, dot]) => dot.getBoundingClientRect());
+    parts.forEach(([label]) => {
       label.style.translate = '';
       const {left, right, top, height} = label.getBoundingClientRect();
       const free = (next) => {
-        const covered = (place) => taken.find((box) => left < box.right && right > box.left
-          && place < box.bottom && place + height > box.top);
-        let place = top;
-        for (let box = covered(place); box; box = covered(place)) place = next(box);
-        return place;
+        const covered = (y) => taken.find((box) => left < box.right && right > box.left
+          && y < box.bottom && y + height > box.top);
+        let y = top;
+        for (let box = covered(y); box; box = covered(y)) y = next(box);
+        return y;
       };
       const above = free((box) => box.top - height);
       const below = free((box) => box.bottom);
       const nearest = top - above <= below - top ? [above, below] : [below, above];
-      const place = nearest.find((each) => each >= field.top && each + height <= field.bottom)
+      const found = nearest.find((each) => each >= field.top && each + height <= field.bottom)
         ?? above;
-      label.style.translate = `0 ${place - top}px`;
-      taken.push({left, right, top: place, bottom: place + height});
+      label.style.translate = `0 ${(found - top) / scale}px`;
+      taken.push({left, right, top: found, bottom: found + height});
     });
   }
 
-  if (across) partLabels();
+  if (across) partParetoLabels();
+  document.querySelectorAll('.floor-front').forEach(partFrontLabels);
   [across, up].filter(Boolean).forEach((select) => {
     select.disabled = false;
     select.addEventListener('change', placeRuns);
@@ -149,10 +162,10 @@
   function paint() {
     const style = getComputedStyle(document.documentElement);
     drawn.forEach(({glyph, tags}) => {
-      const {colour, fill} = tags[0];
+      const {colour, fill, area} = tags[0];
       const painted = style.getPropertyValue(colour === null ? '--soft' : `--run-${colour}`).trim();
-      glyph.line_color = painted;
-      if (fill) glyph.fill_color = painted;
+      if (!area) glyph.line_color = painted;
+      if (fill || area) glyph.fill_color = painted;
     });
   }
 

@@ -10,9 +10,8 @@ from markupsafe import Markup
 
 from ddct_bringup.bag.recording import Recording
 from ddct_bringup.bag.run_facts import RunFacts
-from ddct_bringup.metrics.catalogue import METRICS, OF_EVERY_RUN, OF_SHIFT, TABLE_5_1
 from ddct_bringup.report.chart_marks import NEUTRAL
-from ddct_bringup.report.charts import chart_document, charted_signals, has_reference
+from ddct_bringup.report.charts import chart_document, charted_signals, dashed_lines
 from ddct_bringup.report.definitions import definitions
 from ddct_bringup.report.evidence import COMPUTED, LoopEvidence, loop_rows, without_evidence
 from ddct_bringup.report.front_view import front_view
@@ -22,9 +21,15 @@ from ddct_bringup.report.pareto import pair_key, pareto_view
 from ddct_bringup.report.phase_lanes import LANES, OPACITY, SHIFT_OPACITY
 from ddct_bringup.report.run_labels import common_conditions
 from ddct_bringup.report.run_tables import TICKS, time_place
-from ddct_bringup.report.score_tables import NOT_JUDGED, metric_cells, verdict_rows
+from ddct_bringup.report.score_tables import (
+    figure_columns,
+    limit_rows,
+    other_columns,
+    table_5_1_columns,
+)
 from ddct_bringup.run.description import short_commit
 from ddct_bringup.scores.scored_recording import ScoredRecording
+from ddct_bringup.scores.scored_run import YARDSTICK
 from ddct_bringup.thesis.table_5_1 import PREDICTION_TOLERANCE
 from ddct_bringup.verdict.limits import Limits
 from ddct_controllers.design.analysis.loop_quantities import LOOP_QUANTITIES
@@ -33,13 +38,6 @@ from ddct_plant.program.command_line import package_version
 from ddct_plant.scenario.differences import scenario_title
 
 _ROOM = 'ddct_bringup.report'
-_SHIFT = (
-    *(each for each in OF_SHIFT if each.column),
-    METRICS['friction_energy_j'],
-    METRICS['peak_jerk_m_s3'],
-    *(each for each in OF_SHIFT if not each.column),
-)
-"""Metrics in the table of a gear shift."""
 _SCRIPTS = ('common.js', 'nearest.js', 'paper.js', 'page.js')
 
 
@@ -62,6 +60,7 @@ def report_page(
     data = {'document': document, 'roots': roots, 'pareto': pareto and asdict(pareto)}
     recordings = _simulated_first(runs)
     shift = any(run.scores.is_shift for run in runs)
+    table_5_1, figures = table_5_1_columns(runs, thesis_rows), figure_columns(runs)
     return page_template(_ROOM, 'page.html.j2').render(
         marker=Markup(MARKER),
         bokeh_js=_library(),
@@ -72,19 +71,22 @@ def report_page(
         definitions=definitions(quantities, thesis=any(thesis_rows), shift=shift),
         lanes=LANES if LANES in roots else None,
         phases=OPACITY,
-        verdict=verdict_rows(runs),
-        not_judged=NOT_JUDGED,
+        limit_rows=limit_rows(runs),
         limits=limits.origin,
         pareto=pareto,
-        floor_front=front_view(runs),
+        floor_front=front_view(runs, limits.rules),
         front=pareto.fronts[pair_key(*pareto.default)] if pareto else [],
         neutral=NEUTRAL,
         light=Markup(css_colours(LIGHT_COLOURS)),
         dark=Markup(css_colours(DARK_COLOURS)),
         runs=shown,
-        columns=[(column, metric_cells(column, runs, thesis_rows)) for column in TABLE_5_1],
-        further=[(each, metric_cells(each, runs, thesis_rows)) for each in OF_EVERY_RUN],
-        shift=[(each, metric_cells(each, runs, thesis_rows)) for each in _SHIFT if shift],
+        table_5_1=table_5_1,
+        figures=figures,
+        further=other_columns(runs, table_5_1),
+        starred=any(cell.yardstick for column in figures for cell in column.cells),
+        yardstick=YARDSTICK,
+        withheld=any(run.scores.metrics['torque_late_s'] for run in runs),
+        shift=shift,
         shift_phases=SHIFT_OPACITY if shift else {},
         prediction_tolerance=PREDICTION_TOLERANCE,
         loop_columns=LOOP_QUANTITIES,
@@ -101,7 +103,7 @@ def report_page(
         scenario_text=''
         if recordings[0].measured
         else recordings[0].custom_data.get('scenario_yaml', ''),
-        has_reference=has_reference(charted),
+        dashed=dashed_lines(charted),
         other_times=_other_times(shown, recordings[0].facts),
         digest=next((run.digest for run in runs if run.digest), None),
         commits=sorted({run.origin.commit for run in shown if run.simulated}),

@@ -46,7 +46,7 @@ class PageRun:
 
     @property
     def scores(self) -> ScoredRun:
-        """Facts, metrics and verdict."""
+        """Facts, state, metrics and limits."""
         return self.scored.scores
 
     @property

@@ -1,10 +1,10 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
 """
-Pareto view: two criteria as axes, and the runs that are not dominated in both.
+Pareto view: two figures as axes, and the runs that are not dominated in both.
 
-A smaller magnitude of a criterion is better, as its limit is a largest magnitude. Only engaged
-runs are compared: a run that stalls at once has a small friction energy, but is not better.
+A smaller magnitude of a figure is better. Only engaged runs are compared: a run that stalls at
+once has little friction work, but is not better.
 """
 
 import math
@@ -12,24 +12,24 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations_with_replacement
 
-from ddct_bringup.metrics.catalogue import CRITERIA
-from ddct_bringup.metrics.metric import Criterion
+from ddct_bringup.metrics.catalogue import FIGURES, METRICS
+from ddct_bringup.metrics.metric import Metric
 from ddct_bringup.report.page_parts import unit_text, value_text
 from ddct_bringup.scores.scored_recording import ScoredRecording
 from ddct_bringup.verdict.state import ENGAGED
 
-DEFAULT_PAIR = ('friction_energy', 'peak_jerk')
-"""Criteria shown first: wear of the facing across, comfort up. Every complete run has both."""
+DEFAULT_PAIR = ('friction_work_j', 'peak_jerk_m_s3')
+"""Figures shown first: wear of the facing across, comfort up. Every complete run has both."""
 _MARGIN = 0.06
 _TICKS = 5
 
 
 @dataclass(frozen=True)
-class ParetoCriterion:
-    """One criterion as an axis; runs by their position in the report."""
+class ParetoAxis:
+    """One figure as an axis; runs by their position in the report."""
 
     title: str
-    """Name of the criterion with its unit."""
+    """Symbol of the figure with its unit."""
     values: Mapping[int, str]
     """Printed values by run, for runs that have a value."""
     places: Mapping[int, float]
@@ -40,27 +40,27 @@ class ParetoCriterion:
 
 @dataclass(frozen=True)
 class ParetoView:
-    """Data of the view: criteria and fronts."""
+    """Data of the view: figures and fronts."""
 
-    criteria: Mapping[str, ParetoCriterion]
-    """Criteria by name, for which two runs or more have a value."""
+    figures: Mapping[str, ParetoAxis]
+    """Figures by key that two runs or more have a value of."""
     fronts: Mapping[str, Sequence[int]]
-    """Non-dominated runs by `pair_key`; a criterion is paired with itself too."""
+    """Non-dominated runs by `pair_key`; a figure is paired with itself too."""
     default: tuple[str, str]
-    """Names of the criteria shown first, across and up."""
+    """Keys of the figures shown first, across and up."""
 
 
 def pair_key(first: str, second: str) -> str:
-    """Return the key of a front, independent of the order of the criteria."""
+    """Return the key of a front, independent of the order of the figures."""
     return ' '.join(sorted((first, second)))
 
 
 def pareto_view(runs: Sequence[ScoredRecording]) -> ParetoView | None:
-    """Return the view of the runs, None where no two criteria have values of two runs."""
+    """Return the view of the runs, None where no two figures have values of two runs."""
     magnitudes = _magnitudes(runs)
     if len(magnitudes) < 2:
         return None
-    engaged = [index for index, run in enumerate(runs) if run.scores.verdict.state == ENGAGED]
+    engaged = [index for index, run in enumerate(runs) if run.scores.state == ENGAGED]
     fronts = {
         pair_key(first, second): non_dominated(
             {
@@ -73,11 +73,7 @@ def pareto_view(runs: Sequence[ScoredRecording]) -> ParetoView | None:
     }
     first, second = [*magnitudes][:2]
     return ParetoView(
-        criteria={
-            each.key: _axis(each, magnitudes[each.key])
-            for each in CRITERIA
-            if each.key in magnitudes
-        },
+        figures={key: _axis(METRICS[key], values) for key, values in magnitudes.items()},
         fronts=fronts,
         default=DEFAULT_PAIR if set(DEFAULT_PAIR) <= set(magnitudes) else (first, second),
     )
@@ -99,24 +95,24 @@ def non_dominated(points: Mapping[int, tuple[float, float]]) -> list[int]:
 
 
 def _magnitudes(runs: Sequence[ScoredRecording]) -> dict[str, dict[int, float]]:
-    """Return the magnitudes of the valid runs by criterion, where two or more runs have one."""
-    found: dict[str, dict[int, float]] = {criterion.key: {} for criterion in CRITERIA}
+    """Return the magnitudes of the valid runs by figure, where two or more runs have one."""
+    found: dict[str, dict[int, float]] = {figure.key: {} for figure in FIGURES}
     for index, run in enumerate(runs):
         if not run.scores.valid:
             continue
-        for name, value in run.scores.verdict.values.items():
-            if value is not None:
-                found[name][index] = abs(value)
-    return {name: values for name, values in found.items() if len(values) >= 2}
+        for key, values in found.items():
+            if (value := run.scores.metrics[key]) is not None:
+                values[index] = abs(value)
+    return {key: values for key, values in found.items() if len(values) >= 2}
 
 
-def _axis(criterion: Criterion, values: Mapping[int, float]) -> ParetoCriterion:
-    unit = unit_text(criterion.unit)
+def _axis(figure: Metric, values: Mapping[int, float]) -> ParetoAxis:
+    unit = unit_text(figure.unit)
     lowest, highest = min(values.values()), max(values.values())
     span = (highest - lowest) or abs(highest) or 1.0
     first, last = lowest - _MARGIN * span, highest + _MARGIN * span
-    return ParetoCriterion(
-        title=f'{criterion.symbol}, {unit}' if unit else criterion.symbol,
+    return ParetoAxis(
+        title=f'{figure.symbol}, {unit}' if unit else figure.symbol,
         values={run: f'{value_text(value)} {unit}'.strip() for run, value in values.items()},
         places={run: round((value - first) / (last - first), 4) for run, value in values.items()},
         ticks=[

@@ -1,29 +1,25 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Tables of scores on the page: comparison with Table 5.1, every metric, and the verdicts."""
+"""Tables of scores on the page: comparison with Table 5.1, figures, metrics, and limits."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from ddct_bringup.metrics.catalogue import CRITERIA
+from ddct_bringup.metrics.catalogue import FIGURES, JERK_OVER_LEAST, METRICS, OTHERS, TABLE_5_1
+from ddct_bringup.metrics.metric import Metric
 from ddct_bringup.report.page_parts import number_text, value_text
 from ddct_bringup.scores.scored_recording import ScoredRecording
 from ddct_bringup.thesis.predictions import predicted_range
 from ddct_bringup.thesis.table_5_1 import PREDICTED, ThesisRow, is_thesis_run, thesis_row
-from ddct_bringup.verdict.limits import TRACTION
-from ddct_bringup.verdict.verdict import NO_LIMIT, CriterionResult
+from ddct_bringup.verdict.limits import LimitResult
 from ddct_plant.program.table import Quantity
 
-_NO_PHASES = 'a log does not tell when the plates were locked'
-OF_NO_LOG = {
-    'time_to_lock': _NO_PHASES,
-    'releases_after_lock': _NO_PHASES,
-    'peak_temperature': 'a log has no temperature of the facing',
-    'deadline_misses': 'a log has no steps of the controller',
-    'friction_work_over_least': 'a log has no inertias of the car',
+_OVER_LEAST = {
+    'peak_jerk_over_least': 'peak_jerk_m_s3',
+    'friction_work_over_least': 'friction_work_j',
 }
-"""Reasons why no log of a car has a value, by criterion."""
-NOT_JUDGED = 'the run failed or cannot be read'
+"""Ratios to a least, each beside the figure that it is the ratio of."""
+_PLACES = {each.key: place for place, each in enumerate(FIGURES)}
 
 
 @dataclass(frozen=True)
@@ -44,6 +40,10 @@ class Cell:
     """Range over the admissible scenarios, for a predicted value."""
     verdict: str = ''
     """Hit or miss, for a predicted value of a valid run."""
+    why_dash: str = ''
+    """Reason why there is no value, empty where there is one."""
+    yardstick: bool = False
+    """Whether it is a ratio to a least that is no bound for the run."""
 
 
 def comparable_rows(runs: Sequence[ScoredRecording]) -> list[ThesisRow | None]:
@@ -57,7 +57,7 @@ def comparable_rows(runs: Sequence[ScoredRecording]) -> list[ThesisRow | None]:
 
 
 def metric_cells(
-    column: Quantity, runs: Sequence[ScoredRecording], rows: Sequence[ThesisRow | None]
+    column: Metric, runs: Sequence[ScoredRecording], rows: Sequence[ThesisRow | None]
 ) -> list[Cell]:
     """Return one cell per run; bars have the scale of the largest value, computed or printed."""
     values = [run.scores.metrics[column.key] for run in runs]
@@ -69,120 +69,143 @@ def metric_cells(
         (abs(value) for value in (*values, *of_thesis) if value is not None), default=0.0
     )
     return [
-        _cell(column, value, row, largest or 1.0, valid=run.scores.valid)
-        for run, value, row in zip(runs, values, printed, strict=True)
+        _cell(column, run, row, largest or 1.0) for run, row in zip(runs, printed, strict=True)
     ]
 
 
-def _cell(
-    column: Quantity,
-    value: float | None,
-    row: ThesisRow | None,
-    largest: float,
-    *,
-    valid: bool,
-) -> Cell:
-    text = number_text(value, column.form)
-    share = 0.0 if value is None else abs(value) / largest
+def _cell(column: Metric, run: ScoredRecording, row: ThesisRow | None, largest: float) -> Cell:
+    scores = run.scores
+    value = scores.metrics[column.key]
+    cell = Cell(
+        value,
+        number_text(value, column.form),
+        0.0 if value is None else abs(value) / largest,
+        why_dash=scores.null_reasons.get(column.key, '') if value is None else '',
+        yardstick=column is JERK_OVER_LEAST and scores.least_is_bound is False,
+    )
     if row is None:
-        return Cell(value, text, share)
+        return cell
     thesis = row.printed_values()[column.key]
     predicted = row.use == PREDICTED
-    return Cell(
-        value,
-        text,
-        share,
-        thesis,
-        f'{thesis:.2f}',
-        thesis / largest,
-        '' if value is None else f'{100.0 * (value / thesis - 1.0):+.0f} %',
-        predicted_range(row.controller, column.key) if predicted else '',
-        row.verdict(column.key, value) if predicted and valid else '',
+    return replace(
+        cell,
+        thesis=thesis,
+        thesis_text=f'{thesis:.2f}',
+        thesis_share=thesis / largest,
+        difference='' if value is None else f'{100.0 * (value / thesis - 1.0):+.0f} %',
+        spread=predicted_range(row.controller, column.key) if predicted else '',
+        verdict=row.verdict(column.key, value) if predicted and scores.valid else '',
     )
 
 
 @dataclass(frozen=True)
-class VerdictCell:
-    """Criterion of one run."""
+class MetricColumn:
+    """One metric of all runs."""
+
+    metric: Metric
+    cells: tuple[Cell, ...]
+    reasons: str
+    """Reasons why valid runs have no value, empty where all have one."""
+
+
+def table_5_1_columns(
+    runs: Sequence[ScoredRecording], rows: Sequence[ThesisRow | None]
+) -> list[MetricColumn]:
+    """
+    Return the columns of Table 5.1 for a page with comparable runs, or with no clutch that locks.
+
+    None for any other page: the time of the final lock is there in place of t_a.
+    """
+    sticking = any(run.recording and run.recording.trajectory.phase_events for run in runs)
+    return [_column(each, runs, rows) for each in TABLE_5_1 if any(rows) or not sticking]
+
+
+def figure_columns(runs: Sequence[ScoredRecording]) -> list[MetricColumn]:
+    """Return the figures that these runs are judged by, each ratio beside its figure."""
+    ordered = sorted(FIGURES, key=lambda each: _PLACES[_OVER_LEAST.get(each.key, each.key)])
+    return [_column(each, runs) for each in ordered if _has(each, runs)]
+
+
+def other_columns(
+    runs: Sequence[ScoredRecording], shown: Sequence[MetricColumn]
+) -> list[MetricColumn]:
+    """Return the metrics that are neither `shown` elsewhere nor update times."""
+    elsewhere = {each.metric.key for each in shown}
+    return [
+        _column(each, runs)
+        for each in OTHERS
+        if each.key not in elsewhere and not each.from_timing and _has(each, runs)
+    ]
+
+
+def _has(metric: Metric, runs: Sequence[ScoredRecording]) -> bool:
+    """Return whether the runs are of a kind that can have a metric."""
+    return not metric.of_shift or any(run.scores.is_shift for run in runs)
+
+
+def _column(
+    metric: Metric,
+    runs: Sequence[ScoredRecording],
+    rows: Sequence[ThesisRow | None] | None = None,
+) -> MetricColumn:
+    cells = metric_cells(metric, runs, rows or [None] * len(runs))
+    return MetricColumn(metric, tuple(cells), _reasons(cells, runs))
+
+
+def _reasons(cells: 'Sequence[Cell | LimitCell]', runs: Sequence[ScoredRecording]) -> str:
+    of_valid = (cell.why_dash for cell, run in zip(cells, runs, strict=True) if run.scores.valid)
+    return '; '.join(dict.fromkeys(filter(None, of_valid)))
+
+
+@dataclass(frozen=True)
+class LimitCell:
+    """A limited metric of one run."""
 
     value: float | None
     text: str
-    state: str
-    """State of the criterion: `within`, `beyond`, `unavoidable` or `no_limit`."""
-    floor: str
-    """Least value that stands beside it, with its meaning; empty without one."""
+    beyond: bool
+    """Whether its magnitude is larger than the limit."""
     why_dash: str
     """Reason why there is no value, empty where there is one."""
 
 
 @dataclass(frozen=True)
-class VerdictRow:
-    """One criterion, or the traction, for all runs."""
+class LimitRow:
+    """One limited metric for all runs."""
 
-    criterion: Quantity
+    metric: Quantity
     limit: str
-    """Limit as text, empty where none applies."""
     source: str
     convention: bool
     """Whether the limit is a convention rather than published."""
-    cells: tuple[VerdictCell, ...]
-
-    @property
-    def reasons(self) -> str:
-        """Reasons why judged runs have no value, empty where all have one."""
-        found = dict.fromkeys(cell.why_dash for cell in self.cells)
-        return '; '.join(each for each in found if each not in ('', NOT_JUDGED))
+    cells: tuple[LimitCell, ...]
+    reasons: str
+    """Reasons why valid runs have no value, empty where all have one."""
 
 
-_TRACTION = Quantity(
-    TRACTION,
-    TRACTION,
-    'm/s^2',
-    '.4g',
-    'largest driving force at the wheels over the mass of the car, beside what the driven axle '
-    'can carry',
-    'the plant is not known',
-)
+def limit_rows(runs: Sequence[ScoredRecording]) -> list[LimitRow]:
+    """Return a row for each metric that has a limit, in the order of `scores.json`."""
+    # All runs of a page have one scenario, so one limit applies to all; a log has no traction.
+    found = {each.name: each for run in runs for each in run.scores.limits}
+    return [_limit_row(found[key], runs) for key in METRICS if key in found]
 
 
-def verdict_rows(runs: Sequence[ScoredRecording]) -> list[VerdictRow]:
-    """Return a row per criterion, then the traction; a run not judged has no values."""
-    judged = [{each.name: each for each in run.scores.verdict.results} for run in runs]
-    reasons = [{**(OF_NO_LOG if run.measured else {}), **run.scores.not_computed} for run in runs]
-    return [
-        _verdict_row(
-            figure,
-            [each.get(figure.key) for each in judged],
-            [each.get(figure.key, figure.undefined) for each in reasons],
-        )
-        for figure in (*CRITERIA, _TRACTION)
-    ]
-
-
-def _verdict_row(
-    criterion: Quantity, found: Sequence[CriterionResult | None], reasons: Sequence[str]
-) -> VerdictRow:
-    # All runs of a page have one scenario, so one limit applies to all.
-    limited = next((each for each in found if each and each.limit is not None), None)
-    return VerdictRow(
-        criterion=criterion,
-        limit=value_text(limited.limit) if limited else '',
-        source=(limited.source or '') if limited else '',
-        convention=bool(limited and limited.convention),
-        cells=tuple(_verdict_cell(*each) for each in zip(found, reasons, strict=True)),
+def _limit_row(limit: LimitResult, runs: Sequence[ScoredRecording]) -> LimitRow:
+    cells = [_limit_cell(limit, run) for run in runs]
+    return LimitRow(
+        metric=METRICS[limit.name],
+        limit=value_text(limit.limit),
+        source=limit.source,
+        convention=limit.convention,
+        cells=tuple(cells),
+        reasons=_reasons(cells, runs),
     )
 
 
-def _verdict_cell(found: CriterionResult | None, undefined: str) -> VerdictCell:
-    if found is None:
-        return VerdictCell(None, value_text(None), NO_LIMIT, '', NOT_JUDGED)
-    why_dash = undefined if found.value is None else ''
-    text = value_text(found.value)
-    return VerdictCell(found.value, text, found.state, _floor_text(found), why_dash)
-
-
-def _floor_text(found: CriterionResult) -> str:
-    """Return the least at any lock time where it exceeds the limit, else at that of the run."""
-    if found.least_at_any_lock is not None:
-        return f'least at all {value_text(found.least_at_any_lock)}'
-    return '' if found.least is None else f'least {value_text(found.least)}'
+def _limit_cell(limit: LimitResult, run: ScoredRecording) -> LimitCell:
+    value = run.scores.metrics[limit.name]
+    if value is None:
+        return LimitCell(
+            None, value_text(None), False, run.scores.null_reasons.get(limit.name, '')
+        )
+    return LimitCell(value, value_text(value), abs(value) > limit.limit, '')

@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""The table that `compare` prints: computed scores next to Table 5.1 of the thesis."""
+"""The table that `compare` prints: scores, for the thesis's conditions beside its Table 5.1."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -10,37 +10,34 @@ from ddct_bringup.metrics.catalogue import TABLE_5_1
 from ddct_bringup.scores.run_table import (
     ACCELERATION_STD,
     CONTROLLER,
-    ENGAGEMENT_TIME,
+    FIGURE_COLUMNS,
     FINAL_SLIP,
-    FURTHER_COLUMNS,
-    PEAK_JERK,
-    SHIFT_COLUMNS,
+    STATE,
+    T_A,
     TORSION_STD,
-    VALID,
     RunColumn,
+    figure_columns,
     print_runs,
 )
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.scores.shift_conditions import shift_conditions
-from ddct_bringup.thesis.predictions import predicted_range
 from ddct_bringup.thesis.table_5_1 import (
     PREDICTED,
     PREDICTION_TOLERANCE,
     is_thesis_run,
     thesis_row,
 )
-from ddct_plant.program.printed_table import print_note
-from ddct_plant.program.table import Column, Quantity
+from ddct_plant.program.table import Column, Quantity, Weight
 from ddct_plant.scenario.differences import changed_values, scenario_title
 from ddct_plant.scenario.settings import RunSettings
 
 _NOTE = (
-    'thesis: Table 5.1. calibrated: this scenario was fitted to the row, so its agreement is a '
-    'fit residual; predicted: the row took no part in the fit. Below our figure is its range '
-    'over the admissible scenarios, '
-    f'below the print hit (within {100 * PREDICTION_TOLERANCE:.0f} % of it) or miss.'
+    'thesis: Table 5.1. The scenario was fitted to its calibrated rows; a predicted one took no '
+    f'part in the fit, and is a hit within {100 * PREDICTION_TOLERANCE:.0f} % in all three values.'
 )
 _NO_ROW = 'Table 5.1 has no row of this controller'
+_BESIDE = ('peak_jerk_m_s3', 'peak_jerk_over_least', 'weighted_acceleration_m_s2')
+"""Figures beside the table of the thesis where there is room."""
 
 
 def print_comparison(
@@ -49,27 +46,28 @@ def print_comparison(
     """
     Print one row per run.
 
-    The values of the thesis, and the ranges of the predictions, are shown only for the conditions
-    of the thesis.
+    The values of the thesis are shown only for the conditions of the thesis.
     """
-    columns = [CONTROLLER, ENGAGEMENT_TIME, TORSION_STD, ACCELERATION_STD]
-    compared = is_thesis_run(settings)
-    if compared:
-        columns = [
-            CONTROLLER,
-            *(
-                column
-                for ours, quantity in zip(columns[1:], TABLE_5_1, strict=True)
-                for column in (_with_range(ours, quantity.key), _thesis(quantity))
-            ),
-            Column('thesis row', '', _use, number=False, undefined=lambda run: _NO_ROW),
-        ]
-    columns += [FINAL_SLIP, PEAK_JERK, *FURTHER_COLUMNS, VALID]
-    if settings.shift:
-        columns = [CONTROLLER, *SHIFT_COLUMNS]
-    print_runs(runs, columns, stream, _title(settings, overrides))
-    if compared and any(thesis_row(run.controller or '') for run in runs):
-        print_note(_NOTE, stream)
+    title = _title(settings, overrides)
+    if not is_thesis_run(settings):
+        print_runs(runs, (CONTROLLER, *figure_columns(runs)), stream, title)
+        return
+    ours = zip((T_A, TORSION_STD, ACCELERATION_STD), TABLE_5_1, strict=True)
+    beside = [_of_less_weight(FIGURE_COLUMNS[key]) for key in _BESIDE]
+    columns = (
+        CONTROLLER,
+        *(each for column, quantity in ours for each in (column, _thesis(quantity))),
+        Column('row', '', _use, number=False, undefined=lambda run: _NO_ROW, weight=Weight.USEFUL),
+        FINAL_SLIP,
+        *beside,
+        STATE,
+    )
+    has_row = any(thesis_row(run.controller or '') for run in runs)
+    print_runs(runs, columns, stream, title, [_NOTE] if has_row else [])
+
+
+def _of_less_weight(column: RunColumn) -> RunColumn:
+    return replace(column, weight=Weight.DETAIL)
 
 
 def _title(settings: RunSettings, overrides: Sequence[str]) -> str:
@@ -84,29 +82,20 @@ def _title(settings: RunSettings, overrides: Sequence[str]) -> str:
     return f'{scenario_title(settings.scenario.name, changes)}; {", ".join(conditions)}'
 
 
-def _with_range(column: RunColumn, name: str) -> RunColumn:
-    """Return the column of a metric with the predicted range in a second line."""
-    return replace(column, below=lambda run: predicted_range(run.controller or '', name))
-
-
 def _thesis(quantity: Quantity) -> RunColumn:
-    """Return the column of the printed value, with hit or miss below where it is predicted."""
+    """Return the column of the printed value."""
 
     def value(run: ScoredRun) -> float | None:
         row = thesis_row(run.controller or '')
         return row.printed_values()[quantity.key] if row else None
 
-    def below(run: ScoredRun) -> str:
-        row = thesis_row(run.controller or '')
-        if row is None or row.use != PREDICTED or not run.valid:
-            return ''
-        return row.verdict(quantity.key, run.metrics[quantity.key])
-
-    return Column(
-        f'thesis\n{quantity.unit}', '.2f', value, below=below, undefined=lambda run: _NO_ROW
-    )
+    return Column('thesis', '.2f', value, undefined=lambda run: _NO_ROW)
 
 
 def _use(run: ScoredRun) -> str | None:
+    """Return whether the row is calibrated, or predicted with a hit or a miss."""
     row = thesis_row(run.controller or '')
-    return row.use if row else None
+    if row is None or row.use != PREDICTED or not run.valid:
+        return row.use if row else None
+    words = {row.verdict(each.key, run.metrics[each.key]) for each in TABLE_5_1}
+    return f'{row.use}, {"hit" if words == {"hit"} else "miss"}'

@@ -8,7 +8,6 @@ import numpy as np
 
 from ddct_bringup.bag.recording import Recording
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.floor.values import METRICS as FLOOR_METRICS
 from ddct_bringup.scores.document import FACTS
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_plant.base.errors import printable
@@ -22,8 +21,6 @@ from ddct_plant.signals.topics import (
     all_signals,
 )
 
-OVER_FLOOR = 'over_floor.'
-"""Prefix of the column of a metric over the least that any controller could have."""
 Cell = str | float | int | list[str] | None
 """Value in one column of a row."""
 _OF_JOINTS = (JOINT_STATES, SENSED_JOINT_STATES)
@@ -31,7 +28,7 @@ _OF_JOINTS = (JOINT_STATES, SENSED_JOINT_STATES)
 
 
 def scores_csv(runs: Sequence[ScoredRun]) -> str:
-    """Return the scores as CSV, one row per run: facts, metrics and verdict."""
+    """Return the scores as CSV, one row per run: facts, metrics and state."""
     return rows_csv([score_row(run) for run in runs])
 
 
@@ -41,7 +38,7 @@ def rows_csv(rows: Sequence[Mapping[str, Cell]]) -> str:
 
 
 def score_row(run: ScoredRun) -> dict[str, Cell]:
-    """Return the facts, metrics and verdict of a run by column."""
+    """Return the facts, metrics and state of a run by column."""
     return {
         'bag': run.bag,
         **{name: getattr(run.facts, name, None) for name in FACTS},
@@ -53,15 +50,10 @@ def score_row(run: ScoredRun) -> dict[str, Cell]:
         'scenario_changes': None if run.scenario_changes is None else list(run.scenario_changes),
         'gain_changes': [each.text for each in run.gain_changes],
         **run.metrics,
-        'verdict_state': run.verdict.state,
-        'verdict_limits': run.verdict.limits,
-        **over_floor_columns(run),
+        'least_is_bound': run.least_is_bound,
+        'state': run.state,
+        'why': run.why,
     }
-
-
-def over_floor_columns(run: ScoredRun) -> dict[str, float | None]:
-    """Return the value over the least of every metric that has floors, None where not computed."""
-    return {f'{OVER_FLOOR}{name}': run.over_floor.get(name) for name in FLOOR_METRICS}
 
 
 def signals_csv(recording: Recording) -> str:

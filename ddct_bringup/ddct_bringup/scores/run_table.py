@@ -7,145 +7,141 @@ from dataclasses import replace
 from typing import TextIO
 
 from ddct_bringup.bag.run_facts import RunFacts
-from ddct_bringup.metrics.catalogue import METRICS, OF_EVERY_RUN, OF_SHIFT, TABLE_5_1
-from ddct_bringup.metrics.metric import NO_TIMING
-from ddct_bringup.scores.run_notes import (
-    beyond_notes,
-    in_ms,
-    no_floor_notes,
-    run_notes,
-    unavoidable_notes,
-)
-from ddct_bringup.scores.scored_run import ScoredRun
-from ddct_plant.program.printed_table import print_note, print_table
-from ddct_plant.program.table import Column, Quantity, Weight, table_of
+from ddct_bringup.metrics.catalogue import JERK_OVER_LEAST, METRICS, TABLE_5_1
+from ddct_bringup.metrics.metric import Metric
+from ddct_bringup.scores.run_notes import in_ms, run_notes
+from ddct_bringup.scores.scored_run import YARDSTICK, ScoredRun
+from ddct_plant.program.printed_table import print_table
+from ddct_plant.program.table import Column, Weight, table_of
 from ddct_plant.scenario.differences import scenario_title
 
 RunColumn = Column[ScoredRun]
 """One column of a table of runs."""
 
 
-def metric(quantity: Quantity, heading: str = '') -> RunColumn:
-    """Return the column of a metric; the heading defaults to its symbol and unit."""
+def metric(
+    quantity: Metric,
+    heading: str = '',
+    form: str = '',
+    *,
+    weight: Weight = Weight.NEEDED,
+    factor: float = 1.0,
+) -> RunColumn:
+    """
+    Return the column of a metric times a factor.
+
+    The heading defaults to its symbol and unit, the format to its own.
+    """
+
+    def value(run: ScoredRun) -> float | None:
+        found = run.metrics[quantity.key]
+        # The format of a count takes no float.
+        return found if found is None or factor == 1.0 else factor * found
+
     return Column(
         heading or f'{quantity.symbol}\n{quantity.unit}',
-        quantity.form,
-        lambda run: run.metrics[quantity.key],
-        undefined=lambda run: quantity.undefined,
+        form or quantity.form,
+        value,
+        undefined=lambda run: _why_null(quantity.key, run),
+        remark=lambda run: YARDSTICK if _no_bound(quantity, run) else '',
+        weight=weight,
     )
+
+
+def _why_null(key: str, run: ScoredRun) -> str:
+    """Return the reason of a dash; a run that is not valid has a warning instead."""
+    return run.null_reasons.get(key, '') if run.valid else ''
+
+
+def _no_bound(quantity: Metric, run: ScoredRun) -> bool:
+    return quantity is JERK_OVER_LEAST and run.least_is_bound is False
 
 
 BAG: RunColumn = Column('bag', '', lambda run: run.bag, number=False, weight=Weight.IDENTIFYING)
 CONTROLLER: RunColumn = Column(
     'controller', '', lambda run: run.controller, number=False, weight=Weight.IDENTIFYING
 )
-WEAR: RunColumn = Column('wear', 'g', lambda run: run.facts.wear_gain if run.facts else None)
-SHIFT_CONDITIONS: tuple[RunColumn, ...] = (
+_WEAR: RunColumn = Column(
+    'wear', 'g', lambda run: run.facts.wear_gain if run.facts else None, weight=Weight.USEFUL
+)
+_SHIFT_CONDITIONS: tuple[RunColumn, ...] = (
     Column(
         'off-going\nwear',
         'g',
         lambda run: run.facts.off_going_wear_gain if isinstance(run.facts, RunFacts) else None,
-        undefined=lambda run: 'the run is no gear shift',
+        weight=Weight.DETAIL,
     ),
     Column(
         'handover',
         '',
         lambda run: run.facts.handover if isinstance(run.facts, RunFacts) else None,
         number=False,
-        undefined=lambda run: 'the run is no gear shift',
+        weight=Weight.DETAIL,
     ),
 )
 """Columns of the conditions that only a gear shift has."""
-ENGAGEMENT_TIME, TORSION_STD, ACCELERATION_STD = (metric(each) for each in TABLE_5_1)
-_HEADINGS = {
-    'slip_final_rpm': 'final\nw_d rpm',
-    'slip_rmse_rpm': 'slip\nRMSE rpm',
-    'peak_jerk_m_s3': 'jerk\nm/s^3',
+STATE: RunColumn = Column('state', '', lambda run: run.state, number=False)
+T_A, TORSION_STD, ACCELERATION_STD = (
+    metric(each, f'{each.symbol} {each.unit}\nours') for each in TABLE_5_1
+)
+FINAL_SLIP = metric(METRICS['slip_final_rpm'], 'final\nw_d rpm', '.1f')
+_HEADINGS: dict[str, tuple[str, str, Weight, float]] = {
+    'time_to_final_lock_s': ('lock\ns', '.2f', Weight.NEEDED, 1.0),
+    'torque_late_s': ('late\ns', '.2f', Weight.NEEDED, 1.0),
+    'peak_jerk_m_s3': ('jerk\nm/s^3', '.1f', Weight.NEEDED, 1.0),
+    'peak_jerk_over_least': ('jerk\n/least', '.1f', Weight.NEEDED, 1.0),
+    'friction_work_j': ('work\nkJ', '.1f', Weight.NEEDED, 1e-3),
+    'weighted_acceleration_m_s2': ('A_w\nm/s^2', '.2f', Weight.NEEDED, 1.0),
+    'releases': ('re-\nleases', '.0f', Weight.NEEDED, 1.0),
+    'torque_dip_percent': ('dip\n%', '.0f', Weight.USEFUL, 1.0),
+    'flare_rad_s': ('flare\nrad/s', '.1f', Weight.DETAIL, 1.0),
+    'tie_up_work_j': ('tie-up\nJ', '.0f', Weight.DETAIL, 1.0),
 }
-"""Headings shorter than symbol and unit, in the order of the columns."""
-FINAL_SLIP, SLIP_RMSE, PEAK_JERK = (metric(METRICS[key], text) for key, text in _HEADINGS.items())
-FURTHER_COLUMNS = tuple(
-    metric(each) for each in OF_EVERY_RUN if each.column and each.key not in _HEADINGS
-)
-"""Columns of all other metrics that are declared to have one."""
-OVER_FLOOR: RunColumn = Column(
-    'jerk\n/least',
-    '.2f',
-    lambda run: run.over_floor.get('peak_jerk'),
-    undefined=lambda run: 'the run has no floor',
-)
-"""Column of tables in which a run has its peak jerk over the least that any could have."""
-VALID: RunColumn = Column('valid', '', lambda run: 'yes' if run.valid else 'NO', number=False)
-
-COLUMNS = (
-    ENGAGEMENT_TIME,
-    TORSION_STD,
-    ACCELERATION_STD,
-    FINAL_SLIP,
-    SLIP_RMSE,
-    PEAK_JERK,
-    *FURTHER_COLUMNS,
-    VALID,
-)
-"""Columns of a table of runs, after those that identify the run."""
-_SHIFT_HEADINGS = {
-    'shift_time_s': 'shift\ns',
-    'torque_phase_s': 'torque\nphase s',
-    'inertia_phase_s': 'inertia\nphase s',
-    'torque_dip_percent': 'dip\n%',
-    'flare_rad_s': 'flare\nrad/s',
-    'tie_up_work_j': 'tie-up\nJ',
-    'friction_energy_j': 'work\nJ',
-    'off_going_friction_energy_j': 'off\nJ',
+"""Heading, format, weight and factor of the columns of figures."""
+FIGURE_COLUMNS = {
+    key: metric(METRICS[key], heading, form, weight=weight, factor=factor)
+    for key, (heading, form, weight, factor) in _HEADINGS.items()
 }
-"""Headings of gear shifts that are shorter than symbol and unit, in the order of the columns."""
-SHIFT_COLUMNS = (
-    *(metric(METRICS[key], text) for key, text in _SHIFT_HEADINGS.items()),
-    *(metric(each) for each in OF_SHIFT if each.column and each.key not in _SHIFT_HEADINGS),
-    PEAK_JERK,
-    VALID,
-)
-"""Columns of a table of gear shifts, after those that identify the run."""
-
-STATE: RunColumn = Column('state', '', lambda run: run.verdict.state, number=False)
-VERDICT_COLUMNS: tuple[RunColumn, ...] = (
-    STATE,
-    Column('limits', '', lambda run: run.verdict.limits, number=False, weight=Weight.USEFUL),
-)
-"""
-Columns of the verdict, before the last column.
-"""
-REALTIME_COLUMNS: tuple[RunColumn, ...] = (
+_OF_LOCK = ('time_to_final_lock_s', 'releases')
+"""Figures that a linear clutch never has."""
+_REALTIME: tuple[RunColumn, ...] = (
     metric(METRICS['missed_steps'], 'missed\nsteps'),
     Column(
         'latest\nms',
         '.2f',
         lambda run: in_ms(run.metrics['worst_lateness_us']),
-        undefined=lambda run: f'it ran in lock-step, or {NO_TIMING}',
+        undefined=lambda run: _why_null('worst_lateness_us', run),
     ),
     Column(
         'safe state',
         '',
-        lambda run: _safe_state(run),
+        lambda run: None if run.safe_state is None else run.safe_state or 'none',
         number=False,
-        undefined=lambda run: 'it ran in lock-step',
+        undefined=lambda run: 'the run was in lock-step',
     ),
 )
-"""Additional columns of a table with at least one real-time run."""
+"""Columns of a table with at least one real-time run, before the state."""
 
 
 def identifying_columns(runs: Sequence[ScoredRun]) -> tuple[RunColumn, ...]:
     """Return the columns that identify each of these runs."""
     shifts = any(isinstance(run.facts, RunFacts) and run.facts.of_shift for run in runs)
-    return (BAG, CONTROLLER, WEAR, *(SHIFT_CONDITIONS if shifts else ()))
+    return (BAG, CONTROLLER, _WEAR, *(_SHIFT_CONDITIONS if shifts else ()))
 
 
-def columns_of(runs: Sequence[ScoredRun]) -> tuple[RunColumn, ...]:
-    """Return the columns of a table of these runs, after those that identify the run."""
-    shifts = [run.is_shift for run in runs if run.valid]
-    if not any(shifts):
-        return COLUMNS
-    return SHIFT_COLUMNS if all(shifts) else tuple(dict.fromkeys((*COLUMNS[:-1], *SHIFT_COLUMNS)))
+def figure_columns(runs: Sequence[ScoredRun]) -> tuple[RunColumn, ...]:
+    """Return the columns of the figures that these runs can have, then the state."""
+    judged = [run for run in runs if run.valid]
+    sticking = any(run.metrics[key] is not None for run in judged for key in _OF_LOCK)
+    if judged and not sticking:
+        own: tuple[RunColumn, ...] = (T_A, TORSION_STD, ACCELERATION_STD, FINAL_SLIP)
+        shown = [each for key, each in FIGURE_COLUMNS.items() if key not in _OF_LOCK]
+    else:
+        own, shown = (), [*FIGURE_COLUMNS.values()]
+    if not any(run.is_shift for run in judged):
+        of_shift = {key for key, each in METRICS.items() if each.of_shift}
+        shown = [each for each in shown if each not in map(FIGURE_COLUMNS.get, of_shift)]
+    return (*own, *shown, STATE)
 
 
 def print_runs(
@@ -153,43 +149,27 @@ def print_runs(
     columns: Sequence[RunColumn],
     stream: TextIO,
     title: str | None = None,
+    notes: Sequence[str] = (),
 ) -> None:
     """
-    Print one row per run with its verdict, then explanatory notes.
+    Print one row per run, its state last, with notes below.
 
-    The notes explain invalid runs, criteria beyond their limits, and floors. The default
-    title is the scenario with its changes; where the runs have several scenarios each row has its
-    own below it.
+    The default title is the scenario with its changes; where the runs have several scenarios each
+    row has its own.
     """
     scenarios = {_scenario(run) for run in runs if run.scenario is not None}
     if title is None and len(scenarios) == 1:
         (title,) = scenarios
+    if title is None:
+        scenario = Column('scenario', '', _scenario, number=False, weight=Weight.USEFUL)
+        columns = [columns[0], scenario, *columns[1:]]
     if any(run.facts and run.facts.mode == 'realtime' for run in runs):
-        columns = [*columns[:-1], *REALTIME_COLUMNS, columns[-1]]
-    if PEAK_JERK in columns and any('peak_jerk' in run.over_floor for run in runs):
-        place = list(columns).index(PEAK_JERK) + 1
-        columns = [*columns[:place], OVER_FLOOR, *columns[place:]]
-    shown = [_with_reason(each) for each in (*columns[:-1], *VERDICT_COLUMNS, columns[-1])]
-    print_table(table_of(title or '', shown, runs, complete='--json FILE'), stream)
-    for run in runs:
-        scenario = [_scenario(run)] if title is None and run.scenario is not None else []
-        for text in [*scenario, *run_notes(run)]:
-            print_note(f'{run.bag}: {text}', stream)
-    for text in [*beyond_notes(runs), *unavoidable_notes(runs), *no_floor_notes(runs)]:
-        print_note(text, stream)
-
-
-def _with_reason(column: RunColumn) -> RunColumn:
-    """Return a column whose dashes have the reason of an invalid run, where that is the cause."""
-    return replace(
-        column,
-        undefined=lambda run: column.undefined(run) if run.valid else f'not valid: {run.reason}',
-    )
+        columns = [*columns[:-1], *_REALTIME, columns[-1]]
+    of_runs = [f'{run.bag}: {note}' for run in runs for note in run_notes(run)]
+    invalid = [f'{run.bag}: not valid: {run.reason}' for run in runs if not run.valid]
+    table = table_of(title or '', columns, runs, complete='--json FILE', notes=[*of_runs, *notes])
+    print_table(replace(table, warnings=invalid), stream)
 
 
 def _scenario(run: ScoredRun) -> str:
     return scenario_title(run.scenario or '', run.scenario_changes or ())
-
-
-def _safe_state(run: ScoredRun) -> str | None:
-    return None if run.safe_state is None else run.safe_state or 'none'

@@ -1,15 +1,21 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""The scored run: facts, validity, metrics and verdict of one run."""
+"""The scored run: facts, validity, state, metrics and limits of one run."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from ddct_bringup.bag.run_facts import MEASURED, RunConditions
-from ddct_bringup.metrics.catalogue import OF_SHIFT
+from ddct_bringup.metrics.catalogue import METRICS
 from ddct_bringup.metrics.metric import Metrics
-from ddct_bringup.verdict.verdict import Verdict
+from ddct_bringup.verdict.limits import LimitResult
 from ddct_plant.signals.gain_changes import GainChange
+
+YARDSTICK = (
+    'commands the engine or meets its limits, slips again or starts otherwise: the least is a '
+    'yardstick, not a bound'
+)
+"""Reason of the star beside a ratio to the least that is no bound for its run."""
 
 
 @dataclass(frozen=True)
@@ -24,7 +30,13 @@ class ScoredRun:
     reason: str
     """Reason why the run is not valid; empty for a valid one."""
     metrics: Metrics
-    verdict: Verdict
+    """Every figure and metric; `scores.json` has them apart."""
+    state: str
+    """State of the run, one of `STATES`."""
+    why: str = ''
+    """Reason of the state; empty where its name says all."""
+    limits: tuple[LimitResult, ...] = ()
+    """Metrics beside their limits; empty of an unreadable run."""
     fallbacks: int | None = None
     """Number of steps without a solution of the controller's program; None without a count."""
     safe_state: str | None = None
@@ -35,16 +47,15 @@ class ScoredRun:
     """Changes of the packaged scenario as KEY=VALUE; None where the scenario is unknown."""
     gain_changes: tuple[GainChange, ...] = ()
     """Gains of the controller that were changed while it ran."""
-    not_computed: Mapping[str, str] = field(default_factory=dict)
-    """Reason by metric or criterion that lacks its value, where the reason is known."""
-    over_floor: Mapping[str, float | None] = field(default_factory=dict)
+    null_reasons: Mapping[str, str] = field(default_factory=dict)
+    """Reason by metric that has no value."""
+    least_is_bound: bool | None = None
     """
-    Value over the least at the run's own lock instant, by the metric's name in `ddct limit`.
+    Whether no run like this one can have a peak jerk below the least of `peak_jerk_over_least`.
 
-    None where it is not defined; only metrics whose floors were requested.
+    False for a run that commands the engine or meets its limits, slips again or starts otherwise:
+    the least is then a yardstick. None without that figure.
     """
-    no_floor: str = ''
-    """Reason why the run has no floors though they were requested; empty otherwise."""
 
     @property
     def controller(self) -> str | None:
@@ -59,7 +70,9 @@ class ScoredRun:
     @property
     def is_shift(self) -> bool:
         """Whether the run is a gear shift that has scores."""
-        return any(self.metrics.get(each.key) is not None for each in OF_SHIFT)
+        return any(
+            self.metrics.get(each.key) is not None for each in METRICS.values() if each.of_shift
+        )
 
     @property
     def label(self) -> str:

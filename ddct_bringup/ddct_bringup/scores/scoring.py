@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Score recordings: metrics, validity and verdict of each run."""
+"""Score recordings: metrics, validity, state and limits of each run."""
 
 import re
 from collections.abc import Mapping
@@ -9,25 +9,34 @@ from pathlib import Path
 from ddct_bringup.bag.recording import Recording
 from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.metrics.catalogue import METRICS, NEEDED_BY
+from ddct_bringup.metrics.catalogue import JERK_OVER_LEAST, METRICS, NEEDED_BY
 from ddct_bringup.metrics.engagement import Engagement
-from ddct_bringup.metrics.metric import Metrics, finite
+from ddct_bringup.metrics.metric import Metrics
 from ddct_bringup.metrics.plant import JudgedPlant
-from ddct_bringup.metrics.values import criteria_of, existing, metrics_of, window_steps
+from ddct_bringup.metrics.values import metrics_of, null_reasons, window_steps
 from ddct_bringup.run.timing_and_failure import RunTiming, failed_run
 from ddct_bringup.scores.bags import bag_name
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.scores.validity import engine_end, safe_state, why_invalid
 from ddct_bringup.verdict.limits import Limits
-from ddct_bringup.verdict.shift_state import state_of_shift
-from ddct_bringup.verdict.state import INVALID, slip_state
-from ddct_bringup.verdict.verdict import UNREADABLE, Verdict, judged_traction, verdict_of
+from ddct_bringup.verdict.state import INVALID, State, state_of
 from ddct_plant.bag_file.records import salvage_records
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import steps_in
 from ddct_plant.files.input_file import mcap_of
 from ddct_plant.scenario.differences import changed_values
 
+NOT_COMPUTED = 'the least was not computed'
+_NO_PHASES = 'a log has no phases of the plates'
+_OF_NO_LOG = {
+    'time_to_final_lock_s': _NO_PHASES,
+    'releases': _NO_PHASES,
+    'peak_temperature_degc': 'a log has no temperature of the facing',
+    'friction_work_over_least': 'a log has no inertias of the car',
+    JERK_OVER_LEAST.key: 'a log has no scenario, and no floor',
+    **{each.key: 'a log has no update times' for each in METRICS.values() if each.from_timing},
+}
+"""Reasons why no log of a car has a value, by metric."""
 _COUNT = re.compile('[0-9]{1,9}')
 
 
@@ -37,9 +46,11 @@ def score_run(
     """Score and judge a recording without reading files next to its bag."""
     facts = recording.facts
     reason = why_invalid(recording)
-    engagement = engagement_of(recording, limits, timing)
+    engagement = engagement_of(recording, timing)
     metrics = metrics_of(engagement)
-    verdict = _verdict(recording, engagement, metrics, limits, valid=not reason)
+    state = State(INVALID)
+    if not reason:
+        state = state_of(engagement, engine_end(recording), limits.rules)
     settings = recording.settings
     return ScoredRun(
         bag=bag,
@@ -47,13 +58,19 @@ def score_run(
         valid=not reason,
         reason=reason,
         metrics=metrics,
-        verdict=verdict,
+        state=state.name,
+        why=state.why,
+        limits=limits.beside(metrics, facts.scenario, engagement.plant),
         fallbacks=fallbacks_in(recording.trajectory),
         safe_state=None if facts.lockstep else safe_state(recording),
         before_schema=recording.before_schema,
         scenario_changes=tuple(changed_values(settings.scenario)) if settings else None,
         gain_changes=recording.gain_changes,
-        not_computed=not_computed(recording, metrics, verdict),
+        null_reasons={
+            **null_reasons(engagement, metrics),
+            JERK_OVER_LEAST.key: NOT_COMPUTED,
+            **_absent_in_log(recording, metrics),
+        },
     )
 
 
@@ -76,18 +93,21 @@ def unreadable_run(path: Path, error: DdctError, *, relative_to: Path | None = N
 def run_without_score(bag: str, facts: RunFacts | None, reason: str) -> ScoredRun:
     """Return a failed run: invalid, with the facts that are available."""
     metrics = dict.fromkeys(METRICS)
-    return ScoredRun(bag, facts, False, reason, metrics, UNREADABLE)
+    nulls = dict.fromkeys(METRICS, 'the run has no scores')
+    return ScoredRun(bag, facts, False, reason, metrics, INVALID, null_reasons=nulls)
 
 
-def not_computed(recording: Recording, metrics: Metrics, verdict: Verdict) -> Mapping[str, str]:
-    """Return the reasons for metrics and criteria that are None for lack of a log quantity."""
-    values = {**verdict.values, **metrics}
-    return {
+def _absent_in_log(recording: Recording, metrics: Metrics) -> Mapping[str, str]:
+    """Return the reasons for metrics that a log does not have; none for a simulated run."""
+    if not recording.measured:
+        return {}
+    lacking = {
         name: recording.absent[quantity]
         for quantity, names in NEEDED_BY.items()
         for name in names
-        if quantity in recording.absent and values.get(name) is None
+        if quantity in recording.absent and metrics[name] is None
     }
+    return {**_OF_NO_LOG, **lacking}
 
 
 def fallbacks_in(trajectory: Trajectory) -> int | None:
@@ -100,32 +120,14 @@ def fallbacks_in(trajectory: Trajectory) -> int | None:
     return int(count) if _COUNT.fullmatch(count) else None
 
 
-def engagement_of(recording: Recording, limits: Limits, timing: RunTiming | None) -> Engagement:
-    """Return the signals and conditions from which metrics and criteria are computed."""
+def engagement_of(recording: Recording, timing: RunTiming | None) -> Engagement:
+    """Return the signals and conditions from which metrics and the state are computed."""
     facts, settings = recording.facts, recording.settings
     return Engagement(
         recording.trajectory,
         steps_in('control_start_s', facts.control_start_s),
         window_steps(facts.score_window_s),
-        limits.rules.engagements_a_day,
+        facts.steps,
         JudgedPlant.of(settings.scenario) if settings else None,
         timing,
-    )
-
-
-def _verdict(
-    recording: Recording, engagement: Engagement, metrics: Metrics, limits: Limits, *, valid: bool
-) -> Verdict:
-    plant = engagement.plant
-    state = engine_end(recording) if valid else INVALID
-    if state is None:
-        state = slip_state(recording.trajectory, engagement.judged_from, limits.rules, plant)
-    state = state_of_shift(state, engagement.shift, limits.shift)
-    return verdict_of(
-        state,
-        criteria_of(engagement, metrics),
-        limits,
-        recording.facts.scenario,
-        exists=existing(engagement),
-        traction=judged_traction(finite(engagement.driving_acceleration), plant, limits),
     )

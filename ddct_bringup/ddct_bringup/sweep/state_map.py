@@ -9,17 +9,17 @@ import numpy as np
 
 from ddct_bringup.sweep.axis import Axis, value_text
 from ddct_bringup.verdict.state import (
+    ADDED,
     ENGAGED,
     FLARED,
     INVALID,
-    NEARLY_ENGAGED,
+    LATE,
     NOT_ENGAGED,
-    OSCILLATING,
-    RUNAWAY,
     STATES,
     TIED_UP,
+    WITHHELD,
 )
-from ddct_controllers.design.drawing.line_styles import BLACK, ORANGE, PURPLE, VERMILLION
+from ddct_controllers.design.drawing.line_styles import BLACK, PURPLE, VERMILLION
 from ddct_plant.models.engine_limits import OVER_REVVED, STALLED
 
 if TYPE_CHECKING:
@@ -29,17 +29,17 @@ if TYPE_CHECKING:
 
 STATE_COLOURS: Mapping[str, str] = {
     ENGAGED: '#d3e8f5',
-    NEARLY_ENGAGED: '#86b8dc',
-    NOT_ENGAGED: ORANGE,
-    OSCILLATING: PURPLE,
-    RUNAWAY: VERMILLION,
+    LATE: '#86b8dc',
+    WITHHELD: PURPLE,
+    ADDED: '#e3a6c9',
+    NOT_ENGAGED: VERMILLION,
     STALLED: '#5c3a21',
     OVER_REVVED: '#7a0019',
     TIED_UP: '#3d3d3d',
     FLARED: '#b58900',
     INVALID: BLACK,
 }
-"""Colours by state: blue for engaged plates, pale for locked ones; darker is worse."""
+"""Colours by state: pale blue for engaged runs; darker is worse."""
 _MOST_TICKS, _MOST_COLUMNS = 8, 5
 
 

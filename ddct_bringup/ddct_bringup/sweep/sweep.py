@@ -13,6 +13,7 @@ from ddct_bringup.campaign.keys import SCENARIO
 from ddct_bringup.campaign.rows import result_row
 from ddct_bringup.campaign.run_set import RunSet
 from ddct_bringup.campaign.scored import ScoredRow, scored_runs
+from ddct_bringup.metrics.metric import Metric
 from ddct_bringup.run.run_base import RunBase
 from ddct_bringup.scores.csv_text import rows_csv
 from ddct_bringup.scores.document import run_entry
@@ -22,7 +23,7 @@ from ddct_bringup.sweep.axis import MOST, Axis, value_text
 from ddct_bringup.verdict.limits import Limits
 from ddct_controllers.registry import Chosen, controller_label, controller_spec
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.program.table import Column, Quantity, Table, Weight, table_of
+from ddct_plant.program.table import Column, Table, Weight, table_of
 from ddct_plant.scenario.differences import scenario_title
 from ddct_plant.scenario.settings import RunSettings
 
@@ -134,7 +135,7 @@ def sweep_csv(runs: Sequence[ScoredRow]) -> str:
     return rows_csv([result_row(run.scores, run.varied) for run in runs])
 
 
-def sweep_table(sweep: Sweep, runs: Sequence[ScoredRow], metrics: Sequence[Quantity]) -> Table:
+def sweep_table(sweep: Sweep, runs: Sequence[ScoredRow], metrics: Sequence[Metric]) -> Table:
     """Return the table with a row per run: controller, varied values, metrics and state."""
     title = f'{sweep.conditions}; {sweep.varied}'
     of_runs = [_of_swept(each) for each in (CONTROLLER, *map(metric, metrics), STATE)]

@@ -72,7 +72,7 @@ def sweep_figure(sweep: Sweep, runs: Sequence[ScoredRow], metrics: Sequence[Quan
     from matplotlib.figure import Figure
 
     names = [controller_label(each) for each in sweep.controllers]
-    states = np.array([run.scores.verdict.state for run in runs]).reshape(len(names), -1)
+    states = np.array([run.scores.state for run in runs]).reshape(len(names), -1)
     if len(sweep.axes) > 1:
         return _maps(sweep, names, states)
     lane = 0.5 + _LANE_IN * len(names)

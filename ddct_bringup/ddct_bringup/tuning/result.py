@@ -8,12 +8,14 @@ from typing import TypedDict
 
 import numpy as np
 
-from ddct_bringup.benchmark.gaps import gaps_of
+from ddct_bringup.benchmark.comparison import gaps_between
 from ddct_bringup.benchmark.result_types import Gap
-from ddct_bringup.campaign.rows import Row
+from ddct_bringup.benchmark.statistics.case_figures import FIGURES
+from ddct_bringup.campaign.keys import SCENARIO
+from ddct_bringup.campaign.rows import STATE, Row
 from ddct_bringup.tuning.front import best_of, front_of
 from ddct_bringup.tuning.sensitivity import ParameterEffect, effects_on
-from ddct_bringup.tuning.specification.goals import ENGAGED, MINIMISE, RunColumns
+from ddct_bringup.tuning.specification.goals import MINIMISE, RunColumns
 from ddct_bringup.tuning.specification.spec import TuningSpec
 from ddct_bringup.tuning.trial import FEASIBLE, Trial
 from ddct_bringup.tuning.tuned_files import BEST, trial_file
@@ -116,7 +118,7 @@ def result_of(
         'best_file': BEST,
         'front': [_entry(spec, each, held_out.get(each.number)) for each in front],
         'before': _entry(spec, trials[0], held_out.get(0)) if tuning.present else None,
-        'gaps': _gaps(spec, best, held_out[best.number]),
+        'gaps': gaps_between(*(_columns(each.rows) for each in (best, held_out[best.number]))),
         'sensitivity': {goal.name: effects_on(goal, trials, spec) for goal in spec.objectives},
         'convergence': _convergence(spec, trials),
     }
@@ -164,18 +166,16 @@ def _figures(spec: TuningSpec, trial: Trial) -> Figures:
     }
 
 
-def _gaps(spec: TuningSpec, development: Trial, held_out: Trial) -> list[Gap]:
-    """Return the differences of the quantities of the goals, beside the share of successes."""
-    names = [goal.name for goal in spec.goals if goal.of_runs and goal.name != ENGAGED]
-    names = list(dict.fromkeys(names))
-    ours, theirs = (_columns(each.rows, names) for each in (development, held_out))
-    return gaps_of(ours, theirs, names=names)
-
-
-def _columns(rows: Sequence[Row], names: Sequence[str]) -> dict[str, np.ndarray]:
+def _columns(rows: Sequence[Row]) -> dict[str, np.ndarray]:
+    """Return the columns that decide about gaps, (runs,) each."""
+    names = [name for figure in FIGURES for name in figure.columns]
     return {
         'valid': np.array([row['valid'] for row in rows], dtype=bool),
-        'verdict_state': np.array([row['verdict_state'] for row in rows], dtype=object),
+        **{
+            name: np.array([row[name] for row in rows], dtype=object)
+            for name in (STATE, SCENARIO)
+            if name in rows[0]
+        },
         **{name: np.array([row[name] for row in rows], dtype=float) for name in names},
     }
 

@@ -36,7 +36,7 @@ class Tuning:
     def campaign(self) -> Campaign:
         """Campaign that contains the development cases."""
         folder = self.spec.folder
-        return self.spec.development.campaign(self.judged.path, folder, self.spec.floors)
+        return self.spec.development.campaign(self.judged.path, folder, floors=self.spec.floors)
 
     @cached_property
     def cases(self) -> list[int]:

@@ -1,7 +1,7 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
 """
-Rules of the states and limits of the criteria, read from a limits file.
+Thresholds of the states and limits of metrics, read from a limits file.
 
 Every error in a limits file is reported with file, line and key.
 """
@@ -16,7 +16,9 @@ from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
-from ddct_bringup.metrics.catalogue import CRITERION_UNITS
+from ddct_bringup.metrics.catalogue import METRICS
+from ddct_bringup.metrics.metric import Metrics
+from ddct_bringup.metrics.plant import JudgedPlant
 from ddct_bringup.verdict.limits_keys import (
     MOST,
     require_keys,
@@ -24,31 +26,48 @@ from ddct_bringup.verdict.limits_keys import (
     require_unit,
     rule_value,
 )
-from ddct_bringup.verdict.rules import Rules, ShiftRules, packaged_shift_rules, thresholds_of
+from ddct_bringup.verdict.rules import Rules, rules_of
 from ddct_bringup.verdict.traction import TractionRule
 from ddct_plant.base.errors import ParameterError, require_number
 from ddct_plant.files.input_file import SCHEMA_KEY, located, require_schema_version, user_text
 from ddct_plant.files.yaml_text import parse_yaml_with_lines
 
-SCHEMA_VERSION = 2
-"""Schema version of a limits file; in version 1 a convention had no reason."""
+SCHEMA_VERSION = 3
+"""Schema version of a limits file."""
 CONVENTION = 'convention'
-TRACTION, TRACTION_UNIT = 'traction', 'm/s^2'
-"""Name of the traction, which is judged next to the criteria, and its unit."""
-_REASONED_FROM = 2
-"""First schema version in which a convention has a reason."""
+TRACTION = 'driving_acceleration_m_s2'
+"""Metric that the traction of the driven axle limits."""
 _CITATION = ('source', 'clause')
+_ORDER = {key: place for place, key in enumerate(METRICS)}
 
 
 @dataclass(frozen=True)
 class Limit:
-    """Highest magnitude of one criterion, in its unit."""
+    """Highest magnitude of one metric, in its unit."""
 
-    criterion: str
+    metric: str
+    """Key of the metric."""
     value: float
     unit: str
     applies_to: tuple[str, ...] | None
     """Names of the scenarios that the limit applies to; None for all."""
+    source: str
+    """Publication and clause of the limit, or for a convention its reason."""
+    convention: bool
+    """Whether the limit is a convention rather than published."""
+
+
+@dataclass(frozen=True)
+class LimitResult:
+    """Value of a metric of a run beside its limit; fields as in `scores.json`."""
+
+    name: str
+    """Key of the metric."""
+    value: float | int | None
+    """Value in `unit`; None where it is not defined."""
+    limit: float
+    """Largest magnitude in `unit`."""
+    unit: str
     source: str
     """Publication and clause of the limit, or for a convention its reason."""
     convention: bool
@@ -63,29 +82,34 @@ class Limits:
     limits: tuple[Limit, ...]
     traction: TractionRule | None
     """Limit of the traction of the driven axle; None where the file has none."""
-    shift: ShiftRules
-    """Thresholds of the states of a gear shift; the packaged ones where the file has none."""
     origin: Mapping[str, str | int] = field(compare=False)
     """Name, digest and schema version of the file, under the keys of `scores.json`."""
 
-    def of_all(self, scenario: str, gravity: float) -> dict[str, Limit]:
-        """Return the limits of criteria and traction by name, at a gravity in m/s^2."""
-        traction = self.of_traction(gravity)
-        return self.of(scenario) | ({TRACTION: traction} if traction else {})
+    def beside(
+        self, metrics: Metrics, scenario: str, plant: JudgedPlant | None
+    ) -> tuple[LimitResult, ...]:
+        """Return the metrics of a run beside their limits; without a plant no traction."""
+        limits = self.of(scenario)
+        if plant is not None and (traction := self.of_traction(plant.gravity)):
+            limits[TRACTION] = traction
+        return tuple(
+            LimitResult(name, metrics[name], each.value, each.unit, each.source, each.convention)
+            for name, each in sorted(limits.items(), key=lambda item: _ORDER[item[0]])
+        )
 
     def of_traction(self, gravity: float) -> Limit | None:
         """Return the limit of the traction at a gravity in m/s^2; None where the file has none."""
         if self.traction is None:
             return None
         largest, reason = self.traction.limit(gravity), f'{CONVENTION}: {self.traction.reason}'
-        return Limit(TRACTION, largest, TRACTION_UNIT, None, reason, convention=True)
+        return Limit(TRACTION, largest, METRICS[TRACTION].unit, None, reason, convention=True)
 
     def of(self, scenario: str) -> dict[str, Limit]:
-        """Return the strictest limit of each criterion for a scenario, by criterion."""
+        """Return the strictest limit of each metric for a scenario, by the metric's key."""
         strictest: dict[str, Limit] = {}
         for limit in sorted(self.limits, key=attrgetter('value')):
             if limit.applies_to is None or scenario in limit.applies_to:
-                strictest.setdefault(limit.criterion, limit)
+                strictest.setdefault(limit.metric, limit)
         return strictest
 
 
@@ -127,54 +151,53 @@ def limits_of_text(text: str, name: str) -> Limits:
         content, lines = parse_yaml_with_lines(text)
     digest = hashlib.sha256(text.encode()).hexdigest()[:16]
     with located(f'limits {name}', lines):
-        top = require_keys('', content, ('rules', 'limits'), (SCHEMA_KEY, 'traction', 'shift'))
+        top = require_keys('', content, ('rules', 'limits'), (SCHEMA_KEY, 'traction'))
         require_schema_version(top, SCHEMA_VERSION)
-        version = top.get(SCHEMA_KEY, SCHEMA_VERSION)
-        origin = {'name': Path(name).name, 'digest': digest, 'schema_version': version}
+        origin: Mapping[str, str | int] = {
+            'name': Path(name).name,
+            'digest': digest,
+            'schema_version': SCHEMA_VERSION,
+        }
         if not isinstance(top['limits'], list):
             raise ParameterError('limits: give a list of limits')
-        limits = [_limit(f'limits[{i}]', item, version) for i, item in enumerate(top['limits'])]
+        limits = [_limit(f'limits[{i}]', item) for i, item in enumerate(top['limits'])]
         traction = _traction(top['traction']) if 'traction' in top else None
-        rules = thresholds_of(Rules, 'rules', top['rules'])
-        shift = packaged_shift_rules()
-        if 'shift' in top:
-            shift = thresholds_of(ShiftRules, 'shift', top['shift'])
-        return Limits(rules, tuple(limits), traction, shift, origin)
+        return Limits(rules_of('rules', top['rules']), tuple(limits), traction, origin)
 
 
 def _traction(content: Any) -> TractionRule:
     names = ('friction', 'driven_share', 'height_over_wheelbase')
     rules = require_keys('traction', content, (*names, 'reason'))
     require_text('traction.reason', rules['reason'])
-    values = {name: rule_value(f'traction.{name}', rules[name], '1', None) for name in names}
+    values = {name: rule_value(f'traction.{name}', rules[name], '1') for name in names}
     return TractionRule(**values, reason=rules['reason'])
 
 
-def _limit(path: str, content: Any, version: int) -> Limit:
-    required = ('criterion', 'value', 'unit', 'applies_to')
+def _limit(path: str, content: Any) -> Limit:
+    required = ('metric', 'value', 'unit', 'applies_to')
     limit = require_keys(path, content, required, (*_CITATION, CONVENTION, 'reason'))
-    criterion = limit['criterion']
-    if not isinstance(criterion, str) or criterion not in CRITERION_UNITS:
-        known = ', '.join(CRITERION_UNITS)
-        raise ParameterError(f'{path}.criterion: {criterion!r} is unknown: choose from {known}')
-    require_unit(f'{path}.unit', limit['unit'], CRITERION_UNITS[criterion])
+    metric = limit['metric']
+    if not isinstance(metric, str) or metric not in METRICS:
+        known = ', '.join(METRICS)
+        raise ParameterError(f'{path}.metric: {metric!r} is unknown: choose from {known}')
+    require_unit(f'{path}.unit', limit['unit'], METRICS[metric].unit)
     return Limit(
-        criterion,
+        metric,
         require_number(f'{path}.value: it', limit['value'], at_least=0.0, at_most=MOST),
         limit['unit'],
         _scenarios(f'{path}.applies_to', limit['applies_to']),
-        _source(path, limit, version),
+        _source(path, limit),
         limit.get(CONVENTION, False),
     )
 
 
-def _source(path: str, limit: Mapping[str, Any], version: int) -> str:
+def _source(path: str, limit: Mapping[str, Any]) -> str:
     if not isinstance(limit.get(CONVENTION, False), bool):
         raise ParameterError(
             f'{path}.{CONVENTION}: give true or false', key=f'{path}.{CONVENTION}'
         )
     if limit.get(CONVENTION):
-        return _convention(path, limit, version)
+        return _convention(path, limit)
     if 'reason' in limit:
         raise ParameterError(
             f'{path}.reason: only a convention has one: cite a clause, or add it',
@@ -189,15 +212,13 @@ def _source(path: str, limit: Mapping[str, Any], version: int) -> str:
     return f'{limit["source"]}, {limit["clause"]}'
 
 
-def _convention(path: str, limit: Mapping[str, Any], version: int) -> str:
-    if 'reason' in limit:
-        require_text(f'{path}.reason', limit['reason'])
-        return f'{CONVENTION}: {limit["reason"]}'
-    if version >= _REASONED_FROM:
+def _convention(path: str, limit: Mapping[str, Any]) -> str:
+    if 'reason' not in limit:
         raise ParameterError(
             f'{path}: reason is missing: say why this value is agreed on', key=f'{path}.reason'
         )
-    return CONVENTION
+    require_text(f'{path}.reason', limit['reason'])
+    return f'{CONVENTION}: {limit["reason"]}'
 
 
 def _scenarios(path: str, value: Any) -> tuple[str, ...] | None:

@@ -12,14 +12,12 @@ MOST = 1e9
 """Largest value of a rule or limit, in its unit."""
 
 
-def rule_value(path: str, content: Any, unit: str, at_least: float | None = None) -> float:
+def rule_value(path: str, content: Any, unit: str) -> float:
     """Return the value of the rule at `path`, which has `value`, `unit` and `reason`."""
     rule = require_keys(path, content, ('value', 'unit', 'reason'))
     require_text(f'{path}.reason', rule['reason'])
     require_unit(f'{path}.unit', rule['unit'], unit)
-    return require_number(
-        f'{path}.value: it', rule['value'], above=0.0, at_least=at_least, at_most=MOST
-    )
+    return require_number(f'{path}.value: it', rule['value'], above=0.0, at_most=MOST)
 
 
 def require_keys(

@@ -1,18 +1,17 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Repeat the runs of a benchmark, and compare its rows, seeds, limits and result."""
+"""Repeat the runs of a benchmark, and compare its rows, seeds and result."""
 
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
 from ddct_bringup.benchmark.cases import Cases, packaged_folder
-from ddct_bringup.benchmark.conduct import HELD_OUT, UNAVOIDABLE, campaigns_of
+from ddct_bringup.benchmark.conduct import campaigns_of
 from ddct_bringup.benchmark.judged import Judged
 from ddct_bringup.benchmark.manifest import MANIFEST, BenchmarkManifest, JudgedEntry
-from ddct_bringup.benchmark.release import COPIED, release_rows
+from ddct_bringup.benchmark.release import ROWS, release_rows
 from ddct_bringup.benchmark.report.folder import RESULT, result_in
-from ddct_bringup.benchmark.unavoidable import unavoidable_limits
 from ddct_bringup.campaign.manifest import Manifest
 from ddct_bringup.digests.digest_file import read_digests
 from ddct_bringup.verification.campaign import verified_campaign
@@ -23,13 +22,13 @@ from ddct_bringup.verification.result import RepetitionResult
 
 def verified_benchmark(request: VerificationRequest) -> Iterator[RepetitionResult]:
     """
-    Yield the results of manifest, rows of the release, campaigns, limits and result.
+    Yield the results of manifest, rows of the release, campaigns and result.
 
     Raise DdctError for a benchmark that is not finished.
     """
     manifest = BenchmarkManifest.read(request.folder)
     yield _verified_manifest(request, manifest)
-    yield from _verified_release(request, manifest)
+    yield _verified_release(request, manifest)
     for entry in manifest.controllers:
         yield from _verified_controller(request, manifest, entry)
     yield _verified_result(request)
@@ -57,30 +56,26 @@ def _verified_manifest(
 
 def _verified_release(
     request: VerificationRequest, manifest: BenchmarkManifest
-) -> Iterator[RepetitionResult]:
+) -> RepetitionResult:
     """Compare the rows of the release with those that this release has, if it is the same."""
     origin = release_rows(request.folder).origin
     other = origin.code != manifest.code_digest
     note = f'computed by other code: {origin.text}' if other else ''
-    for name in COPIED:
-        if not request.same_code:
-            yield RepetitionResult.by_digest(
-                name, '; '.join(filter(None, ('rows of another release', note)))
-            )
-            continue
-        comparison = Comparison()
-        same = (request.folder / name).read_bytes() == (packaged_folder() / name).read_bytes()
-        comparison.add(
-            {'file': name, 'reason': 'other rows than those of the release'}, same, True
+    if not request.same_code:
+        return RepetitionResult.by_digest(
+            ROWS, '; '.join(filter(None, ('rows of another release', note)))
         )
-        found = RepetitionResult.of(name, comparison, same_environment=request.same_environment)
-        yield replace(found, note=note)
+    comparison = Comparison()
+    same = (request.folder / ROWS).read_bytes() == (packaged_folder() / ROWS).read_bytes()
+    comparison.add({'file': ROWS, 'reason': 'other rows than those of the release'}, same, True)
+    found = RepetitionResult.of(ROWS, comparison, same_environment=request.same_environment)
+    return replace(found, note=note)
 
 
 def _verified_controller(
     request: VerificationRequest, manifest: BenchmarkManifest, entry: JudgedEntry
 ) -> Iterator[RepetitionResult]:
-    """Yield the results of the campaigns of a controller, and of the limits of its cases."""
+    """Yield the results of the campaigns of a controller."""
     folder = request.folder / entry.name
     campaigns = sorted(file.parent for file in folder.glob('*/manifest.json'))
     for each in campaigns:
@@ -89,7 +84,6 @@ def _verified_controller(
         yield _verified_cases(inner, manifest, entry, name)
         for found in verified_campaign(inner):
             yield replace(found, run=f'{name}: {found.run}')
-    yield _verified_limits(request, folder, entry)
 
 
 def _verified_cases(
@@ -111,20 +105,6 @@ def _verified_cases(
     return RepetitionResult.of(
         f'{name}: cases', comparison, same_environment=request.same_environment
     )
-
-
-def _verified_limits(
-    request: VerificationRequest, folder: Path, entry: JudgedEntry
-) -> RepetitionResult:
-    """Compare the limits that no controller can keep with those computed again."""
-    held_out = folder / HELD_OUT
-    campaign = Manifest.read(held_out).campaign(held_out, request.files)
-    found = unavoidable_limits(campaign, request.limits, request.workers)
-    comparison = Comparison()
-    again = {str(case): names for case, names in found.items()}
-    comparison.add_nested('', recorded_json(folder / UNAVOIDABLE), plain_json(again))
-    name = f'{entry.name}/{UNAVOIDABLE}'
-    return RepetitionResult.of(name, comparison, same_environment=request.same_environment)
 
 
 def _verified_result(request: VerificationRequest) -> RepetitionResult:

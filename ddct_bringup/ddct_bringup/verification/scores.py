@@ -10,11 +10,13 @@ from typing import Any
 
 from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.digests.writing import ITSELF
+from ddct_bringup.metrics.catalogue import JERK_OVER_LEAST
 from ddct_bringup.report.evidence import FREQUENCY_FILE
 from ddct_bringup.scores.bags import find_bags
 from ddct_bringup.scores.document import scores_document
-from ddct_bringup.scores.floors import NONE, floor_metrics, with_floors
+from ddct_bringup.scores.floors import with_least
 from ddct_bringup.scores.scored_recording import score_any_bag
+from ddct_bringup.scores.scoring import NOT_COMPUTED
 from ddct_bringup.verification.comparison import Comparison, plain_json, recorded_json
 from ddct_bringup.verification.repetition import controller_of
 from ddct_bringup.verification.request import VerificationRequest
@@ -44,14 +46,15 @@ def verified_scores(request: VerificationRequest) -> RepetitionResult:
     try:
         recorded = _by_bag(stored, names)
         floors = [
-            floor_metrics(','.join(recorded['runs'].get(name, {}).get('over_floor', ())) or NONE)
+            recorded['runs'].get(name, {}).get('null_reasons', {}).get(JERK_OVER_LEAST.key)
+            != NOT_COMPUTED
             for name in names
         ]
     except (AttributeError, TypeError, DdctError) as error:
         return RepetitionResult.failed(SCORES, f'not the scores of runs ({error})')
     runs = [
-        with_floors(run, metrics, request.limits).scores
-        for run, metrics in zip(scored, floors, strict=True)
+        (with_least(run, request.limits) if floor else run).scores
+        for run, floor in zip(scored, floors, strict=True)
     ]
     computed = plain_json(scores_document(runs, request.limits))
     comparison = Comparison()

@@ -8,7 +8,7 @@ import pickle
 import signal
 import threading
 import warnings
-from dataclasses import replace
+from dataclasses import asdict, replace
 from importlib.metadata import EntryPoint, EntryPoints
 from importlib.resources import files
 
@@ -20,6 +20,7 @@ from ddct_bringup import api
 from ddct_bringup.api import run_and_load
 from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.bag.trajectory_bag import write_trajectory
+from ddct_bringup.metrics.catalogue import METRICS
 from ddct_bringup.programs.bringup import main as bringup
 from ddct_bringup.programs.score import main as score
 from ddct_bringup.run.description import custom_data
@@ -34,16 +35,17 @@ pytestmark = pytest.mark.slow
 SHORT_S = 2.0
 
 
-def test_floors_are_beside_a_run_where_they_are_requested():
-    plain = api.run('pi')
-    assert (plain.over_floor, plain.verdict['limits']) == ({}, 'beyond')
-    run = api.run('pi', floors=['peak_acceleration'])
-    assert set(run.over_floor) == {'peak_acceleration', 'weighted_acceleration', 'traction'}
-    assert 1.0 <= run.over_floor['peak_acceleration'] < 1.1
-    assert run.verdict['limits'] == 'unavoidable'
-    assert run.metrics['peak_jerk_m_s3'] == plain.metrics['peak_jerk_m_s3']
+def test_the_least_is_beside_the_peak_jerk_where_it_is_requested():
+    added = {'peak_jerk_over_least', 'least_is_bound'}
+    plain, run = api.run('ls8'), api.run('ls8', floors=True)
+    assert {plain.figures[key] for key in added} == {None}
+    assert run.figures['peak_jerk_over_least'] > 1.0
+    assert run.figures['least_is_bound'] is True
+    kept = plain.figures.keys() - added
+    assert {key: run.figures[key] for key in kept} == {key: plain.figures[key] for key in kept}
+    assert (run.state, run.limits) == (plain.state, plain.limits)
     (row,) = api.table(run).to_dict('records')
-    assert row['over_floor.peak_acceleration'] == run.over_floor['peak_acceleration']
+    assert {key: row[key] for key in added} == {key: run.figures[key] for key in added}
 
 
 class Soft(api.Controller):
@@ -79,19 +81,19 @@ def test_a_run_is_that_of_the_headless_loop(worn):
     assert (worn.settings, worn.controller, worn.path) == (settings, 'ls8', None)
 
 
-def test_metrics_and_verdict_are_those_of_the_programs(worn, tmp_path, capsys):
+def test_figures_metrics_state_and_limits_are_those_of_the_programs(worn, tmp_path, capsys):
     options = ['--wear-gain', '0.7', '--duration', '3', '--headless', '--out', str(tmp_path)]
     assert bringup(['--controller', 'ls8', *options]) == 0
     capsys.readouterr()
     assert score([str(tmp_path / 'ls8'), '--floors', 'none', '--json', '-']) == 0
     (entry,) = json.loads(capsys.readouterr().out)['runs']
-    timed = {name for name in worn.metrics if name.startswith(('update_time', 'wall_time'))}
-    ours, theirs = (
-        {name: value for name, value in each.items() if name not in timed}
-        for each in (worn.metrics, entry['metrics'])
-    )
-    assert ours == theirs
-    assert json.loads(json.dumps(worn.verdict)) == entry['verdict']
+    untimed = {name for name in entry['metrics'] if not METRICS[name].from_timing}
+    assert {name: worn.metrics[name] for name in untimed} == {
+        name: entry['metrics'][name] for name in untimed
+    }
+    assert worn.figures == entry['figures']
+    assert (worn.state, worn.why) == (entry['state'], entry['why'])
+    assert [asdict(each) for each in worn.limits] == entry['limits']
     assert (worn.valid, worn.reason) == (entry['valid'], entry['reason']) == (True, '')
 
 
@@ -120,9 +122,7 @@ def test_frequency_evidence_is_that_of_the_loop_and_none_without_a_linear_model(
 
 
 def test_a_run_is_printed_as_one_line(worn):
-    assert repr(worn) == (
-        '<Run of ls8: thesis, 3 s, wear gain 0.7, engaged, limits beyond, valid>'
-    )
+    assert repr(worn) == ('<Run of ls8: thesis, 3 s, wear gain 0.7, engaged, valid>')
     failed = replace(worn.scores, valid=False, reason='it crashed')
     crashed = replace(worn, scored=replace(worn.scored, scores=failed))
     assert repr([crashed]).endswith(', not valid: it crashed>]')
@@ -147,13 +147,13 @@ def test_a_dataframe_has_the_signals_by_time(worn):
     assert frame['wheel_speed_rad_s'].tolist() == worn.trajectory.joint_speed[:, 2].tolist()
 
 
-def test_a_table_has_a_row_per_run_with_metrics_and_verdict(worn):
+def test_a_table_has_a_row_per_run_with_metrics_and_state(worn):
     pytest.importorskip('pandas', reason='the extra pandas')
     assert len(api.table(worn)) == 1
     rows = api.table([worn, worn])
     assert rows['controller'].tolist() == ['ls8', 'ls8']
     assert rows['slip_final_rpm'].tolist() == 2 * [worn.metrics['slip_final_rpm']]
-    assert rows['verdict_state'].tolist() == 2 * [worn.verdict['state']]
+    assert rows['state'].tolist() == 2 * [worn.state]
 
 
 def test_without_pandas_an_error_names_what_to_install(worn, monkeypatch):
@@ -321,13 +321,12 @@ def test_a_loaded_run_is_judged_by_the_limits_that_are_given(tmp_path):
     kept = api.run('ls8', duration=SHORT_S, out=tmp_path / 'runs')
     packaged = (files('ddct_bringup.verdict') / 'limits.yaml').read_text(encoding='utf-8')
     mine = tmp_path / 'mine.yaml'
-    stricter = '{criterion: weighted_acceleration, value: 0.001, unit: m/s^2, applies_to: all'
+    stricter = '{metric: weighted_acceleration_m_s2, value: 0.001, unit: m/s^2, applies_to: all'
     convention = f'{stricter}, convention: true, reason: to tell it from the packaged one}}'
     mine.write_text(f'{packaged}  - {convention}\n', encoding='utf-8')
 
     def limit_of(run):
-        criteria = run.scores.verdict.criteria
-        (found,) = [each for each in criteria if each.name == 'weighted_acceleration']
+        (found,) = [each for each in run.limits if each.name == 'weighted_acceleration_m_s2']
         return found.limit
 
     assert limit_of(api.load(kept.path)) == limit_of(kept) > 0.001

@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""The criteria of many runs at once are those of each single run, for any slip."""
+"""The metrics of many runs at once are those of each single run, for any slip."""
 
 from typing import Any
 
@@ -10,13 +10,14 @@ import pytest
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.batch.results import part_of_stack, stacked_plants
 from ddct_bringup.metrics.engagement import Engagement
+from ddct_bringup.metrics.limited import judder
 from ddct_bringup.metrics.metric import finite
 from ddct_bringup.metrics.plant import JudgedPlant
-from ddct_bringup.metrics.values import existing, raw_criteria, raw_metrics
+from ddct_bringup.metrics.values import raw_metrics
 from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_plant.models.parameters import DrivelineParameters, VehicleParameters
 
-EXACT = ('friction_work_over_least', 'mean_acceleration', 'mean_negative_jerk')
+EXACT = ('friction_work_over_least', 'mean_acceleration_m_s2', 'mean_negative_jerk_m_s3')
 RUNS, SAMPLES, START, WINDOW = 40, 431, 200, (200, 300)
 PLANTS = [
     JudgedPlant.of_parameters(
@@ -47,30 +48,24 @@ def stack():
             'vehicle_accel': wandering(),
             'slip_reference': wandering(1),
             'torque_request': wandering(),
+            'torque_demand': np.maximum(
+                wandering(), np.where(np.arange(RUNS) % 2, 0.0, -9.0)[:, None]
+            ),
+            'engine_torque': wandering(),
         }
     )
 
 
 def judged(trajectory, window=WINDOW, plant=None):
-    return Engagement(trajectory, START, window, 12.0, plant, RunTiming())
-
-
-def criteria(engagement) -> dict[str, Any]:
-    return raw_criteria(engagement, raw_metrics(engagement))
+    return Engagement(trajectory, START, window, SAMPLES - 1, plant, RunTiming())
 
 
 @pytest.mark.parametrize('window', [WINDOW, (200, 500)], ids=['scored', 'ends before'])
-def test_criteria_are_those_of_each_single_run(stack, window):
-    runs = judged(stack, window, stacked_plants(PLANTS))
-    ours = criteria(runs)
-    exist = existing(runs)
+def test_metrics_are_those_of_each_single_run(stack, window):
+    ours: dict[str, Any] = raw_metrics(judged(stack, window, stacked_plants(PLANTS)))
     undefined = set()
     for run in range(RUNS):
-        alone = judged(part_of_stack(stack, run), window, PLANTS[run])
-        single = criteria(alone)
-        assert {
-            name: np.broadcast_to(each, RUNS)[run] for name, each in exist.items()
-        } == existing(alone)
+        single = raw_metrics(judged(part_of_stack(stack, run), window, PLANTS[run]))
         for name, value in single.items():
             found = ours[name] if np.ndim(ours[name]) == 0 else ours[name][run]
             if finite(value) is None:
@@ -78,7 +73,7 @@ def test_criteria_are_those_of_each_single_run(stack, window):
                 assert finite(found) is None, name
             else:
                 assert found == pytest.approx(value, rel=0.0 if name in EXACT else 1e-12), name
-    assert {'shuffle_decay', 'shuffle_amplitude', 'judder', 'engagement_time'} <= undefined
+    assert {'judder_rpm', 'engagement_time_s', 'torque_late_s'} <= undefined
 
 
 def test_judder_begins_at_half_a_second_of_slipping_in_a_batch_as_in_a_single_run(stack):
@@ -89,8 +84,8 @@ def test_judder_begins_at_half_a_second_of_slipping_in_a_batch_as_in_a_single_ru
     slip[-1] = np.where((steps >= START + 5) & (steps < START + 125), 30.0, 0.0)
     signals = part_of_stack(stack, slice(len(lengths))).signals
     trajectory = Trajectory({**signals, 'slip_speed': slip})
-    batch = judged(trajectory).judder
-    single = [finite(judged(part_of_stack(trajectory, run)).judder) for run in range(len(slip))]
+    batch: Any = judder(judged(trajectory))
+    single = [finite(judder(judged(part_of_stack(trajectory, run)))) for run in range(len(slip))]
     assert [each is not None for each in single] == [length >= 51 for length in lengths[:-1]] + [
         True
     ]

@@ -20,7 +20,7 @@ discretisation: hold
 """
 
 
-def test_the_table_has_the_shares_of_the_result_in_its_folder(
+def test_the_table_has_the_shares_and_medians_of_the_result_in_its_folder(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     pytest.importorskip('pandas', reason='an extra')
@@ -35,7 +35,8 @@ def test_the_table_has_the_shares_of_the_result_in_its_folder(
         for each in judged[part]:
             row = found.table.loc[each['controller']]
             assert row[f'{part}.success'] == each['success']['share']
-            assert row[f'{part}.limits_kept'] == each['limits']['share']
+            for figure in each['quantities'][:5]:
+                assert row[f'{part}.{figure["name"]}'] == figure['p50']
     assert found.page.is_file()
 
 

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A benchmark shows a controller that remembers, gives the same bytes, and can be verified."""
 
+import html
 import shlex
 import shutil
 import struct
@@ -27,12 +28,15 @@ from verified import copied, edit_json_with_digest, states, verified
 
 from ddct_bringup.benchmark.cases import Cases
 from ddct_bringup.benchmark.conduct import AGAIN, Options, carry_out_benchmark
+from ddct_bringup.benchmark.evaluated import MAIN
 from ddct_bringup.benchmark.judged import Judged
 from ddct_bringup.benchmark.release import ROWS, write_release_rows
 from ddct_bringup.benchmark.report import page as page_module
 from ddct_bringup.benchmark.report.folder import PAGE, RESULT
-from ddct_bringup.campaign_report.printed_summary import MAIN
+from ddct_bringup.benchmark.report.rules import NO_GAIN, left_open_here, states_that_count
 from ddct_bringup.digests.origin import CodeOrigin
+from ddct_bringup.verdict.limits import packaged_limits
+from ddct_bringup.verdict.state import STATES
 from ddct_plant.base.errors import DdctError
 
 pytestmark = pytest.mark.slow
@@ -61,25 +65,37 @@ def test_a_controller_that_remembers_the_development_cases_is_worse_on_held_out_
     assert (ours[0]['controller'], ours[0]['success']['runs']) == (NAME, 6)
     assert theirs[0]['success']['runs'] == 0
     assert theirs[0]['success']['interval'][1] < ours[0]['success']['interval'][0]
-    gap = judged['gaps'][0]
-    assert (gap['name'], gap['differs'], gap['worse']) == ('success', True, 1.0)
+    assert [(gap['name'], gap['differs'], gap['worse']) for gap in judged['gaps']] == [
+        (name, True, 1.0) for name in MAIN
+    ]
     assert 'worse on held-out cases, beyond chance' in (place / 'first' / PAGE).read_text()
     # The others are as good in both, so the held-out cases are not the harder ones.
     assert [each['success']['runs'] for each in (*ours[1:], *theirs[1:])] == [6] * 4
     assert [pair['second_only'] for pair in judged['held_out_pairs']] == [6, 6]
 
 
-def test_the_board_has_every_controller_and_the_limits_leave_out_what_nobody_can_keep(
+def test_the_board_has_every_controller_with_its_figures_and_who_dominates_it(
     place: Path,
 ) -> None:
     result = result_in(place / 'first')
     assert [row['controller'] for row in result['board']] == [NAME, 'pi', 'ls8', 'hinf1']
-    limits = result['board'][2]['limits']
-    assert (limits['runs'], limits['unavoidable']) == (2, 1)
-    assert 0 < limits['kept'] < limits['avoidable']
-    ls8 = result['controllers'][0]['held_out'][2]
-    over = {each['name']: each['over_floor'] for each in ls8['quantities']}
-    assert over['friction_energy_j']['worst']['value'] > 1.0
+    assert [row['dominated_by'] for row in result['board']] == [[]] * 4  # six cases say nothing
+    names = [each['name'] for each in result['board'][2]['quantities']]
+    assert names == [*MAIN, 'peak_jerk_over_least']
+    assert result['method']['dominance_level'] == pytest.approx(0.05 / (5 * 4 * 3))
+    (judged,) = result['controllers']
+    assert [(pair['other'], pair['cases']) for pair in judged['dominance']] == [
+        (name, 6) for name in ('pi', 'ls8', 'hinf1')
+    ]
+    of_ls8 = judged['dominance'][1]['figures']  # the same runs, as it plays them back
+    assert [(each['better'], each['worse'], each['left_out']) for each in of_ls8] == [
+        (0, 0, 0)
+    ] * 5
+    ls8 = judged['held_out'][2]
+    over = {each['name']: each for each in ls8['quantities']}['peak_jerk_over_least']
+    assert over['with_value'] == 1
+    assert over['worst']['value'] > 1.0
+    assert ls8['least_is_no_bound'] == 0
 
 
 def test_the_bytes_are_the_same_after_an_interruption(place: Path, tmp_path: Path) -> None:
@@ -112,6 +128,15 @@ def test_verify_computes_all_of_it_again(
     assert {'benchmark.json', 'development.parquet', RESULT} <= found.keys()
     assert f'{NAME}/held_out: {NAME}: rows 0 to 5' in found
     assert set(found.values()) == {'same_bits'}
+
+
+def test_the_page_has_what_counts_what_nobody_gains_by_and_what_stays_open(place: Path) -> None:
+    page = html.unescape((place / 'first' / PAGE).read_text(encoding='utf-8'))
+    states = states_that_count(packaged_limits().rules)
+    words = {name for key in states for name in key.split(', ')}
+    assert words == {state.replace('_', ' ') for state in STATES}
+    for text in (*states, *NO_GAIN, left_open_here(), f'no controller dominates {NAME}: 6 cases'):
+        assert text in page
 
 
 def test_no_main_quantity_is_among_the_further_ones_of_the_page(place: Path) -> None:
@@ -184,18 +209,29 @@ def test_a_seed_or_a_figure_edited_with_its_digest_is_found(
 
 def test_any_altered_byte_of_a_benchmark_is_found(place: Path) -> None:
     files = kinds_of_files(place / 'first')
-    assert {'.parquet', '.html', RESULT, 'benchmark.json', 'unavoidable.json'} <= files.keys()
+    assert {'.parquet', '.html', RESULT, 'benchmark.json'} <= files.keys()
     lost = {name: not_found(place / 'first', file, 20) for name, file in files.items()}
     assert lost == dict.fromkeys(files, [])
 
 
-def test_a_seed_of_a_judge_is_marked(place: Path, tmp_path: Path) -> None:
+def test_a_quick_benchmark_by_the_seed_of_a_judge_is_marked_and_has_no_dominance(
+    place: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
     assert judge(tmp_path / 'judged', 'ls8', '--seed', '7', '--quick') == 0
     result = result_in(tmp_path / 'judged')
     assert (result['judge_seed'], result['controllers'][0]['held_out_seed']) == (7, 7)
     page = (tmp_path / 'judged' / PAGE).read_text(encoding='utf-8')
     assert 'those of a judge: --seed 7' in page
     assert 'a quick benchmark' in page
+    assert (result['controllers'][0]['dominance'], result['method']['dominance_level']) == (
+        None,
+        None,
+    )
+    assert {row['dominated_by'] for row in result['board']} == {None}
+    assert 'Who dominates whom' not in page
+    printed = capfd.readouterr().out
+    assert 'left out' not in printed
+    assert left_open_here() in ' '.join(printed.split())
     assert not (tmp_path / 'judged' / 'ls8' / 'development').exists()
 
 

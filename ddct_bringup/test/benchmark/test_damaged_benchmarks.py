@@ -3,21 +3,22 @@
 """A damaged file of a benchmark's folder is refused in one line that names it."""
 
 import json
-import shutil
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
-from ddct_bringup.benchmark.cases import Cases, packaged_folder
+from ddct_bringup.benchmark.case_rows import CaseRows
+from ddct_bringup.benchmark.cases import Cases
 from ddct_bringup.benchmark.judged import Judged
 from ddct_bringup.benchmark.manifest import MANIFEST, BenchmarkManifest
-from ddct_bringup.benchmark.release import COPIED, UNAVOIDABLE, release_rows
-from ddct_bringup.benchmark.unavoidable import unavoidable_of
+from ddct_bringup.benchmark.release import ROWS, ReleaseRows
 from ddct_bringup.benchmark.update_times import read_update_times
+from ddct_bringup.digests.origin import CodeOrigin
 from ddct_bringup.run.timing_and_failure import TIMING_FILE
-from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.base.errors import DdctError
 
 Edit = Callable[[dict[str, Any]], object]
 RATIO = {'ratio_to_pi': 2.0, 'lowest_ratio': 1.9, 'highest_ratio': 2.1}
@@ -75,21 +76,8 @@ def test_damaged_update_times_are_refused(tmp_path: Path, text: str) -> None:
     assert error.value.place == str(tmp_path / TIMING_FILE)
 
 
-@pytest.mark.parametrize(
-    'text',
-    ['[]', '{"3": []}', '{"01": []}', '{"a": []}', '{"1": "peak_jerk"}', '{"1": [["peak_jerk"]]}'],
-)
-def test_limits_of_no_case_and_limits_that_are_none_are_refused(text: str) -> None:
-    assert unavoidable_of('{"1": ["peak_jerk"], "2": []}', 3) == {1: ['peak_jerk'], 2: []}
-    with pytest.raises(ParameterError):
-        unavoidable_of(text, 3)
-
-
-def test_a_case_with_floors_and_without_its_limits_is_missed(tmp_path: Path) -> None:
-    for name in COPIED:
-        shutil.copyfile(str(packaged_folder() / name), tmp_path / name)
-    limits = json.loads((tmp_path / UNAVOIDABLE).read_text(encoding='utf-8'))
-    limits.pop(next(iter(limits)))
-    (tmp_path / UNAVOIDABLE).write_text(json.dumps(limits), encoding='utf-8')
-    with pytest.raises(DdctError, match=f'{UNAVOIDABLE} lacks cases'):
-        release_rows(tmp_path).of(Cases.packaged())
+def test_rows_with_fewer_cases_than_their_specification_are_refused(tmp_path: Path) -> None:
+    columns = {'controller': np.array([['pi'] * 3], dtype=object)}
+    rows = ReleaseRows(CaseRows(('pi',), columns), Cases.packaged().digest, CodeOrigin.here())
+    with pytest.raises(DdctError, match=f'{ROWS} lacks cases: run make benchmark-rows'):
+        rows.of(Cases.packaged())

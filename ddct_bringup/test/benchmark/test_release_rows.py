@@ -2,14 +2,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """The packaged cases cover what they should, and the packaged rows come out again."""
 
+import re
 from pathlib import Path
 
 import numpy as np
 import pytest
+from small_benchmark import shown_runs
 
 from ddct_bringup.benchmark.cases import Cases, packaged_folder
 from ddct_bringup.benchmark.release import ReleaseRows, columns_kept, release_rows
+from ddct_bringup.benchmark.report.packaged import packaged_tables
 from ddct_bringup.campaign.columns import schema_of
+from ddct_bringup.campaign.keys import SCENARIO
 from ddct_bringup.campaign.scored import Scorer
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_bringup.verification.comparison import Comparison, plain_json
@@ -21,8 +25,6 @@ pytestmark = pytest.mark.slow
 
 SYNTHESISED = ('hinf_fitted', 'hinf_sampled', 'hinf_thesis')
 """Controllers that are synthesised in each process: docs/use/verify.md has what that changes."""
-COMMANDS_ENGINE = ('mpc4', 'mpc4_wear', 'torque_estimator', 'decoupled_pid')
-"""Controllers outside of the floors, which are those of the clutch alone."""
 ROWS = 8
 """Number of rows that are computed again, each of another controller and case."""
 
@@ -68,7 +70,7 @@ def test_a_quick_benchmark_has_the_first_tenth_of_the_cases(release: ReleaseRows
     rows = release.of(Cases.packaged(quick=True)).rows
     wear = [quick.run(case).varied['wear_gain'] for case in range(quick.cases)]
     assert rows.of('pi')['wear_gain'].tolist() == wear
-    with_floor = ~np.isnan(rows.columns['over_floor.peak_jerk']).all(axis=0)
+    with_floor = ~np.isnan(rows.columns['peak_jerk_over_least']).all(axis=0)
     assert not any(with_floor[case] and not quick.has_floors(case) for case in range(quick.cases))
 
 
@@ -77,8 +79,7 @@ def test_the_release_has_every_packaged_controller_in_every_case(release: Releas
     assert list(release.rows.controllers) == own_controller_names()
     assert release.rows.cases == campaign.cases
     assert release.cases_digest == Cases.packaged().digest
-    with_floors = [case for case in range(campaign.cases) if campaign.has_floors(case)]
-    assert list(release.unavoidable) == with_floors
+    assert {*columns_kept(campaign.spec)} == {*release.rows.columns}
 
 
 def test_a_sample_of_the_rows_comes_out_again_within_the_bound(release: ReleaseRows) -> None:
@@ -105,19 +106,18 @@ def test_a_sample_of_the_rows_comes_out_again_within_the_bound(release: ReleaseR
     assert comparison.beyond is None
 
 
-def test_no_controller_of_the_clutch_keeps_a_limit_that_nobody_can_keep(
-    release: ReleaseRows,
-) -> None:
-    names = [name for name in release.rows.controllers if name not in COMMANDS_ENGINE]
-    columns = release.rows.only(names).columns
-    proven = [(case, name) for case, found in release.unavoidable.items() for name in found]
-    compared = 0
-    for case, name in proven:
-        settings = Cases.packaged().planned.run(case).settings
-        gravity = settings.scenario.vehicle.gravity_m_s2
-        limit = packaged_limits().of_all(settings.scenario.name, gravity)[name]
-        engaged = columns['verdict_state'][:, case] == 'engaged'
-        values = columns[f'criterion.{name}'][:, case][engaged]
-        assert (values > limit.value).all()
-        compared += values.size
-    assert compared > 100
+def test_every_controller_of_the_release_stands_in_every_table_with_all_its_runs() -> None:
+    for name, table in packaged_tables().items():
+        controllers = list(dict.fromkeys(row[0] for row in table.rows))
+        assert controllers == own_controller_names()
+        if 'engaged' in table.headers:
+            among = 330 if name == 'all' else 30
+            assert {shown_runs(table, row) for row in range(len(controllers))} == {among}
+
+
+def test_the_page_has_every_table() -> None:
+    page = Path(__file__).parents[3] / 'docs' / 'use' / 'benchmark_results.md'
+    marks = re.findall(r'<!-- table: benchmark (\w+) -->', page.read_text(encoding='utf-8'))
+    scenarios = Cases.packaged().whole.values_of(SCENARIO)
+    tables = [name for each in scenarios for name in (each, f'{each}_figures')]
+    assert marks == ['all', 'dominance', *tables]

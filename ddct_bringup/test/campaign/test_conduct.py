@@ -164,7 +164,7 @@ def test_a_sample_refused_after_the_start_is_a_row_with_its_reason(
     refused = [row for row in rows if row['control_start_s'] == 2.4]
     assert [row['index'] for row in rows if not row['valid']] == [row['index'] for row in refused]
     assert refused[0]['reason'].startswith('run 2 (duration_s 3.0, control_start_s 2.4, veh')
-    assert (refused[0]['verdict_state'], refused[0]['path']) == ('invalid', 'serial')
+    assert (refused[0]['state'], refused[0]['path']) == ('invalid', 'serial')
     assert len({row['seed'] for row in refused}) == len(refused) / 2  # one for both controllers
 
 
@@ -387,5 +387,5 @@ def test_a_run_that_fails_is_a_row_with_its_reason(tmp_path: Path, use) -> None:
     assert [row['valid'] for row in rows] == [False] * 4 + [True] * 4
     failed = rows[0]
     assert "controller 'wild'" in failed['reason']
-    assert (failed['verdict_state'], failed['verdict_limits']) == ('invalid', 'failed')
+    assert (failed['state'], failed['why']) == ('invalid', '')
     assert {failed[name] for name in METRIC_COLUMNS} == {None}

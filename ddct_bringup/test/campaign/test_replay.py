@@ -16,8 +16,8 @@ from ddct_bringup.verdict import limits
 
 ROW = {
     **dict.fromkeys(COMPARED, 1.5),
-    **{'path': 'serial', 'valid': True, 'reason': '', 'verdict_state': 'engaged'},
-    **{'verdict_limits': 'within', 'criterion.judder': None},
+    **{'path': 'serial', 'valid': True, 'reason': '', 'state': 'engaged'},
+    **{'why': '', 'judder_rpm': None, 'least_is_bound': None},
 }
 SPEC = """\
 controllers: [ls8]
@@ -75,10 +75,12 @@ def test_a_row_is_its_own_replay() -> None:
     ('name', 'value'),
     [
         ('peak_jerk_m_s3', 1.5 + 2.3e-16),
-        ('criterion.judder', 0.0),
+        ('judder_rpm', 0.0),
         ('engagement_time_s', None),
-        ('verdict_state', 'stalled'),
+        ('state', 'stalled'),
         ('reason', 'other'),
+        ('why', 'it slips'),
+        ('least_is_bound', False),
         ('valid', False),
     ],
 )
@@ -91,7 +93,7 @@ def test_a_vectorised_row_may_differ_in_the_last_digits_of_its_numbers() -> None
     row = {**ROW, 'path': 'vectorised'}
     assert differences(row, {**row, 'peak_jerk_m_s3': 1.5 * (1 + 0.9e-9)}) == []
     assert differences(row, {**row, 'peak_jerk_m_s3': 1.5 * (1 + 1.1e-9)})
-    assert differences(row, {**row, 'verdict_state': 'stalled'})
+    assert differences(row, {**row, 'state': 'stalled'})
 
 
 def test_every_row_of_a_campaign_replays_to_the_last_bit(
@@ -110,13 +112,13 @@ def test_a_replay_that_differs_ends_with_exit_code_1_and_the_differences(
 ) -> None:
     monkeypatch.setattr('ddct_bringup.programs.campaign_folder.read_row', _another_row)
     assert replay(folder, '--index', '0', '--overwrite') == 1
-    assert 'run 0: verdict_state is ' in capfd.readouterr().err
+    assert 'run 0: state is ' in capfd.readouterr().err
 
 
 def _another_row(results: Path, index: int, runs: int) -> dict[str, object]:
     from ddct_bringup.campaign.columns import read_row
 
-    return {**read_row(results, index, runs), 'verdict_state': 'over_revved'}
+    return {**read_row(results, index, runs), 'state': 'over_revved'}
 
 
 @pytest.mark.parametrize(

@@ -57,23 +57,26 @@ def test_a_value_that_the_scenario_refuses_is_named():
         BASE.at({'vehicle.mass_kg': -1.0})
 
 
-def test_a_campaign_with_floors_has_a_column_of_each_and_null_where_there_is_none():
-    content = {
-        'controllers': ['ls8', 'mpc4'],
-        'grid': {'wear_gain': [1.0]},
-        'floors': ['traction'],
-    }
-    spec = spec_of(content, Path())
-    assert schema_of(spec).names[-1] == 'over_floor.traction'
-    plain = spec_of({**content, 'floors': []}, Path())
-    assert not any(name.startswith('over_floor') for name in schema_of(plain).names)
-    planned = list(Campaign(spec).planned(0, 2))
-    rows = [each.row() for each in Scorer(packaged_limits(), floors=spec.floors).scored(planned)]
-    ratios = {row['controller']: row['over_floor.traction'] for row in rows}
-    assert 1.0 <= ratios['ls8'] < 1.1
-    assert ratios['mpc4'] is None
+def rows_of(spec):
+    """Return the rows of all runs of a specification."""
+    campaign = Campaign(spec)
+    scorer = Scorer(packaged_limits(), floors=spec.floors)
+    return [each.row() for each in scorer.scored(campaign.planned(0, campaign.runs))]
+
+
+def test_a_campaign_with_floors_has_the_peak_jerk_over_the_least_and_whether_that_is_a_bound():
+    content = {'controllers': ['ls8', 'mpc4'], 'grid': {'wear_gain': [1.0]}}
+    spec = spec_of({**content, 'floors': True}, Path())
+    ls8, mpc4 = rows = rows_of(spec)
+    assert ls8['peak_jerk_over_least'] > 1.0
+    assert mpc4['peak_jerk_over_least'] is not None
+    assert (ls8['least_is_bound'], mpc4['least_is_bound']) == (True, False)
     assert {row['path'] for row in rows} == {'serial'}
     assert shard_bytes(schema_of(spec), rows)
+    plain = spec_of({**content, 'floors': False}, Path())
+    assert schema_of(plain) == schema_of(spec)
+    for row in rows_of(plain):
+        assert (row['peak_jerk_over_least'], row['least_is_bound']) == (None, None)
 
 
 def test_only_the_first_samples_at_each_point_have_floors():
@@ -84,42 +87,39 @@ def test_only_the_first_samples_at_each_point_have_floors():
             'samples': 2,
             'vary': {'vehicle.mass_kg': {'distribution': 'uniform', 'low': 1400, 'high': 1500}},
         },
-        'floors': ['friction_energy'],
+        'floors': True,
         'floor_samples': 1,
     }
-    spec = spec_of(content, Path())
-    planned = Campaign(spec).planned(0, 4)
-    rows = [each.row() for each in Scorer(packaged_limits(), floors=spec.floors).scored(planned)]
-    ratios = [row['over_floor.friction_energy'] for row in rows]
+    rows = rows_of(spec_of(content, Path()))
+    ratios = [row['peak_jerk_over_least'] for row in rows]
     assert [ratio is None for ratio in ratios] == [False, True, False, True]
     assert [row['path'] for row in rows] == ['serial', 'vectorised'] * 2
 
 
-def test_a_floor_of_an_unknown_metric_is_refused():
-    content = {'controllers': ['ls8'], 'grid': {'wear_gain': [1.0]}, 'floors': ['jerk']}
+@pytest.mark.parametrize('floors', [['peak_jerk'], 'usual', 1, None])
+def test_floors_that_are_neither_true_nor_false_are_refused(floors):
+    content = {'controllers': ['ls8'], 'grid': {'wear_gain': [1.0]}, 'floors': floors}
     with refused(ParameterError, key='floors'):
         spec_of(content, Path())
 
 
-def test_a_run_has_the_metrics_and_the_verdict_of_the_same_run_alone():
+def test_a_run_has_the_metrics_and_the_state_of_the_same_run_alone():
     run = scored_headless(BASE.at({'wear_gain': 0.9}), 'ls8', packaged_limits())
     alone = api.run('ls8', duration=2.0, clutch='stick_slip', wear_gain=0.9)
     wall_clock = dict.fromkeys(('update_time_median_us', 'update_time_p99_us'))
     assert run.metrics == {**alone.metrics, **wall_clock}
-    assert run.verdict == alone.scores.verdict
+    assert (run.state, run.why, run.limits) == (alone.state, alone.why, alone.limits)
     row = result_row(run, {'wear_gain': 0.9})
     assert (row['controller'], row['path'], row['wear_gain']) == ('ls8', 'serial', 0.9)
-    assert row['friction_energy_j'] == alone.metrics['friction_energy_j']
-    assert (row['valid'], row['verdict_state']) == (True, alone.verdict['state'])
-    peak = next(each for each in alone.verdict['criteria'] if each['name'] == 'peak_jerk')
-    assert row['criterion.peak_jerk'] == peak['value']
+    assert row['friction_work_j'] == alone.figures['friction_work_j']
+    assert (row['valid'], row['state'], row['why']) == (True, alone.state, alone.why)
 
 
 def test_a_failed_run_is_invalid_with_its_reason_and_without_scores():
     chosen = chosen_from(Diverging, 'diverging')
     run = scored_headless(BASE.at({'wear_gain': 0.9}), chosen, packaged_limits())
     row = result_row(run, {'wear_gain': 0.9})
-    assert (row['valid'], row['verdict_state']) == (False, 'invalid')
+    assert (row['valid'], row['state']) == (False, 'invalid')
     assert 'diverging' in str(row['reason'])
     assert row['engagement_time_s'] is row['slip_final_rpm'] is None
     sound = scored_headless(BASE.at({}), 'pi', packaged_limits())

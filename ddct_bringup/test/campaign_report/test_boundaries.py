@@ -94,7 +94,7 @@ def summary_over_wear_and_mass(states):
 def test_on_a_grid_the_others_are_at_the_value_nearest_to_nominal():
     states = [ENGAGED] * 9
     states[0] = 'stalled'  # wear 0.8 at 1000 kg, on no line
-    states[4] = 'runaway'  # wear 0.9 at 1400 kg
+    states[4] = 'withheld'  # wear 0.9 at 1400 kg
     states[8] = 'not_engaged'  # 1800 kg at wear 1
     wear, mass = summary_over_wear_and_mass(states)['boundaries']
     assert (wear['start'], wear['others']) == (1.0, {'vehicle.mass_kg': 1400.0})
@@ -105,7 +105,7 @@ def test_on_a_grid_the_others_are_at_the_value_nearest_to_nominal():
         'runs': 1,
         'invalid': 0,
         'index': 4,
-        'state': 'runaway',
+        'state': 'withheld',
     }
     assert wear['above']['first_failure'] is None
     assert (mass['nominal'], mass['start']) == (1500.0, 1400.0)
@@ -126,7 +126,7 @@ def test_random_samples_have_no_boundary():
 
 
 def test_a_number_that_the_scenario_has_not_starts_at_the_value_nearest_to_zero():
-    results = made_results([ENGAGED, 'runaway'], {'sensors.delay_s': [0.01, 0.02]})
+    results = made_results([ENGAGED, 'withheld'], {'sensors.delay_s': [0.01, 0.02]})
     (delay,) = summary_of(results)['groups'][0]['boundaries']
     assert (delay['nominal'], delay['start']) == (None, 0.01)
     assert delay['above']['first_failure'] == 0.02

@@ -73,7 +73,7 @@ def test_tick_labels_of_the_x_axis_do_not_overlap(highest):
     results = made_results(
         [ENGAGED, ENGAGED],
         {'wear_gain': [0.7, 0.8]},
-        {'friction_energy_j': [0.2 * highest, highest]},
+        {'friction_work_j': [0.2 * highest, highest]},
     )
     with chart_style():
         figure = distributions_figure(results, 'thesis')

@@ -55,7 +55,7 @@ def folder(made: Path, tmp_path: Path) -> Path:
 def test_a_data_frame_has_a_row_per_run_and_comes_with_the_summary(folder: Path) -> None:
     table, summary = read_campaign(folder)
     assert table.index.tolist() == list(range(12))
-    failed = table[table.verdict_state != ENGAGED]
+    failed = table[table.state != ENGAGED]
     assert failed.wear_gain.unique().tolist() == [0.8]
     assert [each['failed']['failed'] for each in summary['groups']] == [2, 2]
     assert table['engagement_time_s'].dtype == float
@@ -186,10 +186,10 @@ def test_a_newer_version_of_the_results_or_the_manifest_is_named(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     table = parquet.read_table(folder / RESULTS)
-    newer = table.replace_schema_metadata({'schema_version': '3'})
+    newer = table.replace_schema_metadata({'schema_version': '4'})
     parquet.write_table(newer, folder / RESULTS)
     seal(folder)
-    assert 'schema_version is 3, this version reads up to 2' in complaint(folder, capsys)
+    assert 'schema_version is 4, this version reads up to 3' in complaint(folder, capsys)
     manifest = json.loads((folder / MANIFEST).read_text())
     (folder / MANIFEST).write_text(json.dumps({**manifest, 'schema_version': 9}))
     assert 'schema_version is 9' in complaint(folder, capsys)

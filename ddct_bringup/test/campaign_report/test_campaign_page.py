@@ -163,7 +163,7 @@ def test_text_from_a_campaign_is_escaped_on_the_page() -> None:
     assert data['maps']['groups'] == [f'{EVIL}, {EVIL}', f'{EVIL}, linear']
 
 
-@pytest.mark.parametrize('state', [ENGAGED, 'runaway', INVALID])
+@pytest.mark.parametrize('state', [ENGAGED, 'withheld', INVALID])
 def test_one_run_is_enough_for_a_page(tmp_path: Path, state: str) -> None:
     content = {'controllers': ['pi'], 'grid': {'wear_gain': [1.0]}}
     made = make_campaign(tmp_path / 'one', content, lambda run: state)

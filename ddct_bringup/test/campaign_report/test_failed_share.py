@@ -1,37 +1,35 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Share of failed engagements: counts by the verdict's states, and their interval."""
+"""Share of failed engagements: counts by the states of runs, and their interval."""
 
 import numpy as np
 import pytest
 from made_results import made_results
 
-from ddct_bringup.campaign_report.statistics import outcome
 from ddct_bringup.campaign_report.statistics.outcome import Share, count_outcomes, outcomes_of
 from ddct_bringup.campaign_report.summary import summary_of
 from ddct_bringup.campaign_report.summary_types import StateSummary
-from ddct_bringup.verdict.state import ENGAGED, INVALID, STATES, SUCCESSES
+from ddct_bringup.verdict.state import ENGAGED, INVALID, STATES
 
 
-def test_every_state_but_a_success_and_invalid_is_a_failed_engagement():
+def test_every_state_but_engaged_and_invalid_is_a_failed_engagement():
     outcomes = outcomes_of(np.ones(len(STATES), dtype=bool), np.array(STATES))
-    wanted = [state if state in (*SUCCESSES, INVALID) else 'failed' for state in STATES]
+    wanted = [state if state in (ENGAGED, INVALID) else 'failed' for state in STATES]
     assert outcomes.tolist() == wanted
-    assert 'failed' in wanted
+    assert wanted.count('failed') == len(STATES) - 2
 
 
-def test_a_success_of_second_rank_is_no_failure_and_not_engaged(monkeypatch):
+def test_failures_of_one_state_have_a_share_and_an_interval_of_their_own():
     from scipy.stats import binomtest
 
-    monkeypatch.setattr(outcome, 'SUCCESSES', (ENGAGED, 'nearly_engaged'))
-    states = [ENGAGED, 'nearly_engaged', 'nearly_engaged', 'not_engaged']
+    states = [ENGAGED, 'late', 'late', 'not_engaged']
     results = made_results(states, {'wear_gain': [0.7, 0.8, 0.9, 1.0]}, random=['wear_gain'])
     failed = summary_of(results)['groups'][0]['failed']
-    assert (failed['engaged'], failed['failed'], failed['share']) == (1, 1, 0.25)
-    nearly = failed['states']['nearly_engaged']
-    assert (nearly['runs'], nearly['share']) == (2, 0.5)
+    assert (failed['engaged'], failed['failed'], failed['share']) == (1, 3, 0.75)
+    late = failed['states']['late']
+    assert (late['runs'], late['share']) == (2, 0.5)
     exact = binomtest(2, 4).proportion_ci(method='exact')
-    assert nearly['interval'] == pytest.approx([exact.low, exact.high], rel=1e-9)
+    assert late['interval'] == pytest.approx([exact.low, exact.high], rel=1e-9)
 
 
 def test_a_state_of_another_version_is_a_failure_and_is_named():
@@ -79,7 +77,7 @@ def test_of_invalid_runs_alone_there_is_no_share():
 
 
 def test_runs_on_a_grid_have_a_share_but_no_interval_with_a_reason():
-    found = summary_of(made_results([ENGAGED, 'runaway'], {'wear_gain': [1.0, 1.2]}))
+    found = summary_of(made_results([ENGAGED, 'withheld'], {'wear_gain': [1.0, 1.2]}))
     failed = found['groups'][0]['failed']
     assert (failed['share'], failed['interval']) == (0.5, None)
     assert 'no random sample' in failed['no_interval']
@@ -97,7 +95,7 @@ def test_random_runs_at_one_point_of_a_grid_have_an_interval_and_at_two_have_non
 
 def test_a_varied_text_key_makes_separate_groups():
     results = made_results(
-        [ENGAGED, 'stalled', 'runaway', ENGAGED],
+        [ENGAGED, 'stalled', 'withheld', ENGAGED],
         {'clutch': ['linear', 'stick_slip'] * 2, 'wear_gain': [1.0] * 4},
         controllers=['pi', 'pi', 'ls8', 'ls8'],
     )

@@ -8,10 +8,8 @@ import numpy as np
 import pytest
 from made_results import made_results
 
-from ddct_bringup.campaign_report import maps
 from ddct_bringup.campaign_report.maps import MOST_POINTS, campaign_maps
 from ddct_bringup.campaign_report.results import Results
-from ddct_bringup.campaign_report.statistics import outcome
 from ddct_bringup.verdict.state import ENGAGED, INVALID
 
 WEAR, MASS, SLOPE = 'wear_gain', 'vehicle.mass_kg', 'load.slope_rad'
@@ -40,7 +38,7 @@ def test_every_cell_of_the_grid_is_there_with_its_state_value_and_index():
 
 def test_the_scale_is_one_for_all_controllers_and_that_of_engaged_runs():
     results = made_results(
-        [ENGAGED, ENGAGED, ENGAGED, 'runaway'],
+        [ENGAGED, ENGAGED, ENGAGED, 'withheld'],
         {WEAR: [0.8, 1.0, 0.8, 1.0]},
         {JERK: [4.0, 7.0, -9.0, 500.0]},
         controllers=['pi', 'pi', 'ls8', 'ls8'],
@@ -139,16 +137,13 @@ def test_samples_at_points_of_a_grid_are_drawn_where_the_grid_is_at_its_start() 
     assert part['panels'] == [[2, 3]]
 
 
-def test_a_success_of_second_rank_is_no_failed_cell(monkeypatch: pytest.MonkeyPatch) -> None:
-    for module in (outcome, maps):
-        monkeypatch.setattr(module, 'SUCCESSES', (ENGAGED, 'nearly_engaged'))
-    monkeypatch.setattr(maps, '_FIRST', (INVALID, 'failed', 'nearly_engaged', ENGAGED))
+def test_a_cell_with_a_late_lock_is_a_failed_cell() -> None:
     varied = {WEAR: [0.8, 0.8, 1.0, 1.0], SLOPE: [0.0, 0.1, 0.0, 0.1]}
-    states = [ENGAGED, 'nearly_engaged', ENGAGED, ENGAGED]
+    states = [ENGAGED, 'late', ENGAGED, ENGAGED]
     results = made_results(states, varied, {JERK: [1.0] * 4}, random=[SLOPE])
     results.columns[MASS] = results.columns[WEAR] * 1000.0
     (panel,) = maps_of(Results(results.columns, [WEAR, MASS], [SLOPE], {}))['maps'][0]['panels']
-    assert (panel['failed'], panel['state']) == ([0, 0], ['nearly_engaged', ENGAGED])
+    assert (panel['failed'], panel['state']) == ([1, 0], ['late', ENGAGED])
 
 
 def test_keys_that_do_not_vary_have_no_map():

@@ -63,7 +63,7 @@ def test_missing_columns_stay_missing_and_unknown_ones_are_kept(
     assert all(row.endswith('7.5') for row in rows)
 
 
-@pytest.mark.parametrize('name', ['verdict_state', 'wear_gain'])
+@pytest.mark.parametrize('name', ['state', 'wear_gain'])
 def test_without_a_column_that_is_needed_the_line_names_it(changed: Path, name: str) -> None:
     parquet.write_table(
         parquet.read_table(changed / RESULTS).drop_columns([name]), changed / RESULTS

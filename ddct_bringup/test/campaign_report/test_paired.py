@@ -15,7 +15,7 @@ JERK = 'peak_jerk_m_s3'
 
 def test_only_cases_in_which_both_engaged_are_compared_and_the_others_are_counted():
     results = made_results(
-        [ENGAGED, ENGAGED, 'stalled', 'stalled', ENGAGED, 'runaway', ENGAGED, 'stalled'],
+        [ENGAGED, ENGAGED, 'stalled', 'stalled', ENGAGED, 'withheld', ENGAGED, 'stalled'],
         {'wear_gain': [0.7, 0.8, 0.9, 1.0] * 2},
         {JERK: [5.0, 6.0, 90.0, 80.0, 4.0, 70.0, 1.0, 60.0]},
         controllers=['pi'] * 4 + ['ls8'] * 4,

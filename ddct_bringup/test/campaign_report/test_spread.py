@@ -31,7 +31,7 @@ def test_cvar_is_the_minimum_that_rockafellar_and_uryasev_define_it_by(runs):
     assert conditional_value_at_risk(values) == pytest.approx(min(minima), rel=1e-12)
 
 
-@pytest.mark.parametrize('outcome', ['failed', 'nearly_engaged', INVALID])
+@pytest.mark.parametrize('outcome', ['failed', INVALID])
 def test_a_run_that_is_not_engaged_has_no_place_among_the_quantiles(outcome):
     values = np.concatenate([np.arange(1.0, 102.0), [1e6] * 30, [0.0] * 30])
     outcomes = np.array([ENGAGED] * 101 + [outcome] * 60, dtype=object)
@@ -71,14 +71,14 @@ def test_without_an_engaged_run_there_are_no_quantiles():
 
 def test_quantiles_keep_their_signs_and_the_worst_case_is_the_largest_magnitude_with_its_sign():
     slips = [*np.linspace(-236.88, 60.0, 21).tolist(), -500.0, 900.0]
-    states = [ENGAGED] * 21 + ['runaway', INVALID]
+    states = [ENGAGED] * 21 + ['withheld', INVALID]
     wear = {'wear_gain': list(range(23))}
     (found,) = summary_of(made_results(states, wear, {'slip_final_rpm': slips}))['groups'][0][
         'quantities'
     ]
     assert found['p5'] < found['p50'] < 0.0 < found['p95']
     assert found['worst_engaged'] == {'value': -236.88, 'index': 0, 'state': ENGAGED}
-    assert found['worst'] == {'value': -500.0, 'index': 21, 'state': 'runaway'}
+    assert found['worst'] == {'value': -500.0, 'index': 21, 'state': 'withheld'}
     assert found['cvar_engaged'] > 0.0
 
 

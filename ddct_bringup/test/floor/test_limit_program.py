@@ -64,7 +64,7 @@ def test_standard_output_is_json_alone(capsys):
         ([*LAUNCH, '--lock-times', 'soon'], 'START:STOP:COUNT'),
         ([*LAUNCH, '--lock-times', '1:0.5:3'], 'rising'),
         (['--metrics', 'beauty'], 'beauty'),
-        ([*LAUNCH, '--cap', 'mean_jerk=1'], '--cap mean_jerk=1'),
+        ([*LAUNCH, '--cap', 'peak_acceleration=1'], '--cap peak_acceleration=1'),
         ([*LAUNCH, '--figure', 'front.pdf'], '.png or .svg'),
         (['--metrics', 'slip_acceleration_at_lock', '--lock-times', '1'], 'not defined'),
     ],

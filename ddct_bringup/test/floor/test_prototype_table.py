@@ -21,6 +21,7 @@ from ddct_bringup.floor.lock import Lock
 from ddct_bringup.floor.objectives import Peak, Signals
 from ddct_bringup.metrics.zero_slip import events_of
 from ddct_bringup.run.headless import run_headless
+from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.models.driveline import LOCK
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
@@ -93,9 +94,10 @@ def least_at(settings):
             rigid_tube(settings, start, lock_time_s),
             False,
             capacity_range(settings, start.temperature_c),
+            packaged_limits().rules,
         )
         object.__setattr__(case, 'given', given)
-        signals = Signals.of_motion(case.motion, settings.scenario, 1000.0)
+        signals = Signals.of_motion(case.motion, settings.scenario)
         return bound_of(case, RAW_JERK, signals).least
 
     return least

@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Scores, verdict, report, campaign and Python interface have the floors of gear shifts."""
+"""Scores, report, campaign and Python interface have the floors of gear shifts."""
 
 import pytest
 from shift_cases import settings_of
@@ -9,45 +9,29 @@ from ddct_bringup import api
 from ddct_bringup.campaign.rows import result_row, scored_headless
 from ddct_bringup.report.front_view import front_view
 from ddct_bringup.run.plan import RunPlan
-from ddct_bringup.scores.floors import with_floors
+from ddct_bringup.scores.floors import with_least
 from ddct_bringup.scores.scored_recording import simulate_and_score
 from ddct_bringup.verdict.limits import packaged_limits
-from ddct_bringup.verdict.verdict import BEYOND, UNAVOIDABLE
 
 pytestmark = pytest.mark.slow
 
 
 def test_scores_and_report_of_a_shift_have_its_floor():
     plan = RunPlan(settings_of(handover='slip'), 'mpc3', 'headless')
-    run = with_floors(
-        simulate_and_score(plan, packaged_limits()), ('peak_jerk',), packaged_limits()
-    )
-    assert run.scores.over_floor['peak_jerk'] > 1.0
-    assert run.scores.no_floor == ''
+    run = with_least(simulate_and_score(plan, packaged_limits()), packaged_limits())
+    assert run.scores.metrics['peak_jerk_over_least'] > 1.0
+    assert run.scores.least_is_bound is True
+    assert 'peak_jerk_over_least' not in run.scores.null_reasons
     view = front_view([run])
     assert view.counted_from == 'the start of the inertia phase'
     assert 'after the start of the inertia phase' in view.runs[0].text
 
 
-def test_a_limit_that_the_drive_before_a_shift_exceeds_is_unavoidable():
-    """In `upshift_full` the traction in first gear is beyond it when the shift starts."""
-    plan = RunPlan(settings_of('upshift_full', handover='model'), 'pi', 'headless')
-    run = with_floors(simulate_and_score(plan, packaged_limits()), (), packaged_limits())
-    verdict = run.scores.verdict
-    assert verdict.traction.state == UNAVOIDABLE
-    states = {each.name: each.state for each in verdict.results}
-    assert states['weighted_acceleration'] == BEYOND
-
-
 def test_a_campaign_has_the_ratio_of_a_shift():
-    row = scored_headless(
-        settings_of(handover='slip'), 'ls8', packaged_limits(), floors=('peak_jerk',)
-    )
-    assert result_row(row, {})['over_floor.peak_jerk'] > 1.0
+    row = scored_headless(settings_of(handover='slip'), 'ls8', packaged_limits(), floors=True)
+    assert result_row(row, {})['peak_jerk_over_least'] > 1.0
 
 
 def test_a_run_in_python_has_the_ratio_of_a_shift():
-    run = api.run(
-        'ls8', scenario='upshift', clutch='stick_slip', handover='slip', floors='peak_jerk'
-    )
-    assert run.over_floor['peak_jerk'] > 1.0
+    run = api.run('ls8', scenario='upshift', clutch='stick_slip', handover='slip', floors=True)
+    assert run.figures['peak_jerk_over_least'] > 1.0

@@ -9,10 +9,10 @@ from pathlib import Path
 
 import yaml
 
-from ddct_bringup.metrics.plant import JudgedPlant
+from ddct_bringup.metrics.engagement import Engagement
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.verdict.limits import packaged_limits
-from ddct_bringup.verdict.state import slip_state
+from ddct_bringup.verdict.state import LATE, NOT_ENGAGED, state_of
 from ddct_controllers.interface import Command, Controller, Measurement
 from ddct_controllers.registry import make_controller
 from ddct_plant.models.clutch import STICK_SLIP
@@ -62,8 +62,8 @@ class LabelledRun:
     delay_steps: int
     set: tuple[str, ...]
 
-    def state_by_rules(self) -> str:
-        """Run it headless, and return the state that the packaged rules give it."""
+    def comes_together(self) -> bool:
+        """Run it headless, and return whether the plates turn together at its end by the rules."""
         unbound = UNBOUND if self.clutch == STICK_SLIP else ()
         scenario = load_scenario(self.scenario, [*unbound, *self.set])
         settings = RunSettings(scenario, clutch=self.clutch, wear_gain=self.wear_gain)
@@ -71,8 +71,8 @@ class LabelledRun:
         if self.gain != 1.0 or self.delay_steps:
             controller = Spoiled(controller, self.gain, self.delay_steps)
         trajectory = run_headless(settings, controller)
-        rules, plant = packaged_limits().rules, JudgedPlant.of(scenario)
-        return slip_state(trajectory, scenario.control_start_step, rules, plant)
+        engagement = Engagement(trajectory, scenario.control_start_step, (0, scenario.steps))
+        return state_of(engagement, None, packaged_limits().rules).name not in (NOT_ENGAGED, LATE)
 
 
 @cache

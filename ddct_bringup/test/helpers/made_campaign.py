@@ -50,8 +50,8 @@ def make_campaign(
             dict.fromkeys(schema.names)
             | {name: float(place * index) for place, name in enumerate(METRIC_COLUMNS, 1)}
             | {'index': index, 'controller': run.controller.name, 'path': 'serial'}
-            | {'valid': state != INVALID, 'reason': '', 'verdict_limits': 'no_limit'}
-            | {'verdict_state': state, **run.varied, **cells}
+            | {'valid': state != INVALID, 'reason': ''}
+            | {'state': state, 'why': '', **run.varied, **cells}
         )
     folder.mkdir(parents=True, exist_ok=True)
     Manifest.of(campaign, packaged_limits()).write(folder)

@@ -29,7 +29,7 @@ def made_results(
         'reason': np.array(
             ['it broke' if state == 'invalid' else '' for state in states], dtype=object
         ),
-        'verdict_state': np.array(states, dtype=object),
+        'state': np.array(states, dtype=object),
         **{key: _column(values) for key, values in varied.items()},
         **{key: np.array(values, dtype=float) for key, values in (quantities or {}).items()},
     }

@@ -19,7 +19,7 @@ def made_run(slip_rpm: np.ndarray, **signals: object) -> Trajectory:
     rows = len(slip_rpm)
     shapes = {'joint_speed': 4, 'joint_effort': 4, 'slip_reference': 1}
     arrays = {name: np.zeros((rows, width)) for name, width in shapes.items()}
-    flat = ('vehicle_accel', 'torque_request')
+    flat = ('vehicle_accel', 'torque_request', 'torque_demand', 'engine_torque')
     return Trajectory(
         {
             **arrays,

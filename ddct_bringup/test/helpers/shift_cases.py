@@ -13,6 +13,7 @@ from ddct_bringup.floor.control_start import control_start
 from ddct_bringup.floor.dynamics.start import start_of
 from ddct_bringup.floor.lock import lock_of
 from ddct_bringup.run.headless import closed_loop, run_loop
+from ddct_bringup.verdict.limits import packaged_limits
 from ddct_controllers.registry import make_controller, own_controller_names
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
@@ -55,5 +56,5 @@ def require_all_controllers_start_alike(handover: str) -> None:
 def case_with(settings: RunSettings, run: Trajectory) -> Case | None:
     """Return the runs that lock when a run does, which include it."""
     start = control_start(settings)
-    lock = lock_of(run, start.step)
+    lock = lock_of(run, start.step, packaged_limits().rules)
     return None if lock is None else case_of_run(settings, start, lock, run)

@@ -9,15 +9,17 @@ from typing import Any
 
 import pytest
 
-from ddct_bringup.benchmark import cases, conduct, release, unavoidable
+from ddct_bringup.benchmark import cases, conduct, release
 from ddct_bringup.benchmark.cases import SPECIFICATION, Cases
 from ddct_bringup.benchmark.release import write_release_rows
+from ddct_bringup.benchmark.report import packaged
 from ddct_bringup.benchmark.report.folder import PAGE, RESULT
 from ddct_bringup.digests.digest_file import DIGESTS
 from ddct_bringup.programs import benchmark
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.run.timing_and_failure import TIMING_FILE
 from ddct_bringup.verification import benchmark as verification
+from ddct_plant.program.table import Table
 
 SPEC = """\
 controllers: [pi, ls8]
@@ -25,14 +27,14 @@ clutch: stick_slip
 seed: 1
 grid:
   scenario: [launch, launch_hill]
-  duration_s: [2.0]
+  duration_s: [2.5]
   sensors:
     - engine_speed: {noise_rad_s: 0.1, quantum_rad_s: 0.0262}
 random:
   samples: 3
   vary:
     wear_gain: {distribution: uniform, low: 0.95, high: 1.05}
-floors: [friction_energy]
+floors: true
 floor_samples: 1
 """
 WALL_CLOCK = {TIMING_FILE, PAGE, DIGESTS}
@@ -80,19 +82,9 @@ def use_small_release(place: Path, patch: pytest.MonkeyPatch) -> Path:
 
 
 def use_release(folder: Path, patch: pytest.MonkeyPatch) -> None:
-    """
-    Use the cases and rows in a folder from now on.
-
-    No controller can keep the limit of the weighted acceleration there: to prove what is so takes
-    seconds for each case.
-    """
-    for module in (cases, conduct, release, verification):
+    """Use the cases and rows in a folder from now on."""
+    for module in (cases, conduct, release, packaged, verification):
         patch.setattr(module, 'packaged_folder', lambda: folder)
-    patch.setattr(
-        unavoidable,
-        'least_at_any_lock',
-        lambda settings, name, start, limit: name == 'weighted_acceleration',
-    )
 
 
 def judge(out: Path, *arguments: str) -> int:
@@ -141,3 +133,10 @@ def content_of(folder: Path) -> dict[str, bytes]:
         for path in folder.rglob('*')
         if path.is_file() and path.relative_to(folder).as_posix() not in WALL_CLOCK
     }
+
+
+def shown_runs(table: Table, row: int) -> int:
+    """Return the number of runs of one controller in a table of states."""
+    cells = dict(zip(table.headers, table.rows[row], strict=True))
+    others = [] if cells['other states'] == '-' else cells['other states'].split(', ')
+    return sum(int(each.split()[0]) for each in (cells['engaged'], *others))

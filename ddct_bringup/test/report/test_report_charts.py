@@ -11,7 +11,7 @@ from made_run import made_facts
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.report.chart_marks import ChartRun
-from ddct_bringup.report.charts import chart_document, chart_signals_of
+from ddct_bringup.report.charts import chart_document, chart_signals_of, dashed_lines
 from ddct_bringup.report.phase_lanes import LANES, OPACITY, phase_spans
 from ddct_controllers.design.drawing.line_looks import LineLook
 from ddct_plant.models.driveline import PhaseEvent
@@ -119,6 +119,38 @@ def test_the_slip_chart_has_the_present_reference_and_the_thesis_s_zero(charts):
     assert [list(each) for each in drawn(mark)] == [[pytest.approx(0.148)], [0.0]]
 
 
+def test_the_engine_torque_has_the_demand_and_what_it_lacks_of_it_from_control_start_on(charts):
+    _, demand = lines(charts['C_m'])
+    np.testing.assert_allclose(drawn(demand)[1], RUN.torque_demand, rtol=1e-6)
+    (area,) = [each for each in charts['C_m'].renderers if each not in lines(charts['C_m'])]
+    bottom, top = (
+        np.asarray(area.data_source.data[spec.field]) for spec in (area.glyph.y1, area.glyph.y2)
+    )
+    np.testing.assert_allclose(bottom, RUN.engine_torque, rtol=1e-6)
+    start = round(100 * FACTS.control_start_s)
+    withheld = np.maximum(RUN.torque_demand - RUN.engine_torque, 0.0)
+    np.testing.assert_allclose(top - bottom, [0.0] * start + [*withheld[start:]], atol=1e-4)
+    assert withheld[:start].any()
+    assert withheld[start:].any()
+    assert (area.name, area.tags[0]['area']) == (None, True)
+
+
+def test_runs_of_one_demand_share_its_line_and_a_run_without_one_has_none():
+    unknown = Trajectory({**RUN.signals, 'torque_demand': np.full(STEPS + 1, np.nan)})
+    runs = [
+        ChartRun(index, name, LineLook(index, ()), run, FACTS, True)
+        for index, (name, run) in enumerate({'pi': RUN, 'ls8': RUN, 'log': unknown}.items())
+    ]
+    from bokeh.document import Document
+
+    document: Any = chart_document(runs)[0]
+    (chart,) = [each for each in Document.from_json(document).roots if each.name == 'C_m']
+    shared = [line for line in lines(chart) if line.name is None]
+    assert [line.tags[0] for line in shared] == [{'runs': [0, 1], 'colour': None}]
+    assert dashed_lines(runs) == ['reference', 'demand']
+    assert dashed_lines(runs[2:]) == ['reference']
+
+
 def test_marks_of_a_line_lie_on_it_and_follow_its_colour():
     from bokeh.document import Document
 
@@ -173,7 +205,7 @@ def both():
 
 def test_a_clutch_that_sticks_adds_its_charts_for_its_own_runs_only(both):
     assert list(both) == [*SHOWN, 'C_f_transmitted', 'friction_energy', 'temperature', LANES]
-    assert [len(lines(both[key])) for key in ('C_m', 'temperature')] == [2, 1]
+    assert [len(lines(both[key])) for key in ('A_x', 'temperature')] == [2, 1]
 
 
 def test_transmitted_torque_is_drawn_with_the_capacity_of_the_phase(both):

@@ -48,6 +48,7 @@ HANDOVER = (HANDOVER_SHARE, OFF_GOING_TORQUE_REQUEST, TORQUE_CUT)
 SETTINGS = RunSettings(
     load_scenario('upshift', {'shift.handover_s': 1.0}), clutch='stick_slip', handover='timed'
 )
+STEPS = SETTINGS.scenario.steps
 TORQUES = (ENGINE_TORQUE, LOAD_TORQUE, CLUTCH_TORQUE, HOLDING_TORQUE, OFF_GOING_CLUTCH_TORQUE)
 
 
@@ -90,7 +91,7 @@ class RealTimeShift:
         clutches = CLUTCH_TORQUE.name, OFF_GOING_CLUTCH_TORQUE.name
         self.owner = RealtimeOwner(
             self._driveline.step,
-            TickPlan(tuple(topic.name for topic in TORQUES), clutches, '', 200, 1.0),
+            TickPlan(tuple(topic.name for topic in TORQUES), clutches, '', STEPS, 1.0),
             self._answer,
             lambda error: None,
             clock=lambda: self._now,
@@ -190,7 +191,7 @@ class RealTimeShift:
 
 def test_with_every_message_it_is_the_run_in_lock_step() -> None:
     run, expected = RealTimeShift(()), run_headless(SETTINGS, 'pi')
-    run.go_to(200)
+    run.go_to(STEPS)
     assert len(run.outputs) == expected.steps + 1
     for step, outputs in enumerate(run.outputs):
         assert outputs.driveline.slip_speed == expected.slip_speed[step]

@@ -45,13 +45,13 @@ def scored(last_engine_speed, rows=301, engine_limits=ENGINE_LIMITS, **signals):
 def test_a_run_that_its_engine_ended_is_valid_and_has_that_as_its_state(speed, state):
     run = scored(speed, rows=100)
     assert (run.valid, run.reason) == (True, '')
-    assert run.verdict.state == state
+    assert run.state == state
     assert run.metrics['torsion_speed_std_rpm'] is None
 
 
 def test_an_early_end_without_a_cause_is_not_valid():
     for run in (scored(200.0, rows=100), scored(10.0, rows=100, engine_limits=None)):
-        assert (run.valid, run.verdict.state) == (False, 'invalid')
+        assert (run.valid, run.state) == (False, 'invalid')
         assert run.reason == 'ended early: 99 of 300 steps'
 
 
@@ -59,13 +59,13 @@ def test_a_stall_with_a_value_that_is_not_finite_is_not_valid():
     accelerations = TRAJECTORY.vehicle_accel.copy()
     accelerations[50] = np.inf
     run = scored(10.0, rows=100, vehicle_accel=accelerations)
-    assert (run.valid, run.verdict.state) == (False, 'invalid')
+    assert (run.valid, run.state) == (False, 'invalid')
 
 
 def test_a_whole_run_of_a_good_controller_is_engaged():
     run = scored(TRAJECTORY.joint_speed[-1, 0])
-    assert (run.valid, run.verdict.state) == (True, 'engaged')
-    assert run.verdict.values['engagement_time'] == run.metrics['engagement_time_s']
+    assert (run.valid, run.state) == (True, 'engaged')
+    assert run.why == ''
 
 
 def test_the_facts_of_the_run_are_those_of_the_bag():

@@ -35,7 +35,7 @@ def _campaign() -> None:
 
 def _sweep() -> None:
     over = ('--over', 'wear_gain=0.5,1', '--over', 'load.slope_rad=0,0.1')
-    metrics = 'engagement_time_s,slip_final_rpm,slip_rmse_rpm,peak_jerk_m_s3,friction_energy_j'
+    metrics = 'engagement_time_s,slip_final_rpm,torque_late_s,peak_jerk_m_s3,friction_work_j'
     sweep.main([*over, '--controllers', 'pi', '--metrics', metrics])
 
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from made_scores import made_scores, made_verdict
+from made_scores import made_scores
 
 from ddct_bringup.campaign.scored import ScoredRow
 from ddct_bringup.metrics.catalogue import TABLE_5_1
@@ -16,7 +16,7 @@ from ddct_bringup.sweep.state_map import STATE_COLOURS, edges_of
 from ddct_bringup.sweep.sweep import Sweep
 from ddct_bringup.sweep.sweep_figure import sweep_figure
 from ddct_bringup.verdict.limits import packaged_limits
-from ddct_bringup.verdict.state import ENGAGED, INVALID, NOT_ENGAGED, RUNAWAY, STATES
+from ddct_bringup.verdict.state import ENGAGED, INVALID, LATE, NOT_ENGAGED, STATES
 from ddct_controllers.design.drawing.chart_style import chart_style, save_chart
 from ddct_controllers.design.drawing.line_styles import controller_style
 from ddct_plant.scenario.file import ScenarioFile
@@ -28,9 +28,7 @@ def drawn(over: list[str], controllers: list[str], runs: list[tuple[str, float |
     """Return the figure of runs with these states and engagement times."""
     base = RunBase(ScenarioFile.read('thesis'), {}, {}, labels=())
     sweep = Sweep(base, [axis_of(text) for text in over], controllers, packaged_limits())
-    scored = [
-        made_scores(verdict=made_verdict(state), engagement_time_s=value) for state, value in runs
-    ]
+    scored = [made_scores(state=state, engagement_time_s=value) for state, value in runs]
     places = [*sweep.run_set.varied(range(sweep.run_set.cases))] * len(controllers)
     swept = [
         ScoredRow(index, controllers[0], 0, place, scores, 'serial')
@@ -43,7 +41,7 @@ def drawn(over: list[str], controllers: list[str], runs: list[tuple[str, float |
 @pytest.fixture(scope='module')
 def panel():
     """Return the panel of the first metric: one controller, of five runs two are engaged."""
-    runs = [(RUNAWAY, 900.0), (ENGAGED, 1.0), (ENGAGED, 2.0), (NOT_ENGAGED, 2.5), (INVALID, None)]
+    runs = [(LATE, 900.0), (ENGAGED, 1.0), (ENGAGED, 2.0), (NOT_ENGAGED, 2.5), (INVALID, None)]
     return drawn(['wear_gain=0.6:1.4:5'], ['pi'], runs).axes[0]
 
 
@@ -61,7 +59,7 @@ def test_a_line_joins_engaged_runs_alone(panel):
 
 
 def test_no_line_joins_runs_at_words_and_each_controller_keeps_its_dash():
-    runs = [(ENGAGED, 1.0), (ENGAGED, 2.0), (RUNAWAY, 3.0), (ENGAGED, 1.5)]
+    runs = [(ENGAGED, 1.0), (ENGAGED, 2.0), (LATE, 3.0), (ENGAGED, 1.5)]
     panel = drawn(['clutch=linear,stick_slip'], ['pi', 'ls5'], runs).axes[0]
     drawn_lines = [each for each in panel.lines if each.get_marker() == 'o']
     for line, expected in zip(drawn_lines, ([(0.0, 1.0), (1.0, 2.0)], [(1.0, 1.5)]), strict=True):
@@ -118,7 +116,7 @@ def test_an_engaged_run_without_a_value_is_a_ring_and_no_cross():
 
 @pytest.mark.parametrize('names', [['pi'], ['pi', 'ls8', 'mpc3']], ids=len)
 def test_title_and_legends_take_no_height_from_a_panel_and_leave_none_unused(names):
-    figure = drawn(['wear_gain=0.9,1'], names, [(ENGAGED, 1.0), (RUNAWAY, 2.0)] * len(names))
+    figure = drawn(['wear_gain=0.9,1'], names, [(ENGAGED, 1.0), (LATE, 2.0)] * len(names))
     figure.canvas.draw()
     height_in = figure.axes[0].get_position().height * figure.get_figheight()
     assert height_in == pytest.approx(2.3, abs=0.3)
@@ -151,12 +149,12 @@ def test_the_lanes_show_every_state_in_its_own_colour():
 
 
 def test_a_map_has_the_first_key_across_and_the_second_up():
-    states = [ENGAGED, RUNAWAY, NOT_ENGAGED, ENGAGED, INVALID, ENGAGED]
+    states = [ENGAGED, LATE, NOT_ENGAGED, ENGAGED, INVALID, ENGAGED]
     figure = drawn(
         ['wear_gain=0.8,1,1.2', 'gear=1,2'], ['pi'], [(state, None) for state in states]
     )
     (axes,) = figure.axes
-    assert cells(axes) == [[ENGAGED, NOT_ENGAGED, INVALID], [RUNAWAY, ENGAGED, ENGAGED]]
+    assert cells(axes) == [[ENGAGED, NOT_ENGAGED, INVALID], [LATE, ENGAGED, ENGAGED]]
     assert (axes.get_xlabel(), axes.get_ylabel()) == ('wear_gain', 'gear')
 
 

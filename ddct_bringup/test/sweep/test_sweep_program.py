@@ -19,6 +19,7 @@ from ddct_plant.scenario.file import ScenarioFile
 
 SHORT_S = 1.0
 SHORT = ['--duration', str(SHORT_S)]
+OUTCOME = ('state', 'why', 'figures', 'limits')
 UNSTABLE = """\
 name: unstable
 units: {input: rpm, output: N m}
@@ -51,7 +52,7 @@ def test_rows_are_those_of_the_runs_alone_with_what_belongs_to_the_key(swept):
     )
     settings = base.at({'vehicle.mass_kg': 1800.0})
     alone = run_entry(scored_headless(settings, 'ls8', packaged_limits()))
-    assert row['verdict'] == alone['verdict']
+    assert {key: row[key] for key in OUTCOME} == {key: alone[key] for key in OUTCOME}
     assert row['metrics']['slip_final_rpm'] == alone['metrics']['slip_final_rpm']
     assert row['scenario_changes'] == list(alone['scenario_changes'])
     assert any(
@@ -91,7 +92,7 @@ def test_the_csv_has_the_row_of_each_run_with_what_was_varied(swept, capsys):
     for row, run in zip(rows, wanted, strict=True):
         assert row['controller'] == run['controller']
         assert float(row['vehicle.mass_kg']) == run['over']['vehicle.mass_kg']
-        assert row['verdict_state'] == run['verdict']['state']
+        assert row['state'] == run['state']
         assert float(row['slip_final_rpm']) == run['metrics']['slip_final_rpm']
     assert 'std w_sr' in printed.err, 'the table goes to standard error then'
 
@@ -106,7 +107,7 @@ def test_a_run_that_fails_is_a_row_with_its_reason_and_the_exit_code_is_1(tmp_pa
     printed = capsys.readouterr()
     rows = json.loads(printed.out)['rows']
     assert [row['valid'] for row in rows] == [True, True, False, False]
-    assert rows[2]['verdict']['state'] == 'invalid'
+    assert rows[2]['state'] == 'invalid'
     assert rows[2]['metrics']['engagement_time_s'] is None
     _, _, note = ' '.join(printed.err.split()).partition('is not valid: ')
     assert note.startswith(' '.join(rows[2]['reason'].split()))
@@ -197,7 +198,7 @@ def test_a_sweep_from_python_is_a_table_that_takes_objects_and_keeps_failures():
     assert rows['controller'].tolist() == ['pi', 'pi', 'mine', 'mine']
     assert rows['wear_gain'].tolist() == [0.8, 1.0, 0.8, 1.0]
     assert rows['valid'].tolist() == [True, True, False, False]
-    assert rows['verdict_state'].tolist()[2:] == ['invalid', 'invalid']
+    assert rows['state'].tolist()[2:] == ['invalid', 'invalid']
     alone = api.run('pi', wear_gain=0.8, duration=SHORT_S)
     assert rows['slip_final_rpm'][0] == alone.metrics['slip_final_rpm']
     with refused(api.ParameterError, 'wear_gian'):

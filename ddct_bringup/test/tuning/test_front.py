@@ -14,12 +14,13 @@ from ddct_bringup.tuning.trial import FEASIBLE, INFEASIBLE, Trial
 SPEC = tuning().spec
 
 
-def trial(number: int, *values: float, state: str = FEASIBLE, **row: Any) -> Trial:
+def trial(number: int, *values: float, status: str = FEASIBLE, **row: Any) -> Trial:
     """Return a trial of one run with these objectives."""
     names = [goal.name for goal in SPEC.objectives]
-    made = {'verdict_state': 'engaged', 'valid': True, 'reason': '', **row}
+    made = {'state': 'engaged', 'valid': True, 'reason': '', **row}
     rows = [{**made, **dict(zip(names, values, strict=True))}]
-    return Trial(number, {}, rows, {}, state, 'engaged at least 0.9' if state != FEASIBLE else '')
+    why = 'engaged at least 0.9' if status != FEASIBLE else ''
+    return Trial(number, {}, rows, {}, status, why)
 
 
 def numbers(trials: Sequence[Trial]) -> list[int]:
@@ -32,7 +33,7 @@ def test_the_front_has_what_no_other_dominates_by_the_first_objective() -> None:
 
 
 def test_an_infeasible_trial_is_not_on_the_front_and_pushes_none_off() -> None:
-    trials = [trial(0, 3.0, 1.0), trial(1, 1.0, 0.5, state=INFEASIBLE)]
+    trials = [trial(0, 3.0, 1.0), trial(1, 1.0, 0.5, status=INFEASIBLE)]
     assert numbers(front_of(trials, SPEC)) == [0]
 
 
@@ -56,11 +57,11 @@ def test_the_best_is_the_same_when_an_objective_has_another_origin() -> None:
     ('trials', 'words'),
     [
         (
-            [trial(0, 1.0, 1.0, state=INFEASIBLE, valid=False, reason='it fell over')],
+            [trial(0, 1.0, 1.0, status=INFEASIBLE, valid=False, reason='it fell over')],
             'it fell over',
         ),
         (
-            [trial(0, 1.0, 1.0, state=INFEASIBLE, verdict_state='stalled')],
+            [trial(0, 1.0, 1.0, status=INFEASIBLE, state='stalled')],
             'engaged at least 0.9; the nearest value is 0',
         ),
     ],

@@ -24,7 +24,7 @@ def searched(spec: TuningSpec, batches: int) -> list[float]:
         for number, values in search.ask(BATCH).items():
             gain = values['proportional_gain']
             row = {
-                'verdict_state': 'engaged',
+                'state': 'engaged',
                 'peak_jerk_m_s3': 1.0 if gain < LIMIT else 9.0,
                 **{goal.name: 1.0 / gain for goal in spec.objectives},
             }

@@ -19,7 +19,7 @@ def trials(count: int, noise: float) -> list[Trial]:
     for number in range(count):
         first, second = random.uniform(0.05, 0.5), random.uniform(0.01, 1.0)
         value = (first - 0.25) ** 2 + noise * random.normal()
-        row = {'verdict_state': 'engaged', GOAL.name: value, SPEC.objectives[1].name: 1.0}
+        row = {'state': 'engaged', GOAL.name: value, SPEC.objectives[1].name: 1.0}
         made.append(Trial(number, {'proportional_gain': first, 'integral_gain': second}, [row]))
     return made
 

@@ -13,6 +13,7 @@ from small_tuning import leave_out_pictures, tuning
 from verified import edit_json_with_digest
 
 from ddct_bringup.api import run
+from ddct_bringup.benchmark.evaluated import MAIN
 from ddct_bringup.campaign.rows import Row
 from ddct_bringup.programs.tune import main
 from ddct_bringup.tuning import conduct, search
@@ -126,7 +127,7 @@ def test_no_trial_of_the_front_ends_early(finished: Path) -> None:
 def test_a_trial_that_another_betters_whatever_comes_ends_after_the_first_part() -> None:
     tuned = tuning(constraints={'engaged': {'at_least': 0.0}})
     names = [goal.name for goal in tuned.spec.objectives]
-    row = {'verdict_state': 'engaged', **dict.fromkeys(names, 1e-6)}
+    row = {'state': 'engaged', **dict.fromkeys(names, 1e-6)}
     rival = Trial(90, {}, [row] * len(tuned.cases))
     asked = {
         0: {'proportional_gain': 0.2, 'integral_gain': 0.5},
@@ -173,7 +174,9 @@ def test_the_result_shows_development_beside_held_out(finished: Path) -> None:
     best = next(each for each in result['front'] if each['number'] == result['best'])
     ours, theirs = best['development']['objectives'], best['held_out']['objectives']
     assert ours.keys() == theirs.keys() and ours != theirs
-    assert {each['name'] for each in result['gaps']} == {'success', *ours}
+    assert [each['name'] for each in result['gaps']] == list(MAIN)
+    without = {each['name'] for each in result['gaps'] if each['p_value'] is None}
+    assert without == {'response_s', 'releases'}  # a linear clutch has no lock
     assert result['before']['parameters'] == {'proportional_gain': 0.103, 'integral_gain': 0.0223}
     assert result['before']['development']['runs'] == result['cases']
     assert sum(result['states'].values()) == result['trials'] == 20
@@ -201,7 +204,7 @@ def test_the_numbers_of_a_transfer_function_are_tuned_and_its_result_is_tuned_ag
     changes = {
         'parameters': {'num_0': {'low': -0.05, 'high': -0.02}},
         'constraints': {'engaged': {'at_least': 0.0}},
-        'objectives': {'slip_rmse_rpm': {}},
+        'objectives': {'torsion_speed_std_rpm': {}},
         'trials': 3,
     }
     out = written(tuning(str(file), **changes), tmp_path / 'out', workers=1)

@@ -70,7 +70,7 @@ GOOD: dict[str, Any] = {
             'constraints.engaged.statistic',
         ),
         ('campaign', {'controllers': ['pi']}, 'campaign.controllers'),
-        ('campaign', {'floors': ['peak_jerk']}, 'campaign.floors'),
+        ('campaign', {'floors': True}, 'campaign.floors'),
         ('campaign', {'benchmark': ['lunch']}, 'campaign.benchmark.lunch'),
         ('campaign', {'benchmark': 'some'}, 'campaign.benchmark'),
         ('campaign', {'benchmark': 'all', 'samples': 99}, 'campaign.samples'),
@@ -112,7 +112,7 @@ def test_what_is_no_number_is_refused() -> None:
 def test_packaged_specifications_can_run(name: str) -> None:
     controller = 'mpc3' if name.startswith('mpc') else 'pi'
     spec = read_tuning_spec(name, controller_spec(controller))
-    assert spec.development.campaign(controller, spec.folder, spec.floors).runs > 1
+    assert spec.development.campaign(controller, spec.folder, floors=spec.floors).runs > 1
 
 
 def test_values_are_short_and_within_the_range() -> None:

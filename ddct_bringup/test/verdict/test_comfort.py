@@ -1,11 +1,11 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Jerk and vibration dose of signals with known values."""
+"""Jerk and weighted acceleration of signals with known values."""
 
 import numpy as np
 import pytest
 
-from ddct_bringup.metrics.signals.vibration import jerk, vibration_dose, weighted_acceleration
+from ddct_bringup.metrics.signals.vibration import jerk, strongest_stretch, weighted_acceleration
 
 TIME = np.arange(4001) / 100.0
 
@@ -51,9 +51,12 @@ def test_weighting_starts_in_equilibrium():
     assert weighted_acceleration(np.full(100, 5.0)) == pytest.approx(np.zeros(100), abs=1e-9)
 
 
-def test_vibration_dose_of_a_sine():
-    # The mean of sin^4 is 3/8.
-    assert vibration_dose(2.0 * sine(1.0)) == pytest.approx(2.0 * (40.0 * 3 / 8) ** 0.25, rel=1e-6)
+def test_the_strongest_stretch_is_the_largest_running_rms():
+    jolt = np.where((TIME >= 20.0) & (TIME < 20.5), 2.0, 0.0)
+    assert strongest_stretch(jolt, 100) == pytest.approx(2.0 * np.sqrt(0.5))
+    assert strongest_stretch(jolt, 50) == pytest.approx(2.0)
+    every = [np.sqrt(np.mean(sine(1.3)[k : k + 100] ** 2)) for k in range(len(TIME) - 99)]
+    assert strongest_stretch(sine(1.3), 100) == pytest.approx(max(every), rel=1e-12)
 
 
 # W_d of ISO 8041-1 at the band centres 10^(n/10) Hz, from its parameters f1 = 0.4, f2 = 100,

@@ -8,13 +8,15 @@ from importlib.resources import files
 import pytest
 from refusals import refused
 
-from ddct_bringup.metrics.catalogue import CRITERION_UNITS
+from ddct_bringup.metrics.catalogue import METRICS
+from ddct_bringup.metrics.plant import JudgedPlant
 from ddct_bringup.verdict.limits import limits_of_text, load_limits, packaged_limits
 from ddct_plant.base.errors import DdctError
+from ddct_plant.models.parameters import DrivelineParameters, VehicleParameters
 
 TEXT = (files('ddct_bringup.verdict') / 'limits.yaml').read_text(encoding='utf-8')
 OF_SLIP = """\
-  - criterion: judder
+  - metric: judder_rpm
     value: 3.0
     unit: rpm
     applies_to: [launch, tip_in]
@@ -28,70 +30,70 @@ def line_of(text, part):
 def test_the_packaged_file_is_read_and_every_limit_cites_a_clause():
     limits = packaged_limits()
     assert limits.rules.engaged_slip == 50.0
-    assert {limit.criterion for limit in limits.limits} <= set(CRITERION_UNITS)
+    assert {limit.metric for limit in limits.limits} <= set(METRICS)
     for limit in limits.limits:
         assert limit.source.startswith('convention: ') == limit.convention
         assert limit.convention or ', ' in limit.source
-    conventions = {limit.criterion for limit in limits.limits if limit.convention}
-    assert conventions == {'releases_after_lock', 'friction_work_over_least', 'judder'}
+    conventions = {limit.metric for limit in limits.limits if limit.convention}
+    assert conventions == {'releases', 'friction_work_over_least', 'judder_rpm'}
 
 
 def test_a_limit_of_some_scenarios_applies_to_no_other():
     limits = packaged_limits()
-    assert limits.of('launch_gentle')['mean_negative_jerk'].value == 5.0
-    assert 'mean_negative_jerk' not in limits.of('launch')
-    assert limits.of('anything')['weighted_acceleration'].value == 0.315
+    assert limits.of('launch_gentle')['mean_negative_jerk_m_s3'].value == 5.0
+    assert 'mean_negative_jerk_m_s3' not in limits.of('launch')
+    assert limits.of('anything')['weighted_acceleration_m_s2'].value == 0.315
 
 
 def test_the_strictest_of_several_limits_applies():
     convention = f'{OF_SLIP}    convention: true\n    reason: mine\n'
     limits = limits_of_text(TEXT + convention + convention.replace('3.0', '2.0'), 'mine.yaml')
-    assert limits.of('launch')['judder'].value == 2.0
-    assert limits.of('launch')['judder'].source == 'convention: mine'
-    assert limits.of('thesis')['judder'].value == 6.0
+    assert limits.of('launch')['judder_rpm'].value == 2.0
+    assert limits.of('launch')['judder_rpm'].source == 'convention: mine'
+    assert limits.of('thesis')['judder_rpm'].value == 6.0
 
 
 def test_the_limit_of_events_that_must_not_occur_is_zero():
-    assert packaged_limits().of('launch')['releases_after_lock'].value == 0.0
+    assert packaged_limits().of('launch')['releases'].value == 0.0
 
 
 def test_a_file_without_a_version_is_of_the_present_one():
-    assert limits_of_text(TEXT.replace('schema_version: 2\n', ''), 'x') == packaged_limits()
+    assert limits_of_text(TEXT.replace('schema_version: 3\n', ''), 'x') == packaged_limits()
 
 
 @pytest.mark.parametrize(
     ('old', 'new', 'at', 'complaint'),
     [
-        ('schema_version: 2', 'schema_version: 3', 'schema_version', 'schema_version is 3, this'),
-        ('schema_version: 2', 'schema_version: no', 'schema_version', "schema_version is 'no'"),
+        ('schema_version: 3', 'schema_version: 4', 'schema_version', 'schema_version is 4, this'),
+        ('schema_version: 3', 'schema_version: no', 'schema_version', "schema_version is 'no'"),
         (
-            'criterion: mean_negative_jerk',
-            'criterion: jerkiness',
+            'metric: mean_negative_jerk_m_s3',
+            'metric: jerkiness',
             'jerkiness',
-            'limits\\[4\\].criterion: ',
+            'limits\\[3\\].metric: ',
         ),
         (
-            'criterion: mean_negative_jerk',
-            'criterion: [jerk]',
+            'metric: mean_negative_jerk_m_s3',
+            'metric: [jerk]',
             '[jerk]',
-            'limits\\[4\\].criterion: ',
+            'limits\\[3\\].metric: ',
         ),
         (
             'unit: m/s^3',
             'unit: g/s',
             'unit: g/s',
-            "limits\\[4\\].unit: it is 'g/s': give .* 'm/s\\^3'",
+            "limits\\[3\\].unit: it is 'g/s': give .* 'm/s\\^3'",
         ),
         ('unit: rpm\n', 'unit: rad/s\n', 'unit: rad/s', "rules.engaged_slip.unit: it is 'rad/s'"),
-        ('value: 3\n', 'value: 2\n', 'value: 2', 'rules.oscillation_turns.value: .*least 3'),
+        ('value: 50.0', 'value: 0', 'value: 0', 'rules.engaged_slip.value: .*above 0'),
         (
             'value: 0.315',
             'value: low',
             'value: low',
             "limits\\[0\\].value: it is 'low': give a number",
         ),
-        ('value: 9.1', 'value: -9.1', 'value: -9.1', 'limits\\[1\\].value: .*at least 0'),
-        ('value: 9.1', 'value: .nan', 'value: .nan', 'limits\\[1\\].value: .*finite'),
+        ('value: 300.0', 'value: -9.1', 'value: -9.1', 'limits\\[1\\].value: .*at least 0'),
+        ('value: 300.0', 'value: .nan', 'value: .nan', 'limits\\[1\\].value: .*finite'),
         (
             'applies_to: all',
             'applies_to: few',
@@ -107,9 +109,9 @@ def test_a_file_without_a_version_is_of_the_present_one():
         ),
         ('rules:', 'rule:', 'rule:', 'unknown key rule: did you mean rules'),
         (
-            '    source: Directive 2002/44/EC\n',
+            '    source: Pisaturo and Senatore, Applied Thermal Engineering 93, 2016\n',
             '',
-            'daily_vib',
+            'peak_temp',
             'limits\\[1\\]: source is missing: c',
         ),
         (
@@ -119,26 +121,26 @@ def test_a_file_without_a_version_is_of_the_present_one():
             'unknown key limits\\[0\\].page: known: ',
         ),
         (
-            '    source: Directive 2002/44/EC',
+            '    source: Pisaturo and Senatore, Applied Thermal Engineering 93, 2016',
             "    source: ''",
             "source: ''",
             'limits\\[1\\].source: ',
         ),
-        ('    unit: degC\n', '', 'peak_temperature', 'limits\\[2\\]: the key unit is missing'),
+        ('    unit: degC\n', '', 'peak_temperature', 'limits\\[1\\]: the key unit is missing'),
         (
             '    reason: an engagement ends',
             '    clause: an engagement ends',
-            'releases_after',
-            'limits\\[5\\]: reason is missing: say why',
+            'metric: releases',
+            'limits\\[4\\]: reason is missing: say why',
         ),
         (
-            '    clause: Article',
-            '    reason: Article',
-            'reason: Article',
+            '    clause: abstract',
+            '    reason: abstract',
+            'reason: abstract',
             'limits\\[1\\].reason: only a convention',
         ),
         ('  driven_share:', '  share:', '  share:', 'unknown key traction.share: known: fr'),
-        ('    value: 0.6\n', '    value: -0.6\n', 'value: -0.6', 'traction.driven_share.value: '),
+        ('    value: 1.0\n', '    value: -0.7\n', 'value: -0.7', 'traction.friction.value: '),
         ('limits:\n', 'limits: 3\nmore:\n', 'more:', 'unknown key more: known: rules, limits'),
     ],
 )
@@ -154,8 +156,8 @@ def test_an_error_is_reported_with_file_line_and_key(old, new, at, complaint):
 
 
 def test_a_missing_rule_is_named():
-    text = re.sub(r'  runaway_slip:\n(    .*\n)+', '', TEXT)
-    with refused(DdctError, 'runaway_slip', place='limits mine.yaml: line 4'):
+    text = re.sub(r'  settled_time:\n(    .*\n)+', '', TEXT)
+    with refused(DdctError, 'settled_time', place='limits mine.yaml: line 4'):
         limits_of_text(text, 'mine.yaml')
 
 
@@ -169,18 +171,20 @@ def test_a_file_of_something_else_is_refused(text):
 def test_only_the_boolean_true_makes_a_limit_a_convention(word):
     text = f'{TEXT}{OF_SLIP}    convention: {word}\n    reason: mine\n'
     if word == 'true':
-        assert limits_of_text(text, 'x').of('tip_in')['judder'].convention
+        assert limits_of_text(text, 'x').of('tip_in')['judder_rpm'].convention
         return
-    with refused(DdctError, 'limits[8].convention', place='limits x: line 131'):
+    with refused(
+        DdctError, 'limits[7].convention', place=f'limits x: line {len(TEXT.splitlines()) + 5}'
+    ):
         limits_of_text(text, 'x')
 
 
 def test_the_origin_is_the_name_without_folders_and_a_digest_that_distinguishes_files():
     mine = limits_of_text(TEXT, 'far/away/mine.yaml').origin
     assert list(mine) == ['name', 'digest', 'schema_version']
-    assert (mine['name'], mine['schema_version']) == ('mine.yaml', 2)
+    assert (mine['name'], mine['schema_version']) == ('mine.yaml', 3)
     assert packaged_limits().origin == {**mine, 'name': 'packaged'}
-    other = limits_of_text(TEXT.replace('value: 9.1', 'value: 9.2'), 'mine.yaml').origin
+    other = limits_of_text(TEXT.replace('value: 300.0', 'value: 301.0'), 'mine.yaml').origin
     assert other['digest'] != mine['digest']
 
 
@@ -191,15 +195,23 @@ def test_a_file_that_is_not_there_is_named(tmp_path):
     assert load_limits(tmp_path / 'mine.yaml') == packaged_limits() == load_limits(None)
 
 
-def test_a_file_of_version_1_is_read_with_conventions_that_have_no_reason_and_no_traction():
-    rules = TEXT[TEXT.index('rules:') : TEXT.index('traction:')]
-    convention = '    convention: true\n'
-    old = limits_of_text(f'schema_version: 1\n{rules}limits:\n{OF_SLIP}{convention}', 'old.yaml')
-    assert old.of('launch')['judder'].source == 'convention'
-    assert old.of('launch')['judder'].convention
-    assert old.traction is None
-    assert old.origin['schema_version'] == 1
-    assert old.rules == packaged_limits().rules
+def test_values_stand_beside_the_limits_of_the_scenario_whatever_their_size():
+    metrics = {**dict.fromkeys(METRICS), 'judder_rpm': 7.0, 'mean_negative_jerk_m_s3': -6.0}
+    beside = packaged_limits().beside(metrics, 'launch_gentle', None)
+    assert [each.name for each in beside] == [
+        *('weighted_acceleration_m_s2', 'releases', 'friction_work_over_least'),
+        *('peak_temperature_degc', 'mean_acceleration_m_s2', 'mean_negative_jerk_m_s3'),
+        'judder_rpm',
+    ]
+    judder = beside[-1]
+    assert (judder.value, judder.limit, judder.unit) == (7.0, 6.0, 'rpm')
+    assert judder.convention and judder.source.startswith('convention: at the 2.93 Hz')
+    assert beside[-2].value == -6.0
+    assert beside[0].value is None
+    plant = JudgedPlant.of_parameters(DrivelineParameters(), VehicleParameters())
+    names = [each.name for each in packaged_limits().beside(metrics, 'launch', plant)]
+    assert 'driving_acceleration_m_s2' in names
+    assert 'mean_negative_jerk_m_s3' not in names
 
 
 def test_the_packaged_traction_is_that_of_a_car_with_front_wheel_drive():

@@ -140,3 +140,17 @@ def test_a_file_that_is_no_json_is_named(tmp_path: Path, content: bytes) -> None
     with pytest.raises(DdctError) as error:
         recorded_json(file)
     assert error.value.place == str(file)
+
+
+@pytest.mark.parametrize(
+    'place', [{'signal': 'peak_jerk_over_least'}, {'key': 'figures.peak_jerk_over_least'}]
+)
+def test_the_ratio_that_a_convex_program_gives_has_a_wider_bound(place):
+    for change, state in ((1e-8, SAME_WITHIN), (1e-5, DIFFERENT)):
+        comparison = Comparison()
+        comparison.add(place, 2.0, 2.0 + 2.0 * change)
+        assert comparison.state(same_environment=False) == state
+        assert comparison.state(same_environment=True) == DIFFERENT
+    other = Comparison()
+    other.add({'key': 'figures.peak_jerk_m_s3'}, 2.0, 2.0 + 2e-8)
+    assert other.state(same_environment=False) == DIFFERENT

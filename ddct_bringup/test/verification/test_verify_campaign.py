@@ -55,7 +55,7 @@ def test_showing_a_campaign_keeps_its_digests(
         ('slip_final_rpm', lambda values: [value * (1.0 + 1e-15) for value in values]),
         ('seed', lambda values: [value + 1 for value in values]),
         ('vehicle.mass_kg', lambda values: [value + 1.0 for value in values]),
-        ('verdict_state', lambda values: ['engaged' for _ in values]),
+        ('state', lambda values: ['late' for _ in values]),
         ('valid', lambda values: [False for _ in values]),
     ],
 )

@@ -115,7 +115,7 @@ def _other_seed(scores: Any) -> None:
 
 
 def _other_state(scores: Any) -> None:
-    scores['runs'][1]['verdict']['state'] = 'engaged'
+    scores['runs'][1]['state'] = 'flared'
 
 
 def _one_run_less(scores: Any) -> None:
@@ -127,7 +127,7 @@ def _one_run_less(scores: Any) -> None:
     [
         (_raise_slip, 'runs.pi.metrics.slip_final_rpm'),
         (_other_seed, 'runs.mpc3.seed'),
-        (_other_state, 'runs.mpc3.verdict.state'),
+        (_other_state, 'runs.mpc3.state'),
         (_one_run_less, 'runs.pi'),
     ],
 )

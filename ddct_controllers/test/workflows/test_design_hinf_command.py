@@ -34,7 +34,7 @@ def test_it_prints_the_workflow(capsys):
     text = capsys.readouterr().out
     for expected in (
         *('Specifications', 'Weights', 'Synthesis', 'Cleaning', 'Controllers', 'Loops', 'Worst'),
-        *('2.977', '1.10503', 'poles at -epsilon', '(s^2 + 134.1 s + 4.27e+04)', 'G_c(z)'),
+        *('2.977', '1.10503', 'poles at -epsilon', '(s^2 + 134.1 s', '+ 4.27e+04)', 'G_c(z)'),
     ):
         assert expected in text
 

@@ -56,6 +56,7 @@ QUANTITIES: Mapping[str, LogQuantity] = {
     'shaft_speed': LogQuantity('w_p', 'primary shaft', 'primary_shaft_speed'),
     'wheel_speed': LogQuantity('w_r', 'wheels, their mean', 'wheel_speed'),
     'engine_torque': LogQuantity('C_m', 'at the crankshaft', 'engine_torque'),
+    'torque_demand': LogQuantity('C_dem', 'demanded by the driver', 'torque_demand'),
     'clutch_torque': LogQuantity(
         'C_f', 'transmitted, positive towards the wheels', 'primary_shaft_effort'
     ),

@@ -243,15 +243,16 @@ def _row(
 
 
 def _footer(table: Table, columns: Sequence[_Column], width: int) -> list[str]:
-    """Return the lines below a table: the columns left out, then the reasons of the marks."""
+    """Return the lines below a table: columns left out, warnings, reasons of marks, notes."""
     places = [column.place for column in columns]
     lines = _note_lines(_left_out(table, places), width)
-    notes = [f'{mark}  {reason}' for mark, reason in _reasons(table, places)]
+    marks = (f'{mark}  {reason}' for mark, reason in _reasons(table, places))
+    notes = [*table.warnings, *marks, *table.notes]
     for number, note in enumerate(notes):
         new, rest = _note_lines(printable(note), width), len(notes) - number
         if len(lines) + len(new) + (rest > 1) > MOST_NOTES:
             where = f', with {table.complete}' if table.complete else ''
-            return [*lines, f'{_INDENT}{rest} more {"reasons" if rest > 1 else "reason"}{where}']
+            return [*lines, f'{_INDENT}{rest} more {"notes" if rest > 1 else "note"}{where}']
         lines += new
     return lines
 

@@ -108,6 +108,10 @@ class Table:
     """Weight of each column, from the first on; those of the others are NEEDED."""
     reasons: Mapping[tuple[int, int], str] = field(default_factory=dict, kw_only=True)
     """Reason by row and column of each dash, and of each other cell that gets a star."""
+    warnings: Sequence[str] = field(default=(), kw_only=True)
+    """Sentences below the table that come before the reasons of its dashes and stars."""
+    notes: Sequence[str] = field(default=(), kw_only=True)
+    """Sentences after them, the most important ones first."""
     complete: str = field(default='', kw_only=True)
     """Output that has every column and reason, such as '--json FILE'; empty for none."""
 
@@ -118,7 +122,11 @@ class Table:
 
 
 def table_of(
-    title: str, columns: Sequence[Column[Row]], rows: Iterable[Row], complete: str = ''
+    title: str,
+    columns: Sequence[Column[Row]],
+    rows: Iterable[Row],
+    complete: str = '',
+    notes: Sequence[str] = (),
 ) -> Table:
     """Return the table of columns over rows; `complete` names an output with all of it."""
     rows = list(rows)
@@ -134,6 +142,7 @@ def table_of(
             for place, column in enumerate(columns)
             if (reason := column.reason(row))
         },
+        notes=notes,
         complete=complete,
     )
 

@@ -142,7 +142,7 @@ def test_a_footer_has_at_most_six_lines_and_counts_the_rest() -> None:
     table = table_of('', COLUMNS, rows, complete='--json FILE')
     footer = texts(table, 80)[1 + len(rows) :]
     assert len(footer) == MOST_NOTES
-    assert footer[-1] == '  4 more reasons, with --json FILE'
+    assert footer[-1] == '  4 more notes, with --json FILE'
 
 
 def test_a_column_that_is_left_out_has_no_reason_below() -> None:

@@ -8,17 +8,19 @@ import re
 import shutil
 import subprocess
 import sys
+from importlib.resources import files
 from pathlib import Path
 from textwrap import dedent
 
 import pytest
+import yaml
 from support.documented import ROOT
 
-from ddct_bringup.api import read_scores, run
+from ddct_bringup.api import run
 from ddct_bringup.scores.document import scores_document
 from ddct_bringup.verdict.limits import packaged_limits
 
-KEY, CRITERION = 'slip_peak_rpm', 'peak_slip'
+KEY = 'slip_peak_rpm'
 
 
 @pytest.fixture(scope='module')
@@ -36,6 +38,15 @@ def patched(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+def limits_with_it() -> str:
+    """Return the packaged limits with one of the metric."""
+    packaged = (files('ddct_bringup.verdict') / 'limits.yaml').read_text(encoding='utf-8')
+    keys = {'metric': KEY, 'value': 500.0, 'unit': 'rpm', 'applies_to': 'all'}
+    content = yaml.safe_load(packaged)
+    content['limits'].append({**keys, 'convention': True, 'reason': 'a trial'})
+    return yaml.safe_dump(content)
+
+
 def with_metric(folder: Path, script: str) -> str:
     """Return the output of a script that runs with the copy of the package."""
     path = f'{folder / "ddct_bringup"}:{os.environ.get("PYTHONPATH", "")}'
@@ -51,20 +62,20 @@ def with_metric(folder: Path, script: str) -> str:
     return done.stdout
 
 
-def test_scores_table_and_verdict_have_it(patched: Path) -> None:
-    printed = with_metric(
+def test_scores_and_limits_have_it(patched: Path) -> None:
+    (patched / 'limits.yaml').write_text(limits_with_it(), encoding='utf-8')
+    with_metric(
         patched,
         """
         import json, sys
         from ddct_bringup.programs.score import main
-        main(['before/pi', '--json', 'after.json'])
+        main(['before/pi', '--json', 'after.json', '--limits', 'limits.yaml'])
         """,
     )
-    assert 'peak w_d' in printed
     (after,) = json.loads((patched / 'after.json').read_text(encoding='utf-8'))['runs']
-    by_name = {each['name']: each for each in after['verdict']['criteria']}
-    assert after['metrics'][KEY] == by_name[CRITERION]['value'] > 1.0
-    assert (by_name[CRITERION]['unit'], by_name[CRITERION]['state']) == ('rpm', 'no_limit')
+    (beside,) = (each for each in after['limits'] if each['name'] == KEY)
+    assert after['metrics'][KEY] == beside['value'] > 1.0
+    assert (beside['unit'], beside['limit']) == ('rpm', 500.0)
     before = json.loads((patched / 'scores.json').read_text(encoding='utf-8'))['runs'][0]
     assert before['metrics'] == {key: after['metrics'][key] for key in before['metrics']}
 
@@ -86,7 +97,6 @@ def test_a_batch_has_the_value_of_each_single_run(patched: Path) -> None:
         for each, found in zip(settings, run_batch(runs, packaged_limits())):
             alone = scored_headless(each, 'pi', packaged_limits()).metrics['{KEY}']
             assert abs(found.metrics['{KEY}'] / alone - 1.0) < 1e-9
-            assert found.verdict.values['{CRITERION}'] == found.metrics['{KEY}']
         """,
     )
 
@@ -98,7 +108,7 @@ def test_campaigns_sweeps_report_and_pages_have_it(patched: Path) -> None:
         import sys
         sys.path.insert(0, {str(ROOT / 'docs')!r})
         from ddct_bringup.campaign.rows import result_row, scored_headless
-        from ddct_bringup.campaign_report.results import QUANTITIES
+        from ddct_bringup.campaign_report.evaluated_quantities import QUANTITIES
         from ddct_bringup.programs.sweep import METRICS
         from ddct_bringup.report.definitions import definitions
         from ddct_bringup.run.run_base import RunBase
@@ -108,11 +118,10 @@ def test_campaigns_sweeps_report_and_pages_have_it(patched: Path) -> None:
 
         settings = RunBase(ScenarioFile.read('thesis'), {{}}, {{}}, ()).at()
         row = result_row(scored_headless(settings, 'pi', packaged_limits()), {{}})
-        assert row['{KEY}'] == row['criterion.{CRITERION}'] > 1.0
+        assert row['{KEY}'] > 1.0
         assert '{KEY}' in [each.key for each in QUANTITIES] and '{KEY}' in METRICS
         found = definitions((), thesis=False)
-        assert 'peak w_d' in [each.term for each in found['Metrics']]
-        assert 'peak slip' in [each.term for each in found['Criteria']]
+        assert 'peak w_d' in [each.term for group in found.values() for each in group]
         assert '`{KEY}`' in [row[0] for row in score_tables()['metrics'].rows]
         """,
     )
@@ -123,12 +132,8 @@ def test_scores_of_before_it_stay_readable(patched: Path) -> None:
         patched,
         f"""
         from ddct_bringup.api import read_scores
-        from ddct_bringup.scores.document import NO_SUCH_METRIC, run_entry
 
         (run,) = read_scores('scores.json')
         assert run.metrics['{KEY}'] is None and run.metrics['steps'] == 300
-        assert run.not_computed == dict.fromkeys(('{KEY}', '{CRITERION}'), NO_SUCH_METRIC)
         """,
     )
-    (here,) = read_scores(patched / 'scores.json')
-    assert here.not_computed == {}

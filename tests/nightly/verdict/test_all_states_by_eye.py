@@ -7,34 +7,26 @@ from dataclasses import replace
 import pytest
 from labelled_runs import labelled_runs
 
-from ddct_bringup.verdict.state import ENGAGED, NEARLY_ENGAGED
+from ddct_bringup.verdict.state import ENGAGED
 
-AGREED = {
-    'development': (45, 47),
-    'first_check': (187, 196),
-    'held_out': (77, 84),
-    'rev_limiter': (39, 41),
-}
-"""Number of runs with the state by eye, and of those with it or with the second state."""
+PARTS = ('development', 'first_check', 'held_out', 'rev_limiter')
 
 
 @pytest.mark.filterwarnings('ignore::RuntimeWarning')  # a slip of 1e6 rpm
-@pytest.mark.parametrize('part', AGREED)
-def test_as_many_states_agree_with_those_by_eye_as_when_the_rules_were_set(part):
-    # A chart does not show whether plates that hardly slip are locked.
-    judged = [
-        (run, state.replace(NEARLY_ENGAGED, ENGAGED))
-        for run in labelled_runs(part)
-        for state in [run.state_by_rules()]
+@pytest.mark.parametrize('part', PARTS)
+def test_what_comes_together_by_the_rules_does_so_by_eye(part):
+    runs = labelled_runs(part)
+    wrong = [
+        run
+        for run in runs
+        for together in [run.comes_together()]
+        if together not in {label == ENGAGED for label in (run.state, run.second) if label}
     ]
-    agreed = sum(state == run.state for run, state in judged)
-    accepted = sum(state in (run.state, run.second) for run, state in judged)
-    assert agreed >= AGREED[part][0]
-    assert accepted >= AGREED[part][1]
+    assert len(wrong) <= 0.05 * len(runs), wrong
 
 
 def test_no_run_is_in_two_parts():
     settings = [
-        replace(run, state='', second=None) for part in AGREED for run in labelled_runs(part)
+        replace(run, state='', second=None) for part in PARTS for run in labelled_runs(part)
     ]
     assert len(settings) == len(set(settings))

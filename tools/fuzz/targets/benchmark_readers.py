@@ -8,13 +8,12 @@ from pathlib import Path
 from ddct_bringup.benchmark.cases import Cases, packaged_folder
 from ddct_bringup.benchmark.judged import Judged
 from ddct_bringup.benchmark.manifest import MANIFEST, BenchmarkManifest, JudgedEntry
-from ddct_bringup.benchmark.release import COPIED, ROWS, UNAVOIDABLE, release_rows
+from ddct_bringup.benchmark.release import ROWS, release_rows
 from ddct_bringup.benchmark.update_times import UpdateTimesFile, read_update_times
 from ddct_bringup.run.timing_and_failure import TIMING_FILE
 from fuzz.reader import Reader
 from fuzz.targets.run_readers import in_folder
 
-_RELEASE = {name: (packaged_folder() / name).read_bytes() for name in COPIED}
 _UPDATE_TIMES: UpdateTimesFile = {
     'reference': 'pi',
     'controllers': {
@@ -34,11 +33,11 @@ def benchmark_readers(folder: Path) -> list[Reader]:
     """Return the readers of a benchmark's files."""
     judged = [Judged.of(name) for name in ('pi', 'ls8')]
     BenchmarkManifest.of(judged, Cases.packaged(quick=True), None).write(folder)
+    rows = (packaged_folder() / ROWS).read_bytes()
     times = json.dumps(_UPDATE_TIMES).encode()
     return [
         Reader('benchmark', MANIFEST, in_folder(_manifest), ((folder / MANIFEST).read_bytes(),)),
-        Reader('benchmark_rows', ROWS, _release, (_RELEASE[ROWS],)),
-        Reader('benchmark_limits', UNAVOIDABLE, _release, (_RELEASE[UNAVOIDABLE],)),
+        Reader('benchmark_rows', ROWS, in_folder(_release), (rows,)),
         Reader('update_times', TIMING_FILE, in_folder(read_update_times), (times,)),
     ]
 
@@ -59,9 +58,6 @@ def _manifest(folder: Path) -> object:
     return cases.digest, held_out
 
 
-def _release(file: Path) -> object:
-    """Read a file of the release beside the other one."""
-    for name in {*COPIED} - {file.name}:
-        (file.parent / name).write_bytes(_RELEASE[name])
-    rows = release_rows(file.parent).of(Cases.packaged(quick=True))
-    return rows.rows.cases, rows.unavoidable
+def _release(folder: Path) -> object:
+    """Return the number of cases that the rows of a release have."""
+    return release_rows(folder).of(Cases.packaged(quick=True)).rows.cases

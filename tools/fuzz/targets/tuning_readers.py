@@ -75,7 +75,7 @@ def _specification(controller: ControllerSpec[Controller], file: Path) -> object
 def _row(tuning: Tuning, number: int) -> dict[str, object]:
     """Return a row of which most columns have no value."""
     columns = dict.fromkeys(schema_of(tuning.campaign.spec).names)
-    return {**columns, 'index': number, 'verdict_state': 'engaged', 'engagement_time_s': 0.7}
+    return {**columns, 'index': number, 'state': 'engaged', 'engagement_time_s': 0.7}
 
 
 def _manifest(tuning: Tuning) -> bytes:

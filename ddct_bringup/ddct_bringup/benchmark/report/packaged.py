@@ -2,50 +2,71 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tables of all packaged controllers on the development cases, from the rows of the release."""
 
-from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from ddct_bringup.benchmark.case_rows import CaseRows
-from ddct_bringup.benchmark.cases import Cases, packaged_folder
-from ddct_bringup.benchmark.comparison import figures_of, non_dominated
-from ddct_bringup.benchmark.kept_limits import limits_in
-from ddct_bringup.benchmark.outcomes import Columns
-from ddct_bringup.benchmark.release import ReleaseRows, release_rows
+from ddct_bringup.benchmark.cases import packaged_folder
+from ddct_bringup.benchmark.comparison import figures_in
+from ddct_bringup.benchmark.evaluated import MAIN, OVER_LEAST, Columns, values_of
+from ddct_bringup.benchmark.evaluation import least_is_no_bound_in, states_in
+from ddct_bringup.benchmark.outcomes import share_of_successes, spread_in
+from ddct_bringup.benchmark.release import release_rows
+from ddct_bringup.benchmark.report import texts
+from ddct_bringup.benchmark.report.printed import spread_texts
+from ddct_bringup.benchmark.report.rules import (
+    NO_GAIN,
+    figures_that_count,
+    left_open,
+    states_that_count,
+)
+from ddct_bringup.benchmark.statistics.case_figures import FIGURES
+from ddct_bringup.benchmark.statistics.dominance import compare, dominators_of
 from ddct_bringup.campaign.keys import SCENARIO
-from ddct_bringup.campaign.rows import CRITERION
-from ddct_bringup.scores.csv_text import OVER_FLOOR
+from ddct_bringup.campaign_report.texts import interval_text, state_text
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_bringup.verdict.state import ENGAGED
 from ddct_plant.program.table import Table, Weight, with_reasons
 
-_CASE_HEADERS = (
-    *('controller', 'engaged', 'others', 'with releases', 'time to lock s'),
-    *('peak jerk m/s^3', 'highest peak jerk', 'over the least', 'highest over the least'),
-    *('friction work kJ', 'dominated by'),
+_STATES = 'controller', 'engaged', 'other states'
+_HEADINGS = ('response s', 'jerk m/s^3', 'work kJ', 'A_w m/s^2', 'releases', 'jerk/least')
+"""Headings of the five figures, in their order, and of the peak jerk over the least."""
+_FORMS = (
+    *zip(MAIN, ('.2f', '.1f', '.1f', '.2f', '.0f'), (1.0, 1.0, 1e-3, 1.0, 1.0), strict=True),
+    (OVER_LEAST, '.1f', 1.0),
 )
-_CASE_WEIGHTS = (
-    *(Weight.IDENTIFYING, Weight.NEEDED, Weight.USEFUL, Weight.USEFUL, Weight.NEEDED),
-    *(Weight.NEEDED, Weight.DETAIL, Weight.NEEDED, Weight.DETAIL, Weight.NEEDED, Weight.USEFUL),
-)
-_ALL_HEADERS = ('controller', 'engaged', 'others', 'with releases', 'limits kept', 'not dominated')
-_ALL_WEIGHTS = (Weight.IDENTIFYING, Weight.NEEDED, Weight.DETAIL, Weight.USEFUL)
-_MARK = 'yes'
+"""Key, format and factor of each column."""
 
 
 def packaged_tables() -> Mapping[str, Table]:
-    """Return a table over all cases, and one for each scenario, with a row for each controller."""
-    release = release_rows(packaged_folder())
-    rows = release.rows
-    scenarios = Cases.packaged().whole.values_of(SCENARIO)
+    """
+    Return the tables of all cases and of each scenario by name, a row for each controller.
+
+    `all` has the states and `dominance` who dominates whom; SCENARIO has the states there, and
+    SCENARIO_figures the figures of the successes.
+    """
+    rows = release_rows(packaged_folder()).rows
     tables = {
-        'all': Table(
-            'All development cases', _ALL_HEADERS, _overall(release), weights=_ALL_WEIGHTS
-        ),
-        **{name: _of_scenario(rows, name) for name in scenarios},
+        'all': Table('All development cases', _headers_of_all(), list(_overall(rows))),
+        'dominance': _dominance(rows),
     }
+    for name in dict.fromkeys(rows.columns[SCENARIO][0].tolist()):
+        part = rows.of_cases(np.flatnonzero(rows.columns[SCENARIO][0] == name))
+        tables[name] = Table(
+            f'Development cases of {name}',
+            _STATES,
+            [(each, *_state_cells(part.of(each))) for each in part.controllers],
+        )
+        tables[f'{name}_figures'] = Table(
+            f'Successes in development cases of {name}',
+            ('controller', 'of', *_HEADINGS),
+            list(_figure_rows(part)),
+            numbers=(False, False, *(True for _ in _HEADINGS)),
+            weights=(Weight.IDENTIFYING, Weight.IDENTIFYING),
+            notes=(texts.YARDSTICK,) if _has_star(part) else (),
+        )
     return {name: _complete(table) for name, table in tables.items()}
 
 
@@ -57,94 +78,83 @@ def _complete(table: Table) -> Table:
 def _dash_reason(header: str, row: Sequence[str]) -> str:
     """Return the reason of a dash by its column."""
     return {
-        'others': 'every run is engaged',
-        'limits kept': 'no limit can be kept',
-    }.get(header, 'no run has a value')
+        'other states': 'every run is engaged',
+        'the first of these': 'no controller dominates it',
+    }.get(header, texts.NO_VALUE)
 
 
-def _case_cells(columns: Columns) -> tuple[str, ...]:
-    """Return the cells of a controller's cases; medians and highest values are of all of them."""
-    jerks, ratios = columns['peak_jerk_m_s3'], columns[f'{OVER_FLOOR}peak_jerk']
-    return (
-        *_counts(columns),
-        _median(columns[f'{CRITERION}time_to_lock'], '.2f'),
-        _median(jerks, '.1f'),
-        _highest(jerks, '.1f'),
-        _median(ratios, '.2f'),
-        _highest(ratios, '.2f'),
-        _median(1e-3 * columns['friction_energy_j'], '.1f'),
-    )
+def packaged_lines() -> Iterator[str]:
+    """Yield how many cases are compared, then what counts, what nobody gains by, what is open."""
+    rules = packaged_limits().rules
+    yield _compared_cases(release_rows(packaged_folder()).rows)
+    yield 'What counts:'
+    for meanings in (states_that_count(rules), figures_that_count()):
+        yield from (f'  {name}: {meaning}' for name, meaning in meanings.items())
+    yield 'Nobody gains by what follows:'
+    yield from (f'  {each}' for each in NO_GAIN)
+    yield left_open(rules)
 
 
-def _overall(release: ReleaseRows) -> list[tuple[str, ...]]:
-    rows, limits = release.rows, packaged_limits()
-    best = non_dominated(rows)
-    found: list[tuple[str, ...]] = []
+def _headers_of_all() -> tuple[str, ...]:
+    return (*_STATES[:2], '95 % interval', *_STATES[2:])
+
+
+def _overall(rows: CaseRows) -> Iterator[tuple[str, ...]]:
     for name in rows.controllers:
-        share = limits_in(rows, name, release.unavoidable, limits)['share']
-        kept = '-' if share is None else f'{100.0 * share:.0f} %'
-        chosen = _MARK if name in best else ''
-        found.append((f'{name}', *_counts(rows.of(name)), kept, chosen))
-    return found
+        columns = rows.of(name)
+        engaged, others = _state_cells(columns)
+        interval = interval_text(share_of_successes(columns)['interval'])
+        yield name, engaged, interval, others
 
 
-def _of_scenario(rows: CaseRows, scenario: str) -> Table:
-    cases = np.flatnonzero(rows.columns[SCENARIO][0] == scenario)
-    chosen = rows.of_cases(cases)
-    found = [(f'{name}', *_case_cells(chosen.of(name))) for name in chosen.controllers]
-    dominated = dominated_by(chosen)
-    return Table(
-        f'Development cases of {scenario}',
-        _CASE_HEADERS,
-        [(*row, dominated[name]) for row, name in zip(found, chosen.controllers, strict=True)],
-        weights=_CASE_WEIGHTS,
-    )
+def _state_cells(columns: Columns) -> tuple[str, str]:
+    """Return the engaged runs, and the other states with their numbers."""
+    states = {state: each['runs'] for state, each in states_in(columns).items()}
+    engaged, runs = states.pop(ENGAGED, 0), len(columns['valid'])
+    others = ', '.join(f'{count} {state_text(state)}' for state, count in states.items())
+    return f'{engaged} of {runs}', others or '-'
 
 
-def dominated_by(rows: CaseRows) -> dict[str, str]:
-    """
-    Return by controller the first other one that dominates it, '' for none.
-
-    One dominates another if it is no worse, and better in one, of: share of successes, runs with
-    releases, and the medians of the main quantities, where a run that fails is worse than any.
-    """
-    figures = {
-        name: np.array([*figures_of(rows, name), _with_releases(rows.of(name))])
-        for name in rows.controllers
-    }
-    return {
-        name: next(
-            (
-                other
-                for other, theirs in figures.items()
-                if (theirs <= ours).all() and (theirs < ours).any()
-            ),
-            '',
-        )
-        for name, ours in figures.items()
-    }
+def _has_star(rows: CaseRows) -> bool:
+    return any(least_is_no_bound_in(rows.of(name)) for name in rows.controllers)
 
 
-def _counts(columns: Columns) -> tuple[str, str, str]:
-    """Return the engaged runs, the other states with their numbers, and runs with releases."""
-    states = [state or 'invalid' for state in columns['verdict_state'].tolist()]
-    others = Counter(state for state in states if state != ENGAGED)
+def _figure_rows(rows: CaseRows) -> Iterator[tuple[str, ...]]:
+    """Yield P50, P95 and worst of each controller's figures, a row each."""
+    for name in rows.controllers:
+        columns = rows.of(name)
+        mark = texts.STAR if least_is_no_bound_in(columns) else ''
+        cells = []
+        for key, form, factor in _FORMS:
+            values = values_of(columns, key)
+            assert values is not None
+            spread = spread_in(columns, values)
+            cells.append(spread_texts(spread, form, factor, mark if key == OVER_LEAST else ''))
+        for of, row in zip(('P50', 'P95', 'worst'), zip(*cells, strict=True), strict=True):
+            yield name, of, *row
+
+
+def _dominance(rows: CaseRows) -> Table:
+    """Return how many controllers each one dominates, and which dominate it."""
+    dominators = dominators_of(figures_in(rows))
+    found = []
+    for name in rows.controllers:
+        dominated = sum(name in others for others in dominators.values())
+        ours = dominators[name]
+        found.append((name, str(dominated), str(len(ours)), ', '.join(ours[:3]) or '-'))
+    headers = 'controller', 'dominates', 'dominated by', 'the first of these'
+    return Table('Who dominates whom in all development cases', headers, found)
+
+
+def _compared_cases(rows: CaseRows) -> str:
+    """Return how many cases the dominance is of, and how many are left out of each figure."""
+    figures = list(figures_in(rows).values())
+    left_out = dict.fromkeys((each.name for each in FIGURES), 0)
+    for place, ours in enumerate(figures):
+        for theirs in figures[:place]:
+            for found in compare(ours, theirs).figures:
+                left_out[found.name] = max(left_out[found.name], found.null)
     return (
-        f'{states.count(ENGAGED)} of {len(states)}',
-        ', '.join(f'{count} {state}' for state, count in others.most_common()) or '-',
-        str(_with_releases(columns)),
+        f'dominance is of {rows.cases} cases, left out of a pair at most: '
+        f'{texts.left_out_text(left_out)}'
     )
-
-
-def _with_releases(columns: Columns) -> int:
-    return int(np.nansum(columns[f'{CRITERION}releases_after_lock'] > 0.0))
-
-
-def _median(values: np.ndarray, form: str) -> str:
-    found = values[np.isfinite(values)]
-    return format(float(np.median(found)), form) if len(found) else '-'
-
-
-def _highest(values: np.ndarray, form: str) -> str:
-    found = values[np.isfinite(values)]
-    return format(float(found.max()), form) if len(found) else '-'

@@ -7,8 +7,10 @@ from pathlib import Path
 
 from markupsafe import Markup
 
-from ddct_bringup.benchmark.report import texts
+from ddct_bringup.benchmark.evaluated import EVALUATED, MAIN, OVER_LEAST
+from ddct_bringup.benchmark.report import rules, texts
 from ddct_bringup.benchmark.result_types import (
+    BoardRow,
     Evaluation,
     QuantityResult,
     Result,
@@ -16,8 +18,6 @@ from ddct_bringup.benchmark.result_types import (
 )
 from ddct_bringup.benchmark.update_times import UpdateTimesFile
 from ddct_bringup.campaign_report import texts as campaign_texts
-from ddct_bringup.campaign_report.evaluated_quantities import QUANTITIES
-from ddct_bringup.campaign_report.printed_summary import MAIN
 from ddct_bringup.report.page_parts import (
     MARKER,
     number_text,
@@ -25,12 +25,13 @@ from ddct_bringup.report.page_parts import (
     page_template,
     value_text,
 )
+from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.program.command_line import package_version
 
 _ROOM, _REPORT = 'ddct_bringup.benchmark.report', 'ddct_bringup.report'
 _CAMPAIGN = 'ddct_bringup.campaign_report'
-RATIO_FORM = '.2f'
-"""Format of a ratio to the least."""
+_OVER_LEAST = (OVER_LEAST, 'friction_work_over_least')
+"""Quantities over the least."""
 
 
 def benchmark_page(result: Result, update_times: UpdateTimesFile, folder: Path) -> str:
@@ -53,10 +54,14 @@ def benchmark_page(result: Result, update_times: UpdateTimesFile, folder: Path) 
         folder=folder,
         shell_line=_shell_line,
         campaign_texts=campaign_texts,
-        quantities={quantity.key: quantity for quantity in QUANTITIES},
+        quantities=EVALUATED,
         main=list(MAIN),
+        over_least=list(_OVER_LEAST),
         further=_further(result),
-        ratio=RATIO_FORM,
+        states=rules.states_that_count(packaged_limits().rules),
+        figures=rules.figures_that_count(),
+        no_gain=rules.NO_GAIN,
+        left_open=rules.left_open_here(),
         spread=_spread,
         number_text=number_text,
         value_text=value_text,
@@ -70,7 +75,7 @@ def _shell_line(*words: object) -> str:
 
 
 def _further(result: Result) -> list[str]:
-    """Return the quantities besides the main ones that a run of a judged controller has."""
+    """Return the quantities besides the figures that a run of a judged controller has."""
     there = {
         quantity['name']
         for judged in result['controllers']
@@ -78,9 +83,11 @@ def _further(result: Result) -> list[str]:
         for quantity in evaluation['quantities']
         if quantity['with_value']
     }
-    return [each.key for each in QUANTITIES if each.key in there and each.key not in MAIN]
+    return [key for key in EVALUATED if key in there and key not in (*MAIN, *_OVER_LEAST)]
 
 
-def _spread(evaluation: Evaluation | ScenarioResult, name: str) -> QuantityResult | None:
+def _spread(
+    evaluation: Evaluation | ScenarioResult | BoardRow, name: str
+) -> QuantityResult | None:
     """Return the distribution of one quantity, None where no run has it."""
     return next((each for each in evaluation['quantities'] if each['name'] == name), None)

@@ -2,45 +2,66 @@
 # SPDX-License-Identifier: Apache-2.0
 """Definitions and texts of a benchmark for its page and the terminal."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from ddct_bringup.benchmark.comparison import COMPARED
-from ddct_bringup.benchmark.gaps import OF_QUANTITIES, OF_SHARES, SUCCESS
-from ddct_bringup.benchmark.result_types import Evaluation, JudgedResult, Result
-from ddct_bringup.campaign_report.printed_summary import MAIN
+from ddct_bringup.benchmark.evaluated import EVALUATED
+from ddct_bringup.benchmark.result_types import (
+    Evaluation,
+    JudgedResult,
+    PairedResult,
+    Result,
+)
+from ddct_bringup.benchmark.statistics.case_figures import FIGURES, LEVEL
+from ddct_bringup.benchmark.statistics.dominance import RELATIVE_DIFFERENCE
+from ddct_bringup.benchmark.statistics.held_out_gaps import METHOD as GAP_METHOD
 from ddct_bringup.campaign_report.statistics.outcome import CONFIDENCE, METHOD
 from ddct_bringup.campaign_report.texts import RULES as CAMPAIGN_RULES
 from ddct_bringup.campaign_report.texts import state_text
-from ddct_bringup.metrics.catalogue import METRICS
+from ddct_bringup.verdict.state import ENGAGED, INVALID
+from ddct_plant.program.table import PURE
 
+STAR = '*'
+"""Mark of a ratio to a least that is no bound."""
+YARDSTICK = (
+    f'{STAR} commands the engine, slips again or starts otherwise in some of the runs: there the '
+    'least is a yardstick, not a bound'
+)
+NO_VALUE = 'no success has a value'
+"""Reason of a dash."""
+_DIFFERENCES = ', '.join(
+    f'{figure.quantity.symbol} {figure.least_difference:g}'
+    + ('' if figure.quantity.unit == PURE else f' {figure.quantity.unit}')
+    for figure in FIGURES
+)
 RULES = {
     'development': 'Cases that are fixed in a release, and that anyone may tune a controller on.',
     'held out': 'Cases of the same kinds whose seed follows from the digests of controller and '
     'release: nobody can tune a controller on its own. A judge may give another seed.',
-    'success': 'The run is valid, and its state is engaged or nearly engaged. An invalid run is '
-    'no success.',
+    'success': f'The run is valid, and its state is {ENGAGED}. All other runs are failures.',
     'interval': f'{METHOD}, {100.0 * CONFIDENCE:g} %.',
-    'gap': f'Both sets are samples of the same cases. {OF_SHARES} for the share of successes, '
-    f'{OF_QUANTITIES} for the quantities of engaged runs; p is below 0.05 over the number of '
-    'figures where the difference is beyond chance. A controller that remembers the development '
-    'cases shows here.',
-    'P50, P95, worst': 'Of the engaged runs that have a value; the worst is the largest '
-    'magnitude. Other runs have no place among them: their share is in the first table.',
-    'over the least': 'The value over the least that any controller could have that locks at the '
-    'same instant. Only the first samples of each scenario have it, and only runs that lock once '
-    'and stay locked.',
-    'avoidable limits': 'In the cases with floors, limits that a controller could keep: those '
-    'below the least at any lock instant are left out. A run that is no success keeps none.',
+    'gap': f'Both sets are samples of the same cases. {GAP_METHOD}, of ranks within scenarios, a '
+    f'failure worse than any success; p is at most {LEVEL:g} over the number of figures where '
+    'held-out runs are worse beyond chance. A controller that remembers the development cases '
+    'shows here.',
+    'P50, P95, worst': 'Of the successes that have a value; the worst is the largest. Failures '
+    'have no place among them: their share is in the first table.',
+    'over the least': 'The value over the least of a run of the clutch alone that locks once, at '
+    'this instant. The jerk has it in the first samples of each scenario only. '
+    f'{YARDSTICK}.',
     'explained': CAMPAIGN_RULES['explained'],
     'drives': CAMPAIGN_RULES['drives'],
     'most failures': CAMPAIGN_RULES['most failures'],
     'difference': CAMPAIGN_RULES['difference'],
     'difference interval': CAMPAIGN_RULES['difference interval'],
-    'not dominated': 'No other controller is at least as good in each of these and better in one: '
-    f'{COMPARED[0]}, median over all cases of '
-    f'{", ".join(METRICS[name].symbol for name in MAIN)}.',
-    'median over all cases': 'A run that did not engage counts as worse than any value, so that '
-    'to fail in hard cases is no advantage. A dash: half of the runs or more did not engage.',
+    'better, worse': 'In a case a controller is better if its figure is less by more than '
+    f'{100.0 * RELATIVE_DIFFERENCE:g} % and by more than: {_DIFFERENCES}. A failure is worse than '
+    'any success, and two failures tie. A figure that is null by the case leaves that case out '
+    'for both.',
+    'dominates': 'One figure is better beyond chance, by the one-sided sign test of better and '
+    f'worse cases at {LEVEL:g} over the figures and over all ordered pairs of controllers. No '
+    f'figure is worse: neither at {LEVEL:g} of its own nor in its median difference. If all '
+    'controllers were equal, any of them would be dominated in at most '
+    f'{100.0 * LEVEL:g} % of benchmarks.',
 }
 """Definitions by term."""
 
@@ -50,13 +71,49 @@ def states_text(evaluation: Evaluation) -> str:
     return ', '.join(
         f'{found["runs"]} {state_text(state)}'
         for state, found in evaluation['states'].items()
-        if state != 'engaged'
+        if state != ENGAGED
     )
 
 
-def gap_name(name: str) -> str:
-    """Return the name of a gap in texts."""
-    return 'share of successes' if name == SUCCESS else METRICS[name].symbol
+def figure_name(key: str) -> str:
+    """Return the symbol of a figure in texts."""
+    return EVALUATED[key].symbol
+
+
+def left_out_text(left_out: Mapping[str, int]) -> str:
+    """Return the numbers of cases that are left out by figure."""
+    return ', '.join(f'{figure_name(key)} {cases}' for key, cases in left_out.items())
+
+
+def dominance_lines(judged: JudgedResult) -> Iterator[str]:
+    """Yield sentences on which controllers dominate the judged one, and which it dominates."""
+    name, pairs = judged['controller'], judged['dominance']
+    if not pairs:
+        return
+    for chosen, one, none in (
+        (
+            [pair for pair in pairs if pair['dominated']],
+            f'{name} is dominated by',
+            f'no controller dominates {name}',
+        ),
+        (
+            [pair for pair in pairs if pair['dominates']],
+            f'{name} dominates',
+            f'{name} dominates no controller',
+        ),
+    ):
+        found = f'{one} {", ".join(pair["other"] for pair in chosen)}' if chosen else none
+        yield f'{found}: {_cases_text(chosen or pairs)}'
+
+
+def _cases_text(pairs: Sequence[PairedResult]) -> str:
+    left_out: dict[str, int] = {}
+    for pair in pairs:
+        for figure in pair['figures']:
+            key = figure['name']
+            left_out[key] = max(left_out.get(key, 0), figure['left_out'])
+    most = ' at most' if len(pairs) > 1 else ''
+    return f'{pairs[0]["cases"]} cases, left out{most}: {left_out_text(left_out)}'
 
 
 def notes_of(result: Result) -> Iterator[str]:
@@ -64,7 +121,7 @@ def notes_of(result: Result) -> Iterator[str]:
     if result['judge_seed'] is not None:
         yield f'the held-out cases are those of a judge: --seed {result["judge_seed"]}'
     if result['cases']['quick']:
-        yield 'a quick benchmark: a tenth of the cases'
+        yield 'a quick benchmark: a tenth of the cases, too few to say who dominates whom'
 
 
 def warnings_of(result: Result) -> Iterator[str]:
@@ -83,10 +140,13 @@ def _warnings(judged: JudgedResult) -> Iterator[str]:
         ('development', judged['development']),
         ('held-out', judged['held_out']),
     ):
-        if evaluations and (invalid := evaluations[0]['states'].get('invalid')):
+        if evaluations and (invalid := evaluations[0]['states'].get(INVALID)):
             reason = evaluations[0]['reasons'][0]['reason']
             yield f'{name}: {invalid["runs"]} {part} runs are invalid, such as: {reason}'
-    worse = [gap for gap in judged['gaps'] or () if gap['differs'] and (gap['worse'] or 0.0) > 0.5]
+    worse = [gap['name'] for gap in judged['gaps'] or () if gap['differs']]
     if worse:
-        figures = ', '.join(gap_name(gap['name']) for gap in worse)
-        yield f'{name}: worse on held-out cases, beyond chance: {figures}'
+        yield f'{name}: worse on held-out cases, beyond chance: {_symbols(worse)}'
+
+
+def _symbols(keys: Iterable[str]) -> str:
+    return ', '.join(map(figure_name, keys))

@@ -8,8 +8,7 @@ from typing import Any
 from ddct_bringup.campaign.keys import COMMON, CONTROLLERS, SCENARIO, option_of, run_options
 from ddct_bringup.campaign.specification.distribution import distribution_of
 from ddct_bringup.campaign.specification.distributions import Distribution
-from ddct_bringup.floor.values import METRICS
-from ddct_plant.base.errors import ParameterError, require_choice
+from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import Option, require_known
 
 MOST_RUNS = 10_000_000
@@ -39,14 +38,12 @@ def controllers_of(content: Mapping[str, Any]) -> tuple[str, ...]:
     return _distinct(CONTROLLERS, [_text(CONTROLLERS, each) for each in given])
 
 
-def floors_of(content: Mapping[str, Any]) -> tuple[str, ...]:
-    """Return the metrics with floors."""
-    given = content.get(FLOORS, [])
-    if not isinstance(given, list):
-        raise ParameterError(f'{FLOORS}: give a list of metrics, such as [peak_jerk]', key=FLOORS)
-    for name in given:
-        require_choice(FLOORS, name, list(METRICS))
-    return _distinct(FLOORS, given)
+def floors_of(content: Mapping[str, Any]) -> bool:
+    """Return whether peak jerks are compared with the least of their cases."""
+    given = content.get(FLOORS, False)
+    if not isinstance(given, bool):
+        raise ParameterError(f'{FLOORS} is {given!r}: give true or false', key=FLOORS)
+    return given
 
 
 def common_of(content: Mapping[str, Any]) -> dict[str, str]:

@@ -3,12 +3,11 @@
 """
 Outcomes of runs, and their shares with confidence intervals.
 
-    engaged   the run is valid, and the state of its verdict is `engaged`
-    failed    the run is valid, and its state is none of `SUCCESSES`
+    engaged   the run is valid, and its state is `engaged`
+    failed    the run is valid, and its state is another
     invalid   the run does not count as engaged or failed, but is always listed
 
-Another state of `SUCCESSES` is a separate outcome: it is neither engaged nor failed. A
-criterion beyond its limit is no failed engagement: the verdict distinguishes the two.
+A metric beyond its limit is no failed engagement.
 """
 
 from dataclasses import dataclass
@@ -16,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy
 
-from ddct_bringup.verdict.state import ENGAGED, INVALID, SUCCESSES
+from ddct_bringup.verdict.state import ENGAGED, INVALID
 
 FAILED = 'failed'
 CONFIDENCE = 0.95
@@ -24,9 +23,9 @@ METHOD = 'Clopper-Pearson'
 
 
 def outcomes_of(valid: np.ndarray, states: np.ndarray) -> np.ndarray:
-    """Return a state of `SUCCESSES`, `failed` or `invalid` per run; both arguments are (n,)."""
+    """Return `engaged`, `failed` or `invalid` per run; both arguments are (n,)."""
     counts = valid.astype(bool) & (states != INVALID)
-    return np.where(counts, np.where(np.isin(states, SUCCESSES), states, FAILED), INVALID)
+    return np.where(counts, np.where(states == ENGAGED, ENGAGED, FAILED), INVALID)
 
 
 @dataclass(frozen=True)

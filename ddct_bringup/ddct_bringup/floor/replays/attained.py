@@ -78,8 +78,7 @@ def replays_of(
         fixed = point_of(near, last)
     for _ in range(_ROUNDS):
         if near is not case:
-            scenario = case.settings.scenario
-            signals = Signals.of_motion(near.motion, scenario, signals.engagements_a_day)
+            signals = Signals.of_motion(near.motion, case.settings.scenario)
         requests, needed = requests_near(near, objective, signals, fixed, bound, failed, needed)
         if requests is None:
             break
@@ -89,9 +88,7 @@ def replays_of(
         predicted = fixed.copy()
         predicted[1 : 1 + columns.requests] = requests
         value = objective.value(
-            signals_of_run(
-                case.start.scored_from, signals.engagements_a_day, case.settings.scenario, run
-            )
+            signals_of_run(case.start.scored_from, case.settings.scenario, run)
         )
         locks = _locks(case, run)
         if not case.limited and not gives_demand(run, case.start.step):
@@ -125,14 +122,12 @@ def _near(case: Case, run: Trajectory) -> Case:
 
 def _locks(case: Case, run: Trajectory) -> bool:
     """Return whether a run locks as the case has it; a linear clutch may be in its band before."""
-    lock = lock_of(run, case.start.step)
+    lock = lock_of(run, case.start.step, case.rules)
     late_s = math.inf if lock is None else lock.time_s - case.lock.time_s
     return abs(late_s) <= LATEST_S or (not case.settings.stick_slip and late_s <= LATEST_S)
 
 
-def signals_of_run(
-    start: int, engagements_a_day: float, scenario: Scenario, run: Trajectory
-) -> Signals:
+def signals_of_run(start: int, scenario: Scenario, run: Trajectory) -> Signals:
     """Return the signals of a run whose metrics count from step `start`."""
     slopes = [
         event.slip_acceleration
@@ -146,7 +141,6 @@ def signals_of_run(
         np.array(slopes[:1]) if slopes else None,
         start,
         window_of(scenario),
-        engagements_a_day,
     )
 
 

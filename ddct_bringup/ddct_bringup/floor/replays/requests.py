@@ -80,11 +80,9 @@ def requests_near(
         if needed is not None:
             choice = replace(choice, deferred=choice.deferred & ~needed)
         return _least_peak(choice, rows[:, used], rows @ given, case.lock.time_s)
-    weights = objective.weights(signals)
-    if objective.sliding:
-        first = bound.stretch
-        rows = rows[first : first + len(weights)]
-    weighted = np.sqrt(weights)[:, np.newaxis] * rows
+    if objective.samples:
+        rows = rows[bound.stretch : bound.stretch + objective.samples]
+    weighted = rows / np.sqrt(len(rows))
     best = least_squares(
         weighted[:, used],
         weighted @ given,

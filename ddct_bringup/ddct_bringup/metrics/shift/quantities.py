@@ -7,14 +7,35 @@ from collections.abc import Callable
 import numpy as np
 
 from ddct_bringup.metrics.engagement import Engagement, Values
-from ddct_bringup.metrics.metric import Metric
+from ddct_bringup.metrics.metric import Metric, Null
 from ddct_bringup.metrics.shift.course import ShiftCourse
 from ddct_plant.program.table import PURE
 
 NO_SHIFT = 'the run is no gear shift'
-_NOT_BEGUN = f'{NO_SHIFT}, or ends before the shift starts'
-_NOT_HANDED_OVER = f'{NO_SHIFT}, or the share of the on-coming clutch never reaches 1'
-_NOT_LOCKED = f'{_NOT_HANDED_OVER}, or that clutch never locks'
+
+
+def _null(reason: str, holds: Callable[[ShiftCourse], bool]) -> Null:
+    """Return a condition on the course of a shift; it does not hold for other runs."""
+    return Null(
+        reason, lambda engagement: engagement.shift is not None and holds(engagement.shift)
+    )
+
+
+_NO_SHIFT = Null(NO_SHIFT, lambda engagement: engagement.shift is None)
+_NOT_BEGUN = (
+    _NO_SHIFT,
+    _null('the run ends before the shift starts', lambda course: not course.begun),
+)
+_NOT_HANDED_OVER = (
+    _NO_SHIFT,
+    _null(
+        'the share of the on-coming clutch never reaches 1', lambda course: not course.handed_over
+    ),
+)
+_NOT_LOCKED = (
+    *_NOT_HANDED_OVER,
+    _null('the on-coming clutch never locks', lambda course: course.lock_s is None),
+)
 
 
 def _of(
@@ -36,7 +57,7 @@ def _events(key: str, symbol: str, meaning: str, *, locks: bool, off_going: bool
         unit=PURE,
         form='.0f',
         meaning=f'{meaning} from the start of the shift on',
-        undefined=_NOT_BEGUN,
+        nulls=_NOT_BEGUN,
         value=_of(lambda course: count(course, off_going=off_going)),
         of_shift=True,
     )
@@ -50,10 +71,10 @@ QUANTITIES = (
         form='.3f',
         meaning='start of the shift to the first lock of the on-coming clutch in the inertia '
         'phase: torque phase and inertia phase together',
-        undefined=_NOT_LOCKED,
+        nulls=_NOT_LOCKED,
         value=_of(lambda course: course.shift_time_s),
         of_shift=True,
-        column=True,
+        figure=True,
     ),
     Metric(
         key='torque_phase_s',
@@ -61,10 +82,10 @@ QUANTITIES = (
         unit='s',
         form='.2f',
         meaning='start of the shift to the first tick whose share of C_fOL is 1',
-        undefined=_NOT_HANDED_OVER,
+        nulls=_NOT_HANDED_OVER,
         value=_of(lambda course: course.torque_phase_s),
         of_shift=True,
-        column=True,
+        figure=True,
     ),
     Metric(
         key='inertia_phase_s',
@@ -72,10 +93,10 @@ QUANTITIES = (
         unit='s',
         form='.3f',
         meaning='from that tick to the exact instant of the first lock of the on-coming clutch',
-        undefined=_NOT_LOCKED,
+        nulls=_NOT_LOCKED,
         value=_of(lambda course: course.inertia_phase_s),
         of_shift=True,
-        column=True,
+        figure=True,
     ),
     Metric(
         key='torque_dip_n_m',
@@ -84,7 +105,7 @@ QUANTITIES = (
         form='.0f',
         meaning='fall of the torque of the driveshaft at the wheels, from the start of the shift '
         'to its least until the lock',
-        undefined=_NOT_BEGUN,
+        nulls=_NOT_BEGUN,
         value=_of(lambda course: course.torque_dip),
         of_shift=True,
     ),
@@ -93,11 +114,18 @@ QUANTITIES = (
         symbol='relative dip',
         unit='%',
         form='.0f',
-        meaning='the same in % of that torque at the start; above 100 the car is braked',
-        undefined=f'{_NOT_BEGUN}, or that torque does not drive the car',
+        meaning='fall of the torque of the driveshaft until the lock, in % of that at the start '
+        'of the shift; above 100 the car is braked',
+        nulls=(
+            *_NOT_BEGUN,
+            _null(
+                'the wheel torque does not drive the car at the start of the shift',
+                lambda course: not (course.wheel_torque_before or 0.0) > 0.0,
+            ),
+        ),
         value=_of(lambda course: course.torque_dip_percent),
         of_shift=True,
-        column=True,
+        figure=True,
     ),
     Metric(
         key='flare_rad_s',
@@ -105,10 +133,16 @@ QUANTITIES = (
         unit='rad/s',
         form='.1f',
         meaning='largest rise of w_m above its speed in the off-going gear until the lock',
-        undefined=f'{_NOT_BEGUN}, or the shafts stand still there',
+        nulls=(
+            *_NOT_BEGUN,
+            _null(
+                'the shafts stand still at the start of the shift',
+                lambda course: course.flare is None,
+            ),
+        ),
         value=_of(lambda course: course.flare),
         of_shift=True,
-        column=True,
+        figure=True,
     ),
     Metric(
         key='tie_up_work_j',
@@ -117,10 +151,10 @@ QUANTITIES = (
         form='.0f',
         meaning='work of the clutches against each other: integral of the smaller torque times '
         'the difference of the shaft speeds while their torques have opposite signs',
-        undefined=_NOT_BEGUN,
+        nulls=_NOT_BEGUN,
         value=_of(lambda course: course.tie_up_work),
         of_shift=True,
-        column=True,
+        figure=True,
     ),
     Metric(
         key='off_going_friction_energy_j',
@@ -128,10 +162,9 @@ QUANTITIES = (
         unit='J',
         form='.0f',
         meaning='friction work of the off-going clutch, whole run',
-        undefined=NO_SHIFT,
+        nulls=(_NO_SHIFT,),
         value=_of(lambda course: np.sum(course.trajectory.off_going_friction_work)),
         of_shift=True,
-        column=True,
     ),
     Metric(
         key='on_coming_temperature_degc',
@@ -139,7 +172,7 @@ QUANTITIES = (
         unit='degC',
         form='.1f',
         meaning='highest temperature of the facing of the on-coming clutch',
-        undefined=NO_SHIFT,
+        nulls=(_NO_SHIFT,),
         value=_of(lambda course: np.max(course.trajectory.clutch_temperature)),
         of_shift=True,
     ),
@@ -149,7 +182,7 @@ QUANTITIES = (
         unit='degC',
         form='.1f',
         meaning='highest temperature of the facing of the off-going clutch',
-        undefined=NO_SHIFT,
+        nulls=(_NO_SHIFT,),
         value=_of(lambda course: np.max(course.trajectory.off_going_clutch_temperature)),
         of_shift=True,
     ),

@@ -3,8 +3,7 @@
 """
 Comfort of an engagement.
 
-Jerk, weighted acceleration and vibration dose act on a passenger; judder, shuffle and torque dip
-are oscillations of driveline and car.
+Jerk and weighted acceleration act on a passenger; judder is an oscillation of the driveline.
 """
 
 import math
@@ -20,8 +19,7 @@ from ddct_bringup.metrics.signals.filters import (
     forward_and_backward,
     forward_and_backward_within,
 )
-from ddct_bringup.metrics.signals.integrals import integral, running_integral
-from ddct_plant.base.timebase import PERIOD_S, STEPS_PER_S
+from ddct_plant.base.timebase import PERIOD_S
 
 _LOW_PASS_PADDING = 9
 """Number of samples that the jerk's filter adds at each end, that of `scipy.signal.filtfilt`."""
@@ -55,29 +53,11 @@ def weighted_acceleration(acceleration: np.ndarray) -> np.ndarray:
     return filtered(WEIGHTING, acceleration)
 
 
-def vibration_dose(weighted: np.ndarray) -> np.ndarray:
-    """Return the vibration dose value, the fourth root of the integral of a^4, in m/s^1.75."""
-    return integral(_fourth_power(weighted)) ** 0.25
-
-
-def strongest_stretch(weighted: np.ndarray, periods: int) -> tuple[np.ndarray, np.ndarray]:
-    """
-    Return the largest r.m.s. and the largest dose over all intervals of (..., n) `weighted`.
-
-    An interval has `periods` periods; `weighted` has at least as many. The maximum over all
-    intervals also includes late vibration.
-    """
+def strongest_stretch(weighted: np.ndarray, samples: int) -> np.ndarray:
+    """Return the largest r.m.s. of `samples` of (..., n) values in sequence, (...)."""
     before = np.zeros((*weighted.shape[:-1], 1))
     squares = np.cumsum(np.concatenate([before, weighted**2], axis=-1), axis=-1)
-    fourths = running_integral(_fourth_power(weighted))
-    means = (squares[..., periods + 1 :] - squares[..., : -periods - 1]) / (periods + 1)
-    doses = fourths[..., periods:] - fourths[..., :-periods]
-    return np.sqrt(np.max(means, axis=-1)), np.max(doses, axis=-1) ** 0.25
-
-
-def _fourth_power(values: np.ndarray) -> np.ndarray:
-    """Return a^4 by two multiplications; numpy's power of 4 takes many times as long."""
-    return np.square(np.square(values))
+    return np.sqrt(np.max(squares[..., samples:] - squares[..., :-samples], axis=-1) / samples)
 
 
 def judder_of(torsion_speed: np.ndarray, first: np.ndarray, after: np.ndarray) -> np.ndarray:
@@ -104,29 +84,3 @@ def judder_of(torsion_speed: np.ndarray, first: np.ndarray, after: np.ndarray) -
         means = [np.mean(row[:n] ** 2) for row, n in zip(passed, length[long], strict=True)]
         found[long] = np.sqrt(means)
     return found.reshape(np.shape(first))
-
-
-def shuffle_of(torsion_speed: np.ndarray, start: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """
-    Return amplitude and decay time of the (..., n) w_sr from sample `start`, (...), on.
-
-    The amplitude is the largest magnitude, in the unit of w_sr. The decay time in s is counted
-    from that sample until the magnitude stays below 1/e of it; NaN when the samples end before.
-    Both are NaN where no sample is left, or one is not finite.
-    """
-    samples = np.arange(torsion_speed.shape[-1])
-    counted = samples >= start[..., np.newaxis]
-    magnitude = np.where(counted, np.abs(torsion_speed), -1.0)
-    peak, largest = np.argmax(magnitude, axis=-1), np.max(magnitude, axis=-1)
-    above = magnitude >= largest[..., np.newaxis] / np.e
-    after = len(samples) - np.argmax(above[..., ::-1], axis=-1)
-    defined = counted[..., -1] & np.isfinite(magnitude).all(axis=-1)
-    decay = np.where(defined & (after < len(samples)), (after - peak) / STEPS_PER_S, math.nan)
-    return np.where(defined, largest, math.nan), decay
-
-
-def torque_dip(torque: np.ndarray) -> np.ndarray | None:
-    """Return the largest drop of the (..., n) torque below an earlier value, in its unit."""
-    if not torque.size:
-        return None
-    return np.max(np.maximum.accumulate(torque, axis=-1) - torque, axis=-1)

@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Every controller in every packaged scenario, new and worn: verdict and slip."""
+"""Every controller in every packaged scenario, new and worn: state, figures and slip."""
 
 import math
 from collections.abc import Sequence
@@ -21,7 +21,7 @@ from ddct_bringup.reproduction.studies.study import (
     identified_by,
 )
 from ddct_bringup.reproduction.study_run import THESIS_SCENARIO, StudyRun, study_run
-from ddct_bringup.verdict.state import SUCCESSES
+from ddct_bringup.verdict.state import ENGAGED
 from ddct_controllers.design.drawing.line_styles import BLACK, BLUE, GREY, VERMILLION
 from ddct_controllers.registry import own_controller_names
 from ddct_plant.base.timebase import PERIOD_S, time_of_step
@@ -60,24 +60,18 @@ class Slip:
     """Slip speed w_d in rpm, (N+1,)."""
 
 
-def criterion(run: StudyRun, name: str) -> float | int | None:
-    """Return the value of a criterion of a run."""
-    return run.verdict.values[name]
-
-
 def _together(run: StudyRun) -> float | None:
-    """Return the time to lock in s; t_a for a clutch that never locks."""
-    name = 'time_to_lock' if run.settings.stick_slip else 'engagement_time'
-    return criterion(run, name)
+    """Return the time to the final lock in s; t_a for a clutch that never locks."""
+    name = 'time_to_final_lock_s' if run.settings.stick_slip else 'engagement_time_s'
+    return run.scores.metrics[name]
 
 
 COLUMNS: tuple[StudyColumn, ...] = (
-    Column('state', '', lambda run: run.verdict.state),
-    Column('limits', '', lambda run: run.verdict.limits),
+    Column('state', '', lambda run: run.scores.state),
     Column('lock s', '.2f', _together),
     Column('friction kJ', '.1f', friction_kj),
-    Column('releases', '.0f', partial(criterion, name='releases_after_lock')),
-    Column('peak jerk m/s^3', '.1f', partial(criterion, name='peak_jerk')),
+    Column('releases', '.0f', lambda run: run.scores.metrics['releases']),
+    Column('peak jerk m/s^3', '.1f', lambda run: run.scores.metrics['peak_jerk_m_s3']),
 )
 
 
@@ -88,7 +82,7 @@ def engagement(case: Case) -> tuple[tuple[str, ...], Slip]:
     run = study_run(settings, controller)
     label = f'{wear_gain:g}'
     row = (label, controller, *cells(COLUMNS, run))
-    return row, Slip(controller, label, run.verdict.state, run.start, run.slip_rpm)
+    return row, Slip(controller, label, run.scores.state, run.start, run.slip_rpm)
 
 
 def _engagements(scenario: str, clutch: str) -> Study:
@@ -154,8 +148,8 @@ def _draw(axes: 'Axes', panel: Sequence[Slip]) -> None:
 
 
 def _range(slips: Sequence[Slip]) -> tuple[float, float]:
-    """Return the range in rpm of the panels: of (nearly) engaged runs, or of all without one."""
-    together = [slip.rpm for slip in slips if slip.state in SUCCESSES]
+    """Return the range in rpm of the panels: of engaged runs, or of all without one."""
+    together = [slip.rpm for slip in slips if slip.state == ENGAGED]
     shown = together or [slip.rpm for slip in slips]
     low, high = min(rpm.min() for rpm in shown), max(rpm.max() for rpm in shown)
     margin = MARGIN * (high - low)

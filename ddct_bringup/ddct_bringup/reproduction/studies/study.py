@@ -99,8 +99,8 @@ def deviation_range(trajectory: Trajectory) -> str:
 
 
 def friction_kj(run: StudyRun) -> float | None:
-    """Return the friction work of the clutch in kJ."""
-    energy = run.metrics['friction_energy_j']
+    """Return the friction work of the clutch from control start on in kJ."""
+    energy = run.metrics['friction_work_j']
     return None if energy is None else energy / 1000.0
 
 
@@ -147,7 +147,7 @@ _UNDEFINED = {
     ),
     'lock s': 'the clutch does not lock, or w_d does not reach zero',
     'peak jerk m/s^3': METRICS['peak_jerk_m_s3'].undefined,
-    'friction kJ': METRICS['friction_energy_j'].undefined,
+    'friction kJ': METRICS['friction_work_j'].undefined,
     'releases': 'the clutch never locked, or cannot',
     'value': 'w_d does not reach zero',
     **dict.fromkeys(

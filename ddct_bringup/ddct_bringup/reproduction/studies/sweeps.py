@@ -19,6 +19,7 @@ from ddct_bringup.reproduction.studies.study import (
     run_study,
 )
 from ddct_bringup.reproduction.study_run import (
+    SLIP_ERROR,
     THESIS_SCENARIO,
     StudyRun,
     study_run,
@@ -71,7 +72,7 @@ def torsion_weight() -> Study:
         ('weight per rpm', 'times that of w_d'),
         (
             *TABLE_5_1,
-            metric_column(METRICS['slip_rmse_rpm'], '.2f', 'slip RMSE rpm'),
+            metric_column(SLIP_ERROR, '.2f', 'slip RMSE rpm'),
             metric_column(METRICS['slip_final_rpm'], 'z.2f', 'w_d at the end rpm'),
         ),
         [_torsion_case(factor) for factor in sorted((*TORSION_FACTORS, DEFAULT_FACTOR))],

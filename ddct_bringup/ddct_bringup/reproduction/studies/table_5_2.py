@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from ddct_bringup.reproduction.numbers.thesis_number import Finding
 from ddct_bringup.reproduction.studies.study import FINER_WEAR_GAINS, Study, identified_by
-from ddct_bringup.reproduction.study_run import THESIS_SCENARIO, study_run
+from ddct_bringup.reproduction.study_run import THESIS_SCENARIO, StudyRun, study_run
 from ddct_bringup.reproduction.values.orders import (
     OSCILLATION_RATINGS,
     SLIP_RATINGS,
@@ -19,7 +19,7 @@ from ddct_bringup.reproduction.values.orders import (
     ratings_of,
     rows_of_table_5_2,
 )
-from ddct_bringup.verdict.state import NOT_ENGAGED, SUCCESSES
+from ddct_bringup.verdict.state import ENGAGED, NOT_ENGAGED
 from ddct_plant.models.clutch import CLUTCHES
 from ddct_plant.scenario.settings import RunSettings
 
@@ -39,7 +39,7 @@ class RatedRow:
     acceleration_std_m_s2: float
     """Standard deviation of A_x in m/s^2."""
     state: str
-    """State of the run in its verdict."""
+    """State of the run."""
     slip_rating: str
     """Rating of w_d by the rule of `ratings_of`; the next two are those of w_sr and A_x."""
     torsion_rating: str
@@ -102,9 +102,9 @@ def rated_rows(clutch: str, wear_gain: float) -> list[RatedRow]:
     """Return the rated runs of the table's controllers with a clutch and a wear gain."""
     settings = RunSettings(THESIS_SCENARIO, WORN_ARCHITECTURE, clutch=clutch, wear_gain=wear_gain)
     runs = {name: study_run(settings, name) for name in SLIP_RATINGS}
-    states = {name: run.verdict.state for name, run in runs.items()}
+    states = {name: run.scores.state for name, run in runs.items()}
     slips, torsion, acceleration = rows_of_table_5_2(runs)
-    ranked = [_with_states(row, states) for row in (slips, torsion, acceleration)]
+    ranked = [_of_sound(row, runs) for row in (slips, torsion, acceleration)]
     slip_words, torsion_words, acceleration_words = (ratings_of(row) for row in ranked)
     judged = judge_table_5_2(wear_gain, ranked) if wear_gain in WORN else {}
     return [
@@ -128,12 +128,17 @@ def rated_rows(clutch: str, wear_gain: float) -> list[RatedRow]:
     ]
 
 
-def _with_states(row: Row, states: Mapping[str, str]) -> Row:
+def _of_sound(row: Row, runs: Mapping[str, StudyRun]) -> Row:
     """Return the values, infinite for a failed run: a small one is no good result there."""
-    return {
-        name: value if states[name] in (*SUCCESSES, NOT_ENGAGED) else math.inf
-        for name, value in row.items()
-    }
+    return {name: value if _is_sound(runs[name]) else math.inf for name, value in row.items()}
+
+
+def _is_sound(run: StudyRun) -> bool:
+    """Return whether a run engaged, or at least ends with less slip than control begins with."""
+    slip = abs(run.slip_rpm)
+    return run.scores.state == ENGAGED or (
+        run.scores.state == NOT_ENGAGED and bool(slip[-1] < slip[run.start])
+    )
 
 
 def _holds(judged: Mapping[str, Finding], name: str) -> bool | None:

@@ -8,7 +8,7 @@ of each is in its entry of the gate's files: a strict order, or one by a factor.
 """
 
 from ddct_bringup.reproduction.numbers.thesis_number import Finding, Value
-from ddct_bringup.reproduction.study_run import thesis_run
+from ddct_bringup.reproduction.study_run import SLIP_ERROR, thesis_run
 from ddct_bringup.reproduction.values.orders import (
     CLEARLY,
     SLIP_RATINGS,
@@ -32,7 +32,7 @@ H_INFINITY = ('hinf1', 'hinf2', 'hinf3')
 PREDICTIVE = ('mpc1', 'mpc2', 'mpc3')
 NOT_REACHED = 'not reached'
 """Text in place of t_a when w_d does not become 0."""
-_ERROR = 'slip_rmse_rpm'
+_ERROR = SLIP_ERROR.key
 _FREQUENCY, _PREDICTIVE = ('ls8', 'hinf1'), ('mpc3', 'mpc4')
 _SIMILAR = 0.25
 """Relative distance within which two values are similar: the tolerance of a prediction."""

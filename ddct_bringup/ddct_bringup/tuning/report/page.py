@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from markupsafe import Markup
 
+from ddct_bringup.benchmark.report.texts import figure_name
 from ddct_bringup.campaign_report.texts import p_text
 from ddct_bringup.report.page_parts import MARKER, number_text, page_part, page_template
 from ddct_bringup.tuning.report import texts
@@ -66,6 +67,7 @@ def tuning_page(
         sensitivity=sensitivity,
         notes=list(texts.notes_of(result)),
         texts=texts,
+        figure_name=figure_name,
         p_text=p_text,
         number_text=number_text,
         facts=facts,

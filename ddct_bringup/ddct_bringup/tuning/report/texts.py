@@ -4,11 +4,10 @@
 
 from collections.abc import Iterator, Mapping
 
-from ddct_bringup.benchmark.gaps import OF_QUANTITIES, OF_SHARES, SUCCESS
+from ddct_bringup.benchmark.report.texts import RULES as BENCHMARK_RULES
 from ddct_bringup.report.page_parts import number_text
 from ddct_bringup.tuning.result import GoalEntry, TuningResult
 from ddct_bringup.tuning.sensitivity import FEWEST
-from ddct_bringup.tuning.specification.goals import KNOWN
 
 RULES = {
     'development': 'The cases on which the trials ran. The search has chosen among many trials by '
@@ -25,16 +24,9 @@ RULES = {
     'explains': 'The share of the variance of the ranks of all trials that the parameter explains '
     'by itself. The search tries good values more often, so that the share is that of the trials, '
     'not of the whole range.',
-    'gap': f'{OF_SHARES} for the share of successes, {OF_QUANTITIES} for the quantities of '
-    'engaged runs; p is below 0.05 over the number of figures where the difference is beyond '
-    'chance.',
+    'gap': BENCHMARK_RULES['gap'],
 }
 """Definitions by term."""
-
-
-def gap_name(name: str) -> str:
-    """Return the name of a gap in texts."""
-    return 'share of successes' if name == SUCCESS else KNOWN[name].symbol
 
 
 def goal_text(goal: GoalEntry, values: Mapping[str, float | None]) -> str:
@@ -48,7 +40,7 @@ def notes_of(result: TuningResult) -> Iterator[str]:
     if best['held_out'] and not best['held_out']['keeps_constraints']:
         yield 'the best trial keeps the constraints on development cases, not on held-out ones'
     if any(each['differs'] for each in result['gaps']):
-        yield 'the best trial differs on held-out cases beyond chance'
+        yield 'the best trial is worse on held-out cases, beyond chance'
     if result['before'] is None:
         yield 'the values from before are outside of the ranges, and were not tried'
     if result['trials'] < FEWEST:

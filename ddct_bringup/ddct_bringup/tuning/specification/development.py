@@ -102,11 +102,11 @@ class Development:
         content = with_places(self.content, lambda name: os.path.relpath(old / name, new))
         return replace(self, content=content)
 
-    def campaign(self, controller: str, folder: Path, floors: Sequence[str]) -> Campaign:
+    def campaign(self, controller: str, folder: Path, *, floors: bool) -> Campaign:
         """Return the campaign that contains the cases; files are relative to `folder`."""
         content = {**self.content, CONTROLLERS: [controller]}
         if floors:
-            content[FLOORS] = list(floors)
+            content[FLOORS] = True
         with located(CAMPAIGN):
             return Campaign(spec_of(content, folder))
 
@@ -124,12 +124,12 @@ class Development:
         return sorted(chosen, key=lambda case: (case % campaign.samples, case))
 
     def held_out(
-        self, controllers: Sequence[str], folder: Path, seed: int, floors: Sequence[str]
+        self, controllers: Sequence[str], folder: Path, seed: int, *, floors: bool
     ) -> Campaign:
         """Return the campaign of held-out cases: drawn in the same way, from another seed."""
         content = {**self.content, CONTROLLERS: list(controllers), ROOT_SEED: seed}
         if floors:
-            content[FLOORS] = list(floors)
+            content[FLOORS] = True
         if self.scenarios:
             content[GRID] = {**content[GRID], SCENARIO: list(self.scenarios)}
             random = content[RANDOM]

@@ -8,10 +8,9 @@ from typing import Any, Final, Literal
 
 import numpy as np
 
+from ddct_bringup.campaign.rows import STATE
 from ddct_bringup.campaign.specification.parts import mapping_of
 from ddct_bringup.campaign_report.evaluated_quantities import QUANTITIES
-from ddct_bringup.floor.values import METRICS as FLOOR_METRICS
-from ddct_bringup.scores.csv_text import OVER_FLOOR
 from ddct_plant.base.errors import ParameterError, require_choice, require_number
 from ddct_plant.base.options import require_known
 from ddct_plant.program.table import PURE, Quantity
@@ -28,12 +27,6 @@ _OTHERS = (
     Quantity(SENSITIVITY_PEAK, 'corner M_s', PURE, '.2f', 'largest M_s over all corners'),
     Quantity(
         UPDATE_TIME, 'update time over pi', PURE, '.2f', 'median update time over that of pi'
-    ),
-    *(
-        Quantity(
-            f'{OVER_FLOOR}{name}', f'{name} over the least', PURE, '.2f', 'ratio to the floor'
-        )
-        for name in FLOOR_METRICS
     ),
 )
 KNOWN: Mapping[str, Quantity] = {each.key: each for each in (*QUANTITIES, *_OTHERS)}
@@ -64,7 +57,7 @@ class RunColumns:
         cls, rows: Sequence[Mapping[str, Any]], goals: Iterable['Goal'], left: int
     ) -> 'RunColumns':
         """Return the columns of rows of a campaign."""
-        engaged = np.array([row['verdict_state'] == ENGAGED for row in rows], dtype=bool)
+        engaged = np.array([row[STATE] == ENGAGED for row in rows], dtype=bool)
         names = {goal.name for goal in goals if goal.of_runs and goal.name != ENGAGED}
         values = {
             name: np.abs(np.array([row[name] for row in rows], dtype=float)) for name in names

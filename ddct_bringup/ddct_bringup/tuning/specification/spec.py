@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from ddct_bringup.campaign.specification.parts import ROOT_SEED, mapping_of
-from ddct_bringup.scores.csv_text import OVER_FLOOR
+from ddct_bringup.metrics.catalogue import JERK_OVER_LEAST
 from ddct_bringup.tuning.specification.development import CAMPAIGN, Development
 from ddct_bringup.tuning.specification.goals import (
     CONSTRAINTS,
@@ -57,10 +57,9 @@ class TuningSpec:
         return (*self.objectives, *(each.goal for each in self.constraints))
 
     @property
-    def floors(self) -> list[str]:
-        """Metrics whose floors the goals need."""
-        names = [goal.name for goal in self.goals if goal.name.startswith(OVER_FLOOR)]
-        return list(dict.fromkeys(name.removeprefix(OVER_FLOOR) for name in names))
+    def floors(self) -> bool:
+        """Whether a goal needs the least peak jerk of the cases."""
+        return any(goal.name == JERK_OVER_LEAST.key for goal in self.goals)
 
     def text(self) -> str:
         """Return the specification as canonical text, independent of its formatting."""

@@ -12,7 +12,7 @@ from made_scores import made_scores
 from ddct_bringup.reproduction.numbers.number_files import thesis_numbers
 from ddct_bringup.scores.comparison_table import print_comparison
 from ddct_bringup.thesis import predictions
-from ddct_bringup.thesis.predictions import Prediction, Predictions
+from ddct_bringup.thesis.predictions import Prediction, Predictions, predicted_range
 from ddct_bringup.thesis.table_5_1 import (
     PREDICTED,
     PREDICTION_TOLERANCE,
@@ -40,11 +40,6 @@ def run(controller, figures=VALUES):
     return made_scores(controller, **dict(zip(names, figures, strict=True)))
 
 
-@pytest.fixture(autouse=True)
-def kept(monkeypatch):
-    monkeypatch.setattr(predictions, 'kept_predictions', lambda: KEPT)
-
-
 def printed(*runs, settings=None, overrides=()):
     stream = io.StringIO()
     print_comparison(runs, settings or RunSettings(THESIS), overrides, stream)
@@ -52,22 +47,36 @@ def printed(*runs, settings=None, overrides=()):
     return [' '.join(line.split()) for line in text.splitlines()]
 
 
-def test_predicted_row_has_value_and_range_print_and_verdict():
+def row_of(lines, controller):
+    """Return the words of the row of a controller, with those below its first line."""
+    place = next(place for place, line in enumerate(lines) if line.split()[:1] == [controller])
+    further = lines[place + 1] if lines[place + 1] in ('hit', 'miss') else ''
+    return [*lines[place].split(), *further.split()]
+
+
+def test_a_predicted_row_has_value_and_print_and_is_a_miss_where_one_value_is():
     lines = printed(run('mpc3'))
-    row = lines.index('mpc3 0.620 0.63 1.200 0.90 0.190 0.19 predicted - - invalid yes')
-    assert lines[row + 1] == '0.550 to - hit 0.50 to 1.50 miss 0.300 to 0.300 hit'
-    assert 'below the print hit (within 25 % of it) or miss.' in ' '.join(lines)
+    row = row_of(lines, 'mpc3')
+    assert row[1:8] == ['0.620', '0.63', '1.200', '0.90', '0.190', '0.19', 'predicted,']
+    assert row[-2:] == ['engaged', 'miss']
+    assert 'a hit within 25 % in all three values.' in ' '.join(lines)
+
+
+def test_a_predicted_row_is_a_hit_where_all_three_values_are():
+    assert row_of(printed(run('mpc3', (0.62, 0.9, 0.19))), 'mpc3')[-1] == 'hit'
 
 
 def test_undefined_value_is_a_miss():
-    lines = printed(run('mpc3', (None, 0.9, 0.19)))
-    assert '0.550 to - miss 0.50 to 1.50 hit 0.300 to 0.300 hit' in lines
+    assert row_of(printed(run('mpc3', (None, 0.9, 0.19))), 'mpc3')[-1] == 'miss'
 
 
-def test_calibrated_row_and_a_controller_without_a_row_have_neither():
+def test_calibrated_row_and_a_controller_without_a_row_neither_hit_nor_miss():
     lines = printed(run('pi'), run('ls1'))
-    row = lines.index('pi 0.620 0.88 1.200 0.70 0.190 0.18 calibrated - - invalid failed yes')
-    assert lines[row + 1] == 'ls1 0.620 - 1.200 - 0.190 - - - - invalid failed yes'
+    assert row_of(lines, 'pi')[1:8] == [
+        *('0.620', '0.88', '1.200', '0.70', '0.190', '0.18', 'calibrated')
+    ]
+    assert row_of(lines, 'ls1')[1:8] == ['0.620', '-', '1.200', '-', '0.190', '-', '-']
+    assert not {'hit', 'miss'} & {*' '.join(lines).partition('thesis:')[0].split()}
 
 
 @pytest.mark.parametrize(
@@ -82,15 +91,18 @@ def test_calibrated_row_and_a_controller_without_a_row_have_neither():
 )
 def test_nothing_of_the_thesis_is_shown_under_other_conditions(settings):
     lines = printed(run('mpc3'), settings=settings)
-    assert 'mpc3 0.620 1.200 0.190 - - invalid failed yes' in lines
-    assert not any('to' in line.split() or 'thesis:' in line for line in lines)
+    assert row_of(lines, 'mpc3')[1:4] == ['0.620', '1.200', '0.190']
+    assert '0.90' not in row_of(lines, 'mpc3')
+    assert not any('predicted' in line or 'thesis:' in line for line in lines)
 
 
-def test_no_range_is_shown_for_a_packaged_scenario_that_is_not_the_one_predicted_in(monkeypatch):
+def test_a_prediction_has_its_range_in_the_scenario_that_it_is_of_alone(monkeypatch):
+    monkeypatch.setattr(predictions, 'kept_predictions', lambda: KEPT)
+    ranges = [predicted_range('mpc3', name) for name in TABLE_METRICS]
+    assert ranges == ['0.550 to -', '0.50 to 1.50', '0.300 to 0.300']
     other = dataclasses.replace(KEPT, scenario_digest='another')
     monkeypatch.setattr(predictions, 'kept_predictions', lambda: other)
-    lines = printed(run('mpc3'))
-    assert 'hit miss hit' in lines
+    assert not any(predicted_range('mpc3', name) for name in TABLE_METRICS)
 
 
 @pytest.mark.parametrize(

@@ -80,7 +80,7 @@ def range_of_panels(*states: str) -> tuple[float, float]:
 
 def test_the_panels_leave_a_margin_around_engaged_runs_and_no_room_for_others():
     assert range_of_panels('engaged', 'engaged', 'engaged') == pytest.approx((-35.0, 95.0))
-    assert range_of_panels('engaged', 'runaway', 'runaway') == pytest.approx((-35.0, 95.0))
+    assert range_of_panels('engaged', 'not_engaged', 'not_engaged') == pytest.approx((-35.0, 95.0))
 
 
 def test_unknown_study_is_refused_before_the_work(capsys):

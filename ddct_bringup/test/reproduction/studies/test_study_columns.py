@@ -12,5 +12,5 @@ from ddct_bringup.reproduction.studies.study import friction_kj
 
 @pytest.mark.parametrize(('energy_j', 'energy_kj'), [(12300.0, 12.3), (0.0, 0.0), (None, None)])
 def test_the_friction_work_is_the_metric_in_kj_and_none_without_it(energy_j, energy_kj):
-    run: Any = SimpleNamespace(metrics={'friction_energy_j': energy_j})
+    run: Any = SimpleNamespace(metrics={'friction_work_j': energy_j})
     assert friction_kj(run) == energy_kj
