@@ -59,6 +59,18 @@ def test_texts_that_are_no_utf_8_are_refused(tmp_path: Path) -> None:
         read_parquet(file)
 
 
+def test_a_file_with_more_rows_than_it_states_is_refused(tmp_path: Path) -> None:
+    """The number of rows is 16 and twice its value in the footer, whose length is at the end."""
+    file = tmp_path / 'results.parquet'
+    parquet.write_table(pa.table({'index': list(range(50))}), file)
+    content = file.read_bytes()
+    footer = len(content) - 8 - int.from_bytes(content[-8:-4], 'little')
+    place = content.index(b'\x16\x64', footer)
+    file.write_bytes(content[:place] + b'\x16\x62' + content[place + 2 :])
+    with pytest.raises(pa.ArrowInvalid, match='it has more rows than 49, which it states'):
+        read_parquet(file)
+
+
 @pytest.fixture
 def nothing_is_read(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let reading rows fail, so that a file is refused by its metadata or not at all."""

@@ -6,6 +6,7 @@ from importlib.resources import files
 
 import numpy as np
 import pytest
+from made_run import made_run
 from refusals import refused
 from scored_metrics import SCORED
 
@@ -17,16 +18,18 @@ from ddct_bringup.floor.control_start import control_start
 from ddct_bringup.floor.floor import floor_of, floors_of_run
 from ddct_bringup.floor.friction_work import least_friction_work
 from ddct_bringup.floor.front import least_lock_time
-from ddct_bringup.floor.lock import lock_of
+from ddct_bringup.floor.lock import Lock, final_lock_of, lock_of
 from ddct_bringup.floor.point import point_of
 from ddct_bringup.floor.program.linear_program import RAY
 from ddct_bringup.floor.program.one_thread import thread_counts
+from ddct_bringup.floor.replays import attained, replay
 from ddct_bringup.floor.values import METRICS, OF_STICK_SLIP, value_of
 from ddct_bringup.run.execution import recording_in_memory
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.scores.scoring import score_run
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.scenario.file import ScenarioFile, load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
@@ -124,6 +127,28 @@ def test_a_worn_clutch_has_the_same_floor_as_its_requests_are_free(wear_gain):
     floor = floor_of(settings_of(wear_gain=wear_gain), 'peak_jerk', 1.1)
     assert floor.attained >= floor.least > 0.0
     assert floor.gap < 5.0
+
+
+def test_after_two_replays_that_do_not_lock_as_the_floor_has_it_there_is_no_third(monkeypatch):
+    replays = []
+
+    def replayed(case, requests):
+        replays.append(requests)
+        return replay.replayed(case, requests)
+
+    monkeypatch.setattr(attained, 'replayed', replayed)
+    monkeypatch.setattr(attained, '_locks', lambda case, run: False)
+    floor = floor_of(settings_of(), 'peak_jerk', 0.9)
+    assert floor.least > 0.0 and floor.attained is None
+    assert len(replays) == 2
+    assert not np.array_equal(*replays)
+
+
+def test_only_a_linear_clutch_that_was_outside_its_band_locks_when_it_settles():
+    slip_rpm = np.zeros(200)
+    assert final_lock_of(made_run(slip_rpm), 0, RULES) is None
+    slip_rpm[0] = 300.0
+    assert final_lock_of(made_run(slip_rpm), 0, RULES) == Lock(PERIOD_S)
 
 
 def test_a_floor_is_computed_once_and_then_read_from_the_cache(monkeypatch):

@@ -234,6 +234,10 @@ def test_phases_change_at_the_instants_of_their_events():
     ]
 
 
+def test_each_phase_is_clearly_more_opaque_than_the_one_before_it():
+    assert np.diff([OPACITY[phase] for phase in ('open', 'slipping', 'locked')]).min() >= 0.3
+
+
 def test_each_phase_is_shaded_in_its_own_way_with_the_events_on_it(both):
     shade, locks, releases = both[LANES].renderers
     source = shade.data_source.data

@@ -158,6 +158,12 @@ def test_a_measured_state_without_an_actuator_in_the_model():
     assert figures['acceleration_std_m_s2'] == pytest.approx(0.012, abs=5e-4)
 
 
+def test_a_reading_previews_the_reference_where_its_name_says_so():
+    previewed = {name for name, each in READINGS.items() if each.settings.preview}
+    assert previewed == {name for name in READINGS if 'coming reference' in name}
+    assert len(previewed) == 3
+
+
 @pytest.mark.parametrize('reading', sorted(set(READINGS) - {NO_DELAY}))
 def test_no_reading_is_stable_with_every_clutch_of_table_5_2(reading):
     assert READINGS[reading].growth(1.0) < 1.0 + 1e-9

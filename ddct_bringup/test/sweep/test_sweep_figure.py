@@ -79,6 +79,14 @@ def test_each_other_run_has_a_cross_within_the_panel(panel):
     assert high < 8.0
 
 
+@pytest.mark.parametrize(
+    ('value', 'limits'), [(0.0, (-0.5, 0.5)), (2.0, (1.0, 3.0)), (-2.0, (-3.0, -1.0))]
+)
+def test_a_panel_whose_runs_have_one_value_has_it_in_the_middle(value, limits):
+    panel = drawn(['wear_gain=0.8,1.2'], ['pi'], [(ENGAGED, value)] * 2).axes[0]
+    assert panel.get_ylim() == limits
+
+
 def test_a_panel_has_symbol_and_unit_as_they_are_printed(panel):
     assert panel.get_ylabel() == 't_a, s'
 

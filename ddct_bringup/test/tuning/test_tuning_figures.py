@@ -38,6 +38,14 @@ def test_each_trial_is_at_its_two_objectives() -> None:
     np.testing.assert_array_equal(axes.collections[0].get_offsets(), np.fliplr(VALUES))
 
 
+@pytest.mark.parametrize('before', [None, FRONT[0]], ids=['none', 'a trial'])
+def test_the_legend_names_the_values_of_before_only_where_there_are_some(before: Any) -> None:
+    result: Any = {**RESULT, 'before': before}
+    (legend,) = front_figure(result, TRIALS, 0, 1).legends
+    named = 'before' in [text.get_text() for text in legend.get_texts()]
+    assert named == (before is not None)
+
+
 @pytest.mark.parametrize('goal', [TIME, WORK], ids=['time', 'work'])
 def test_the_panel_of_a_parameter_has_all_but_the_highest_tenth_of_the_trials(goal: Any) -> None:
     (panel,) = sensitivity_figure(RESULT, TRIALS, goal).axes

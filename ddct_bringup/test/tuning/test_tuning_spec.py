@@ -76,6 +76,7 @@ GOOD: dict[str, Any] = {
         ('campaign', {'benchmark': 'all', 'samples': 99}, 'campaign.samples'),
         ('trials', 0, 'trials'),
         ('seed', -1, 'seed'),
+        ('seed', 2**31, 'seed'),
         ('trial', 5, 'trial'),
     ],
 )

@@ -116,6 +116,14 @@ def test_a_folder_that_cannot_be_made_is_named(tmp_path, capsys):
     assert 'cannot be made (Not a directory)' in capsys.readouterr().err
 
 
+def test_a_margin_of_a_design_is_not_specified_and_the_table_has_the_reason(capsys):
+    assert main([*OWN, '--disturbance', 'none']) == 0
+    lines = [' '.join(line.split()) for line in capsys.readouterr().out.splitlines()]
+    for quantity in ('phase', 'gain', 'delay'):
+        assert any(line.startswith(f'{quantity} margin - ') for line in lines)
+    assert '- follows from the others' in lines
+
+
 def test_a_ramp_disturbance_needs_two_integrators_and_none_needs_none(capsys):
     for disturbance, integrators in (('ramp', 2), ('none', 0)):
         assert main([*OWN, '--disturbance', disturbance, '--json', '-']) == 0

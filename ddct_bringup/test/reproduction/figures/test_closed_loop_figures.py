@@ -9,15 +9,22 @@ import pytest
 from tight_tolerance import tight_tolerance_run
 
 from ddct_bringup.metrics.metric import Metrics
+from ddct_bringup.reproduction.figures import run_figures
 from ddct_bringup.reproduction.figures.command import (
     NOT_DRAWN,
     collect_figures,
 )
 from ddct_bringup.reproduction.figures.thesis_figure import figure_order
-from ddct_bringup.reproduction.study_run import THESIS_SCENARIO, thesis_run
+from ddct_bringup.reproduction.study_run import (
+    THESIS_SCENARIO,
+    StudyRun,
+    study_run,
+    thesis_run,
+)
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.thesis.table_5_1 import thesis_row
 from ddct_plant.base.units import rpm_from_rad_s
+from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
 if TYPE_CHECKING:
@@ -73,6 +80,20 @@ def test_wear_figure_shows_hinf2_at_both_ends_of_the_wear():
         label = f'H∞2 (K_usura = {wear:g})'
         np.testing.assert_array_equal(shown[label][1], rpm_from_rad_s(run.slip_speed[50:]))
         assert abs(shown[label][1][-1]) < 1.0
+
+
+def test_the_time_axis_ends_with_the_longest_run(monkeypatch):
+    """A run ends early where the engine stalls, as a controller of one's own may let it."""
+
+    def run_of(controller: str, architecture: str, wear_gain: float) -> StudyRun:
+        scenario = load_scenario('thesis', ['duration_s=1.0'] if wear_gain < 1.0 else [])
+        return study_run(RunSettings(scenario, architecture, wear_gain=wear_gain), controller)
+
+    monkeypatch.setattr(run_figures, 'thesis_run', run_of)
+    axes = drawing('5.1')[0].axes[0]
+    ends = [x[-1] for x, _ in lines(axes).values()]
+    assert min(ends) == 1.0
+    assert axes.get_xlim() == (0.5, max(ends)) == (0.5, THESIS_SCENARIO.duration_s)
 
 
 def torsion_std_rpm(controller: str, architecture: str) -> float:

@@ -17,6 +17,7 @@ from ddct_controllers.design.drawing.chart_style import (
     save_figure,
 )
 from ddct_controllers.design.drawing.charts import (
+    draw_bound,
     draw_nichols,
     draw_step_response,
     write_design_charts,
@@ -76,6 +77,13 @@ def test_a_reference_across_the_panel_is_no_data():
     headings = [heading for heading, _ in figure_data(figure)]
     assert len(headings) == 2
     assert headings[0] == 'Time, s'
+
+
+def test_a_chart_with_a_bound_has_all_frequencies_between_its_edges():
+    _, (axes,) = new_chart('|S|')
+    omega = np.geomspace(0.1, 100.0, 4)
+    draw_bound(axes, omega, {'S': omega / (omega + 1.0)}, ('bound', np.full(4, 1.2)))
+    assert axes.get_xlim() == (0.1, 100.0)
 
 
 def test_the_step_chart_has_lines_at_the_specified_rise_time_and_overshoot(monkeypatch, tmp_path):
