@@ -3,6 +3,7 @@
 """The tiers are kept apart: `make test-fast` fails a test of another, none runs a nightly one."""
 
 import os
+import re
 import subprocess
 import sys
 from collections.abc import Callable
@@ -28,9 +29,14 @@ def run(tmp_path: Path) -> Run:
             (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
             (tmp_path / name).write_text(text)
         done = subprocess.run(
-            [sys.executable, '-m', 'pytest', '-q', *options],
+            [sys.executable, '-m', 'pytest', '-q', '-rA', *options],
             cwd=tmp_path,
-            env={**os.environ, 'PYTHONPATH': str(ROOT / 'tests' / 'plugins')},
+            env={
+                **os.environ,
+                'PYTHONPATH': str(ROOT / 'tests' / 'plugins'),
+                'PYTEST_DISABLE_PLUGIN_AUTOLOAD': '1',
+                'COLUMNS': '200',
+            },
             capture_output=True,
             text=True,
             check=False,
@@ -41,62 +47,65 @@ def run(tmp_path: Path) -> Run:
 
 
 EXCLUDED = {
-    'starts a process': "import subprocess\ndef test_a(): subprocess.run(['true'])\n",
-    'forks': 'import os\ndef test_a():\n    if os.fork() == 0: os._exit(0)\n    os.wait()\n',
-    'sleeps in test_a.py': 'import time\ndef test_a(): time.sleep(0.0)\n',
-    'reads the wall clock in test_a.py': 'import time\ndef test_a(): time.monotonic()\n',
-    'its file took': (
+    'process': "import subprocess\ndef test_a(): subprocess.run(['true'])\n",
+    'fork': 'import os\ndef test_a():\n    if os.fork() == 0: os._exit(0)\n    os.wait()\n',
+    'sleep': 'import time\ndef test_a(): time.sleep(0.0)\n',
+    'clock': 'import time\ndef test_a(): time.monotonic()\n',
+    'bound_clock': 'from time import time\ndef test_a(): time()\n',
+    'long': (
         'import time\n'
         'def test_a():\n'
         '    end_s = time.process_time() + 1.01\n'
         '    while time.process_time() < end_s: pass\n'
     ),
 }
-
-
-@pytest.mark.parametrize('what', EXCLUDED)
-def test_a_fast_test_that_needs_another_tier_fails(run: Run, what: str) -> None:
-    files = {'tests/test_a.py': EXCLUDED[what]}
-    found = run(files, '--fast-tier')
-    assert what in found
-    assert '1 failed' in found
-    assert '1 passed' in run(files)
-
-
-def test_the_clock_is_watched_where_a_module_has_bound_it(run: Run) -> None:
-    text = 'from time import time\ndef test_a(): time()\n'
-    assert 'reads the wall clock' in run({'tests/test_a.py': text}, '--fast-tier')
-
-
-def test_a_library_may_read_the_clock_and_a_test_may_measure_what_a_step_takes(run: Run) -> None:
-    text = (
+"""Tests of other tiers, by the names of their files."""
+REASONS = {
+    'process': 'starts a process',
+    'fork': 'forks',
+    'sleep': 'sleeps in test_sleep.py',
+    'clock': 'reads the wall clock in test_clock.py',
+    'bound_clock': 'reads the wall clock in test_bound_clock.py',
+    'long': 'its file took',
+}
+ALLOWED = {
+    'library': (
         'import logging, time\n'
         'def test_a():\n'
         "    logging.getLogger().error('it has the time of the wall clock')\n"
         '    assert time.perf_counter() <= time.perf_counter()\n'
-    )
-    assert '1 passed' in run({'tests/test_a.py': text}, '--fast-tier')
-
-
-def test_a_test_with_a_marker_is_left_out(run: Run) -> None:
-    text = (
+    ),
+    'marked': (
         'import time, pytest\n'
         '@pytest.mark.slow\n'
         'def test_a(): time.sleep(0.0)\n'
         'def test_b(): pass\n'
-    )
-    found = run({'tests/test_a.py': text}, '--fast-tier')
-    assert '1 passed, 1 deselected' in found
+    ),
+}
+"""Fast tests, and one whose marker leaves it out."""
 
 
-@pytest.mark.parametrize('options', [(), ('--fast-tier',)])
-def test_nightly_tests_run_alone(run: Run, options: tuple[str, ...]) -> None:
+def test_a_fast_test_that_needs_another_tier_fails_with_the_reason(run: Run) -> None:
+    texts = {**EXCLUDED, **ALLOWED}
+    files = {f'tests/test_{name}.py': text for name, text in texts.items()}
+    found = run(files, '--fast-tier')
+    assert '6 failed, 2 passed, 1 deselected' in found
+    for name, reason in REASONS.items():
+        (line,) = re.findall(f'^FAILED tests/test_{name}.py.*', found, re.MULTILINE)
+        assert reason in line
+    assert 'PASSED tests/test_library.py::test_a' in found
+    assert 'PASSED tests/test_marked.py::test_b' in found
+    assert '9 passed' in run(files)
+
+
+def test_nightly_tests_run_alone(run: Run) -> None:
     text = 'def test_a(): pass\n'
     files = {'tests/test_b.py': text, 'tests/nightly/test_a.py': text}
-    assert 'test_a.py::test_a is nightly: run tests/nightly alone' in run(files, *options)
-    assert '1 passed' in run(files, '--ignore=tests/nightly', *options)
-    if not options:
-        assert '1 passed' in run(files, 'tests/nightly')
+    refusal = 'test_a.py::test_a is nightly: run tests/nightly alone'
+    assert refusal in run(files)
+    assert refusal in run(files, '--fast-tier')
+    assert '1 passed' in run(files, '--fast-tier', '--ignore=tests/nightly')
+    assert '1 passed' in run(files, 'tests/nightly')
 
 
 @pytest.mark.parametrize('target', ['test', 'test-fast'])
