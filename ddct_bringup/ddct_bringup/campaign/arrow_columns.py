@@ -80,10 +80,10 @@ def numpy_column(column: pa.ChunkedArray) -> np.ndarray:
     """Return a column of a table, (n,): numbers with NaN for null, or objects with None."""
     if column.type in _NUMBERS and column.num_chunks:
         return np.concatenate([_numbers(chunk) for chunk in column.chunks])
-    if pa.types.is_string(column.type):
-        return np.array(column.to_pylist(), dtype=object)
-    if pa.types.is_boolean(column.type) and not column.null_count:
-        return np.array(column.to_pylist(), dtype=bool)
+    boolean = pa.types.is_boolean(column.type)
+    if boolean or pa.types.is_string(column.type):
+        plain = bool if boolean and not column.null_count else object
+        return np.array(column.to_pylist(), dtype=plain)
     return np.asarray(column.to_numpy())
 
 

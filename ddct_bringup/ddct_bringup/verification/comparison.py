@@ -74,26 +74,35 @@ class Comparison:
         if deviation is not None:
             difference = Difference(place, recorded, repeated)
             bound = self.bound if bound is None else bound
-            name, own = OF_PROGRAM
-            if any(str(each).endswith(name) for each in place.values()):
+            figure, own = OF_PROGRAM
+            if any(str(each).endswith(figure) for each in place.values()):
                 bound = max(bound, own)
             self._note(deviation, difference, bound)
 
-    def add_nested(self, key: str, recorded: Any, repeated: Any) -> None:
-        """Compare two values of JSON, whose place is a dotted key."""
+    def add_nested(
+        self, key: str, recorded: Any, repeated: Any, bound: float | None = None
+    ) -> None:
+        """
+        Compare two values of JSON, whose place is a dotted key.
+
+        The figure OF_PROGRAM, and an entry with its name, have their own bound; `bound` is that of
+        the others.
+        """
         if isinstance(recorded, Mapping) and isinstance(repeated, Mapping):
+            figure, own = OF_PROGRAM
+            bound = own if recorded.get('name') == figure else bound
             for name in (*recorded, *(name for name in repeated if name not in recorded)):
                 path = f'{key}.{name}' if key else name
-                self.add_nested(path, recorded.get(name), repeated.get(name))
+                self.add_nested(path, recorded.get(name), repeated.get(name), bound)
         elif (
             isinstance(recorded, list)
             and isinstance(repeated, list)
             and len(recorded) == len(repeated)
         ):
             for number, (ours, theirs) in enumerate(zip(recorded, repeated, strict=True)):
-                self.add_nested(f'{key}[{number}]', ours, theirs)
+                self.add_nested(f'{key}[{number}]', ours, theirs, bound)
         else:
-            self.add({'key': key}, recorded, repeated)
+            self.add({'key': key}, recorded, repeated, bound)
 
     def add_trajectories(self, recorded: Trajectory, repeated: Trajectory) -> None:
         """Compare all signals of two runs; the first difference is that of the earliest step."""

@@ -154,3 +154,13 @@ def test_the_ratio_that_a_convex_program_gives_has_a_wider_bound(place):
     other = Comparison()
     other.add({'key': 'figures.peak_jerk_m_s3'}, 2.0, 2.0 + 2e-8)
     assert other.state(same_environment=False) == DIFFERENT
+
+
+def test_an_entry_with_the_name_of_that_ratio_has_the_wider_bound_and_the_next_entry_has_not():
+    for name, state in (('peak_jerk_over_least', SAME_WITHIN), ('peak_jerk_m_s3', DIFFERENT)):
+        comparison = Comparison()
+        first, second = (
+            {'quantities': [{'name': name, 'p5': 2.0 + more}]} for more in (0.0, 2e-8)
+        )
+        comparison.add_nested('', first, second)
+        assert comparison.state(same_environment=False) == state

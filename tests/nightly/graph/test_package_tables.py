@@ -14,7 +14,7 @@ from support.runs import plan
 from ddct_bringup.processes.graph_nodes import NODE_PROGRAMS, nodes_of
 from ddct_plant.base.options import options_of
 from ddct_plant.program.scheduling import Scheduling
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import UNKNOWN, RunSettings
 
 SHARED = {'scenario', *options_of(RunSettings), *options_of(Scheduling)}
 OF_ROS = {'/rosout', '/parameter_events', '/run_info'}
@@ -75,7 +75,9 @@ def test_shared_parameters_and_those_of_its_own_are_all_that_a_node_declares(
     graph = graph_of(SHIFT)
     for spec in NODE_PROGRAMS:
         shown = {row[0].strip('`') for row in rows_of(tables.get(spec.name, ''))}
-        declared = set(graph.add(spec.name).own_parameters())
+        node = graph.add(spec.name)
+        shared = SHARED - set(UNKNOWN) if node.KNOWN_ONLY else SHARED | {'known_scenario'}
+        declared = set(node.own_parameters())
         gains = {name for name in declared if name.startswith('gains.')}
         assert bool(gains) == (spec.name == 'controller')
-        assert declared - gains == SHARED | shown
+        assert declared - gains == shared | shown
