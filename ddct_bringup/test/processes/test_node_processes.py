@@ -270,8 +270,9 @@ def test_after_a_killed_supervisor_every_node_ends_even_a_stopped_one(tmp_path, 
     try:
         wait_until(lambda: all(gone(pid) for pid in pids))
     finally:
-        for pid in pids:
+        for name, pid in zip(('recorder', 'load', 'guardian', 'warm parent'), pids, strict=True):
             if not gone(pid):
+                print(f'{name} is left:\n{Path(f"/proc/{pid}/status").read_text()}')
                 os.kill(pid, signal.SIGKILL)
     assert (tmp_path / 'whole').exists(), 'the recorder could not finish'
 
