@@ -102,7 +102,8 @@ def _become(job: JobText, index: int, request: ForkRequest, descriptors: list[in
         if os.read(descriptors[1], 1) == GO:
             if not job['outlives']:
                 end_with_parent(request['supervisor'])
-            if os.getppid() == request['supervisor']:
+            # On a busy machine the supervisor may have ended before the guardian starts to work.
+            if job['outlives'] or os.getppid() == request['supervisor']:
                 _take_over(job, request['environment'], index, descriptors)
                 code = exit_code(lambda: importlib.import_module(job['module']).main())
     finally:
