@@ -247,8 +247,22 @@ with WarmParent() as parent, NodeProcesses(folder, folder / 'parameters.yaml', p
 """
 
 
-@pytest.mark.parametrize('stopped', [False, True])
-def test_after_a_killed_supervisor_every_node_ends_even_a_stopped_one(tmp_path, stopped):
+LATE_GUARDIAN = """
+import os, signal
+from ddct_bringup.processes.warm_parent import WarmParent
+forked = WarmParent._forked
+def with_stopped_guardian(self, pids, jobs):
+    processes = forked(self, pids, jobs)
+    if jobs[0].outlives:
+        os.kill(processes[0].pid, signal.SIGSTOP)
+    return processes
+WarmParent._forked = with_stopped_guardian
+"""
+
+
+@pytest.mark.parametrize(('stopped', 'late'), [(False, False), (True, False), (True, True)])
+def test_after_a_killed_supervisor_every_node_ends_even_a_stopped_one(tmp_path, stopped, late):
+    """The guardian is `late` where it starts to work after the end of the supervisor."""
     (tmp_path / 'stubs').mkdir()
     finishing = (
         f"signal.signal(signal.SIGTERM, lambda *_: open({str(tmp_path / 'whole')!r}, 'w').close()"
@@ -258,7 +272,14 @@ def test_after_a_killed_supervisor_every_node_ends_even_a_stopped_one(tmp_path, 
         (tmp_path / 'stubs' / f'{name}_node.py').write_text(LIVE + text)
     paths = f'{tmp_path}:{os.environ.get("PYTHONPATH", "")}'
     supervisor = subprocess.Popen(
-        [sys.executable, '-c', SUPERVISOR, str(tmp_path), 'recorder', 'load'],
+        [
+            sys.executable,
+            '-c',
+            LATE_GUARDIAN * late + SUPERVISOR,
+            str(tmp_path),
+            'recorder',
+            'load',
+        ],
         stdout=subprocess.PIPE,
         env={**os.environ, 'PYTHONPATH': paths},
     )
@@ -267,6 +288,8 @@ def test_after_a_killed_supervisor_every_node_ends_even_a_stopped_one(tmp_path, 
         os.kill(pids[0], signal.SIGSTOP)
     supervisor.kill()
     supervisor.communicate()
+    if late:
+        os.kill(pids[2], signal.SIGCONT)
     try:
         wait_until(lambda: all(gone(pid) for pid in pids))
     finally:
