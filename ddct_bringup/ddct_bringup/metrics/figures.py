@@ -22,6 +22,8 @@ from ddct_bringup.metrics.signals.vibration import jerk, strongest_stretch, weig
 from ddct_plant.base.timebase import PERIOD_S, STEPS_PER_S
 from ddct_plant.program.table import PURE
 
+_STRETCH_S = 1.0
+"""Time over which the r.m.s. of the weighted acceleration is taken, s."""
 NOT_BEGUN = Null('the run ends before control start', lambda engagement: engagement.periods < 0)
 _LINEAR = Null('a linear clutch cannot lock', lambda engagement: not engagement.sticks)
 _NOT_LOCKED = Null(
@@ -33,6 +35,14 @@ _NO_DEMAND = Null('there is no demand', lambda engagement: not _demand(engagemen
 _BOTH_SIGNS = Null(
     'the demand is negative at some time', lambda engagement: bool((_demand(engagement) < 0).any())
 )
+
+
+def shorter_than(time_s: float) -> Null:
+    """Return the condition that less than a time in s of the run is after control start."""
+    return Null(
+        f'the run ends less than {time_s:g} s after control start',
+        lambda engagement: engagement.periods < math.ceil(time_s * STEPS_PER_S),
+    )
 
 
 def _demand(engagement: Engagement) -> np.ndarray:
@@ -77,10 +87,11 @@ def all_friction_work(engagement: Engagement) -> Values | None:
 
 def largest_weighted_acceleration(engagement: Engagement) -> Values | None:
     """Return the largest r.m.s. over 1 s of A_x weighted by W_d, from control start on, (...)."""
-    if engagement.periods < STEPS_PER_S:
+    samples = round(_STRETCH_S * STEPS_PER_S)
+    if engagement.periods < samples:
         return None
     weighted = weighted_acceleration(engagement.trajectory.vehicle_accel)
-    return strongest_stretch(weighted[..., engagement.control_start :], STEPS_PER_S)
+    return strongest_stretch(weighted[..., engagement.control_start :], samples)
 
 
 QUANTITIES = (
@@ -135,12 +146,7 @@ QUANTITIES = (
         unit='m/s^2',
         form='.3f',
         meaning='largest running r.m.s. over 1 s of A_x, weighted by W_d of ISO 2631-1',
-        nulls=(
-            Null(
-                'the run ends less than 1 s after control start',
-                lambda engagement: engagement.periods < STEPS_PER_S,
-            ),
-        ),
+        nulls=(shorter_than(_STRETCH_S),),
         value=largest_weighted_acceleration,
         needs=('vehicle_accel',),
         figure=True,

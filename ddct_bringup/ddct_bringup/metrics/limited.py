@@ -2,13 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Metrics that a limit applies to, besides the figures."""
 
-import math
-
 import numpy as np
 
 from ddct_bringup.bag.measured_run import TORSION
 from ddct_bringup.metrics.engagement import Engagement, Values
-from ddct_bringup.metrics.figures import NOT_BEGUN
+from ddct_bringup.metrics.figures import NOT_BEGUN, shorter_than
 from ddct_bringup.metrics.metric import Metric, Null
 from ddct_bringup.metrics.signals.integrals import running_integral
 from ddct_bringup.metrics.signals.vibration import SHORTEST_JUDDER_S, judder_of
@@ -71,13 +69,6 @@ def _slips_shortly(engagement: Engagement) -> bool:
     return bool((after - first - 1) * PERIOD_S < SHORTEST_JUDDER_S)
 
 
-def _shorter_than(time_s: float) -> Null:
-    return Null(
-        f'the run ends less than {time_s:g} s after control start',
-        lambda engagement: engagement.periods < math.ceil(time_s * STEPS_PER_S),
-    )
-
-
 QUANTITIES = (
     Metric(
         key='peak_temperature_degc',
@@ -105,7 +96,7 @@ QUANTITIES = (
         unit='m/s^2',
         form='.2f',
         meaning='largest mean of A_x over 2 s after control start',
-        nulls=(_shorter_than(_ACCELERATION_S),),
+        nulls=(shorter_than(_ACCELERATION_S),),
         value=mean_acceleration,
         needs=('vehicle_accel',),
     ),
@@ -115,7 +106,7 @@ QUANTITIES = (
         unit='m/s^3',
         form='.2f',
         meaning="most negative of the jerk's means over 1 s after control start",
-        nulls=(_shorter_than(_JERK_S),),
+        nulls=(shorter_than(_JERK_S),),
         value=mean_negative_jerk,
         needs=('vehicle_accel',),
     ),

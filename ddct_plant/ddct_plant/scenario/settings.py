@@ -82,9 +82,7 @@ class RunSettings(OptionGroup):
             self,
             scenario=self.known_scenario or self.scenario,
             known_scenario=None,
-            wear_gain=options['wear_gain'].default,
-            seed=options['seed'].default,
-            off_going_wear_gain=options['off_going_wear_gain'].default,
+            **{name: options[name].default for name in UNKNOWN},
         )
         return self if known == self else known
 
