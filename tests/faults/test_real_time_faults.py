@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from geometry_msgs.msg import WrenchStamped
-from support.altering import Silent, add_altering, changing, remaps
+from support.altering import add_altering, add_silent, changing, remaps
 from support.in_process_graph import GraphOf
 from support.runs import expected, plan
 
@@ -20,7 +20,6 @@ from ddct_bringup.scores.scored_recording import score_recording
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.base.timebase import PERIOD_S, stamp_of_step
 from ddct_plant.fail_safe.request_watch import CLUTCH_TIMEOUT_S, FailSafeSettings
-from ddct_plant.graph.qos import LOOP_QOS
 from ddct_plant.signals.topics import CLUTCH_TORQUE, LOAD_TORQUE, TOPICS
 from ddct_plant.ticks.realtime_owner import RealtimeOwner
 
@@ -146,8 +145,7 @@ def test_a_node_that_was_stopped_answers_again_when_it_goes_on(
     """It then has the last ten messages in its queue."""
     graph = graph_of(plan(mode='realtime', duration_s=2.5))
     stopped = [step for step in range(251) if step % 100 >= 50]
-    graph.add(reader, cli_args=remaps(reader, [source]))
-    add_altering(graph, source, Silent(stopped, LOOP_QOS.depth), reader=reader)
+    add_silent(graph, source, reader, stopped)
     graph.add_all()
     owner = graph.driveline.owner
     assert isinstance(owner, RealtimeOwner)

@@ -10,7 +10,7 @@ import pytest
 from geometry_msgs.msg import WrenchStamped
 from rclpy.node import Node
 from rosgraph_msgs.msg import Clock
-from support.altering import Silent, add_altering, remaps
+from support.altering import add_silent
 from support.in_process_graph import GraphOf, InProcessGraph
 from support.runs import plan
 from trajectory_msgs.msg import JointTrajectory
@@ -59,10 +59,8 @@ def test_the_clutch_opens_at_the_stated_rate_and_stays_open(
 ) -> None:
     run = plan(mode='realtime', duration_s=1.8)
     graph = graph_of(run)
-    graph.add('actuator', cli_args=remaps('actuator', [TORQUE_REQUEST.name]))
     until = SILENT_AT_STEP + AWAY_STEPS if answers_again else run.steps + 1
-    silent = Silent(range(SILENT_AT_STEP, until), LOOP_QOS.depth)
-    add_altering(graph, TORQUE_REQUEST.name, silent, reader='actuator')
+    add_silent(graph, TORQUE_REQUEST.name, 'actuator', range(SILENT_AT_STEP, until))
     listener = _Listener(context=graph.context)
     graph.add_other(listener)
     graph.add_all()

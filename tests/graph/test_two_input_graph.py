@@ -10,14 +10,14 @@ import numpy as np
 import pytest
 from geometry_msgs.msg import WrenchStamped
 from rclpy.node import Node
-from support.altering import Silent, add_altering, remaps
+from support.altering import add_silent
 from support.in_process_graph import GraphOf
 from support.runs import LAYOUTS, bag_bytes, expected, plan, record
 
 from ddct_bringup.run.plan import RunPlan
 from ddct_plant.base.timebase import PERIOD_S, step_of_stamp
 from ddct_plant.fail_safe.request_watch import REQUEST_TIMEOUT_S
-from ddct_plant.graph.qos import LOOP_QOS, RECORDER_QOS
+from ddct_plant.graph.qos import RECORDER_QOS
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.signals.message_kind import stamp_ns
@@ -123,10 +123,8 @@ def test_in_real_time_the_engine_goes_back_to_the_demand_when_requests_stop_and_
 ) -> None:
     run = plan('mpc4', mode='realtime', duration_s=1.8, changes=(LITTLE_SLEW,))
     graph = graph_of(run)
-    graph.add('engine', cli_args=remaps('engine', [ENGINE_REQUEST.name]))
     until = SILENT_AT_STEP + AWAY_STEPS if answers_again else run.steps + 1
-    silent = Silent(range(SILENT_AT_STEP, until), LOOP_QOS.depth)
-    add_altering(graph, ENGINE_REQUEST.name, silent, reader='engine')
+    add_silent(graph, ENGINE_REQUEST.name, 'engine', range(SILENT_AT_STEP, until))
     listener = _Listener(context=graph.context)
     graph.add_other(listener)
     graph.add_all()

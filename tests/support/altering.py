@@ -12,7 +12,7 @@ from rclpy.serialization import deserialize_message, serialize_message
 
 from ddct_plant.bag_file.cdr import stamp_of_cdr
 from ddct_plant.base.timebase import PERIOD_NS, START_NS
-from ddct_plant.graph.qos import RECORDER_QOS
+from ddct_plant.graph.qos import LOOP_QOS, RECORDER_QOS
 from ddct_plant.graph.steady_time import SteadyTime
 from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import all_topics
@@ -98,6 +98,12 @@ def add_altering(
     )
     graph.add_other(node)
     return node
+
+
+def add_silent(graph: InProcessGraph, topic: str, reader: str, steps: Container[int]) -> None:
+    """Add the reader of a topic, and before it a node that lets the messages of steps wait."""
+    graph.add(reader, cli_args=remaps(reader, [topic]))
+    add_altering(graph, topic, Silent(steps, LOOP_QOS.depth), reader=reader)
 
 
 def changing(change: Callable[[Any], object], from_step: int) -> Alter:
