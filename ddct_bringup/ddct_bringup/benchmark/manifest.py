@@ -17,7 +17,7 @@ from ddct_bringup.digests.manifests import (
 )
 from ddct_bringup.digests.origin import CodeOrigin
 from ddct_bringup.verdict.limits import packaged_limits
-from ddct_plant.files.output_file import write_json
+from ddct_plant.files.json_records import write_json
 
 MANIFEST = 'benchmark.json'
 SCHEMA_VERSION = 1

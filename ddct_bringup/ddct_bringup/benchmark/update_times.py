@@ -17,8 +17,8 @@ from ddct_bringup.run.headless import run_headless
 from ddct_bringup.run.timing_and_failure import TIMING_FILE, RunTiming
 from ddct_controllers.registry import Chosen, make_controller
 from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError, ParameterError, require_number
-from ddct_plant.files.input_file import parse_json, read_text_file
-from ddct_plant.files.output_file import write_json
+from ddct_plant.files.input_file import read_text_file
+from ddct_plant.files.json_records import parse_json, write_json
 from ddct_plant.scenario.settings import RunSettings
 
 REFERENCE = 'pi'

@@ -16,7 +16,7 @@ from ddct_bringup.digests.manifests import manifest_content
 from ddct_bringup.digests.origin import CodeOrigin
 from ddct_bringup.verdict.limits import Limits
 from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.files.output_file import write_json
+from ddct_plant.files.json_records import write_json
 
 MANIFEST = 'manifest.json'
 SCHEMA_VERSION = 1

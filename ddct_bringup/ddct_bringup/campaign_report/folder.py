@@ -32,7 +32,8 @@ from ddct_bringup.report.page_parts import (
 )
 from ddct_bringup.run.output_folder import locked_folders
 from ddct_controllers.design.drawing.chart_style import chart_bytes, chart_style
-from ddct_plant.files.output_file import write_json, write_text
+from ddct_plant.files.json_records import write_json
+from ddct_plant.files.output_file import write_text
 from ddct_plant.files.yaml_text import dump_yaml
 from ddct_plant.program.command_line import package_version
 

@@ -11,12 +11,8 @@ from typing import Any
 
 from ddct_bringup.digests.environment import Environment
 from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.files.input_file import (
-    open_file,
-    parse_json,
-    read_text_file,
-    require_schema_version,
-)
+from ddct_plant.files.input_file import open_file, read_text_file, require_schema_version
+from ddct_plant.files.json_records import parse_json
 from ddct_plant.files.output_file import write_text
 
 DIGESTS = 'digests.json'

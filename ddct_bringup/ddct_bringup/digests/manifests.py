@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.files.input_file import parse_json, read_text_file, require_schema_version
+from ddct_plant.files.input_file import read_text_file, require_schema_version
+from ddct_plant.files.json_records import parse_json
 
 _KINDS = {
     str: 'a text',

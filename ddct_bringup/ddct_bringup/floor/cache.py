@@ -20,7 +20,8 @@ from ddct_bringup.floor.dynamics.off_going import OffGoing
 from ddct_bringup.floor.dynamics.start import Start
 from ddct_bringup.floor.dynamics.tube import Tube
 from ddct_plant.base.errors import DdctError
-from ddct_plant.files.input_file import parse_json, read_text_file
+from ddct_plant.files.input_file import read_text_file
+from ddct_plant.files.json_records import parse_json
 from ddct_plant.files.output_file import write_text
 from ddct_plant.scenario.settings import is_handover_file
 

@@ -38,12 +38,12 @@ from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.verdict.limits import Limits, add_limits_option, load_limits
 from ddct_plant.base.errors import DdctError, printable
 from ddct_plant.files.csv_table import plain_cell
+from ddct_plant.files.json_records import write_json
 from ddct_plant.files.output_file import (
     STDOUT,
     require_one_for_stdout,
     require_picture,
     require_place,
-    write_json,
     write_text,
 )
 from ddct_plant.program.command_line import ProgramParser, complain

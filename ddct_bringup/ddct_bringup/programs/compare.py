@@ -37,7 +37,8 @@ from ddct_controllers.registry import controller_label, working_controllers
 from ddct_controllers.workflows.evidence import frequency_evidence
 from ddct_controllers.workflows.evidence_types import FrequencyEvidence
 from ddct_plant.base.errors import DdctError, ParameterError, printable
-from ddct_plant.files.output_file import STDOUT, require_place, write_json
+from ddct_plant.files.json_records import write_json
+from ddct_plant.files.output_file import STDOUT, require_place
 from ddct_plant.program.command_line import ProgramParser, complain, run_program
 
 PROGRAM = 'ddct compare'

@@ -29,7 +29,8 @@ from ddct_bringup.run.plan import require_headless
 from ddct_bringup.run.run_base import settings_of
 from ddct_bringup.scores.shift_conditions import shift_conditions
 from ddct_controllers.registry import controller_label, working_controllers
-from ddct_plant.files.output_file import STDOUT, require_picture, require_place, write_json
+from ddct_plant.files.json_records import write_json
+from ddct_plant.files.output_file import STDOUT, require_picture, require_place
 from ddct_plant.program.command_line import complain, run_program
 from ddct_plant.program.printed_table import print_note, print_table
 from ddct_plant.program.progress import with_progress

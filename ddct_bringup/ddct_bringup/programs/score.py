@@ -24,7 +24,8 @@ from ddct_bringup.scores.signal_files import signal_file_stems, write_signals
 from ddct_bringup.scores.validity import MISS_TOLERANCE
 from ddct_bringup.verdict.limits import Limits, add_limits_option, load_limits
 from ddct_plant.base.errors import DdctError
-from ddct_plant.files.output_file import STDOUT, require_one_for_stdout, write_json, write_text
+from ddct_plant.files.json_records import write_json
+from ddct_plant.files.output_file import STDOUT, require_one_for_stdout, write_text
 from ddct_plant.measured.columns import ColumnMap, load_columns
 from ddct_plant.program.command_line import ProgramParser, complain, run_program
 from ddct_plant.program.progress import with_progress

@@ -30,12 +30,12 @@ from ddct_bringup.sweep.sweep import (
 from ddct_bringup.verdict.limits import add_limits_option, load_limits
 from ddct_controllers.registry import controller_label, working_controllers
 from ddct_plant.base.errors import ParameterError
+from ddct_plant.files.json_records import write_json
 from ddct_plant.files.output_file import (
     STDOUT,
     require_one_for_stdout,
     require_picture,
     require_place,
-    write_json,
     write_text,
 )
 from ddct_plant.program.command_line import ProgramParser, complain, run_program

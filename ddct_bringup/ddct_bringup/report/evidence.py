@@ -17,7 +17,8 @@ from ddct_controllers.design.analysis.loop_quantities import LOOP_QUANTITIES
 from ddct_controllers.workflows.evidence import actuator_conditions, frequency_evidence
 from ddct_controllers.workflows.evidence_types import ControllerEntry, LinearEntry, PointEntry
 from ddct_plant.base.errors import DdctError, ParameterError, require_number
-from ddct_plant.files.input_file import parse_json, read_text_file
+from ddct_plant.files.input_file import read_text_file
+from ddct_plant.files.json_records import parse_json
 from ddct_plant.models.actuator import ActuatorParameters
 
 FREQUENCY_FILE = 'frequency.json'

@@ -11,8 +11,9 @@ from typing import Any
 from ddct_bringup.bag.realtime_facts import RealtimeCounts
 from ddct_bringup.bag.run_facts import RunFacts
 from ddct_plant.base.errors import DdctError, printable, require_number
-from ddct_plant.files.input_file import parse_json, read_text_file
-from ddct_plant.files.output_file import write_json, write_text
+from ddct_plant.files.input_file import read_text_file
+from ddct_plant.files.json_records import parse_json, write_json
+from ddct_plant.files.output_file import write_text
 from ddct_plant.graph.node_names import name_in_graph
 from ddct_plant.ticks.durations import DurationHistogram, checked
 

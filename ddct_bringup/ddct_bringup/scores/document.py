@@ -13,7 +13,8 @@ from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.verdict.limits import LimitResult, Limits
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import steps_in
-from ddct_plant.files.input_file import parse_json, read_text_file
+from ddct_plant.files.input_file import read_text_file
+from ddct_plant.files.json_records import parse_json
 from ddct_plant.signals.gain_changes import GainChange
 
 SCHEMA_VERSION = 4

@@ -10,7 +10,7 @@ from functools import cache
 from pathlib import Path
 
 from ddct_bringup.thesis.table_5_1 import FORMS
-from ddct_plant.files.input_file import parse_json
+from ddct_plant.files.json_records import parse_json
 from ddct_plant.scenario.file import load_scenario, scenario_digest
 from ddct_plant.scenario.scenario import Scenario
 

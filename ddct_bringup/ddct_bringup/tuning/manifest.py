@@ -22,7 +22,7 @@ from ddct_bringup.tuning.tuning import Tuning
 from ddct_bringup.verdict.limits import Limits
 from ddct_controllers.registry import controller_spec
 from ddct_plant.base.errors import DdctError
-from ddct_plant.files.output_file import write_json
+from ddct_plant.files.json_records import write_json
 from ddct_plant.program.command_line import package_version
 
 MANIFEST = 'tuning.json'

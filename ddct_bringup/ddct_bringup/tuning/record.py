@@ -17,8 +17,9 @@ from ddct_bringup.campaign.spec import CampaignSpec
 from ddct_bringup.tuning.specification.spec import TuningSpec
 from ddct_bringup.tuning.trial import STATES, Trial, TrialEntry
 from ddct_plant.base.errors import DdctError, ParameterError, require_choice, require_number
-from ddct_plant.files.input_file import parse_json, read_text_file
-from ddct_plant.files.output_file import write_bytes, write_json
+from ddct_plant.files.input_file import read_text_file
+from ddct_plant.files.json_records import parse_json, write_json
+from ddct_plant.files.output_file import write_bytes
 
 TRIAL = 'trial'
 """Column of the number of the trial, before those of a campaign."""

@@ -19,7 +19,8 @@ from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.metrics.catalogue import JERK_OVER_LEAST
 from ddct_bringup.verification.deviation import deviation_of, deviations_of
 from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.files.input_file import parse_json, read_text_file
+from ddct_plant.files.input_file import read_text_file
+from ddct_plant.files.json_records import parse_json
 
 SAME_BITS, SAME_WITHIN = 'same_bits', 'same_within'
 DIFFERENT, DIGEST_ONLY = 'different', 'digest_only'

@@ -18,7 +18,7 @@ from ddct_controllers.registry import ENTRY_POINT_GROUP, require_known_controlle
 from ddct_controllers.template.new_controller import install_command
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.options import close_name
-from ddct_plant.files.input_file import parse_json
+from ddct_plant.files.json_records import parse_json
 
 
 def entry_point(subject: Subject) -> str:

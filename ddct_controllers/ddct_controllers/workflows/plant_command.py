@@ -10,7 +10,8 @@ from typing import Any
 from ddct_controllers.workflows.plant_on_paper import INPUTS, STATES, PlantOnPaper, plant_on_paper
 from ddct_controllers.workflows.plant_text import as_mat, as_matlab, factored_text
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.files.output_file import require_place, write_bytes, write_json, write_text
+from ddct_plant.files.json_records import write_json
+from ddct_plant.files.output_file import require_place, write_bytes, write_text
 from ddct_plant.program.command_line import show_and_write
 from ddct_plant.program.printed_table import print_tables
 from ddct_plant.program.table import Table

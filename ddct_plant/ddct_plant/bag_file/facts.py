@@ -7,7 +7,7 @@ from typing import Any
 
 from ddct_plant.base.errors import DdctError, ParameterError, require_number
 from ddct_plant.base.timebase import LONGEST_S, steps_in, time_of_step
-from ddct_plant.files.input_file import parse_json
+from ddct_plant.files.json_records import parse_json
 from ddct_plant.files.yaml_text import parse_yaml
 
 DURATION = 'duration_s'

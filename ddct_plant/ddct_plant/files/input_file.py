@@ -3,13 +3,11 @@
 """
 Read files of users, and report the place of an error in them.
 
-JSON of files and bags is read here only; YAML has
-its own module.
+JSON and YAML have their own modules.
 """
 
 import codecs
 import errno
-import json
 import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -17,7 +15,7 @@ from functools import partial
 from io import BufferedReader
 from itertools import islice
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any
 
 from ddct_plant.base.errors import DdctError, ParameterError
 
@@ -87,32 +85,6 @@ def user_text(path: Path) -> str:
         return read_text_file(path)
     except OSError as error:
         raise DdctError(f'cannot be read ({error.strerror})') from error
-
-
-def parse_json(text: str) -> Any:
-    """
-    Return the value of JSON text; raise ParameterError with the reason for invalid text.
-
-    Refused beyond the grammar: duplicate keys, NaN and infinity, and integers beyond the limit of
-    Python.
-    """
-    try:
-        return json.loads(text, object_pairs_hook=_object, parse_constant=_refuse_constant)
-    except ValueError as error:
-        raise ParameterError(f'not valid JSON: {error}') from error
-
-
-def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    value = dict(pairs)
-    if len(value) != len(pairs):
-        keys = [key for key, _ in pairs]
-        twice = next(key for key in keys if keys.count(key) > 1)
-        raise ValueError(f'the key {twice!r} is given twice')
-    return value
-
-
-def _refuse_constant(constant: str) -> NoReturn:
-    raise ValueError(f'{constant} is no number')
 
 
 @contextmanager

@@ -3,17 +3,16 @@
 """Write the files of options such as `--json FILE`, completely or not at all."""
 
 import contextlib
-import json
 import os
 import sys
 from pathlib import Path
-from typing import Any
 
 from ddct_plant.base.errors import DdctError, ParameterError
 
 STDOUT = '-'
 """File name for standard output."""
-_ADVICE = 'give another file'
+ANOTHER_FILE = 'give another file'
+"""What to do where a file cannot be written."""
 _PICTURES = ('.png', '.svg')
 
 
@@ -54,13 +53,7 @@ def require_one_for_stdout(json_target: str | None, csv_target: str | None) -> N
         raise DdctError('--json - and --csv - both want standard output: give one a file')
 
 
-def write_json(target: str, content: Any, advice: str = _ADVICE, *, ours: bool = False) -> None:
-    """Write `content` as JSON by `write_text`; raise ValueError for NaN and infinity."""
-    text = json.dumps(content, indent=2, allow_nan=False) + '\n'
-    write_text(target, text, advice, ours=ours)
-
-
-def write_text(target: str, text: str, advice: str = _ADVICE, *, ours: bool = False) -> None:
+def write_text(target: str, text: str, advice: str = ANOTHER_FILE, *, ours: bool = False) -> None:
     """
     Write `text` to the file `target`, or to standard output for `-`.
 
@@ -74,7 +67,9 @@ def write_text(target: str, text: str, advice: str = _ADVICE, *, ours: bool = Fa
         write_bytes(target, text.encode(), advice, ours=ours)
 
 
-def write_bytes(target: str, content: bytes, advice: str = _ADVICE, *, ours: bool = False) -> None:
+def write_bytes(
+    target: str, content: bytes, advice: str = ANOTHER_FILE, *, ours: bool = False
+) -> None:
     """Write bytes to the file `target`, with the guarantees of `write_text`."""
     path = Path(target) if ours else Path(target).resolve()
     try:

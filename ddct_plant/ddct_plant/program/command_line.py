@@ -14,7 +14,8 @@ from types import ModuleType
 from typing import Any, NoReturn
 
 from ddct_plant.base.errors import DdctError, printable
-from ddct_plant.files.output_file import STDOUT, write_json
+from ddct_plant.files.json_records import write_json
+from ddct_plant.files.output_file import STDOUT
 from ddct_plant.program.supervision import (
     interrupted_by,
     interruptible,

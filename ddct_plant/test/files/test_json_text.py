@@ -5,7 +5,7 @@
 import pytest
 
 from ddct_plant.base.errors import DdctError
-from ddct_plant.files.input_file import parse_json
+from ddct_plant.files.json_records import parse_json
 
 
 def test_values_come_back():

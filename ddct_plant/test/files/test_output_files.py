@@ -10,7 +10,8 @@ import pytest
 from refusals import refused
 
 from ddct_plant.base.errors import DdctError
-from ddct_plant.files.output_file import require_place, write_json
+from ddct_plant.files.json_records import write_json
+from ddct_plant.files.output_file import require_place
 from ddct_plant.program.printed_table import print_table
 from ddct_plant.program.table import Table
 

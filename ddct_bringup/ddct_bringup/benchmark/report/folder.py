@@ -16,7 +16,8 @@ from ddct_bringup.benchmark.update_times import read_update_times
 from ddct_bringup.digests.digest_file import BENCHMARK
 from ddct_bringup.digests.writing import write_folder_digests
 from ddct_bringup.run.output_folder import locked_folders
-from ddct_plant.files.output_file import write_json, write_text
+from ddct_plant.files.json_records import write_json
+from ddct_plant.files.output_file import write_text
 
 RESULT, PAGE = 'result.json', 'report.html'
 _NOTHING: Mapping[str, str] = {}

@@ -26,7 +26,8 @@ from ddct_bringup.reproduction.calibration.record_types import (
 )
 from ddct_bringup.thesis.predictions import FILE as PREDICTIONS_FILE
 from ddct_plant.base.errors import DdctError
-from ddct_plant.files.output_file import STDOUT, require_place, write_json, write_text
+from ddct_plant.files.json_records import write_json
+from ddct_plant.files.output_file import STDOUT, require_place, write_text
 from ddct_plant.program.command_line import complain
 from ddct_plant.program.printed_table import print_tables
 from ddct_plant.program.table import Table

@@ -18,13 +18,8 @@ from ddct_bringup.reproduction.values.loop_shaping_values import loop_shaping_va
 from ddct_bringup.reproduction.values.plant_values import plant_values
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.files.csv_table import csv_text
-from ddct_plant.files.output_file import (
-    STDOUT,
-    require_one_for_stdout,
-    require_place,
-    write_json,
-    write_text,
-)
+from ddct_plant.files.json_records import write_json
+from ddct_plant.files.output_file import STDOUT, require_one_for_stdout, require_place, write_text
 from ddct_plant.program.command_line import complain, show_and_write
 from ddct_plant.program.printed_table import print_tables
 

@@ -21,7 +21,8 @@ from ddct_bringup.reproduction.studies import (
 from ddct_bringup.reproduction.studies.study import Study, StudyFunction, dash_reason
 from ddct_controllers.design.drawing.chart_style import chart_style, save_figure
 from ddct_plant.base.errors import DdctError, require_choice
-from ddct_plant.files.output_file import STDOUT, write_json
+from ddct_plant.files.json_records import write_json
+from ddct_plant.files.output_file import STDOUT
 from ddct_plant.program.command_line import complain
 from ddct_plant.program.printed_table import print_note, print_table
 from ddct_plant.program.table import with_reasons

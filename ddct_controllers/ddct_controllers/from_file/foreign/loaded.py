@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ddct_controllers.from_file.foreign import serving
-from ddct_plant.files.input_file import parse_json
+from ddct_plant.files.json_records import parse_json
 
 MOST_SECONDS = 10
 """Longest duration of a call in s; after it an alarm ends the process."""
