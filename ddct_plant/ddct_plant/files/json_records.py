@@ -38,8 +38,9 @@ def to_json(obj: Any) -> Any:
     """
     if obj is None or isinstance(obj, (bool, int, float, str)):
         return obj.value if isinstance(obj, enum.Enum) else obj
-    if _is_record(type(obj)):
-        return {name: to_json(getattr(obj, name)) for name in _keys(type(obj))}
+    kind: Any = type(obj)
+    if _is_record(kind):
+        return {name: to_json(getattr(obj, name)) for name in _keys(kind)}
     if isinstance(obj, Mapping):
         if not all(isinstance(key, str) for key in obj):
             raise TypeError(f'keys of JSON are texts, not as in {obj!r}')
