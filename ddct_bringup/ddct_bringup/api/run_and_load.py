@@ -15,6 +15,7 @@ from typing import Any
 from ddct_bringup.api.arguments import controllers_from, ready_settings
 from ddct_bringup.api.result import Run
 from ddct_bringup.bag.reader import read_bag
+from ddct_bringup.bag.recording import Recording
 from ddct_bringup.bag.writer import bag_file
 from ddct_bringup.processes.warm_parent import WarmParent
 from ddct_bringup.run.execution import execute, parent_for
@@ -155,9 +156,9 @@ def _kept(
     return replace(kept, scored=replace(kept.scored, recording=recording))
 
 
-def _execute(plan: RunPlan, folder: Path, parent: WarmParent | None) -> None:
+def _execute(plan: RunPlan, folder: Path, parent: WarmParent | None) -> Recording | None:
     with nullcontext() if plan.layout == 'headless' else _ONE_GRAPH:
-        execute(plan, folder, parent=parent)
+        return execute(plan, folder, parent=parent)
 
 
 def _run_of(scored: ScoredRecording, chosen: Chosen = '') -> Run:

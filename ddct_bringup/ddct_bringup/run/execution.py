@@ -53,12 +53,9 @@ def run_with_progress(
     label: str = '',
     live: LiveView | None = None,
     parent: WarmParent | None = None,
-) -> None:
+) -> Recording | None:
     """
-    Execute `plan` into `folder`; print its progress, the stability of its loop and its speed.
-
-    `parent` forks the nodes of separate processes; without it the run starts a warm parent
-    itself.
+    `execute` a plan into `folder`; print its progress, the stability of its loop and its speed.
 
     Raise DdctError when the run does not end well, KeyboardInterrupt after SIGINT or SIGTERM.
     """
@@ -67,12 +64,13 @@ def run_with_progress(
     what = f'{label}{plan.name}: {scenario.duration_s:g} s of {scenario.name}'
     started = time.perf_counter()
     with stop_signals() as stops, Console(file=sys.stderr).status(f'{what}, {plan.layout}'):
-        execute(plan, folder, lambda: bool(stops), live, parent)
+        recording = execute(plan, folder, lambda: bool(stops), live, parent)
     if stops:
         # The signal came after the end of the run: whatever would follow is cancelled.
         raise KeyboardInterrupt
     elapsed = time.perf_counter() - started
     print(f'{what} in {elapsed:.1f} s ({plan.layout})', file=sys.stderr, flush=True)
+    return recording
 
 
 def execute(
@@ -81,9 +79,12 @@ def execute(
     stopped: Callable[[], bool] = lambda: False,
     live: LiveView | None = None,
     parent: WarmParent | None = None,
-) -> None:
+) -> Recording | None:
     """
     Execute `plan` and write its bag and `timing.json` into the existing `folder`.
+
+    Return what a headless run has recorded, which is in memory with the values that its bag has;
+    None for a graph, of which the bag has to be read.
 
     A run of separate processes begins once `live` receives their topics. `parent` forks them;
     without it the run starts a warm parent itself.
@@ -93,11 +94,11 @@ def execute(
     """
     if plan.layout == 'headless':
         recording, timing = simulate(plan)
-        write_trajectory(
+        path = write_trajectory(
             recording.trajectory, folder, plan.name, recording.custom_data, recording.run_info
         )
         timing.write(folder)
-        return
+        return replace(recording, path=path)
     work = folder / WORK_FOLDER
     try:
         work.mkdir()
@@ -114,6 +115,7 @@ def execute(
         _keep_warnings(work)
     except OSError as error:
         raise DdctError(f'{error.filename or folder}: {error.strerror or error}') from error
+    return None
 
 
 def _print_loop_summary(plan: RunPlan) -> None:

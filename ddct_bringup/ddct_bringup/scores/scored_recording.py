@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""The path of one run: execute its plan, read its bag, score it."""
+"""The path of one run: execute its plan, read its bag unless it is in memory, score it."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -8,6 +8,7 @@ from functools import cached_property
 from pathlib import Path
 
 from ddct_bringup.bag.measured_run import read_recording
+from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.bag.recording import Recording
 from ddct_bringup.digests.writing import ITSELF, write_run_digests
 from ddct_bringup.run.execution import execute, simulate
@@ -61,16 +62,17 @@ def run_and_score(
     plan: RunPlan,
     folder: Path,
     limits: Limits,
-    carry_out: Callable[[RunPlan, Path], None] = execute,
+    carry_out: Callable[[RunPlan, Path], Recording | None] = execute,
 ) -> ScoredRecording:
     """
-    Execute a plan into the existing `folder`, write its digests, read the bag and score it.
+    Execute a plan into the existing `folder`, write its digests and score it.
 
-    Raise the errors of `carry_out`, which executes, and DdctError for a bag that cannot be read.
+    What `carry_out`, which executes, returns is scored from memory; where it returns None, the bag
+    is read. Raise the errors of `carry_out`, and DdctError for a bag that cannot be read.
     """
-    carry_out(plan, folder)
+    recording = carry_out(plan, folder)
     write_run_digests(folder, {ITSELF: plan})
-    return score_bag(folder, plan.name, limits)
+    return score_recording(recording or read_bag(folder), plan.name, limits)
 
 
 def simulate_and_score(plan: RunPlan, limits: Limits) -> ScoredRecording:
