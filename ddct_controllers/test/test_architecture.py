@@ -18,8 +18,9 @@ from ddct_controllers.linear import PiController
 from ddct_plant.base.errors import DdctError, ForeignError, ParameterError
 from ddct_plant.models.load import RoadLoad
 from ddct_plant.models.static_torque import constant_slip_torque
+from ddct_plant.scenario.choices.settings import ARCHITECTURES
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import ARCHITECTURES, RunSettings
+from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.signals.topics import TORQUE_PARTS
 
 SETTINGS = RunSettings(load_scenario('thesis'))

@@ -12,9 +12,10 @@ from ddct_controllers.closing import ClosingStage
 from ddct_controllers.interface import Command, Controller, Measurement
 from ddct_plant.models.load import RoadLoad
 from ddct_plant.models.static_torque import StaticTorque
+from ddct_plant.scenario.choices.settings import ARCHITECTURES
 from ddct_plant.scenario.control import ClosingParameters
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import ARCHITECTURES, RunSettings
+from ddct_plant.scenario.settings import RunSettings
 
 SETTINGS = RunSettings(load_scenario('thesis', ['closing={}']), clutch='stick_slip')
 START = SETTINGS.scenario.control_start_step

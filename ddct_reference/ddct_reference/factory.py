@@ -4,9 +4,9 @@
 
 from dataclasses import replace
 
+from ddct_plant.base.clutch_kinds import LINEAR, STICK_SLIP
 from ddct_plant.base.timebase import PERIOD_S, steps_in, time_of_step
 from ddct_plant.models.actuator import ActuatorParameters
-from ddct_plant.models.clutch import LINEAR, STICK_SLIP
 from ddct_plant.models.load import RoadLoad
 from ddct_plant.models.static_torque import StaticTorque
 from ddct_plant.scenario.control import ENGINE_SPEED_TARGET, PROFILE

@@ -7,9 +7,10 @@ import pytest
 from refusals import refused
 
 from ddct_plant.base.errors import ParameterError
+from ddct_plant.scenario.choices.settings import ARCHITECTURES
 from ddct_plant.scenario.control import EngineSpeedReference
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import ARCHITECTURES, RunSettings
+from ddct_plant.scenario.settings import RunSettings
 from ddct_reference.engine_speed_target import EngineSpeedTarget
 from ddct_reference.factory import make_reference
 

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from ddct_plant.base.errors import DdctError
+from ddct_plant.scenario.choices.settings import ARCHITECTURES
 from ddct_plant.scenario.control import REFERENCE_SHAPES
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import ARCHITECTURES, RunSettings
+from ddct_plant.scenario.settings import RunSettings
 from ddct_reference.descent import CrfRamp
 from ddct_reference.factory import make_reference
 from ddct_reference.slip_reference import DescendingReference, SlipReference

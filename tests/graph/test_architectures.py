@@ -12,8 +12,9 @@ import pytest
 from support.runs import LAYOUTS, bag_bytes, expected, record
 
 from ddct_bringup.run.plan import RunPlan
+from ddct_plant.scenario.choices.settings import ARCHITECTURES
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import ARCHITECTURES, RunSettings
+from ddct_plant.scenario.settings import RunSettings
 
 pytestmark = pytest.mark.slow
 

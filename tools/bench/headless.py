@@ -8,7 +8,7 @@ from functools import partial
 from bench.ratios import Comparison, Cost, NotMeasured
 from ddct_bringup.run.headless import closed_loop, run_headless, run_loop
 from ddct_controllers.registry import make_controller
-from ddct_plant.models.clutch import LINEAR, STICK_SLIP
+from ddct_plant.base.clutch_kinds import LINEAR, STICK_SLIP
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 

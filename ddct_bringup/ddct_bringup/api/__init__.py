@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from ddct_controllers.registry import controller_names
     from ddct_plant.base.errors import DdctError, ParameterError
     from ddct_plant.base.options import Option
-    from ddct_plant.scenario.file import scenario_names
+    from ddct_plant.scenario.choices.scenarios import scenario_names
 
 __all__ = [
     'BenchmarkResults',
@@ -83,7 +83,7 @@ _NAMES = {
     'ddct_controllers.registry': ('controller_names',),
     'ddct_plant.base.errors': ('DdctError', 'ParameterError'),
     'ddct_plant.base.options': ('Option',),
-    'ddct_plant.scenario.file': ('scenario_names',),
+    'ddct_plant.scenario.choices.scenarios': ('scenario_names',),
 }
 """Names of this package by their module, the same as type checkers read above."""
 _MODULE_OF = {name: module for module, names in _NAMES.items() for name in names}

@@ -15,8 +15,8 @@ from ddct_bringup.reproduction.studies.table_5_2 import rated_rows
 from ddct_bringup.reproduction.values.orders import WORN
 from ddct_bringup.thesis.predictions import predicted_range
 from ddct_bringup.thesis.table_5_1 import PREDICTED, TABLE_METRICS, is_thesis_run, thesis_row
+from ddct_plant.base.clutch_kinds import CLUTCHES
 from ddct_plant.base.options import require_known
-from ddct_plant.models.clutch import CLUTCHES
 
 THESIS = 'thesis.'
 """Prefix of the column of a printed value."""

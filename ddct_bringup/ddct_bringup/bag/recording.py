@@ -13,15 +13,16 @@ from ddct_bringup.bag.run_facts import MEASURED, RunFacts
 from ddct_bringup.bag.run_info import CONTROLLER_NODE, DRIVELINE_NODE, RunInfoOfNodes
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_plant.bag_file.facts import KNOWN_SCENARIO, contradiction, recorded_scenario
+from ddct_plant.base.clutch_kinds import CLUTCHES
 from ddct_plant.base.errors import DdctError, require_choice
 from ddct_plant.base.options import options_of
 from ddct_plant.files.input_file import SCHEMA_KEY
 from ddct_plant.graph.node_reports import CONTROL_NODES, CONTROLLER, DIGEST, STEPS
-from ddct_plant.models.clutch import CLUTCHES
+from ddct_plant.scenario.choices.settings import MODES
 from ddct_plant.scenario.content import scenario_from_mapping
 from ddct_plant.scenario.file import content_digest
 from ddct_plant.scenario.scenario import Scenario
-from ddct_plant.scenario.settings import MODES, UNKNOWN, RunSettings
+from ddct_plant.scenario.settings import UNKNOWN, RunSettings
 from ddct_plant.signals.gain_changes import GainChange, gain_changes
 
 _OF_NODES = ('scenario', 'architecture', 'clutch', 'mode', 'seed')

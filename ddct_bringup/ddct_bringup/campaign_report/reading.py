@@ -16,9 +16,9 @@ from ddct_bringup.campaign.rows import STATE
 from ddct_bringup.campaign.spec import CampaignSpec
 from ddct_bringup.campaign_report.results import OtherVersion, Results
 from ddct_bringup.digests.files import require_unaltered
+from ddct_plant.base.clutch_kinds import LINEAR
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.files.input_file import SCHEMA_KEY, require_schema_version
-from ddct_plant.models.clutch import LINEAR
 from ddct_plant.scenario.differences import values_by_key
 from ddct_plant.scenario.settings import RunSettings
 

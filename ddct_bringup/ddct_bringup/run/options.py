@@ -14,17 +14,18 @@ from ddct_controllers.registry import (
     controller_names,
     controller_spec,
 )
+from ddct_plant.base.clutch_kinds import CLUTCHES
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.base.option import option_rows
 from ddct_plant.base.options import Option, options_of, require_known
 from ddct_plant.files.input_file import located
-from ddct_plant.models.clutch import CLUTCHES
 from ddct_plant.program.printed_table import print_note, print_table
 from ddct_plant.program.scheduling import Scheduling
 from ddct_plant.program.table import Table, Weight, with_reasons
-from ddct_plant.scenario.file import scenario_names
-from ddct_plant.scenario.options import add_option, add_scenario_options
-from ddct_plant.scenario.settings import ARCHITECTURES, MODES, RunSettings
+from ddct_plant.scenario.choices.command_line import add_option, add_scenario_options
+from ddct_plant.scenario.choices.scenarios import scenario_names
+from ddct_plant.scenario.choices.settings import ARCHITECTURES, MODES
+from ddct_plant.scenario.settings import RunSettings
 
 ALL = 'all'
 """Value of --controllers that selects every controller."""

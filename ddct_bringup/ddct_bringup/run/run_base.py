@@ -8,10 +8,10 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from ddct_controllers.registry import require_known_controllers
+from ddct_plant.base.clutch_kinds import LINEAR
 from ddct_plant.base.options import options_of
-from ddct_plant.models.clutch import LINEAR
+from ddct_plant.scenario.chosen import print_adjusted
 from ddct_plant.scenario.file import ScenarioFile
-from ddct_plant.scenario.options import print_adjusted
 from ddct_plant.scenario.overrides import parsed_override
 from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings

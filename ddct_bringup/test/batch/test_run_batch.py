@@ -20,8 +20,9 @@ from ddct_controllers.registry import make_controller, own_controller_names
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.lti import StateSpace
 from ddct_plant.models.parameters import DrivelineParameters
+from ddct_plant.scenario.choices.settings import ARCHITECTURES
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import ARCHITECTURES, RunSettings
+from ddct_plant.scenario.settings import RunSettings
 
 SHORT = {'duration_s': 1.2, 'control_start_s': 0.2, 'score_window_s': [0.2, 1.1]}
 LIMITS = packaged_limits()

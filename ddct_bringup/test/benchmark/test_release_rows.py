@@ -19,7 +19,7 @@ from ddct_bringup.verdict.limits import packaged_limits
 from ddct_bringup.verification.comparison import Comparison, plain_json
 from ddct_bringup.verification.rounding_bound import bound_of_row
 from ddct_controllers.registry import own_controller_names
-from ddct_plant.scenario.file import scenario_names
+from ddct_plant.scenario.choices.scenarios import scenario_names
 
 pytestmark = pytest.mark.slow
 

@@ -15,7 +15,7 @@ from ddct_bringup.verdict.limits import packaged_limits
 from ddct_bringup.verdict.state import LATE, NOT_ENGAGED, state_of
 from ddct_controllers.interface import Command, Controller, Measurement
 from ddct_controllers.registry import make_controller
-from ddct_plant.models.clutch import STICK_SLIP
+from ddct_plant.base.clutch_kinds import STICK_SLIP
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 

@@ -12,8 +12,9 @@ from ddct_bringup.run.headless import run_headless
 from ddct_controllers.interface import Command, Controller, Measurement
 from ddct_controllers.registry import controller_names
 from ddct_plant.base.units import rpm_from_rad_s
+from ddct_plant.scenario.choices.settings import ARCHITECTURES
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import ARCHITECTURES, RunSettings
+from ddct_plant.scenario.settings import RunSettings
 
 pytestmark = pytest.mark.slow
 

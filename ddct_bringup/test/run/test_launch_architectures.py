@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 
 from ddct_bringup.run.headless import run_headless
-from ddct_plant.models.clutch import CLUTCHES
-from ddct_plant.scenario.file import load_scenario, scenario_names
-from ddct_plant.scenario.settings import ARCHITECTURES, RunSettings
+from ddct_plant.base.clutch_kinds import CLUTCHES
+from ddct_plant.scenario.choices.scenarios import scenario_names
+from ddct_plant.scenario.choices.settings import ARCHITECTURES
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
 
 pytestmark = pytest.mark.slow
 

@@ -27,8 +27,9 @@ from ddct_controllers.mpc.estimators import make_observer
 from ddct_controllers.mpc.model.transmission_model import transmission_model
 from ddct_controllers.registry import make_controller
 from ddct_plant.base.units import rpm_from_rad_s
+from ddct_plant.scenario.choices.settings import ARCHITECTURES
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import ARCHITECTURES, RunSettings
+from ddct_plant.scenario.settings import RunSettings
 
 pytestmark = pytest.mark.slow
 

@@ -22,7 +22,8 @@ from ddct_controllers.mpc.variants import PREDICTIVE
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.models.driveline_model import driveline_matrices
 from ddct_plant.models.printed import ACTUATOR
-from ddct_plant.scenario.settings import ARCHITECTURES, RunSettings
+from ddct_plant.scenario.choices.settings import ARCHITECTURES
+from ddct_plant.scenario.settings import RunSettings
 
 pytestmark = pytest.mark.slow
 

@@ -16,8 +16,9 @@ from ddct_controllers.interface import ControllerContext
 from ddct_controllers.state_of_art.controllers import STATE_OF_ART
 from ddct_controllers.state_of_art.pedal_mpc import engagement_time_s
 from ddct_plant.base.units import rpm_from_rad_s
+from ddct_plant.scenario.choices.settings import ARCHITECTURES
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import ARCHITECTURES, RunSettings
+from ddct_plant.scenario.settings import RunSettings
 
 pytestmark = pytest.mark.slow
 

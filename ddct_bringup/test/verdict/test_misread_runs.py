@@ -7,7 +7,7 @@ from functools import cache
 import pytest
 
 from ddct_bringup.reproduction.study_run import study_run
-from ddct_plant.models.clutch import STICK_SLIP
+from ddct_plant.base.clutch_kinds import STICK_SLIP
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 

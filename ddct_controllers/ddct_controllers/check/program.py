@@ -11,7 +11,8 @@ from ddct_plant.files.output_file import require_place
 from ddct_plant.program.command_line import ProgramParser, complain, run_program, show_and_write
 from ddct_plant.program.printed_table import print_table
 from ddct_plant.program.table import Table, Weight
-from ddct_plant.scenario.options import add_scenario_options, scenario_of
+from ddct_plant.scenario.choices.command_line import add_scenario_options
+from ddct_plant.scenario.chosen import scenario_of
 from ddct_plant.scenario.settings import RunSettings
 
 PROGRAM = 'ddct check-controller'

@@ -7,10 +7,10 @@ from typing import Any, ClassVar
 
 from ddct_controllers.handover.interface import HandoverMeasurement
 from ddct_controllers.handover.laws import make_handover
+from ddct_plant.base.clutch_kinds import STICK_SLIP
 from ddct_plant.graph.follower import FollowerNode, Reply
 from ddct_plant.graph.output import Output
 from ddct_plant.graph.spin import run_node
-from ddct_plant.models.clutch import STICK_SLIP
 from ddct_plant.scenario.shift_rules import gears_of
 from ddct_plant.signals.topics import (
     HANDOVER_SHARE,

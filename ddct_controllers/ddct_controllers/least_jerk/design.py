@@ -16,8 +16,8 @@ from ddct_controllers.least_jerk.torque_estimate import (
     CarriedTorque,
     TorqueNoise,
 )
+from ddct_plant.base.clutch_kinds import LINEAR
 from ddct_plant.base.options import with_values
-from ddct_plant.models.clutch import LINEAR
 from ddct_plant.models.engine import EngineAuthority
 from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.models.static_torque import StaticTorque

@@ -9,8 +9,9 @@ from typing import Any
 from ddct_controllers.least_jerk.controller import NAME, SPEC
 from ddct_controllers.least_jerk.export.export_least_jerk import export_least_jerk
 from ddct_controllers.registry import make_controller, require_known_controllers
-from ddct_plant.models.clutch import CLUTCHES, STICK_SLIP
-from ddct_plant.scenario.options import add_scenario_options, scenario_of
+from ddct_plant.base.clutch_kinds import CLUTCHES, STICK_SLIP
+from ddct_plant.scenario.choices.command_line import add_scenario_options
+from ddct_plant.scenario.chosen import scenario_of
 from ddct_plant.scenario.settings import RunSettings
 
 _DESCRIPTION = """\

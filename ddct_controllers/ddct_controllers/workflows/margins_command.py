@@ -23,8 +23,9 @@ from ddct_plant.base.errors import DdctError
 from ddct_plant.program.command_line import complain, show_and_write
 from ddct_plant.program.printed_table import print_note, print_table
 from ddct_plant.program.table import Table, Weight, text_or_dash, with_reasons
+from ddct_plant.scenario.choices.command_line import add_scenario_options
+from ddct_plant.scenario.chosen import scenario_of
 from ddct_plant.scenario.differences import changed_values, scenario_title
-from ddct_plant.scenario.options import add_scenario_options, scenario_of
 from ddct_plant.scenario.settings import RunSettings
 
 _UNDEFINED = {

@@ -12,8 +12,10 @@ from ddct_controllers.registry import (
     make_controller,
     require_known_controllers,
 )
-from ddct_plant.scenario.options import add_scenario_options, scenario_of
-from ddct_plant.scenario.settings import ARCHITECTURES, RunSettings
+from ddct_plant.scenario.choices.command_line import add_scenario_options
+from ddct_plant.scenario.choices.settings import ARCHITECTURES
+from ddct_plant.scenario.chosen import scenario_of
+from ddct_plant.scenario.settings import RunSettings
 
 _DESCRIPTION = """\
 Write a predictive controller, with its observer and solver, as self-contained C99 for a

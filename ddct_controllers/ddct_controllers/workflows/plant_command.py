@@ -15,7 +15,8 @@ from ddct_plant.files.output_file import require_place, write_bytes, write_text
 from ddct_plant.program.command_line import show_and_write
 from ddct_plant.program.printed_table import print_tables
 from ddct_plant.program.table import Table
-from ddct_plant.scenario.options import add_scenario_options, scenario_of
+from ddct_plant.scenario.choices.command_line import add_scenario_options
+from ddct_plant.scenario.chosen import scenario_of
 
 _DESCRIPTION = """\
 The linear plant of a scenario, with its numbers: parameters, A, B, C, D, the transfer functions

@@ -8,14 +8,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ddct_plant.base.options import ASSUMED, Option, OptionGroup, option
+from ddct_plant.base.clutch_kinds import WEAR_GAIN
+from ddct_plant.base.options import ASSUMED, OptionGroup, option
 from ddct_plant.models.clutch_heat import ClutchHeat, HeatParameters
 
-LINEAR, STICK_SLIP = CLUTCHES = ('linear', 'stick_slip')
-"""Names of the clutch models, values of `--clutch`."""
-WEAR_GAIN = Option(
-    1.0, 'K_usura, wear gain of the clutch, 1 for a new one', above=0.0, at_most=3.0
-)
 AMBIENT_C = 20.0
 """Temperature in degrees Celsius at which the actuator's map from position to torque is valid."""
 

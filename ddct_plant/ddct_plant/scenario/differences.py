@@ -6,8 +6,9 @@ from collections.abc import Sequence
 from functools import cache
 from typing import Any
 
+from ddct_plant.scenario.choices.scenarios import scenario_names
 from ddct_plant.scenario.content import flat, scenario_content
-from ddct_plant.scenario.file import load_scenario, scenario_names
+from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.key_names import scenario_options
 from ddct_plant.scenario.scenario import Scenario
 

@@ -4,19 +4,18 @@
 
 import dataclasses
 import hashlib
-import importlib.resources
 import json
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import Any
 
+from ddct_plant.base.clutch_kinds import LINEAR
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.files.input_file import SCHEMA_KEY, located, user_text
 from ddct_plant.files.yaml_text import dump_yaml, parse_yaml_with_lines
-from ddct_plant.models.clutch import LINEAR
+from ddct_plant.scenario.choices.scenarios import packaged_scenarios, scenario_names
 from ddct_plant.scenario.content import SCHEMA_VERSION, flat, scenario_content, scenario_of
 from ddct_plant.scenario.csv_profiles import with_points
 from ddct_plant.scenario.overrides import (
@@ -31,14 +30,6 @@ from ddct_plant.scenario.rules.consistency import FILE, SET, consistent
 from ddct_plant.scenario.rules.driveline import require_driveline
 from ddct_plant.scenario.rules.plausible import with_remarks
 from ddct_plant.scenario.scenario import Scenario
-
-
-def scenario_names() -> list[str]:
-    """Return the names of the scenarios that come with the package."""
-    folder = _packaged()
-    return sorted(
-        Path(entry.name).stem for entry in folder.iterdir() if entry.name.endswith('.yaml')
-    )
 
 
 @dataclass(frozen=True)
@@ -170,10 +161,6 @@ def content_digest(content: Mapping[str, Any]) -> str:
     return hashlib.sha256(json.dumps(counted, sort_keys=True).encode()).hexdigest()[:16]
 
 
-def _packaged() -> Traversable:
-    return importlib.resources.files('ddct_plant.scenario') / 'packaged'
-
-
 def _read(name_or_file: str) -> tuple[str, str]:
     if not name_or_file:
         raise ParameterError('scenario is empty: give a name or a YAML file', key='scenario')
@@ -184,7 +171,7 @@ def _read(name_or_file: str) -> tuple[str, str]:
                 'or give the path of a YAML file',
                 key=name_or_file,
             )
-        resource = _packaged() / f'{name_or_file}.yaml'
+        resource = packaged_scenarios() / f'{name_or_file}.yaml'
         return resource.read_text(encoding='utf-8'), name_or_file
     path = Path(name_or_file)
     with located(f'scenario {path}'):

@@ -6,18 +6,15 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Self
 
+from ddct_plant.base.clutch_kinds import STICK_SLIP
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.base.options import OptionGroup, option, option_field, options_of
-from ddct_plant.models.clutch import CLUTCHES, STICK_SLIP, WEAR_GAIN
+from ddct_plant.base.options import OptionGroup, option_field
+from ddct_plant.scenario.choices.settings import SETTINGS
 from ddct_plant.scenario.control import ENGINE_SPEED_TARGET, PROFILE
 from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.shift_rules import require_shift
 from ddct_plant.signals.signal import RunKind
 
-ARCHITECTURES = ('base', 'feedforward', 'feedforward_tanh', 'detailed')
-"""Names of the control architectures: those of Section 1.6, and CRF's detailed model (1.4)."""
-MODES = ('lockstep', 'realtime')
-"""Modes of a run: lock-step waits for every reply; real time steps at 100 Hz and counts misses."""
 _PYTHON = '.py'
 UNKNOWN = ('wear_gain', 'seed', 'off_going_wear_gain')
 """Settings that no controller knows; those that it knows have their defaults."""
@@ -39,26 +36,13 @@ class RunSettings(OptionGroup):
     """
 
     scenario: Scenario
-    architecture: str = option('detailed', 'control architecture', choices=ARCHITECTURES)
-    clutch: str = option('linear', 'model of the clutch', choices=CLUTCHES)
-    wear_gain: float = option_field(WEAR_GAIN)
-    mode: str = option(
-        'lockstep', 'wait for every node, or 100 Hz on the wall clock', choices=MODES
-    )
-    seed: int = option(
-        0,
-        'seed of the random numbers of `sensors`; without sensors it changes nothing',
-        at_least=0,
-        at_most=2**31 - 1,
-    )
-    off_going_wear_gain: float = option_field(
-        replace(WEAR_GAIN, meaning='wear gain of the off-going clutch, in a gear shift only')
-    )
-    handover: str = option(
-        'adaptive',
-        'how the torque goes from the off-going to the on-coming clutch, in a gear shift only: '
-        'timed, slip, model, adaptive, one of another package, or a Python file',
-    )
+    architecture: str = option_field(SETTINGS['architecture'])
+    clutch: str = option_field(SETTINGS['clutch'])
+    wear_gain: float = option_field(SETTINGS['wear_gain'])
+    mode: str = option_field(SETTINGS['mode'])
+    seed: int = option_field(SETTINGS['seed'])
+    off_going_wear_gain: float = option_field(SETTINGS['off_going_wear_gain'])
+    handover: str = option_field(SETTINGS['handover'])
     known_scenario: Scenario | None = field(default=None, repr=False)
     """Scenario that controllers know where it differs from the true one, else None."""
 
@@ -77,12 +61,11 @@ class RunSettings(OptionGroup):
 
         They are these settings themselves where they do not differ, and know of no others.
         """
-        options = options_of(RunSettings)
         known = replace(
             self,
             scenario=self.known_scenario or self.scenario,
             known_scenario=None,
-            **{name: options[name].default for name in UNKNOWN},
+            **{name: SETTINGS[name].default for name in UNKNOWN},
         )
         return self if known == self else known
 
@@ -174,10 +157,9 @@ class RunSettings(OptionGroup):
                 )
 
     def _require_defaults_of_a_shift(self) -> None:
-        options = options_of(RunSettings)
         for name in OF_SHIFTS:
             value = getattr(self, name)
-            if value != options[name].default:
+            if value != SETTINGS[name].default:
                 raise ParameterError(
                     f'{name} is {value}, but scenario {self.scenario.name} is no gear shift: '
                     'choose one with a section shift, such as upshift, or leave it out',

@@ -5,7 +5,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from ddct_plant.models.clutch import LINEAR
+from ddct_plant.base.clutch_kinds import LINEAR
 
 SignalValue = float | Sequence[float] | tuple[object, ...] | None
 """Value of a signal at one step: a number, several, texts or events; None where a run lacks it."""

@@ -11,10 +11,11 @@ from refusals import refused
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.models.driveline_model import driveline_matrices
 from ddct_plant.models.static_torque import StaticTorque, constant_slip_torque
+from ddct_plant.scenario.choices.settings import ARCHITECTURES
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.initial_state import initial_state
 from ddct_plant.scenario.scenario import Scenario
-from ddct_plant.scenario.settings import ARCHITECTURES, RunSettings
+from ddct_plant.scenario.settings import RunSettings
 
 THESIS = load_scenario('thesis')
 LOADED = load_scenario(

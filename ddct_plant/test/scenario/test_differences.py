@@ -5,8 +5,9 @@
 import dataclasses
 from pathlib import Path
 
+from ddct_plant.scenario.choices.scenarios import scenario_names
 from ddct_plant.scenario.differences import changed_values, scenario_title
-from ddct_plant.scenario.file import load_scenario, scenario_names, scenario_to_yaml
+from ddct_plant.scenario.file import load_scenario, scenario_to_yaml
 
 
 def test_packaged_scenarios_have_changed_nothing() -> None:

@@ -9,7 +9,8 @@ from refusals import refused
 from shifts import SHIFTS
 
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.scenario.file import load_scenario, scenario_names
+from ddct_plant.scenario.choices.scenarios import scenario_names
+from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.initial_state import initial_state
 from ddct_plant.scenario.settings import RunSettings
 

@@ -4,7 +4,8 @@
 
 import pytest
 
-from ddct_plant.scenario.file import load_scenario, scenario_names, scenario_to_yaml
+from ddct_plant.scenario.choices.scenarios import scenario_names
+from ddct_plant.scenario.file import load_scenario, scenario_to_yaml
 from ddct_plant.scenario.rules.plausible import RANGES
 
 

@@ -6,10 +6,11 @@ import pytest
 from refusals import refused
 
 from ddct_plant.base.errors import ParameterError
+from ddct_plant.scenario.choices.settings import ARCHITECTURES
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.initial_state import initial_state
 from ddct_plant.scenario.plant import make_driveline
-from ddct_plant.scenario.settings import ARCHITECTURES, RunSettings
+from ddct_plant.scenario.settings import RunSettings
 
 THESIS = load_scenario('thesis')
 EARLY_END = load_scenario('thesis', ['reference.reference_end_s=0.6'])

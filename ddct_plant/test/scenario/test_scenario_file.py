@@ -9,13 +9,8 @@ import pytest
 from refusals import refused
 
 from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.scenario.file import (
-    ScenarioFile,
-    load_scenario,
-    scenario_digest,
-    scenario_names,
-    scenario_to_yaml,
-)
+from ddct_plant.scenario.choices.scenarios import scenario_names
+from ddct_plant.scenario.file import ScenarioFile, load_scenario, scenario_digest, scenario_to_yaml
 from ddct_plant.scenario.settings import RunSettings
 
 MINIMAL = """\

@@ -16,7 +16,7 @@ from support.exported_loops import EXPORTABLE, compare_loops
 from support.exported_mpc import exported, run_settings
 
 from ddct_controllers.registry import make_controller
-from ddct_plant.scenario.settings import ARCHITECTURES
+from ddct_plant.scenario.choices.settings import ARCHITECTURES
 
 
 @pytest.mark.parametrize('name', EXPORTABLE)

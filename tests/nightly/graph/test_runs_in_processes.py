@@ -9,8 +9,9 @@ from support.runs import bag_bytes, expected, plan, record
 from support.sensors import ALL_ON
 
 from ddct_bringup.run.plan import RunPlan
+from ddct_plant.scenario.choices.settings import ARCHITECTURES
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import ARCHITECTURES, RunSettings
+from ddct_plant.scenario.settings import RunSettings
 
 SCENARIO = load_scenario('thesis', ['duration_s=0.8', 'reference.reference_end_s=0.75'])
 

@@ -15,8 +15,9 @@ from ddct_bringup.reproduction.study_run import study_run
 from ddct_bringup.run.headless import run_headless
 from ddct_controllers.registry import make_controller
 from ddct_plant.base.units import rpm_from_rad_s
+from ddct_plant.scenario.choices.settings import ARCHITECTURES
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import ARCHITECTURES, RunSettings
+from ddct_plant.scenario.settings import RunSettings
 
 SCENARIO = load_scenario('thesis')
 LONG = replace(SCENARIO, duration_s=5.0)

@@ -10,7 +10,8 @@ from support.independent_figures import Figure, independent_figures
 
 from ddct_bringup.api import Run, run
 from ddct_bringup.verdict.limits import packaged_limits
-from ddct_plant.scenario.file import load_scenario, scenario_names
+from ddct_plant.scenario.choices.scenarios import scenario_names
+from ddct_plant.scenario.file import load_scenario
 
 RULES = packaged_limits().rules
 COMMANDING = ('withhold_share', 'withhold_below', 'add_below', 'no_least')

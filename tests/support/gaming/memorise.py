@@ -16,7 +16,8 @@ from ddct_bringup.benchmark.cases import Cases
 from ddct_bringup.run.headless import closed_loop, run_headless, run_loop
 from ddct_controllers.interface import Command, Controller, Measurement
 from ddct_plant.base.timebase import PERIOD_S
-from ddct_plant.scenario.file import load_scenario, scenario_names
+from ddct_plant.scenario.choices.scenarios import scenario_names
+from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
 HERE = Path(__file__).parent

@@ -24,11 +24,12 @@ from ddct_bringup.reproduction.study_run import THESIS_SCENARIO, StudyRun, study
 from ddct_bringup.verdict.state import ENGAGED
 from ddct_controllers.design.drawing.line_styles import BLACK, BLUE, GREY, VERMILLION
 from ddct_controllers.registry import own_controller_names
+from ddct_plant.base.clutch_kinds import CLUTCHES, STICK_SLIP
 from ddct_plant.base.timebase import PERIOD_S, time_of_step
-from ddct_plant.models.clutch import CLUTCHES, STICK_SLIP
 from ddct_plant.program.table import Column
 from ddct_plant.program.workers import in_processes
-from ddct_plant.scenario.file import load_scenario, scenario_names
+from ddct_plant.scenario.choices.scenarios import scenario_names
+from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
 if TYPE_CHECKING:

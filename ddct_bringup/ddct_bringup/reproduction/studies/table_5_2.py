@@ -20,7 +20,7 @@ from ddct_bringup.reproduction.values.orders import (
     rows_of_table_5_2,
 )
 from ddct_bringup.verdict.state import ENGAGED, NOT_ENGAGED
-from ddct_plant.models.clutch import CLUTCHES
+from ddct_plant.base.clutch_kinds import CLUTCHES
 from ddct_plant.scenario.settings import RunSettings
 
 

@@ -29,9 +29,9 @@ from ddct_plant.measured.log import SPEEDS, MeasuredLog, read_log
 from ddct_plant.measured.wheel_radius import VEHICLE_SPEED
 from ddct_plant.program.command_line import ProgramParser, show_and_write
 from ddct_plant.program.progress import Progress
+from ddct_plant.scenario.choices.command_line import add_scenario_options
+from ddct_plant.scenario.chosen import scenario_of as base_scenario
 from ddct_plant.scenario.file import scenario_to_yaml
-from ddct_plant.scenario.options import add_scenario_options
-from ddct_plant.scenario.options import scenario_of as base_scenario
 
 NEEDED = (*SPEEDS, *TORQUES)
 """Quantities that a log must have."""

@@ -4,8 +4,8 @@
 
 import math
 
+from ddct_plant.base.clutch_kinds import STICK_SLIP
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.models.clutch import STICK_SLIP
 from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.models.stick_slip_driveline import friction_integrator, friction_system
 

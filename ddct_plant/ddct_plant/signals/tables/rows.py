@@ -4,8 +4,8 @@
 
 from typing import Any
 
+from ddct_plant.base.clutch_kinds import STICK_SLIP
 from ddct_plant.base.timebase import SUBSTEPS
-from ddct_plant.models.clutch import STICK_SLIP
 from ddct_plant.models.driveline import JointValues, SensedJoints
 from ddct_plant.signals.message_kind import Scalar
 from ddct_plant.signals.signal import RunKind, Signal

@@ -1,16 +1,11 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Command-line options that choose a scenario, its overrides and its run settings."""
+"""Command-line options that choose a scenario, its overrides and described values."""
 
 import argparse
-import sys
-from collections.abc import Sequence
 
-from ddct_plant.base.errors import printable
 from ddct_plant.base.options import Option
-from ddct_plant.models.clutch import LINEAR
-from ddct_plant.scenario.file import load_scenario, scenario_names
-from ddct_plant.scenario.scenario import Scenario
+from ddct_plant.scenario.choices.scenarios import scenario_names
 
 _METAVARS = {float: 'X', int: 'N', str: 'NAME'}
 SET_EXAMPLE = 'load.slope_rad=0.05'
@@ -34,21 +29,6 @@ def add_scenario_options(
         dest='overrides',
         help=f'change a scenario key, such as {set_example}; may be repeated',
     )
-
-
-def scenario_of(
-    options: argparse.Namespace, overrides: Sequence[str], clutch: str = LINEAR
-) -> Scenario:
-    """Return the scenario of --scenario with overrides; print `adjusted` on standard error."""
-    scenario = load_scenario(options.scenario, overrides, clutch)
-    print_adjusted(scenario)
-    return scenario
-
-
-def print_adjusted(scenario: Scenario) -> None:
-    """Print the lines on adjusted values of a scenario on standard error."""
-    for line in scenario.adjusted:
-        print(f'scenario {printable(scenario.name)}: {printable(line)}', file=sys.stderr)
 
 
 def add_option(parser: argparse.ArgumentParser, name: str, described: Option) -> None:

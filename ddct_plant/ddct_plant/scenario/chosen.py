@@ -1,0 +1,27 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""The scenario that the options of a program choose."""
+
+import argparse
+import sys
+from collections.abc import Sequence
+
+from ddct_plant.base.clutch_kinds import LINEAR
+from ddct_plant.base.errors import printable
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.scenario import Scenario
+
+
+def scenario_of(
+    options: argparse.Namespace, overrides: Sequence[str], clutch: str = LINEAR
+) -> Scenario:
+    """Return the scenario of --scenario with overrides; print `adjusted` on standard error."""
+    scenario = load_scenario(options.scenario, overrides, clutch)
+    print_adjusted(scenario)
+    return scenario
+
+
+def print_adjusted(scenario: Scenario) -> None:
+    """Print the lines on adjusted values of a scenario on standard error."""
+    for line in scenario.adjusted:
+        print(f'scenario {printable(scenario.name)}: {printable(line)}', file=sys.stderr)
