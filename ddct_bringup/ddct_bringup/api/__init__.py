@@ -15,8 +15,9 @@ The module of a name is imported when the name is first used: to import this pac
 `run` does not wait for what draws or tunes.
 """
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from ddct_plant.base.late_names import late_names
 
 if TYPE_CHECKING:
     from ddct_bringup.api.benchmarks import BenchmarkResults, benchmark
@@ -34,70 +35,4 @@ if TYPE_CHECKING:
     from ddct_plant.base.options import Option
     from ddct_plant.scenario.choices.scenarios import scenario_names
 
-__all__ = [
-    'BenchmarkResults',
-    'CampaignResults',
-    'Command',
-    'Controller',
-    'ControllerContext',
-    'DdctError',
-    'Measurement',
-    'Option',
-    'ParameterError',
-    'Run',
-    'ScoredRun',
-    'ThesisDrawing',
-    'ThesisNumbers',
-    'TuningResults',
-    'benchmark',
-    'beside_thesis',
-    'campaign',
-    'campaign_figure',
-    'compare',
-    'controller_names',
-    'figure',
-    'load',
-    'read_campaign',
-    'read_scores',
-    'run',
-    'scenario_names',
-    'sweep',
-    'table',
-    'table_5_2',
-    'thesis_figure',
-    'thesis_numbers',
-    'tune',
-]
-
-_NAMES = {
-    'ddct_bringup.api.benchmarks': ('BenchmarkResults', 'benchmark'),
-    'ddct_bringup.api.campaigns': ('CampaignResults', 'campaign', 'read_campaign', 'sweep'),
-    'ddct_bringup.api.figures': ('ThesisDrawing', 'campaign_figure', 'figure', 'thesis_figure'),
-    'ddct_bringup.api.result': ('Run', 'table'),
-    'ddct_bringup.api.run_and_load': ('compare', 'load', 'run'),
-    'ddct_bringup.api.thesis': ('ThesisNumbers', 'beside_thesis', 'table_5_2', 'thesis_numbers'),
-    'ddct_bringup.api.tuning': ('TuningResults', 'tune'),
-    'ddct_bringup.scores.document': ('read_scores',),
-    'ddct_bringup.scores.scored_run': ('ScoredRun',),
-    'ddct_controllers.interface': ('Command', 'Controller', 'ControllerContext', 'Measurement'),
-    'ddct_controllers.registry': ('controller_names',),
-    'ddct_plant.base.errors': ('DdctError', 'ParameterError'),
-    'ddct_plant.base.options': ('Option',),
-    'ddct_plant.scenario.choices.scenarios': ('scenario_names',),
-}
-"""Names of this package by their module, the same as type checkers read above."""
-_MODULE_OF = {name: module for module, names in _NAMES.items() for name in names}
-
-
-def __getattr__(name: str) -> Any:
-    """Import the module of a name at its first use, and keep the name here."""
-    if name not in _MODULE_OF:
-        raise AttributeError(f'module {__name__!r} has no attribute {name!r}', name=name)
-    found = getattr(import_module(_MODULE_OF[name]), name)
-    globals()[name] = found
-    return found
-
-
-def __dir__() -> list[str]:
-    """Return the names of the package, also those that were not used yet."""
-    return sorted({*globals(), *__all__})
+__getattr__, __dir__, __all__ = late_names(__name__)
