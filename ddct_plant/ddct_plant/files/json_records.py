@@ -4,6 +4,8 @@
 Write and read all JSON: results, evidence, manifests, and the texts in a bag.
 
 A dataclass is the record: its fields are the keys, in their order, all of them in every file.
+Fields with `init=False` are computed, and are no keys; those of `inline` are no keys either: the
+keys of the dataclass in them stand in the object itself.
 """
 
 import dataclasses
@@ -26,8 +28,14 @@ from ddct_plant.files.input_file import MOST_TEXT_BYTES, read_text_file, require
 from ddct_plant.files.output_file import ANOTHER_FILE, write_text
 
 T = TypeVar('T')
+_INLINE = 'inline'
 _Reader = Callable[[Any], Any]
 """Converter of plain data to one type; it raises _RecordError."""
+
+
+def inline() -> Any:
+    """Return the field of a dataclass for another one, whose keys stand among its own."""
+    return dataclasses.field(metadata={_INLINE: True})
 
 
 def to_json(obj: Any) -> Any:
@@ -40,7 +48,11 @@ def to_json(obj: Any) -> Any:
         return obj.value if isinstance(obj, enum.Enum) else obj
     kind: Any = type(obj)
     if _is_record(kind):
-        return {name: to_json(getattr(obj, name)) for name in _keys(kind)}
+        content: dict[str, Any] = {}
+        for name, inlined in _fields(kind):
+            value = to_json(getattr(obj, name))
+            content |= value if inlined else {name: value}
+        return content
     if isinstance(obj, Mapping):
         if not all(isinstance(key, str) for key in obj):
             raise TypeError(f'keys of JSON are texts, not as in {obj!r}')
@@ -240,11 +252,11 @@ def _differences(kind: Any, data: dict[str, Any]) -> int:
     """Return the number of keys by which an object is no record of this type."""
     if not _is_record(kind):
         return 0
-    hints = _hints(kind)
-    count = len(hints.keys() ^ data.keys())
-    for name in hints.keys() & data.keys():
+    keys = _keys(kind)
+    count = len(keys.keys() ^ data.keys())
+    for name in keys.keys() & data.keys():
         try:
-            _reader(hints[name])(data[name])
+            _reader(keys[name])(data[name])
         except _RecordError:
             count += 1
     return count
@@ -292,12 +304,18 @@ def _read_mapping(kind: Any, read_key: _Reader, read_value: _Reader, data: Any) 
 def _read_record(kind: Any, data: Any) -> Any:
     if not isinstance(data, dict):
         raise _wrong_type(data, kind)
-    hints = _hints(kind)
+    keys = _keys(kind)
     for name in data:
-        if name not in hints:
-            raise _RecordError(f'unknown key {{}}: {close_name(name, hints)}', name)
+        if name not in keys:
+            raise _RecordError(f'unknown key {{}}: {close_name(name, keys)}', name)
     found = {}
-    for name, hint in hints.items():
+    for name, inlined in _fields(kind):
+        hint = _hints(kind)[name]
+        if inlined:
+            found[name] = _read_record(
+                hint, {key: data[key] for key in _keys(hint) if key in data}
+            )
+            continue
         if name not in data:
             raise _RecordError('the key {} is missing', name)
         try:
@@ -315,16 +333,27 @@ def _is_record(kind: Any) -> bool:
 
 
 @cache
-def _keys(kind: Any) -> tuple[str, ...]:
-    """Return the keys of a dataclass: its fields without those that it computes."""
-    return tuple(each.name for each in dataclasses.fields(kind) if each.init)
+def _fields(kind: Any) -> tuple[tuple[str, bool], ...]:
+    """Return the fields of a dataclass that it does not compute, and whether they are inline."""
+    fields = dataclasses.fields(kind)
+    return tuple((each.name, _INLINE in each.metadata) for each in fields if each.init)
 
 
 @cache
 def _hints(kind: Any) -> dict[str, Any]:
-    """Return the types of the keys of a dataclass."""
+    """Return the types of the fields of a dataclass that it does not compute."""
     hints = typing.get_type_hints(kind)
-    return {name: hints[name] for name in _keys(kind)}
+    return {name: hints[name] for name, _ in _fields(kind)}
+
+
+@cache
+def _keys(kind: Any) -> dict[str, Any]:
+    """Return the types of the keys of a dataclass."""
+    keys: dict[str, Any] = {}
+    for name, inlined in _fields(kind):
+        hint = _hints(kind)[name]
+        keys |= _keys(hint) if inlined else {name: hint}
+    return keys
 
 
 def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:

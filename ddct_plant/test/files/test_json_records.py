@@ -13,7 +13,14 @@ import numpy as np
 import pytest
 
 from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.files.json_records import from_json, json_text, read_json, to_json, write_json
+from ddct_plant.files.json_records import (
+    from_json,
+    inline,
+    json_text,
+    read_json,
+    to_json,
+    write_json,
+)
 
 
 class Side(enum.Enum):
@@ -125,6 +132,29 @@ def test_a_record_becomes_plain_data_with_its_fields_as_keys_in_their_order():
 
 def test_a_record_comes_back_as_it_was():
     assert from_json(Record, PLAIN, 'x.json') == RECORD
+
+
+@dataclass(frozen=True)
+class Named:
+    """Record with the keys of another one between its own."""
+
+    name: str
+    limits: Range = inline()
+    runs: int = 0
+
+
+def test_keys_of_an_inline_record_stand_among_those_around_it():
+    plain = {'name': 'a', 'low': 1.0, 'high': None, 'runs': 3}
+    record = Named('a', Range(1.0), 3)
+    assert list(to_json(record).items()) == list(plain.items())
+    assert from_json(Named, plain, 'x.json') == record
+    for key, complaint in (('low', 'the key low is missing'), ('name', 'the key name is missing')):
+        with pytest.raises(DdctError, match=f'^x.json: {complaint}$'):
+            from_json(Named, {k: v for k, v in plain.items() if k != key}, 'x.json')
+    with pytest.raises(DdctError, match="^x.json: high is 'b': give a number or null$"):
+        from_json(Named, plain | {'high': 'b'}, 'x.json')
+    with pytest.raises(DdctError, match='^x.json: unknown key limits: known: name, low, high'):
+        from_json(Named, plain | {'limits': {}}, 'x.json')
 
 
 def test_numbers_of_numpy_are_written_as_those_of_python():
