@@ -59,12 +59,12 @@ def h_infinity_tables() -> Mapping[str, Table]:
 def _both_loops(controller: FactoredTransferFunction) -> LoopsEntry:
     """Return both loops of a printed controller, judged by the weights that the thesis prints."""
     sampled = sampled_loop(discretise_zoh(controller.to_state_space(), PERIOD_S))
-    return {
-        'continuous_loop': loop_record(
+    return LoopsEntry(
+        continuous_loop=loop_record(
             continuous_loop(controller), PRINTED_WEIGHTS, THESIS_SPECIFICATIONS
         ),
-        'sampled_loop': loop_record(sampled, PRINTED_WEIGHTS, THESIS_SPECIFICATIONS),
-    }
+        sampled_loop=loop_record(sampled, PRINTED_WEIGHTS, THESIS_SPECIFICATIONS),
+    )
 
 
 def declared_parameters() -> Mapping[str, Table]:

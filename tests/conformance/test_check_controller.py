@@ -143,10 +143,10 @@ def test_a_packaged_controller_fails_no_check(name: str) -> None:
 def test_stability_is_that_of_the_loop_with_the_actuator_of_the_scenario() -> None:
     settings = RunSettings(load_scenario('thesis', ['actuator.delay_s=0.033']))
     (stability,) = (each for each in check_controller('ls8', settings) if each.name == 'stability')
-    margins = linear_entries(frequency_evidence(['ls8'], settings))[0]['nominal']
+    margins = linear_entries(frequency_evidence(['ls8'], settings))[0].nominal.margins
     assert stability.state == PASS
-    assert f'gain margin {margins["gain_margin_db"]:.1f} dB' in stability.detail
-    assert f'phase margin {margins["phase_margin_deg"]:.0f} deg' in stability.detail
+    assert f'gain margin {margins.gain_margin_db:.1f} dB' in stability.detail
+    assert f'phase margin {margins.phase_margin_deg:.0f} deg' in stability.detail
 
 
 @pytest.mark.parametrize(

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Headless runs of the thesis's scenario, and their report page."""
 
-import json
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -13,6 +13,7 @@ from support.runs import plan, record
 from ddct_bringup.programs.report import main
 from ddct_bringup.report.evidence import FREQUENCY_FILE
 from ddct_controllers.workflows.evidence import frequency_evidence
+from ddct_plant.files.json_records import write_json
 from ddct_plant.scenario.file import scenario_digest
 
 CONTROLLERS = ('pi', 'ls8', 'hinf1')
@@ -26,8 +27,8 @@ def demo(tmp_path_factory: pytest.TempPathFactory) -> Path:
         record(plan(name, 'headless', duration_s=3.0), folder / name)
     settings = plan(duration_s=3.0).settings
     evidence = frequency_evidence(CONTROLLERS, settings)
-    evidence['conditions']['scenario_digest'] = scenario_digest(settings.scenario)
-    (folder / FREQUENCY_FILE).write_text(json.dumps(evidence), encoding='utf-8')
+    conditions = replace(evidence.conditions, scenario_digest=scenario_digest(settings.scenario))
+    write_json(str(folder / FREQUENCY_FILE), replace(evidence, conditions=conditions))
     return folder
 
 

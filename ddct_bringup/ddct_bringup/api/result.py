@@ -19,8 +19,8 @@ from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.verdict.limits import LimitResult, Limits
 from ddct_controllers.registry import Chosen
 from ddct_controllers.workflows.evidence import frequency_evidence
-from ddct_controllers.workflows.evidence_types import ControllerEntry
 from ddct_plant.base.errors import DdctError
+from ddct_plant.files.json_records import to_json
 from ddct_plant.scenario.settings import RunSettings
 
 
@@ -128,15 +128,15 @@ class Run:
         """Return the run with its peak jerk over the least of its case."""
         return replace(self, scored=with_least(self.scored, limits))
 
-    def frequency(self) -> ControllerEntry:
+    def frequency(self) -> Any:
         """
-        Return the controller's entry of `frequency.json`: margins of its sampled loop.
+        Return the controller's entry of `frequency.json`, a dict: margins of its sampled loop.
 
         Its `linear` is false, and the rest None, for a controller without a frequency response.
         Raise DdctError where the controller of a loaded run cannot be found here, or its
         `linear_model` cannot be used.
         """
-        return frequency_evidence([self.chosen], self.settings)['controllers'][0]
+        return to_json(frequency_evidence([self.chosen], self.settings).controllers[0])
 
 
 def table(runs: Run | Iterable[Run]) -> Any:

@@ -8,18 +8,19 @@ It is read from the file that `compare` writes next to the bags, or computed.
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Any, TypeGuard, cast
 
 from ddct_bringup.report.page_parts import number_text
 from ddct_bringup.scores.scored_recording import ScoredRecording
 from ddct_controllers.design.analysis.loop_quantities import LOOP_QUANTITIES
 from ddct_controllers.workflows.evidence import actuator_conditions, frequency_evidence
-from ddct_controllers.workflows.evidence_types import ControllerEntry, LinearEntry, PointEntry
-from ddct_plant.base.errors import DdctError, ParameterError, require_number
-from ddct_plant.files.input_file import read_text_file
-from ddct_plant.files.json_records import parse_json
-from ddct_plant.models.actuator import ActuatorParameters
+from ddct_controllers.workflows.evidence_types import (
+    ControllerEntry,
+    FrequencyEvidence,
+    LinearEntry,
+    PointEntry,
+)
+from ddct_plant.base.errors import DdctError
+from ddct_plant.files.json_records import read_json, to_json
 
 FREQUENCY_FILE = 'frequency.json'
 """Name of the file that `compare` writes next to the scores."""
@@ -42,8 +43,8 @@ class LoopEvidence:
     @property
     def point(self) -> PointEntry | None:
         """Values of the loop at this wear gain."""
-        points = (self.entry and self.entry['wear']) or ()
-        return next((point for point in points if point['wear_gain'] == self.wear_gain), None)
+        points = (self.entry and self.entry.wear) or ()
+        return next((point for point in points if point.wear_gain == self.wear_gain), None)
 
 
 def evidence_of(runs: Iterable[ScoredRecording]) -> list[LoopEvidence]:
@@ -77,52 +78,19 @@ def evidence_of(runs: Iterable[ScoredRecording]) -> list[LoopEvidence]:
 def _stored(run: ScoredRecording, controller: str, wear_gain: float) -> LoopEvidence | None:
     """Return the evidence of exactly this loop from the file next to the bag's folder, if any."""
     assert run.recording is not None
-    content = _content(run.recording.path.parent.parent / FREQUENCY_FILE)
-    conditions, entries = content.get('conditions'), content.get('controllers')
-    if not isinstance(conditions, dict) or not isinstance(entries, list) or run.digest is None:
-        return None
-    if conditions.get('scenario_digest') != run.digest or not _has_actuator_of(run, conditions):
-        return None
-    ours = (each for each in entries if isinstance(each, dict))
-    entry = next((each for each in ours if each.get('controller') == controller), None)
-    return LoopEvidence(controller, wear_gain, entry) if _is_whole(entry, wear_gain) else None
-
-
-def _has_actuator_of(run: ScoredRecording, conditions: Mapping[str, object]) -> bool:
-    """Return whether a file has the run's actuator; older ones have the printed one."""
-    if run.settings is None:
-        return True
-    older = actuator_conditions(ActuatorParameters())
-    found = {name: conditions.get(name, value) for name, value in older.items()}
-    return found == actuator_conditions(run.settings.scenario.actuator)
-
-
-def _is_whole(entry: Any, wear_gain: float) -> TypeGuard[ControllerEntry]:
-    """Return whether an entry of a file has all values that the page shows."""
     try:
-        if entry['linear'] is not True:
-            return entry['linear'] is False and not entry['wear']
-        point = next(each for each in entry['wear'] if each['wear_gain'] == wear_gain)
-        interval = entry['stable_wear_gain']
-        for value in (
-            *(point[quantity.key] for quantity in LOOP_QUANTITIES),
-            *((interval['lowest'], interval['highest']) if interval else ()),
-            entry['corners']['sensitivity_peak'],
-        ):
-            if value is not None:
-                require_number('evidence', value)
-        return isinstance(point['stable'], bool) and isinstance(entry['corners']['unstable'], int)
-    except (LookupError, TypeError, AttributeError, StopIteration, ParameterError):
-        return False
-
-
-def _content(file: Path) -> Mapping[str, Any]:
-    """Return the JSON object in a file, empty where it is absent or not an object."""
-    try:
-        content = parse_json(read_text_file(file))
-    except (OSError, DdctError):
-        return {}
-    return content if isinstance(content, dict) else {}
+        file = run.recording.path.parent.parent / FREQUENCY_FILE
+        content = read_json(FrequencyEvidence, file)
+    except DdctError:
+        return None
+    if run.digest is None or content.conditions.scenario_digest != run.digest:
+        return None
+    actuator = run.settings and actuator_conditions(run.settings.scenario.actuator)
+    if actuator not in (None, content.conditions.actuator):
+        return None
+    entry = next((each for each in content.controllers if each.controller == controller), None)
+    found = LoopEvidence(controller, wear_gain, entry)
+    return found if found.point or (entry and entry.linear is False) else None
 
 
 def _computed(runs: Mapping[str, ScoredRecording], wear_gain: float) -> list[LoopEvidence]:
@@ -132,7 +100,7 @@ def _computed(runs: Mapping[str, ScoredRecording], wear_gain: float) -> list[Loo
         remark = 'the bag does not tell its scenario in a form that this version reads'
         return [LoopEvidence(name, wear_gain, None, remark) for name in runs]
     try:
-        entries = frequency_evidence(list(runs), settings)['controllers']
+        entries = frequency_evidence(list(runs), settings).controllers
     except DdctError as error:
         if len(runs) > 1:  # one at a time, so that only the faulty one has none
             return [each for name in runs for each in _computed({name: runs[name]}, wear_gain)]
@@ -163,7 +131,7 @@ def loop_rows(evidence: Sequence[LoopEvidence]) -> list[LoopRow]:
     return [
         _row(each, each.entry, each.point)
         for each in evidence
-        if each.entry is not None and each.entry['linear'] is True and each.point is not None
+        if isinstance(each.entry, LinearEntry) and each.point is not None
     ]
 
 
@@ -172,7 +140,7 @@ def without_evidence(evidence: Sequence[LoopEvidence]) -> dict[str, list[str]]:
     reasons: dict[str, list[str]] = {}
     for each in evidence:
         if each.point is None:
-            linear = each.entry is None or each.entry['linear']
+            linear = each.entry is None or each.entry.linear
             names = reasons.setdefault(each.remark if linear else NOT_LINEAR, [])
             if each.controller not in names:
                 names.append(each.controller)
@@ -180,17 +148,17 @@ def without_evidence(evidence: Sequence[LoopEvidence]) -> dict[str, list[str]]:
 
 
 def _row(evidence: LoopEvidence, entry: LinearEntry, point: PointEntry) -> LoopRow:
-    interval = entry['stable_wear_gain']
-    ends = (interval['lowest'], interval['highest']) if interval else (None, None)
-    values = cast(Mapping[str, float | None], point)
+    interval = entry.stable_wear_gain
+    ends = (interval.lowest, interval.highest) if interval else (None, None)
+    values = to_json(point)
     return LoopRow(
         loop=evidence,
-        stable=point['stable'],
+        stable=point.margins.stable,
         cells=tuple(
             (values[each.key], number_text(values[each.key], each.form))
             for each in LOOP_QUANTITIES
         ),
         stable_wear=' to '.join(number_text(end, '.2f') for end in ends),
-        corner_peak=number_text(entry['corners']['sensitivity_peak'], '.2f'),
-        corners_unstable=str(entry['corners']['unstable']),
+        corner_peak=number_text(entry.corners.sensitivity_peak, '.2f'),
+        corners_unstable=str(entry.corners.unstable),
     )

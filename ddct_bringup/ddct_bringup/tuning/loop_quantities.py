@@ -15,6 +15,7 @@ from ddct_bringup.tuning.specification.goals import (
     Goal,
 )
 from ddct_controllers.workflows.evidence import frequency_evidence
+from ddct_controllers.workflows.evidence_types import LinearEntry
 from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError, ParameterError
 from ddct_plant.scenario.settings import RunSettings
 
@@ -51,17 +52,17 @@ def loop_quantities(
             continue
         known.append(plant)
         try:
-            (entry,) = frequency_evidence(campaign.controllers, settings)['controllers']
+            (entry,) = frequency_evidence(campaign.controllers, settings).controllers
         except DdctError:
             return dict.fromkeys(OF_LOOP)
-        if entry['linear'] is not True:
+        if not isinstance(entry, LinearEntry):
             raise ParameterError(
                 f'{UNSTABLE_CORNERS}, {SENSITIVITY_PEAK}: {campaign.labels[0]} is not linear and '
                 'has no margins: leave them out',
                 key=UNSTABLE_CORNERS,
             )
-        unstable = max(unstable, entry['corners']['unstable'])
-        peaks.append(entry['corners']['sensitivity_peak'])
+        unstable = max(unstable, entry.corners.unstable)
+        peaks.append(entry.corners.sensitivity_peak)
     worst = None if None in peaks else max(each for each in peaks if each is not None)
     return {UNSTABLE_CORNERS: float(unstable), SENSITIVITY_PEAK: worst}
 

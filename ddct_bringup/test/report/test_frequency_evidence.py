@@ -18,6 +18,7 @@ from ddct_controllers.interface import Command, Controller, Measurement
 from ddct_controllers.registry import make_controller
 from ddct_controllers.workflows.evidence import frequency_evidence
 from ddct_plant.base.units import rad_s_from_rpm, rpm_from_rad_s
+from ddct_plant.files.json_records import to_json
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
@@ -97,8 +98,8 @@ def test_compare_leaves_the_evidence_beside_the_scores(tmp_path):
 
 @pytest.mark.parametrize('name', ['mpc3', 'mpc4'])
 def test_a_predictive_controller_has_no_frequency_response(name):
-    (entry,) = frequency_evidence([name], RunSettings(SCENARIO))['controllers']
-    assert entry == {
+    (entry,) = frequency_evidence([name], RunSettings(SCENARIO)).controllers
+    assert to_json(entry) == {
         'controller': name,
         'linear': False,
         **dict.fromkeys(('nominal', 'stable_wear_gain', 'wear', 'corners')),

@@ -58,7 +58,7 @@ def free_name(options: argparse.Namespace) -> str:
     return name
 
 
-def show(options: argparse.Namespace, tables: Iterable[Table], record: Mapping[str, Any]) -> None:
+def show(options: argparse.Namespace, tables: Iterable[Table], record: object) -> None:
     """Print the tables unless standard output is for the JSON, and write that if requested."""
     show_and_write(options.json, record, partial(print_tables, tables))
 

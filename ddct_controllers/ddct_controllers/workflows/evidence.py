@@ -25,9 +25,12 @@ from ddct_controllers.workflows.evidence_types import (
     ControllerEntry,
     CornersEntry,
     EntryWithoutEvidence,
+    EvidenceConditions,
     FrequencyEvidence,
+    LinearEntry,
     PointEntry,
     WearInterval,
+    WorstCornerEntry,
 )
 from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError
 from ddct_plant.base.timebase import PERIOD_S
@@ -67,24 +70,24 @@ def frequency_evidence(
             report(error)
             return _without_evidence(controller_label(chosen), linear=None)
 
-    return {
-        'conditions': {
-            'scenario': scenario.name,
-            'scenario_digest': scenario_digest(scenario),
-            'period_s': PERIOD_S,
-            **actuator_conditions(scenario.actuator),
-            'wear_gain_range': [WEAR_GAINS[0], WEAR_GAINS[-1]],
-            'corners': len(corners.plants),
-            'corner_spread': PARAMETER_SPREAD,
-            'corner_parameters': corners.varied,
-        },
-        'controllers': [entry_of(each) for each in controllers],
-    }
+    return FrequencyEvidence(
+        conditions=EvidenceConditions(
+            scenario=scenario.name,
+            scenario_digest=scenario_digest(scenario),
+            period_s=PERIOD_S,
+            actuator=actuator_conditions(scenario.actuator),
+            wear_gain_range=[WEAR_GAINS[0], WEAR_GAINS[-1]],
+            corners=len(corners.plants),
+            corner_spread=PARAMETER_SPREAD,
+            corner_parameters=corners.varied,
+        ),
+        controllers=[entry_of(each) for each in controllers],
+    )
 
 
 def actuator_conditions(actuator: ActuatorParameters) -> ActuatorConditions:
     """Return the entries of `conditions` that describe the actuator."""
-    return {'delay_s': actuator.delay_s, 'bandwidth_factor': actuator.bandwidth_factor}
+    return ActuatorConditions(actuator.delay_s, actuator.bandwidth_factor)
 
 
 def _controller_evidence(
@@ -104,25 +107,25 @@ def _controller_evidence(
         worst = _corner_evidence(model, corners)
     except (DdctError, np.linalg.LinAlgError) as error:
         raise _unusable(name, controller, error) from error
-    return {
-        'controller': name,
-        'linear': True,
-        'nominal': wear[1.0],
-        'stable_wear_gain': _stable_wear_gain(wear[1.0]),
-        'wear': list(wear.values()),
-        'corners': worst,
-    }
+    return LinearEntry(
+        controller=name,
+        linear=True,
+        nominal=wear[1.0],
+        stable_wear_gain=_stable_wear_gain(wear[1.0]),
+        wear=list(wear.values()),
+        corners=worst,
+    )
 
 
 def _without_evidence(name: str, linear: Literal[False] | None) -> EntryWithoutEvidence:
-    return {
-        'controller': name,
-        'linear': linear,
-        'nominal': None,
-        'stable_wear_gain': None,
-        'wear': None,
-        'corners': None,
-    }
+    return EntryWithoutEvidence(
+        controller=name,
+        linear=linear,
+        nominal=None,
+        stable_wear_gain=None,
+        wear=None,
+        corners=None,
+    )
 
 
 def _linear_model(name: str, controller: Controller) -> StateSpace | None:
@@ -159,36 +162,37 @@ def loop_evidence(
     """Return margins and driveline mode of the sampled loop at one wear gain."""
     loop = sampled_loop(controller, driveline, wear_gain, actuator)
     mode = driveline_mode(loop, driveline)
-    return {
-        'wear_gain': wear_gain,
-        **loop_margins(loop).entry(),
-        'driveline_mode_hz': mode.frequency_hz if mode else None,
-        'driveline_mode_damping': mode.damping if mode else None,
-        'driveline_mode_torsion_rpm': mode.torsion_amplitude_rpm if mode else None,
-    }
+    return PointEntry(
+        wear_gain=wear_gain,
+        margins=loop_margins(loop).limited(),
+        driveline_mode_hz=mode.frequency_hz if mode else None,
+        driveline_mode_damping=mode.damping if mode else None,
+        driveline_mode_torsion_rpm=mode.torsion_amplitude_rpm if mode else None,
+    )
 
 
 def _corner_evidence(controller: StateSpace, corners: PlantCorners) -> CornersEntry:
     found = worst_corner(controller, corners)
     driveline = corners.parameters[found.index]
     worst = loop_evidence(controller, driveline, found.wear_gain, corners.actuator)
-    return {
-        'unstable': found.unstable_corners,
-        'sensitivity_peak': found.sensitivity_peak,
-        'least_driveline_mode_damping': found.least_mode_damping,
-        'worst': {
-            'factors': dict(zip(corners.varied, corners.factors[found.index], strict=True)),
-            **worst,
-        },
-    }
+    return CornersEntry(
+        unstable=found.unstable_corners,
+        sensitivity_peak=found.sensitivity_peak,
+        least_driveline_mode_damping=found.least_mode_damping,
+        worst=WorstCornerEntry(
+            factors=dict(zip(corners.varied, corners.factors[found.index], strict=True)),
+            point=worst,
+        ),
+    )
 
 
 def _stable_wear_gain(nominal: PointEntry) -> WearInterval | None:
     """Return the wear gains between which the loop is stable: its gain margins, both ways."""
-    if not nominal['stable']:
+    margins = nominal.margins
+    if not margins.stable:
         return None
-    less, more = nominal['gain_reduction_margin_db'], nominal['gain_margin_db']
-    return {
-        'lowest': 0.0 if less is None else 10.0 ** (-less / 20.0),
-        'highest': None if more is None else 10.0 ** (more / 20.0),
-    }
+    less, more = margins.gain_reduction_margin_db, margins.gain_margin_db
+    return WearInterval(
+        lowest=0.0 if less is None else 10.0 ** (-less / 20.0),
+        highest=None if more is None else 10.0 ** (more / 20.0),
+    )

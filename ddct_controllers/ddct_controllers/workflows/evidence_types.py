@@ -3,19 +3,23 @@
 """Frequency-domain evidence, `frequency.json`: one type for each object of the JSON."""
 
 from collections.abc import Mapping, Sequence
-from typing import Literal, TypedDict
+from dataclasses import dataclass
+from typing import Literal
 
-from ddct_controllers.design.analysis.margins import MarginEntry
+from ddct_controllers.design.analysis.margins import LoopMargins
+from ddct_plant.files.json_records import Inline
 
 
-class ActuatorConditions(TypedDict):
+@dataclass(frozen=True)
+class ActuatorConditions:
     """Actuator of the loops."""
 
     delay_s: float
     bandwidth_factor: float
 
 
-class EvidenceConditions(ActuatorConditions):
+@dataclass(frozen=True)
+class EvidenceConditions:
     """Conditions that all loops of the evidence share."""
 
     scenario: str
@@ -23,6 +27,7 @@ class EvidenceConditions(ActuatorConditions):
     scenario_digest: str
     period_s: float
     """Sampling period in s."""
+    actuator: Inline[ActuatorConditions]
     wear_gain_range: Sequence[float]
     """Lowest and highest wear gain of the corners."""
     corners: int
@@ -33,24 +38,29 @@ class EvidenceConditions(ActuatorConditions):
     """Names of the parameters that differ between corners."""
 
 
-class PointEntry(MarginEntry):
+@dataclass(frozen=True)
+class PointEntry:
     """Sampled loop at one wear gain: its margins, and the mode of the driveline."""
 
     wear_gain: float
+    margins: Inline[LoopMargins]
     driveline_mode_hz: float | None
     """Frequency in Hz; None, as the other two, for a loop without an oscillating pole."""
     driveline_mode_damping: float | None
     driveline_mode_torsion_rpm: float | None
 
 
-class WorstCornerEntry(PointEntry):
+@dataclass(frozen=True)
+class WorstCornerEntry:
     """Sampled loop at the worst corner."""
 
     factors: Mapping[str, float]
     """Multiples of the nominal parameters, by name."""
+    point: Inline[PointEntry]
 
 
-class CornersEntry(TypedDict):
+@dataclass(frozen=True)
+class CornersEntry:
     """Sampled loops at all corners of the driveline, over wear."""
 
     unstable: int
@@ -61,7 +71,8 @@ class CornersEntry(TypedDict):
     worst: WorstCornerEntry
 
 
-class WearInterval(TypedDict):
+@dataclass(frozen=True)
+class WearInterval:
     """Wear gains between which the loop is stable."""
 
     lowest: float
@@ -69,7 +80,8 @@ class WearInterval(TypedDict):
     """Highest wear gain; None where nothing limits it."""
 
 
-class LinearEntry(TypedDict):
+@dataclass(frozen=True)
+class LinearEntry:
     """Evidence of one linear controller."""
 
     controller: str
@@ -83,7 +95,8 @@ class LinearEntry(TypedDict):
     corners: CornersEntry
 
 
-class EntryWithoutEvidence(TypedDict):
+@dataclass(frozen=True)
+class EntryWithoutEvidence:
     """Entry of a controller that is not linear, or whose `linear_model` cannot be used."""
 
     controller: str
@@ -98,7 +111,8 @@ class EntryWithoutEvidence(TypedDict):
 ControllerEntry = LinearEntry | EntryWithoutEvidence
 
 
-class FrequencyEvidence(TypedDict):
+@dataclass(frozen=True)
+class FrequencyEvidence:
     """Evidence of several controllers, in their order."""
 
     conditions: EvidenceConditions
@@ -107,4 +121,4 @@ class FrequencyEvidence(TypedDict):
 
 def linear_entries(evidence: FrequencyEvidence) -> list[LinearEntry]:
     """Return the entries of the linear controllers."""
-    return [entry for entry in evidence['controllers'] if entry['linear'] is True]
+    return [entry for entry in evidence.controllers if isinstance(entry, LinearEntry)]

@@ -14,10 +14,10 @@ from ddct_controllers.design.h_infinity.recipes import (
 )
 from ddct_controllers.design.h_infinity.record import (
     design_record,
-    provenance,
     shortfalls,
     uncertainty_record,
 )
+from ddct_controllers.design.h_infinity.record_types import HinfOrigin, HinfResult
 from ddct_controllers.design.h_infinity.tables import design_tables
 from ddct_controllers.design.loop_shaping.specifications import TimeSpecifications
 from ddct_controllers.from_file.designed import DesignedController
@@ -30,6 +30,7 @@ from ddct_controllers.workflows.design_output import (
     write_design,
 )
 from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.files.json_records import to_json
 from ddct_plant.program.command_line import complain
 
 _DESCRIPTION = """\
@@ -103,10 +104,10 @@ def run(options: argparse.Namespace) -> int:
     record = design_record(name, options.weights, specifications, design, plant_corners())
     missing = shortfalls(record)
     tables = design_tables([record], uncertainty)
-    show(options, tables.values(), {**record, 'uncertainty': uncertainty, 'lacks': missing})
+    show(options, tables.values(), HinfResult(record, uncertainty, missing))
     if missing:
         _report_shortfall(options, name, '; '.join(missing))
-    origin = {**provenance(options.weights, specifications, design), 'lacks': missing}
+    origin = to_json(HinfOrigin(record.provenance, missing))
     discretisation = BILINEAR if weights.sampled else HOLD
     designed = DesignedController(name, design.cleaned, origin, discretisation)
     write_design(options, designed, specifications)

@@ -25,6 +25,7 @@ from ddct_controllers.workflows.design_output import (
     write_design,
 )
 from ddct_plant.base.errors import ParameterError
+from ddct_plant.files.json_records import to_json
 from ddct_plant.models.driveline_model import engine_to_slip
 
 _DESCRIPTION = """\
@@ -97,7 +98,7 @@ def _design_controller(options: argparse.Namespace) -> None:
     print('ddct design loop-shaping: searching', file=sys.stderr, flush=True)
     structures = (options.structure,) if options.structure else STRUCTURES
     design = design_loop_shaping(specifications, integrators, IDENTIFIED_DRIVELINE, structures)
-    designed = DesignedController(name, design.controller, provenance(design))
+    designed = DesignedController(name, design.controller, to_json(provenance(design)))
     record = design_record(name, design)
     show(options, design_tables(record), record)
     write_design(options, designed, specifications)

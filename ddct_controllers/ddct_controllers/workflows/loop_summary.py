@@ -11,6 +11,7 @@ from ddct_controllers.design.state_space import factored_form, factors_text, sca
 from ddct_controllers.linear import BILINEAR, LinearController
 from ddct_controllers.registry import controller_label, make_controller
 from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.files.json_records import to_json
 from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
 from ddct_plant.scenario.settings import RunSettings
 
@@ -51,7 +52,7 @@ def _stability(model: StateSpace, settings: RunSettings) -> str:
             f'UNSTABLE: {where} has {outside} {count} on or outside the unit circle{hint} '
             '(the run goes on)'
         )
-    margins = loop_margins(loop).entry()
+    margins = to_json(loop_margins(loop).limited())
     texts = (f'{words} {quantity.cell(margins)} {quantity.unit}' for words, quantity in _MARGINS)
     return f'{where} is stable: {", ".join(texts)}'
 

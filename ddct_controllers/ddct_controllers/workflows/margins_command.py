@@ -20,6 +20,7 @@ from ddct_controllers.workflows.evidence_types import (
     linear_entries,
 )
 from ddct_plant.base.errors import DdctError
+from ddct_plant.files.json_records import to_json
 from ddct_plant.program.command_line import complain, show_and_write
 from ddct_plant.program.printed_table import print_note, print_table
 from ddct_plant.program.table import Table, Weight, text_or_dash, with_reasons
@@ -93,7 +94,7 @@ def run(options: argparse.Namespace) -> int:
 
 def _show(evidence: FrequencyEvidence, settings: RunSettings) -> None:
     print_table(margins_table(evidence, settings))
-    others = [each['controller'] for each in evidence['controllers'] if each['linear'] is False]
+    others = [each.controller for each in evidence.controllers if each.linear is False]
     if others:
         print_note(f'Not linear, without a frequency response: {", ".join(others)}')
 
@@ -105,7 +106,7 @@ def margins_table(evidence: FrequencyEvidence, settings: RunSettings) -> Table:
     headers = (
         *('controller', 'stable'),
         *(quantity.heading for quantity in LOOP_QUANTITY_OF.values()),
-        *('wear below', 'corner M_s', f'unstable of {evidence["conditions"]["corners"]}'),
+        *('wear below', 'corner M_s', f'unstable of {evidence.conditions.corners}'),
     )
     rows = [_row(entry, settings.wear_gain) for entry in linear_entries(evidence)]
     title = f'Sampled loop, wear gain {settings.wear_gain:g}, {changed}'
@@ -128,13 +129,13 @@ def _dash_reason(header: str, row: Sequence[str]) -> str:
 
 
 def _row(entry: LinearEntry, wear_gain: float) -> list[str]:
-    point = next(point for point in entry['wear'] if point['wear_gain'] == wear_gain)
-    interval = entry['stable_wear_gain']
+    point = next(point for point in entry.wear if point.wear_gain == wear_gain)
+    interval, values = entry.stable_wear_gain, to_json(point)
     return [
-        entry['controller'],
-        'yes' if point['stable'] else 'no',
-        *(quantity.cell(point) for quantity in LOOP_QUANTITY_OF.values()),
-        text_or_dash(interval and interval['highest'], '.2f'),
-        LOOP_QUANTITY_OF['sensitivity_peak'].cell(entry['corners']),
-        str(entry['corners']['unstable']),
+        entry.controller,
+        'yes' if point.margins.stable else 'no',
+        *(quantity.cell(values) for quantity in LOOP_QUANTITY_OF.values()),
+        text_or_dash(interval and interval.highest, '.2f'),
+        LOOP_QUANTITY_OF['sensitivity_peak'].cell(to_json(entry.corners)),
+        str(entry.corners.unstable),
     ]

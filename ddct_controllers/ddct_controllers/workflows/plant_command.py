@@ -81,23 +81,23 @@ def _export(file: str, paper: PlantOnPaper) -> None:
 
 def paper_tables(paper: PlantOnPaper) -> dict[str, Table]:
     """Return the tables of a plant on paper by name."""
-    space = paper['state_space']
+    space = paper.state_space
     columns = (*STATES, *INPUTS)
     dynamics = [
         [f'd{state}/dt', *(f'{number:.6g}' for number in (*a, *b))]
-        for state, a, b in zip(STATES, space['A'], space['B'], strict=True)
+        for state, a, b in zip(STATES, space.A, space.B, strict=True)
     ]
     outputs = [
         [output, *(f'{number:.6g}' for number in (*c, *d))]
-        for output, c, d in zip(space['outputs'], space['C'], space['D'], strict=True)
+        for output, c, d in zip(space.outputs, space.C, space.D, strict=True)
     ]
     return {
         'parameters': Table(
-            f'Parameters of the driveline, scenario {paper["scenario"]}',
+            f'Parameters of the driveline, scenario {paper.scenario}',
             ('symbol', 'value', 'unit', 'scenario key'),
             [
-                (symbol, f'{each["value"]:.8g}', each['unit'], f'driveline.{each["name"]}')
-                for symbol, each in paper['parameters'].items()
+                (symbol, f'{each.value:.8g}', each.unit, f'driveline.{each.name}')
+                for symbol, each in paper.parameters.items()
             ],
         ),
         'state_space': Table(
@@ -109,20 +109,16 @@ def paper_tables(paper: PlantOnPaper) -> dict[str, Table]:
             'C and D: each row is the sum of its numbers times the column', ('', *columns), outputs
         ),
         'transfer_functions': Table(
-            'Transfer functions, s in rad/s; a delay of '
-            f'{paper["actuator_delay_s"]:g} s before G_a',
+            f'Transfer functions, s in rad/s; a delay of {paper.actuator_delay_s:g} s before G_a',
             ('', 'from', 'to', 'function'),
             [
-                (name, each['input'], each['output'], factored_text(each))
-                for name, each in paper['transfer_functions'].items()
+                (name, each.input, each.output, factored_text(each.function))
+                for name, each in paper.transfer_functions.items()
             ],
         ),
         'c_fol': Table(
             'C_fOL: the sum of each signal times its factor',
             ('signal', 'factor', 'unit of the factor'),
-            [
-                (name, f'{each["factor"]:.8g}', each['unit'])
-                for name, each in paper['c_fol'].items()
-            ],
+            [(name, f'{each.factor:.8g}', each.unit) for name, each in paper.c_fol.items()],
         ),
     }

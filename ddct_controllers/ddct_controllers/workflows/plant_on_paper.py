@@ -3,11 +3,13 @@
 """The linear plant of a scenario as equations with numbers."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import reduce
-from typing import Literal, TypedDict
+from typing import Literal
 
 import numpy as np
 
+from ddct_plant.files.json_records import Inline
 from ddct_plant.identification.coefficients import SYMBOLS_AND_UNITS
 from ddct_plant.linear.cascade import Factor
 from ddct_plant.linear.lti import FactoredTransferFunction
@@ -41,7 +43,8 @@ _STATIC_INPUTS = {'C_m': '1', 'C_load': '1', 'w_m': 'N m s/rad', 'w_p': 'N m s/r
 MATRICES: tuple[Literal['A', 'B', 'C', 'D'], ...] = ('A', 'B', 'C', 'D')
 
 
-class ParameterEntry(TypedDict):
+@dataclass(frozen=True)
+class ParameterEntry:
     """One parameter of the driveline."""
 
     name: str
@@ -50,7 +53,8 @@ class ParameterEntry(TypedDict):
     unit: str
 
 
-class StateSpaceEntry(TypedDict):
+@dataclass(frozen=True)
+class StateSpaceEntry:
     """The driveline as x' = A x + B u, y = C x + D u."""
 
     states: dict[str, str]
@@ -63,28 +67,28 @@ class StateSpaceEntry(TypedDict):
     D: list[list[float]]
 
 
-class PlantFunction(TypedDict):
+@dataclass(frozen=True)
+class PlantFunction:
     """One transfer function from an input to an output."""
 
     input: str
     output: str
-    gain: float
-    numerator: list[Factor]
-    """Factors: a number a is (s + a), a pair (b, c) is (s^2 + b s + c)."""
-    denominator: list[Factor]
+    function: Inline[FactoredTransferFunction]
     num: list[float]
     """Coefficients with the gain, the highest power first."""
     den: list[float]
 
 
-class StaticFactor(TypedDict):
+@dataclass(frozen=True)
+class StaticFactor:
     """Factor of one signal in C_fOL."""
 
     factor: float
     unit: str
 
 
-class PlantOnPaper(TypedDict):
+@dataclass(frozen=True)
+class PlantOnPaper:
     """The linear plant of a scenario, as it is written as JSON."""
 
     scenario: str
@@ -115,33 +119,33 @@ def plant_on_paper(scenario: Scenario) -> PlantOnPaper:
         'P_3': ('C_load', 'w_d', load_to_slip(driveline)),
         'G_a': ('C_request', 'C_actuator', scenario.actuator.transfer_function()),
     }
-    return {
-        'scenario': scenario.name,
-        'parameters': {
-            symbol: {'name': name, 'value': float(values[name]), 'unit': unit}
+    return PlantOnPaper(
+        scenario=scenario.name,
+        parameters={
+            symbol: ParameterEntry(name=name, value=float(values[name]), unit=unit)
             for name, (symbol, unit) in SYMBOLS_AND_UNITS.items()
         },
-        'state_space': {
-            'states': STATES,
-            'inputs': INPUTS,
-            'outputs': OUTPUTS,
-            'A': _rows(model.a),
-            'B': _rows(model.b),
-            'C': _rows(model.c),
-            'D': _rows(model.d),
-        },
-        'transfer_functions': {
+        state_space=StateSpaceEntry(
+            states=STATES,
+            inputs=INPUTS,
+            outputs=OUTPUTS,
+            A=_rows(model.a),
+            B=_rows(model.b),
+            C=_rows(model.c),
+            D=_rows(model.d),
+        ),
+        transfer_functions={
             name: _function_entry(source, output, function)
             for name, (source, output, function) in transfer_functions.items()
         },
-        'actuator_delay_s': scenario.actuator.delay_s,
-        'c_fol': {
-            name: {'factor': static.torque(*row), 'unit': unit}
+        actuator_delay_s=scenario.actuator.delay_s,
+        c_fol={
+            name: StaticFactor(factor=static.torque(*row), unit=unit)
             for (name, unit), row in zip(
                 _STATIC_INPUTS.items(), np.eye(len(_STATIC_INPUTS)).tolist(), strict=True
             )
         },
-    }
+    )
 
 
 def _rows(matrix: np.ndarray) -> list[list[float]]:
@@ -151,15 +155,13 @@ def _rows(matrix: np.ndarray) -> list[list[float]]:
 
 
 def _function_entry(source: str, output: str, function: FactoredTransferFunction) -> PlantFunction:
-    return {
-        'input': source,
-        'output': output,
-        'gain': function.gain,
-        'numerator': list(function.numerator),
-        'denominator': list(function.denominator),
-        'num': (function.gain * _polynomial(function.numerator)).tolist(),
-        'den': _polynomial(function.denominator).tolist(),
-    }
+    return PlantFunction(
+        input=source,
+        output=output,
+        function=function,
+        num=(function.gain * _polynomial(function.numerator)).tolist(),
+        den=_polynomial(function.denominator).tolist(),
+    )
 
 
 def _polynomial(factors: Sequence[Factor]) -> np.ndarray:

@@ -63,10 +63,10 @@ def test_a_stable_loop_has_the_margins_of_the_evidence(summary, tmp_path, wear_g
     settings = RunSettings(load_scenario('thesis'), wear_gain=wear_gain)
     stability = summary(POLYNOMIAL, settings)[-1]
     model = make_controller(str(tmp_path / 'any.yaml'), settings).linear_model()
-    margins = loop_evidence(model, SCENARIO.driveline, wear_gain, SCENARIO.actuator)
+    margins = loop_evidence(model, SCENARIO.driveline, wear_gain, SCENARIO.actuator).margins
     assert f'at wear gain {wear_gain:g}, is stable: ' in stability
-    assert f'gain margin {margins["gain_margin_db"]:.1f} dB' in stability
-    assert f'phase margin {margins["phase_margin_deg"]:.0f} deg' in stability
+    assert f'gain margin {margins.gain_margin_db:.1f} dB' in stability
+    assert f'phase margin {margins.phase_margin_deg:.0f} deg' in stability
 
 
 def test_an_unstable_loop_is_printed_in_capitals_and_a_wrong_sign_is_suspected(summary):

@@ -28,10 +28,10 @@ def test_the_actuator_is_the_scenarios(capsys: pytest.CaptureFixture[str]) -> No
     changes = ['actuator.delay_s=0.023', 'actuator.bandwidth_factor=1.3']
     scenario = load_scenario('thesis', changes)
     paper = plant_on_paper(scenario)
-    assert paper['actuator_delay_s'] == 0.023
-    function, running = paper['transfer_functions']['G_a'], scenario.actuator.dynamics()
+    assert paper.actuator_delay_s == 0.023
+    function, running = paper.transfer_functions['G_a'], scenario.actuator.dynamics()
     w = np.logspace(-1, 3, 50)
-    ours = control.tf(function['num'], function['den'])(1j * w)
+    ours = control.tf(function.num, function.den)(1j * w)
     theirs = control.ss(running.a, running.b, running.c, running.d)(1j * w)
     np.testing.assert_allclose(ours, theirs, rtol=1e-9)
     assert main(['plant', *(f'--set={each}' for each in changes)]) == 0
@@ -42,30 +42,30 @@ def test_the_transfer_functions_are_those_of_the_state_space() -> None:
     import control
 
     paper = plant_on_paper(load_scenario('thesis', STIFFER))
-    space = paper['state_space']
-    system = control.ss(*(space[name] for name in MATRICES))
+    space = paper.state_space
+    system = control.ss(*(getattr(space, name) for name in MATRICES))
     for name, column in (('P_1', 0), ('P_2', 1), ('P_3', 2)):
-        function = paper['transfer_functions'][name]
+        function = paper.transfer_functions[name]
         w = np.logspace(-2, 3, 50)
-        ours = control.tf(function['num'], function['den'])(1j * w)
+        ours = control.tf(function.num, function.den)(1j * w)
         np.testing.assert_allclose(system(1j * w)[0, column], ours, rtol=1e-6)
 
 
 def test_the_functions_read_as_the_thesis_prints_them() -> None:
-    functions = plant_on_paper(load_scenario('thesis'))['transfer_functions']
-    assert factored_text(functions['P_1']) == '4.00039 / [s]'
-    assert factored_text(functions['G_a']) == (
+    functions = plant_on_paper(load_scenario('thesis')).transfer_functions
+    assert factored_text(functions['P_1'].function) == '4.00039 / [s]'
+    assert factored_text(functions['G_a'].function) == (
         '25.305 (s + 138) (s^2 - 161.3 s + 31340) / '
         '[(s^2 + 82.23 s + 2563) (s^2 + 134.1 s + 42700)]'
     )
-    gain, dc = functions['G_a']['num'], functions['G_a']['den']
+    gain, dc = functions['G_a'].num, functions['G_a'].den
     assert gain[-1] / dc[-1] == pytest.approx(1.0, rel=1e-3)
 
 
 @pytest.mark.parametrize('equilibrium', ['thesis', 'full'])
 def test_the_factors_add_up_to_the_static_torque(equilibrium: str) -> None:
     scenario = load_scenario('thesis', [f'equilibrium={equilibrium}'])
-    factors = {name: each['factor'] for name, each in plant_on_paper(scenario)['c_fol'].items()}
+    factors = {name: each.factor for name, each in plant_on_paper(scenario).c_fol.items()}
     p, w_m, w_p = scenario.driveline, 200.0, 150.0
     if equilibrium == 'thesis':
         expected = constant_slip_torque(p, 150.0, 300.0)

@@ -4,8 +4,8 @@
 Write and read all JSON: results, evidence, manifests, and the texts in a bag.
 
 A dataclass is the record: its fields are the keys, in their order, all of them in every file.
-Fields with `init=False` are computed, and are no keys; those of `inline` are no keys either: the
-keys of the dataclass in them stand in the object itself.
+Fields with `init=False` are computed, and are no keys; those that are `Inline` are no keys either:
+the keys of the dataclass in them stand in the object itself.
 """
 
 import dataclasses
@@ -20,7 +20,7 @@ from contextlib import suppress
 from functools import cache, partial
 from itertools import repeat
 from pathlib import Path
-from typing import Any, NoReturn, TypeVar
+from typing import Annotated, Any, NoReturn, TypeVar
 
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.base.options import close_name
@@ -29,13 +29,10 @@ from ddct_plant.files.output_file import ANOTHER_FILE, write_text
 
 T = TypeVar('T')
 _INLINE = 'inline'
+Inline = Annotated[T, _INLINE]
+"""Annotation of a field for another dataclass, whose keys stand among those around it."""
 _Reader = Callable[[Any], Any]
 """Converter of plain data to one type; it raises _RecordError."""
-
-
-def inline() -> Any:
-    """Return the field of a dataclass for another one, whose keys stand among its own."""
-    return dataclasses.field(metadata={_INLINE: True})
 
 
 def to_json(obj: Any) -> Any:
@@ -49,7 +46,7 @@ def to_json(obj: Any) -> Any:
     kind: Any = type(obj)
     if _is_record(kind):
         content: dict[str, Any] = {}
-        for name, inlined in _fields(kind):
+        for name, (_, inlined) in _fields(kind).items():
             value = to_json(getattr(obj, name))
             content |= value if inlined else {name: value}
         return content
@@ -309,8 +306,7 @@ def _read_record(kind: Any, data: Any) -> Any:
         if name not in keys:
             raise _RecordError(f'unknown key {{}}: {close_name(name, keys)}', name)
     found = {}
-    for name, inlined in _fields(kind):
-        hint = _hints(kind)[name]
+    for name, (hint, inlined) in _fields(kind).items():
         if inlined:
             found[name] = _read_record(
                 hint, {key: data[key] for key in _keys(hint) if key in data}
@@ -333,25 +329,22 @@ def _is_record(kind: Any) -> bool:
 
 
 @cache
-def _fields(kind: Any) -> tuple[tuple[str, bool], ...]:
-    """Return the fields of a dataclass that it does not compute, and whether they are inline."""
-    fields = dataclasses.fields(kind)
-    return tuple((each.name, _INLINE in each.metadata) for each in fields if each.init)
-
-
-@cache
-def _hints(kind: Any) -> dict[str, Any]:
-    """Return the types of the fields of a dataclass that it does not compute."""
-    hints = typing.get_type_hints(kind)
-    return {name: hints[name] for name, _ in _fields(kind)}
+def _fields(kind: Any) -> dict[str, tuple[Any, bool]]:
+    """Return by name the type of each field that is not computed, and whether it is inline."""
+    hints = typing.get_type_hints(kind, include_extras=True)
+    plain = typing.get_type_hints(kind)
+    return {
+        each.name: (plain[each.name], _INLINE in getattr(hints[each.name], '__metadata__', ()))
+        for each in dataclasses.fields(kind)
+        if each.init
+    }
 
 
 @cache
 def _keys(kind: Any) -> dict[str, Any]:
     """Return the types of the keys of a dataclass."""
     keys: dict[str, Any] = {}
-    for name, inlined in _fields(kind):
-        hint = _hints(kind)[name]
+    for name, (hint, inlined) in _fields(kind).items():
         keys |= _keys(hint) if inlined else {name: hint}
     return keys
 

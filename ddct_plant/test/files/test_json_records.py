@@ -14,8 +14,8 @@ import pytest
 
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.files.json_records import (
+    Inline,
     from_json,
-    inline,
     json_text,
     read_json,
     to_json,
@@ -139,7 +139,7 @@ class Named:
     """Record with the keys of another one between its own."""
 
     name: str
-    limits: Range = inline()
+    limits: Inline[Range]
     runs: int = 0
 
 

@@ -3,7 +3,6 @@
 """Readers of what stands beside bags: times, failures, digests, scores and loop analyses."""
 
 import io
-import json
 from collections.abc import Mapping
 from contextlib import redirect_stdout
 from dataclasses import replace
@@ -32,6 +31,7 @@ from ddct_bringup.verification.runs import verified_runs
 from ddct_bringup.verification.scores import SCORES, verified_scores
 from ddct_controllers.workflows.evidence import frequency_evidence
 from ddct_controllers.workflows.evidence_types import FrequencyEvidence
+from ddct_plant.files.json_records import json_text
 from fuzz.reader import Read, Reader
 
 BAG = 'pi_0.mcap'
@@ -56,7 +56,7 @@ def run_readers(bag: Path, folder: Path) -> list[Reader]:
             'frequency',
             FREQUENCY_FILE,
             _evidence(scored, computed),
-            (json.dumps(analyses).encode(),),
+            (json_text(analyses).encode(),),
         ),
     ]
 

@@ -7,8 +7,7 @@ The margins are ours: python-control finds those of a sampled loop by polynomial
 """
 
 import math
-from dataclasses import dataclass
-from typing import TypedDict
+from dataclasses import astuple, dataclass
 
 import numpy as np
 
@@ -16,21 +15,6 @@ from ddct_controllers.design.analysis.loop_curve import LoopCurve, complementary
 from ddct_controllers.design.analysis.loops import ContinuousLoop
 from ddct_controllers.design.state_space import close_loop
 from ddct_plant.linear.lti import StateSpace
-
-
-class MarginEntry(TypedDict):
-    """Margins of a loop for JSON, which has no infinity: None where nothing limits one."""
-
-    stable: bool
-    gain_margin_db: float | None
-    gain_reduction_margin_db: float | None
-    phase_margin_deg: float | None
-    delay_margin_s: float | None
-    disk_margin: float | None
-    sensitivity_peak: float | None
-    complementary_peak: float | None
-    crossover_rad_s: float | None
-    bandwidth_rad_s: float | None
 
 
 @dataclass(frozen=True)
@@ -58,25 +42,10 @@ class LoopMargins:
     bandwidth_rad_s: float | None = None
     """Bandwidth in rad/s; 0 when |T| is below 1/sqrt(2) at rest."""
 
-    def entry(self) -> MarginEntry:
-        """Return the entry for JSON."""
-        return {
-            'stable': self.stable,
-            'gain_margin_db': _limited(self.gain_margin_db),
-            'gain_reduction_margin_db': _limited(self.gain_reduction_margin_db),
-            'phase_margin_deg': _limited(self.phase_margin_deg),
-            'delay_margin_s': _limited(self.delay_margin_s),
-            'disk_margin': _limited(self.disk_margin),
-            'sensitivity_peak': _limited(self.sensitivity_peak),
-            'complementary_peak': _limited(self.complementary_peak),
-            'crossover_rad_s': _limited(self.crossover_rad_s),
-            'bandwidth_rad_s': _limited(self.bandwidth_rad_s),
-        }
-
-
-def _limited(margin: float | None) -> float | None:
-    """Return a margin, or None for one that nothing limits."""
-    return None if margin == math.inf else margin
+    def limited(self) -> 'LoopMargins':
+        """Return them as JSON can have them, which has no infinity: None where nothing limits."""
+        stable, *margins = astuple(self)
+        return LoopMargins(stable, *(None if each == math.inf else each for each in margins))
 
 
 def loop_margins(loop: ContinuousLoop | StateSpace) -> LoopMargins:

@@ -16,14 +16,20 @@ from ddct_controllers.design.analysis.worst_corner import (
     PlantCorners,
     worst_corner,
 )
-from ddct_controllers.design.function_entry import function_entry
 from ddct_controllers.design.h_infinity.design import HinfDesign
 from ddct_controllers.design.h_infinity.recipes import HinfWeights
 from ddct_controllers.design.h_infinity.record_types import (
+    HinfCorners,
     HinfProvenance,
     HinfRecord,
+    HinfSpecifications,
     LoopEntry,
+    LoopsEntry,
+    StableLoopEntry,
+    SynthesisEntry,
     UncertaintyRecord,
+    UnstableLoopEntry,
+    WeightEntry,
 )
 from ddct_controllers.design.h_infinity.uncertainty import (
     OMEGA,
@@ -52,45 +58,46 @@ def design_record(
     """Return a design and its verified quantities, at `corners` over wear and parameters too."""
     found = design.synthesis
     worst = worst_corner(design.sampled, corners)
-    return {
-        'name': name,
-        **provenance(recipe, specifications, design),
-        'synthesis': {
-            'method': found.method,
-            'optimum': found.optimum,
-            'lower_bound': found.lower_bound,
-            'gamma': found.gamma,
-        },
-        'raw_controller': function_entry(design.raw),
-        'controller': function_entry(design.cleaned),
-        'pulse_transfer_function': function_entry(factored_form(design.sampled)),
-        'corners': {
-            'corners': len(corners.plants),
-            'unstable': worst.unstable_corners,
-            'sensitivity_peak': worst.sensitivity_peak,
-            'wear_gain': worst.wear_gain,
-            'factors': dict(zip(corners.varied, corners.factors[worst.index], strict=True)),
-        },
-    }
+    return HinfRecord(
+        name=name,
+        provenance=provenance(recipe, specifications, design),
+        synthesis=SynthesisEntry(
+            method=found.method,
+            optimum=found.optimum,
+            lower_bound=found.lower_bound,
+            gamma=found.gamma,
+        ),
+        raw_controller=design.raw,
+        controller=design.cleaned,
+        pulse_transfer_function=factored_form(design.sampled),
+        corners=HinfCorners(
+            corners=len(corners.plants),
+            unstable=worst.unstable_corners,
+            sensitivity_peak=worst.sensitivity_peak,
+            wear_gain=worst.wear_gain,
+            factors=dict(zip(corners.varied, corners.factors[worst.index], strict=True)),
+        ),
+    )
 
 
 def shortfalls(record: HinfRecord) -> list[str]:
     """Return the specifications that a design with its corners does not meet, empty if none."""
-    specified, loop, corners = record['specifications'], record['sampled_loop'], record['corners']
-    if not loop['stable']:
+    given, corners = record.provenance, record.corners
+    specified, loop = given.specifications, given.loops.sampled_loop
+    if isinstance(loop, UnstableLoopEntry):
         return ['its sampled loop is unstable']
     found = []
-    if loop['rise_time_s'] is None or loop['rise_time_s'] > specified['rise_time_s']:
-        reached = 'never' if loop['rise_time_s'] is None else f'in {loop["rise_time_s"]:.3g} s'
-        found.append(f'it rises {reached}, {specified["rise_time_s"]:g} s are specified')
-    if loop['overshoot'] > specified['overshoot']:
+    if loop.rise_time_s is None or loop.rise_time_s > specified.rise_time_s:
+        reached = 'never' if loop.rise_time_s is None else f'in {loop.rise_time_s:.3g} s'
+        found.append(f'it rises {reached}, {specified.rise_time_s:g} s are specified')
+    if loop.overshoot > specified.overshoot:
         found.append(
-            f'it overshoots by {100.0 * loop["overshoot"]:.3g} %, '
-            f'{100.0 * specified["overshoot"]:g} % are allowed'
+            f'it overshoots by {100.0 * loop.overshoot:.3g} %, '
+            f'{100.0 * specified.overshoot:g} % are allowed'
         )
-    if corners['unstable']:
+    if corners.unstable:
         found.append(
-            f'its loop is unstable at {corners["unstable"]} of {corners["corners"]} corners '
+            f'its loop is unstable at {corners.unstable} of {corners.corners} corners '
             f'(driveline +-{100.0 * PARAMETER_SPREAD:g} %, wear {WEAR_GAINS[0]:g} to '
             f'{WEAR_GAINS[-1]:g})'
         )
@@ -103,35 +110,37 @@ def provenance(
     """Return the provenance of a design for the controller's file."""
     weights = design.weights
     w_s, w_t, effort = weights.sensitivity, weights.complementary, weights.effort
-    return {
-        'method': f'h-infinity, {design.synthesis.method}',
-        'specifications': {
-            'rise_time_s': specifications.rise_time_s,
-            'overshoot': specifications.overshoot,
-            'damping': specifications.damping,
-            'sensitivity_peak': specifications.sensitivity_peak,
-            'complementary_peak': specifications.complementary_peak,
-            'natural_frequency_rad_s': specifications.natural_frequency_rad_s,
-        },
-        'weights': {
-            'recipe': recipe,
-            'low_frequency_gain': w_s.low_frequency_gain,
-            'sensitivity_corner_rad_s': w_s.corner_rad_s,
-            'offset_rad_s': w_s.offset_rad_s,
-            'bandwidth_rad_s': w_t.corner_rad_s,
-            'complementary_damping': w_t.damping,
-            'effort_n_m_per_rpm': effort.torque_n_m_per_rpm if effort else None,
-            'effort_corner_rad_s': effort.corner_rad_s if effort else None,
-            'hold_and_delay_in_plant': weights.sampled,
-            'back_off': weights.back_off,
-        },
-        'gamma': design.synthesis.gamma,
-        'cleaning': [{'rule': step.rule, 'removed': step.removed} for step in design.cleaning],
-        'continuous_loop': None
-        if weights.sampled
-        else loop_record(continuous_loop(design.cleaned), weights, specifications),
-        'sampled_loop': loop_record(sampled_loop(design.sampled), weights, specifications),
-    }
+    return HinfProvenance(
+        method=f'h-infinity, {design.synthesis.method}',
+        specifications=HinfSpecifications(
+            rise_time_s=specifications.rise_time_s,
+            overshoot=specifications.overshoot,
+            damping=specifications.damping,
+            sensitivity_peak=specifications.sensitivity_peak,
+            complementary_peak=specifications.complementary_peak,
+            natural_frequency_rad_s=specifications.natural_frequency_rad_s,
+        ),
+        weights=WeightEntry(
+            recipe=recipe,
+            low_frequency_gain=w_s.low_frequency_gain,
+            sensitivity_corner_rad_s=w_s.corner_rad_s,
+            offset_rad_s=w_s.offset_rad_s,
+            bandwidth_rad_s=w_t.corner_rad_s,
+            complementary_damping=w_t.damping,
+            effort_n_m_per_rpm=effort.torque_n_m_per_rpm if effort else None,
+            effort_corner_rad_s=effort.corner_rad_s if effort else None,
+            hold_and_delay_in_plant=weights.sampled,
+            back_off=weights.back_off,
+        ),
+        gamma=design.synthesis.gamma,
+        cleaning=design.cleaning,
+        loops=LoopsEntry(
+            continuous_loop=None
+            if weights.sampled
+            else loop_record(continuous_loop(design.cleaned), weights, specifications),
+            sampled_loop=loop_record(sampled_loop(design.sampled), weights, specifications),
+        ),
+    )
 
 
 def loop_record(
@@ -139,25 +148,20 @@ def loop_record(
 ) -> LoopEntry:
     """Return weighted norms, step response and margins of a loop; only `stable` if unstable."""
     if not closed_loop_stable(loop):
-        return {'stable': False}
+        return UnstableLoopEntry(stable=False)
     norms = weighted_norms(loop, weights.sensitivity, weights.complementary, PRINTED_W_U)
     rise_time, exceeds = rise_time_and_overshoot(
         loop, _STEP_RISE_TIMES * specifications.rise_time_s
     )
-    return {
-        **loop_margins(loop).entry(),
-        'rise_time_s': rise_time,
-        'overshoot': exceeds,
-        'meets_specifications': rise_time is not None
+    return StableLoopEntry(
+        margins=loop_margins(loop).limited(),
+        rise_time_s=rise_time,
+        overshoot=exceeds,
+        meets_specifications=rise_time is not None
         and rise_time <= specifications.rise_time_s
         and exceeds <= specifications.overshoot,
-        'norms': {
-            'sensitivity': norms.sensitivity,
-            'complementary': norms.complementary,
-            'uncertainty': norms.uncertainty,
-            'stack': norms.stack,
-        },
-    }
+        norms=norms,
+    )
 
 
 def uncertainty_record() -> UncertaintyRecord:
@@ -165,10 +169,10 @@ def uncertainty_record() -> UncertaintyRecord:
     error = relative_error(plant_in_rpm(), wear_family(), OMEGA)
     largest = float(error.max())
     printed = abs(PRINTED_W_U.frequency_response(OMEGA))
-    return {
-        'largest_error': largest,
-        'fitted': function_entry(fit_first_order(OMEGA, error)),
-        'printed': function_entry(PRINTED_W_U),
-        'printed_falls_short_by': float((1.0 - printed / error).max()),
-        'printed_falls_short_above_rad_s': shortfall_from_rad_s(PRINTED_W_U, largest),
-    }
+    return UncertaintyRecord(
+        largest_error=largest,
+        fitted=fit_first_order(OMEGA, error),
+        printed=PRINTED_W_U,
+        printed_falls_short_by=float((1.0 - printed / error).max()),
+        printed_falls_short_above_rad_s=shortfall_from_rad_s(PRINTED_W_U, largest),
+    )

@@ -3,13 +3,18 @@
 """Record of `design h-infinity`: one type for each object of its JSON."""
 
 from collections.abc import Mapping
-from typing import Literal, TypedDict
+from dataclasses import dataclass
+from typing import Literal
 
-from ddct_controllers.design.analysis.margins import MarginEntry
-from ddct_controllers.design.function_entry import FunctionEntry
+from ddct_controllers.design.analysis.margins import LoopMargins
+from ddct_controllers.design.h_infinity.cleaning import CleaningStep
+from ddct_controllers.design.h_infinity.uncertainty import WeightedNorms
+from ddct_plant.files.json_records import Inline
+from ddct_plant.linear.lti import FactoredTransferFunction
 
 
-class HinfSpecifications(TypedDict):
+@dataclass(frozen=True)
+class HinfSpecifications:
     """Time specifications, and their bounds by the second-order prototype."""
 
     rise_time_s: float
@@ -21,7 +26,8 @@ class HinfSpecifications(TypedDict):
     natural_frequency_rad_s: float
 
 
-class WeightEntry(TypedDict):
+@dataclass(frozen=True)
+class WeightEntry:
     """Numbers of the weights W_s and W_t, and of the one on the torque where there is one."""
 
     recipe: str
@@ -37,44 +43,32 @@ class WeightEntry(TypedDict):
     """Level of the controller over the optimum."""
 
 
-class CleaningEntry(TypedDict):
-    """One rule that was applied, and the factors that it removed."""
-
-    rule: str
-    removed: str
-
-
-class NormEntry(TypedDict):
-    """Peaks over frequency of weighted functions, as `WeightedNorms` defines them."""
-
-    sensitivity: float
-    complementary: float
-    uncertainty: float
-    stack: float
-
-
-class UnstableLoopEntry(TypedDict):
+@dataclass(frozen=True)
+class UnstableLoopEntry:
     """A loop that is unstable, of which nothing else is computed."""
 
     stable: Literal[False]
 
 
-class StableLoopEntry(MarginEntry):
+@dataclass(frozen=True)
+class StableLoopEntry:
     """Margins, step response and weighted norms of a stable loop."""
 
+    margins: Inline[LoopMargins]
     rise_time_s: float | None
     """Rise time in s; None where the final value is never reached."""
     overshoot: float
     """Overshoot as a fraction of the final value."""
     meets_specifications: bool
     """Whether rise time and overshoot are as specified."""
-    norms: NormEntry
+    norms: WeightedNorms
 
 
 LoopEntry = StableLoopEntry | UnstableLoopEntry
 
 
-class LoopsEntry(TypedDict):
+@dataclass(frozen=True)
+class LoopsEntry:
     """Loops of one controller."""
 
     continuous_loop: LoopEntry | None
@@ -82,17 +76,20 @@ class LoopsEntry(TypedDict):
     sampled_loop: LoopEntry
 
 
-class HinfProvenance(LoopsEntry):
+@dataclass(frozen=True)
+class HinfProvenance:
     """Provenance of a design, as it stands in the controller's file."""
 
     method: str
     specifications: HinfSpecifications
     weights: WeightEntry
     gamma: float
-    cleaning: list[CleaningEntry]
+    cleaning: tuple[CleaningStep, ...]
+    loops: Inline[LoopsEntry]
 
 
-class SynthesisEntry(TypedDict):
+@dataclass(frozen=True)
+class SynthesisEntry:
     """Norms of the closed loop with the weights: the optimum, its bound, and the level taken."""
 
     method: str
@@ -101,7 +98,8 @@ class SynthesisEntry(TypedDict):
     gamma: float
 
 
-class HinfCorners(TypedDict):
+@dataclass(frozen=True)
+class HinfCorners:
     """Sampled loops at the corners of the driveline, over wear; the worst of them."""
 
     corners: int
@@ -115,28 +113,48 @@ class HinfCorners(TypedDict):
     """Multiples of the driveline's nominal parameters at the worst corner, by name."""
 
 
-class HinfRecord(HinfProvenance):
+@dataclass(frozen=True)
+class HinfRecord:
     """A design and its verified quantities."""
 
     name: str
+    provenance: Inline[HinfProvenance]
     synthesis: SynthesisEntry
-    raw_controller: FunctionEntry
+    raw_controller: FactoredTransferFunction
     """Controller from the synthesis: in s, or in w for a sampled design."""
-    controller: FunctionEntry
+    controller: FactoredTransferFunction
     """Controller after cleaning, in the same variable."""
-    pulse_transfer_function: FunctionEntry
+    pulse_transfer_function: FactoredTransferFunction
     """Controller G_c(z) as it runs."""
     corners: HinfCorners
 
 
-class UncertaintyRecord(TypedDict):
+@dataclass(frozen=True)
+class UncertaintyRecord:
     """The fitted and the printed W_u."""
 
     largest_error: float
     """Largest relative error of the plant over the range of K_usura."""
-    fitted: FunctionEntry
-    printed: FunctionEntry
+    fitted: FactoredTransferFunction
+    printed: FactoredTransferFunction
     printed_falls_short_by: float
     """Largest relative amount by which the printed W_u is below the error."""
     printed_falls_short_above_rad_s: float | None
     """Frequency in rad/s above which the printed W_u is below the error; None for none."""
+
+
+@dataclass(frozen=True)
+class HinfResult:
+    """A design with W_u beside it, and the specifications that it does not meet."""
+
+    record: Inline[HinfRecord]
+    uncertainty: UncertaintyRecord
+    lacks: list[str]
+
+
+@dataclass(frozen=True)
+class HinfOrigin:
+    """Provenance in a controller's file, with the specifications that the design does not meet."""
+
+    provenance: Inline[HinfProvenance]
+    lacks: list[str]

@@ -11,8 +11,11 @@ from ddct_controllers.design.h_infinity.record_types import (
     LoopEntry,
     LoopsEntry,
     UncertaintyRecord,
+    UnstableLoopEntry,
+    WeightEntry,
 )
 from ddct_controllers.design.state_space import factors_text
+from ddct_plant.files.json_records import to_json
 from ddct_plant.program.table import Table, Weight, text_or_dash, with_reasons
 
 _LOOP_QUANTITIES = [
@@ -44,7 +47,7 @@ def design_tables(
 ) -> dict[str, Table]:
     """Return the tables of designs for one specification, by their names on the page."""
     tables = {
-        'specifications': _specification_table(records[0]['specifications']),
+        'specifications': _specification_table(records[0].provenance.specifications),
         'weights': _weight_table(records),
         'uncertainty': _uncertainty_table(uncertainty),
         'synthesis': _synthesis_table(records),
@@ -52,13 +55,13 @@ def design_tables(
             'Cleaning, in the order of the rules',
             ('controller', 'rule', 'taken out'),
             [
-                (record['name'], step['rule'], step['removed'])
+                (record.name, step.rule, step.removed)
                 for record in records
-                for step in record['cleaning']
+                for step in record.provenance.cleaning
             ],
         ),
         'controllers': _controller_table(records),
-        'loops': loop_table({record['name']: record for record in records}),
+        'loops': loop_table({record.name: record.provenance.loops for record in records}),
         'corners': _corner_table(records),
     }
     return {name: with_reasons(table, _dash_reason) for name, table in tables.items()}
@@ -82,8 +85,8 @@ def loop_table(loops: Mapping[str, LoopsEntry]) -> Table:
             (name, label, *_loop_cells(loop))
             for name, record in loops.items()
             for label, loop in (
-                ('continuous', record['continuous_loop']),
-                ('sampled, hold and delay', record['sampled_loop']),
+                ('continuous', record.continuous_loop),
+                ('sampled, hold and delay', record.sampled_loop),
             )
             if loop
         ],
@@ -101,12 +104,12 @@ def _specification_table(specified: HinfSpecifications) -> Table:
         ('t_r s', 's^ %', 'zeta', 'S_p', 'T_p', 'w_n rad/s'),
         [
             (
-                f'{specified["rise_time_s"]:g}',
-                f'{100.0 * specified["overshoot"]:g}',
-                f'{specified["damping"]:.4f}',
-                f'{specified["sensitivity_peak"]:.3f}',
-                f'{specified["complementary_peak"]:.3f}',
-                f'{specified["natural_frequency_rad_s"]:.2f}',
+                f'{specified.rise_time_s:g}',
+                f'{100.0 * specified.overshoot:g}',
+                f'{specified.damping:.4f}',
+                f'{specified.sensitivity_peak:.3f}',
+                f'{specified.complementary_peak:.3f}',
+                f'{specified.natural_frequency_rad_s:.2f}',
             )
         ],
     )
@@ -118,35 +121,35 @@ def _weight_table(records: Sequence[HinfRecord]) -> Table:
         ('controller', 'recipe', *(heading for heading, _, _ in _WEIGHTS), 'hold, delay in plant'),
         [
             (
-                record['name'],
-                record['weights']['recipe'],
-                *_weight_cells(record['weights']),
-                'yes' if record['weights']['hold_and_delay_in_plant'] else 'no',
+                record.name,
+                record.provenance.weights.recipe,
+                *_weight_cells(record.provenance.weights),
+                'yes' if record.provenance.weights.hold_and_delay_in_plant else 'no',
             )
             for record in records
         ],
     )
 
 
-def _weight_cells(weights: Mapping[str, object]) -> list[str]:
-    return [text_or_dash(weights[key], form) for _, key, form in _WEIGHTS]
+def _weight_cells(weights: WeightEntry) -> list[str]:
+    return [text_or_dash(getattr(weights, key), form) for _, key, form in _WEIGHTS]
 
 
 def _uncertainty_table(found: UncertaintyRecord) -> Table:
-    above = found['printed_falls_short_above_rad_s']
-    short = f'by {100.0 * found["printed_falls_short_by"]:.2f} % above {above:.3g} rad/s'
+    above = found.printed_falls_short_above_rad_s
+    short = f'by {100.0 * found.printed_falls_short_by:.2f} % above {above:.3g} rad/s'
     return Table(
-        f'W_u; the relative error of K_usura is {found["largest_error"]:.3f} at most',
+        f'W_u; the relative error of K_usura is {found.largest_error:.3f} at most',
         ('W_u', 'gain', 'zero rad/s', 'pole rad/s', 'falls short'),
         [
             (
                 which,
-                f'{found[which]["gain"]:.4f}',
-                f'{found[which]["numerator"][0]:.4g}',
-                f'{found[which]["denominator"][0]:.4g}',
+                f'{function.gain:.4f}',
+                f'{function.numerator[0]:.4g}',
+                f'{function.denominator[0]:.4g}',
                 'nowhere' if which == 'fitted' or above is None else short,
             )
-            for which in ('fitted', 'printed')
+            for which, function in (('fitted', found.fitted), ('printed', found.printed))
         ],
     )
 
@@ -157,11 +160,11 @@ def _synthesis_table(records: Sequence[HinfRecord]) -> Table:
         ('controller', 'method', 'optimum', 'lower bound', 'taken'),
         [
             (
-                record['name'],
-                record['synthesis']['method'],
-                f'{record["synthesis"]["optimum"]:.5f}',
-                f'{record["synthesis"]["lower_bound"]:.5f}',
-                f'{record["synthesis"]["gamma"]:.4f}',
+                record.name,
+                record.synthesis.method,
+                f'{record.synthesis.optimum:.5f}',
+                f'{record.synthesis.lower_bound:.5f}',
+                f'{record.synthesis.gamma:.4f}',
             )
             for record in records
         ],
@@ -174,17 +177,17 @@ def _controller_table(records: Sequence[HinfRecord]) -> Table:
         ('controller', 'form', 'gain', 'numerator', 'denominator'),
         [
             (
-                record['name'],
+                record.name,
                 f'G_c({variable})',
-                f'{function["gain"]:.4g}',
-                factors_text(function['numerator'], variable, digits),
-                factors_text(function['denominator'], variable, digits),
+                f'{function.gain:.4g}',
+                factors_text(function.numerator, variable, digits),
+                factors_text(function.denominator, variable, digits),
             )
             for record in records
             # With 4 digits in z a slow pole would read as an integrator.
             for variable, digits, function in (
-                ('s', 4, record['controller']),
-                ('z', 5, record['pulse_transfer_function']),
+                ('s', 4, record.controller),
+                ('z', 5, record.pulse_transfer_function),
             )
         ],
     )
@@ -196,12 +199,12 @@ def _corner_table(records: Sequence[HinfRecord]) -> Table:
         ('controller', 'corners', 'unstable', 'M_s', 'K_usura', 'at'),
         [
             (
-                record['name'],
-                str(record['corners']['corners']),
-                str(record['corners']['unstable']),
-                DESIGN_QUANTITY_OF['sensitivity_peak'].cell(record['corners']),
-                f'{record["corners"]["wear_gain"]:.2f}',
-                ', '.join(f'{name} {x:g}' for name, x in record['corners']['factors'].items()),
+                record.name,
+                str(record.corners.corners),
+                str(record.corners.unstable),
+                DESIGN_QUANTITY_OF['sensitivity_peak'].cell(to_json(record.corners)),
+                f'{record.corners.wear_gain:.2f}',
+                ', '.join(f'{name} {x:g}' for name, x in record.corners.factors.items()),
             )
             for record in records
         ],
@@ -209,13 +212,13 @@ def _corner_table(records: Sequence[HinfRecord]) -> Table:
 
 
 def _loop_cells(loop: LoopEntry) -> tuple[str, ...]:
-    if not loop['stable']:
+    if isinstance(loop, UnstableLoopEntry):
         return ('unstable', *[''] * (len(_LOOP_HEADERS) - 3))
-    norms = loop['norms']
+    norms, margins = loop.norms, to_json(loop.margins)
     return (
-        *(f'{norms[key]:.3f}' for key in ('sensitivity', 'complementary', 'uncertainty')),
-        text_or_dash(loop['rise_time_s'], '.3f'),
-        f'{100.0 * loop["overshoot"]:.1f}',
-        'yes' if loop['meets_specifications'] else 'no',
-        *(quantity.cell(loop) for quantity in _LOOP_QUANTITIES),
+        *(f'{norm:.3f}' for norm in (norms.sensitivity, norms.complementary, norms.uncertainty)),
+        text_or_dash(loop.rise_time_s, '.3f'),
+        f'{100.0 * loop.overshoot:.1f}',
+        'yes' if loop.meets_specifications else 'no',
+        *(quantity.cell(margins) for quantity in _LOOP_QUANTITIES),
     )

@@ -12,7 +12,6 @@ from ddct_controllers.design.analysis.loops import (
 )
 from ddct_controllers.design.analysis.margins import loop_margins, unstable_poles
 from ddct_controllers.design.analysis.step_response import rise_time_and_overshoot
-from ddct_controllers.design.function_entry import function_entry
 from ddct_controllers.design.loop_shaping.design import (
     NETWORK_SPECIFICATIONS,
     PLACEMENT_CROSSOVER_RAD_S,
@@ -23,15 +22,18 @@ from ddct_controllers.design.loop_shaping.design import (
     with_crossover,
 )
 from ddct_controllers.design.loop_shaping.record_types import (
-    ContourEntry,
     LoopEntry,
     LoopShapingProvenance,
     LoopShapingRecord,
+    LoopShapingSpecifications,
     PlacementEntry,
+    SampledLoopEntry,
+    StepEntry,
+    ThesisLoopEntry,
     ThesisRecord,
 )
 from ddct_controllers.design.loop_shaping.search import LoopShapingDesign
-from ddct_controllers.design.loop_shaping.verification import Contour, contours
+from ddct_controllers.design.loop_shaping.verification import contours
 from ddct_controllers.printed import LOOP_SHAPING_CONTROLLERS
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
@@ -45,58 +47,58 @@ _STEP_DURATION_S = 6.0
 
 def thesis_record() -> ThesisRecord:
     """Return the steps to G_c1 and to G_c2, and both loops in three versions."""
-    return {
-        'network_steps': [
-            {'step': step, **_loop_entry(continuous_loop(controller))}
+    return ThesisRecord(
+        network_steps=[
+            StepEntry(step, _loop_entry(continuous_loop(controller)))
             for step, controller in network_steps().items()
         ],
-        'placement': [
+        placement=[
             _placement_entry(version, controller) for version, controller in _placements().items()
         ],
-        'loops': [
-            {'controller': name, 'loop': label, **_loop_entry(loop)}
+        loops=[
+            ThesisLoopEntry(name, label, _loop_entry(loop))
             for name, controller in (('G_c1', G_C1), ('G_c2', G_C2))
             for label, loop in _versions(controller).items()
         ],
-    }
+    )
 
 
 def design_record(name: str, design: LoopShapingDesign) -> LoopShapingRecord:
     """Return a design and its verified quantities."""
     found = design.verification
-    return {
-        'name': name,
-        'controller': function_entry(design.controller),
-        **provenance(design),
-        'contours': [_contour_entry(contour) for contour in found.contours],
-    }
+    return LoopShapingRecord(
+        name=name,
+        controller=design.controller,
+        provenance=provenance(design),
+        contours=list(found.contours),
+    )
 
 
 def provenance(design: LoopShapingDesign) -> LoopShapingProvenance:
     """Return the provenance of a design for the controller's file."""
     found = design.verification
     specifications = found.specifications
-    return {
-        'method': 'loop-shaping',
-        'structure': design.structure,
-        'integrators': design.integrators,
-        'specifications': {
-            'rise_time_s': specifications.rise_time_s,
-            'overshoot': specifications.overshoot,
-            'sensitivity_peak': specifications.sensitivity_peak,
-            'complementary_peak': specifications.complementary_peak,
-            'crossover_rad_s': specifications.crossover_rad_s,
-        },
-        'sampled_loop': {
-            'rise_time_s': found.rise_time_s,
-            'overshoot': found.overshoot,
-            **found.margins.entry(),
-            'stable_with_wear_gain': {
+    return LoopShapingProvenance(
+        method='loop-shaping',
+        structure=design.structure,
+        integrators=design.integrators,
+        specifications=LoopShapingSpecifications(
+            rise_time_s=specifications.rise_time_s,
+            overshoot=specifications.overshoot,
+            sensitivity_peak=specifications.sensitivity_peak,
+            complementary_peak=specifications.complementary_peak,
+            crossover_rad_s=specifications.crossover_rad_s,
+        ),
+        sampled_loop=SampledLoopEntry(
+            rise_time_s=found.rise_time_s,
+            overshoot=found.overshoot,
+            margins=found.margins.limited(),
+            stable_with_wear_gain={
                 str(gain): stable
                 for gain, stable in zip(WEAR_RANGE, found.stable_when_worn, strict=True)
             },
-        },
-    }
+        ),
+    )
 
 
 def _placements() -> dict[str, FactoredTransferFunction]:
@@ -114,14 +116,14 @@ def _placement_entry(version: str, controller: FactoredTransferFunction) -> Plac
     loop = continuous_loop(controller)
     rise_time_s, overshoot = rise_time_and_overshoot(loop, _STEP_DURATION_S)
     margins = loop_margins(loop)
-    return {
-        'version': version,
-        **function_entry(controller),
-        'crossover_rad_s': margins.crossover_rad_s,
-        'complementary_peak': margins.complementary_peak,
-        'rise_time_s': rise_time_s,
-        'overshoot': overshoot,
-    }
+    return PlacementEntry(
+        version=version,
+        controller=controller,
+        crossover_rad_s=margins.crossover_rad_s,
+        complementary_peak=margins.complementary_peak,
+        rise_time_s=rise_time_s,
+        overshoot=overshoot,
+    )
 
 
 def _versions(controller: FactoredTransferFunction) -> dict[str, ContinuousLoop | StateSpace]:
@@ -135,19 +137,8 @@ def _versions(controller: FactoredTransferFunction) -> dict[str, ContinuousLoop 
 
 def _loop_entry(loop: ContinuousLoop | StateSpace) -> LoopEntry:
     found = contours(LoopCurve(loop), NETWORK_SPECIFICATIONS)
-    return {
-        'unstable_poles': unstable_poles(loop),
-        **loop_margins(loop).entry(),
-        'contours': [_contour_entry(contour) for contour in found],
-    }
-
-
-def _contour_entry(contour: Contour) -> ContourEntry:
-    return {
-        'name': contour.name,
-        'level': contour.level,
-        'peak': contour.peak,
-        'peak_rad_s': contour.peak_rad_s,
-        'inside_rad_s': contour.inside_rad_s,
-        'respected': contour.respected,
-    }
+    return LoopEntry(
+        unstable_poles=unstable_poles(loop),
+        margins=loop_margins(loop).limited(),
+        contours=list(found),
+    )

@@ -2,49 +2,48 @@
 # SPDX-License-Identifier: Apache-2.0
 """Records of `design loop-shaping`: one type for each object of their JSON."""
 
-from collections.abc import Mapping, Sequence
-from typing import TypedDict
+from collections.abc import Mapping
+from dataclasses import dataclass
 
-from ddct_controllers.design.analysis.margins import MarginEntry
-from ddct_controllers.design.function_entry import FunctionEntry
-
-
-class ContourEntry(TypedDict):
-    """A closed curve that L has to stay out of, as `Contour` defines it."""
-
-    name: str
-    level: float
-    peak: float
-    peak_rad_s: float
-    inside_rad_s: Sequence[tuple[float, float]]
-    respected: bool
+from ddct_controllers.design.analysis.margins import LoopMargins
+from ddct_controllers.design.loop_shaping.verification import Contour
+from ddct_plant.files.json_records import Inline
+from ddct_plant.linear.lti import FactoredTransferFunction
 
 
-class LoopEntry(MarginEntry):
+@dataclass(frozen=True)
+class LoopEntry:
     """Margins of a loop, and its behaviour at the curves of 14 % overshoot."""
 
     unstable_poles: int
-    contours: list[ContourEntry]
+    margins: Inline[LoopMargins]
+    contours: list[Contour]
 
 
-class StepEntry(LoopEntry):
+@dataclass(frozen=True)
+class StepEntry:
     """One step from K_c/s to G_c1."""
 
     step: str
+    found: Inline[LoopEntry]
 
 
-class ThesisLoopEntry(LoopEntry):
+@dataclass(frozen=True)
+class ThesisLoopEntry:
     """The loop of one controller in one version, such as with the delay."""
 
     controller: str
     loop: str
     """Version of the loop."""
+    found: Inline[LoopEntry]
 
 
-class PlacementEntry(FunctionEntry):
+@dataclass(frozen=True)
+class PlacementEntry:
     """One version of G_c2 with quantities of its continuous loop."""
 
     version: str
+    controller: Inline[FactoredTransferFunction]
     crossover_rad_s: float | None
     complementary_peak: float | None
     rise_time_s: float | None
@@ -52,7 +51,8 @@ class PlacementEntry(FunctionEntry):
     """Overshoot as a fraction of the final value."""
 
 
-class ThesisRecord(TypedDict):
+@dataclass(frozen=True)
+class ThesisRecord:
     """Chapter 2 of the thesis, step by step."""
 
     network_steps: list[StepEntry]
@@ -60,7 +60,8 @@ class ThesisRecord(TypedDict):
     loops: list[ThesisLoopEntry]
 
 
-class LoopShapingSpecifications(TypedDict):
+@dataclass(frozen=True)
+class LoopShapingSpecifications:
     """Time specifications, and their bounds by the second-order prototype."""
 
     rise_time_s: float
@@ -71,17 +72,20 @@ class LoopShapingSpecifications(TypedDict):
     crossover_rad_s: float
 
 
-class SampledLoopEntry(MarginEntry):
+@dataclass(frozen=True)
+class SampledLoopEntry:
     """Verified quantities of the sampled loop."""
 
     rise_time_s: float | None
     overshoot: float | None
     """Overshoot as a fraction of the final value."""
+    margins: Inline[LoopMargins]
     stable_with_wear_gain: Mapping[str, bool]
     """Whether the loop is stable, by the wear gain as text."""
 
 
-class LoopShapingProvenance(TypedDict):
+@dataclass(frozen=True)
+class LoopShapingProvenance:
     """Provenance of a design, as it stands in the controller's file."""
 
     method: str
@@ -92,9 +96,11 @@ class LoopShapingProvenance(TypedDict):
     sampled_loop: SampledLoopEntry
 
 
-class LoopShapingRecord(LoopShapingProvenance):
+@dataclass(frozen=True)
+class LoopShapingRecord:
     """A design and its verified quantities."""
 
     name: str
-    controller: FunctionEntry
-    contours: list[ContourEntry]
+    controller: FactoredTransferFunction
+    provenance: Inline[LoopShapingProvenance]
+    contours: list[Contour]

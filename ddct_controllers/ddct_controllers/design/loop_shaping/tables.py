@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 from ddct_controllers.design.analysis.loop_quantities import DESIGN_QUANTITY_OF
 from ddct_controllers.design.loop_shaping.record_types import (
-    ContourEntry,
     LoopEntry,
     LoopShapingRecord,
     PlacementEntry,
@@ -16,6 +15,8 @@ from ddct_controllers.design.loop_shaping.specifications import (
     TimeSpecifications,
     rise_time_crossover_product,
 )
+from ddct_controllers.design.loop_shaping.verification import Contour
+from ddct_plant.files.json_records import to_json
 from ddct_plant.program.table import Table, Weight, text_or_dash, with_reasons
 
 _LOOP_QUANTITIES = [
@@ -44,13 +45,13 @@ def thesis_tables(record: ThesisRecord) -> dict[str, Table]:
         'network_steps': Table(
             'From K_c/s to G_c1, continuous and without delay',
             ('controller', *_LOOP_HEADERS),
-            [(row['step'], *_loop_cells(row)) for row in record['network_steps']],
+            [(row.step, *_loop_cells(row.found)) for row in record.network_steps],
         ),
-        'placement': _placement_table(record['placement']),
+        'placement': _placement_table(record.placement),
         'loops': Table(
             'Both controllers, and the curves of 14 % overshoot',
             ('controller', 'loop', *_LOOP_HEADERS),
-            [(row['controller'], row['loop'], *_loop_cells(row)) for row in record['loops']],
+            [(row.controller, row.loop, *_loop_cells(row.found)) for row in record.loops],
             weights=(Weight.IDENTIFYING, Weight.IDENTIFYING),
         ),
     }
@@ -67,31 +68,33 @@ def _no_loop_value(header: str, row: Sequence[str]) -> str:
 
 def design_tables(record: LoopShapingRecord) -> tuple[Table, Table]:
     """Return the tables of `design_record`: specified and reached quantities, and G_c(s)."""
-    specified, found = record['specifications'], record['sampled_loop']
-    overshoot = None if found['overshoot'] is None else 100.0 * found['overshoot']
-    peaks = {contour['name']: contour for contour in record['contours']}
+    provenance = record.provenance
+    specified, found = provenance.specifications, provenance.sampled_loop
+    margins = found.margins
+    overshoot = None if found.overshoot is None else 100.0 * found.overshoot
+    peaks = {contour.name: contour for contour in record.contours}
     quantities = Table(
-        f'{record["name"]}: {record["structure"]}, {record["integrators"]} integrator(s)',
+        f'{record.name}: {provenance.structure}, {provenance.integrators} integrator(s)',
         ('quantity', 'specified', 'sampled loop', 'unit'),
         [
-            _row('rise time', specified['rise_time_s'], found['rise_time_s'], 's'),
-            _row('overshoot', 100.0 * specified['overshoot'], overshoot, '%'),
-            _row(_peak_name(peaks['S']), specified['sensitivity_peak'], peaks['S']['peak'], '1'),
-            _row(_peak_name(peaks['T']), specified['complementary_peak'], peaks['T']['peak'], '1'),
-            _row('crossover', specified['crossover_rad_s'], found['crossover_rad_s'], 'rad/s'),
-            _row('phase margin', None, found['phase_margin_deg'], 'deg'),
-            _row('gain margin', None, found['gain_margin_db'], 'dB'),
-            _row('delay margin', None, found['delay_margin_s'], 's'),
+            _row('rise time', specified.rise_time_s, found.rise_time_s, 's'),
+            _row('overshoot', 100.0 * specified.overshoot, overshoot, '%'),
+            _row(_peak_name(peaks['S']), specified.sensitivity_peak, peaks['S'].peak, '1'),
+            _row(_peak_name(peaks['T']), specified.complementary_peak, peaks['T'].peak, '1'),
+            _row('crossover', specified.crossover_rad_s, margins.crossover_rad_s, 'rad/s'),
+            _row('phase margin', None, margins.phase_margin_deg, 'deg'),
+            _row('gain margin', None, margins.gain_margin_db, 'dB'),
+            _row('delay margin', None, margins.delay_margin_s, 's'),
         ],
     )
-    controller = record['controller']
+    controller = record.controller
     parts = Table(
         'G_c(s) in N m/rpm; a is (s + a), (b, c) is (s^2 + b s + c)',
         ('part', 'value'),
         [
-            ('gain', f'{controller["gain"]:.6g}'),
-            ('numerator', _factors(controller['numerator'])),
-            ('denominator', _factors(controller['denominator'])),
+            ('gain', f'{controller.gain:.6g}'),
+            ('numerator', _factors(controller.numerator)),
+            ('denominator', _factors(controller.denominator)),
         ],
     )
     return with_reasons(quantities, _no_quantity), parts
@@ -127,24 +130,24 @@ def _specification_table() -> Table:
 
 def _placement_table(placements: Sequence[PlacementEntry]) -> Table:
     lines = {
-        'gain N m/rpm': [f'{one["gain"]:.6f}' for one in placements],
-        'zero rad/s': [f'{one["numerator"][0]:.4f}' for one in placements],
-        'zeros b, c': [_factors(one['numerator'][1:]) for one in placements],
-        'poles b, c': [_factors(one['denominator'][1:]) for one in placements],
-        'w_c rad/s': [f'{one["crossover_rad_s"]:.2f}' for one in placements],
-        't_r s': [f'{one["rise_time_s"]:.3f}' for one in placements],
-        's^ %': [f'{100.0 * one["overshoot"]:.1f}' for one in placements],
-        'M_t': [f'{one["complementary_peak"]:.3f}' for one in placements],
+        'gain N m/rpm': [f'{one.controller.gain:.6f}' for one in placements],
+        'zero rad/s': [f'{one.controller.numerator[0]:.4f}' for one in placements],
+        'zeros b, c': [_factors(one.controller.numerator[1:]) for one in placements],
+        'poles b, c': [_factors(one.controller.denominator[1:]) for one in placements],
+        'w_c rad/s': [f'{one.crossover_rad_s:.2f}' for one in placements],
+        't_r s': [f'{one.rise_time_s:.3f}' for one in placements],
+        's^ %': [f'{100.0 * one.overshoot:.1f}' for one in placements],
+        'M_t': [f'{one.complementary_peak:.3f}' for one in placements],
     }
     return Table(
         'G_c2 as printed, and as the rule gives it',
-        ('quantity', *(one['version'] for one in placements)),
+        ('quantity', *(one.version for one in placements)),
         [(name, *cells) for name, cells in lines.items()],
     )
 
 
-def _peak_name(contour: ContourEntry) -> str:
-    return f'max |{contour["name"]}|' + ('' if contour['respected'] else ', crosses its curve')
+def _peak_name(contour: Contour) -> str:
+    return f'max |{contour.name}|' + ('' if contour.respected else ', crosses its curve')
 
 
 def _row(name: str, specified: float | None, found: float | None, unit: str) -> tuple[str, ...]:
@@ -152,10 +155,11 @@ def _row(name: str, specified: float | None, found: float | None, unit: str) -> 
 
 
 def _loop_cells(row: LoopEntry) -> tuple[str, ...]:
-    kept_out = {contour['name']: contour['respected'] for contour in row['contours']}
+    kept_out = {contour.name: contour.respected for contour in row.contours}
+    margins = to_json(row.margins)
     return (
-        str(row['unstable_poles']),
-        *(quantity.cell(row) for quantity in _LOOP_QUANTITIES),
+        str(row.unstable_poles),
+        *(quantity.cell(margins) for quantity in _LOOP_QUANTITIES),
         'kept out of' if kept_out['S'] else 'crossed',
         'kept out of' if kept_out['T'] else 'crossed',
     )

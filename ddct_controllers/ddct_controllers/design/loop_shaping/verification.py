@@ -46,10 +46,8 @@ class Contour:
     The last stretch may end at the end of the grid.
     """
 
-    @property
-    def respected(self) -> bool:
-        """Whether L stays out of the curve."""
-        return not self.inside_rad_s
+    respected: bool
+    """Whether L stays out of the curve."""
 
 
 @dataclass(frozen=True)
@@ -137,4 +135,4 @@ def _contour(curve: LoopCurve, name: str, level: float, measure: Measure) -> Con
     if len(bounds) % 2:
         bounds.append(float(curve.omega[-1]))
     stretches = tuple(zip(bounds[0::2], bounds[1::2], strict=True))
-    return Contour(name, level, *curve.peak(measure), stretches)
+    return Contour(name, level, *curve.peak(measure), stretches, respected=not stretches)
