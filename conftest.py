@@ -11,6 +11,9 @@ from pathlib import Path
 
 import pytest
 
+# Before any test imports numpy: it chooses the kernel of linear algebra.
+import ddct_plant  # noqa: F401
+
 pytest_plugins = ['tiers']
 VARIABLE = 'DDCT_CACHE'
 """That of `ddct_bringup.floor.cache`, whose import would delay the start of the workers."""

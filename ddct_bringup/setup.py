@@ -73,6 +73,7 @@ setup(
         'pyarrow',
         'rich',
         'scipy',
+        'threadpoolctl',
     ],
     extras_require={
         'dask': ['distributed'],

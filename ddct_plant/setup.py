@@ -41,6 +41,7 @@ setup(
         'pyyaml',
         'rich',
         'scipy',
+        'threadpoolctl',
         'zstandard',
     ],
     extras_require={'test': ['pytest']},

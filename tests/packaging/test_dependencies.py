@@ -34,6 +34,7 @@ FROM_PYPI = {
     'pyarrow': ('pyarrow', None),
     'rich': ('rich', 'python3-rich'),
     'scipy': ('scipy', 'python3-scipy'),
+    'threadpoolctl': ('threadpoolctl', None),
     'yaml': ('pyyaml', 'python3-yaml'),
     'zstandard': ('zstandard', None),
 }

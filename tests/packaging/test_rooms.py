@@ -80,7 +80,9 @@ def test_the_page_lists_every_room_below_those_that_it_imports(package: str) -> 
     rows = re.findall(r'^\| `(\w+)/` \|', section, re.MULTILINE)
     folders = (ROOT / package / package).glob('*/__init__.py')
     assert sorted(rows) == sorted(file.parent.name for file in folders)
-    for room, imported in room_arrows(package).items():
+    arrows = room_arrows(package)
+    arrows.pop('__init__', None)  # what is done before all imports
+    for room, imported in arrows.items():
         assert imported <= set(rows[: rows.index(room)]), room
 
 

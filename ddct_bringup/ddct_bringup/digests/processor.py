@@ -7,25 +7,12 @@ OpenBLAS picks its kernels by processor, or by the variable OPENBLAS_CORETYPE. D
 round differently, so that the last bits of a run depend on them.
 """
 
-import ctypes
 import platform
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 
-KERNELS = (
-    'scipy_openblas_get_corename64_',
-    'scipy_openblas_get_corename',
-    'openblas_get_corename64_',
-    'openblas_get_corename',
-)
-"""Functions of OpenBLAS that return the name of its kernels, by the builds of its packages."""
-_BUNDLES = {'numpy.libs': 'numpy', 'scipy.libs': 'scipy'}
-"""Packages by the folder of the libraries in their wheels."""
-_FOREIGN = '.libs'
-"""Ending of the folder of the libraries of another wheel, which no run uses."""
-SYSTEM = 'system'
+from ddct_plant.program.arithmetic import blas_libraries
 
 
 @cache
@@ -57,22 +44,4 @@ def _kernels() -> dict[str, str]:
     # Only here: it loads the OpenBLAS of scipy, which takes some tenths of a second.
     import scipy.linalg  # noqa: F401
 
-    found = {}
-    for path in sorted(loaded_libraries()):
-        package = _BUNDLES.get(path.parent.name, SYSTEM)
-        if package == SYSTEM and path.parent.name.endswith(_FOREIGN):
-            continue
-        library = ctypes.CDLL(str(path))
-        for function in KERNELS:
-            if hasattr(library, function):
-                name = getattr(library, function)
-                name.restype = ctypes.c_char_p
-                found[package] = (name() or b'unknown').decode()
-                break
-    return found
-
-
-def loaded_libraries() -> set[Path]:
-    """Return the paths of the OpenBLAS libraries that this process has loaded."""
-    words = Path('/proc/self/maps').read_text(encoding='utf-8').split()
-    return {Path(word) for word in words if '/' in word and 'openblas' in Path(word).name}
+    return {each.user: each.kernel for each in blas_libraries() if each.kernel}

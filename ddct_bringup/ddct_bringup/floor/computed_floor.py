@@ -5,6 +5,8 @@
 import dataclasses
 from dataclasses import dataclass
 
+from threadpoolctl import threadpool_limits
+
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.floor.bound import bound_of
 from ddct_bringup.floor.cache import cached, digest_of, store
@@ -13,10 +15,10 @@ from ddct_bringup.floor.dynamics.torque_cut import gives_demand
 from ddct_bringup.floor.friction_work import least_friction_work
 from ddct_bringup.floor.objectives import Signals
 from ddct_bringup.floor.program.linear_program import CLOSED_FORM, RAY
-from ddct_bringup.floor.program.one_thread import one_thread
 from ddct_bringup.floor.replays.attained import Replays, replays_of
 from ddct_bringup.floor.values import FRICTION, Floor, objective_of
 from ddct_plant.base.errors import ParameterError
+from ddct_plant.program.kernel import threads
 
 DEMAND, LIMITS = (
     'runs in which the engine gives the demand',
@@ -49,7 +51,8 @@ def computed_floor(
     if known is not None:
         return ComputedFloor(Floor(**known['floor']), known['limited'])
     closed = metric == FRICTION
-    with one_thread():
+    # Also where numpy was loaded before our package: more threads take several times as long.
+    with threadpool_limits(threads(), user_api='blas'):
         found = _closed_form(case) if closed else _computed(case, metric, begin, attain)
     store(digest, {'floor': dataclasses.asdict(found.floor), 'limited': found.limited})
     return found

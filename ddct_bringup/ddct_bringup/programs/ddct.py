@@ -3,7 +3,6 @@
 """Program `ddct`: starts any program of the installed packages, nodes too, by its name."""
 
 import ast
-import os
 import sys
 from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
@@ -52,8 +51,6 @@ def _ddct(argv: list[str]) -> int:
         parser.add_argument('program', metavar='PROGRAM', help='one of those above')
         name = parser.parse_args(argv[:1]).program
         parser.error(f'unknown program {name}: {close_name(name, sorted(known))}')
-    # Matrices are small: more threads only wait for one another. Nodes inherit this setting.
-    os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
     with _warm_parent() if _starts_nodes(argv) else nullcontext():
         sys.argv[1:] = argv[1:]
         return _load(known[argv[0]])()

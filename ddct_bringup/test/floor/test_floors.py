@@ -9,6 +9,7 @@ import pytest
 from made_run import made_run
 from refusals import refused
 from scored_metrics import SCORED
+from threadpoolctl import threadpool_limits
 
 from ddct_bringup.digests import code
 from ddct_bringup.floor import computed_floor
@@ -21,7 +22,6 @@ from ddct_bringup.floor.front import least_lock_time
 from ddct_bringup.floor.lock import Lock, final_lock_of, lock_of
 from ddct_bringup.floor.point import point_of
 from ddct_bringup.floor.program.linear_program import RAY
-from ddct_bringup.floor.program.one_thread import thread_counts
 from ddct_bringup.floor.replays import attained, replay
 from ddct_bringup.floor.values import METRICS, OF_STICK_SLIP, value_of
 from ddct_bringup.run.execution import recording_in_memory
@@ -30,6 +30,7 @@ from ddct_bringup.scores.scoring import score_run
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.program.arithmetic import blas_libraries
 from ddct_plant.scenario.file import ScenarioFile, load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
@@ -177,32 +178,30 @@ def changed_plant(package):
     return files('ddct_reference' if package == 'ddct_plant' else package)
 
 
-def test_a_floor_is_computed_by_one_thread_unless_the_user_wants_more(monkeypatch):
-    if not thread_counts():
-        pytest.skip('numpy and scipy have no OpenBLAS here')
-    before = [count() for count, _ in thread_counts()]
+@pytest.mark.parametrize(('named', 'expected'), [(None, 1), ('2', 2)])
+def test_a_floor_is_computed_by_one_thread_unless_the_user_wants_more(
+    monkeypatch, named, expected
+):
+    """As where numpy was loaded first, with other numbers of threads."""
     during = []
 
     def bound_of(*_):
-        during.append([count() for count, _ in thread_counts()])
+        during.extend(thread_numbers())
 
     monkeypatch.setattr(computed_floor, 'bound_of', bound_of)
-    try:
-        for _, limit in thread_counts():
-            limit(2)
-        two = [count() for count, _ in thread_counts()]
-        for variable in (None, '2'):
-            if variable:
-                monkeypatch.setenv('OPENBLAS_NUM_THREADS', variable)
-            else:
-                monkeypatch.delenv('OPENBLAS_NUM_THREADS', raising=False)
-            with pytest.raises(ParameterError, match='is not defined'):
-                floor_of(settings_of(), 'peak_jerk', 0.9)
-            assert [count() for count, _ in thread_counts()] == two
-    finally:
-        for (_, limit), number in zip(thread_counts(), before, strict=True):
-            limit(number)
-    assert during == [[1] * len(before), two]
+    if named:
+        monkeypatch.setenv('OPENBLAS_NUM_THREADS', named)
+    else:
+        monkeypatch.delenv('OPENBLAS_NUM_THREADS', raising=False)
+    with threadpool_limits(3 - expected, user_api='blas'):
+        with pytest.raises(ParameterError, match='is not defined'):
+            floor_of(settings_of(), 'peak_jerk', 0.9)
+        assert {*thread_numbers()} == {3 - expected}
+    assert {*during} == {expected}
+
+
+def thread_numbers():
+    return [library.threads for library in blas_libraries()]
 
 
 def test_a_lock_at_once_is_impossible_and_has_its_ray():

@@ -28,9 +28,9 @@ def bernstein_of_powers(degree: int) -> np.ndarray:
 
 
 @lru_cache
-def _from_powers(degree: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the exponents 0, 1, ..., d, and the matrix from rows of coefficients of t^k."""
-    return np.arange(degree + 1), bernstein_of_powers(degree).T.copy()
+def _from_powers(degree: int) -> np.ndarray:
+    """Return the matrix from rows of coefficients of t^k."""
+    return bernstein_of_powers(degree).T.copy()
 
 
 @lru_cache
@@ -48,8 +48,10 @@ def _left_half(degree: int) -> np.ndarray:
 
 def on_interval(powers: np.ndarray, end: float) -> np.ndarray:
     """Return the Bernstein coefficients on [0, end] of polynomials (..., d+1) in t^k."""
-    exponents, to_bernstein = _from_powers(powers.shape[-1] - 1)
-    return (powers * end**exponents).dot(to_bernstein)
+    # Products, not numpy's power, whose rounding depends on the processor.
+    ends = np.full(powers.shape[-1], end)
+    ends[0] = 1.0
+    return (powers * np.multiply.accumulate(ends)).dot(_from_powers(powers.shape[-1] - 1))
 
 
 def first_negative(powers: np.ndarray, end: float) -> float | None:

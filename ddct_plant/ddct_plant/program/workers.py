@@ -7,7 +7,6 @@ A worker has all that the program has imported and built, so it starts at once, 
 refer to any object. It uses one thread for numerics.
 """
 
-import ctypes
 import gc
 import multiprocessing
 import os
@@ -16,18 +15,13 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import closing, contextmanager
-from pathlib import Path
 from typing import Any, TypeVar
+
+from threadpoolctl import threadpool_limits
 
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.program.supervision import deferred_signals, end_with_parent
 
-_SET_THREADS = (
-    'openblas_set_num_threads',
-    'scipy_openblas_set_num_threads',
-    'scipy_openblas_set_num_threads64_',
-)
-"""Names of the function that sets the threads of OpenBLAS, by build of the library."""
 _LARGEST_CHUNK = 16
 """Largest number of results that a worker sends at once."""
 _CHUNKS_EACH = 8
@@ -143,21 +137,8 @@ def _begin(parent: int, work: Callable[[Any], Any] | None) -> None:
     end_with_parent(parent, signal.SIGKILL)
     # Collecting what the program has imported would take as long as many runs, and copy it.
     gc.freeze()
-    one_numeric_thread()
-
-
-def one_numeric_thread() -> None:
-    """
-    Let the OpenBLAS libraries of numpy and scipy use one thread, as `ddct` does by its variable.
-
-    Matrices are small: more threads only wait for one another, and may change the rounding.
-    """
-    loaded = Path('/proc/self/maps').read_text(encoding='utf-8').split()
-    for name in {word for word in loaded if '/' in word and 'openblas' in Path(word).name}:
-        library = ctypes.CDLL(name)
-        for function in _SET_THREADS:
-            if hasattr(library, function):
-                getattr(library, function)(1)
+    # Also where numpy was loaded before our package, with threads.
+    threadpool_limits(1, user_api='blas')
 
 
 def _result(argument: Any) -> Any:

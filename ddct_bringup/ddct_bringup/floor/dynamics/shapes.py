@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Shapes of the off-going clutch's torque over a period: polynomials, effects and bounds."""
 
+import math
 from functools import lru_cache
 
 import numpy as np
@@ -42,7 +43,7 @@ def shape_effects(gears: GearPair) -> np.ndarray:
     transition, held = hold_inputs(chain, last, PERIOD_S)
     # Of the inputs t^n / n!; the polynomials are in t/T.
     powers = np.column_stack([transition[:4, 4:], held[:4]])
-    scaled = powers * np.array([1.0, 1.0, 2.0, 6.0]) / PERIOD_S ** np.arange(SHAPES)
+    scaled = powers * [math.factorial(order) / PERIOD_S**order for order in range(SHAPES)]
     coefficients = np.zeros((SHAPES, SHAPES))
     for place, polynomial in enumerate(_LEGENDRE):
         coefficients[: len(polynomial), place] = polynomial

@@ -139,7 +139,9 @@ def balanced(plant: GeneralisedPlant, discount: float = DISCOUNT_RAD_S) -> Gener
         observe = scipy.linalg.solve_continuous_lyapunov(decaying.T, -scaled.c.T @ scaled.c)
         root = scipy.linalg.cholesky((reach + reach.T) / 2.0, lower=True)
         vectors, values, _ = np.linalg.svd(root.T @ observe @ root)
-        return GeneralisedPlant(_in_coordinates(scaled, root @ vectors * values**-0.25))
+        # Roots, not a power, whose rounding in numpy depends on the processor.
+        fourth_roots = np.sqrt(np.sqrt(values))
+        return GeneralisedPlant(_in_coordinates(scaled, root @ vectors / fourth_roots))
     except (np.linalg.LinAlgError, ValueError):
         return plant
 

@@ -1,0 +1,142 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Every process has the same kernel of linear algebra; a result names what decides its bits."""
+
+import os
+import subprocess
+import sys
+from dataclasses import replace
+from typing import Any
+
+import pytest
+
+from ddct_plant.program import kernel
+from ddct_plant.program.arithmetic import arithmetic
+from ddct_plant.program.kernel import HASWELL, KERNEL, THREADS, choose_kernel
+
+PRINTED = (
+    'import os\n'
+    'from ddct_plant.program.arithmetic import arithmetic\n'
+    'found = arithmetic()\n'
+    'print(found.kernel, found.threads, *(os.environ[name] for name in'
+    f' ({KERNEL!r}, {THREADS!r})), sep="|")\n'
+)
+FIRST_NUMPY = 'import numpy\n'
+PACKAGES = ('ddct_plant', 'ddct_reference', 'ddct_controllers', 'ddct_bringup')
+openblas = pytest.mark.skipif(
+    'OpenBLAS' not in arithmetic().blas or kernel._kernel_of_processor() is None,
+    reason='needs OpenBLAS on x86-64 with AVX2',
+)
+
+
+def printed(code: str, **variables: str) -> list[str]:
+    environment = {
+        name: each for name, each in os.environ.items() if name not in (KERNEL, THREADS)
+    }
+    done = subprocess.run(
+        [sys.executable, '-c', code],
+        env={**environment, 'PYTHONPATH': ':'.join(sys.path), **variables},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    return done.stdout.strip().split('|')
+
+
+@openblas
+@pytest.mark.process
+def test_a_process_has_one_thread_and_the_haswell_kernel_unless_the_environment_names_others():
+    assert printed(PRINTED) == [HASWELL, '1', HASWELL, '1']
+    named = printed(PRINTED, **{KERNEL: 'Nehalem', THREADS: '2'})
+    assert named == ['Nehalem', '2' if len(os.sched_getaffinity(0)) > 1 else '1', 'Nehalem', '2']
+
+
+@openblas
+@pytest.mark.process
+def test_a_kernel_that_is_loaded_stays_and_is_named_and_child_processes_use_it_too():
+    of_numpy = (
+        'import numpy, threadpoolctl\n'
+        'print(*{each["architecture"] for each in threadpoolctl.threadpool_info()})'
+    )
+    (own,) = printed(of_numpy)
+    found, _, of_children, _ = printed(FIRST_NUMPY + PRINTED)
+    assert (found, of_children) == (own, own)
+
+
+@pytest.mark.process
+@pytest.mark.parametrize('package', PACKAGES)
+def test_every_package_names_a_kernel_before_it_imports_numpy(package):
+    code = (
+        f'import os, sys, {package}\n'
+        f'print({KERNEL!r} in os.environ, "numpy" in sys.modules, sep="|")'
+    )
+    assert printed(code) == [str(kernel._kernel_of_processor() is not None), 'False']
+
+
+@pytest.mark.parametrize(
+    ('machine', 'flags', 'chosen'),
+    [
+        ('x86_64', 'sse2 avx2 fma', HASWELL),
+        ('x86_64', 'sse2 avx fma', None),
+        ('x86_64', 'sse2 avx2', None),
+        ('aarch64', 'avx2 fma', None),
+    ],
+)
+def test_the_kernel_is_chosen_by_the_features_of_the_processor(
+    monkeypatch, tmp_path, machine, flags, chosen
+):
+    processor = tmp_path / 'cpuinfo'
+    processor.write_text(f'processor\t: 0\nflags\t\t: {flags}\n\nprocessor\t: 1\n')
+    monkeypatch.setattr(kernel, '_PROCESSOR', processor)
+    monkeypatch.setattr(os, 'uname', lambda: os.uname_result(('Linux', 'here', '6', '1', machine)))
+    monkeypatch.delitem(sys.modules, 'numpy')
+    monkeypatch.delenv(KERNEL, raising=False)
+    monkeypatch.delenv(THREADS, raising=False)
+    choose_kernel()
+    assert (os.environ.get(KERNEL), os.environ[THREADS]) == (chosen, '1')
+
+
+@pytest.mark.parametrize(
+    ('named', 'number'), [('3', 3), ('', 1), ('many', 1), ('0', 1), ('-2', 1), (None, 1)]
+)
+def test_the_number_of_threads_is_that_of_the_environment_or_one(monkeypatch, named, number):
+    monkeypatch.delenv(THREADS, raising=False)
+    if named is not None:
+        monkeypatch.setenv(THREADS, named)
+    assert kernel.threads() == number
+
+
+@openblas
+@pytest.mark.process
+def test_workers_have_one_thread_whatever_the_program_has():
+    code = (
+        FIRST_NUMPY
+        + 'from ddct_plant.program.arithmetic import blas_libraries\n'
+        + 'from ddct_plant.program.workers import in_processes\n'
+        + 'def threads(_): return [each.threads for each in blas_libraries()]\n'
+        + 'with in_processes(threads, 2, 2) as found: print(list(found))'
+    )
+    assert printed(code) == ['[[1], [1]]']
+
+
+@pytest.mark.parametrize('key', ['blas', 'kernel', 'threads', 'libc', 'machine'])
+def test_what_decides_bits_is_a_difference(key: str) -> None:
+    here = arithmetic()
+    assert here.differences(here) == []
+    another: Any = {key: 'another'}
+    (found,) = replace(here, **another).differences(here)
+    assert 'another' in found
+    assert getattr(here, key) in found
+
+
+def test_another_version_is_a_difference_and_another_processor_is_none():
+    here = arithmetic()
+    versions = {**here.versions, 'numpy': '0.1'}
+    assert replace(here, versions=versions).differences(here) == [
+        f'numpy 0.1, here {here.versions["numpy"]}'
+    ]
+    del versions['numpy']
+    assert replace(here, versions=versions).differences(here) == [
+        f'numpy none, here {here.versions["numpy"]}'
+    ]
+    assert replace(here, processor='another').differences(here) == []
