@@ -12,6 +12,7 @@ from ddct_controllers.command_check import checked_command
 from ddct_controllers.handover.torque_phase import TorquePhase
 from ddct_controllers.interface import Command, Controller, Measurement, Status
 from ddct_controllers.places import place_of_failure
+from ddct_controllers.registry import Chosen, make_controller, separately
 from ddct_plant.base.errors import (
     FOREIGN_FAILURES,
     DdctError,
@@ -217,6 +218,24 @@ def make_architecture(settings: RunSettings, controller: Controller) -> Architec
         ClosingStage(scenario.closing, static) if scenario.closing else None,
         TorquePhase(settings) if settings.shift else None,
     )
+
+
+class LoopNeeds(NamedTuple):
+    """What the nodes around a controller have to know of it."""
+
+    commands_engine: bool
+    preview_steps: int
+
+
+def loop_needs(chosen: Chosen, settings: RunSettings) -> LoopNeeds:
+    """Build a controller and its architecture for a run, and return what they need; else raise."""
+
+    def work(chosen: Chosen) -> LoopNeeds:
+        controller = make_controller(chosen, settings)
+        make_architecture(settings, controller)
+        return LoopNeeds(controller.commands_engine, controller.preview_steps)
+
+    return separately(chosen, work)
 
 
 def _make_open_loop(settings: RunSettings, static: StaticTorque) -> OpenLoop:

@@ -5,6 +5,7 @@
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 from types import MappingProxyType
 from typing import Any, ClassVar, Generic, TypeVar
 
@@ -126,6 +127,15 @@ class ControllerContext:
     """
 
 
+@dataclass(frozen=True)
+class CompiledCode:
+    """A file of compiled code, and where a controller file names it, for error messages."""
+
+    path: Path
+    key: str
+    place: str
+
+
 Made = TypeVar('Made', bound=Controller, covariant=True)
 
 
@@ -148,6 +158,12 @@ class ControllerSpec(Generic[Made]):
     """SHA-256 of the files that it is made of, by their key on `run_info`."""
     written_in: str = ''
     """File and key where its author edits it, if it is not Python, for error messages; else ''."""
+    compiled: CompiledCode | None = None
+    """
+    Its compiled code, if it is such; None for Python.
+
+    It may end or stop its process, so each headless run of it has a process of its own.
+    """
 
     def __call__(self, context: ControllerContext) -> Made:
         """Make the controller; raise ParameterError for an option that it does not take."""

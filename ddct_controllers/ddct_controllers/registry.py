@@ -7,12 +7,14 @@ import sys
 from collections.abc import Callable, Iterable, Mapping
 from functools import lru_cache, partial
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from ddct_controllers.factories import factory_spec
-from ddct_controllers.from_file.controller_file import is_controller_file
+from ddct_controllers.from_file.controller_file import YAML_SUFFIXES, is_controller_file
+from ddct_controllers.from_file.fmu.unpacked import remove_left_folders
 from ddct_controllers.from_file.kinds import load_spec
 from ddct_controllers.interface import (
+    CompiledCode,
     Controller,
     ControllerContext,
     ControllerSpec,
@@ -24,6 +26,7 @@ from ddct_controllers.printed import PRINTED_CONTROLLERS, printed_spec
 from ddct_controllers.state_of_art.controllers import STATE_OF_ART
 from ddct_controllers.synthesised import SYNTHESISED, synthesised_design
 from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError, ParameterError, require_name
+from ddct_plant.program.own_process import ProcessEndedError, in_own_process
 from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
 
@@ -37,6 +40,7 @@ The factory takes a ControllerContext.
 
 Chosen = str | ControllerSpec[Controller]
 """Choice of a controller: its name or file, or the specification of one without either."""
+Result = TypeVar('Result')
 
 
 def _synthesised(name: str, context: ControllerContext) -> Controller:
@@ -141,6 +145,34 @@ def controller_spec(chosen: Chosen) -> ControllerSpec[Controller]:
             )
         return spec
     return _OWN.get(chosen) or _third_party(chosen)
+
+
+def separately(chosen: Chosen, work: Callable[[Chosen], Result]) -> Result:
+    """
+    Return `work(chosen)`, in a process of its own where the controller is compiled code.
+
+    Each run of such code has one: its static variables start afresh, and ProcessEndedError with
+    its place and the reason is raised when it crashes, ends its process or loops without end.
+    Result and errors of `work` are pickled then.
+    """
+    code = compiled_code(chosen)
+    if code is None:
+        return work(chosen)
+    try:
+        # The specification, as a file may change meanwhile.
+        return in_own_process(partial(work, controller_spec(chosen)))
+    except ProcessEndedError as error:
+        remove_left_folders()
+        raise ProcessEndedError(
+            f'{code.key}: {code.path}: {error}: mend it', key=code.key, place=code.place
+        ) from error
+
+
+def compiled_code(chosen: Chosen) -> CompiledCode | None:
+    """Return the compiled code that a controller is; None for one in Python."""
+    if isinstance(chosen, str) and not chosen.endswith(YAML_SUFFIXES):
+        return None
+    return controller_spec(chosen).compiled
 
 
 def controller_label(chosen: Chosen) -> str:

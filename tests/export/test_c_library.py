@@ -3,14 +3,9 @@
 """Controllers written in C run from a file like any other; their errors have one line."""
 
 import functools
-import gc
-import os
 import re
-import signal
 import subprocess
-import sys
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -20,20 +15,19 @@ from support.exported_mpc import STRICT, compile_c, run_settings
 from ddct_bringup.programs.bringup import main as bringup
 from ddct_bringup.run.headless import run_headless
 from ddct_controllers.check.checks import FAIL, check_controller
-from ddct_controllers.from_file.c_library import host
-from ddct_controllers.from_file.foreign import loaded
+from ddct_controllers.from_file.c_library import library as c_library
 from ddct_controllers.interface import Command, Controller
 from ddct_controllers.mpc.export.export_controller import export_controller
-from ddct_controllers.registry import controller_spec, make_controller
+from ddct_controllers.registry import make_controller
 from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.program.workers import in_processes
+from ddct_plant.program import own_process
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
 TOLERANCE_N_M = 1e-6
 """Tolerance in N m, as between the C and Python of a controller: both solvers leave about 1e-9."""
 SETTINGS = run_settings('duration_s=1')
-TEMPLATE = (host.TEMPLATE / 'my_controller.c').read_text()
+TEMPLATE = (c_library.TEMPLATE / 'my_controller.c').read_text()
 
 
 @pytest.fixture(scope='module')
@@ -43,7 +37,9 @@ def compiled(tmp_path_factory):
     @functools.cache
     def make(source: str) -> Path:
         folder = tmp_path_factory.mktemp('library')
-        (folder / host.HEADER).write_bytes((host.TEMPLATE / host.HEADER).read_bytes())
+        (folder / c_library.HEADER).write_bytes(
+            (c_library.TEMPLATE / c_library.HEADER).read_bytes()
+        )
         (folder / 'my_controller.c').write_text(source)
         unfinished = () if source == TEMPLATE else ('-w',)
         flags = ('-shared', '-fPIC', *unfinished)
@@ -173,7 +169,6 @@ def test_an_error_of_a_controller_in_c_is_placed_in_its_file_and_function(librar
     found = {
         each.name: each.detail for each in check_controller(file, SETTINGS) if each.state == FAIL
     }
-    gc.collect()  # ends the processes of all objects that were tried
     assert f'ddct_controller_update of {file} line ' in found[check]
     assert found[check].partition(' line ')[2].partition(')')[0].endswith('(c_library')
     assert not [detail for detail in found.values() if '.py' in detail]
@@ -236,8 +231,8 @@ class InPython(Controller):
     ],
 )
 def test_a_library_of_another_interface_is_refused(compiled, source, complaint):
-    with pytest.raises(host.LibraryError, match=re.escape(complaint)):
-        host.load(str(compiled(source))).open()
+    with pytest.raises(c_library.LibraryError, match=re.escape(complaint)):
+        c_library.Library(compiled(source))
 
 
 def test_the_refusal_of_a_library_is_one_line_with_its_place(library):
@@ -280,10 +275,11 @@ def test_outputs_that_c_does_not_write_are_nan(library, source):
 
 
 def test_a_loop_without_end_is_ended(library, monkeypatch):
-    monkeypatch.setattr(loaded, 'MOST_SECONDS', 1)
-    controller = make_controller(library(command('for (;;) {}')), SETTINGS)
-    with pytest.raises(DdctError, match='it gave no answer within'):
-        run_headless(SETTINGS, controller)
+    monkeypatch.setattr(own_process, 'MOST_SECONDS', 0.5)
+    file = library(command('for (;;) {}'))
+    with refused(DdctError, 'c_library.file', place=f'{file}: line 2') as raised:
+        run_headless(SETTINGS, file)
+    assert 'it gave no answer within 0.5 s when update was called at step 60' in str(raised.value)
 
 
 @pytest.mark.parametrize(
@@ -309,35 +305,11 @@ def test_a_file_without_a_library_is_refused(tmp_path, content, complaint):
     assert '\n' not in str(caught.value)
 
 
-def test_no_process_is_left_behind(library):
-    controller: Any = make_controller(library(TEMPLATE), SETTINGS)
-    process = Path(f'/proc/{controller._process.pid}')
-    assert process.exists()
-    del controller
-    assert not process.exists()
-
-
-def test_a_library_is_loaded_once_for_all_controllers_and_workers(library, monkeypatch):
-    spec = controller_spec(library(f'{TEMPLATE}/* started by this test */\n'))
-    started: list[Any] = []
-    start: Any = subprocess.Popen
-
-    def counted(*given: Any, **named: Any) -> Any:
-        started.append(given)
-        return start(*given, **named)
-
-    monkeypatch.setattr(loaded.subprocess, 'Popen', counted)
-
-    def torques(_: int = 0) -> list[float]:
-        return run_headless(SETTINGS, spec).torque_request.tolist()
-
-    first = torques()
-    assert torques() == first
-    with in_processes(torques, 4, 2) as found:
-        assert [*found] == [first] * 4
-    assert len(started) == 1
+def test_a_library_that_was_compiled_again_is_loaded_again(library):
+    file = library(TEMPLATE)
+    first = run_headless(SETTINGS, file).torque_request.tolist()
     again = run_headless(SETTINGS, library(command('command->clutch_torque = 7.0;')))
-    assert again.torque_request.tolist() != first, 'a library that was compiled again is the old'
+    assert again.torque_request.tolist() != first
 
 
 def test_reset_is_called_before_hold_and_update(library):
@@ -351,35 +323,7 @@ def test_reset_is_called_before_hold_and_update(library):
     assert run_headless(SETTINGS, library(source)).closed_loop_torque[-1] == 7.0
 
 
-def test_static_variables_of_c_start_anew_for_each_controller(library):
-    body = 'static double calls = 0.0; calls += 1.0; command->clutch_torque = calls;'
-    file = library(command(body))
-    first, again = (run_headless(SETTINGS, file).torque_request.tolist() for _ in range(2))
-    assert first[-1] > 30.0
-    assert again == first
-
-
-KILLED = """
-import os, sys
-from ddct_controllers.registry import controller_spec, make_controller
-from support.exported_mpc import run_settings
-made = make_controller(sys.argv[1], run_settings('duration_s=1'))
-print(made._process.pid, flush=True)
-os.kill(os.getpid(), 9)
-"""
-"""Program that is killed while it has a controller of a library."""
-
-
-def test_a_killed_program_leaves_no_process_of_a_library(library):
-    environment = {**os.environ, 'PYTHONPATH': os.pathsep.join(sys.path)}
-    command = [sys.executable, '-c', KILLED, library(TEMPLATE)]
-    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
-    # The pipe of standard error ends with the last process that has it, so all have ended.
-    assert done.returncode == -signal.SIGKILL
-    assert not Path(f'/proc/{int(done.stdout)}').exists()
-
-
 def test_the_header_is_c_as_strict_as_the_export(tmp_path):
-    (tmp_path / 'one.c').write_text(f'#include "{host.HEADER}"\n')
-    command = ['cc', *STRICT, '-I', str(host.TEMPLATE), '-fsyntax-only', 'one.c']
+    (tmp_path / 'one.c').write_text(f'#include "{c_library.HEADER}"\n')
+    command = ['cc', *STRICT, '-I', str(c_library.TEMPLATE), '-fsyntax-only', 'one.c']
     subprocess.run(command, cwd=tmp_path, check=True)

@@ -15,7 +15,7 @@ from ddct_bringup.benchmark.cases import Cases
 from ddct_bringup.benchmark.judged import Judged
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.run.timing_and_failure import TIMING_FILE, RunTiming
-from ddct_controllers.registry import Chosen, make_controller
+from ddct_controllers.registry import Chosen
 from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError, ParameterError, require_number
 from ddct_plant.files.input_file import read_text_file
 from ddct_plant.files.json_records import parse_json, write_json
@@ -117,5 +117,5 @@ def _update_time(judged: Judged, settings: RunSettings) -> UpdateTime:
 
 def _median_us(chosen: Chosen, settings: RunSettings) -> float:
     timing = RunTiming()
-    run_headless(settings, make_controller(chosen, settings), timing)
+    run_headless(settings, chosen, timing)
     return statistics.median(timing.update_times_us)

@@ -15,8 +15,8 @@ from ddct_bringup.scores.floors import scores_with_least
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.scores.scoring import run_without_score, score_run
 from ddct_bringup.verdict.limits import Limits
-from ddct_controllers.architecture import make_architecture
-from ddct_controllers.registry import Chosen, controller_label, make_controller
+from ddct_controllers.architecture import loop_needs
+from ddct_controllers.registry import Chosen, controller_label
 from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError, ParameterError, printable
 from ddct_plant.scenario.settings import RunSettings
 
@@ -35,7 +35,7 @@ METRIC_COLUMNS = tuple(metric.key for metric in REPEATABLE)
 def require_suitable(controller: Chosen, settings: RunSettings) -> None:
     """Raise an error of the user's controller; a controller that fails in a run gets its rows."""
     try:
-        make_architecture(settings, make_controller(controller, settings))
+        loop_needs(controller, settings)
     except ParameterError:
         raise
     except DdctError:

@@ -97,7 +97,7 @@ class Scorer:
         """Return the scores of the runs that can be computed at once, by index."""
         suited = []
         for run in runs if self.at_once else ():
-            if self.floors and run.has_floors:
+            if run.controller.compiled or (self.floors and run.has_floors):
                 continue
             try:
                 controller = self._controller(run)
@@ -131,7 +131,7 @@ def are_linear(campaign: Campaign) -> bool:
         return False
     for first in range(0, campaign.runs, campaign.cases):
         (run,) = campaign.planned(first, first + 1)
-        if isinstance(run, ImpossibleRow):
+        if isinstance(run, ImpossibleRow) or run.controller.compiled:
             return False
         try:
             controller = make_controller(run.controller, run.settings)

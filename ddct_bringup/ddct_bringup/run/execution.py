@@ -13,6 +13,7 @@ from pathlib import Path
 from rich.console import Console
 
 from ddct_bringup.bag.recording import Recording
+from ddct_bringup.bag.run_info import RunInfoOfNodes
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.bag.trajectory_bag import write_trajectory
 from ddct_bringup.processes.graph_nodes import DRIVELINE, RECORDER, nodes_of
@@ -24,7 +25,7 @@ from ddct_bringup.run.headless import run_headless
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_controllers.from_file.controller_file import is_controller_file
-from ddct_controllers.registry import make_controller
+from ddct_controllers.registry import Chosen, make_controller, separately
 from ddct_plant.base.errors import DdctError
 from ddct_plant.graph.domain import own_domain
 from ddct_plant.program.supervision import stop_signals
@@ -182,10 +183,13 @@ def simulate(plan: RunPlan, changes: Sequence[GainChange] = ()) -> tuple[Recordi
 
     No file exists at the recording's path, and its message counts are empty.
     """
-    controller = make_controller(plan.controller, plan.settings)
-    timing = RunTiming()
-    described = run_info_of(plan.settings, plan.name, controller, plan.steps)
-    trajectory = run_headless(plan.settings, controller, timing, changes)
+
+    def work(chosen: Chosen) -> tuple[RunInfoOfNodes, Trajectory, RunTiming]:
+        controller, timing = make_controller(chosen, plan.settings), RunTiming()
+        described = run_info_of(plan.settings, plan.name, controller, plan.steps)
+        return described, run_headless(plan.settings, controller, timing, changes), timing
+
+    described, trajectory, timing = separately(plan.controller, work)
     recording = replace(
         recording_in_memory(plan.settings, plan.name, trajectory),
         custom_data=custom_data(plan.settings, plan.name, plan.steps),

@@ -20,7 +20,7 @@ from ddct_bringup.run.shift_loop import ShiftLoop
 from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_controllers.architecture import Architecture, make_architecture
 from ddct_controllers.interface import Controller, Measurement
-from ddct_controllers.registry import Chosen, make_controller
+from ddct_controllers.registry import Chosen, make_controller, separately
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.scenario.whole_plant import PlantReply, WholePlant
 from ddct_plant.shift_plant.plant import ShiftPlant, ShiftReply
@@ -96,11 +96,20 @@ def run_headless(
     Simulate one run from t_0 to t_N and return every signal; fill `timing` if it is given.
 
     `controller` is a value that `make_controller` accepts, or an object; `changes` are gains that
-    are changed in the run. Raise ParameterError for a loop that cannot be built, or for a gain
-    that the controller does not take, DdctError when it commands a value that is not finite.
+    are changed in the run. Compiled code has a process of its own (`separately`), unless it is
+    an object. Raise ParameterError for a loop that cannot be built, or for a gain that the
+    controller does not take, DdctError when it commands a value that is not finite.
     """
     if not isinstance(controller, Controller):
-        controller = make_controller(controller, settings)
+
+        def work(chosen: Chosen) -> tuple[Trajectory, RunTiming]:
+            found = RunTiming()
+            return run_headless(settings, make_controller(chosen, settings), found, changes), found
+
+        trajectory, found = separately(controller, work)
+        if timing is not None:
+            vars(timing).update(vars(found))
+        return trajectory
     loop = closed_loop(settings, controller)
     return run_loop(loop, settings.scenario.steps, timing, changes)
 

@@ -2,19 +2,21 @@
 # SPDX-License-Identifier: Apache-2.0
 """Plan of one run: settings, controller, process layout and node parameters."""
 
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from ddct_bringup.processes.graph_nodes import ANSWER_TIMEOUT_S, nodes_of
-from ddct_controllers.architecture import make_architecture
+from ddct_controllers.architecture import loop_needs
 from ddct_controllers.handover.laws import make_handover
-from ddct_controllers.registry import Chosen, controller_label, make_controller
+from ddct_controllers.registry import Chosen, compiled_code, controller_label
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import options_of
 from ddct_plant.files.yaml_text import dump_yaml
 from ddct_plant.graph.domain import require_domain, require_ros
 from ddct_plant.graph.node_names import name_in_graph
 from ddct_plant.graph.node_reports import CONTROL_NODES
+from ddct_plant.program.own_process import ProcessEndedError
 from ddct_plant.program.scheduling import Scheduling
 from ddct_plant.scenario.file import scenario_to_yaml
 from ddct_plant.scenario.scenario import Scenario
@@ -38,12 +40,15 @@ class RunPlan:
         """Raise DdctError for a plan that would fail in the graph."""
         self.scheduling.require_mode(lockstep=self.settings.lockstep)
         self.scheduling.require_permitted()
-        make_architecture(self.settings, make_controller(self.controller, self.settings))
+        # The run of compiled code that crashes fails by that, and others go on.
+        with suppress(ProcessEndedError):
+            loop_needs(self.controller, self.settings)
         if self.settings.shift:
             make_handover(self.settings)
         if self.layout == 'headless':
             require_headless(self.settings)
         else:
+            self._require_process_for_compiled_code()
             if not isinstance(self.controller, str):
                 raise ParameterError(
                     f'controller {self.name!r} is known to this process alone: run it headless, '
@@ -52,6 +57,15 @@ class RunPlan:
                 )
             require_ros()
             require_domain()
+
+    def _require_process_for_compiled_code(self) -> None:
+        """Raise ParameterError where compiled code would share its process with other nodes."""
+        if self.layout == 'single-process' and compiled_code(self.controller):
+            raise ParameterError(
+                f'controller {self.name!r} is compiled code, a crash of which would end all nodes '
+                'of one process: drop --single-process, or take --headless',
+                key='layout',
+            )
 
     @property
     def name(self) -> str:
@@ -70,8 +84,7 @@ class RunPlan:
         Every node has the known settings, and those that do not control the true ones besides.
         The scenarios, changes included, are written into the folder `work` for the nodes to read.
         """
-        controller = make_controller(self.controller, self.settings)
-        two_input = controller.commands_engine
+        two_input, preview_steps = loop_needs(self.controller, self.settings)
         parameters: dict[str, dict[str, object]] = {
             '*': {
                 **_settings_parameters(self.settings.known, work),
@@ -85,7 +98,7 @@ class RunPlan:
                 'realtime_priority': max(self.scheduling.realtime_priority - 1, 0),
             },
             'engine': {'two_input': two_input},
-            'reference': {'preview_steps': controller.preview_steps},
+            'reference': {'preview_steps': preview_steps},
             'controller': {'controller': self.controller},
             'driveline': {'require_recorder': True, 'answer_timeout_s': ANSWER_TIMEOUT_S},
         }

@@ -9,7 +9,9 @@ from dataclasses import dataclass
 from ddct_controllers.check import conduct, installation, loops, signals
 from ddct_controllers.check.subject import CheckFailedError, CheckSkippedError, Subject
 from ddct_controllers.check.watch import OutputMonitor
+from ddct_controllers.registry import separately
 from ddct_plant.base.errors import FOREIGN_FAILURES
+from ddct_plant.program.own_process import ProcessEndedError
 from ddct_plant.scenario.settings import RunSettings
 
 PASS, FAIL, SKIPPED = 'pass', 'fail', 'skipped'
@@ -74,9 +76,23 @@ def check_controller(name: str, settings: RunSettings) -> list[Outcome]:
                 causes[check.name] = first = causes.get(missing[0], missing[0])
                 state, detail = SKIPPED, f'the check {first!r} must pass first'
             else:
-                state, detail = _result(check, subject)
+                state, detail = _separate_result(check, subject)
             outcomes[check.name] = Outcome(check.name, state, detail)
     return list(outcomes.values())
+
+
+def _separate_result(check: Check, subject: Subject) -> tuple[str, str]:
+    """Return state and detail of a check; compiled code that ends its process fails it alone."""
+    if not subject.compiled:
+        return _result(check, subject)
+    try:
+        state, detail, trials = separately(
+            subject.spec, lambda _: (*_result(check, subject), subject.trials())
+        )
+    except ProcessEndedError as error:
+        return FAIL, str(error)
+    vars(subject).update(trials)
+    return state, detail
 
 
 def _result(check: Check, subject: Subject) -> tuple[str, str]:

@@ -29,6 +29,9 @@ from ddct_controllers.registry import ENTRY_POINT_GROUP, controller_spec, make_c
 from ddct_plant.base.errors import DdctError, ForeignError
 from ddct_plant.scenario.settings import RunSettings
 
+_TRIALS = ('closed_loop', 'measurements', 'torques', 'response')
+"""Attributes of a subject that hold plain values of its trials."""
+
 
 class CheckFailedError(Exception):
     """A check found an error; the text gives measured values, place and remedy."""
@@ -72,6 +75,17 @@ class Subject:
         """Specification by which the controller is made; objects of a file share its modules."""
         spec = controller_spec(self.name)
         return python_spec(self.name, anew=False) if self.name.endswith(SUFFIX) else spec
+
+    @property
+    def compiled(self) -> bool:
+        """Whether it is compiled code, of which each check has a process of its own."""
+        with suppress(DdctError):
+            return self.spec.compiled is not None
+        return False
+
+    def trials(self) -> dict[str, object]:
+        """Return the trials so far that checks share, by attribute, for another process."""
+        return {name: vars(self)[name] for name in _TRIALS if name in vars(self)}
 
     def make(self) -> Controller:
         """Return a new controller object."""

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from ddct_controllers.interface import CompiledCode
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import close_name
 from ddct_plant.files.input_file import located, read_file, user_text
@@ -99,6 +100,11 @@ class ControllerFile:
     def place_of(self, kind: str) -> str:
         """Return file, line and key of a controller of this kind, for its author."""
         return f'{self.path} line {self.lines[kind]} ({kind})'
+
+    def compiled_code(self, kind: str, path: Path) -> CompiledCode:
+        """Return the compiled code in the file `path`, which the key `<kind>.file` names."""
+        key = f'{kind}.file'
+        return CompiledCode(path, key, f'controller file {self.path}: line {self.lines[key]}')
 
     def located(self) -> AbstractContextManager[None]:
         """Put file, and line where the error names a key of it, before each DdctError within."""

@@ -46,7 +46,7 @@ def with_options_spec(find: Find, file: ControllerFile) -> ControllerSpec[Contro
         for name, option in known.items()
     }
     add_base_digests(file, spec.digests)
-    return ControllerSpec(file.name, spec.make, options, spec.computed_from)
+    return replace(spec, name=file.name, options=options)
 
 
 def base_of(file: ControllerFile) -> str:

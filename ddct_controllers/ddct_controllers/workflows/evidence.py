@@ -19,7 +19,7 @@ from ddct_controllers.design.analysis.worst_corner import (
 )
 from ddct_controllers.interface import Controller
 from ddct_controllers.places import place_of_method
-from ddct_controllers.registry import Chosen, controller_label, make_controller
+from ddct_controllers.registry import Chosen, compiled_code, controller_label, make_controller
 from ddct_controllers.workflows.evidence_types import (
     ActuatorConditions,
     ControllerEntry,
@@ -94,6 +94,8 @@ def _controller_evidence(
     chosen: Chosen, settings: RunSettings, corners: PlantCorners
 ) -> ControllerEntry:
     name = controller_label(chosen)
+    if compiled_code(chosen):
+        return _without_evidence(name, linear=False)
     controller = make_controller(chosen, settings)
     model = _linear_model(name, controller)
     if model is None:

@@ -9,7 +9,7 @@ from ddct_controllers.design.analysis.loops import sampled_loop
 from ddct_controllers.design.analysis.margins import loop_margins, unstable_poles
 from ddct_controllers.design.state_space import factored_form, factors_text, scaled
 from ddct_controllers.linear import BILINEAR, LinearController
-from ddct_controllers.registry import controller_label, make_controller
+from ddct_controllers.registry import compiled_code, controller_label, make_controller
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.files.json_records import to_json
 from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
@@ -25,6 +25,8 @@ _MARGINS = (
 
 def loop_summary(name: str, settings: RunSettings) -> list[str]:
     """Return lines for a terminal on the controller called `name`; none unless it is linear."""
+    if compiled_code(name):
+        return []
     controller = make_controller(name, settings)
     if not isinstance(controller, LinearController):
         return []

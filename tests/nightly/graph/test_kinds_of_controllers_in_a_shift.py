@@ -10,7 +10,7 @@ from support.exported_mpc import compile_c
 from support.fmu import controller_file, skip_without_fmus
 from support.shifts_in_a_graph import CONTROLLER, require_shift_from_files
 
-from ddct_controllers.from_file.c_library.host import TEMPLATE
+from ddct_controllers.from_file.c_library.library import TEMPLATE
 
 pytestmark = pytest.mark.slow
 

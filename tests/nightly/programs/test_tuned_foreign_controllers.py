@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The parameters of an FMU and of a library in C are tuned as the gains of the PI in Python."""
 
-import gc
 import json
 from collections.abc import Callable
 from pathlib import Path
@@ -14,7 +13,7 @@ from support.exported_mpc import compile_c, run_settings
 from support.fmu import controller_file, skip_without_fmus
 
 from ddct_bringup.run.headless import run_headless
-from ddct_controllers.from_file.c_library import host
+from ddct_controllers.from_file.c_library.library import HEADER, TEMPLATE
 from ddct_controllers.registry import controller_spec
 
 pytest.importorskip('optuna', reason='Optuna, an optional extra, is absent: make tune-extra')
@@ -35,8 +34,8 @@ def fmu() -> tuple[str, list[str]]:
 
 def library() -> tuple[str, list[str]]:
     """Return a controller file with a library in C, and its names of both gains."""
-    for name in (host.HEADER, 'my_controller.c'):
-        Path(name).write_bytes((host.TEMPLATE / name).read_bytes())
+    for name in (HEADER, 'my_controller.c'):
+        Path(name).write_bytes((TEMPLATE / name).read_bytes())
     compile_c(Path.cwd(), '-shared', '-fPIC', 'my_controller.c', '-o', 'my_controller.so')
     gains = '{proportional_gain: 0.2, integral_gain: 0.3}'
     Path('in_c.yaml').write_text(
@@ -67,7 +66,6 @@ def test_a_foreign_controller_is_tuned_as_ours(
     best = str(theirs / 'best.yaml')
     assert set(controller_spec(best).options or ()) >= set(names)
     assert run_headless(run_settings('duration_s=1'), best).torque_request[-1] > 0.0
-    gc.collect()  # the processes of foreign code end with their controllers
 
 
 def trials(folder: Path) -> list[dict[str, Any]]:

@@ -2,22 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """A controller in a shared library, and the loader of `c_library`."""
 
-import json
 import re
-import struct
 from collections.abc import Mapping
-from operator import attrgetter
 from pathlib import Path
 from types import MappingProxyType
 
-from ddct_controllers.from_file.c_library import host
+from ddct_controllers.from_file.c_library.library import Library, LibraryError, interface
 from ddct_controllers.from_file.controller_file import ControllerFile, mapping
-from ddct_controllers.from_file.foreign.loaded import (
-    CodeFailedError,
-    CodeRefusedError,
-    LoadedCode,
-    loaded_code,
-)
 from ddct_controllers.interface import (
     UNSTATED,
     Command,
@@ -28,15 +19,10 @@ from ddct_controllers.interface import (
 )
 from ddct_plant.base.errors import DdctError, ParameterError, require_number
 from ddct_plant.base.options import Option, Options
+from ddct_plant.program.own_process import calling
 
 KIND = 'c_library'
-_SCALARS = attrgetter(
-    *('step', 'engine_speed', 'shaft_speed', 'wheel_speed', 'vehicle_speed'),
-    *('engine_torque', 'load_torque', 'open_loop_torque'),
-)
-"""Scalars of a measurement, in the order of the struct ddct_measurement."""
 _IDENTIFIER = re.compile(r'[A-Za-z_]\w*', re.ASCII)
-_CALLS = {host.RESET: 'reset', host.UPDATE: 'update', host.HOLD: 'hold'}
 
 
 def c_library_spec(file: ControllerFile) -> ControllerSpec[Controller]:
@@ -48,16 +34,14 @@ def c_library_spec(file: ControllerFile) -> ControllerSpec[Controller]:
     keys = mapping(KIND, file.keys(KIND)[KIND], ('file',), optional=('parameters',))
     path = file.named_file(KIND, keys['file'], 'a shared library, compiled first')
     options = _options(keys.get('parameters') or {})
-
-    libraries: list[LoadedCode] = []
+    interface()  # read here, so that each process of a run has it
 
     def make(context: ControllerContext) -> Controller:
         with file.located():
-            controller = CLibraryController(path, context.gains)
-        libraries[:] = [controller.library]  # it stays loaded between the runs of a campaign
-        return controller
+            return CLibraryController(path, context.gains)
 
-    return ControllerSpec(file.name, make, options, UNSTATED)
+    code = file.compiled_code(KIND, path)
+    return ControllerSpec(file.name, make, options, UNSTATED, compiled=code)
 
 
 def _options(given: object) -> Options:
@@ -72,75 +56,56 @@ def _options(given: object) -> Options:
 
 
 class CLibraryController(Controller):
-    """Controller whose library runs in a process of its own, called at every step."""
+    """Controller in a library that this process has loaded, called at every step."""
 
-    method_names = MappingProxyType({name: f'ddct_controller_{name}' for name in _CALLS.values()})
+    method_names = MappingProxyType(
+        {name: f'ddct_controller_{name}' for name in ('reset', 'update', 'hold')}
+    )
 
     def __init__(self, path: Path, parameters: Mapping[str, float] = MappingProxyType({})) -> None:
         """
-        Start its process, with the values of global variables by name.
+        Load the library, and set its global variables by name.
 
-        Raise ParameterError when the library cannot be used, or lacks a variable.
+        Raise ParameterError when it cannot be used, or lacks a variable.
         """
         self._where = f'{KIND}.file: {path}'
         try:
-            self.library = loaded_code(Path(host.__file__), path)
-            self._process = self.library.start()
-        except CodeRefusedError as error:
+            self._library = Library(path)
+        except LibraryError as error:
             raise ParameterError(f'{self._where}: {error}') from error
-        except CodeFailedError as error:
-            raise self._failed(error, 'it was loaded') from error
-        self.preview_steps: int = self.library.about['preview_steps']
-        self.commands_engine: bool = self.library.about['commands_engine']
-        self._layout = struct.Struct(f'q7d{2 * (self.preview_steps + 1)}d')
-        if parameters:
-            self._set(parameters)
+        self.preview_steps = self._library.preview_steps
+        self.commands_engine = self._library.commands_engine
+        for name, value in parameters.items():
+            if not self._library.set_variable(name, value):
+                key = f'{KIND}.parameters.{name}'
+                raise ParameterError(
+                    f'{key}: the library has no such variable: declare it outside of all '
+                    f'functions as `double {name}`, neither static nor const',
+                    key=key,
+                )
         self.reset()
 
     def reset(self) -> None:
         """Call ddct_controller_reset."""
-        self._call(host.RESET)
+        calling('reset')
+        self._library.reset()
 
     def hold(self, measurement: Measurement) -> None:
         """Call ddct_controller_hold, or reset where there is none."""
-        self._call(host.HOLD, measurement)
+        calling('hold', measurement.step)
+        self._require_good('hold', measurement, self._library.hold(measurement))
 
     def update(self, measurement: Measurement) -> Command:
-        """Call ddct_controller_update; raise DdctError when it fails or returns an error."""
-        clutch, engine, status = self._call(host.UPDATE, measurement)
+        """Call ddct_controller_update; raise DdctError when it returns an error."""
+        calling('update', measurement.step)
+        clutch, engine, status = self._library.update(measurement)
+        self._require_good('update', measurement, status)
         pairs = (('c_status', str(status)),)
         return Command(clutch, pairs, engine if self.commands_engine else None)
 
-    def _set(self, parameters: Mapping[str, float]) -> None:
-        request = bytes([host.SET]) + json.dumps(dict(parameters)).encode()
-        _, _, status = self._answer(request, 'its parameters were set')
-        if status:
-            self._process.end()
-            name = list(parameters)[-status - 1]
-            raise ParameterError(
-                f'{KIND}.parameters.{name}: the library has no such variable: declare it outside '
-                f'of all functions as `double {name}`, neither static nor const',
-                key=f'{KIND}.parameters.{name}',
-            )
-
-    def _answer(self, request: bytes, when: str) -> tuple[float, float, int]:
-        try:
-            clutch, engine, status = host.ANSWER.unpack(self._process.call(request))
-        except CodeFailedError as error:
-            raise self._failed(error, when) from error
-        return clutch, engine, status
-
-    def _call(self, call: int, measurement: Measurement | None = None) -> tuple[float, float, int]:
-        request, when = bytes([call]), f'{_CALLS[call]} was called'
-        if measurement is not None:
-            when += f' at step {measurement.step}'
-            references = (*measurement.slip_reference, *measurement.slip_reference_rate)
-            request += self._layout.pack(*_SCALARS(measurement), *references)
-        clutch, engine, status = self._answer(request, when)
+    def _require_good(self, name: str, measurement: Measurement, status: int) -> None:
         if status < 0:
-            self._process.end()
-            raise DdctError(f'{self._where}: it returned {status} when {when}: mend the C')
-        return clutch, engine, status
-
-    def _failed(self, error: CodeFailedError, when: str) -> DdctError:
-        return DdctError(f'{error} when {when}: mend the C', place=self._where)
+            raise DdctError(
+                f'{self._where}: it returned {status} when {name} was called at step '
+                f'{measurement.step}: mend the C'
+            )

@@ -12,7 +12,6 @@ from ddct_controllers.from_file.fmu.variables import (
     require_all_inputs,
     start_value,
 )
-from ddct_controllers.from_file.foreign.loaded import LoadedCode
 from ddct_controllers.interface import UNSTATED, Controller, ControllerContext, ControllerSpec
 from ddct_plant.base.errors import ParameterError
 
@@ -47,15 +46,12 @@ def fmu_spec(file: ControllerFile) -> ControllerSpec[Controller]:
         )
     require_all_inputs(fmu, {each.variable.name for each in inputs} | set(given))
 
-    loaded: list[LoadedCode] = []
-
     def make(context: ControllerContext) -> Controller:
         starts = [
             (variable, context.gains[name])
             for variable, name in zip(started, options, strict=True)
         ]
-        controller = FmuController(file, fmu, inputs, outputs, starts)
-        loaded[:] = [controller.code]  # it stays loaded between the runs of a campaign
-        return controller
+        return FmuController(file, fmu, inputs, outputs, starts)
 
-    return ControllerSpec(file.name, make, options, UNSTATED)
+    code = file.compiled_code(KIND, path)
+    return ControllerSpec(file.name, make, options, UNSTATED, compiled=code)

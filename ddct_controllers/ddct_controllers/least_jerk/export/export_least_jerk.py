@@ -7,8 +7,8 @@ from pathlib import Path
 from ddct_controllers.c_code.folder import require_free, write_files
 from ddct_controllers.c_code.parts import DOUBLES, ENGINE, text_of
 from ddct_controllers.c_code.text import constants, macros, remark
-from ddct_controllers.from_file.c_library.host import HEADER as INTERFACE
-from ddct_controllers.from_file.c_library.host import TEMPLATE
+from ddct_controllers.from_file.c_library.library import HEADER as INTERFACE
+from ddct_controllers.from_file.c_library.library import TEMPLATE
 from ddct_controllers.interface import Controller
 from ddct_controllers.least_jerk.controller import NAME, LeastJerk
 from ddct_controllers.least_jerk.design import LeastJerkDesign

@@ -5,7 +5,7 @@
  *
  * A library holds the object `ddct_controller` and the functions below. All numbers are SI: rad/s,
  * rad/s^2, m/s, N m. A clutch torque above 0 slows the engine and drives the car. ddct calls
- * `update` (or `hold`) exactly once every 10 ms, from a process that does nothing else.
+ * `update` (or `hold`) exactly once every 10 ms, in a process that has this run alone.
  *
  * SPDX-License-Identifier: Apache-2.0
  */

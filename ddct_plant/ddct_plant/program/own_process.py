@@ -1,0 +1,172 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""
+Work in a process of its own, forked from this one: compiled code of a third party runs in it.
+
+Such code may crash, loop without end, or end its process, and its static variables start afresh in
+each process. The result comes back whole or not at all.
+"""
+
+import ctypes
+import faulthandler
+import gc
+import itertools
+import mmap
+import os
+import pickle
+import select
+import signal
+import struct
+from collections.abc import Callable
+from contextlib import suppress
+from typing import NoReturn, TypeVar
+
+from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError
+from ddct_plant.program.supervision import end_with_parent
+
+MOST_SECONDS = 10.0
+"""Longest time in s from one call of foreign code to the next; then the process is killed."""
+_POLL_S = 0.25
+"""Time in s between two looks at the process. Only these count: while this one is stopped, so may
+the other be."""
+_CALL = struct.Struct('q16sq')
+"""Struct of the last call of foreign code: its number, its name, and the step or -1."""
+_DONE = _CALL.size
+"""Offset of the byte that is 1 once the result is complete."""
+_numbers = itertools.count(1)
+_shared: mmap.mmap | None = None
+"""Memory that this process shares with the one that waits for it; None in any other process."""
+_kept: list[object] = []
+"""Objects that end after the result is complete."""
+Result = TypeVar('Result')
+
+
+class ProcessEndedError(DdctError):
+    """The process ended without a result: the text says how, and in which call."""
+
+
+def calling(name: str, step: int = -1) -> None:
+    """Note the call of a function of foreign code, for the reason if its process ends in it."""
+    if _shared is not None:
+        _CALL.pack_into(_shared, 0, next(_numbers), name.encode(), step)
+
+
+def keep(resource: object) -> None:
+    """In a process of its own, keep an object until the result is complete; it may crash then."""
+    if _shared is not None:
+        _kept.append(resource)
+
+
+def in_own_process(work: Callable[[], Result]) -> Result:
+    """
+    Return `work()`, computed in a fork of this process; what it prints goes to standard error.
+
+    Raise the exception of `work`, or ProcessEndedError when the process crashes, ends itself, or
+    makes no call within `MOST_SECONDS` after the last one. Result and exception are pickled.
+    """
+    if _shared is not None:
+        return work()  # this is such a process
+    result = os.memfd_create('result')
+    try:
+        with mmap.mmap(-1, _DONE + 1) as shared:
+            ctypes.CDLL(None).fflush(None)  # what C has printed here, a fork would print again
+            parent = os.getpid()
+            process = os.fork()
+            if not process:
+                _compute(work, shared, result, parent)
+            code = _wait(process, shared)
+            if not shared[_DONE]:
+                raise ProcessEndedError(_reason(code, shared))
+        with os.fdopen(os.dup(result), 'rb') as file:
+            file.seek(0)
+            done, value = pickle.load(file)
+    finally:
+        os.close(result)
+    if not done:
+        raise value
+    return value
+
+
+def _wait(process: int, shared: mmap.mmap) -> int | None:
+    """Return the exit code of the process when it has ended; None if it was killed as too slow."""
+    descriptor = os.pidfd_open(process)
+    poller = select.poll()
+    poller.register(descriptor, select.POLLIN)
+    last, unchanged_s = b'', 0.0
+    try:
+        while not poller.poll(1e3 * _POLL_S):
+            unchanged_s = unchanged_s + _POLL_S if shared[:] == last else 0.0
+            last = shared[:]
+            if unchanged_s >= MOST_SECONDS:
+                _kill(process)
+                return None
+        return os.waitstatus_to_exitcode(os.waitpid(process, 0)[1])
+    except BaseException:  # such as Ctrl-C
+        with suppress(ChildProcessError):
+            _kill(process)
+        raise
+    finally:
+        os.close(descriptor)
+
+
+def _kill(process: int) -> None:
+    os.kill(process, signal.SIGKILL)
+    os.waitpid(process, 0)
+
+
+def _reason(code: int | None, shared: mmap.mmap) -> str:
+    """Return how the process has ended, and in which call."""
+    number, name, step = _CALL.unpack_from(shared)
+    if code is None:
+        how = f'it gave no answer within {MOST_SECONDS:g} s'
+    elif code < 0:
+        names = {each.value: each.name for each in signal.Signals}
+        how = f'it crashed ({names.get(-code, f"signal {-code}")})'
+    else:
+        how = f'it ended with exit code {code}'
+    if not number:
+        return f'{how} when it was loaded'
+    at_step = f' at step {step}' if step >= 0 else ''
+    return f'{how} when {name.rstrip(bytes(1)).decode()} was called{at_step}'
+
+
+def _compute(work: Callable[[], object], shared: mmap.mmap, result: int, parent: int) -> NoReturn:
+    """Be the new process: write the result of `work`, or its exception, and end."""
+    global _shared
+    code = 1
+    try:
+        signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the program
+        signal.signal(signal.SIGTERM, signal.SIG_DFL)
+        end_with_parent(parent, signal.SIGKILL)
+        faulthandler.disable()  # a crash becomes the reason of a run, in one line
+        with suppress(OSError):
+            os.dup2(2, 1)  # what the code prints is no result of the program
+            os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
+        gc.freeze()  # collecting what the program has made would copy it
+        _shared = shared
+        with os.fdopen(result, 'wb') as file:
+            file.write(_outcome(work))
+        shared[_DONE] = 1
+        _kept.clear()
+        code = 0
+    finally:
+        # As at the end of a program in C: what it has printed is written.
+        ctypes.CDLL(None).fflush(None)
+        os._exit(code)
+
+
+def _outcome(work: Callable[[], object]) -> bytes:
+    """Return the pickled pair of whether `work` returned, and its value or exception."""
+    outcome: tuple[bool, object]
+    try:
+        outcome = True, work()
+    except FOREIGN_FAILURES as error:
+        outcome = False, error
+    try:
+        pickled = pickle.dumps(outcome)
+        if not outcome[0]:
+            pickle.loads(pickled)  # an exception may need more than its text
+    except Exception as error:
+        failure = error if outcome[0] else outcome[1]
+        return pickle.dumps((False, DdctError(f'{type(failure).__name__}: {failure}')))
+    return pickled
