@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Compute the tables of the pages by the kinds of their marks."""
 
-import json
 from collections.abc import Callable, Mapping
 
 from ddct_bringup.reproduction.calibration.record_tables import all_tables
+from ddct_bringup.reproduction.calibration.record_types import CalibrationRecord
 from ddct_controllers.design.analysis.loops import continuous_loop, sampled_loop
 from ddct_controllers.design.analysis.worst_corner import PlantCorners
 from ddct_controllers.design.h_infinity.recipes import PRINTED_WEIGHTS, THESIS_SPECIFICATIONS
@@ -26,6 +26,7 @@ from ddct_controllers.workflows.margins_command import margins_table
 from ddct_controllers.workflows.plant_command import paper_tables
 from ddct_controllers.workflows.plant_on_paper import plant_on_paper
 from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.files.json_records import read_json
 from ddct_plant.linear.lti import FactoredTransferFunction
 from ddct_plant.linear.sampling import discretise_zoh
 from ddct_plant.program.table import Table
@@ -39,8 +40,7 @@ from generator.tuning_tables import tuning_tables
 
 def calibration_tables() -> Mapping[str, Table]:
     """Return the tables of the record that `ddct reproduce calibration --json` has written."""
-    record = json.loads((DOCS / 'thesis' / 'calibration.json').read_text(encoding='utf-8'))
-    return all_tables(record)
+    return all_tables(read_json(CalibrationRecord, DOCS / 'thesis' / 'calibration.json'))
 
 
 def h_infinity_tables() -> Mapping[str, Table]:

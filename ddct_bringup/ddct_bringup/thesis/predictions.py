@@ -10,7 +10,7 @@ from functools import cache
 from pathlib import Path
 
 from ddct_bringup.thesis.table_5_1 import FORMS
-from ddct_plant.files.json_records import parse_json
+from ddct_plant.files.json_records import read_json
 from ddct_plant.scenario.file import load_scenario, scenario_digest
 from ddct_plant.scenario.scenario import Scenario
 
@@ -61,21 +61,12 @@ class Prediction:
 
 @dataclass(frozen=True)
 class Predictions:
-    """Every prediction by its id in the thesis gate, such as '5.1 mpc3 engagement_time_s'."""
+    """Content of FILE."""
 
     scenario_digest: str
     """Digest of the frozen scenario that the predictions belong to."""
-    by_id: Mapping[str, Prediction]
-
-    def as_record(self) -> Mapping[str, object]:
-        """Return the content of FILE."""
-        return {
-            'scenario_digest': self.scenario_digest,
-            'predictions': {
-                name: {'frozen': one.frozen, 'members': dict(one.members)}
-                for name, one in self.by_id.items()
-            },
-        }
+    predictions: Mapping[str, Prediction]
+    """Every prediction by its id in the thesis gate, such as '5.1 mpc3 engagement_time_s'."""
 
 
 def folder_of_members() -> Path:
@@ -86,20 +77,13 @@ def folder_of_members() -> Path:
 @cache
 def kept_predictions() -> Predictions:
     """Return the predictions that are stored with the ensemble."""
-    content = parse_json((folder_of_members() / FILE).read_text(encoding='utf-8'))
-    return Predictions(
-        content['scenario_digest'],
-        {
-            name: Prediction(one['frozen'], one['members'])
-            for name, one in content['predictions'].items()
-        },
-    )
+    return read_json(Predictions, folder_of_members() / FILE)
 
 
 def predictions_for(scenario: Scenario) -> Mapping[str, Prediction]:
     """Return the stored predictions by id; none for another scenario than the packaged one."""
     kept = kept_predictions()
-    return kept.by_id if kept.scenario_digest == scenario_digest(scenario) else {}
+    return kept.predictions if kept.scenario_digest == scenario_digest(scenario) else {}
 
 
 def predicted_range(controller: str, name: str) -> str:

@@ -124,12 +124,12 @@ def leave_one_row_out(optimum: Fit, progress: Progress) -> list[LeftOutEntry]:
             best = dataclasses.replace(best, values=gains.values)
         figures = row_values(problem.scenario(best.values), row)
         results.append(
-            {
-                'row': row,
-                'gains_from_row': row == 'pi',
-                **best.as_record(),
-                'figures': residual_rows({row: figures}),
-            }
+            LeftOutEntry(
+                row=row,
+                gains_from_row=row == 'pi',
+                fit=best.as_record(),
+                figures=residual_rows({row: figures}),
+            )
         )
     return results
 
@@ -171,5 +171,5 @@ def vary_assumptions(optimum: Fit, progress: Progress) -> list[AssumptionEntry]:
     for change, base in changed_assumptions().items():
         progress(change)
         refit = fit(dataclasses.replace(optimum.problem, base=base), optimum.values)
-        fits.append({'change': change, **refit.as_record()})
+        fits.append(AssumptionEntry(change, refit.as_record()))
     return fits

@@ -95,12 +95,12 @@ def run(options: argparse.Namespace) -> int:
     if options.quick:
         check = check_frozen(load_scenario('thesis'), _progress)
         _show_and_write(options, check, check_tables(check))
-        _require_within_tolerance(check['residuals'])
-        _require_optimum(check['moved'])
+        _require_within_tolerance(check.residuals)
+        _require_optimum(check.moved)
         return 0
     record = calibrate(_progress)
     _show_and_write(options, record, all_tables(record).values())
-    _require_within_tolerance(record['residuals'])
+    _require_within_tolerance(record.residuals)
     if options.write:
         write_text(options.write, scenario_text(record))
     return 0
@@ -123,7 +123,7 @@ def _make_ensemble(folder: Path, *, search: bool) -> None:
     if search:
         write_members(find_members(frozen, _progress), folder)
     members = members_in(folder)
-    write_json(str(folder / PREDICTIONS_FILE), predict(frozen, members, _progress).as_record())
+    write_json(str(folder / PREDICTIONS_FILE), predict(frozen, members, _progress))
     _progress(f'{len(members)} admissible scenarios and {PREDICTIONS_FILE} are in {folder}')
 
 

@@ -36,19 +36,19 @@ def parameter_table(record: CalibrationRecord) -> Table:
     """Return the fitted parameters with their bounds and standard deviations."""
     rows = [
         (
-            f'{entry["symbol"]}, {entry["unit"]}',
-            number(entry['lower']),
-            number(entry['upper']),
-            number(entry['value']) + (' (at bound)' if entry['at_bound'] else ''),
-            number(entry['frozen'], 4),
-            number(entry['std'], 2),
-            '-' if entry['std_given_start'] is None else number(entry['std_given_start'], 2),
-            entry['bounds_from'],
+            f'{entry.symbol}, {entry.unit}',
+            number(entry.lower),
+            number(entry.upper),
+            number(entry.value) + (' (at bound)' if entry.at_bound else ''),
+            number(entry.frozen, 4),
+            number(entry.std, 2),
+            '-' if entry.std_given_start is None else number(entry.std_given_start, 2),
+            entry.bounds_from,
         )
-        for entry in record['parameters']
+        for entry in record.parameters
     ]
-    ends = sorted({entry['window_end_s'] for entry in record['windows']})
-    end = number(record['score_window_s'][1])
+    ends = sorted({entry.window_end_s for entry in record.windows})
+    end = number(record.score_window_s[1])
     why = 'from the slowest printed engagement to the end of the run, tenths of a second'
     rows.append(
         ('score window end, s', number(ends[0]), number(ends[-1]), end, end, '-', '-', why)
@@ -76,12 +76,12 @@ def torque_table(record: CalibrationRecord) -> Table:
         ('quantity', 'optimum', 'standard error', 'standard error, C_m start held'),
         [
             (
-                f'{entry["quantity"]}, {entry["unit"]}',
-                number(entry['value']),
-                number(entry['std'], 2),
-                number(entry['std_given_start'], 2) if entry['std_given_start'] else '-',
+                f'{entry.quantity}, {entry.unit}',
+                number(entry.value),
+                number(entry.std, 2),
+                number(entry.std_given_start, 2) if entry.std_given_start else '-',
             )
-            for entry in record['torque_and_slopes']
+            for entry in record.torque_and_slopes
         ],
     )
 
@@ -93,10 +93,10 @@ def optima_table(title: str, optima: Sequence[OptimumEntry]) -> Table:
         ('window end, s', 'PI', 'PI loop', 'objective', 'worst, tolerances', *VALUE_HEADERS),
         [
             (
-                number(one['window_end_s']),
-                one['pi_kind'],
-                'stable' if one['pi_stable'] else f'grows {one["pi_growth_rate_per_s"]:.2f}/s',
-                *fit_cells(one),
+                number(one.window_end_s),
+                one.pi_kind,
+                'stable' if one.pi_stable else f'grows {one.pi_growth_rate_per_s:.2f}/s',
+                *fit_cells(one.fit),
             )
             for one in optima
         ],
@@ -105,28 +105,28 @@ def optima_table(title: str, optima: Sequence[OptimumEntry]) -> Table:
 
 def fit_table(record: CalibrationRecord) -> Table:
     """Return the table of the overall quality of the fit."""
-    objective, analysis = record['objective'], record['identifiability']
+    objective, analysis = record.objective, record.identifiability
     weakest = [
-        f'{entry["symbol"]} {analysis["weakest"][entry["name"]]:+.2f} {entry["unit"]}'
-        for entry in record['parameters']
-        if abs(analysis['weakest'][entry['name']]) > 0.1
+        f'{entry.symbol} {analysis.weakest[entry.name]:+.2f} {entry.unit}'
+        for entry in record.parameters
+        if abs(analysis.weakest[entry.name]) > 0.1
     ]
     within = [
-        number(one['window_end_s'])
-        for one in record['windows']
-        if one['pi_stable'] and abs(one['worst_residual']) <= 1.0
+        number(one.window_end_s)
+        for one in record.windows
+        if one.pi_stable and abs(one.fit.worst_residual) <= 1.0
     ]
     return Table(
         'The fit as a whole',
         ('quantity', 'value'),
         [
-            ('objective at the optimum', f'{objective["value"]:.3f}'),
-            ('objective at the frozen values', f'{record["frozen_objective"]:.3f}'),
-            ('numbers fitted to', str(objective['numbers'])),
-            ('values fitted, window end included', str(objective['fitted'])),
-            ('degrees of freedom', str(analysis['degrees_of_freedom'])),
-            ('std of a scaled residual', f'{analysis["residual_std"]:.2f}'),
-            ('std in half a 95 % interval (Student)', f'{analysis["coverage_95"]:.1f}'),
+            ('objective at the optimum', f'{objective.value:.3f}'),
+            ('objective at the frozen values', f'{record.frozen_objective:.3f}'),
+            ('numbers fitted to', str(objective.numbers)),
+            ('values fitted, window end included', str(objective.fitted)),
+            ('degrees of freedom', str(analysis.degrees_of_freedom)),
+            ('std of a scaled residual', f'{analysis.residual_std:.2f}'),
+            ('std in half a 95 % interval (Student)', f'{analysis.coverage_95:.1f}'),
             ('undetermined together', ', '.join(weakest)),
             ('window ends with a stable fit within all tolerances, s', ', '.join(within)),
         ],
@@ -136,12 +136,12 @@ def fit_table(record: CalibrationRecord) -> Table:
 def value_cells(entry: ResidualEntry) -> tuple[str, ...]:
     """Return a printed value, the computed one, the deviation and its tolerance."""
     return (
-        ROW_OF[entry['row']].label,
-        _METRIC_LABELS[entry['figure']],
-        f'{entry["printed"]:.2f}',
-        f'{entry["computed"]:.3f}',
-        signed(100.0 * entry['deviation'], 1),
-        number(100.0 * entry['tolerance']),
+        ROW_OF[entry.row].label,
+        _METRIC_LABELS[entry.figure],
+        f'{entry.printed:.2f}',
+        f'{entry.computed:.3f}',
+        signed(100.0 * entry.deviation, 1),
+        number(100.0 * entry.tolerance),
     )
 
 
@@ -149,9 +149,9 @@ def fit_cells(one: FitEntry) -> tuple[str, ...]:
     """Return the quality of a fit, and its values in the order of VALUE_HEADERS."""
     forms = ('{:.1f}', '{:.1f}', '{:.3f}', '{:.1f}', '{:.3f}', '{:.4f}')
     return (
-        f'{one["objective"]:.3f}',
-        signed(one['worst_residual'], 2),
-        *(form.format(one['values'][name]) for form, name in zip(forms, NAMES, strict=True)),
+        f'{one.objective:.3f}',
+        signed(one.worst_residual, 2),
+        *(form.format(one.values[name]) for form, name in zip(forms, NAMES, strict=True)),
     )
 
 

@@ -133,14 +133,14 @@ def require_stable_pi(values: Values) -> None:
 def residual_rows(figures: Mapping[str, Mapping[str, float]]) -> list[ResidualEntry]:
     """Return one entry per value of each row: printed, computed, deviation and tolerance."""
     return [
-        {
-            'row': row,
-            'figure': name,
-            'printed': TARGETS[row][name],
-            'computed': computed[name],
-            'deviation': computed[name] / TARGETS[row][name] - 1.0,
-            'tolerance': TOLERANCES[name],
-        }
+        ResidualEntry(
+            row=row,
+            figure=name,
+            printed=TARGETS[row][name],
+            computed=computed[name],
+            deviation=computed[name] / TARGETS[row][name] - 1.0,
+            tolerance=TOLERANCES[name],
+        )
         for row, computed in figures.items()
         for name in TABLE_METRICS
     ]
@@ -149,12 +149,12 @@ def residual_rows(figures: Mapping[str, Mapping[str, float]]) -> list[ResidualEn
 def outside_tolerance(rows: Sequence[ResidualEntry]) -> list[str]:
     """Return the entries outside their tolerance as text."""
     return [
-        f'{entry["row"]} {entry["figure"]} {100.0 * entry["deviation"]:+.1f} %'
+        f'{entry.row} {entry.figure} {100.0 * entry.deviation:+.1f} %'
         for entry in rows
-        if abs(entry['deviation']) > entry['tolerance']
+        if abs(entry.deviation) > entry.tolerance
     ]
 
 
 def largest_residual(rows: Sequence[ResidualEntry]) -> float:
     """Return the largest deviation among the entries, in tolerances."""
-    return max(abs(row['deviation']) / row['tolerance'] for row in rows)
+    return max(abs(row.deviation) / row.tolerance for row in rows)

@@ -72,7 +72,7 @@ class Problem:
     def residuals(self, values: Values) -> np.ndarray:
         """Return (computed / printed - 1) / tolerance, (3 rows,), three values a row."""
         rows = residual_rows(self.computed_values(values))
-        return np.array([row['deviation'] / row['tolerance'] for row in rows])
+        return np.array([row.deviation / row.tolerance for row in rows])
 
     def objective(self, values: Values) -> float:
         """Return half the sum of the squared scaled residuals."""
@@ -131,11 +131,11 @@ class Fit:
 
     def as_record(self) -> FitEntry:
         """Return the entry of the fit in the record of a calibration."""
-        return {
-            'objective': self.objective,
-            'worst_residual': float(self.residuals[np.argmax(np.abs(self.residuals))]),
-            'values': dict(zip(NAMES, self.values, strict=True)),
-        }
+        return FitEntry(
+            objective=self.objective,
+            worst_residual=float(self.residuals[np.argmax(np.abs(self.residuals))]),
+            values=dict(zip(NAMES, self.values, strict=True)),
+        )
 
 
 def row_values(scenario: Scenario, controller: str) -> dict[str, float]:

@@ -30,6 +30,8 @@ from ddct_bringup.reproduction.calibration.record_types import (
     CheckRecord,
     DerivedEntry,
     FittedParameterEntry,
+    IdentifiabilityEntry,
+    ObjectiveEntry,
     OptimumEntry,
 )
 from ddct_bringup.reproduction.calibration.search import Progress, lowest_stable, search
@@ -55,32 +57,32 @@ def calibrate(progress: Progress) -> CalibrationRecord:
     frozen = rounded(optimum.values)
     require_stable_pi(frozen)
     analysis = identifiability(optimum)
-    return {
-        'objective': {
-            'value': optimum.objective,
-            'residual_tolerances': TOLERANCES,
-            'numbers': len(optimum.residuals),
-            'fitted': FITTED_NUMBERS,
-        },
-        'score_window_s': [BASE.control_start_s, optimum.problem.window_end_s],
-        'parameters': _parameters(optimum.values, frozen, analysis),
-        'torque_and_slopes': _torque_and_slopes(optimum.values, analysis),
-        'residuals': residual_rows(optimum.problem.computed_values(frozen)),
-        'frozen_objective': optimum.problem.objective(frozen),
-        'windows': [_optimum(one) for one in windows],
-        'starts': [_optimum(one) for one in starts],
-        'identifiability': {
-            'degrees_of_freedom': analysis.degrees_of_freedom,
-            'residual_std': analysis.residual_std,
-            'coverage_95': analysis.coverage_95,
-            'singular_values': analysis.singular_values.tolist(),
-            'directions': analysis.directions.tolist(),
-            'weakest': dict(zip(NAMES, analysis.weakest.tolist(), strict=True)),
-            'correlation_given_start': analysis.correlation_given_start.tolist(),
-        },
-        'left_out': leave_one_row_out(optimum, progress),
-        'assumptions': vary_assumptions(optimum, progress),
-    }
+    return CalibrationRecord(
+        objective=ObjectiveEntry(
+            value=optimum.objective,
+            residual_tolerances=TOLERANCES,
+            numbers=len(optimum.residuals),
+            fitted=FITTED_NUMBERS,
+        ),
+        score_window_s=[BASE.control_start_s, optimum.problem.window_end_s],
+        parameters=_parameters(optimum.values, frozen, analysis),
+        torque_and_slopes=_torque_and_slopes(optimum.values, analysis),
+        residuals=residual_rows(optimum.problem.computed_values(frozen)),
+        frozen_objective=optimum.problem.objective(frozen),
+        windows=[_optimum(one) for one in windows],
+        starts=[_optimum(one) for one in starts],
+        identifiability=IdentifiabilityEntry(
+            degrees_of_freedom=analysis.degrees_of_freedom,
+            residual_std=analysis.residual_std,
+            coverage_95=analysis.coverage_95,
+            singular_values=analysis.singular_values.tolist(),
+            directions=analysis.directions.tolist(),
+            weakest=dict(zip(NAMES, analysis.weakest.tolist(), strict=True)),
+            correlation_given_start=analysis.correlation_given_start.tolist(),
+        ),
+        left_out=leave_one_row_out(optimum, progress),
+        assumptions=vary_assumptions(optimum, progress),
+    )
 
 
 def check_frozen(scenario: Scenario, progress: Progress) -> CheckRecord:
@@ -96,13 +98,13 @@ def check_frozen(scenario: Scenario, progress: Progress) -> CheckRecord:
     refit = fit(problem, frozen)
     change = np.subtract(refit.values, frozen)
     moved = [float(change[1] - change[0]) / RANGE[1], *(change[2:] / RANGE[2:]).tolist()]
-    return {
-        'score_window_s': list(scenario.score_window_s),
-        'residuals': residual_rows(problem.computed_values(frozen)),
-        'frozen_objective': problem.objective(frozen),
-        'refit': refit.as_record(),
-        'moved': dict(zip(MOVES, moved, strict=True)),
-    }
+    return CheckRecord(
+        score_window_s=list(scenario.score_window_s),
+        residuals=residual_rows(problem.computed_values(frozen)),
+        frozen_objective=problem.objective(frozen),
+        refit=refit.as_record(),
+        moved=dict(zip(MOVES, moved, strict=True)),
+    )
 
 
 def _parameters(
@@ -111,19 +113,19 @@ def _parameters(
     shares = (np.array(values) - LOWER) / RANGE
     near = np.minimum(shares, 1.0 - shares) < 1e-3
     return [
-        {
-            'name': parameter.name,
-            'symbol': parameter.symbol,
-            'unit': parameter.unit,
-            'lower': parameter.lower,
-            'upper': parameter.upper,
-            'bounds_from': parameter.bounds_from,
-            'value': values[index],
-            'frozen': frozen[index],
-            'at_bound': bool(near[index]),
-            'std': float(analysis.std[index]),
-            'std_given_start': float(analysis.std_given_start[index]) if index else None,
-        }
+        FittedParameterEntry(
+            name=parameter.name,
+            symbol=parameter.symbol,
+            unit=parameter.unit,
+            lower=parameter.lower,
+            upper=parameter.upper,
+            bounds_from=parameter.bounds_from,
+            value=values[index],
+            frozen=frozen[index],
+            at_bound=bool(near[index]),
+            std=float(analysis.std[index]),
+            std_given_start=float(analysis.std_given_start[index]) if index else None,
+        )
         for index, parameter in enumerate(PARAMETERS)
     ]
 
@@ -144,31 +146,31 @@ def _torque_and_slopes(values: Sequence[float], analysis: Identifiability) -> li
     for quantity, unit, value, gradient in quantities:
         std, given_start = analysis.std_of(gradient)
         entries.append(
-            {
-                'quantity': quantity,
-                'unit': unit,
-                'value': value,
-                'std': std,
-                'std_given_start': given_start,
-            }
+            DerivedEntry(
+                quantity=quantity,
+                unit=unit,
+                value=value,
+                std=std,
+                std_given_start=given_start,
+            )
         )
     return entries
 
 
 def _optimum(one: Fit) -> OptimumEntry:
-    return {
-        'window_end_s': one.problem.window_end_s,
-        'pi_kind': one.pi_kind,
-        'pi_growth_rate_per_s': one.pi_growth_rate,
-        'pi_stable': one.pi_stable,
-        **one.as_record(),
-    }
+    return OptimumEntry(
+        window_end_s=one.problem.window_end_s,
+        pi_kind=one.pi_kind,
+        pi_growth_rate_per_s=one.pi_growth_rate,
+        pi_stable=one.pi_stable,
+        fit=one.as_record(),
+    )
 
 
 def scenario_text(record: CalibrationRecord) -> str:
     """Return the calibrated scenario as YAML, with comments on the source of each value."""
-    values = [entry['frozen'] for entry in record['parameters']]
-    return annotated_yaml(Problem(record['score_window_s'][1]).scenario(values), _SCENARIO_HEAD)
+    values = [entry.frozen for entry in record.parameters]
+    return annotated_yaml(Problem(record.score_window_s[1]).scenario(values), _SCENARIO_HEAD)
 
 
 def annotated_yaml(scenario: Scenario, head: Sequence[str]) -> str:

@@ -20,13 +20,13 @@ from ddct_plant.program.table import Table
 
 def all_tables(record: CalibrationRecord) -> dict[str, Table]:
     """Return every table of a whole calibration by name, in reading order."""
-    end = number(record['score_window_s'][1])
+    end = number(record.score_window_s[1])
     return {
         'parameters': parameter_table(record),
         'torque_and_slopes': torque_table(record),
-        'residuals': residual_table(record['residuals']),
-        'windows': optima_table('Optima by end of the score window', record['windows']),
-        'starts': optima_table(f'Optima from every start, window to {end} s', record['starts']),
+        'residuals': residual_table(record.residuals),
+        'windows': optima_table('Optima by end of the score window', record.windows),
+        'starts': optima_table(f'Optima from every start, window to {end} s', record.starts),
         'fit': fit_table(record),
         'directions': direction_table(record),
         'correlation': correlation_table(record),
@@ -40,22 +40,20 @@ def check_tables(record: CheckRecord) -> list[Table]:
     moves = Table(
         'Local refit from the frozen scenario',
         ('parameter', 'move, % of its range'),
-        [(name, signed(100.0 * share, 2)) for name, share in record['moved'].items()],
+        [(name, signed(100.0 * share, 2)) for name, share in record.moved.items()],
     )
-    return [residual_table(record['residuals']), moves]
+    return [residual_table(record.residuals), moves]
 
 
 def direction_table(record: CalibrationRecord) -> Table:
     """Return the singular values of the Jacobian with their directions."""
-    analysis = record['identifiability']
+    analysis = record.identifiability
     return Table(
         'Singular values of the residuals, per range of each parameter, and their directions',
         ('singular value', *VALUE_HEADERS),
         [
             (number(value, 3), *(signed(share, 2) for share in direction))
-            for value, direction in zip(
-                analysis['singular_values'], analysis['directions'], strict=True
-            )
+            for value, direction in zip(analysis.singular_values, analysis.directions, strict=True)
         ],
     )
 
@@ -69,7 +67,7 @@ def correlation_table(record: CalibrationRecord) -> Table:
             (name, *(signed(value, 2) for value in row))
             for name, row in zip(
                 VALUE_HEADERS[1:],
-                record['identifiability']['correlation_given_start'],
+                record.identifiability.correlation_given_start,
                 strict=True,
             )
         ],
@@ -84,10 +82,10 @@ def left_out_table(record: CalibrationRecord) -> Table:
         [
             (
                 *value_cells(entry),
-                'not predictable: gains fitted to it' if one['gains_from_row'] else 'prediction',
+                'not predictable: gains fitted to it' if one.gains_from_row else 'prediction',
             )
-            for one in record['left_out']
-            for entry in one['figures']
+            for one in record.left_out
+            for entry in one.figures
         ],
     )
 
@@ -97,5 +95,5 @@ def assumption_table(record: CalibrationRecord) -> Table:
     return Table(
         'Fits with other assumptions',
         ('change', 'objective', 'worst, tolerances', *VALUE_HEADERS),
-        [(one['change'], *fit_cells(one)) for one in record['assumptions']],
+        [(one.change, *fit_cells(one.fit)) for one in record.assumptions],
     )

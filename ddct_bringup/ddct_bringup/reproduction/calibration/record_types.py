@@ -3,10 +3,13 @@
 """Record of a calibration, as in `docs/thesis/calibration.json`: a type for each JSON object."""
 
 from collections.abc import Mapping
-from typing import TypedDict
+from dataclasses import dataclass
+
+from ddct_plant.files.json_records import Inline
 
 
-class ResidualEntry(TypedDict):
+@dataclass(frozen=True)
+class ResidualEntry:
     """One value of a printed row beside the computed one."""
 
     row: str
@@ -21,7 +24,8 @@ class ResidualEntry(TypedDict):
     """Largest relative deviation within tolerance."""
 
 
-class FitEntry(TypedDict):
+@dataclass(frozen=True)
+class FitEntry:
     """A local optimum."""
 
     objective: float
@@ -32,7 +36,8 @@ class FitEntry(TypedDict):
     """Fitted parameters by name."""
 
 
-class OptimumEntry(FitEntry):
+@dataclass(frozen=True)
+class OptimumEntry:
     """A local optimum of a search, with the loop of its PI."""
 
     window_end_s: float
@@ -41,27 +46,33 @@ class OptimumEntry(FitEntry):
     """Part of the PI that moves the torque more: 'P' or 'I'."""
     pi_growth_rate_per_s: float
     pi_stable: bool
+    fit: Inline[FitEntry]
 
 
-class LeftOutEntry(FitEntry):
+@dataclass(frozen=True)
+class LeftOutEntry:
     """A fit to two rows, and its values of the third."""
 
     row: str
     """Name of the row that is left out."""
     gains_from_row: bool
     """Whether the PI's gains are fitted to this row after all, as no other depends on them."""
+    fit: Inline[FitEntry]
     figures: list[ResidualEntry]
     """Values of the row that is left out."""
 
 
-class AssumptionEntry(FitEntry):
+@dataclass(frozen=True)
+class AssumptionEntry:
     """A fit with one changed assumption."""
 
     change: str
     """Name of the change."""
+    fit: Inline[FitEntry]
 
 
-class FittedParameterEntry(TypedDict):
+@dataclass(frozen=True)
+class FittedParameterEntry:
     """One fitted parameter."""
 
     name: str
@@ -82,7 +93,8 @@ class FittedParameterEntry(TypedDict):
     """Standard deviation for a fixed C_m start; None for C_m start."""
 
 
-class DerivedEntry(TypedDict):
+@dataclass(frozen=True)
+class DerivedEntry:
     """A torque level or a slope that follows from the fitted parameters."""
 
     quantity: str
@@ -94,7 +106,8 @@ class DerivedEntry(TypedDict):
     """Standard deviation for a fixed C_m start."""
 
 
-class ObjectiveEntry(TypedDict):
+@dataclass(frozen=True)
+class ObjectiveEntry:
     """The least objective, and the size of the problem."""
 
     value: float
@@ -106,7 +119,8 @@ class ObjectiveEntry(TypedDict):
     """Number of fitted values, the end of the score window included."""
 
 
-class IdentifiabilityEntry(TypedDict):
+@dataclass(frozen=True)
+class IdentifiabilityEntry:
     """The linear analysis at the optimum, as `Identifiability` defines it."""
 
     degrees_of_freedom: int
@@ -119,7 +133,8 @@ class IdentifiabilityEntry(TypedDict):
     correlation_given_start: list[list[float]]
 
 
-class CalibrationRecord(TypedDict):
+@dataclass(frozen=True)
+class CalibrationRecord:
     """The whole calibration."""
 
     objective: ObjectiveEntry
@@ -140,7 +155,8 @@ class CalibrationRecord(TypedDict):
     assumptions: list[AssumptionEntry]
 
 
-class CheckRecord(TypedDict):
+@dataclass(frozen=True)
+class CheckRecord:
     """Check of the frozen scenario: its residuals, and a local refit from its values."""
 
     score_window_s: list[float]

@@ -143,7 +143,7 @@ def worn_ranges() -> Study:
 
 
 def _kept(name: str) -> Prediction:
-    return kept_predictions().by_id[name]
+    return kept_predictions().predictions[name]
 
 
 def _value_and_range(found: Prediction, form: str) -> tuple[str, str]:
@@ -188,7 +188,7 @@ def _window_row(label: str, scenario: Scenario) -> tuple[str, ...]:
     return (
         f'{scenario.score_window_s[1]:.1f}',
         label,
-        f'{max(abs(row["deviation"]) for row in fitted):.1%}'.rstrip('%'),
+        f'{max(abs(row.deviation) for row in fitted):.1%}'.rstrip('%'),
         f'{largest_residual(fitted):.2f}',
         _cell(study_run(settings, 'mpc3')),
         _cell(_PER_RAD_S.run(TABLE_4_1['mpc3'], scenario)),

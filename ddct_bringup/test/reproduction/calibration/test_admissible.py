@@ -34,10 +34,10 @@ def test_nine_values_are_those_of_the_whole_run_in_the_scenarios_own_window():
     longer = dataclasses.replace(SCENARIO, score_window_s=(0.6, 3.0))
     rows = fitted_rows(longer)
     assert len(rows) == 9
-    sigmas = [row['computed'] for row in rows if row['figure'] != 'engagement_time_s']
-    others = [row['computed'] for row in fitted_rows(SCENARIO)]
+    sigmas = [row.computed for row in rows if row.figure != 'engagement_time_s']
+    others = [row.computed for row in fitted_rows(SCENARIO)]
     assert not set(sigmas) & set(others)
-    times = [row['computed'] for row in rows if row['figure'] == 'engagement_time_s']
+    times = [row.computed for row in rows if row.figure == 'engagement_time_s']
     assert times == others[::3]
 
 

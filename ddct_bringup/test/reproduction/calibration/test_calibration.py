@@ -64,7 +64,7 @@ def test_refit_from_the_frozen_scenario_stays_within_one_percent_of_every_range(
         return optimum
 
     monkeypatch.setattr(record, 'fit', fit_of)
-    moved = check_frozen(SCENARIO, quiet)['moved']
+    moved = check_frozen(SCENARIO, quiet).moved
     assert asked == [(dataclasses.replace(PROBLEM, base=SCENARIO), tuple(VALUES))]
     assert len(moved) == len(PARAMETERS) - 1
     assert all(abs(share) < 0.01 for share in moved.values()), moved

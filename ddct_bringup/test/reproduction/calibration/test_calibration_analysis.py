@@ -26,13 +26,13 @@ def test_the_error_of_a_derived_quantity_is_that_of_its_derivatives():
 
     stub: Any = SimpleNamespace(std_of=std_of)
     entries = _torque_and_slopes(VALUES.tolist(), stub)
-    names = [entry['quantity'] for entry in entries]
+    names = [entry.quantity for entry in entries]
     assert names[2:4] == ['rise of C_m', 'slope of C_m']
     for place, gradient in enumerate(gradients[: len(entries)]):
         expected = []
         for step in 1e-4 * np.eye(len(VALUES)):
             above, below = (
-                _torque_and_slopes((VALUES + change).tolist(), stub)[place]['value']
+                _torque_and_slopes((VALUES + change).tolist(), stub)[place].value
                 for change in (step, -step)
             )
             expected.append((above - below) / 2e-4)
@@ -60,7 +60,7 @@ def test_the_gains_of_the_pi_are_fitted_to_its_row_alone_where_that_is_left_out(
     assert sorted(asked) == sorted(
         [*((kept[row], shared if row == 'pi' else every) for row in ROWS), (('pi',), PI_ONLY)]
     )
-    assert {entry['row']: entry['gains_from_row'] for entry in found} == {
+    assert {entry.row: entry.gains_from_row for entry in found} == {
         row: row == 'pi' for row in ROWS
     }
     np.testing.assert_allclose(scenarios, [VALUES + 1.0] * len(ROWS))

@@ -11,12 +11,18 @@ import pytest
 from ddct_bringup.programs import reproduce
 from ddct_bringup.reproduction.calibration import command
 from ddct_bringup.reproduction.calibration.record import MOVES
+from ddct_bringup.reproduction.calibration.record_types import (
+    CalibrationRecord,
+    CheckRecord,
+    FitEntry,
+)
+from ddct_plant.files.json_records import read_json, to_json
 from ddct_plant.scenario.file import load_scenario
 
 pytestmark = pytest.mark.slow
 
 DOCS = Path(__file__).resolve().parents[4] / 'docs'
-RECORD = json.loads((DOCS / 'thesis' / 'calibration.json').read_text(encoding='utf-8'))
+RECORD = read_json(CalibrationRecord, DOCS / 'thesis' / 'calibration.json')
 
 
 @pytest.fixture
@@ -36,8 +42,8 @@ def test_help_has_examples(capsys):
 def moved(monkeypatch):
     """Let the refit of a check move each parameter by 0.1 % of its range, or as tests set it."""
     shares = dict.fromkeys(MOVES, 0.001)
-    check = {'residuals': RECORD['residuals'], 'moved': shares}
-    whole = {**check, 'score_window_s': [0.6, 1.7], 'frozen_objective': 1.0, 'refit': {}}
+    refit = FitEntry(objective=1.0, worst_residual=0.5, values={})
+    whole = CheckRecord([0.6, 1.7], RECORD.residuals, 1.0, refit, shares)
     monkeypatch.setattr(command, 'check_frozen', lambda scenario, progress: whole)
     return shares
 
@@ -48,7 +54,8 @@ def test_quick_check_of_the_frozen_scenario_passes_and_shows_fit_residuals(
     """The refit itself is tested in tests/nightly/reproduction."""
     assert reproduce.main(['calibration', '--quick', '--json', str(tmp_path / 'check.json')]) == 0
     assert 'not reproductions' in capsys.readouterr().out
-    assert json.loads((tmp_path / 'check.json').read_text())['residuals'] == RECORD['residuals']
+    written = json.loads((tmp_path / 'check.json').read_text())
+    assert written['residuals'] == to_json(RECORD.residuals)
 
 
 @pytest.mark.parametrize('sign', [1.0, -1.0])
@@ -62,7 +69,7 @@ def test_quick_check_fails_for_a_scenario_that_is_not_the_optimum(moved, capsys,
 
 def test_json_on_standard_output_has_no_other_text(calibrated, capsys):
     assert reproduce.main(['calibration', '--json', '-']) == 0
-    assert json.loads(capsys.readouterr().out) == RECORD
+    assert json.loads(capsys.readouterr().out) == to_json(RECORD)
 
 
 def test_the_scenario_that_it_writes_is_the_kept_one(calibrated, capsys, tmp_path):
@@ -106,8 +113,9 @@ def test_ensemble_without_its_folder_is_refused_before_the_work(monkeypatch, cap
 def test_no_scenario_is_written_when_a_residual_is_outside_its_tolerance(
     monkeypatch, capsys, tmp_path
 ):
-    record = json.loads(json.dumps(RECORD))
-    record['residuals'][4]['deviation'] = 0.2
+    residuals = list(RECORD.residuals)
+    residuals[4] = dataclasses.replace(residuals[4], deviation=0.2)
+    record = dataclasses.replace(RECORD, residuals=residuals)
     monkeypatch.setattr(command, 'calibrate', lambda progress: record)
     scenario = tmp_path / 'thesis.yaml'
     assert reproduce.main(['calibration', '--write', str(scenario)]) == 1

@@ -31,7 +31,7 @@ def test_kept_values_are_those_of_the_controllers_as_they_are(name):
     computed = predicted_values(scenario(name))
     kept = {
         key: one.frozen if name == 'thesis' else one.members[name]
-        for key, one in kept_predictions().by_id.items()
+        for key, one in kept_predictions().predictions.items()
     }
     assert computed.keys() == kept.keys()
     for key, value in computed.items():
@@ -43,24 +43,24 @@ def test_kept_values_are_those_of_the_controllers_as_they_are(name):
 def test_every_prediction_has_a_value_for_each_member():
     names = {member.name for member in members()}
     assert len(names) > 20
-    assert all(set(one.members) == names for one in kept_predictions().by_id.values())
+    assert all(set(one.members) == names for one in kept_predictions().predictions.values())
 
 
 def test_no_calibrated_value_is_among_the_predictions_of_table_5_1():
-    controllers = {name.split(' ')[1] for name in kept_predictions().by_id if '5.1 ' in name}
+    controllers = {name.split(' ')[1] for name in kept_predictions().predictions if '5.1 ' in name}
     predicted = {row.controller for row in THESIS_TABLE if row.use == PREDICTED}
     assert controllers == predicted | {OPEN_LOOP.split(' ')[0]}
 
 
 def test_predictions_are_given_for_the_unchanged_packaged_scenario_only():
-    assert predictions_for(FROZEN) == kept_predictions().by_id
+    assert predictions_for(FROZEN) == kept_predictions().predictions
     assert predictions_for(load_scenario('thesis', ['load.slope_rad=0.01'])) == {}
 
 
 def test_prediction_is_found_by_its_id_in_the_gate():
-    found = kept_predictions().by_id['5.1 mpc3 torsion_speed_std_rpm']
+    found = kept_predictions().predictions['5.1 mpc3 torsion_speed_std_rpm']
     assert found.frozen in found.values
-    assert '5.1 pi engagement_time_s' not in kept_predictions().by_id
+    assert '5.1 pi engagement_time_s' not in kept_predictions().predictions
 
 
 def test_range_goes_from_the_least_to_the_largest_value_the_frozen_one_included():

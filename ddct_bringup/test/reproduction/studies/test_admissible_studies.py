@@ -37,7 +37,7 @@ def test_no_scenario_has_a_whole_predicted_row():
 
 def test_both_deviations_of_the_clutch_without_feedback_have_a_range_and_no_print():
     alone = [row for row in prediction_ranges().rows if row[0] == OPEN_LOOP]
-    kept = kept_predictions().by_id
+    kept = kept_predictions().predictions
     for row, name in zip(alone, ('torsion_speed_std_rpm', 'acceleration_std_m_s2'), strict=True):
         found = kept[f'5.1 {OPEN_LOOP} {name}']
         assert row[1:3] == (METRICS[name].heading, f'{found.frozen:{FORMS[name]}}')
@@ -45,7 +45,7 @@ def test_both_deviations_of_the_clutch_without_feedback_have_a_range_and_no_prin
 
 
 def test_a_range_has_the_value_of_the_frozen_scenario_and_those_of_all():
-    found = kept_predictions().by_id['5.2 hinf2 slip_rad_s 0.7']
+    found = kept_predictions().predictions['5.2 hinf2 slip_rad_s 0.7']
     (row,) = [
         row for row in worn_ranges().rows if row[:2] == ('hinf2', '0.7') and 'rad/s' in row[2]
     ]

@@ -32,7 +32,7 @@ MEMBERS = {member.name: member for member in members()}
 
 
 def worst(scenario: Scenario) -> float:
-    return max(abs(row['deviation'] / row['tolerance']) for row in fitted_rows(scenario))
+    return max(abs(row.deviation / row.tolerance) for row in fitted_rows(scenario))
 
 
 def quiet(text: str) -> None:
