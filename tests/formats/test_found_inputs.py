@@ -22,7 +22,7 @@ NAMES = (
     *('benchmark', 'benchmark_rows', 'update_times', 'floor'),
     *('tuning_mpc_thesis', 'tuning_pi_launches', 'tuning_manifest', 'tuning_trials'),
     *('tuning_runs', 'scenario', 'profile', 'limits', 'columns', 'parquet'),
-    *('live_head', 'live_frames'),
+    'live_frames',
 )
 EDITS = st.lists(
     st.builds(Edit, st.sampled_from(KINDS), st.integers(0, 2**31 - 1), st.integers(0, 2**16 - 1)),

@@ -19,7 +19,6 @@ from support.waiting import wait_until
 from viewer import Viewer
 
 from ddct_bringup.live import live_node
-from ddct_bringup.live.handshake import Admission
 from ddct_plant.base.timebase import START_NS, stamp_of_step
 from ddct_plant.graph.qos import LATCHED_QOS, LOOP_QOS
 from ddct_plant.graph.spin import make_executor
@@ -34,9 +33,7 @@ class Served:
     def __init__(self, context: Context) -> None:
         """Serve on a free port; its printed lines go to `printed`."""
         self.printed: list[str] = []
-        self.node = live_node.LiveNode(
-            Admission('127.0.0.1'), 0, self.printed.append, context=context
-        )
+        self.node = live_node.LiveNode('127.0.0.1', 0, self.printed.append, context=context)
         self.graph = Node('graph', context=context)
         self.executor: Executor = make_executor(context)
         for node in (self.node, self.graph):

@@ -4,6 +4,7 @@
 
 import socket
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -44,6 +45,34 @@ def test_without_the_extra_it_names_what_to_install(
     program = programs.start_module(LIVE, '--port', '0')
     assert program.wait() == 1
     assert_one_line(program.errors(), 'ddct live', 'foxglove-sdk', 'pip install foxglove-sdk')
+
+
+@pytest.mark.parametrize(
+    ('arguments', 'address'), [((), '127.0.0.1'), (('--host', '0.0.0.0'), '0.0.0.0')]
+)
+def test_it_listens_on_this_machine_alone_unless_the_user_names_another_address(
+    live: Start, arguments: tuple[str, ...], address: str
+) -> None:
+    program, url = live(*arguments)
+    found = listening(program.process.pid)
+    program.stop()
+    assert found == {(address, int(url.rpartition(':')[2]))}
+
+
+def listening(pid: int) -> set[tuple[str, int]]:
+    """Return the addresses and ports on which TCP connections of a process are accepted."""
+    targets = []
+    for link in Path(f'/proc/{pid}/fd').iterdir():
+        with suppress(FileNotFoundError):  # closed meanwhile
+            targets.append(link.readlink().name)
+    prefix = 'socket:['
+    sockets = {name[len(prefix) : -1] for name in targets if name.startswith(prefix)}
+    found = set()
+    for words in map(str.split, Path(f'/proc/{pid}/net/tcp').read_text().splitlines()[1:]):
+        if words[9] in sockets and words[3] == '0A':
+            address, _, port = words[1].partition(':')
+            found.add((socket.inet_ntoa(bytes.fromhex(address)[::-1]), int(port, 16)))
+    return found
 
 
 def test_it_ends_with_code_0_when_stopped(live: Start) -> None:

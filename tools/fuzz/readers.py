@@ -28,7 +28,7 @@ from fuzz.targets.benchmark_readers import benchmark_readers
 from fuzz.targets.campaign_readers import campaign_readers
 from fuzz.targets.controller_readers import controller_readers
 from fuzz.targets.floor_readers import floor_reader
-from fuzz.targets.live_readers import frames, heads, read_frames, read_head
+from fuzz.targets.live_readers import frames, read_frames
 from fuzz.targets.run_readers import run_readers
 from fuzz.targets.tuning_readers import tuning_readers
 
@@ -56,7 +56,6 @@ def readers(folder: Path) -> dict[str, Reader]:
         Reader('limits', 'limits.yaml', load_limits, _texts(f'{_VERDICT}/limits.yaml')),
         Reader('columns', 'map.yaml', _columns, _texts('docs/use/own_car_columns.yaml')),
         Reader('parquet', 'results.parquet', _table, (_parquet(folder),)),
-        Reader('live_head', 'head', read_head, heads()),
         Reader('live_frames', 'frames', read_frames, frames()),
     ]
     return {each.name: each for each in found}

@@ -9,7 +9,6 @@ from typing import Any
 from rclpy.serialization import deserialize_message
 
 from ddct_bringup.bag.run_info import run_info_order
-from ddct_bringup.live.handshake import Admission
 from ddct_bringup.live.server import LiveServer
 from ddct_bringup.processes.live_process import ALL_TOPICS_RECEIVED, VIEWER_SUBSCRIBED
 from ddct_plant.bag_file.cdr import stamp_of_cdr
@@ -43,12 +42,12 @@ class LiveNode(GraphNode):
 
     def __init__(
         self,
-        admission: Admission,
+        host: str,
         port: int,
         print_line: Callable[[str], None] = print,
         **kwargs: Any,
     ) -> None:
-        """Serve on a port of `admission.host`; `print_line` is for the user. Raise DdctError."""
+        """Serve on a port of `host`; `print_line` is for the user. Raise DdctError."""
         super().__init__('live', **kwargs)
         self._print = print_line
         self._stamp_ns = self._sent_ns = START_NS
@@ -58,7 +57,7 @@ class LiveNode(GraphNode):
         self._not_received = tick_topics - {RECORDER_ACK}
         # Number of views, counted in a thread of the server; those that got time and run_info.
         self._views = self._views_timed = self._views_latched = 0
-        self._server = LiveServer(admission, port, self._on_view, print_line)
+        self._server = LiveServer(host, port, self._on_view)
         self._domain = self.context.get_domain_id()
         print_line(f'serving the graph of ROS domain {self._domain} at {self._server.url}')
         self._subscribe(latched=True)

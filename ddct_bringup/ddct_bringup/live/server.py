@@ -5,11 +5,9 @@
 from collections.abc import Callable
 from typing import Any
 
-from ddct_bringup.live.gate import Gate, secret_address
-from ddct_bringup.live.handshake import Admission
 from ddct_plant.bag_file.message_definitions import load_definition
 from ddct_plant.bag_file.metadata import SERIALIZATION
-from ddct_plant.base.errors import DdctError
+from ddct_plant.base.errors import DdctError, printable
 from ddct_plant.signals.topics import all_topics
 
 _BACKLOG = 65_536
@@ -27,18 +25,8 @@ class LiveServer:
     to show a topic.
     """
 
-    def __init__(
-        self,
-        admission: Admission,
-        port: int,
-        on_view: Callable[[str], None],
-        print_line: Callable[[str], object],
-    ) -> None:
-        """
-        Start to serve those whom `admission` lets in; refusals are printed.
-
-        Port 0 takes a free one. Raise DdctError where that is impossible.
-        """
+    def __init__(self, host: str, port: int, on_view: Callable[[str], None]) -> None:
+        """Serve on a port of `host`, 0 for a free one; raise DdctError where it cannot."""
         foxglove = _foxglove()
         self._on_view = on_view
         # Stored, because its channels close when it is deleted.
@@ -56,12 +44,11 @@ class LiveServer:
             )
             for topic in all_topics()
         }
-        inner = secret_address()
         try:
             self._server = foxglove.start_server(
                 name='DDCT',
-                host=inner,
-                port=0,
+                host=host,
+                port=port,
                 capabilities=[foxglove.websocket.Capability.Time],
                 server_listener=self,
                 context=self._context,
@@ -69,14 +56,11 @@ class LiveServer:
             )
         except (RuntimeError, OverflowError) as error:
             reason = str(error).removeprefix('FoxgloveError: ')
-            raise DdctError(f"Foxglove's server cannot start ({reason}): try again") from error
-        try:
-            self._gate = Gate(admission, port, (inner, self._server.port), print_line)
-        except BaseException:
-            self._server.stop()
-            raise
-        host = admission.host
-        self.url = f'ws://{f"[{host}]" if ":" in host else host}:{self._gate.port}'
+            raise DdctError(
+                f'cannot serve on port {port} of {printable(host)} ({reason}): '
+                'choose another --port or --host, or stop the program that has it'
+            ) from error
+        self.url = f'ws://{f"[{host}]" if ":" in host else host}:{self._server.port}'
 
     def send(self, topic: str, stamp_ns: int, cdr: bytes) -> None:
         """Send one message to every viewer that shows its topic, without waiting."""
@@ -88,7 +72,6 @@ class LiveServer:
 
     def stop(self) -> None:
         """Close every connection."""
-        self._gate.stop()
         self._server.stop()
 
     def on_subscribe(self, client: Any, channel: Any) -> None:

@@ -8,7 +8,6 @@ from functools import partial
 
 from rclpy.utilities import remove_ros_args
 
-from ddct_bringup.live.handshake import ORIGINS, Admission
 from ddct_bringup.live.live_node import LiveNode
 from ddct_bringup.processes.live_process import DEFAULT_PORT
 from ddct_plant.base.errors import ParameterError
@@ -24,7 +23,6 @@ examples:
   ddct live                        serve ROS domain 0, or that of ROS_DOMAIN_ID
   ddct live --port 9000            another port; 0 takes a free one
   ddct live --host 0.0.0.0         let other machines connect, with no password
-  ddct live --origin https://foxglove.example.com    a Foxglove of your own in a browser
   ddct bringup --live --out DIR    a run with its own live view, in a domain of its own
 
 Open the printed address in Foxglove: Open connection, Foxglove WebSocket. The graph may start
@@ -44,8 +42,7 @@ def _live(argv: list[str]) -> int:
     # On a busy machine the nodes of the loop have priority; messages for this one are buffered.
     os.nice(_NICENESS)
     print_line = partial(print, f'{PROGRAM}:', flush=True)
-    admission = Admission(options.host, (*ORIGINS, *options.origin))
-    factory = partial(LiveNode, admission, options.port, print_line)
+    factory = partial(LiveNode, options.host, options.port, print_line)
     return run_node(PROGRAM, factory, [PROGRAM, *argv])
 
 
@@ -57,13 +54,6 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument('--host', default='127.0.0.1', help='default: %(default)s')
     parser.add_argument('--port', type=int, default=DEFAULT_PORT, help='default: %(default)s')
-    parser.add_argument(
-        '--origin',
-        action='append',
-        default=[],
-        metavar='URL',
-        help=f'let web pages of this origin connect, besides {" and ".join(ORIGINS)}; repeatable',
-    )
     return parser
 
 

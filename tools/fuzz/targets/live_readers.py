@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Inputs from the network: the first lines of a connection to the live view, and its frames."""
+"""Inputs from the network: the frames of a viewer of the live view."""
 
 import json
 import socket
@@ -11,12 +11,9 @@ from functools import cache
 from pathlib import Path
 
 import foxglove
-from ddct_bringup.live.handshake import ORIGINS, Admission
 from ddct_bringup.live.server import LiveServer
 
 ADDRESS = '127.0.0.1'
-ADMISSION = Admission(ADDRESS)
-FOREIGN = 'https://evil.example'
 _ANSWER_S = 10.0
 _BLOCK_BYTES = 65536
 _TEXT, _BINARY, _CLOSE, _PING = 1, 2, 8, 9
@@ -25,20 +22,6 @@ _MASK = b'mask'
 
 class NoAnswerError(Exception):
     """The server no longer lets a viewer in."""
-
-
-def heads() -> tuple[bytes, ...]:
-    """Return first lines of which some may connect and others not."""
-    return (_head(), _head(f'Origin: {ORIGINS[0]}'), _head(f'Origin: {FOREIGN}'))
-
-
-def read_head(file: Path) -> object:
-    """Judge first lines; raise ValueError where a foreign page is let in."""
-    data = file.read_bytes()
-    status, _ = ADMISSION.refusal(data)
-    if status == 0 and FOREIGN.encode() in data.lower() and b'\norigin:' in data.lower():
-        raise ValueError('a foreign page is let in')
-    return status
 
 
 def frames() -> tuple[bytes, ...]:
@@ -90,15 +73,14 @@ def _server() -> LiveServer:
     """Return the server of this process, which serves until the process ends."""
     # It would log every bad frame.
     foxglove.set_log_level('CRITICAL')
-    return LiveServer(ADMISSION, 0, lambda _: None, lambda _: None)
+    return LiveServer(ADDRESS, 0, lambda _: None)
 
 
-def _head(*fields: str) -> bytes:
+def _head() -> bytes:
     lines = [
         *('GET / HTTP/1.1', 'Host: 127.0.0.1:8765', 'Upgrade: websocket'),
         *('Connection: Upgrade', 'Sec-WebSocket-Version: 13'),
         *('Sec-WebSocket-Key: ' + 22 * 'A' + '==', 'Sec-WebSocket-Protocol: foxglove.sdk.v1'),
-        *fields,
     ]
     return '\r\n'.join((*lines, '', '')).encode()
 
