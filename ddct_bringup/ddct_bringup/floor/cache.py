@@ -6,8 +6,8 @@ import dataclasses
 import hashlib
 import json
 import os
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import scipy
@@ -19,16 +19,30 @@ from ddct_bringup.floor.dynamics.capacity import CapacityRange
 from ddct_bringup.floor.dynamics.off_going import OffGoing
 from ddct_bringup.floor.dynamics.start import Start
 from ddct_bringup.floor.dynamics.tube import Tube
+from ddct_bringup.floor.values import Floor
 from ddct_plant.base.errors import DdctError
-from ddct_plant.files.input_file import read_text_file
-from ddct_plant.files.json_records import parse_json
+from ddct_plant.files.json_records import read_json, to_json
 from ddct_plant.files.output_file import write_text
 from ddct_plant.scenario.settings import is_handover_file
 
 VARIABLE = 'DDCT_CACHE'
 """Environment variable with the folder of the cache; empty for none."""
-_VALUES, _DIGEST = 'values', 'sha256'
-"""Keys of a file: the values, and their own digest."""
+
+
+@dataclass(frozen=True)
+class KnownFloor:
+    """A floor, and whether runs in which limits of the engine act may do better."""
+
+    floor: Floor
+    limited: bool
+
+
+@dataclass(frozen=True)
+class _Content:
+    """Content of a file: the values, and their own digest."""
+
+    values: KnownFloor
+    sha256: str
 
 
 def cache_folder() -> Path | None:
@@ -85,30 +99,29 @@ def _add(digest: 'hashlib._Hash', part: Start | Tube | CapacityRange | OffGoing)
             digest.update(repr(value).encode())
 
 
-def cached(digest: str) -> dict[str, Any] | None:
+def cached(digest: str) -> KnownFloor | None:
     """
-    Return the values stored under a digest, None where there are none.
+    Return the floor stored under a digest, None where there is none.
 
-    Of a file with other values than those that were stored there are none: a floor with another
+    Of a file with other values than those that were stored there is none: a floor with another
     number would be no bound.
     """
     folder = cache_folder()
     if folder is None:
         return None
     try:
-        content = parse_json(read_text_file(folder / f'{digest}.json'))
-        values: dict[str, Any] = content[_VALUES]
-        return values if content[_DIGEST] == _digest_of_values(values) else None
-    except (OSError, LookupError, TypeError, DdctError):
+        content = read_json(_Content, folder / f'{digest}.json')
+    except DdctError:
         return None
+    return content.values if content.sha256 == _digest_of_values(content.values) else None
 
 
-def store(digest: str, values: dict[str, Any]) -> None:
-    """Store values under a digest; a folder that cannot be written is no error."""
+def store(digest: str, values: KnownFloor) -> None:
+    """Store a floor under a digest; a folder that cannot be written is no error."""
     folder = cache_folder()
     if folder is None:
         return
-    content = {_VALUES: values, _DIGEST: _digest_of_values(values)}
+    content = to_json(_Content(values, _digest_of_values(values)))
     try:
         folder.mkdir(parents=True, exist_ok=True)
         write_text(str(folder / f'{digest}.json'), json.dumps(content, allow_nan=False))
@@ -116,6 +129,6 @@ def store(digest: str, values: dict[str, Any]) -> None:
         return
 
 
-def _digest_of_values(values: dict[str, Any]) -> str:
+def _digest_of_values(values: KnownFloor) -> str:
     """Return the SHA-256 of values, which is the same for those that JSON reads back."""
-    return hashlib.sha256(json.dumps(values).encode()).hexdigest()
+    return hashlib.sha256(json.dumps(to_json(values)).encode()).hexdigest()

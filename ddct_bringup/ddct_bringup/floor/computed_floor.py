@@ -2,21 +2,20 @@
 # SPDX-License-Identifier: Apache-2.0
 """A floor computed: bound, certificate and replays of one metric over the runs of a case."""
 
-import dataclasses
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from threadpoolctl import threadpool_limits
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.floor.bound import bound_of
-from ddct_bringup.floor.cache import cached, digest_of, store
+from ddct_bringup.floor.cache import KnownFloor, cached, digest_of, store
 from ddct_bringup.floor.case import Case
 from ddct_bringup.floor.dynamics.torque_cut import gives_demand
 from ddct_bringup.floor.friction_work import least_friction_work
 from ddct_bringup.floor.objectives import Signals
 from ddct_bringup.floor.program.linear_program import CLOSED_FORM, RAY
 from ddct_bringup.floor.replays.attained import Replays, replays_of
-from ddct_bringup.floor.values import FRICTION, Floor, objective_of
+from ddct_bringup.floor.values import FRICTION, Floor, Proof, objective_of
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.program.kernel import threads
 
@@ -49,18 +48,18 @@ def computed_floor(
     digest = digest_of(case, metric, attain)
     known = cached(digest)
     if known is not None:
-        return ComputedFloor(Floor(**known['floor']), known['limited'])
+        return ComputedFloor(known.floor, known.limited)
     closed = metric == FRICTION
     # Also where numpy was loaded before our package: more threads take several times as long.
     with threadpool_limits(threads(), user_api='blas'):
         found = _closed_form(case) if closed else _computed(case, metric, begin, attain)
-    store(digest, {'floor': dataclasses.asdict(found.floor), 'limited': found.limited})
+    store(digest, KnownFloor(found.floor, found.limited))
     return found
 
 
 def _closed_form(case: Case) -> ComputedFloor:
     least = least_friction_work(case)
-    certificate = {'kind': CLOSED_FORM, 'proven': least, 'covers': 'rigid car'}
+    certificate = Proof(CLOSED_FORM, least, 'rigid car')
     return ComputedFloor(Floor(FRICTION, case.lock.time_s, least, None, certificate, None), False)
 
 
@@ -73,7 +72,7 @@ def _computed(case: Case, metric: str, begin: Trajectory | None, attain: bool) -
         raise ParameterError(
             f'{metric} is not defined for the clutch {settings.clutch} or the run'
         )
-    certificate = {'kind': bound.kind, 'proven': bound.certificate.claim, 'covers': covers}
+    certificate = Proof(bound.kind, bound.certificate.claim, covers)
     if bound.kind == RAY:
         # Where even a free engine torque does not help, the wide case says so.
         limited = not case.limited and settings.scenario.engine_limits is not None
@@ -105,5 +104,5 @@ def _computed(case: Case, metric: str, begin: Trajectory | None, attain: bool) -
 def _with_run(case: Case, metric: str, run: Trajectory, begin: Trajectory | None) -> ComputedFloor:
     """Return the floor of a case that contains a run too; unless it does, without replays."""
     tube = case.tube.with_run(run, case.start.step)
-    wider = dataclasses.replace(case, tube=tube)
+    wider = replace(case, tube=tube)
     return _computed(wider, metric, begin, attain=tube is not case.tube)

@@ -72,9 +72,9 @@ class _Mark(NamedTuple):
 def _marks(rows: Sequence[ControllerRow], metric: str) -> list[_Mark]:
     """Return the runs with a lock time and a value of a metric."""
     return [
-        _Mark(row['controller'], row['lock_time_s'], row['value'])
+        _Mark(row.controller, row.lock_time_s, row.value)
         for row in rows
-        if row['metric'] == metric and row['lock_time_s'] is not None and row['value'] is not None
+        if row.metric == metric and row.lock_time_s is not None and row.value is not None
     ]
 
 

@@ -3,7 +3,7 @@
 """Floors over a grid of lock times, least lock times under a cap, and runs beside them."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TypedDict
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from ddct_bringup.floor.dynamics.start import Start
 from ddct_bringup.floor.floor import floors_at, floors_of_run
 from ddct_bringup.floor.lock import lock_of
 from ddct_bringup.floor.objectives import window_of
-from ddct_bringup.floor.values import Floor, OverFloor, value_of
+from ddct_bringup.floor.values import Floor, OverFloor, Proof, value_of
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_controllers.registry import Chosen, controller_label
@@ -38,7 +38,21 @@ def front(
         yield floors_at(settings, metrics, time_s, start)
 
 
-class LeastLockTime(TypedDict):
+@dataclass(frozen=True)
+class FloorRow:
+    """A floor under the keys of `limit --json`."""
+
+    lock_time_s: float
+    metric: str
+    least: float | None
+    attained: float | None
+    gap: float | None
+    certificate: Proof
+    replay_residual: float | None
+
+
+@dataclass(frozen=True)
+class LeastLockTime:
     """Least lock time under a cap, under the keys of `limit --json`."""
 
     metric: str
@@ -47,7 +61,8 @@ class LeastLockTime(TypedDict):
     excluded_before_s: float | None
 
 
-class ControllerRow(TypedDict):
+@dataclass(frozen=True)
+class ControllerRow:
     """A metric of a controller's run beside its least, under the keys of `limit --json`."""
 
     controller: str
@@ -57,7 +72,29 @@ class ControllerRow(TypedDict):
     least: float | None
     attained: float | None
     over_floor: float | None
-    certificate: Mapping[str, object] | None
+    certificate: Proof | None
+
+
+@dataclass(frozen=True)
+class LimitDocument:
+    """Document of `limit --json`."""
+
+    front: list[FloorRow]
+    controllers: list[ControllerRow]
+    least_lock_times: list[LeastLockTime]
+
+
+def floor_row(floor: Floor) -> FloorRow:
+    """Return the row of a floor."""
+    return FloorRow(
+        lock_time_s=floor.lock_time_s,
+        metric=floor.metric,
+        least=floor.least,
+        attained=floor.attained,
+        gap=floor.gap,
+        certificate=floor.certificate,
+        replay_residual=floor.replay_residual,
+    )
 
 
 def least_lock_time(floors: Sequence[Floor], metric: str, cap: float) -> LeastLockTime:
@@ -71,12 +108,12 @@ def least_lock_time(floors: Sequence[Floor], metric: str, cap: float) -> LeastLo
     own = sorted((f for f in floors if f.metric == metric), key=lambda f: f.lock_time_s)
     attained = [f.lock_time_s for f in own if f.attained is not None and f.attained <= cap]
     possible = [f.lock_time_s for f in own if f.least is not None and f.least <= cap]
-    return {
-        'metric': metric,
-        'cap': cap,
-        'lock_time_s': attained[0] if attained else None,
-        'excluded_before_s': possible[0] if possible else None,
-    }
+    return LeastLockTime(
+        metric=metric,
+        cap=cap,
+        lock_time_s=attained[0] if attained else None,
+        excluded_before_s=possible[0] if possible else None,
+    )
 
 
 def controller_rows(
@@ -96,15 +133,15 @@ def controller_rows(
         whole = run.steps == settings.scenario.steps
         value = value_of(settings, metric, run, start.scored_from) if whole else None
         rows.append(
-            {
-                'controller': controller_label(controller),
-                'metric': metric,
-                'lock_time_s': lock.time_s if lock else None,
-                'value': found.value if found else value,
-                'least': found.floor.least if found else None,
-                'attained': found.floor.attained if found else None,
-                'over_floor': found.over_floor if found else None,
-                'certificate': dict(found.floor.certificate) if found else None,
-            }
+            ControllerRow(
+                controller=controller_label(controller),
+                metric=metric,
+                lock_time_s=lock.time_s if lock else None,
+                value=found.value if found else value,
+                least=found.floor.least if found else None,
+                attained=found.floor.attained if found else None,
+                over_floor=found.over_floor if found else None,
+                certificate=found.floor.certificate if found else None,
+            )
         )
     return rows

@@ -4,7 +4,6 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.floor.objectives import OBJECTIVES, Objective
@@ -25,6 +24,20 @@ OF_STICK_SLIP = 'slip_acceleration_at_lock'
 
 
 @dataclass(frozen=True)
+class Proof:
+    """What proves a floor."""
+
+    kind: str
+    proven: float
+    """
+    Bound that the multipliers prove by weak duality; of a Farkas ray a positive lower bound of
+    the largest violation of a constraint.
+    """
+    covers: str
+    """Runs that the floor covers."""
+
+
+@dataclass(frozen=True)
 class Floor:
     """Least value of a metric for runs that lock at one instant, and a value that one attains."""
 
@@ -35,13 +48,7 @@ class Floor:
     """Proven lower bound in the unit of the metric; None where no request leads to such a lock."""
     attained: float | None
     """Value of a run of the simulated plant with that lock, None where none was found."""
-    certificate: Mapping[str, Any]
-    """
-    Kind of the proof, its number, and what it covers.
-
-    The number is the bound that the multipliers prove by weak duality, of a Farkas ray a positive
-    lower bound of the largest violation of a constraint.
-    """
+    certificate: Proof
     replay_residual: float | None
     """Difference between the value of that run and its prediction, in the unit of the metric."""
 
@@ -51,18 +58,6 @@ class Floor:
         if not self.least or self.attained is None:
             return None
         return 100.0 * (self.attained / self.least - 1.0)
-
-    def as_dict(self) -> dict[str, Any]:
-        """Return the floor under the keys of `limit --json`."""
-        return {
-            'lock_time_s': self.lock_time_s,
-            'metric': self.metric,
-            'least': self.least,
-            'attained': self.attained,
-            'gap': self.gap,
-            'certificate': dict(self.certificate),
-            'replay_residual': self.replay_residual,
-        }
 
 
 @dataclass(frozen=True)

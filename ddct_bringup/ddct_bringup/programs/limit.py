@@ -5,13 +5,14 @@
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 from ddct_bringup.floor.control_start import control_start
 from ddct_bringup.floor.front import (
     ControllerRow,
     LeastLockTime,
+    LimitDocument,
     controller_rows,
+    floor_row,
     front,
     least_lock_time,
     usual_lock_times,
@@ -73,7 +74,8 @@ def _limit(argv: list[str]) -> int:
         rows += controller_rows(settings, name, metrics, start)
     capped = [least_lock_time(floors, metric, cap) for metric, cap in caps]
     if options.json:
-        write_json(options.json, _document(floors, rows, capped))
+        document = LimitDocument([floor_row(each) for each in floors], rows, capped)
+        write_json(options.json, document)
     if options.json != STDOUT:
         _print(floors, rows, capped)
     if options.figure:
@@ -96,21 +98,10 @@ def _complain_impossible(floors: Sequence[Floor]) -> int:
         complain(
             PROGRAM,
             f'lock time {time_s:g} s: no torque request locks the plates then: a Farkas ray of '
-            f'sum {floor.certificate["proven"]:.3g}, which must be above 0, proves it: give '
+            f'sum {floor.certificate.proven:.3g}, which must be above 0, proves it: give '
             'another time',
         )
     return len(impossible)
-
-
-def _document(
-    floors: Sequence[Floor], rows: Sequence[ControllerRow], capped: Sequence[LeastLockTime]
-) -> dict[str, Any]:
-    """Return the document of `--json`."""
-    return {
-        'front': [floor.as_dict() for floor in floors],
-        'controllers': list(rows),
-        'least_lock_times': list(capped),
-    }
 
 
 def _print(
@@ -127,7 +118,7 @@ def _print(
                 text_or_dash(floor.least, '.4g'),
                 text_or_dash(floor.attained, '.4g'),
                 text_or_dash(floor.gap, '.1f'),
-                floor.certificate['kind'],
+                floor.certificate.kind,
             )
             for floor in floors
         ],
@@ -144,12 +135,12 @@ def _print(
             ('controller', 'lock s', 'metric', 'value', 'least', 'over least'),
             [
                 (
-                    row['controller'],
-                    text_or_dash(row['lock_time_s'], '.3f'),
-                    row['metric'],
-                    text_or_dash(row['value'], '.4g'),
-                    text_or_dash(row['least'], '.4g'),
-                    text_or_dash(row['over_floor'], '.2f'),
+                    row.controller,
+                    text_or_dash(row.lock_time_s, '.3f'),
+                    row.metric,
+                    text_or_dash(row.value, '.4g'),
+                    text_or_dash(row.least, '.4g'),
+                    text_or_dash(row.over_floor, '.2f'),
                 )
                 for row in rows
             ],
@@ -158,11 +149,11 @@ def _print(
         )
         print_table(with_reasons(ratios, _no_ratio))
     for each in capped:
-        found = each['lock_time_s']
+        found = each.lock_time_s
         text = 'no lock time of the grid' if found is None else f'a lock at {found:g} s'
-        before = each['excluded_before_s']
+        before = each.excluded_before_s
         proof = 'proven for none' if before is None else f'impossible before {before:g} s'
-        print_note(f'{each["metric"]} of {each["cap"]:g} at most: {text}; {proof}')
+        print_note(f'{each.metric} of {each.cap:g} at most: {text}; {proof}')
 
 
 def _no_floor(header: str, row: Sequence[str]) -> str:

@@ -4,10 +4,12 @@
 
 import pytest
 
-from ddct_bringup.floor.cache import cache_folder, cached, store
+from ddct_bringup.floor.cache import KnownFloor, cache_folder, cached, store
+from ddct_bringup.floor.values import Floor, Proof
 
 NAME = 'abc'
-VALUES = {'floor': {'least': 1.0 / 3.0, 'attained': None, 'kind': 'ray'}, 'limited': False}
+FLOOR = Floor('peak_jerk', 0.8, 1.0 / 3.0, None, Proof('ray', 1.0, 'all'), None)
+VALUES = KnownFloor(FLOOR, limited=False)
 
 
 def test_stored_values_come_back() -> None:

@@ -119,7 +119,7 @@ def test_the_least_peak_jerk_is_nearly_attained_by_a_run_that_locks_then(
     assert floor.attained >= floor.least
     assert 0.0 <= floor.gap <= gap
     assert floor.replay_residual <= 0.03 * floor.attained
-    assert floor.certificate['covers'] == (LIMITS if gap == 25.0 else DEMAND)
+    assert floor.certificate.covers == (LIMITS if gap == 25.0 else DEMAND)
 
 
 @pytest.mark.parametrize('wear_gain', [0.7, 1.3])
@@ -207,15 +207,15 @@ def thread_numbers():
 def test_a_lock_at_once_is_impossible_and_has_its_ray():
     floor = floor_of(settings_of(), 'peak_jerk', 0.05)
     assert (floor.least, floor.attained, floor.gap) == (None, None, None)
-    assert floor.certificate['kind'] == RAY
-    assert floor.certificate['proven'] > 0.0
+    assert floor.certificate.kind == RAY
+    assert floor.certificate.proven > 0.0
 
 
 @pytest.mark.parametrize('metric', ['peak_jerk', 'acceleration_std_m_s2'])
 def test_a_lock_before_any_request_acts_leaves_nothing_to_choose(metric):
     floor = floor_of(settings_of(), metric, 0.005)
     assert (floor.least, floor.attained) == (None, None)
-    assert floor.certificate['kind'] == RAY
+    assert floor.certificate.kind == RAY
 
 
 def test_a_run_that_slips_again_has_no_floor():
@@ -261,5 +261,5 @@ def test_the_least_lock_time_under_a_cap_is_attained_and_earlier_ones_are_exclud
     times = (0.7, 0.8, 0.9, 1.0)
     floors = [floor_of(settings, 'peak_jerk', time, start) for time in times]
     found = least_lock_time(floors, 'peak_jerk', 6.9)
-    assert found['lock_time_s'] == found['excluded_before_s'] == 0.9
-    assert least_lock_time(floors, 'peak_jerk', 1.0)['lock_time_s'] is None
+    assert found.lock_time_s == found.excluded_before_s == 0.9
+    assert least_lock_time(floors, 'peak_jerk', 1.0).lock_time_s is None

@@ -7,22 +7,15 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from ddct_bringup.floor.cache import VARIABLE, cache_folder, cached, store
+from ddct_bringup.floor.cache import VARIABLE, KnownFloor, cache_folder, cached, store
+from ddct_bringup.floor.values import Floor, Proof
 from ddct_plant.base.errors import DdctError
 from fuzz.reader import Reader
 
 _NAME = 'floor'
-_VALUES = {
-    'floor': {
-        'metric': 'peak_jerk',
-        'lock_time_s': 0.71,
-        'least': 1.25,
-        'attained': None,
-        'certificate': {'kind': 'bound', 'proven': 1.25, 'covers': 'runs'},
-        'replay_residual': None,
-    },
-    'limited': False,
-}
+_VALUES = KnownFloor(
+    Floor('peak_jerk', 0.71, 1.25, None, Proof('bound', 1.25, 'runs'), None), limited=False
+)
 
 
 def floor_reader(folder: Path) -> Reader:
