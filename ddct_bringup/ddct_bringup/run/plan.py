@@ -64,7 +64,7 @@ class RunPlan:
             raise ParameterError(
                 f'controller {self.name!r} is compiled code, a crash of which would end all nodes '
                 'of one process: drop --single-process, or take --headless',
-                key='layout',
+                key='--single-process',
             )
 
     @property

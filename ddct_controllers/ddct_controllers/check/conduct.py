@@ -37,10 +37,10 @@ def prints(subject: Subject) -> str:
 
 def own_state(subject: Subject) -> str:
     """Check that two objects used in turn do not disturb each other: no state is shared."""
-    if subject.compiled:
-        return 'each run of compiled code has a process of its own'
     before = _shared(subject.sample, subject.package)
     alone = subject.torques
+    if subject.compiled:
+        return 'each run of compiled code has a process of its own'
     changed = [
         name
         for name, value in _shared(subject.sample, subject.package).items()

@@ -1,0 +1,177 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Work in a process of its own returns its result, or how the process ended."""
+
+import ctypes
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from refusals import refused
+
+from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.program import own_process
+from ddct_plant.program.own_process import ProcessEndedError, calling, in_own_process, keep
+
+
+def test_the_result_comes_from_another_process_without_its_changes() -> None:
+    changed: list[int] = []
+
+    def work() -> tuple[int, list[float]]:
+        changed.append(1)
+        return os.getpid(), [0.1, 0.2]
+
+    process, values = in_own_process(work)
+    assert (process != os.getpid(), values, changed) == (True, [0.1, 0.2], [])
+
+
+def test_within_such_a_process_further_work_stays_in_it() -> None:
+    assert in_own_process(lambda: in_own_process(os.getpid) == os.getpid())
+
+
+def test_an_error_of_the_work_comes_back_with_key_and_place() -> None:
+    def work() -> None:
+        raise ParameterError('gain is nan', key='gain', place='mine.yaml: line 2')
+
+    with refused(ParameterError, 'gain', place='mine.yaml: line 2'):
+        in_own_process(work)
+
+
+class UnusualError(Exception):
+    """Exception that cannot be made of its text alone."""
+
+    def __init__(self, first: int, second: int) -> None:
+        super().__init__(f'{first} {second}')
+
+
+@pytest.mark.parametrize('kept', [True, False])
+def test_what_cannot_be_pickled_is_one_line_with_its_type(*, kept: bool) -> None:
+    def work() -> Callable[[], None]:
+        if kept:
+            raise UnusualError(1, 2)
+        return lambda: None
+
+    with pytest.raises(DdctError, match='UnusualError: 1 2' if kept else 'pickle'):
+        in_own_process(work)
+
+
+def called(name: str, step: int, end: Callable[[], object]) -> Callable[[], object]:
+    def work() -> object:
+        calling('reset')
+        calling(name, step)
+        return end()
+
+    return work
+
+
+ENDS: list[tuple[Callable[[], object], str]] = [
+    (lambda: ctypes.CDLL(None).exit(0), 'it ended with exit code 0 when update was called at'),
+    (lambda: os._exit(3), 'it ended with exit code 3 when update was called at step 7'),
+    (os.abort, 'it crashed (SIGABRT) when update was called at step 7'),
+    (lambda: ctypes.string_at(0), 'it crashed (SIGSEGV) when update was called at step 7'),
+    (lambda: os.kill(os.getpid(), signal.SIGKILL), 'it crashed (SIGKILL) when update was'),
+    (lambda: time.sleep(60), 'it gave no answer within 0.5 s when update was called at step 7'),
+]
+
+
+@pytest.mark.parametrize(('end', 'reason'), ENDS)
+def test_the_reason_has_how_it_ended_and_in_which_call(
+    end: Callable[[], object], reason: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(own_process, 'MOST_SECONDS', 0.5)
+    with refused(ProcessEndedError) as raised:
+        in_own_process(called('update', 7, end))
+    assert str(raised.value).startswith(reason)
+
+
+def test_the_reason_says_when_no_step_or_no_call_was_reached() -> None:
+    with pytest.raises(ProcessEndedError, match=r'^it crashed \(SIGABRT\) when it was loaded$'):
+        in_own_process(os.abort)
+    with pytest.raises(ProcessEndedError, match=r'^it crashed .* when reset was called$'):
+        in_own_process(called('reset', -1, os.abort))
+
+
+def test_work_that_goes_on_calling_may_take_longer_than_the_limit(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(own_process, 'MOST_SECONDS', 0.5)
+
+    def work() -> int:
+        for _ in range(8):
+            calling('reset')
+            time.sleep(0.1)
+        return 5
+
+    assert in_own_process(work) == 5
+
+
+class CrashesAtItsEnd:
+    """Object that ends the process when it is freed."""
+
+    def __del__(self) -> None:
+        os.abort()
+
+
+def test_a_crash_after_the_result_does_not_lose_it() -> None:
+    def work() -> int:
+        keep(CrashesAtItsEnd())
+        return 5
+
+    assert in_own_process(work) == 5
+
+
+def test_nothing_is_kept_outside_of_such_a_process() -> None:
+    keep(object())
+    calling('update', 1)
+    assert (own_process._kept, own_process._shared) == ([], None)
+
+
+def test_what_it_prints_goes_to_standard_error(capfd: pytest.CaptureFixture[str]) -> None:
+    in_own_process(lambda: ctypes.CDLL(None).puts(b'hello') and 0)
+    printed = capfd.readouterr()
+    assert (printed.out, printed.err) == ('', 'hello\n')
+
+
+def test_it_reads_no_input_and_ignores_ctrl_c() -> None:
+    def work() -> bytes:
+        os.kill(os.getpid(), signal.SIGINT)
+        return os.read(0, 1)
+
+    assert in_own_process(work) == b''
+
+
+def test_an_interruption_of_the_caller_ends_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    forked: list[int] = []
+    fork = os.fork
+
+    def noted() -> int:
+        forked.append(fork())
+        return forked[-1]
+
+    def interrupt() -> None:
+        os.kill(os.getpid(), signal.SIGINT)
+
+    monkeypatch.setattr(os, 'fork', noted)
+    timer = threading.Timer(0.3, interrupt)
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        in_own_process(lambda: time.sleep(60))
+    assert not Path(f'/proc/{forked[0]}').exists()
+
+
+def test_it_ends_with_a_caller_that_is_killed() -> None:
+    program = (
+        'import os, time; from ddct_plant.program.own_process import in_own_process\n'
+        'in_own_process(lambda: (os.kill(os.getppid(), 9), time.sleep(60)))\n'
+    )
+    # The pipe of standard error ends with the last process that has it.
+    done = subprocess.run(
+        [sys.executable, '-c', program], stderr=subprocess.PIPE, check=False, timeout=30
+    )
+    assert done.returncode == -signal.SIGKILL

@@ -1,0 +1,177 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Each run of a controller in C has fresh static variables, and ends itself alone."""
+
+import json
+from pathlib import Path
+
+import pytest
+from refusals import refused
+from support.c_controllers import ENDS, counting, harmful
+from support.exported_mpc import run_settings
+
+from ddct_bringup import api
+from ddct_bringup.bag.reader import read_bag
+from ddct_bringup.programs.compare import main as compare
+from ddct_bringup.run.headless import run_headless
+from ddct_bringup.run.plan import RunPlan
+from ddct_controllers.check.checks import FAIL, PASS, check_controller
+from ddct_controllers.registry import controller_spec
+from ddct_controllers.workflows.evidence import frequency_evidence
+from ddct_controllers.workflows.loop_summary import loop_summary
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.program import own_process
+
+SETTINGS = run_settings('duration_s=0.7')
+OPTIONS = {'duration_s': 0.7}
+
+
+@pytest.fixture(scope='module')
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp('libraries')
+
+
+@pytest.fixture(scope='module')
+def counter(folder: Path) -> str:
+    return counting(folder)
+
+
+@pytest.fixture(scope='module')
+def harm(folder: Path) -> str:
+    return harmful(folder)
+
+
+@pytest.fixture(autouse=True)
+def soon(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let a library that never answers be ended soon."""
+    monkeypatch.setattr(own_process, 'MOST_SECONDS', 1)
+
+
+def torques(run: api.Run) -> list[float]:
+    found: list[float] = run.recording.trajectory.closed_loop_torque.tolist()
+    return found
+
+
+def test_runs_one_after_another_count_from_one_again(counter: str) -> None:
+    first, again = (api.run(counter, set=OPTIONS) for _ in range(2))
+    assert torques(first)[59:62] == [0.0, 0.001, 0.002]
+    assert torques(again) == torques(first)
+    assert run_headless(SETTINGS, controller_spec(counter)).closed_loop_torque[61] == 0.002
+
+
+def test_two_of_a_comparison_count_from_one(counter: str, folder: Path, tmp_path: Path) -> None:
+    other = folder / 'other.yaml'
+    other.write_text(Path(counter).read_text().replace('name: counting', 'name: other'))
+    given = ['--controllers', f'{counter},{other}', '--headless', '--floors', 'none']
+    out = tmp_path / 'out'
+    assert compare([*given, '--duration', '0.7', '--out', str(out)]) == 0
+    first, again = (
+        read_bag(out / name).trajectory.closed_loop_torque for name in ('counting', 'other')
+    )
+    assert first[61] == again[61] == 0.002
+
+
+@pytest.mark.slow
+def test_the_rows_of_a_campaign_are_equal_with_one_worker_and_two(
+    counter: str, tmp_path: Path
+) -> None:
+    spec = {'controllers': [counter], 'grid': {'duration_s': [0.7], 'seed': [1, 2, 3, 4]}}
+    rows = []
+    for workers in (1, 2):
+        out = tmp_path / str(workers)
+        found = api.campaign(spec, out, workers=workers).table
+        rows.append((out / 'results.parquet').read_bytes())
+        same = found.drop(columns='seed').drop_duplicates()
+        assert (len(found), len(same)) == (4, 1)
+    assert rows[0] == rows[1]
+
+
+@pytest.mark.slow
+def test_what_ends_a_run_of_a_campaign_is_the_reason_in_its_row(harm: str, tmp_path: Path) -> None:
+    faults = [0, *ENDS]
+    spec = {
+        'controllers': ['pi', harm],
+        'grid': {
+            'duration_s': [0.7],
+            'controllers.harmful.fault': [*map(float, faults)],
+        },
+    }
+    found = api.campaign(spec, tmp_path / 'out', workers=2).table
+    mine = found[found.controller == 'harmful']
+    assert found.valid.tolist() == 5 * [True] + [True] + 4 * [False]
+    place = f'controller file {harm}: line 2: c_library.file: '
+    for fault, reason in zip(faults, mine.reason, strict=True):
+        if fault:
+            assert reason.startswith(place)
+            assert reason.endswith(
+                f'.so: {ENDS[fault]} when update was called at step 65: mend it'
+            )
+
+
+def test_a_crash_in_a_comparison_is_the_reason_of_its_run(
+    harm: str, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    given = ['--controllers', f'{harm},pi', '--headless', '--floors', 'none', '--duration', '0.7']
+    out = tmp_path / 'out'
+    assert compare([*given, '--set', 'controllers.harmful.fault=3', '--out', str(out)]) == 1
+    mine, pi = json.loads((out / 'scores.json').read_text())['runs']
+    assert (mine['valid'], pi['valid']) == (False, True)
+    assert f'{ENDS[3]} when update was called at step 65' in mine['reason']
+    lines = [line for line in capfd.readouterr().err.splitlines() if 'harmful' in line]
+    assert len([line for line in lines if 'SIGSEGV' in line]) == 1
+
+
+def test_a_crash_while_it_is_loaded_does_not_end_a_comparison(
+    harm: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr('ddct_controllers.from_file.c_library.library.Library.reset', _abort)
+    given = ['--controllers', f'{harm},pi', '--headless', '--floors', 'none', '--duration', '0.7']
+    out = tmp_path / 'out'
+    assert compare([*given, '--out', str(out)]) == 1
+    mine, pi = json.loads((out / 'scores.json').read_text())['runs']
+    assert (mine['valid'], pi['valid']) == (False, True)
+    assert f'{ENDS[2]} when reset was called: mend it' in mine['reason']
+
+
+def _abort(_: object) -> None:
+    import os
+
+    os.abort()
+
+
+@pytest.mark.slow
+def test_the_rows_of_a_sweep_have_the_reasons(harm: str) -> None:
+    over = {'controllers.harmful.fault': [0.0, 1.0, 2.0]}
+    found = api.sweep([harm], over, duration=0.7)
+    assert found.valid.tolist() == [True, False, False]
+    assert [each.partition(': it ')[2][:5] for each in found.reason] == ['', 'ended', 'crash']
+
+
+def test_a_crash_fails_the_checks_in_which_it_happens(harm: str, counter: str) -> None:
+    faulty = run_settings('controllers.harmful.fault=3')
+    found = {each.name: each for each in check_controller(harm, faulty)}
+    assert [found[name].state for name in ('constructor', 'options', 'prints')] == 3 * [PASS]
+    assert found['answers'].state == FAIL
+    assert f'{ENDS[3]} when update was called at step 65: mend it' in found['answers'].detail
+
+
+def test_static_variables_are_no_shared_state_but_must_be_reset(counter: str) -> None:
+    found = {each.name: each for each in check_controller(counter, run_settings())}
+    assert [found[name].state for name in ('state', 'determinism')] == 2 * [PASS]
+    assert found['reset'].state == FAIL
+
+
+def test_no_program_loads_the_code_beside_its_runs(
+    harm: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr('ddct_controllers.from_file.c_library.controller.Library', _abort)
+    (entry,) = frequency_evidence([harm], SETTINGS).controllers
+    assert entry.linear is False
+    assert loop_summary(harm, SETTINGS) == []
+    RunPlan(SETTINGS, harm, 'headless')
+
+
+def test_all_nodes_in_one_process_are_refused(harm: str) -> None:
+    with refused(ParameterError, '--single-process') as raised:
+        RunPlan(SETTINGS, harm, 'single-process')
+    assert 'drop --single-process, or take --headless' in str(raised.value)
