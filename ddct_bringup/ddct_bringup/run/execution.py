@@ -25,6 +25,7 @@ from ddct_bringup.run.headless import run_headless
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_controllers.from_file.controller_file import is_controller_file
+from ddct_controllers.from_file.fmu.unpacked import remove_left_folders
 from ddct_controllers.registry import Chosen, make_controller, separately
 from ddct_plant.base.errors import DdctError
 from ddct_plant.graph.domain import own_domain
@@ -116,6 +117,8 @@ def execute(
         _keep_warnings(work)
     except OSError as error:
         raise DdctError(f'{error.filename or folder}: {error.strerror or error}') from error
+    finally:
+        remove_left_folders()  # that of an FMU which has ended its node
     return None
 
 

@@ -142,6 +142,11 @@ def _compute(work: Callable[[], object], shared: mmap.mmap, result: int, parent:
         with suppress(OSError):
             os.dup2(2, 1)  # what the code prints is no result of the program
             os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
+        libc = ctypes.CDLL(None)
+        # exit() in C is the end at once: the libraries of the program may wait at their end for
+        # threads that are not here. Handlers run in the reverse order.
+        libc.on_exit(libc._exit, None)
+        libc.__cxa_atexit(libc.fflush, None, None)
         gc.freeze()  # collecting what the program has made would copy it
         _shared = shared
         with os.fdopen(result, 'wb') as file:

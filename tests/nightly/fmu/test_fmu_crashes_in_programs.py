@@ -3,7 +3,6 @@
 """An FMU that ends its process ends its own run alone, in a comparison and in the graph."""
 
 import json
-import re
 from pathlib import Path
 
 import pytest
@@ -23,7 +22,7 @@ def test_the_runs_of_other_controllers_are_kept(capsys: pytest.CaptureFixture[st
     assert compare([*controllers, *options]) == 1
     mine, pi = json.loads((out / 'scores.json').read_text())['runs']
     assert (mine['valid'], pi['valid']) == (False, True)
-    assert 'pi.fmu failed at its own time 0.1 s' in mine['reason']
+    assert 'pi.fmu: it ended with exit code 0 when update was called at' in mine['reason']
     assert (out / 'pi' / 'pi_0.mcap').is_file()
     lines = [line for line in capsys.readouterr().err.splitlines() if 'pi.fmu' in line]
     assert len(lines) == 1
@@ -34,5 +33,5 @@ def test_in_the_graph_too_it_is_one_line_and_another_exit_code(
 ) -> None:
     assert bringup(['--controller', faulty(3, EXIT), *SHORT, '--out', 'runs']) == 1
     printed = capsys.readouterr().err
-    assert re.search('node controller ended with code 1: .*pi.fmu failed at', printed), printed
+    assert 'node controller ended with code 0' in printed
     assert unpacked() == []

@@ -23,8 +23,8 @@ def test_a_controller_of_any_kind_and_a_handover_in_a_file_shift_in_the_graph_as
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, kind: str
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    # The process of a library in C ends with that of its node.
-    layout = 'processes' if kind == 'C library' else 'single-process'
+    compiled = kind in ('C library', 'FMU')  # refused in one process
+    layout = 'processes' if compiled else 'single-process'
     require_shift_from_files(_file_of(kind), layout, tmp_path / 'run')
 
 
