@@ -68,7 +68,6 @@ setup(
         'markupsafe',
         'matplotlib',
         'mcap',
-        'mcap-ros2-support',
         'numpy',
         'pyarrow',
         'rich',

@@ -27,7 +27,7 @@ setup(
     name=PACKAGE,
     version=VERSION,
     packages=find_packages(exclude=['test']),
-    package_data={PACKAGE: ['py.typed', 'bag_file/*.yaml', 'scenario/packaged/*.yaml']},
+    package_data={PACKAGE: ['py.typed', 'scenario/packaged/*.yaml']},
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{PACKAGE}']),
         (f'share/{PACKAGE}', ['package.xml']),
@@ -36,10 +36,10 @@ setup(
     install_requires=[
         'setuptools',
         'mcap',
-        'mcap-ros2-support',
         'numpy',
         'pyyaml',
         'rich',
+        'rosbags',
         'scipy',
         'threadpoolctl',
         'zstandard',

@@ -12,7 +12,7 @@ from refusals import refused
 from ddct_bringup.bag.reader import mcap_of
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_plant.base.errors import DdctError
-from ddct_plant.measured import bag_log
+from ddct_plant.base.timebase import stamp_of_step
 from ddct_plant.measured.columns import own_columns
 from ddct_plant.measured.log import MeasuredLog, read_log
 
@@ -55,23 +55,24 @@ def test_messages_after_the_end_of_the_run_are_an_error(bags, trajectory) -> Non
         log_of(short)
 
 
-def test_a_stamp_far_beyond_the_last_is_the_end_of_reading(bags, trajectory, monkeypatch) -> None:
+def test_a_stamp_far_beyond_the_last_is_refused(bags, trajectory) -> None:
     def far(messages):
         topic, _, data = next(each for each in messages if each[0] == '/driveline/joint_states')
         late = (2**31 - 1).to_bytes(4, 'little') + bytes(4)
         return [*messages, (topic, (2**31 - 1) * 10**9, data[:4] + late + data[12:])]
 
-    asked = []
+    odd = bags.rewrite(bags.write(trajectory), 'odd', far, duration_s='3600.0')
+    with pytest.raises(DdctError, match='odd_0.mcap: '):
+        log_of(odd)
 
-    def never_there(step: int) -> int:
-        asked.append(step)
-        return -1
 
-    monkeypatch.setattr(bag_log, 'stamp_of_step', never_there)
-    monkeypatch.setattr(bag_log, 'require_last_step', lambda *_: None)
-    with refused(DdctError, '/driveline/joint_states', place='odd_0.mcap'):
-        log_of(bags.rewrite(bags.write(trajectory), 'odd', far))
-    assert len(asked) == 1
+def test_a_missing_tick_is_named(bags, trajectory) -> None:
+    def gap(messages):
+        return [each for each in messages if each[1] != stamp_of_step(17)]
+
+    with refused(DdctError, '/driveline/joint_states', place='odd_0.mcap') as caught:
+        log_of(bags.rewrite(bags.write(trajectory), 'odd', gap))
+    assert 'no message at step 17' in str(caught.value)
 
 
 def test_a_value_that_is_not_finite_is_an_error(bags, trajectory) -> None:

@@ -11,7 +11,7 @@ from refusals import refused
 
 from ddct_bringup.bag.reader import mcap_of, read_bag
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.bag.writer import new_bag
+from ddct_bringup.bag.writer import BagWriter
 from ddct_plant.bag_file.records import read_records
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import START_NS, stamp_of_step
@@ -126,33 +126,27 @@ def test_an_existing_bag_is_never_overwritten(bags, trajectory):
 
 
 def test_a_topic_the_bag_was_opened_without_is_refused(tmp_path):
-    bag = new_bag(tmp_path, 'x', recorded_topics(RunKind()), {})
+    bag = BagWriter(tmp_path, 'x', recorded_topics(RunKind()), {})
     with pytest.raises(DdctError, match='without a topic controller/timing'):
         bag.write('controller/timing', START_NS, b'')
-
-
-def test_bytes_that_are_no_message_of_the_topic_are_refused(tmp_path):
-    bag = new_bag(tmp_path, 'x', recorded_topics(RunKind()), {})
-    with refused(DdctError, 'clutch/slip'):
-        bag.write('clutch/slip', START_NS, b'\x00\x01\x00\x00' + bytes(8))
 
 
 def test_an_unknown_message_type_is_an_error_that_names_where_to_define_it(tmp_path):
     topic = Topic('x', MessageKind('no_such_msgs/msg/Thing'), 'nobody')
     with refused(DdctError, 'no_such_msgs/msg/Thing'):
-        new_bag(tmp_path, 'x', [topic], {})
+        BagWriter(tmp_path, 'x', [topic], {})
 
 
 def test_an_exception_leaves_the_bag_unfinished(tmp_path):
     empty: dict[str, int] = {}
-    with pytest.raises(KeyError), new_bag(tmp_path, 'x', recorded_topics(RunKind()), {}):
+    with pytest.raises(KeyError), BagWriter(tmp_path, 'x', recorded_topics(RunKind()), {}):
         empty.pop('no such key')
     assert not (tmp_path / 'metadata.yaml').exists()
-    with refused(DdctError, place='x_0.mcap'):
+    with pytest.raises(DdctError, match='x_0.mcap: '):
         read_bag(tmp_path)
 
 
 def test_a_folder_that_cannot_be_made_is_an_error(tmp_path):
     (tmp_path / 'file').write_text('in the way')
     with pytest.raises(DdctError, match='x_0.mcap: cannot write the recording'):
-        new_bag(tmp_path / 'file' / 'x', 'x', recorded_topics(RunKind()), {})
+        BagWriter(tmp_path / 'file' / 'x', 'x', recorded_topics(RunKind()), {})

@@ -1,25 +1,28 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""A recorder that is killed or runs out of space: its error, and the rescue of its bag."""
+"""A recorder that is killed or runs out of space: its error, and what is read of its bag."""
 
+import json
 import os
-import random
 import shutil
 import signal
 import subprocess
 import sys
 import textwrap
 
+import numpy as np
 import pytest
 from mcap.reader import make_reader
-from refusals import refused
 from support.made_bags import Bags, random_trajectory
 
-from ddct_bringup.bag import repair
+from ddct_bringup import api
 from ddct_bringup.bag.reader import mcap_of, read_bag
-from ddct_bringup.bag.repair import REPAIRED_KEY, repair_bag
-from ddct_plant.bag_file.records import salvage_records
+from ddct_bringup.programs import report, score
+from ddct_bringup.run.timing_and_failure import note_failure
+from ddct_plant.bag_file.records import read_records
 from ddct_plant.base.errors import DdctError
+from ddct_plant.measured.columns import own_columns
+from ddct_plant.measured.log import read_log
 
 TICKS_PER_CHUNK = 64 * 1024 // 2000
 """Largest number of ticks in a chunk: a tick takes at least 2000 bytes."""
@@ -28,7 +31,7 @@ COPY_BAG = """
     import resource, sys
     from pathlib import Path
     from ddct_plant.bag_file.records import read_records
-    from ddct_bringup.bag.writer import new_bag
+    from ddct_bringup.bag.writer import BagWriter
     from ddct_plant.base.errors import DdctError
     from ddct_plant.signals.topics import TOPICS
 
@@ -40,7 +43,7 @@ COPY_BAG = """
     if limit:
         resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
     try:
-        writer = new_bag(folder, 'copy', topics, records.custom_data)
+        writer = BagWriter(folder, 'copy', topics, records.custom_data)
         for topic, stamp, data in records.messages():
             if stamp > 1_000_000_000 + last_step * 10_000_000:
                 break
@@ -93,27 +96,67 @@ def killed(recorded, tmp_path):
     return shutil.copytree(recorded[1], tmp_path / 'killed')
 
 
-def test_a_killed_recording_is_not_taken_for_a_whole_one(killed):
+def test_a_killed_recording_is_read_but_its_last_chunk(killed, source):
     assert not (killed / 'metadata.yaml').exists()
-    with pytest.raises(DdctError, match=r'copy_0.mcap: .*unfinished.*ddct score --repair'):
-        read_bag(killed)
-
-
-def test_a_killed_recording_loses_at_most_one_chunk(killed, source):
-    damaged = mcap_of(killed).read_bytes()
-    repair = repair_bag(killed)
-    assert 150 - TICKS_PER_CHUNK <= repair.last_step < 150
+    before = mcap_of(killed).read_bytes()
     recording = read_bag(killed)
-    assert recording.trajectory.steps == repair.last_step
-    assert recording.custom_data[REPAIRED_KEY] == 'true'
-    expected = read_bag(source).trajectory.slip_speed[: repair.last_step + 1]
-    assert recording.trajectory.slip_speed.tolist() == expected.tolist()
-    assert repair.original.read_bytes() == damaged
-    assert sorted(file.name for file in killed.iterdir()) == [
-        'copy_0.mcap',
-        'copy_0.mcap.damaged',
-        'metadata.yaml',
+    assert recording.unfinished
+    steps = recording.trajectory.steps
+    assert 150 - TICKS_PER_CHUNK <= steps < 150
+    whole = read_bag(source)
+    assert not whole.unfinished
+    for name, values in whole.trajectory.signals.items():
+        expected = values[: steps + 1]
+        assert np.array_equal(recording.trajectory.signals[name], expected), name
+    assert recording.run_info == whole.run_info
+    assert recording.custom_data == whole.custom_data
+    assert [(file.name, file.read_bytes()) for file in killed.iterdir()] == [
+        ('copy_0.mcap', before)
     ]
+
+
+def test_a_killed_recording_is_invalid_with_its_number_of_steps_and_without_figures(
+    killed, capsys
+):
+    steps = read_bag(killed).trajectory.steps
+    reason = f'incomplete: {steps} of 200 steps'
+    assert score.main([str(killed), '--json', '-']) == 1
+    captured = capsys.readouterr()
+    (run,) = json.loads(captured.out)['runs']
+    assert (run['valid'], run['state'], run['reason']) == (False, 'invalid', reason)
+    assert run['controller'] == 'pi'
+    assert {*run['metrics'].values(), *run['figures'].values()} == {None}
+    assert reason in ' '.join(captured.err.split())
+    loaded = api.load(killed)
+    assert (loaded.valid, loaded.state, loaded.reason) == (False, 'invalid', reason)
+    assert {*loaded.metrics.values()} == {None}
+    assert loaded.recording.trajectory.steps == steps
+
+
+def test_a_report_of_a_killed_recording_shows_its_signals_and_the_reason(killed, source, tmp_path):
+    page = tmp_path / 'report.html'
+    assert report.main([str(source), str(killed), '--out', str(page)]) == 1
+    steps = read_bag(killed).trajectory.steps
+    assert f'incomplete: {steps} of 200 steps' in page.read_text(encoding='utf-8')
+
+
+def test_the_reason_of_a_failed_run_is_named_after_how_much_of_it_there_is(killed, capsys):
+    note_failure(killed, 'node recorder was killed by SIGKILL', read_bag(killed).custom_data)
+    steps = read_bag(killed).trajectory.steps
+    expected = f'incomplete: {steps} of 200 steps; node recorder was killed by SIGKILL'
+    assert score.main([str(killed), '--json', '-']) == 1
+    (run,) = json.loads(capsys.readouterr().out)['runs']
+    assert (run['valid'], run['reason']) == (False, expected)
+
+
+def test_the_log_of_a_killed_recording_ends_where_its_last_whole_tick_is(killed, source):
+    part, whole = (read_log(bag, own_columns()) for bag in (killed, source))
+    steps = read_bag(killed).trajectory.steps
+    assert part.time_s[-1] == pytest.approx(steps / 100.0)
+    rows = slice(0, len(part.time_s))
+    assert np.array_equal(part.time_s, whole.time_s[rows])
+    for name, values in part.signals.items():
+        assert np.array_equal(values, whole.signals[name][rows], equal_nan=True), name
 
 
 def test_a_chunk_is_whole_on_the_disk_as_soon_as_it_is_full(bags, source, tmp_path):
@@ -126,105 +169,40 @@ def test_a_chunk_is_whole_on_the_disk_as_soon_as_it_is_full(bags, source, tmp_pa
             yield message
             if file.stat().st_size > size:
                 size = file.stat().st_size
-                seen.append((number, sum(1 for _ in salvage_records(file).messages())))
+                seen.append((number, sum(1 for _ in read_records(file).messages())))
 
     bags.rewrite(source, 'copy', watched)
     assert len(seen) > 2
     assert [held for _, held in seen] == [written for written, _ in seen]
 
 
-def test_a_repaired_bag_is_read_by_rosbags(killed):
-    rosbag2 = pytest.importorskip('rosbags.rosbag2', reason='rosbags reads the bag')
-    repair = repair_bag(killed)
-    with rosbag2.Reader(killed) as reader:
-        assert reader.message_count == 2 + 15 * (repair.last_step + 1)
-        assert sum(1 for _ in reader.messages()) == reader.message_count
-
-
-def test_repairing_a_whole_bag_changes_nothing(source):
-    before = {file.name: file.read_bytes() for file in source.iterdir()}
-    repair = repair_bag(source)
-    assert (repair.original, repair.last_step) == (None, 200)
-    assert {file.name: file.read_bytes() for file in source.iterdir()} == before
-
-
-def test_repairing_restores_lost_metadata(source):
-    text = (source / 'metadata.yaml').read_text()
+def test_a_lost_metadata_file_is_no_damage(source):
     (source / 'metadata.yaml').unlink()
-    assert repair_bag(source).original is None
-    assert (source / 'metadata.yaml').read_text() == text
+    assert not read_bag(source).unfinished
 
 
-def test_repair_keeps_what_is_before_the_damage(source):
-    file = mcap_of(source)
-    damaged = bytearray(file.read_bytes())
-    with file.open('rb') as stream:
-        chunks = make_reader(stream).get_summary().chunk_indexes
-    middle = chunks[len(chunks) // 2]
-    damaged[middle.chunk_start_offset + middle.chunk_length // 2] ^= 0xFF
-    file.write_bytes(damaged)
-    expected = 100
-    repair = repair_bag(source)
-    assert expected - 2 * TICKS_PER_CHUNK <= repair.last_step <= expected + 2 * TICKS_PER_CHUNK
-    assert read_bag(source).trajectory.steps == repair.last_step
-    assert repair.original.read_bytes() == damaged
-
-
-def test_whatever_bit_is_flipped_only_true_values_are_rescued(bags, trajectory):
-    source = bags.write(trajectory)
-    file = mcap_of(source)
-    whole = file.read_bytes()
-    expected = read_bag(source).trajectory.joint_speed.tolist()
-    rng = random.Random(7)
-    for _ in range(8):
-        damaged = bytearray(whole)
-        damaged[rng.randrange(len(whole))] ^= 1 << rng.randrange(8)
-        file.write_bytes(damaged)
-        try:
-            repair = repair_bag(source)
-        except DdctError:
-            assert file.read_bytes() == damaged
-            continue
-        rescued = read_bag(source).trajectory.joint_speed.tolist()
-        assert rescued == expected[: repair.last_step + 1]
-        repair.original.unlink()
-
-
-def test_a_rescued_file_that_cannot_be_read_back_replaces_nothing(source, monkeypatch):
-    """The disk reports success for bytes that it has not written."""
-
-    def write_badly(path, *rest):
-        write(path, *rest)
-        path.write_bytes(path.read_bytes()[:-100])
-
-    file = mcap_of(source)
-    file.write_bytes(file.read_bytes()[:-3000])
-    before = {each.name: each.read_bytes() for each in source.iterdir()}
-    write = repair._write
-    monkeypatch.setattr(repair, '_write', write_badly)
-    with refused(DdctError, place='pi_0.mcap'):
-        repair_bag(source)
-    assert {each.name: each.read_bytes() for each in source.iterdir()} == before
-
-
-def test_a_second_repair_keeps_the_first_damaged_file(source):
-    file = mcap_of(source)
-    for cut in (3000, 2000):
-        file.write_bytes(file.read_bytes()[:-cut])
-        repair_bag(source)
-    kept = sorted(each.name for each in source.glob('*.damaged*'))
-    assert kept == ['pi_0.mcap.damaged', 'pi_0.mcap.damaged2']
-
-
-@pytest.mark.parametrize('length', [0, 5, 8, 300])
-def test_nothing_to_rescue_is_an_error_and_leaves_the_file_alone(source, length):
+@pytest.mark.parametrize(
+    ('length', 'message'),
+    [
+        *[(0, 'the file is empty'), (5, 'not an MCAP file')],
+        *[(length, 'the recording ends before its first tick') for length in (8, 300, 3000)],
+    ],
+)
+def test_a_recording_that_ends_at_its_beginning_is_refused(source, length, message):
     file = mcap_of(source)
     file.write_bytes(file.read_bytes()[:length])
-    with pytest.raises(DdctError) as caught:
-        repair_bag(source)
-    assert str(file) in caught.value.place
-    assert file.stat().st_size == length
-    assert sorted(each.name for each in source.iterdir()) == ['metadata.yaml', 'pi_0.mcap']
+    with pytest.raises(DdctError, match=f'pi_0.mcap: .*{message}'):
+        read_bag(source)
+
+
+def test_a_recording_that_ends_before_its_first_tick_is_refused(source):
+    file = mcap_of(source)
+    whole = file.read_bytes()
+    with file.open('rb') as stream:
+        first = make_reader(stream).get_summary().chunk_indexes[0]
+    file.write_bytes(whole[: first.chunk_start_offset + first.chunk_length - 1])
+    with pytest.raises(DdctError, match=r'pi_0.mcap: the recording ends before its first tick'):
+        read_bag(source)
 
 
 def test_a_file_size_limit_ends_recording_with_the_name_of_the_file(source, tmp_path):
@@ -236,9 +214,9 @@ def test_a_file_size_limit_ends_recording_with_the_name_of_the_file(source, tmp_
     assert f'{folder}/copy_0.mcap: cannot write the recording (File too large)' in errors
     assert 'Traceback' not in errors
     assert not (folder / 'metadata.yaml').exists()
-    with refused(DdctError, place='copy_0.mcap'):
-        read_bag(folder)
-    assert repair_bag(folder).last_step > 0
+    recording = read_bag(folder)
+    assert recording.unfinished
+    assert recording.trajectory.steps > 0
 
 
 def test_a_disk_that_is_full_at_the_end_leaves_no_whole_bag(source, tmp_path):
@@ -249,9 +227,9 @@ def test_a_disk_that_is_full_at_the_end_leaves_no_whole_bag(source, tmp_path):
     assert process.returncode == 1
     assert 'copy_0.mcap: cannot write the recording (File too large)' in errors
     assert not (folder / 'metadata.yaml').exists()
-    with refused(DdctError, place='copy_0.mcap'):
-        read_bag(folder)
-    assert repair_bag(folder).last_step == 200
+    recording = read_bag(folder)
+    assert recording.unfinished
+    assert recording.trajectory.steps == 200
 
 
 @pytest.fixture
@@ -275,16 +253,3 @@ def test_a_full_disk_is_named_as_such(source, small_disk):
         _, errors = process.communicate(timeout=30.0)
     assert process.returncode == 1
     assert 'copy_0.mcap: cannot write the recording (No space left on device)' in errors
-
-
-def test_repair_on_a_full_disk_leaves_the_damaged_file_alone(killed, small_disk):
-    folder = small_disk / 'bag'
-    folder.mkdir()
-    file = folder / 'copy_0.mcap'
-    shutil.copy(mcap_of(killed), file)
-    before = file.read_bytes()
-    assert len(before) > 64 * 1024
-    with pytest.raises(DdctError, match='No space left on device'):
-        repair_bag(folder)
-    assert file.read_bytes() == before
-    assert [each.name for each in folder.iterdir()] == ['copy_0.mcap']

@@ -7,7 +7,7 @@ import json
 import pytest
 
 from ddct_bringup.bag.reader import mcap_of
-from ddct_bringup.bag.writer import new_bag
+from ddct_bringup.bag.writer import BagWriter
 from ddct_bringup.programs import bringup, compare, score
 from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_plant.bag_file.records import read_records
@@ -37,7 +37,7 @@ def leave(bags, trajectory, monkeypatch):
         records = read_records(mcap_of(bags.write(trajectory, folder='source')))
         facts = {**records.custom_data, 'mode': 'realtime'}
         topics = recorded_topics(RunKind(lockstep=False))
-        with new_bag(folder, 'pi', topics, facts) as bag:
+        with BagWriter(folder, 'pi', topics, facts) as bag:
             for message in records.messages():
                 bag.write(*message)
             bag.write(*diagnostics('/driveline: ticks', {**COUNTS, 'missed_steps': missed}))

@@ -9,12 +9,8 @@ from mcap.writer import CompressionType, Writer
 from refusals import refused
 from support.complaints import assert_one_line
 
-from ddct_bringup.bag.reader import mcap_of, read_bag
-from ddct_bringup.bag.repair import repair_bag
+from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.programs.score import main as score
-from ddct_plant.bag_file import records
-from ddct_plant.bag_file.metadata import HASH_KEY, QOS_KEY
-from ddct_plant.bag_file.records import MAGIC, read_records
 from ddct_plant.base.errors import DdctError
 
 RED = '\x1b[31m'
@@ -86,27 +82,3 @@ def test_metadata_that_is_no_plain_yaml_counts_as_none(tmp_path: Path, metadata:
         writer.finish()
     with refused(DdctError, 'controller', place='odd.mcap'):
         read_bag(file)
-
-
-@pytest.mark.parametrize('damage', ['no hash', 'no schema', 'no text', 'no quality of service'])
-def test_repair_names_the_missing_value_of_a_channel(
-    bags, trajectory, monkeypatch: pytest.MonkeyPatch, damage: str
-) -> None:
-    bag = bags.write(trajectory)
-    found = read_records(mcap_of(bag))
-    messages = list(found.messages())
-    channel = next(iter(found.channels.values()))
-    if damage == 'no hash':
-        del channel.metadata[HASH_KEY]
-    elif damage == 'no schema':
-        del found.schemas[channel.schema_id]
-    elif damage == 'no text':
-        found.schemas[channel.schema_id].data = b'\xff'
-    else:
-        channel.metadata[QOS_KEY] = 'a: &a [*a]'
-    mcap_of(bag).write_bytes(MAGIC)
-    monkeypatch.setattr('ddct_bringup.bag.repair.salvage_records', lambda path: found)
-    monkeypatch.setattr(records.BagRecords, 'messages', lambda bag: iter(messages))
-    with pytest.raises(DdctError, match='cannot be repaired: .*(channels is unusable|alias)'):
-        repair_bag(bag)
-    assert mcap_of(bag).read_bytes() == MAGIC

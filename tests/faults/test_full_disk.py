@@ -45,7 +45,7 @@ def test_a_full_disk_ends_the_run_with_the_file_and_the_reason(
     assert_one_line(errors, 'ddct bringup', 'No space left on device', 'ls8_0.mcap')
     assert not (out / 'ls8').exists()
     assert score.main([str(out / 'ls8.partial')]) == 1
-    assert 'unfinished' in capfd.readouterr().err
+    assert 'incomplete: ' in ' '.join(capfd.readouterr().out.split())
 
 
 def test_a_limit_on_the_size_of_files_ends_the_run_with_the_file_and_the_reason(

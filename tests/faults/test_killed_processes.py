@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Killed and interrupted processes: a reason, no process left, no partial result as complete."""
 
+import json
 import os
 import signal
 from collections.abc import Iterable
@@ -71,7 +72,7 @@ def test_a_killed_node_is_named_and_what_was_recorded_is_kept(
     assert _require_whole_until_its_end(tmp_path / 'runs' / 'ls8.partial', **options) > 20
 
 
-def test_score_repair_rescues_what_a_killed_recorder_wrote(
+def test_score_reads_what_a_killed_recorder_wrote_and_gives_no_figures(
     programs: Programs, tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
     bringup = _running(programs, tmp_path / 'runs')
@@ -80,13 +81,12 @@ def test_score_repair_rescues_what_a_killed_recorder_wrote(
     assert not processes_left()
     assert_one_line(bringup.errors(), 'ddct bringup', 'node recorder was killed by SIGKILL')
     bag = tmp_path / 'runs' / 'ls8.partial'
-    assert score.main([str(bag)]) == 1
-    assert 'ddct score --repair' in capfd.readouterr().err
-    assert score.main([str(bag), '--repair']) == 1, 'a run that ended early is not valid'
-    printed = capfd.readouterr()
-    assert 'rescued steps 0 to' in printed.err
-    assert 'ended early' in printed.out + printed.err
-    assert _require_whole_until_its_end(bag) > 20
+    steps = _require_whole_until_its_end(bag)
+    assert steps > 20
+    assert score.main([str(bag), '--json', '-']) == 1
+    (run,) = json.loads(capfd.readouterr().out)['runs']
+    assert (run['valid'], run['state'], {*run['figures'].values()}) == (False, 'invalid', {None})
+    assert run['reason'] == f'incomplete: {steps} of 360000 steps'
 
 
 @pytest.mark.parametrize(

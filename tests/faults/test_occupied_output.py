@@ -148,9 +148,7 @@ def test_a_partial_result_is_named_and_kept_until_overwrite(
     before = _snapshot(out)
     capfd.readouterr()
     assert _run(out, *SHORT) == 1
-    assert_one_line(
-        capfd.readouterr().err, 'ddct bringup', 'pi.partial', 'ddct score --repair', '--overwrite'
-    )
+    assert_one_line(capfd.readouterr().err, 'ddct bringup', 'pi.partial', '--overwrite')
     assert _snapshot(out) == before
     assert _run(out, *SHORT, '--overwrite') == 0
     assert not (out / 'pi.partial').exists()

@@ -16,7 +16,7 @@ from fuzz.readers import readers
 pytestmark = pytest.mark.slow
 
 NAMES = (
-    *('bag', 'bag_as_log', 'repair', 'log', 'controller', 'fmu_description', 'fmu'),
+    *('bag', 'bag_as_log', 'unfinished_bag', 'log', 'controller', 'fmu_description', 'fmu'),
     *('timing', 'failed_run', 'repeated_failure', 'digests', 'scores', 'verified_scores'),
     *('frequency', 'campaign', 'manifest', 'results', 'result_row', 'summary'),
     *('benchmark', 'benchmark_rows', 'update_times', 'floor'),

@@ -10,7 +10,6 @@ ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = ('ddct_plant', 'ddct_reference', 'ddct_controllers', 'ddct_bringup')
 MAPPINGS = {'dict', 'Mapping', 'MutableMapping'}
 FILES = {
-    'ddct_plant/bag_file/message_definitions.py': 'definitions of message types, YAML',
     'ddct_plant/bag_file/metadata.py': 'metadata.yaml of a bag',
     'ddct_plant/bag_file/records.py': 'metadata in an MCAP file',
     'ddct_bringup/bag/run_facts.py': 'custom data of a bag',

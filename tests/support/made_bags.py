@@ -11,7 +11,7 @@ import pytest
 from ddct_bringup.bag.reader import mcap_of
 from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.bag.writer import new_bag
+from ddct_bringup.bag.writer import BagWriter
 from ddct_plant.bag_file.records import read_records
 from ddct_plant.models.driveline import PhaseEvent
 from ddct_plant.signals.signal import RunKind
@@ -99,7 +99,7 @@ class Bags:
         bag = self.folder / name
         known = {topic.resolved_name: topic for topic in all_topics()}
         topics = [known[channel.topic] for channel in records.channels.values()]
-        with new_bag(bag, name, topics, {**records.custom_data, **changes}) as writer:
+        with BagWriter(bag, name, topics, {**records.custom_data, **changes}) as writer:
             for message in edit(list(records.messages())):
                 writer.write(*message)
         return bag

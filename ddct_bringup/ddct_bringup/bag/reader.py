@@ -2,24 +2,24 @@
 # SPDX-License-Identifier: Apache-2.0
 """Read a recorded bag into a trajectory, its facts and counts, without ROS."""
 
-from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from ddct_bringup.bag.realtime_facts import RealtimeFacts
 from ddct_bringup.bag.recording import Recording, require_consistent
 from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.run_info import RUN_INFO_TOPICS, RunInfoOfNodes, add_run_info
-from ddct_bringup.bag.ticks import check_ticks
-from ddct_bringup.bag.topic_values import Column, TopicValues
+from ddct_bringup.bag.ticks import BEFORE_FIRST_TICK, check_ticks, last_whole_tick
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_plant.bag_file.decoding import decoded_columns
+from ddct_plant.bag_file.decoding import Column, TopicColumns, read_columns
 from ddct_plant.bag_file.facts import require_last_step
 from ddct_plant.bag_file.records import BagRecords, read_records
 from ddct_plant.base.errors import DdctError
+from ddct_plant.base.timebase import PERIOD_NS, START_NS
 from ddct_plant.files.input_file import located, mcap_of
 from ddct_plant.graph.node_names import StatusName, name_in_graph
 from ddct_plant.signals.signal import RunKind
@@ -29,11 +29,11 @@ from ddct_plant.signals.topics import DIAGNOSTICS, JOINT_STATES, recorded_topics
 
 def read_bag(path: Path) -> Recording:
     """
-    Read a bag folder or its .mcap file.
+    Read a bag folder or its .mcap file; one without a footer up to its last whole tick.
 
-    Raise DdctError for a missing, unfinished, damaged or foreign bag, for a message that is
-    missing, doubled or cannot be decoded, and for a node with two different messages on
-    `run_info`. A run that ended early, or that has non-finite values, is no error here.
+    Raise DdctError for a missing, damaged or foreign bag, for a message that is missing, doubled
+    or cannot be decoded, and for a node with two different messages on `run_info`. A run that
+    ended early, or that has non-finite values, is no error here.
     """
     records = read_records(mcap_of(path))
     with located(str(records.path)):
@@ -42,28 +42,24 @@ def read_bag(path: Path) -> Recording:
 
 def recording_of(records: BagRecords) -> Recording:
     """Decode the records of a bag; raise the errors of `read_bag`, without the file's name."""
-    if JOINT_STATES.resolved_name not in records.topics:
-        raise DdctError(
-            f'no topic {JOINT_STATES.resolved_name}: not a recording of this project',
-            key=JOINT_STATES.resolved_name,
-        )
+    _require_joint_states(records)
     facts = RunFacts.from_custom_data(records.custom_data)
     run = facts.kind_of_bag(records.topics)
-    found = _Found.of(records, run)
-    last = check_ticks({name: each.stamps for name, each in found.values.items()}, run)
+    found = _found(records, run)
+    last = check_ticks({name: each.stamps.tolist() for name, each in found.items()}, run)
     require_last_step(records.custom_data, last)
     columns: dict[str, Column] = {}
     missed: dict[str, int] = {}
     absent: dict[str, str] = {}
     for topic in _topics_with_signals(run):
-        values = found.values.pop(topic.resolved_name, None) or _no_values(topic, run)
-        if not values.stamps:
+        each = found[topic.resolved_name]
+        if not each.stamps.size:
             if not topic.optional:
                 raise DdctError(f'no message on {topic.resolved_name}', key=topic.resolved_name)
             reason = f'the node {topic.publisher} did not publish {topic.name}'
             absent |= dict.fromkeys((signal.name for signal in topic.signals), reason)
             continue
-        at_ticks, missing = values.at_ticks(last)
+        at_ticks, missing = _at_ticks(each, last)
         columns |= at_ticks
         if missing and topic.in_run(run):
             missed[topic.name] = missing
@@ -72,48 +68,41 @@ def recording_of(records: BagRecords) -> Recording:
         trajectory=Trajectory.of_columns(columns),
         facts=facts,
         custom_data=records.custom_data,
-        run_info=_run_info(found.messages),
-        counts=dict(found.counts),
+        run_info=_run_info(found),
+        counts={name: len(each.stamps) for name, each in found.items() if each.stamps.size},
         missed=missed,
-        realtime=_realtime(found.messages.get(DIAGNOSTICS.resolved_name, ())),
+        realtime=_realtime(found[DIAGNOSTICS.resolved_name].messages),
         absent=absent,
+        unfinished=records.unfinished,
     )
     require_consistent(recording)
     return recording
 
 
-@dataclass(frozen=True)
-class _Found:
-    """What is kept of the messages of a bag while it is read."""
+def _require_joint_states(records: BagRecords) -> None:
+    if JOINT_STATES.resolved_name in records.topics:
+        return
+    if records.unfinished:
+        raise DdctError(BEFORE_FIRST_TICK)
+    raise DdctError(
+        f'no topic {JOINT_STATES.resolved_name}: not a recording of this project',
+        key=JOINT_STATES.resolved_name,
+    )
 
-    counts: Counter[str] = field(default_factory=Counter)
-    """Number of messages by resolved topic name."""
-    values: dict[str, TopicValues] = field(default_factory=dict)
-    """Values of the topics of every tick that the run has, by resolved name."""
-    messages: dict[str, list[tuple[int, Any]]] = field(default_factory=dict)
-    """(stamp in ns, message) of the few topics whose messages are needed, by resolved name."""
 
-    @classmethod
-    def of(cls, records: BagRecords, run: RunKind) -> '_Found':
-        """Decode all messages; raise DdctError for one that is unusable."""
-        found = cls()
-        kept = {*RUN_INFO_TOPICS, DIAGNOSTICS}
-        ticks = [topic for topic in recorded_topics(run) if topic.every_tick]
-        found.values.update({topic.resolved_name: _no_values(topic, run) for topic in ticks})
-        numbers = [each for each in ticks if each.kind.numbers_alone and each not in kept]
-        for topic, stamps, message in decoded_columns(records, numbers):
-            name = topic.resolved_name
-            with _values_named(topic):
-                if not isinstance(stamps, int):
-                    found.counts[name] += len(stamps)
-                    found.values[name].add_columns(stamps, topic.values(message))
-                    continue
-                found.counts[name] += 1
-                if topic in kept:
-                    found.messages.setdefault(name, []).append((stamps, message))
-                if name in found.values:
-                    found.values[name].add(stamps, topic.values(message))
+def _found(records: BagRecords, run: RunKind) -> dict[str, TopicColumns]:
+    """Return the messages of a bag by resolved name, of an unfinished one those of whole ticks."""
+    topics = {topic: topic.signals_in(run) for topic in _topics(run)}
+    found = {topic.resolved_name: each for topic, each in read_columns(records, topics).items()}
+    if not records.unfinished:
         return found
+    last = last_whole_tick({name: each.stamps.tolist() for name, each in found.items()}, run)
+    return {name: each.until(last) for name, each in found.items()}
+
+
+def _topics(run: RunKind) -> set[Topic]:
+    """Return the topics that a run of this kind has, or that say something of it."""
+    return {*recorded_topics(replace(run, torque_parts=True)), *RUN_INFO_TOPICS, DIAGNOSTICS}
 
 
 def _topics_with_signals(run: RunKind) -> list[Topic]:
@@ -122,36 +111,41 @@ def _topics_with_signals(run: RunKind) -> list[Topic]:
     return [topic for topic in topics if topic.signals]
 
 
-def _no_values(topic: Topic, run: RunKind) -> TopicValues:
-    return TopicValues(topic.resolved_name, topic.signals_in(run))
+def _at_ticks(topic: TopicColumns, last: int) -> tuple[dict[str, Column], int]:
+    """
+    Return the columns at t_0..t_N by signal, and the number of these stamps without a message.
+
+    A column has (N+1,) or (N+1, n) numbers, or N + 1 other values. A stamp without a message
+    repeats the last one before; before the first message, the first.
+    """
+    steps = (topic.stamps - START_NS) // PERIOD_NS
+    index = np.full(last + 1, -1)
+    at_tick = np.flatnonzero(steps <= last)
+    index[steps[at_tick]] = at_tick
+    before = np.maximum.accumulate(np.where(index >= 0, np.arange(last + 1), -1))
+    rows = np.where(before >= 0, index[before], int(np.argmin(topic.stamps)))
+    columns: dict[str, Column] = {}
+    for signal, column in zip(topic.signals, topic.values, strict=True):
+        if isinstance(column, np.ndarray):
+            columns[signal.name] = column[rows]
+        else:
+            columns[signal.name] = tuple(column[row] for row in rows)
+    return columns, int(np.count_nonzero(index < 0))
 
 
-@contextmanager
-def _values_named(topic: Topic) -> Iterator[None]:
-    """Raise DdctError that names the topic where a message lacks a value."""
-    try:
-        yield
-    except DdctError as error:
-        raise error if error.key else error.at(topic.resolved_name) from error
-    except (LookupError, AttributeError, ValueError, TypeError) as error:
-        raise DdctError(
-            f'{topic.resolved_name}: a message lacks a value ({error})', key=topic.resolved_name
-        ) from error
-
-
-def _realtime(messages: Sequence[tuple[int, Any]]) -> RealtimeFacts:
+def _realtime(messages: Sequence[Any]) -> RealtimeFacts:
     facts = RealtimeFacts()
-    for _, message in messages:
+    for message in messages:
         if message.status:
             name, pairs = DIAGNOSTICS.read(message)
             facts.receive(StatusName.of(name), pairs)
     return facts
 
 
-def _run_info(messages: Mapping[str, Sequence[tuple[int, Any]]]) -> RunInfoOfNodes:
+def _run_info(found: Mapping[str, TopicColumns]) -> RunInfoOfNodes:
     received: RunInfoOfNodes = {}
     for topic in RUN_INFO_TOPICS:
-        for _, message in messages.get(topic.resolved_name, ()):
+        for message in found[topic.resolved_name].messages:
             node, pairs = topic.read(message)
             add_run_info(received, name_in_graph(node), pairs)
     return received

@@ -31,7 +31,7 @@ _OF_NODES = ('scenario', 'architecture', 'clutch', 'mode', 'seed')
 
 @dataclass(frozen=True)
 class Recording:
-    """Contents of a complete bag: signals, facts of the run, run_info and message counts."""
+    """Contents of a bag: signals, facts of the run, run_info and message counts."""
 
     path: Path
     """Path of the MCAP file."""
@@ -51,6 +51,8 @@ class Recording:
     Reason by quantity for quantities that the recording lacks: NaN in the log of another tool,
     and no signal of the trajectory where a controller's node leaves out an optional topic.
     """
+    unfinished: bool = False
+    """Whether the bag has no footer: it is the beginning of a run, without scores."""
     simulated: RunSettings | None = None
     """Settings of a run that was simulated in this process; None of a bag."""
 

@@ -4,6 +4,7 @@
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from itertools import count
 
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import stamp_of_step, step_of_stamp, time_of_step
@@ -12,6 +13,10 @@ from ddct_plant.signals.topics import JOINT_STATES, recorded_topics
 
 Stamps = Mapping[str, Sequence[int]]
 """Stamps in ns of a topic's messages, by resolved topic name."""
+
+
+BEFORE_FIRST_TICK = 'the recording ends before its first tick: record the run again'
+"""Error of an unfinished recording without a whole tick."""
 
 
 def tick_topics(run: RunKind, *, replies: bool) -> list[str]:
@@ -23,13 +28,18 @@ def tick_topics(run: RunKind, *, replies: bool) -> list[str]:
     ]
 
 
-def complete_ticks(stamps: Stamps, topics: Sequence[str]) -> int:
-    """Return the number of ticks from t_0 on with a message on each of `topics`, without a gap."""
-    present = [set(stamps.get(topic, ())) for topic in topics]
-    count = 0
-    while all(stamp_of_step(count) in each for each in present):
-        count += 1
-    return count
+def last_whole_tick(stamps: Stamps, run: RunKind) -> int:
+    """
+    Return the stamp in ns of the last tick before the first that lacks a message.
+
+    In real time a tick may lack replies. Raise DdctError where the first tick lacks one.
+    """
+    topics = tick_topics(run, replies=run.lockstep)
+    whole = set(stamps.get(topics[0], ())).intersection(*(stamps.get(name, ()) for name in topics))
+    step = next(step for step in count() if stamp_of_step(step) not in whole)
+    if not step:
+        raise DdctError(BEFORE_FIRST_TICK)
+    return stamp_of_step(step - 1)
 
 
 def check_ticks(stamps: Stamps, run: RunKind) -> int:
@@ -61,13 +71,13 @@ def check_ticks(stamps: Stamps, run: RunKind) -> int:
 
 
 def _check_single(topic: str, stamps: Sequence[int]) -> None:
-    for stamp, count in Counter(stamps).items():
+    for stamp, number in Counter(stamps).items():
         try:
             step = step_of_stamp(stamp)
         except DdctError as error:
             raise DdctError(f'{topic}: {error}', key=topic) from error
-        if count > 1:
-            raise DdctError(f'{topic} has {count} messages at {_place(step)}', key=topic)
+        if number > 1:
+            raise DdctError(f'{topic} has {number} messages at {_place(step)}', key=topic)
 
 
 def _place(step: int) -> str:

@@ -3,28 +3,27 @@
 """
 Write a trajectory as a bag with the same bytes as the recorder's of the same run.
 
-Needs no ROS: the MCAP library builds and serialises the messages from their definitions.
+Needs no ROS: the messages are built and serialised from their definitions.
 """
 
-from collections.abc import Callable, Mapping
-from functools import cache
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from mcap_ros2._dynamic import generate_dynamic, serialize_dynamic
+import numpy as np
 
 from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.run_info import run_info_order, run_info_topic
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.bag.writer import new_bag
-from ddct_plant.bag_file.cdr_numbers import message_serialiser
-from ddct_plant.bag_file.message_definitions import load_definition
+from ddct_bringup.bag.writer import BagWriter
+from ddct_plant.bag_file.message_definitions import encode, message_class
+from ddct_plant.bag_file.number_columns import NumberColumns
 from ddct_plant.base.timebase import START_NS, stamp_of_step
 from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import RUN_INFO, recorded_topics
 
-_ZEROS = b'\x00\x01' + bytes(510)
-"""CDR of zeros, longer than any recorded type: decodes as zeros, empty texts and empty lists."""
+_TOGETHER = 512
+"""Number of messages of a topic that are serialised at once; it bounds the memory of a run."""
 
 
 def write_trajectory(
@@ -46,44 +45,33 @@ def write_trajectory(
         torque_parts=trajectory.torque_parts,
     )
     topics = recorded_topics(run)
-    with new_bag(folder, name, topics, custom_data) as bag:
-        info_of = _of_topic(RUN_INFO)
+    stamps = np.array([stamp_of_step(k) for k in range(trajectory.steps + 1)])
+    with BagWriter(folder, name, topics, custom_data) as bag:
+        info = RUN_INFO.writer(message_class)
         for node in run_info_order(run_info):
-            info = info_of(START_NS, run_info[node].items(), name=node)
-            bag.write(run_info_topic(node).name, START_NS, info)
-        writers = [
-            (topic.name, _of_topic(topic), topic.signals_in(run))
+            message = info(START_NS, run_info[node].items(), name=node)
+            bag.write(run_info_topic(node).name, START_NS, encode(message))
+        ticks = {
+            topic.name: _messages(
+                topic, stamps, [trajectory.signals[each.name] for each in topic.signals_in(run)]
+            )
             for topic in topics
             if topic.every_tick
-        ]
-        for k in range(trajectory.steps + 1):
-            stamp = stamp_of_step(k)
-            for topic_name, serialise, signals in writers:
-                values = (trajectory.signals[signal.name][k] for signal in signals)
-                bag.write(topic_name, stamp, serialise(stamp, *values))
+        }
+        for stamp, *messages in zip(stamps.tolist(), *ticks.values(), strict=True):
+            for topic_name, cdr in zip(ticks, messages, strict=True):
+                bag.write(topic_name, stamp, cdr)
     return bag.path
 
 
-def _of_topic(topic: Topic) -> Callable[..., bytes]:
-    """Return a function `serialise(stamp_ns, *values, **options)` for messages of a topic."""
-    return message_serialiser(topic.kind, topic.writer(plain_class), serialiser(topic.type))
-
-
-@cache
-def plain_class(type_name: str) -> Callable[..., Any]:
-    """Return a constructor of messages of a type, called as its ROS class: `new(field=value)`."""
-    decode = generate_dynamic(type_name, load_definition(type_name).schema_text)[type_name]
-
-    def new(**values: Any) -> Any:
-        message = decode(_ZEROS)
-        for name, value in values.items():
-            setattr(message, name, value)
-        return message
-
-    return new
-
-
-@cache
-def serialiser(type_name: str) -> Callable[[Any], bytes]:
-    """Return the CDR serialiser of a message type; its bytes equal those of ROS."""
-    return serialize_dynamic(type_name, load_definition(type_name).schema_text)[type_name]
+def _messages(topic: Topic, stamps: np.ndarray, columns: Sequence[Any]) -> Iterator[bytes]:
+    """Yield the messages of a topic with (n,) stamps in ns and columns of n values by signal."""
+    if not topic.kind.numbers_alone:
+        write = topic.writer(message_class)
+        for stamp, *values in zip(stamps.tolist(), *columns, strict=True):
+            yield encode(write(stamp, *values))
+        return
+    layout = NumberColumns(topic, [column[0] for column in columns])
+    for first in range(0, len(stamps), _TOGETHER):
+        part = slice(first, first + _TOGETHER)
+        yield from layout.encode(stamps[part], [column[part] for column in columns])

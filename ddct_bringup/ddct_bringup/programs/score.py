@@ -4,12 +4,10 @@
 
 import argparse
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
-from ddct_bringup.bag.measured_run import add_columns_option, is_log, read_recording
-from ddct_bringup.bag.recording import Recording
-from ddct_bringup.bag.repair import repair_bag
+from ddct_bringup.bag.measured_run import add_columns_option, read_recording
 from ddct_bringup.digests.writing import keep_digests
 from ddct_bringup.run.output_folder import is_ours, locked_folders
 from ddct_bringup.scores.bags import bag_name, bags_in
@@ -26,7 +24,7 @@ from ddct_bringup.verdict.limits import Limits, add_limits_option, load_limits
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.json_records import write_json
 from ddct_plant.files.output_file import STDOUT, require_one_for_stdout, write_text
-from ddct_plant.measured.columns import ColumnMap, load_columns
+from ddct_plant.measured.columns import load_columns
 from ddct_plant.program.command_line import ProgramParser, complain, run_program
 from ddct_plant.program.progress import with_progress
 
@@ -41,12 +39,12 @@ examples:
   ddct score runs/demo --signals-csv signals  also every signal, one file per bag
   ddct score runs/demo --signals-mat signals  the same as MAT files, for MATLAB
   ddct score runs/demo --limits mine.yaml     judged by other limits than the packaged ones
-  ddct score --repair runs/broken/pi          rescue an interrupted recording, then score it
 
 The exit code is 0 only if every bag was scored and valid: whole, of the length that the
 run was meant to have, every value finite; in real time also at most {MISS_TOLERANCE:.0%} of the
 steps without a reply, and no node in its safe state. A run that a stalled or over-revved
-engine ended is valid: that is its state.
+engine ended is valid: that is its state. A bag that its recorder could not finish is read as
+far as it is whole, and has no figures.
 Figures run from control start to the end. Jerk: A_x through a 20 Hz low-pass without delay.
 """
 
@@ -61,7 +59,7 @@ def _score(argv: list[str]) -> int:
     require_one_for_stdout(options.json, options.csv)
     limits = load_limits(options.limits)
     bags = bags_in(options.bags)
-    with locked_folders(*_run_folders(options, [bag for bag, _ in bags])):
+    with locked_folders(*_run_folders(options)):
         written: list[Path | str] = []
         runs = _scored(bags, options, limits, written)
         if options.json:
@@ -75,13 +73,12 @@ def _score(argv: list[str]) -> int:
     return 0 if all(run.valid for run in runs) else 1
 
 
-def _run_folders(options: argparse.Namespace, bags: Iterable[Path]) -> list[Path]:
+def _run_folders(options: argparse.Namespace) -> list[Path]:
     """Return the folders of runs into which these options write."""
     files = (options.json, options.csv)
     folders = [Path(file).parent for file in files if file not in (None, STDOUT)]
     folders += [each for each in _signal_folders(options).values() if each is not None]
-    repaired = [bag if bag.is_dir() else bag.parent for bag in bags] if options.repair else []
-    return [*filter(is_ours, folders), *repaired]
+    return list(filter(is_ours, folders))
 
 
 def _scored(
@@ -98,7 +95,7 @@ def _scored(
     for bag, folder in with_progress(bags, len(bags), 'scoring'):
         recording = None
         try:
-            recording = _read(bag, options, columns)
+            recording = read_recording(bag, columns)
             name = bag_name(bag, folder)
             for line in recording.custom_data.get('adjusted', '').splitlines():
                 complain(PROGRAM, f'{name}: {line}')
@@ -114,14 +111,6 @@ def _scored(
             write_signals(target, f'{stems[bag]}.{ending}', recording)
             written.append(target / f'{stems[bag]}.{ending}')
     return runs
-
-
-def _read(bag: Path, options: argparse.Namespace, columns: ColumnMap | None) -> Recording:
-    if options.repair and not is_log(bag):
-        repair = repair_bag(bag)
-        if repair.original is not None:
-            complain(PROGRAM, repair)
-    return read_recording(bag, columns)
 
 
 def _signal_folders(options: argparse.Namespace) -> dict[str, Path | None]:
@@ -158,11 +147,6 @@ def _parser() -> argparse.ArgumentParser:
         metavar='DIR',
         type=Path,
         help='write the same signals to MAT files, for MATLAB, Octave and scipy',
-    )
-    parser.add_argument(
-        '--repair',
-        action='store_true',
-        help='rescue unfinished and damaged bags first; the damaged file is kept beside',
     )
     return parser
 

@@ -10,11 +10,13 @@ from pathlib import Path
 from rclpy.serialization import serialize_message
 
 from ddct_bringup.bag.run_info import run_info_topic
-from ddct_bringup.bag.writer import BagWriter, new_bag
+from ddct_bringup.bag.writer import BagWriter
 from ddct_bringup.record.run_info_collector import RunInfoCollector
 from ddct_bringup.record.tick_buffer import Tick
 from ddct_bringup.run.description import custom_data
-from ddct_plant.bag_file.cdr import stamp_of_cdr
+from ddct_plant.bag_file.cdr import CdrNormaliser, stamp_of_cdr
+from ddct_plant.bag_file.message_definitions import load_definition
+from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import START_NS, stamp_of_step
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.signals.signal import RunKind
@@ -46,6 +48,7 @@ class RecordedBag:
         self._nodes = nodes
         self._acknowledge = acknowledge
         self._bag: BagWriter | None = None
+        self._normalisers: dict[str, CdrNormaliser] = {}
         self._unwritten: list[tuple[int, Tick]] = []
         self._unordered: list[tuple[str, int, bytes]] = []
         self._first_tick_at = 0.0
@@ -80,7 +83,7 @@ class RecordedBag:
         if self._bag is None:
             self._unordered.append((topic.name, stamp_of_cdr(cdr), cdr))
         else:
-            self._bag.write(topic.name, stamp_of_cdr(cdr), cdr)
+            self._write(self._bag, topic.name, stamp_of_cdr(cdr), cdr)
 
     def close(self) -> None:
         """Finish the bag; raise DdctError when that fails."""
@@ -92,7 +95,15 @@ class RecordedBag:
         tick[RECORDER_ACK.name] = self._acknowledge(stamp)
         for topic in self._tick_topics:
             if topic in tick:
-                bag.write(topic, stamp, tick[topic])
+                self._write(bag, topic, stamp, tick[topic])
+
+    def _write(self, bag: BagWriter, topic: str, stamp: int, cdr: bytes) -> None:
+        """Write a message reproducibly; raise DdctError for one of another type."""
+        try:
+            data = self._normalisers[topic].normalise(cdr)
+        except DdctError as error:
+            raise DdctError(f'{topic} at stamp {stamp} ns: {error}', key=topic) from error
+        bag.write(topic, stamp, data)
 
     def _open(self) -> BagWriter | None:
         """Create the bag with every `run_info`; None while one is missing."""
@@ -101,12 +112,15 @@ class RecordedBag:
         facts = custom_data(self._settings, self._nodes.controller, self._nodes.steps)
         topics = recorded_topics(replace(self._run, torque_parts=bool(self._nodes.torque_parts)))
         self._tick_topics = [topic.name for topic in topics if topic.every_tick]
-        bag = self._bag = new_bag(*self._path, topics, facts)
+        self._normalisers = {
+            topic.name: CdrNormaliser(load_definition(topic.type)) for topic in topics
+        }
+        bag = self._bag = BagWriter(*self._path, topics, facts)
         for node, pairs in self._nodes.received().items():
             # A new message: a third party's node may stamp its own with wall-clock time.
             message = RUN_INFO.message(START_NS, pairs.items(), name=node)
-            bag.write(run_info_topic(node).name, START_NS, serialize_message(message))
+            self._write(bag, run_info_topic(node).name, START_NS, serialize_message(message))
         for topic, stamp, cdr in self._unordered:
-            bag.write(topic, stamp, cdr)
+            self._write(bag, topic, stamp, cdr)
         self._first_tick_at = time.monotonic()
         return bag

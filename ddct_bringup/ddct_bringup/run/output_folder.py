@@ -46,8 +46,8 @@ class StagedFolder:
         require_ours_or_empty(self.path)
         if not overwrite and any(self.path.rglob('*.mcap')):
             raise DdctError(
-                f'{self.path} holds what an interrupted run left: rescue it with '
-                '`ddct score --repair`, then remove it or add --overwrite'
+                f'{self.path} holds what an interrupted run left: remove it or add --overwrite '
+                '(`ddct score` and `ddct report` show it)'
             )
         with _io_errors_named(self.path, 'written'):
             if self.path.exists():

@@ -17,6 +17,7 @@ from ddct_bringup.run.timing_and_failure import RunTiming, failed_run, read_timi
 from ddct_bringup.scores.bags import bag_name
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.scores.scoring import run_without_score, score_run, unreadable_run
+from ddct_bringup.scores.validity import incomplete
 from ddct_bringup.verdict.limits import Limits
 from ddct_plant.base.errors import DdctError
 from ddct_plant.measured.columns import ColumnMap
@@ -109,7 +110,8 @@ def score_recording(recording: Recording, name: str, limits: Limits) -> ScoredRe
     folder = recording.path.parent
     timing = read_timing(folder)
     if failure := failed_run(folder):
-        scores = run_without_score(name, recording.facts, failure.reason)
+        reasons = filter(None, (incomplete(recording), failure.reason))
+        scores = run_without_score(name, recording.facts, '; '.join(reasons))
     else:
         scores = score_run(recording, name, limits, timing)
     return ScoredRecording(scores, recording, timing)

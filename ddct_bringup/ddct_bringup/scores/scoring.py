@@ -17,10 +17,10 @@ from ddct_bringup.metrics.values import metrics_of, null_reasons, window_steps
 from ddct_bringup.run.timing_and_failure import RunTiming, failed_run
 from ddct_bringup.scores.bags import bag_name
 from ddct_bringup.scores.scored_run import ScoredRun
-from ddct_bringup.scores.validity import engine_end, safe_state, why_invalid
+from ddct_bringup.scores.validity import engine_end, incomplete, safe_state, why_invalid
 from ddct_bringup.verdict.limits import Limits
 from ddct_bringup.verdict.state import INVALID, State, state_of
-from ddct_plant.bag_file.records import salvage_records
+from ddct_plant.bag_file.records import readable_custom_data
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import steps_in
 from ddct_plant.files.input_file import mcap_of
@@ -43,8 +43,14 @@ _COUNT = re.compile('[0-9]{1,9}')
 def score_run(
     recording: Recording, bag: str, limits: Limits, timing: RunTiming | None
 ) -> ScoredRun:
-    """Score and judge a recording without reading files next to its bag."""
+    """
+    Score and judge a recording without reading files next to its bag.
+
+    That of an unfinished bag has no score.
+    """
     facts = recording.facts
+    if recording.unfinished:
+        return run_without_score(bag, facts, incomplete(recording))
     reason = why_invalid(recording)
     engagement = engagement_of(recording, timing)
     metrics = metrics_of(engagement)
@@ -84,7 +90,7 @@ def unreadable_run(path: Path, error: DdctError, *, relative_to: Path | None = N
     if failure := failed_run(path if path.is_dir() else path.parent):
         return run_without_score(name, failure.facts, failure.reason)
     try:
-        facts = RunFacts.from_custom_data(salvage_records(mcap_of(path)).custom_data)
+        facts = RunFacts.from_custom_data(readable_custom_data(mcap_of(path)))
     except DdctError:
         return run_without_score(name, None, str(error))
     return run_without_score(name, facts, str(error))

@@ -41,6 +41,13 @@ def why_invalid(recording: Recording) -> str:
     return '; '.join([*reasons, *wrong])
 
 
+def incomplete(recording: Recording) -> str:
+    """Return how much of a run an unfinished bag has, which is why it is invalid; else ''."""
+    if not recording.unfinished:
+        return ''
+    return f'incomplete: {recording.trajectory.steps} of {recording.facts.steps} steps'
+
+
 def wrong_values(trajectory: Trajectory) -> list[str]:
     """Return for each signal with a value that no signal has the time of the first such value."""
     found = []

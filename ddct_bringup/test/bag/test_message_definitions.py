@@ -10,16 +10,16 @@ from pathlib import Path
 import pytest
 from refusals import refused
 
-from ddct_bringup.bag.trajectory_bag import plain_class
 from ddct_plant.bag_file.message_definitions import (
-    definition_in,
+    encode,
     load_definition,
-    message_types,
+    message_class,
+    same_definition,
 )
 from ddct_plant.base.errors import DdctError
 from ddct_plant.signals.topics import TOPICS
 
-TYPES = message_types()
+TYPES = sorted({name for topic in TOPICS for name in load_definition(topic.type).fields})
 
 
 def installed(type_name, suffix):
@@ -53,37 +53,41 @@ def stripped(type_name):
 
 @pytest.mark.parametrize('type_name', TYPES)
 def test_fields_and_constants_are_those_of_ros(type_name):
-    assert TYPES[type_name]['fields'] == stripped(type_name)
+    text = load_definition(type_name).schema_text.partition('\n===')[0]
+    assert text.split('\n')[: len(stripped(type_name))] == stripped(type_name)
+    assert not text.split('\n', len(stripped(type_name)))[-1].strip()
 
 
 @pytest.mark.parametrize('type_name', TYPES)
 def test_the_hash_is_that_of_ros(type_name):
     hashes = json.loads(installed(type_name, '.json'))['type_hashes']
-    assert {'type_name': type_name, 'hash_string': TYPES[type_name]['hash']} in hashes
-
-
-def test_every_type_on_the_graph_is_defined_and_no_other():
-    used = {name for topic in TOPICS for name in load_definition(topic.type).fields}
-    assert used == set(TYPES)
+    found = load_definition(type_name).type_hash
+    assert {'type_name': type_name, 'hash_string': found} in hashes
 
 
 @pytest.mark.parametrize('type_name', sorted({topic.type for topic in TOPICS}))
 def test_a_message_made_without_ros_is_serialised_as_one_of_ros(type_name):
     serialization = pytest.importorskip('rclpy.serialization', reason='ROS is not installed')
-    from ddct_bringup.bag.trajectory_bag import serialiser
     from ddct_plant.bag_file.cdr import CdrNormaliser
     from ddct_plant.signals.message_kind import ros_class
 
     clean = CdrNormaliser(load_definition(type_name)).normalise
     theirs = clean(serialization.serialize_message(ros_class(type_name)()))
-    assert serialiser(type_name)(plain_class(type_name)()) == theirs
+    assert encode(message_class(type_name)()) == theirs
 
 
-def test_a_type_that_is_not_defined_is_named():
+def test_a_type_that_ros_does_not_have_is_named():
     with refused(DdctError, 'a_msgs/msg/B'):
-        definition_in({'c/msg/C': {'hash': '', 'fields': ['a_msgs/B b']}}, 'c/msg/C')
+        load_definition('a_msgs/msg/B')
 
 
-def test_a_line_that_is_no_field_is_named():
-    with pytest.raises(DdctError, match="'float64' is no field"):
-        definition_in({'c/msg/C': {'hash': '', 'fields': ['float64']}}, 'c/msg/C')
+def test_a_definition_with_comments_is_the_same_and_one_with_another_field_is_not():
+    clock = 'rosgraph_msgs/msg/Clock'
+    text = load_definition(clock).schema_text
+    assert same_definition(clock, text)
+    assert same_definition(clock, f'# the time\n{text}')
+    assert not same_definition(clock, text.replace('uint32', 'int32'))
+    assert not same_definition(clock, text.replace(' clock', ' time'))
+    assert not same_definition(clock, 'what is this?')
+    with pytest.raises(DdctError, match='unusable message definition'):
+        same_definition(clock, 'string} \x1b[2J')

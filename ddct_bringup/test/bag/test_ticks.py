@@ -6,7 +6,7 @@ import pytest
 from made_run import made_facts
 from refusals import refused
 
-from ddct_bringup.bag.ticks import check_ticks, complete_ticks, tick_topics
+from ddct_bringup.bag.ticks import check_ticks, last_whole_tick, tick_topics
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import stamp_of_step
 from ddct_plant.signals.signal import RunKind
@@ -84,11 +84,21 @@ def test_a_topic_without_any_message_is_an_error():
         check_ticks(stamps, LOCKSTEP)
 
 
-def test_complete_ticks_end_at_the_first_hole():
+def test_the_last_whole_tick_is_that_before_the_first_hole():
     stamps = stamps_of(5)
     stamps['/recorder/ack'].remove(stamp_of_step(3))
-    assert complete_ticks(stamps, tick_topics(LOCKSTEP, replies=True)) == 3
-    assert complete_ticks(stamps, tick_topics(REALTIME, replies=False)) == 6
+    assert last_whole_tick(stamps, LOCKSTEP) == stamp_of_step(2)
+    assert last_whole_tick(stamps, REALTIME) == stamp_of_step(5)
+
+
+@pytest.mark.parametrize('lockstep', [True, False])
+def test_a_recording_without_a_whole_tick_is_refused(lockstep):
+    stamps = stamps_of(5)
+    stamps['/clock'].remove(stamp_of_step(0))
+    with pytest.raises(DdctError, match='ends before its first tick'):
+        last_whole_tick(stamps, RunKind(lockstep))
+    with pytest.raises(DdctError, match='ends before its first tick'):
+        last_whole_tick({}, RunKind(lockstep))
 
 
 def test_engine_torque_request_is_needed_once_it_was_recorded():

@@ -14,8 +14,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
 from ddct_plant.bag_file.cdr_walk import BODY, HEADER, Walk
 from ddct_plant.bag_file.message_definitions import MessageDefinition
 from ddct_plant.base.errors import DdctError
@@ -108,21 +106,7 @@ class CdrDecoder:
 
     def __call__(self, cdr: bytes) -> Any:
         """Return a message with the fields of its type; raise DdctError for another type."""
-        return self._walk(cdr).message(cdr)
-
-    def columns(self, cdrs: Sequence[bytes]) -> Any:
-        """
-        Return messages as one, whose numbers are (n,) arrays; raise DdctError for another type.
-
-        None where a text or a length differs from that of the first message.
-        """
-        walk, size = self._walk(cdrs[0]), len(cdrs[0])
-        if any(len(cdr) != size for cdr in cdrs):
-            return None
-        return walk.columns(np.frombuffer(b''.join(cdrs), np.uint8).reshape(-1, size))
-
-    def _walk(self, cdr: bytes) -> Walk:
-        return self._layouts.layout(cdr, int.from_bytes(cdr, 'little')).walk
+        return self._layouts.layout(cdr, int.from_bytes(cdr, 'little')).walk.message(cdr)
 
 
 def _ones(size: int, places: Sequence[range]) -> int:

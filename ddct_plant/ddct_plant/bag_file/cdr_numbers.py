@@ -9,6 +9,7 @@ texts and lengths stay the same, it is enough to put the numbers into the bytes 
 
 import struct
 from collections.abc import Callable, Sequence
+from itertools import count
 from typing import Any
 
 from ddct_plant.bag_file.cdr_walk import BODY
@@ -33,12 +34,9 @@ class NumberMessage:
         Each value is a number, or each is a row of them. Later values have the same lengths.
         """
         self._rows = bool(values) and _is_row(values[0])
-        markers = iter(_FIRST_MARKER * (1 + i) for i in range(len(self._flat(values))))
-        marked: list[Any] = [
-            [next(markers) for _ in value] if _is_row(value) else next(markers) for value in values
-        ]
+        marked = stand_ins(values)
         cdr = serialise(0, *marked)
-        places = [cdr.index(_NUMBER.pack(marker)) for marker in self._flat(marked)]
+        places = number_places(cdr, flat(marked))
         self._order = sorted(range(len(places)), key=places.__getitem__)
         self._arguments: list[Any] = [cdr[:BODY], 0, 0]
         layout, end = [f'<{BODY}s{_STAMP}'], BODY + struct.calcsize(_STAMP)
@@ -87,6 +85,24 @@ def message_serialiser(
         return message.filled(stamp_ns, values)
 
     return filled
+
+
+def stand_ins(values: Sequence[Any]) -> list[Any]:
+    """Return values with a different number, which no message has, in place of each number."""
+    markers = (_FIRST_MARKER * (1 + i) for i in count())
+    return [
+        [next(markers) for _ in value] if _is_row(value) else next(markers) for value in values
+    ]
+
+
+def number_places(cdr: bytes, numbers: Sequence[float]) -> list[int]:
+    """Return the place in a message of each of its numbers, which all differ."""
+    return [cdr.index(_NUMBER.pack(number)) for number in numbers]
+
+
+def flat(values: Sequence[Any]) -> list[float]:
+    """Return the numbers in values that are numbers, or rows of them."""
+    return [number for value in values for number in (value if _is_row(value) else (value,))]
 
 
 def _is_row(value: Any) -> bool:

@@ -9,11 +9,8 @@ places, so that one walk serves both.
 
 import struct
 from collections.abc import Callable, Mapping, Sequence
-from functools import cached_property
 from operator import itemgetter
 from typing import Any
-
-import numpy as np
 
 from ddct_plant.bag_file.message_definitions import (
     PRIMITIVES,
@@ -28,8 +25,6 @@ BODY = 4
 """Offset of the body, from which values are aligned."""
 _BYTES = ('byte', 'uint8')
 """Types whose lists are bytes."""
-_WIDE = {'i': 'i8', 'u': 'i8', 'f': 'f8', 'b': '?'}
-"""Types of the arrays of numbers of fewer than 8 bytes, by kind."""
 Build = Callable[[list[Any]], Any]
 """Function that makes a value of a message from all numbers and texts in it."""
 
@@ -61,7 +56,6 @@ class Walk:
         self._format = ['<']
         self._values = 0
         self._texts: list[int] = []
-        self._numbers: list[tuple[range, int, str]] = []
         self.size = BODY
         """Number of bytes of the message, without those behind its end."""
         self.gaps = [range(len(HEADER), BODY)]
@@ -79,38 +73,10 @@ class Walk:
 
         Raise UnicodeDecodeError for a text that is none.
         """
-        return self._build(self._row(cdr))
-
-    def _row(self, cdr: bytes) -> list[Any]:
         values = list(self._unpack(cdr, BODY))
         for place in self._texts:
             values[place] = values[place].decode()
-        return values
-
-    def columns(self, cdrs: np.ndarray) -> Any:
-        """
-        Return (n, size) bytes of n messages as one message, whose numbers are (n,) arrays.
-
-        None where any other text, length or encoding differs from that of the first message.
-        """
-        constant = cdrs[:, self._constant]
-        if (constant != constant[0]).any():
-            return None
-        values = self._row(cdrs[0].tobytes())
-        for place, first, letter in self._numbers:
-            block = np.ascontiguousarray(cdrs[:, place.start : place.stop]).view(f'<{letter}')
-            # Python's numbers have no overflow: a stamp in ns needs 64 bits.
-            columns = block if block.dtype.itemsize == 8 else block.astype(_WIDE[block.dtype.kind])
-            values[first : first + block.shape[1]] = columns.T
         return self._build(values)
-
-    @cached_property
-    def _constant(self) -> np.ndarray:
-        """Places of the bytes that are neither in a number nor without a value."""
-        others = np.ones(self.size, dtype=bool)
-        for place in (*self.gaps, *(place for place, _, _ in self._numbers)):
-            others[place.start : place.stop] = False
-        return np.flatnonzero(others)
 
     def _message(self, type_name: str) -> Build:
         builds = {field.name: self._field(field) for field in self._fields[type_name]}
@@ -131,8 +97,6 @@ class Walk:
             self._take(1, count, f'{count}s', 1)
             return itemgetter(first)
         self._take(size, count, f'{count}{letter}', count)
-        if count:
-            self._numbers.append((range(self.size - size * count, self.size), first, letter))
         if not field.many:
             return itemgetter(first)
         return itemgetter(slice(first, first + count))

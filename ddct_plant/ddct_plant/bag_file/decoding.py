@@ -1,162 +1,197 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Decode the serialised messages of a bag, without ROS."""
+"""Decode the messages of a bag to columns of values, without ROS."""
 
-import io
-from collections.abc import Callable, Collection, Iterator, Sequence
-from contextlib import redirect_stderr
+from collections import defaultdict
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from mcap.records import Channel, Schema
-from mcap_ros2.decoder import DecoderFactory
 
-from ddct_plant.bag_file.cdr import CdrDecoder
-from ddct_plant.bag_file.message_definitions import MessageDefinition, load_definition
-from ddct_plant.bag_file.records import BagRecords, StoredMessage
+from ddct_plant.bag_file.message_definitions import decode, same_definition
+from ddct_plant.bag_file.number_columns import NumberColumns
+from ddct_plant.bag_file.records import BagRecords
 from ddct_plant.base.errors import DdctError
 from ddct_plant.signals.message_kind import stamp_ns
+from ddct_plant.signals.signal import Signal
 from ddct_plant.signals.topic import Topic
-from ddct_plant.signals.topics import all_topics
 
-Decode = Callable[[bytes], Any]
-"""Function that returns the message in serialised bytes."""
+Column = np.ndarray | tuple[object, ...]
+"""Values of a signal: (n,) or (n, size) numbers, or n texts or events."""
+
+_TOGETHER = 512
+"""Number of messages of a topic that are decoded at once; it bounds the memory of a long bag."""
 
 
-def decoded_messages(
-    records: BagRecords, chosen: Collection[Topic] | None = None
-) -> Iterator[tuple[Topic, int, Any]]:
+@dataclass
+class TopicColumns:
+    """Messages of a topic in the order of the file: their stamps, and their values by signal."""
+
+    signals: Sequence[Signal] = ()
+    """Signals of the topic in this run."""
+    stamps: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    """(n,) stamps in ns."""
+    values: list[Column] = field(default_factory=list)
+    """A column per signal; none without a message."""
+    messages: list[Any] = field(default_factory=list)
+    """The messages themselves, of a topic that has none at each tick."""
+
+    def until(self, stamp: int) -> 'TopicColumns':
+        """Return the messages up to a stamp in ns; later ones are those behind it."""
+        kept = self.stamps <= stamp
+        return TopicColumns(
+            self.signals,
+            self.stamps[kept],
+            [
+                column[kept]
+                if isinstance(column, np.ndarray)
+                else tuple(value for value, keep in zip(column, kept, strict=True) if keep)
+                for column in self.values
+            ],
+            self.messages,
+        )
+
+
+def read_columns(
+    records: BagRecords, signals: Mapping[Topic, Sequence[Signal]]
+) -> dict[Topic, TopicColumns]:
     """
-    Yield (topic, stamp in ns, message) of each message on a known topic, in the order of the file.
+    Decode the messages of a bag on topics given with the signals that the run has of them.
 
-    Only topics in `chosen` are decoded, if given. Raise DdctError for a damaged bag, for a topic
-    of another type and for a message that cannot be decoded.
+    Raise DdctError for a damaged bag, for a topic of another type, and for a message that cannot
+    be decoded, carries another stamp than the bag gives it, or lacks a value.
     """
-    decoders = _Decoders(records, chosen or all_topics())
-    for stored in records.messages():
-        yield from decoders.one(stored)
+    known = {topic.resolved_name: topic for topic in signals}
+    _require_types(records, signals)
+    decoders = {name: _Decoder(topic, signals[topic]) for name, topic in known.items()}
+    for name, log_time, cdr in records.messages():
+        if decoder := decoders.get(name):
+            decoder.add(log_time, cdr)
+    return {known[name]: decoder.columns() for name, decoder in decoders.items()}
 
 
-def decoded_columns(
-    records: BagRecords, numbers: Collection[Topic]
-) -> Iterator[tuple[Topic, int | np.ndarray, Any]]:
-    """
-    Yield as `decoded_messages`, but the messages on topics in `numbers` together where possible.
+class _Decoder:
+    """Decoder of the messages of one topic, many at once where only their numbers differ."""
 
-    Those of one chunk and topic that differ in numbers alone are yielded as one message whose
-    numbers are (n,) arrays, with their (n,) stamps, before other messages of the chunk.
-    """
-    decoders = _Decoders(records, all_topics())
-    names = {topic.resolved_name for topic in numbers}
-    for batch in records.batches():
-        together: dict[str, list[StoredMessage]] = {}
-        apart = []
-        for stored in batch:
-            if stored[0] in names:
-                together.setdefault(stored[0], []).append(stored)
-            else:
-                apart.append(stored)
-        for group in together.values():
-            if (columns := decoders.columns(group)) is not None:
-                yield columns
-            else:
-                apart += group
-        for stored in apart:
-            yield from decoders.one(stored)
+    def __init__(self, topic: Topic, signals: Sequence[Signal]) -> None:
+        self._topic, self._signals = topic, signals
+        self._waiting: list[tuple[int, bytes]] = []
+        self._layout: NumberColumns | None = None
+        self._stamps: list[np.ndarray] = []
+        self._parts: list[Sequence[Sequence[Any] | np.ndarray]] = []
+        self._messages: list[Any] = []
 
+    def add(self, log_time: int, cdr: bytes) -> None:
+        """Add a message; raise DdctError for one among those before that is unusable."""
+        self._waiting.append((log_time, cdr))
+        if len(self._waiting) >= _TOGETHER:
+            self._decode()
 
-class _Decoders:
-    """Decoders of the messages of a bag by topic."""
+    def columns(self) -> TopicColumns:
+        """Return the columns of all messages; raise DdctError for an unusable message."""
+        self._decode()
+        found = TopicColumns(self._signals, messages=self._messages)
+        if self._stamps:
+            found.stamps = np.concatenate(self._stamps)
+            parts = zip(*self._parts, strict=True)
+            found.values = [
+                _column(self._topic, signal, part)
+                for signal, part in zip(self._signals, parts, strict=True)
+            ]
+        return found
 
-    def __init__(self, records: BagRecords, topics: Collection[Topic]) -> None:
-        """Begin with the channels of a bag; raise DdctError where a topic has another type."""
-        self._records = records
-        self._known = {topic.resolved_name: topic for topic in topics}
-        channels = {channel.topic for channel in records.channels.values()}
-        self._decoders: dict[str, Decode] = {}
-        for name in self._known.keys() & channels:
-            self._of(name)
-
-    def _of(self, name: str) -> Decode:
-        if name not in self._decoders:
-            self._decoders[name] = _decoder(self._records, self._known[name])
-        return self._decoders[name]
-
-    def one(self, stored: StoredMessage) -> Iterator[tuple[Topic, int, Any]]:
-        """Yield a message on a known topic; raise DdctError where it cannot be decoded."""
-        name, log_time, data = stored
-        if (topic := self._known.get(name)) is None:
+    def _decode(self) -> None:
+        if not self._waiting:
             return
-        decode = self._of(name)
+        stamps, cdrs = zip(*self._waiting, strict=True)
+        self._waiting = []
+        self._stamps.append(np.array(stamps))
+        part = self._numbers(stamps, cdrs)
+        self._parts.append(self._one_by_one(stamps, cdrs) if part is None else part)
+
+    def _numbers(self, stamps: Sequence[int], cdrs: Sequence[bytes]) -> list[np.ndarray] | None:
+        """Return the values as arrays; None where the messages differ in more than numbers."""
+        if not self._topic.kind.numbers_alone:
+            return None
+        if self._layout is None:
+            message = self._message(stamps[0], cdrs[0])
+            self._layout = NumberColumns(self._topic, self._values(message))
+        found = self._layout.decode(cdrs)
+        return found[1] if found and np.array_equal(found[0], stamps) else None
+
+    def _one_by_one(self, stamps: Sequence[int], cdrs: Sequence[bytes]) -> list[Any]:
+        rows = []
+        for stamp, cdr in zip(stamps, cdrs, strict=True):
+            message = self._message(stamp, cdr)
+            if self._topic.every_tick:
+                rows.append(self._values(message))
+            else:
+                self._messages.append(message)
+        return [list(column) for column in zip(*rows, strict=True)]
+
+    def _message(self, log_time: int, cdr: bytes) -> Any:
+        name = self._topic.resolved_name
         try:
-            message = decode(data)
+            message = decode(cdr, self._topic.type)
             stamp = stamp_ns(message)
-        except Exception as error:  # the decoder has no common base of its errors
+        except Exception as error:  # rosbags has no common base of its errors
             raise DdctError(f'{name} at {log_time} ns cannot be decoded ({error})') from error
         if stamp != log_time:
             raise DdctError(f'{name} at {log_time} ns carries the stamp {stamp} ns', key=name)
-        yield topic, stamp, message
+        return message
 
-    def columns(self, group: Sequence[StoredMessage]) -> tuple[Topic, np.ndarray, Any] | None:
-        """Return messages on a topic as one; None where each must be decoded by itself."""
-        name = group[0][0]
-        decode = self._of(name)
-        if not isinstance(decode, FastDecoder):
-            return None
-        message = decode.columns([data for _, _, data in group])
-        if message is None:
-            return None
-        stamps: Any = stamp_ns(message)
-        if not np.array_equal(stamps, [log_time for _, log_time, _ in group]):
-            return None
-        return self._known[name], stamps, message
-
-
-class FastDecoder:
-    """Decoder of the messages of this project, which takes less time than a general one."""
-
-    def __init__(self, general: Decode, definition: MessageDefinition) -> None:
-        self._general = general
-        self._fast = CdrDecoder(definition)
-
-    def __call__(self, data: bytes) -> Any:
-        """Return the message as the general decoder does, or raise its error."""
+    def _values(self, message: Any) -> Sequence[Any]:
+        """Return the values in a message; raise DdctError that names the topic without them."""
+        name = self._topic.resolved_name
         try:
-            return self._fast(data)
-        except Exception:  # the general decoder takes other encodings, or has the reason
-            return self._general(data)
-
-    def columns(self, cdrs: Sequence[bytes]) -> Any:
-        """Return messages as one whose numbers are arrays; None where that is not possible."""
-        try:
-            return self._fast.columns(cdrs)
-        except Exception:  # each by itself has the reason
-            return None
-
-
-def _decoder(records: BagRecords, topic: Topic) -> Decode:
-    """Return the decoder of a topic; raise DdctError where one of its channels has another."""
-    found = [
-        _decoder_of(channel, records.schemas.get(channel.schema_id), topic)
-        for channel in records.channels.values()
-        if channel.topic == topic.resolved_name
-    ]
-    return found[0]
+            values = self._topic.values(message)
+        except DdctError as error:
+            raise error if error.key else error.at(name) from error
+        except (LookupError, AttributeError, ValueError, TypeError) as error:
+            raise DdctError(f'{name}: a message lacks a value ({error})', key=name) from error
+        if len(values) != len(self._signals):
+            raise DdctError(
+                f'{name}: a message has {len(values)} values, not the {len(self._signals)} of '
+                'such a run',
+                key=name,
+            )
+        return values
 
 
-def _decoder_of(channel: Channel, schema: Schema | None, topic: Topic) -> Decode:
+def _column(topic: Topic, signal: Signal, parts: Sequence[Sequence[Any] | np.ndarray]) -> Column:
+    """Return the values of a signal in one column; raise DdctError where their sizes differ."""
+    if not signal.unit:
+        return tuple(value for part in parts for value in part)
     try:
-        # The parser prints a line that it cannot parse, whatever bytes the file has there.
-        with redirect_stderr(io.StringIO()):
-            decoder = DecoderFactory().decoder_for(channel.message_encoding, schema)
-    except Exception as error:  # the decoder has no common base of its errors
-        raise DdctError(f'{channel.topic}: unusable message definition ({error})') from error
-    if schema is None or schema.name != topic.type or decoder is None:
+        return np.concatenate([np.asarray(part, dtype=float) for part in parts])
+    except ValueError as error:
         raise DdctError(
-            f'{channel.topic} does not carry CDR messages of type {topic.type}',
-            key=channel.topic,
+            f'{signal.name} does not have the same size at every stamp', key=topic.resolved_name
+        ) from error
+
+
+def _require_types(records: BagRecords, topics: Collection[Topic]) -> None:
+    """Raise DdctError where a channel of one of the topics has messages of another type."""
+    channels = defaultdict(list)
+    for channel in records.channels.values():
+        channels[channel.topic].append(channel)
+    for topic in topics:
+        for channel in channels[topic.resolved_name]:
+            _require_type(channel, records.schemas.get(channel.schema_id), topic)
+
+
+def _require_type(channel: Channel, schema: Schema | None, topic: Topic) -> None:
+    name = channel.topic
+    same = False
+    if schema is not None and (schema.name, schema.encoding) == (topic.type, 'ros2msg'):
+        try:
+            same = same_definition(topic.type, schema.data.decode())
+        except (DdctError, UnicodeDecodeError) as error:
+            raise DdctError(f'{name}: {error}', key=name) from error
+    if not same or channel.message_encoding != 'cdr':
+        raise DdctError(
+            f'{name} does not carry CDR messages of type {topic.type} as ROS 2 Jazzy defines it',
+            key=name,
         )
-    definition = load_definition(topic.type)
-    if schema.data != definition.schema_text.encode():  # earlier, or of another recorder
-        return decoder
-    return FastDecoder(decoder, definition)

@@ -1,19 +1,19 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Message definitions without ROS: schema text, type hash and fields of each type on the graph."""
+"""
+The message types of ROS 2 Jazzy without ROS: definitions, hashes, messages and their bytes.
 
-import re
-from collections.abc import Mapping
+rosbags has them all; nothing else in the project knows how a message type is defined.
+"""
+
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
-from pathlib import Path
 from typing import Any
 
-from ddct_plant.base.errors import DdctError
-from ddct_plant.files.input_file import read_text_file
-from ddct_plant.files.yaml_text import parse_yaml
+import numpy as np
 
-TYPES_FILE = Path(__file__).with_name('messages.yaml')
+from ddct_plant.base.errors import DdctError
 
 STRING = 'string'
 PRIMITIVES = {
@@ -23,12 +23,6 @@ PRIMITIVES = {
     **{'float32': (4, 'f'), 'float64': (8, 'd')},
 }
 """Size in bytes of each primitive type, and its letter for the module `struct`, by name."""
-
-_SEPARATOR = '=' * 80
-_FIELD = re.compile(
-    r'(?P<kind>[\w/]+)(?:<=\d+)?(?P<many>\[(?:<=\d+|(?P<count>\d*))\])? (?P<name>\w+)'
-)
-"""Pattern of a line of a definition that declares a field; constants do not match."""
 
 
 @dataclass(frozen=True)
@@ -59,51 +53,129 @@ class MessageDefinition:
 
 
 @cache
-def load_definition(type_name: str) -> MessageDefinition:
-    """Return the definition of a type on the graph, such as 'std_msgs/msg/Header'."""
-    return definition_in(message_types(), type_name)
+def _store() -> Any:
+    # Here, as it takes 0.1 s: not every program that knows of bags handles one.
+    from rosbags.typesys import Stores, get_typestore
+
+    return get_typestore(Stores.ROS2_JAZZY)
 
 
 @cache
-def message_types() -> Mapping[str, Any]:
-    """Return the content of TYPES_FILE: hash and fields as text, by type name."""
-    return parse_yaml(read_text_file(TYPES_FILE))
+def load_definition(type_name: str) -> MessageDefinition:
+    """Return the definition of a type; raise DdctError for one that ROS 2 Jazzy does not have."""
+    return definition_in(_store(), type_name)
 
 
-def definition_in(types: Mapping[str, Any], type_name: str) -> MessageDefinition:
-    """
-    Return the definition of a type from a mapping as `message_types` returns it.
-
-    Raise DdctError where the type, or a nested one, is not in it.
-    """
+def definition_in(store: Any, type_name: str) -> MessageDefinition:
+    """Return the definition of a type in a type store of rosbags; DdctError if it has none."""
+    if type_name not in store.fielddefs:
+        raise DdctError(f'ROS 2 Jazzy has no message type {type_name}', key=type_name)
     fields: dict[str, list[Field]] = {}
-    text: list[str] = []
 
     def visit(name: str) -> None:
-        if name in fields:
-            return
-        if name not in types:
-            raise DdctError(f'{TYPES_FILE.name} does not define {name}: add it there', key=name)
-        lines = types[name]['fields']
-        if text:
-            text.extend(('', _SEPARATOR, f'MSG: {name.replace("/msg/", "/")}'))
-        text.extend(lines)
-        fields[name] = [_field(line) for line in lines if '=' not in line.replace('<=', '')]
-        for field in fields[name]:
-            if field.kind not in PRIMITIVES and field.kind != STRING:
-                visit(field.kind)
+        if name not in fields:
+            fields[name] = [_field(*each) for each in store.fielddefs[name][1]]
+            for field in fields[name]:
+                if field.kind not in PRIMITIVES and field.kind != STRING:
+                    visit(field.kind)
 
     visit(type_name)
-    schema_text = '\n'.join((*text, ''))
-    return MessageDefinition(type_name, schema_text, types[type_name]['hash'], fields)
+    text, _ = store.generate_msgdef(type_name, ros_version=2)
+    # rosbag2 has an empty line before each nested type.
+    text = text.replace('\n====', '\n\n====')
+    return MessageDefinition(type_name, text, store.hash_rihs01(type_name), fields)
 
 
-def _field(line: str) -> Field:
-    found = _FIELD.fullmatch(line)
-    if found is None:
-        raise DdctError(f'{TYPES_FILE.name}: {line!r} is no field')
-    kind = found['kind'].replace('/', '/msg/')
-    if not found['many']:
-        return Field(kind, 1, found['name'], many=False)
-    count = int(found['count']) if found['count'] else None
-    return Field(kind, count, found['name'], many=True)
+def same_definition(type_name: str, schema_text: str) -> bool:
+    """
+    Return whether a text defines a type as ROS 2 Jazzy does; comments do not count.
+
+    Raise DdctError for a text that is no definition.
+    """
+    if schema_text == load_definition(type_name).schema_text:
+        return True
+    from rosbags.typesys import TypesysError, get_types_from_msg
+
+    try:
+        found = get_types_from_msg(schema_text, type_name)
+    except TypesysError as error:
+        what = ' '.join(str(error).split())
+        raise DdctError(f'unusable message definition ({what})') from error
+    return all(found[name][1] == _store().fielddefs.get(name, ((), ()))[1] for name in found)
+
+
+@cache
+def message_class(type_name: str) -> Callable[..., Any]:
+    """
+    Return a constructor of messages of a type, called as its ROS class: `new(field=value)`.
+
+    Its lists of numbers are arrays.
+    """
+    made = _store().types[type_name]
+    constants, fields = _store().fielddefs[type_name]
+    kinds = [_field(*each) for each in fields]
+
+    def new(**values: Any) -> Any:
+        return made(
+            **{
+                kind.name: _as_array(kind, values[kind.name])
+                if kind.name in values
+                else _default(kind)
+                for kind in kinds
+            }
+        )
+
+    for name, _, value in constants:
+        setattr(new, name, value)
+    return new
+
+
+def encode(message: Any) -> bytes:
+    """Return a message of a `message_class` as CDR, in which bytes for alignment are zero."""
+    _make_arrays(message)
+    return bytes(_store().serialize_cdr(message, message.__msgtype__))
+
+
+def decode(cdr: bytes, type_name: str) -> Any:
+    """Return the message in CDR, with arrays of numbers; raise an error of rosbags for another."""
+    return _store().deserialize_cdr(cdr, type_name)
+
+
+def _default(field: Field) -> Any:
+    if field.many:
+        return _as_array(field, [])
+    if field.kind in PRIMITIVES:
+        return 0
+    return '' if field.kind == STRING else message_class(field.kind)()
+
+
+def _as_array(field: Field, value: Any) -> Any:
+    """Return an array in place of a list of numbers, which rosbags needs."""
+    if not field.many or field.kind not in PRIMITIVES:
+        return value
+    return np.asarray(value, dtype=PRIMITIVES[field.kind][1])
+
+
+def _make_arrays(message: Any) -> None:
+    """Make arrays of lists of numbers in a message that were set after it was made."""
+    for field in load_definition(message.__msgtype__).fields[message.__msgtype__]:
+        if field.kind == STRING or (field.kind in PRIMITIVES and not field.many):
+            continue
+        value = getattr(message, field.name)
+        if field.kind in PRIMITIVES:
+            setattr(message, field.name, _as_array(field, value))
+        else:
+            for each in value if field.many else [value]:
+                _make_arrays(each)
+
+
+def _field(name: str, description: Any) -> Field:
+    """Return a field from its description in rosbags: a pair of the kind of node and details."""
+    from rosbags.interfaces import Nodetype
+
+    node, detail = description
+    if node not in (Nodetype.ARRAY, Nodetype.SEQUENCE):
+        return Field(detail[0] if node == Nodetype.BASE else detail, 1, name, many=False)
+    (node_of_one, of_one), size = detail
+    kind = of_one[0] if node_of_one == Nodetype.BASE else of_one
+    return Field(kind, size if node == Nodetype.ARRAY else None, name, many=True)

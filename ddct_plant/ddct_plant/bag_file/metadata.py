@@ -2,14 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """rosbag2's metadata of a bag: `metadata.yaml` and the `rosbag2` record inside the MCAP file."""
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from ddct_plant.bag_file.message_definitions import load_definition
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.files.output_file import write_text
 from ddct_plant.files.yaml_text import dump_yaml, parse_yaml
+from ddct_plant.signals.topic import Topic
 
 METADATA_FILE = 'metadata.yaml'
 ADVICE = 'free some space or choose another output folder'
@@ -18,8 +19,6 @@ ADVICE = 'free some space or choose another output folder'
 ROOT_KEY = 'rosbag2_bagfile_information'
 RECORD_NAME = 'rosbag2'
 RECORD_KEY = 'serialized_metadata'
-QOS_KEY = 'offered_qos_profiles'
-HASH_KEY = 'topic_type_hash'
 SERIALIZATION = 'cdr'
 
 _VERSION = 9
@@ -28,44 +27,30 @@ _FOREVER = {'sec': 9223372036, 'nsec': 854775807}
 """Duration without limit as rosbag2 writes it, 2^63 - 1 ns."""
 
 
-@dataclass(frozen=True)
-class Channel:
-    """Channel of a bag: one topic, its type, schema and QoS profile."""
-
-    topic: str
-    """Resolved name of the topic, with its leading slash."""
-    type_name: str
-    schema_text: str
-    type_hash: str
-    qos: str
-    """QoS profiles as YAML text, from `offered_qos`."""
-    normalise: Callable[[bytes], bytes] = bytes
-    """
-    Function that makes its serialised messages reproducible; the default leaves them as they
-    are.
-    """
-
-
-def offered_qos(*, latched: bool) -> str:
-    """Return the YAML list with the QoS profile of a topic's publisher."""
-    profile = {
+def qos_of(topic: Topic) -> dict[str, Any]:
+    """Return the QoS profile of a topic's publisher."""
+    return {
         'history': 'keep_last',
-        'depth': 1 if latched else 10,
+        'depth': 1 if topic.latched else 10,
         'reliability': 'reliable',
-        'durability': 'transient_local' if latched else 'volatile',
-        'deadline': dict(_FOREVER),
-        'lifespan': dict(_FOREVER),
+        'durability': 'transient_local' if topic.latched else 'volatile',
+        'deadline': _FOREVER,
+        'lifespan': _FOREVER,
         'liveliness': 'automatic',
-        'liveliness_lease_duration': dict(_FOREVER),
+        'liveliness_lease_duration': _FOREVER,
         'avoid_ros_namespace_conventions': False,
     }
-    return _dump([profile])
+
+
+def channel_metadata(topic: Topic) -> dict[str, str]:
+    """Return the metadata of a topic's channel."""
+    type_hash = load_definition(topic.type).type_hash
+    return {'offered_qos_profiles': _dump([qos_of(topic)]), 'topic_type_hash': type_hash}
 
 
 def bag_information(
     file_name: str,
-    channels: Sequence[Channel],
-    counts: Sequence[int],
+    counts: Mapping[Topic, int],
     first_ns: int,
     last_ns: int,
     custom_data: Mapping[str, str],
@@ -73,41 +58,34 @@ def bag_information(
     """
     Return the metadata, version 9, of a bag with one MCAP file, its keys in rosbag2's order.
 
-    `counts` are the numbers of messages by channel, in the order of `channels`.
+    `counts` are the numbers of messages by topic, in the order of the channels.
     """
-    count = sum(counts)
-    duration = {'nanoseconds': last_ns - first_ns}
-    start = {'nanoseconds_since_epoch': first_ns}
+    of_file = {
+        'starting_time': {'nanoseconds_since_epoch': first_ns},
+        'duration': {'nanoseconds': last_ns - first_ns},
+        'message_count': sum(counts.values()),
+    }
     return {
         'version': _VERSION,
         'storage_identifier': 'mcap',
-        'duration': duration,
-        'starting_time': start,
-        'message_count': count,
+        **{name: of_file[name] for name in ('duration', 'starting_time', 'message_count')},
         'topics_with_message_count': [
             {
                 'topic_metadata': {
-                    'name': channel.topic,
-                    'type': channel.type_name,
+                    'name': topic.resolved_name,
+                    'type': topic.type,
                     'serialization_format': SERIALIZATION,
-                    'offered_qos_profiles': parse_yaml(channel.qos),
-                    'type_description_hash': channel.type_hash,
+                    'offered_qos_profiles': [qos_of(topic)],
+                    'type_description_hash': load_definition(topic.type).type_hash,
                 },
-                'message_count': messages,
+                'message_count': count,
             }
-            for channel, messages in zip(channels, counts, strict=True)
+            for topic, count in counts.items()
         ],
         'compression_format': '',
         'compression_mode': '',
         'relative_file_paths': [file_name],
-        'files': [
-            {
-                'path': file_name,
-                'starting_time': dict(start),
-                'duration': dict(duration),
-                'message_count': count,
-            }
-        ],
+        'files': [{'path': file_name, **of_file}],
         'custom_data': dict(custom_data),
         'ros_distro': _DISTRO,
     }

@@ -1,41 +1,39 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
 """
-Read the records of a bag's MCAP file, strictly or as far as it is readable.
+Read the records of a bag's MCAP file, whole or up to the last chunk that is.
 
-The messages are unpacked chunk by chunk, so that only one chunk of them is in memory.
+A writer ends a file with a footer. A file that has one must be whole: each byte that matters is
+under a checksum of its chunk, of the data or of the summary. A file without one is unfinished.
 """
 
-import contextlib
 import io
 import struct
 import zlib
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
 from mcap.opcode import Opcode
-from mcap.records import Channel, Chunk, McapRecord, Message, Metadata, Schema
-from mcap.stream_reader import StreamReader
+from mcap.records import Channel, Chunk, DataEnd, Message, Metadata, Schema
+from mcap.stream_reader import StreamReader, get_chunk_data_stream
 from zstandard import ZstdError
 
 from ddct_plant.bag_file.facts import require_duration
 from ddct_plant.bag_file.metadata import RECORD_NAME, information_of
-from ddct_plant.bag_file.record_scan import UsedRecord, in_chunk, used_records
 from ddct_plant.base.errors import DdctError
-from ddct_plant.files.input_file import located, read_file
+from ddct_plant.files.input_file import located, open_file
 
 MAGIC = b'\x89MCAP0\r\n'
 """First and last bytes of an MCAP file."""
-MOST_BYTES = 1_000_000_000
-"""Largest size of a bag's file in bytes; an hour's run has a quarter of that."""
 
 StoredMessage = tuple[str, int, bytes]
 """Topic of a message, its log time in ns and its serialised bytes."""
 
-_READ_ERRORS = (
+_ERRORS = (
     McapError,
     ZstdError,
     struct.error,
@@ -49,21 +47,29 @@ _READ_ERRORS = (
 
 _FOOTER = struct.Struct('<BQQQI8s')
 """End of an MCAP file: opcode, length, starts of summary and its offsets, checksum, magic."""
+_FOOTER_HEAD = struct.pack('<BQ', Opcode.FOOTER, 20)
+_HEAD = struct.Struct('<BQ')
+"""Beginning of a record: opcode, and size of its content in bytes."""
+_MESSAGE = struct.Struct('<HIQQ')
+"""Beginning of a message: channel, sequence number, log time and publish time in ns."""
+_IN_CHUNKS: dict[int, Callable[[ReadDataStream], Schema | Channel]] = {
+    Opcode.SCHEMA: Schema.read,
+    Opcode.CHANNEL: Channel.read,
+}
 
 
 @dataclass
 class BagRecords:
-    """Records of an MCAP file that readers use; messages are still serialised."""
+    """Records of an MCAP file that readers use; messages are still packed and serialised."""
 
     path: Path
-    data: bytes = field(repr=False)
-    """Content of the file."""
-    strict: bool = True
-    """Whether damage is an error; else reading ends there."""
+    unfinished: bool = False
+    """Whether the file has no footer, so that it holds the beginning of a run alone."""
     schemas: dict[int, Schema] = field(default_factory=dict)
     channels: dict[int, Channel] = field(default_factory=dict)
     information: dict[str, Any] = field(default_factory=dict)
     """Content of the last readable `rosbag2` metadata record."""
+    _data: list[Chunk | Message] = field(default_factory=list, repr=False)
 
     @property
     def topics(self) -> set[str]:
@@ -79,122 +85,108 @@ class BagRecords:
         return {str(key): str(value) for key, value in custom.items()}
 
     def messages(self) -> Iterator[StoredMessage]:
-        """
-        Yield the messages in the order of the file.
+        """Yield the messages in the order of the file; raise DdctError at damage."""
+        for record in self._data:
+            try:
+                found = self._unpacked(record)
+            except _ERRORS as error:
+                raise _damaged(self.path, error) from error
+            yield from found
 
-        Raise DdctError at damage if `strict`.
-        """
-        with self._damage_named():
-            for batch in self._batches():
-                yield from batch
+    def _unpacked(self, record: Chunk | Message) -> list[StoredMessage]:
+        """Return the messages in a record; add what else is in it."""
+        if isinstance(record, Message):
+            return [(self.channels[record.channel_id].topic, record.log_time, record.data)]
+        stream, size = get_chunk_data_stream(record, validate_crc=True)
+        data, end, found = stream.read(size), 0, []
+        # The library takes eight calls for a message, and a run has thousands of them.
+        while end < size:
+            opcode, length = _HEAD.unpack_from(data, end)
+            start, end = end + _HEAD.size, end + _HEAD.size + length
+            if opcode == Opcode.MESSAGE:
+                channel, _, log_time, _ = _MESSAGE.unpack_from(data, start)
+                topic = self.channels[channel].topic
+                found.append((topic, log_time, data[start + _MESSAGE.size : end]))
+            elif read := _IN_CHUNKS.get(opcode):
+                self._add(read(ReadDataStream(io.BytesIO(data[start:end]))))
+        return found
 
-    def batches(self) -> Iterator[list[StoredMessage]]:
-        """Yield the messages of each chunk, in the order of the file; raise as `messages`."""
-        with self._damage_named():
-            for batch in self._batches():
-                yield list(batch)
-
-    def _batches(self) -> Iterator[Iterator[StoredMessage]]:
-        end = len(self.data) - len(MAGIC) if self.data.endswith(MAGIC) else len(self.data)
-        for record in used_records(self.data, len(MAGIC), end):
-            if isinstance(record, Chunk):
-                yield self._messages_of(in_chunk(record))
-            elif isinstance(record, Message):
-                yield self._messages_of([record])
-
-    def _messages_of(self, records: Iterable[UsedRecord]) -> Iterator[StoredMessage]:
-        for each in records:
-            if isinstance(each, Message):
-                yield self.channels[each.channel_id].topic, each.log_time, each.data
-            else:
-                self._add(each)
-
-    def survey(self) -> None:
-        """
-        Add all records but those in chunks, after a check of the file's checksums.
-
-        Those in chunks are added too if there is no channel elsewhere. Raise DdctError at damage
-        if `strict`, and for a duration that no run has or that the scenario contradicts.
-        """
-        with self._damage_named():
-            # The library verifies the checksum of the data, and reads also what is not used here.
-            for record in StreamReader(
-                io.BytesIO(self.data),
-                emit_chunks=True,
-                validate_crcs=self.strict,
-                record_size_limit=len(self.data),
-            ).records:
-                if not isinstance(record, Chunk):
-                    self._add(record)
-        with located(str(self.path)):
-            require_duration(self.custom_data)
-        if not self.channels:
-            for _ in self.messages():
-                pass
-
-    def _add(self, record: McapRecord) -> None:
-        """Add a record; a repeated schema or channel does not replace the first one."""
+    def _add(self, record: object) -> bool:
+        """Add a record; return whether it ends the data. The first of two channels counts."""
         if isinstance(record, Schema):
             self.schemas.setdefault(record.id, record)
         elif isinstance(record, Channel):
             self.channels.setdefault(record.id, record)
         elif isinstance(record, Metadata) and record.name == RECORD_NAME:
             self.information = information_of(record.metadata) or self.information
+        elif isinstance(record, Chunk | Message):
+            self._data.append(record)
+        return isinstance(record, DataEnd)
 
-    @contextlib.contextmanager
-    def _damage_named(self) -> Iterator[None]:
-        """Raise DdctError for damage, or end there if not `strict`."""
+    def add_all(self, data: bytes) -> None:
+        """Add all records of a whole file; raise an error of `_ERRORS` for a damaged one."""
+        _require_summary(data)
+        reader = _reader(data, validate_crcs=True)
+        if sum([self._add(record) for record in reader.records]) != 1:
+            raise ValueError('the end of its data is missing')
+
+    def add_until_damage(self, data: bytes) -> None:
+        """Add the records before the first that is cut short or damaged."""
+        self.unfinished = True
         try:
-            yield
-        except _READ_ERRORS as error:
-            if self.strict:
-                raise _damaged(self.path, error) from error
+            for record in _reader(data, validate_crcs=False).records:
+                if isinstance(record, Chunk):
+                    self._unpacked(record)
+                self._add(record)
+        except _ERRORS:
+            return
 
 
 def read_records(path: Path) -> BagRecords:
     """
-    Read a complete MCAP file; its messages are yielded by `messages`, verified too.
+    Read an MCAP file: one with a footer wholly, another up to the last chunk that is whole.
 
-    Raise DdctError when the file cannot be read, is no MCAP file, is unfinished or is damaged.
+    Raise DdctError when it cannot be read, is no MCAP file, or has a footer and is damaged, and
+    for a duration that no run has.
     """
-    data = _bytes_of(path)
-    if not data.endswith(MAGIC) or len(data) == len(MAGIC):
-        raise DdctError(
-            'the recording is unfinished, its writer was interrupted or the file cut '
-            'short: rescue what it holds with ddct score --repair',
-            place=path,
-        )
-    try:
-        _verify_summary(data)
-    except _READ_ERRORS as error:
-        raise _damaged(path, error) from error
-    bag = BagRecords(path, data)
-    bag.survey()
+    data, bag = _bytes_of(path), BagRecords(path)
+    if not _has_footer(data):
+        bag.add_until_damage(data)
+    else:
+        try:
+            bag.add_all(data)
+        except _ERRORS as error:
+            raise _damaged(path, error) from error
+    with located(str(path)):
+        require_duration(bag.custom_data)
     return bag
 
 
-def salvage_records(path: Path) -> BagRecords:
-    """
-    Read an MCAP file up to the first damage.
+def readable_custom_data(path: Path) -> dict[str, str]:
+    """Return the custom data before the first damage of an MCAP file; raise DdctError if none."""
+    bag = BagRecords(path)
+    bag.add_until_damage(_bytes_of(path))
+    return bag.custom_data
 
-    Raise DdctError when the file cannot be read or is no MCAP file.
-    """
-    bag = BagRecords(path, _bytes_of(path), strict=False)
-    bag.survey()
-    return bag
+
+def _reader(data: bytes, *, validate_crcs: bool) -> StreamReader:
+    return StreamReader(
+        io.BytesIO(data),
+        emit_chunks=True,
+        validate_crcs=validate_crcs,
+        record_size_limit=len(data),
+    )
 
 
 def _damaged(path: Path, error: BaseException) -> DdctError:
     what = ' '.join(str(error).split()) or type(error).__name__
-    return DdctError(
-        f'the recording is damaged ({what}): rescue what is readable with ddct score --repair',
-        place=path,
-    )
+    return DdctError(f'the recording is damaged ({what}): take another copy of it', place=path)
 
 
 def _bytes_of(path: Path) -> bytes:
     try:
-        data = read_file(path, MOST_BYTES)
+        with open_file(path) as file:
+            data = file.read()
     except OSError as error:
         raise DdctError(f'cannot read the bag: {error.strerror}', place=path) from error
     if not data.startswith(MAGIC):
@@ -203,9 +195,17 @@ def _bytes_of(path: Path) -> bytes:
     return data
 
 
-def _verify_summary(data: bytes) -> None:
+def _has_footer(data: bytes) -> bool:
+    """Return whether a file ends with a footer, of which one half may be damaged."""
+    end = data[-_FOOTER.size :]
+    return len(data) > len(MAGIC) and (end.endswith(MAGIC) or end.startswith(_FOOTER_HEAD))
+
+
+def _require_summary(data: bytes) -> None:
     """Raise ValueError unless the footer's checksum of the summary is correct or absent."""
-    opcode, _, start, _, checksum, _ = _FOOTER.unpack(data[-_FOOTER.size :])
+    opcode, _, start, _, checksum, magic = _FOOTER.unpack(data[-_FOOTER.size :])
     covered = data[start : -len(MAGIC) - 4]
-    if opcode != Opcode.FOOTER or (checksum and zlib.crc32(covered) != checksum):
+    if magic != MAGIC or opcode != Opcode.FOOTER:
+        raise ValueError('its end is no footer')
+    if checksum and zlib.crc32(covered) != checksum:
         raise ValueError('the checksum of the summary is wrong')

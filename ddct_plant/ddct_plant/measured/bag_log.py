@@ -2,20 +2,21 @@
 # SPDX-License-Identifier: Apache-2.0
 """Signals of a recorded bag as a car's own sensors would measure them."""
 
-import math
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from ddct_plant.bag_file.decoding import decoded_messages
+from ddct_plant.bag_file.decoding import TopicColumns, read_columns
 from ddct_plant.bag_file.facts import require_last_step
 from ddct_plant.bag_file.records import BagRecords, read_records
+from ddct_plant.base.clutch_kinds import LINEAR, STICK_SLIP
 from ddct_plant.base.errors import DdctError
-from ddct_plant.base.timebase import START_NS, SUBSTEP_NS, SUBSTEPS, stamp_of_step, step_of_stamp
+from ddct_plant.base.timebase import PERIOD_NS, START_NS, SUBSTEP_NS, SUBSTEPS, step_of_stamp
 from ddct_plant.files.input_file import located
 from ddct_plant.measured.columns import QUANTITIES
+from ddct_plant.signals.signal import RunKind
+from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import (
     CLUTCH_PHASE,
     CLUTCH_TORQUE,
@@ -32,8 +33,6 @@ _MEASURED = (
     *('engine_torque', 'clutch_torque', 'vehicle_speed', 'vehicle_accel'),
 )
 """Quantities that are read: those that a car can measure, without C_load."""
-_Rows = Mapping[int, Any]
-"""Values of a signal by stamp in ns."""
 
 
 def read_bag_signals(bag: Path) -> tuple[np.ndarray, dict[str, np.ndarray]]:
@@ -43,76 +42,78 @@ def read_bag_signals(bag: Path) -> tuple[np.ndarray, dict[str, np.ndarray]]:
     Speeds, C_m, V_x and A_x are sampled every 10 ms. C_f is sampled every 1 ms with the linear
     clutch; with the stick-slip clutch it is the transmitted torque just before each tick. C_load
     is omitted, because no car measures it. In a run with sensors the signals are the true ones,
-    too.
+    too. An unfinished bag gives those before its end.
     Raise DdctError for a file that is no recording of this project or is damaged, and for a value
     that is missing, given twice or not finite.
     """
     records = read_records(bag)
     with located(str(bag)):
-        rows = _signal_rows(records)
-        by_stamp = {name: _at_ticks(rows, QUANTITIES[name].signal) for name in _MEASURED}
-        if not rows['clutch_phase']:
-            by_stamp['clutch_torque'] = _within_periods(
-                rows['clutch_torque'], max(rows['joint_speed'])
+        found = _ticks(records)
+        times = {name: _stamps(found, name) for name in _MEASURED}
+        values = {name: _values(found, name) for name in _MEASURED}
+        if CLUTCH_PHASE not in found:
+            times['clutch_torque'], values['clutch_torque'] = _within_periods(
+                found[CLUTCH_TORQUE], int(found[JOINT_STATES].stamps.max())
             )
-        for name, found in by_stamp.items():
-            if not all(map(math.isfinite, found.values())):
+        for name, column in values.items():
+            if not np.isfinite(column).all():
                 raise DdctError(f'{name} has a value that is not finite: record the run again')
-    stamps = sorted(set().union(*by_stamp.values()))
-    signals = {
-        name: np.array([found.get(stamp, np.nan) for stamp in stamps])
-        for name, found in by_stamp.items()
-    }
-    return (np.array(stamps) - START_NS) / 1e9, signals
+    stamps = np.unique(np.concatenate(list(times.values())))
+    signals = {}
+    for name in _MEASURED:
+        signals[name] = np.full(len(stamps), np.nan)
+        signals[name][np.searchsorted(stamps, times[name])] = values[name]
+    return (stamps - START_NS) / 1e9, signals
 
 
-def _at_ticks(rows: Mapping[str, _Rows], name: str) -> dict[int, float]:
-    """Return a quantity by stamp in ns."""
-    signal, index = quantities()[name]
-    found = rows[signal.name]
-    return {stamp: row if index is None else row[index] for stamp, row in found.items()}
+def _stamps(found: Mapping[Topic, TopicColumns], name: str) -> np.ndarray:
+    return found[_topic_of(name)].stamps
 
 
-def _within_periods(rows: _Rows, last: int) -> dict[int, float]:
-    """Return a torque every 1 ms by stamp in ns, up to the stamp `last`."""
-    return {
-        stamp + index * SUBSTEP_NS: torques[index]
-        for stamp, torques in rows.items()
-        for index in range(SUBSTEPS if stamp < last else 1)
-    }
+def _values(found: Mapping[Topic, TopicColumns], name: str) -> np.ndarray:
+    """Return a quantity at the stamps of its topic, (n,)."""
+    signal, index = quantities()[QUANTITIES[name].signal]
+    topic = _topic_of(name)
+    column = np.asarray(found[topic].values[topic.signals.index(signal)])
+    return column if index is None else column[:, index]
 
 
-def _signal_rows(records: BagRecords) -> dict[str, dict[int, Any]]:
-    """Return the values of the messages, by signal and by stamp in ns."""
-    rows: dict[str, dict[int, Any]] = {
-        signal.name: {} for topic in _TOPICS for signal in topic.signals
-    }
-    for topic, stamp, message in decoded_messages(records, _TOPICS):
-        first = topic.signals[0].name
-        if stamp in rows[first]:
-            raise DdctError(f'{topic.resolved_name} has two messages at {stamp} ns')
-        try:
-            # The linear clutch has the first of its two signals only.
-            for signal, values in zip(topic.signals, topic.values(message), strict=False):
-                rows[signal.name][stamp] = values
-        except (LookupError, AttributeError, ValueError, TypeError) as error:
-            raise DdctError(
-                f'{topic.resolved_name}: a message lacks a value ({error})',
-                key=topic.resolved_name,
-            ) from error
-    for topic in _TOPICS:
-        found = rows[topic.signals[0].name]
-        if topic is not CLUTCH_PHASE and not found:
-            raise DdctError(
-                f'no {topic.resolved_name}: not a recording of this project',
-                key=topic.resolved_name,
-            )
-    last = step_of_stamp(max(rows['joint_speed']))
-    require_last_step(records.custom_data, last)
-    for step in range(last + 1):  # ends at the first that is missing, however late the last is
-        if stamp_of_step(step) not in rows['joint_speed']:
-            raise DdctError(
-                f'{JOINT_STATES.resolved_name} has no message at step {step}',
-                key=JOINT_STATES.resolved_name,
-            )
-    return rows
+def _topic_of(name: str) -> Topic:
+    signal, _ = quantities()[QUANTITIES[name].signal]
+    return next(topic for topic in _TOPICS if signal in topic.signals)
+
+
+def _within_periods(torques: TopicColumns, last: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return the stamps in ns and the values of a torque every 1 ms, up to the stamp `last`."""
+    stamps = np.add.outer(torques.stamps, SUBSTEP_NS * np.arange(SUBSTEPS)).ravel()
+    values = np.asarray(torques.values[0])[:, :SUBSTEPS].ravel()
+    return stamps[stamps <= last], values[stamps <= last]
+
+
+def _ticks(records: BagRecords) -> dict[Topic, TopicColumns]:
+    """Return the messages on the topics of a bag, of an unfinished one those of whole ticks."""
+    sticks = CLUTCH_PHASE.resolved_name in records.topics
+    run = RunKind(clutch=STICK_SLIP if sticks else LINEAR)
+    topics = [topic for topic in _TOPICS if topic.in_run(run)]
+    found = read_columns(records, {topic: topic.signals_in(run) for topic in topics})
+    if records.unfinished:
+        end = min(each.stamps.max(initial=0) for each in found.values())
+        found = {topic: each.until(end) for topic, each in found.items()}
+    for topic, each in found.items():
+        name = topic.resolved_name
+        if not each.stamps.size:
+            raise DdctError(f'no {name}: not a recording of this project', key=name)
+        stamps, counts = np.unique(each.stamps, return_counts=True)
+        if counts.max() > 1:
+            raise DdctError(f'{name} has two messages at {stamps[counts > 1][0]} ns', key=name)
+    _require_steps(records, np.sort(found[JOINT_STATES].stamps))
+    return found
+
+
+def _require_steps(records: BagRecords, stamps: np.ndarray) -> None:
+    """Raise DdctError unless rising stamps in ns are those of each step of the run."""
+    require_last_step(records.custom_data, step_of_stamp(int(stamps[-1])))
+    missing = np.flatnonzero(stamps != START_NS + PERIOD_NS * np.arange(len(stamps)))
+    if missing.size:
+        name = JOINT_STATES.resolved_name
+        raise DdctError(f'{name} has no message at step {missing[0]}', key=name)

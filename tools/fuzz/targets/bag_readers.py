@@ -10,7 +10,6 @@ from support.runs import plan
 from support.sensors import ALL_ON
 
 from ddct_bringup.bag.reader import read_bag
-from ddct_bringup.bag.repair import repair_bag
 from ddct_bringup.run.execution import execute
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.scores.csv_text import signals_csv
@@ -27,12 +26,12 @@ def bag_readers(bag: Path, folder: Path) -> list[Reader]:
     """Return the readers of bags; `bag` is the first good one, others are made in a folder."""
     files = (bag, *(made_bag(folder, run) for run in _further()), _REAL_TIME)
     bags = tuple(file.read_bytes() for file in files)
-    whole_and_cut = tuple(data for each in bags for data in (each, each[:-4000]))
+    unfinished = tuple(each[:-4000] for each in bags)
     log = signals_csv(read_bag(bag)).encode()[:30_000].rpartition(b'\n')[0]
     return [
         Reader('bag', NAME, _digest, bags, exact=True),
         Reader('bag_as_log', NAME, _log_of_bag, bags, exact=True),
-        Reader('repair', NAME, _repaired, whole_and_cut),
+        Reader('unfinished_bag', NAME, _steps, unfinished),
         Reader('log', 'log.csv', _log, (log,)),
     ]
 
@@ -66,8 +65,7 @@ def _log_of_bag(file: Path) -> object:
     return {name: values.tobytes() for name, values in log.signals.items()}
 
 
-def _repaired(file: Path) -> object:
-    repair_bag(file)
+def _steps(file: Path) -> object:
     return read_bag(file).trajectory.steps
 
 
