@@ -11,9 +11,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 from support.processes import TEST_ID, Programs, note_processes, processes_left
-from support.shared_memory import segments_there
 
-from ddct_bringup.processes.shared_memory import remove_segments
+from ddct_bringup.processes.shared_memory import remove_dead_segments
 from ddct_bringup.run.plan import RunPlan
 from ddct_plant.graph.domain import own_domain
 
@@ -29,20 +28,12 @@ MARKERS = dict.fromkeys(
 )
 MARKERS |= dict.fromkeys(('export', 'fmu'), 'compiler')
 """What the tests of a folder need, beyond Python."""
-_SEGMENTS = pytest.StashKey[set[str]]()
-
-
-def pytest_configure(config: pytest.Config) -> None:
-    """Note the shared memory that is there before the tests; pytest-xdist's workers need not."""
-    if not hasattr(config, 'workerinput'):
-        config.stash[_SEGMENTS] = segments_there()
 
 
 def pytest_unconfigure(config: pytest.Config) -> None:
-    """Remove the shared memory of nodes that the tests have killed: no supervisor does."""
-    if _SEGMENTS in config.stash:
-        before = config.stash[_SEGMENTS]
-        remove_segments(segments_there() - before)
+    """Remove the shared memory of nodes that the tests have killed; xdist's workers need not."""
+    if not hasattr(config, 'workerinput'):
+        remove_dead_segments()
 
 
 def pytest_itemcollected(item: pytest.Item) -> None:

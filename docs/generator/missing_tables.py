@@ -4,8 +4,7 @@
 
 from collections.abc import Mapping
 
-from ddct_bringup.processes.graph_nodes import ANSWER_TIMEOUT_S
-from ddct_bringup.processes.node_process import START_S
+from ddct_bringup.processes.supervisor import PATIENCE, PAUSED_S
 from ddct_bringup.record.recorder_node import PATIENCE_S
 from ddct_bringup.record.tick_buffer import GIVE_UP_AFTER_STEPS, LAG_LIMIT_STEPS
 from ddct_plant.base.timebase import PERIOD_S
@@ -136,8 +135,12 @@ def _bringup() -> list[tuple[str, ...]]:
     return [
         ('a node: it was killed, or ended', 'at once', 'the run ends with its name and last line'),
         (
-            *('a sign of life of a node that has begun', _s(ANSWER_TIMEOUT_S)),
-            'the run ends with its name, and the node is killed',
+            *('a beat of a node that has begun: it hangs', _s(PATIENCE.silent_s)),
+            'the node ends itself with its stacks in its log, and the run ends with its name',
         ),
-        ('the first sign of life of a node', _s(START_S), 'the same'),
+        ('the first beat of a node', _s(PATIENCE.start_s), 'the same'),
+        (
+            *('a node: it is paused (SIGSTOP)', _s(PAUSED_S)),
+            'the run ends with its name, and the node is resumed to end in order',
+        ),
     ]

@@ -12,13 +12,13 @@ from typing import Any
 
 import pytest
 from support.complaints import assert_one_line
-from support.processes import Program, Programs, node_of, processes_left
+from support.processes import Program, Programs, fork_server_of, node_of, processes_left
 from support.runs import expected, plan
-from support.shared_memory import has_owner
+from support.shared_memory import has_owner, segments_of
 from support.waiting import wait_until
 
 from ddct_bringup.bag.reader import read_bag
-from ddct_bringup.processes.shared_memory import SHARED_MEMORY, remove_segments, segments_of
+from ddct_bringup.processes.shared_memory import SHARED_MEMORY
 from ddct_bringup.programs import score
 from ddct_plant.graph.domain import own_domain
 
@@ -115,7 +115,7 @@ def test_the_nodes_of_a_killed_bringup_end_by_themselves(
 ) -> None:
     bringup = _running(programs, tmp_path / 'runs')
     processes = processes_left()
-    assert len(processes) == 11, 'bringup, the warm parent, the guardian and the nodes'
+    assert len(processes) == 10, 'bringup, the fork server and the nodes'
     # Ports are shared, and used again by graphs of others.
     own = [name for pid in processes for name in segments_of(pid) if 'port' not in name]
     assert len(own) == len(set(own)) >= 8, 'each node has its own'
@@ -128,7 +128,7 @@ def test_the_nodes_of_a_killed_bringup_end_by_themselves(
     assert _require_whole_until_its_end(tmp_path / 'runs' / 'ls8.partial') > 20
 
 
-def test_a_run_goes_on_without_the_warm_parent_that_forked_its_nodes(
+def test_a_run_goes_on_without_the_fork_server_that_forked_its_nodes(
     programs: Programs, tmp_path: Path
 ) -> None:
     out = tmp_path / 'runs'
@@ -137,7 +137,7 @@ def test_a_run_goes_on_without_the_warm_parent_that_forked_its_nodes(
         *('--out', str(out)),
     )
     wait_until(lambda: (out / 'ls8.partial' / 'ls8_0.mcap').exists(), 'a bag')
-    os.kill(node_of('processes.forks'), signal.SIGKILL)
+    os.kill(fork_server_of(bringup), signal.SIGKILL)
     assert bringup.wait() == 0, bringup.errors()
     assert _require_whole_until_its_end(out / 'ls8') == 400
 
@@ -165,24 +165,17 @@ def _left_without_owner(segments: Iterable[str], there: set[str]) -> set[str]:
     return {segment for segment in left if not has_owner(segment)}
 
 
-def test_bringup_removes_the_shared_memory_of_its_own_dead_nodes_and_no_others(
+def test_bringup_removes_the_shared_memory_of_dead_nodes_and_of_no_live_one(
     programs: Programs, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     domain = os.environ['ROS_DOMAIN_ID']
     with ExitStack() as others:
-        loads = []
-        for _ in range(2):
-            # The middleware of a node in the same domain would clean up after a dead one.
-            monkeypatch.delenv('ROS_DOMAIN_ID')
-            others.enter_context(own_domain())
-            loads.append(programs.start_node('ddct_plant.nodes.load_node', {}))
+        # The middleware of a node in the same domain would clean up after a dead one.
+        monkeypatch.delenv('ROS_DOMAIN_ID')
+        others.enter_context(own_domain())
+        live = programs.start_node('ddct_plant.nodes.load_node', {})
         monkeypatch.setenv('ROS_DOMAIN_ID', domain)
-        live, dead = loads
-        left = _segments(dead)
-        # The middleware itself takes over the port of a dead node.
-        foreign = _segments(live) | {name for name in left if 'port' not in name}
-        dead.process.kill()
-        dead.wait()
+        foreign = _segments(live)
         bringup = _running(programs, tmp_path / 'runs')
         clutch = node_of('clutch_node')
         own = segments_of(clutch)
@@ -193,4 +186,3 @@ def test_bringup_removes_the_shared_memory_of_its_own_dead_nodes_and_no_others(
         assert not _left_without_owner(own, there)
         assert {f'{segment}_el' for segment in foreign} <= there
         live.stop()
-        remove_segments(foreign | left)

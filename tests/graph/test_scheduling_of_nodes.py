@@ -17,7 +17,7 @@ from ddct_bringup.programs import bringup
 from ddct_plant.base.errors import DdctError
 from ddct_plant.program.scheduling import Scheduling
 
-MODULES = {node.module: node.name for node in GRAPH_NODES}
+NODES = {f'{node.name}_node:': node.name for node in GRAPH_NODES}
 CORE = min(os.sched_getaffinity(0))
 PRIORITY = 3
 
@@ -29,10 +29,10 @@ def scheduling_of(pid: int) -> tuple[set[int], int]:
 def scheduling_of_nodes() -> dict[str, tuple[set[int], int]]:
     found = {}
     for pid, command in processes_left().items():
-        for module in MODULES.keys() & command.split():
+        for node in NODES.keys() & command.split():
             # A process may end during the scan.
             with suppress(ProcessLookupError):
-                found[MODULES[module]] = scheduling_of(pid)
+                found[NODES[node]] = scheduling_of(pid)
     return found
 
 
@@ -49,7 +49,7 @@ def test_the_nodes_have_cores_and_priority_and_the_recorder_has_one_priority_les
         *('ddct_bringup.programs.bringup', '--mode', 'realtime', *options),
         *('--duration', '600', '--out', str(tmp_path / 'run')),
     )
-    wanted = {name: ({CORE}, priority) for name in MODULES.values()}
+    wanted = {name: ({CORE}, priority) for name in NODES.values()}
     wanted['recorder'] = ({CORE}, max(priority - 1, 0))
     wait_until(lambda: scheduling_of_nodes() == wanted, f'{wanted}')
     run.send(signal.SIGINT)

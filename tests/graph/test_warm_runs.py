@@ -1,20 +1,18 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Many runs of one warm parent: each is as if it were the only one."""
+"""Many runs of one fork server: each is as if it were the only one."""
 
 import signal
 from pathlib import Path
 from typing import Any
 
 import pytest
-from support.processes import processes_left
+from support.processes import Programs, processes_left
 from support.runs import bag_bytes, plan
-from support.shared_parent import shared_parent
+from support.shared_memory import segments_of
 from support.waiting import wait_until
 
-from ddct_bringup.processes.jobs import Job
-from ddct_bringup.processes.shared_memory import segments_of
-from ddct_bringup.processes.warm_parent import WarmParent
+from ddct_bringup.processes.fork_server import server_pid
 from ddct_bringup.run.execution import execute
 from ddct_bringup.run.plan import RunPlan
 from ddct_plant.graph.domain import own_domain
@@ -22,22 +20,14 @@ from ddct_plant.graph.domain import own_domain
 pytestmark = pytest.mark.slow
 
 
-@pytest.fixture
-def parent() -> WarmParent:
-    """Return the warm parent of all tests."""
-    shared = shared_parent()
-    assert shared is not None
-    return shared
-
-
-def _run(run: RunPlan, folder: Path, parent: WarmParent | None = None) -> dict[str, bytes]:
+def _run(run: RunPlan, folder: Path) -> dict[str, bytes]:
     folder.mkdir(parents=True)
-    execute(run, folder, parent=parent)
+    execute(run, folder)
     return bag_bytes(folder)
 
 
-def test_runs_of_one_warm_parent_leave_the_bytes_of_headless_ones_each_in_its_domain_and_logs(
-    tmp_path: Path, parent: WarmParent, monkeypatch: pytest.MonkeyPatch
+def test_runs_of_one_fork_server_leave_the_bytes_of_headless_ones_each_in_its_domain_and_logs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     runs: tuple[tuple[str, dict[str, Any]], ...] = (
         ('pi', {}),
@@ -52,34 +42,36 @@ def test_runs_of_one_warm_parent_leave_the_bytes_of_headless_ones_each_in_its_do
         ),
         ('pi', {}),
     )
-    domains = []
+    domains, servers = [], set()
     monkeypatch.delenv('ROS_DOMAIN_ID')
     for number, (controller, options) in enumerate(runs):
         logs = tmp_path / f'logs{number}'
         monkeypatch.setenv('ROS_LOG_DIR', str(logs))
         with own_domain() as domain:
-            warm = _run(plan(controller, **options), tmp_path / f'{number}', parent)
+            warm = _run(plan(controller, **options), tmp_path / f'{number}')
         alone = _run(plan(controller, 'headless', **options), tmp_path / f'{number} headless')
         assert warm == alone, (number, controller)
         assert len([*logs.iterdir()]) == 8, 'one of each node'
         domains.append(domain)
+        servers.add(server_pid())
     assert len(set(domains)) == len(runs)
-    _require_no_part_in_a_graph(parent)
+    (server,) = servers
+    _require_no_part_in_a_graph(server)
 
 
-def _require_no_part_in_a_graph(parent: WarmParent) -> None:
-    tasks = Path(f'/proc/{parent.process.pid}/task').iterdir()
+def _require_no_part_in_a_graph(server: int) -> None:
+    tasks = Path(f'/proc/{server}/task').iterdir()
     names = {(task / 'comm').read_text().strip() for task in tasks}
     assert not {name for name in names if name.startswith('dds')}
-    assert not segments_of(parent.process.pid)
+    assert not segments_of(server)
 
 
-def test_a_node_that_the_parent_of_all_tests_forked_is_found_when_it_stays(
-    parent: WarmParent,
+def test_a_node_of_the_fork_server_of_all_tests_is_found_when_it_stays(
+    programs: Programs,
 ) -> None:
-    (node,) = parent.start([Job('ddct_plant.nodes.load_node')])
-    wait_until(lambda: 'load_node' in processes_left().get(node.pid, ''), 'the node')
-    assert parent.process.pid not in processes_left()
-    node.send_signal(signal.SIGKILL)
-    node.wait(20.0)
-    assert node.pid not in processes_left()
+    node = programs.fork('ddct_plant.nodes.load_node')
+    wait_until(lambda: 'load_node' in processes_left().get(node.process.pid, ''), 'the node')
+    assert server_pid() not in processes_left()
+    node.send(signal.SIGKILL)
+    assert node.wait(20.0) == -signal.SIGKILL
+    assert node.process.pid not in processes_left()

@@ -7,16 +7,15 @@ import re
 import signal
 import subprocess
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
 from support.complaints import assert_one_line
 from support.processes import Programs, processes_left
 
-from ddct_bringup.processes import warm_parent
-from ddct_bringup.programs import ddct
+from ddct_bringup.processes import fork_server
+from ddct_bringup.programs import bringup, compare, ddct
 from ddct_plant.program import start
 from ddct_plant.program.start import programs
 
@@ -229,24 +228,21 @@ def test_a_sourced_workspace_has_it_on_the_path() -> None:
         (['score', '--help'], 0),
     ],
 )
-def test_a_warm_parent_starts_ahead_where_nodes_are_to_come(
+def test_the_fork_server_starts_ahead_where_nodes_are_to_come(
     arguments: list[str], expected: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    started = []
-
-    @contextmanager
-    def started_ahead() -> Iterator[None]:
-        started.append(True)
-        yield
-
-    monkeypatch.setattr(warm_parent, 'started_ahead', started_ahead)
+    started: list[bool] = []
+    monkeypatch.setattr(fork_server, 'start_server', lambda: started.append(True))
+    # What the program itself imports has the function from before.
+    monkeypatch.setattr(bringup, 'start_server', lambda: None)
+    monkeypatch.setattr(compare, 'start_server', lambda: None)
     monkeypatch.setattr(sys, 'argv', ['ddct'])
     with suppress(SystemExit):
         ddct.main(arguments)
     assert len(started) == expected
 
 
-def test_a_warm_parent_started_ahead_in_vain_ends_with_its_program(programs: Programs) -> None:
+def test_a_fork_server_started_in_vain_ends_with_its_program(programs: Programs) -> None:
     start = 'from ddct_bringup.programs.ddct import main; raise SystemExit(main())'
     program = programs.start([sys.executable, '-P', '-c', start, 'bringup'])
     assert program.wait() == 1

@@ -12,14 +12,46 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ddct_bringup.processes.forked_process import ForkedProcess
+from ddct_bringup.processes.fork_server import server_pid, start_processes
+from ddct_bringup.processes.forked import Forked
 from ddct_bringup.processes.graph_nodes import NodeSpec
-from ddct_bringup.processes.jobs import Job
-from support.shared_parent import TEST_ID, is_shared, shared_parent
 from support.waiting import WITHIN_S, wait_until
 
+TEST_ID = 'DDCT_TEST_ID'
+"""Environment variable that marks every process which a test starts, directly or not."""
+_PATH = os.environ.get('PYTHONPATH')
 _before: set[int] = set()
 """Ids of the processes that were there before this test."""
+
+
+class ForkedProcess:
+    """Process of the fork server with the methods of `Popen` that tests use."""
+
+    def __init__(self, forked: Forked) -> None:
+        """Start it."""
+        self.forked = forked
+        start_processes([forked.process])
+        forked.begin()
+        self.pid = forked.pid
+
+    def poll(self) -> int | None:
+        """Return the exit code, None while it runs."""
+        return self.forked.code()
+
+    def wait(self, timeout: float = WITHIN_S) -> int:
+        """Wait for its end and return the exit code."""
+        assert self.forked.wait(timeout), f'{self.pid} has not ended within {timeout:g} s'
+        code = self.forked.code()
+        assert code is not None
+        return code
+
+    def send_signal(self, number: signal.Signals) -> None:
+        """Send it a signal."""
+        self.forked.send(number)
+
+    def kill(self) -> None:
+        """Kill it."""
+        self.send_signal(signal.SIGKILL)
 
 
 @dataclass
@@ -53,6 +85,27 @@ class Program:
         return self.stderr.read_text(encoding='utf-8')
 
 
+class ForkedProgram(Program):
+    """Program that the fork server of this process has forked; it prints into one file."""
+
+    def __init__(self, module: str, *arguments: str) -> None:
+        """Start `main` of a module."""
+        self._forked = Forked(module, *arguments)
+        super().__init__(ForkedProcess(self._forked), Path(os.devnull), Path(os.devnull))
+
+    def stop(self) -> None:
+        """Stop it as Ctrl-C in its terminal would and require that it ends with code 0."""
+        self.send(signal.SIGINT)
+        code = self.wait()
+        assert code == 0, f'{self.process.pid}: code {code} after SIGINT: {self.errors()}'
+
+    def output(self) -> str:
+        """Return all that it has printed so far."""
+        return self._forked.printed_text()
+
+    errors = output
+
+
 class Programs:
     """Starter of programs that kills those still running after a failed test."""
 
@@ -77,18 +130,14 @@ class Programs:
 
     def fork(self, module: str, *arguments: str) -> Program:
         """
-        Start `main` of a module as a fork of the warm parent of all tests: without its imports.
+        Start `main` of a module as a fork of the fork server of all tests: without its imports.
 
         Both streams of output are in one file. It differs in nothing else from `start_module`,
-        which takes its place where a fork is not possible.
+        which takes its place where the test has changed the path of Python.
         """
-        parent = shared_parent()
-        if parent is None:
+        if os.environ.get('PYTHONPATH') != _PATH:
             return self.start_module(module, *arguments)
-        printed = self._log('out')
-        with printed.open('wb') as output:
-            (process,) = parent.start([Job(module, arguments, output=output.fileno())])
-        return self._add(Program(process, printed, printed))
+        return self._add(ForkedProgram(module, *arguments))
 
     def start_module(self, module: str, *arguments: str, **options: Any) -> Program:
         """Start `python -m module` with the Python that runs the tests."""
@@ -143,15 +192,20 @@ def processes_left() -> dict[int, str]:
     mark = f'{TEST_ID}={os.environ[TEST_ID]}'.encode()
     left = {}
     for pid in _all_processes():
-        if pid in _before or pid == os.getpid() or is_shared(pid):
+        if pid in _before or pid in (os.getpid(), server_pid()):
             continue
         folder = Path(f'/proc/{pid}')
         # A process may end, or belong to another user, during the scan.
         with contextlib.suppress(OSError):
             command = (folder / 'cmdline').read_bytes().replace(b'\0', b' ').decode().strip()
+            # It ends by itself after those that it serves, which are found without it.
+            if 'multiprocessing.resource_tracker' in command:
+                continue
+            if 'multiprocessing.forkserver' in command:
+                command = f'{(folder / "comm").read_text().strip()}: {command}'
             marked = mark in (folder / 'environ').read_bytes().split(b'\0')
-            # A fork of the shared parent has the variables that this one had at its start.
-            if marked or ('ddct_' in command and _parent_of(pid) == os.getpid()):
+            # A fork of the shared server has the variables that this one had at its start.
+            if marked or _parent_of(pid) == server_pid():
                 left[pid] = command
     return left
 
@@ -182,4 +236,20 @@ def node_of(module: str) -> int:
 
     wait_until(find, f'a process of {module}')
     assert len(found) == 1, f'{module} runs {len(found)} times'
+    return found[0]
+
+
+def fork_server_of(program: Program) -> int:
+    """Return the process id of the fork server of a program, once it is there."""
+    found: list[int] = []
+
+    def find() -> bool:
+        found[:] = [
+            pid
+            for pid in children_of(program.process.pid)
+            if 'forkserver' in processes_left()[pid]
+        ]
+        return bool(found)
+
+    wait_until(find, 'a fork server')
     return found[0]

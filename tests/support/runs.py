@@ -13,7 +13,6 @@ from ddct_bringup.run.headless import run_headless
 from ddct_bringup.run.plan import RunPlan
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
-from support.shared_parent import shared_parent
 
 LAYOUTS = ('processes', 'single-process', 'headless')
 SHORT_S = 1.0
@@ -44,7 +43,7 @@ def plan(
 def record(run: RunPlan, folder: Path) -> Recording:
     """Execute a run into a new folder and return its recording."""
     folder.mkdir(parents=True)
-    execute(run, folder, parent=shared_parent() if run.layout == 'processes' else None)
+    execute(run, folder)
     return read_bag(folder)
 
 

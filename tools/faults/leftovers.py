@@ -7,16 +7,15 @@ import uuid
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from support.processes import processes_left
-from support.shared_memory import has_owner
-from support.shared_parent import TEST_ID
+from support.processes import TEST_ID, processes_left
+from support.shared_memory import has_owner, segments_of
 from support.waiting import wait_until
 
-from ddct_bringup.processes.shared_memory import SHARED_MEMORY, segments_of
+from ddct_bringup.processes.shared_memory import SHARED_MEMORY
 from ddct_plant.graph.domain import own_domain
 
 LEAVE_S = 25.0
-"""Time in s that processes have to end by themselves: the guardian waits 10 s before it kills."""
+"""Time in s that processes have to end by themselves: a node ends 10 s after its program."""
 
 
 class Leftovers:

@@ -153,7 +153,7 @@ def safe_state(*nodes: str, within_s: float = WITHIN_S, stopped: str = '') -> St
         after = [step - seen.fault_step for step in steps]
         in_time = all(-1 <= each <= limit for each in after)
         waited = ' no ' in f' {seen.error}' and ' for stamp ' in seen.error
-        named_node = bool(stopped) and f'node {stopped} has shown no sign of life' in seen.error
+        named_node = bool(stopped) and f'node {stopped} has been paused' in seen.error
         well = not seen.error or waited or named_node
         return in_time and well and not seen.complete
 

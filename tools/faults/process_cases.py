@@ -63,14 +63,14 @@ def _after_kill(node: str, instant: str, mode: str) -> Stated:
 
 def _after_stop(node: str, instant: str, mode: str) -> Stated:
     if node == 'driveline':
-        return named('node driveline has shown no sign of life')
+        return named('node driveline has been paused')
     silent = named(f'no {ANSWERS[node]}') if node != 'engine' else named('engine/torque')
-    by_pulse = named(f'node {node} has shown no sign of life')
+    by_state = named(f'node {node} has been paused')
     if mode == 'lockstep' or instant != 'middle':
-        return either(silent, by_pulse, *([RUNS_ON] if mode == 'realtime' else []))
+        return either(silent, by_state, *([RUNS_ON] if mode == 'realtime' else []))
     if node in OPENS:
         return safe_state(*OPENS[node], stopped=node)
-    return either(silent, by_pulse, RUNS_ON)
+    return either(silent, by_state, RUNS_ON)
 
 
 def _after_pause(node: str, instant: str, mode: str) -> Stated:

@@ -17,15 +17,15 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 from rosgraph_msgs.msg import Clock
-from support.shared_parent import shared_parent
 
-from ddct_bringup.processes import node_process
+from ddct_bringup.processes import supervisor
 from ddct_bringup.processes.graph_nodes import NodeSpec
-from ddct_bringup.processes.node_processes import NodeProcesses
+from ddct_bringup.processes.supervisor import Supervisor
 from ddct_bringup.run import execution, plan
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import step_of_stamp
 from ddct_plant.graph.qos import RECORDER_QOS
+from ddct_plant.program.supervision import Patience
 from ddct_plant.signals.message_kind import stamp_ns
 from faults.case import Case
 from faults.leftovers import Leftovers
@@ -34,6 +34,8 @@ from faults.outcome import NEVER, Observed
 PAUSE_S = 0.5
 PATIENCE_S = 3.0
 """Wall time in s after which a silent node ends a run here; 20 s for users."""
+PAUSED_S, PATIENCE = 2.0, Patience(start_s=10.0, silent_s=2.5)
+"""Those of the supervisor here."""
 
 
 @contextmanager
@@ -73,18 +75,18 @@ def at_step(step: int, act: Callable[[int], None]) -> Iterator[None]:
 @contextmanager
 def _short_patience() -> Iterator[None]:
     """Let the supervisor of this process, and the driveline, give up earlier."""
-    changed: Sequence[tuple[Any, str]] = (
-        (plan, 'ANSWER_TIMEOUT_S'),
-        (node_process, 'ANSWER_TIMEOUT_S'),
-        (node_process, 'START_S'),
+    changed: Sequence[tuple[Any, str, Any]] = (
+        (plan, 'ANSWER_TIMEOUT_S', PATIENCE_S),
+        (supervisor, 'PAUSED_S', PAUSED_S),
+        (supervisor, 'PATIENCE', PATIENCE),
     )
-    before = [getattr(module, name) for module, name in changed]
-    for module, name in changed:
-        setattr(module, name, 10.0 if name == 'START_S' else PATIENCE_S)
+    before = [getattr(module, name) for module, name, _ in changed]
+    for module, name, value in changed:
+        setattr(module, name, value)
     try:
         yield
     finally:
-        for (module, name), value in zip(changed, before, strict=True):
+        for (module, name, _), value in zip(changed, before, strict=True):
             setattr(module, name, value)
 
 
@@ -93,13 +95,12 @@ def run_with_fault(case: Case, folder: Path, harm: Callable[[int], None]) -> Obs
     seen, leftovers = Observed(fault_step=NEVER), Leftovers()
     pids: dict[str, int] = {}
 
-    class Tapped(NodeProcesses):
+    class Tapped(Supervisor):
         """Processes whose ids the campaign knows."""
 
         def start(self, specs: Sequence[NodeSpec]) -> None:
             super().start(specs)
-            nodes: Any = self._nodes
-            pids.update({node.name: node.process.pid for node in nodes})
+            pids.update({node.name: node.pid for node in self._nodes})
 
     def act(step: int) -> None:
         seen.fault_step = step
@@ -107,15 +108,15 @@ def run_with_fault(case: Case, folder: Path, harm: Callable[[int], None]) -> Obs
             leftovers.note(pid)
         harm(pids[case.target])
 
-    real, modules = execution.NodeProcesses, execution
-    setattr(modules, 'NodeProcesses', Tapped)  # noqa: B010
+    real, modules = execution.Supervisor, execution
+    setattr(modules, 'Supervisor', Tapped)  # noqa: B010
     try:
         with _short_patience(), at_step(case.begin, act):
-            execution.execute(case.run, folder, parent=shared_parent())
+            execution.execute(case.run, folder)
     except DdctError as error:
         seen.error = str(error).partition('; its log is')[0]
     finally:
-        setattr(modules, 'NodeProcesses', real)  # noqa: B010
+        setattr(modules, 'Supervisor', real)  # noqa: B010
     seen.read(folder, case.run)
     seen.left = leftovers.found()
     return seen

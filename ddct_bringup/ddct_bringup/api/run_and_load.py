@@ -17,8 +17,7 @@ from ddct_bringup.api.result import Run
 from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.bag.recording import Recording
 from ddct_bringup.bag.writer import bag_file
-from ddct_bringup.processes.warm_parent import WarmParent
-from ddct_bringup.run.execution import execute, parent_for
+from ddct_bringup.run.execution import execute
 from ddct_bringup.run.output_folder import run_folder
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.scores.scored_recording import (
@@ -85,17 +84,16 @@ def _run(
     plan: RunPlan,
     out: str | Path | None,
     limits: Limits,
-    parent: WarmParent | None = None,
     *,
     overwrite: bool,
 ) -> Run:
-    """Return the judged run of a plan; `parent` forks its nodes, None starts one for this run."""
+    """Return the judged run of a plan."""
     if out is not None:
-        return _kept(plan, Path(out), limits, parent, overwrite=overwrite)
+        return _kept(plan, Path(out), limits, overwrite=overwrite)
     if plan.layout == 'headless':
         return _run_of(simulate_and_score(plan, limits), plan.controller)
     with tempfile.TemporaryDirectory(prefix='ddct-') as folder:
-        scored = run_and_score(plan, Path(folder), limits, partial(_execute, parent=parent))
+        scored = run_and_score(plan, Path(folder), limits, _execute)
         return _run_of(scored, plan.controller)
 
 
@@ -122,11 +120,9 @@ def compare(
     chosen = controllers_from(controllers)
     ready = ready_settings([controller_label(each) for each in chosen], **options)
     layout, judged_by = _layout(headless), load_limits(limits)
-    with parent_for(layout) as parent:
-        runs = [
-            _run(RunPlan(ready, each, layout), out, judged_by, parent, overwrite=overwrite)
-            for each in chosen
-        ]
+    runs = [
+        _run(RunPlan(ready, each, layout), out, judged_by, overwrite=overwrite) for each in chosen
+    ]
     return [each.with_least(judged_by) for each in runs] if floors else runs
 
 
@@ -142,11 +138,9 @@ def load(bag: str | Path, *, limits: str | Path | None = None, floors: bool = Fa
     return found.with_least(judged_by) if floors else found
 
 
-def _kept(
-    plan: RunPlan, out: Path, limits: Limits, parent: WarmParent | None, *, overwrite: bool
-) -> Run:
+def _kept(plan: RunPlan, out: Path, limits: Limits, *, overwrite: bool) -> Run:
     with run_folder(out, plan.name, overwrite=overwrite) as folder:
-        scored = run_and_score(plan, folder.path, limits, partial(_execute, parent=parent))
+        scored = run_and_score(plan, folder.path, limits, _execute)
         kept = _run_of(scored, plan.controller)
         if not kept.valid:
             return kept
@@ -156,9 +150,9 @@ def _kept(
     return replace(kept, scored=replace(kept.scored, recording=recording))
 
 
-def _execute(plan: RunPlan, folder: Path, parent: WarmParent | None) -> Recording | None:
+def _execute(plan: RunPlan, folder: Path) -> Recording | None:
     with nullcontext() if plan.layout == 'headless' else _ONE_GRAPH:
-        return execute(plan, folder, parent=parent)
+        return execute(plan, folder)
 
 
 def _run_of(scored: ScoredRecording, chosen: Chosen = '') -> Run:

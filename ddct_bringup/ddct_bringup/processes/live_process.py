@@ -3,15 +3,14 @@
 """Live view of one run: program `live` in a process of its own."""
 
 import signal
-import subprocess
 import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from ddct_bringup.processes.node_process import Child
-from ddct_bringup.processes.node_processes import POLL_S
-from ddct_bringup.processes.warm_parent import WarmParent
+from ddct_bringup.processes.fork_server import start_processes
+from ddct_bringup.processes.forked import Forked
+from ddct_bringup.processes.supervisor import POLL_S
 from ddct_plant.base.errors import DdctError
 from ddct_plant.graph.domain import own_domain
 
@@ -27,13 +26,13 @@ RECEIVE_S = 10.0
 _STOP_S = 10.0
 
 
-class LiveView(Child):
+class LiveView(Forked):
     """Running program `live`; its printed lines show its progress."""
 
     def wait_for_viewer(self) -> None:
         """Wait without a limit until a viewer shows a topic; raise DdctError when `live` ends."""
         self._wait_for('ws://')
-        url = self.output_text().split('ws://')[1].split()[0]
+        url = self.printed_text().split('ws://')[1].split()[0]
         text = f'open ws://{url} in Foxglove: the run begins when a panel shows a topic'
         print(text, file=sys.stderr, flush=True)
         self._wait_for(VIEWER_SUBSCRIBED)
@@ -41,32 +40,30 @@ class LiveView(Child):
     def receives(self) -> bool:
         """Return whether it has received every topic of t_0; raise DdctError when `live` ended."""
         self._require_running()
-        return ALL_TOPICS_RECEIVED in self.output_text()
+        return ALL_TOPICS_RECEIVED in self.printed_text()
 
     def stop(self) -> None:
         """End the process."""
-        self.process.send_signal(signal.SIGINT)
-        try:
-            self.process.wait(_STOP_S)
-        except subprocess.TimeoutExpired:
-            self.process.kill()
-            self.process.wait()
+        self.send(signal.SIGINT)
+        if not self.wait(_STOP_S):
+            self.send(signal.SIGKILL)
+            self.wait(_STOP_S)
         self.close()
 
     def _wait_for(self, text: str) -> None:
         """Wait until it has printed a text; raise DdctError when it ends before."""
-        while text not in self.output_text():
+        while text not in self.printed_text():
             self._require_running()
             time.sleep(POLL_S)
 
     def _require_running(self) -> None:
         if not self.running:
-            words = self.last_line() or 'it ended without a word'
-            raise DdctError(words.removeprefix('ddct live: '))
+            *_, last = ['it ended without a word', *self.lines()]
+            raise DdctError(last.strip().removeprefix('ddct live: '))
 
 
 @contextmanager
-def live_view(port: int, parent: WarmParent) -> Iterator[LiveView]:
+def live_view(port: int) -> Iterator[LiveView]:
     """
     Reserve a domain for one run, serve it on a port, and yield once a viewer shows a topic.
 
@@ -75,8 +72,9 @@ def live_view(port: int, parent: WarmParent) -> Iterator[LiveView]:
     """
     with own_domain():
         view = LiveView('ddct_bringup.programs.live', '--port', str(port))
-        (view.process,) = parent.start([view.job])
         try:
+            start_processes([view.process])
+            view.begin()
             view.wait_for_viewer()
             yield view
         finally:

@@ -4,42 +4,30 @@
 
 import contextlib
 import fcntl
-import os
-import re
-from collections.abc import Iterable
+import time
 from pathlib import Path
 
 SHARED_MEMORY = Path('/dev/shm')
-_LOCK = '_el'
-_LOCK_FILE = re.compile(f'fastrtps_.+{_LOCK}')
-"""Pattern of the file `fastrtps_X_el`, which a live owner of segment `fastrtps_X` locks."""
+LOCK = '_el'
+"""End of the name of a file `fastrtps_X_el`, which a live owner of the segment X locks."""
+YOUNG_S = 0.2
+"""Age in s below which a segment may have an owner that has not locked it yet."""
 
 
-def segments_of(pid: int) -> set[str]:
-    """Return the segments that a running process has locked, none for one that has ended."""
-    segments = set()
-    with contextlib.suppress(OSError):  # the process may end during the scan
-        for link in Path(f'/proc/{pid}/fd').iterdir():
-            with contextlib.suppress(OSError):  # the process may close this file during the scan
-                file = link.readlink()
-                if file.parent == SHARED_MEMORY and _LOCK_FILE.fullmatch(file.name):
-                    segments.add(file.name.removesuffix(_LOCK))
-    return segments
+def remove_dead_segments() -> None:
+    """Remove the segments that no live process owns, as `fastdds shm clean` does."""
+    for lock in SHARED_MEMORY.glob(f'fastrtps_*{LOCK}'):
+        # Its owner may remove it meanwhile, or have locked it, or be another user.
+        with contextlib.suppress(OSError):
+            _remove_unless_owned(lock)
 
 
-def remove_segments(segments: Iterable[str]) -> None:
-    """Remove the given segments that no live process owns; a new process may use a name again."""
-    for segment in segments:
-        lock = SHARED_MEMORY / f'{segment}{_LOCK}'
-        try:
-            descriptor = os.open(lock, os.O_RDONLY | os.O_CLOEXEC)
-        except OSError:  # its owner has removed it
-            continue
-        try:
-            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            for file in (segment, f'sem.{segment}_mutex', lock.name):
-                (SHARED_MEMORY / file).unlink(missing_ok=True)
-        except OSError:  # locked by a live owner, or of another user
-            continue
-        finally:
-            os.close(descriptor)
+def _remove_unless_owned(lock: Path) -> None:
+    age_s = time.time() - lock.stat().st_mtime
+    if 0.0 <= age_s < YOUNG_S:
+        time.sleep(YOUNG_S - age_s)
+    with lock.open('rb') as file:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        segment = lock.name.removesuffix(LOCK)
+        for name in (segment, f'sem.{segment}_mutex', lock.name):
+            lock.with_name(name).unlink(missing_ok=True)

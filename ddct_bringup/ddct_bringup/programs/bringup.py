@@ -8,9 +8,9 @@ from contextlib import nullcontext
 from functools import partial
 from pathlib import Path
 
+from ddct_bringup.processes.fork_server import start_server
 from ddct_bringup.processes.live_process import DEFAULT_PORT, live_view
-from ddct_bringup.processes.warm_parent import WarmParent
-from ddct_bringup.run.execution import parent_for, print_logs_with_warnings, run_with_progress
+from ddct_bringup.run.execution import print_logs_with_warnings, run_with_progress
 from ddct_bringup.run.options import add_run_options, print_choices, scheduling_of
 from ddct_bringup.run.output_folder import StagedFolder, run_folder
 from ddct_bringup.run.plan import RunPlan
@@ -55,15 +55,15 @@ def _bringup(argv: list[str]) -> int:
         return 0
     if options.out is None:
         raise ParameterError('--out is missing: name the folder for the bag')
-    # The warm parent imports while the run is planned.
-    with parent_for(options.layout) as parent:
-        limits = load_limits(options.limits)
-        settings = settings_of(options, [controller_label(options.controller)])
-        plan = RunPlan(settings, options.controller, options.layout, scheduling_of(options))
-        if options.live is not None and plan.layout != 'processes':
-            raise ParameterError(f'--live shows a process per node: drop it or --{plan.layout}')
-        with run_folder(options.out, plan.name, overwrite=options.overwrite) as folder:
-            _run(plan, folder, options, limits, parent)
+    if options.layout == 'processes':
+        start_server()  # it imports while the run is planned
+    limits = load_limits(options.limits)
+    settings = settings_of(options, [controller_label(options.controller)])
+    plan = RunPlan(settings, options.controller, options.layout, scheduling_of(options))
+    if options.live is not None and plan.layout != 'processes':
+        raise ParameterError(f'--live shows a process per node: drop it or --{plan.layout}')
+    with run_folder(options.out, plan.name, overwrite=options.overwrite) as folder:
+        _run(plan, folder, options, limits)
     return 0
 
 
@@ -72,14 +72,9 @@ def _run(
     folder: StagedFolder,
     options: argparse.Namespace,
     limits: Limits,
-    parent: WarmParent | None,
 ) -> None:
-    with (
-        live_view(options.live, parent)
-        if options.live is not None and parent
-        else nullcontext() as live
-    ):
-        execute = partial(run_with_progress, live=live, parent=parent)
+    with live_view(options.live) if options.live is not None else nullcontext() as live:
+        execute = partial(run_with_progress, live=live)
         run = run_and_score(plan, folder.path, limits, execute)
     scores = run.scores
     if not scores.valid:

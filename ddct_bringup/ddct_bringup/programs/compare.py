@@ -8,12 +8,12 @@ from functools import partial
 from pathlib import Path
 
 from ddct_bringup.digests.writing import write_run_digests
-from ddct_bringup.processes.warm_parent import WarmParent
+from ddct_bringup.processes.fork_server import start_server
 from ddct_bringup.programs.report import REPORT_FILE, require_chart_library, write_report
 from ddct_bringup.report.evidence import FREQUENCY_FILE
 from ddct_bringup.report.run_labels import in_order
 from ddct_bringup.run.description import custom_data
-from ddct_bringup.run.execution import parent_for, print_logs_with_warnings, run_with_progress
+from ddct_bringup.run.execution import print_logs_with_warnings, run_with_progress
 from ddct_bringup.run.options import (
     ALL,
     add_controllers_option,
@@ -74,21 +74,21 @@ def _compare(argv: list[str]) -> int:
     require_chart_library()
     require_place('--json', options.json)
     unusable: list[DdctError] = []
-    # The warm parent imports while the runs are planned, and serves them all.
-    with parent_for(options.layout) as parent:
-        limits = load_limits(options.limits)
-        names = controllers_of(options.controllers)
-        settings = settings_of(options, [controller_label(name) for name in names])
-        if options.controllers == ALL:
-            names = working_controllers(settings, partial(complain, PROGRAM))
-        scheduling = scheduling_of(options)
-        plans = [RunPlan(settings, name, options.layout, scheduling) for name in names]
-        with (
-            locked_folders(options.out),
-            StagedFolder(options.out, overwrite=options.overwrite) as folder,
-        ):
-            evidence = frequency_evidence(names, settings, unusable.append)
-            failed = _run_all(plans, folder, evidence, options, limits, parent)
+    if options.layout == 'processes':
+        start_server()  # it imports while the runs are planned, and serves them all
+    limits = load_limits(options.limits)
+    names = controllers_of(options.controllers)
+    settings = settings_of(options, [controller_label(name) for name in names])
+    if options.controllers == ALL:
+        names = working_controllers(settings, partial(complain, PROGRAM))
+    scheduling = scheduling_of(options)
+    plans = [RunPlan(settings, name, options.layout, scheduling) for name in names]
+    with (
+        locked_folders(options.out),
+        StagedFolder(options.out, overwrite=options.overwrite) as folder,
+    ):
+        evidence = frequency_evidence(names, settings, unusable.append)
+        failed = _run_all(plans, folder, evidence, options, limits)
     if failed:
         complain(PROGRAM, f'not valid: {", ".join(failed)}: the table and the report say why')
     for error in unusable:
@@ -102,7 +102,6 @@ def _run_all(
     evidence: FrequencyEvidence,
     options: argparse.Namespace,
     limits: Limits,
-    parent: WarmParent | None,
 ) -> list[str]:
     """
     Execute all runs, commit their folder, and return the names of those that are not valid.
@@ -110,7 +109,7 @@ def _run_all(
     Raise DdctError when none is valid: DIR stays as it was.
     """
     runs = [
-        _run(plan, folder.path, f'{index} of {len(plans)}, ', limits, parent)
+        _run(plan, folder.path, f'{index} of {len(plans)}, ', limits)
         for index, plan in enumerate(plans, start=1)
     ]
     runs = with_floors(runs, limits, options.floors)
@@ -134,9 +133,7 @@ def _run_all(
     return failed
 
 
-def _run(
-    plan: RunPlan, out: Path, label: str, limits: Limits, parent: WarmParent | None
-) -> ScoredRecording:
+def _run(plan: RunPlan, out: Path, label: str, limits: Limits) -> ScoredRecording:
     """
     Execute, read and score one run; write the reason of a failed one into its folder.
 
@@ -146,9 +143,7 @@ def _run(
     bag = out / plan.name
     mark_folder(bag)
     try:
-        return run_and_score(
-            plan, bag, limits, partial(run_with_progress, label=label, parent=parent)
-        )
+        return run_and_score(plan, bag, limits, partial(run_with_progress, label=label))
     except DdctError as error:
         reason = str(error)
     reason = reason.replace(f'{bag}/', '')  # the folder gets its final name later

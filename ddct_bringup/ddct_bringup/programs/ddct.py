@@ -5,7 +5,6 @@
 import ast
 import sys
 from collections.abc import Callable
-from contextlib import AbstractContextManager, nullcontext
 from importlib.metadata import EntryPoint
 from importlib.util import find_spec
 from itertools import groupby
@@ -21,7 +20,7 @@ PROGRAM = 'ddct'
 _FIRST_OF_ROS = ('rclpy', 'rcl_interfaces')
 """Modules that a node imports first of ROS."""
 _RUNS_GRAPHS = ('bringup', 'compare')
-"""Programs whose warm parent starts ahead of them, as both take about as long to import."""
+"""Programs whose fork server starts ahead of them, as both take about as long to import."""
 _WITHOUT_NODES = {'-h', '--help', '--headless', '--list', '--single-process', '--version'}
 """Options with which those programs start no node."""
 
@@ -51,20 +50,18 @@ def _ddct(argv: list[str]) -> int:
         parser.add_argument('program', metavar='PROGRAM', help='one of those above')
         name = parser.parse_args(argv[:1]).program
         parser.error(f'unknown program {name}: {close_name(name, sorted(known))}')
-    with _warm_parent() if _starts_nodes(argv) else nullcontext():
-        sys.argv[1:] = argv[1:]
-        return _load(known[argv[0]])()
+    if _starts_nodes(argv):
+        # Only here: what is imported before `run_program` cannot be interrupted without a
+        # traceback.
+        from ddct_bringup.processes.fork_server import start_server
+
+        start_server()
+    sys.argv[1:] = argv[1:]
+    return _load(known[argv[0]])()
 
 
 def _starts_nodes(argv: list[str]) -> bool:
     return argv[0] in _RUNS_GRAPHS and _WITHOUT_NODES.isdisjoint(argv)
-
-
-def _warm_parent() -> AbstractContextManager[None]:
-    # Only here: what is imported before `run_program` cannot be interrupted without a traceback.
-    from ddct_bringup.processes.warm_parent import started_ahead
-
-    return started_ahead()
 
 
 def _load(point: EntryPoint) -> Callable[[], int]:

@@ -6,7 +6,6 @@ import re
 import sys
 import time
 from collections.abc import Callable, Iterable, Sequence
-from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
 from pathlib import Path
 
@@ -18,8 +17,7 @@ from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.bag.trajectory_bag import write_trajectory
 from ddct_bringup.processes.graph_nodes import DRIVELINE, RECORDER, nodes_of
 from ddct_bringup.processes.live_process import RECEIVE_S, LiveView
-from ddct_bringup.processes.node_processes import NodeProcesses
-from ddct_bringup.processes.warm_parent import WarmParent, warm_parent
+from ddct_bringup.processes.supervisor import Supervisor
 from ddct_bringup.run.description import custom_data, facts_of, run_info_of
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.run.plan import RunPlan
@@ -40,21 +38,11 @@ Name of the folder for scenario, parameters and logs; a good run keeps only logs
 _WARNING = re.compile(rb'^\[(WARN|ERROR|FATAL)\]', re.MULTILINE)
 
 
-def parent_for(layout: str) -> AbstractContextManager[WarmParent | None]:
-    """
-    Return a context manager with the warm parent for runs of this layout, or with None.
-
-    One warm parent serves several runs; headless and single-process runs need none.
-    """
-    return warm_parent() if layout == 'processes' else nullcontext()
-
-
 def run_with_progress(
     plan: RunPlan,
     folder: Path,
     label: str = '',
     live: LiveView | None = None,
-    parent: WarmParent | None = None,
 ) -> Recording | None:
     """
     `execute` a plan into `folder`; print its progress, the stability of its loop and its speed.
@@ -66,7 +54,7 @@ def run_with_progress(
     what = f'{label}{plan.name}: {scenario.duration_s:g} s of {scenario.name}'
     started = time.perf_counter()
     with stop_signals() as stops, Console(file=sys.stderr).status(f'{what}, {plan.layout}'):
-        recording = execute(plan, folder, lambda: bool(stops), live, parent)
+        recording = execute(plan, folder, lambda: bool(stops), live)
     if stops:
         # The signal came after the end of the run: whatever would follow is cancelled.
         raise KeyboardInterrupt
@@ -80,7 +68,6 @@ def execute(
     folder: Path,
     stopped: Callable[[], bool] = lambda: False,
     live: LiveView | None = None,
-    parent: WarmParent | None = None,
 ) -> Recording | None:
     """
     Execute `plan` and write its bag and `timing.json` into the existing `folder`.
@@ -88,8 +75,7 @@ def execute(
     Return what a headless run has recorded, which is in memory with the values that its bag has;
     None for a graph, of which the bag has to be read.
 
-    A run of separate processes begins once `live` receives their topics. `parent` forks them;
-    without it the run starts a warm parent itself.
+    A run of separate processes begins once `live` receives their topics.
 
     Raise DdctError with the reason when the run does not end well, KeyboardInterrupt when
     `stopped()` becomes true; what was recorded until then stays in the folder.
@@ -106,8 +92,7 @@ def execute(
         work.mkdir()
         with own_domain():
             if plan.layout == 'processes':
-                with nullcontext(parent) if parent else WarmParent() as warm:
-                    _execute_processes(plan, folder, work, stopped, live, warm)
+                _execute_processes(plan, folder, work, stopped, live)
             else:
                 # The graph needs ROS installed and sourced; a headless run does not.
                 from ddct_bringup.processes.single_process import run_single_process
@@ -159,10 +144,9 @@ def _execute_processes(
     work: Path,
     stopped: Callable[[], bool],
     live: LiveView | None,
-    parent: WarmParent,
 ) -> None:
     parameter_file = plan.write_parameter_file(folder, work)
-    with NodeProcesses(work, parameter_file, parent, stopped) as processes:
+    with Supervisor(work, parameter_file, stopped) as processes:
         nodes = nodes_of(shift=plan.settings.shift)
         processes.start([node for node in nodes if node is not RECORDER or not live])
         if live:

@@ -5,7 +5,6 @@
 import hashlib
 import json
 import pickle
-import signal
 import threading
 import warnings
 from dataclasses import asdict, replace
@@ -182,22 +181,6 @@ def test_controllers_are_compared_with_the_options_of_each():
     alone = api.run(Soft, duration=SHORT_S, set={'controllers.Soft.gain': 0.3})
     assert runs[1].trajectory.sha256() == alone.trajectory.sha256()
     assert alone.trajectory.sha256() != api.run(Soft, duration=SHORT_S).trajectory.sha256()
-
-
-def test_the_nodes_of_all_compared_controllers_are_forked_by_one_warm_parent(monkeypatch):
-    parents = []
-
-    def without_nodes(plan, folder, *, parent):
-        parents.append(parent)
-        execute(replace(plan, layout='headless'), folder)
-
-    execute = run_and_load.execute
-    monkeypatch.setattr(run_and_load, 'execute', without_nodes)
-    compared = api.compare('pi,ls8', duration=SHORT_S, headless=False)
-    assert [each.controller for each in compared] == ['pi', 'ls8']
-    first, second = parents
-    assert first is second
-    assert first.process.returncode == -signal.SIGKILL, 'it is ended with the last run'
 
 
 def test_controllers_may_be_given_as_on_the_command_line():

@@ -6,10 +6,10 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from ddct_bringup.processes.node_processes import POLL_S
 
 from ddct_bringup.processes import live_process
 from ddct_bringup.processes.live_process import LiveView
-from ddct_bringup.processes.node_processes import POLL_S
 
 
 def test_the_wait_for_a_line_sleeps_between_two_looks(monkeypatch: pytest.MonkeyPatch) -> None:

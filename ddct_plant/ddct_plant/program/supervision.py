@@ -1,30 +1,27 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
 """
-End of a process, and its messages to the supervisor.
+End of a process: by a signal, with its parent, or by itself when it hangs.
 
-Handlers of SIGINT and SIGTERM, signals at the end of the parent process, the pulse of a running
+Handlers of SIGINT and SIGTERM, signals at the end of the parent process, the watch over a running
 node, and its announced exit code.
 """
 
 import atexit
 import ctypes
+import faulthandler
 import operator
 import os
 import signal
 import threading
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
+from dataclasses import dataclass
 from types import FrameType
 from typing import Any
 
-PULSE_FD = 'DDCT_PULSE_FD'
-"""Environment variable with the non-blocking file descriptor that a supervisor has opened."""
-EXIT_MARK = b'!'
-"""Byte before the announced exit code of a node whose work is over."""
 _CAUGHT = (signal.SIGINT, signal.SIGTERM)
 _SET_PARENT_DEATH_SIGNAL = 1
-_SET_TAKES_ORPHANS, _GET_TAKES_ORPHANS = 36, 37
 
 
 _interruptions: list[int] = []
@@ -162,19 +159,6 @@ def end_with_parent(parent: int, by: signal.Signals = signal.SIGTERM) -> None:
 
 
 @contextmanager
-def adopting_orphans() -> Iterator[None]:
-    """Become the parent of all descendants whose parent ends meanwhile (Linux)."""
-    prctl = ctypes.CDLL(None).prctl
-    before = ctypes.c_int()
-    prctl(_GET_TAKES_ORPHANS, ctypes.byref(before))
-    prctl(_SET_TAKES_ORPHANS, 1)
-    try:
-        yield
-    finally:
-        prctl(_SET_TAKES_ORPHANS, before.value)
-
-
-@contextmanager
 def _handled(
     by: Callable[[int, Any], Any] | signal.Handlers, numbers: Iterable[signal.Signals] = _CAUGHT
 ) -> Iterator[dict[signal.Signals, Any]]:
@@ -189,19 +173,54 @@ def _handled(
             signal.signal(number, handler)
 
 
+@dataclass(frozen=True)
+class Patience:
+    """Wall times in s after which a supervised node ends itself."""
+
+    start_s: float = 60.0
+    """Without a beat since its start."""
+    silent_s: float = 18.0
+    """Since its last beat: less than the driveline waits for an answer, so that it is named."""
+    leave_s: float = 2.0
+    """While it leaves the graph, where Fast DDS may hang."""
+
+
+_supervised: tuple[Patience, Callable[[int], None]] | None = None
+"""Patience with this process, a supervised node, and a function that announces its exit code."""
+
+
+def supervise(patience: Patience, announce: Callable[[int], None]) -> None:
+    """
+    Let this process, a node, end itself when it hangs, with its stacks on standard error.
+
+    `announce(code)` passes on the exit code of a node whose work is over. A thread of C looks
+    after the time, so that a node is watched which keeps the interpreter's lock.
+    """
+    global _supervised
+    _supervised = patience, announce
+    faulthandler.dump_traceback_later(patience.start_s, exit=True)
+
+
 def beat() -> None:
-    """Send the supervisor one pulse of the running node; called periodically."""
-    _write_to_supervisor(b'.')
+    """Tell the watch that the node runs; called periodically."""
+    if _supervised:
+        faulthandler.dump_traceback_later(_supervised[0].silent_s, exit=True)
 
 
 def announce_exit(code: int) -> None:
-    """Send the supervisor the exit code of the node, which only has to leave the graph."""
-    _write_to_supervisor(EXIT_MARK + str(code).encode())
+    """Announce the exit code of the node, which only has to leave the graph, in a limited time."""
+    if _supervised:
+        patience, announce = _supervised
+        with suppress(OSError):  # the supervisor has ended
+            announce(code)
+        faulthandler.cancel_dump_traceback_later()
+        signal.signal(signal.SIGALRM, signal.SIG_DFL)
+        end_after(patience.leave_s, ask=False)
 
 
-def _write_to_supervisor(data: bytes) -> None:
-    descriptor = os.environ.get(PULSE_FD, '')
-    if descriptor.isdecimal():
-        # Full or closed: the supervisor does not read it now, or has ended.
-        with suppress(OSError):
-            os.write(int(descriptor), data)
+def end_after(timeout_s: float, *, ask: bool = True) -> None:
+    """Let the kernel end this process after a time in s; `ask` it by SIGTERM at once."""
+    # Its action is the default one unless foreign code has set another.
+    signal.setitimer(signal.ITIMER_REAL, timeout_s)
+    if ask:
+        os.kill(os.getpid(), signal.SIGTERM)

@@ -1,0 +1,198 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""
+Start the graph's nodes as processes, watch them, and stop them all.
+
+Nobody guards the nodes from outside: a node ends itself when the program ends, and when it hangs
+(`ddct_plant.program.supervision`). The supervisor names the node that was the cause.
+"""
+
+import contextlib
+import signal
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from ddct_bringup.processes.fork_server import start_processes, state_of
+from ddct_bringup.processes.forked import Forked
+from ddct_bringup.processes.graph_nodes import DRIVELINE, NodeSpec
+from ddct_bringup.processes.shared_memory import remove_dead_segments
+from ddct_plant.base.errors import DdctError
+from ddct_plant.program.supervision import Patience
+
+STOP_LADDER = ((signal.SIGINT, 10.0), (signal.SIGTERM, 5.0), (signal.SIGKILL, 2.0))
+"""Signals that stop a node, and the wait after each, s, long enough for a busy machine."""
+PATIENCE = Patience()
+PAUSED_S = 15.0
+"""
+Wall time in s after which a paused node (SIGSTOP) ends the run: before it would count as hung, so
+that it is resumed in time to end in order.
+"""
+POLL_S = 0.01
+CHECK_PERIOD_S = 0.5
+"""Period in s at which paused nodes are looked for."""
+_MOST_ELAPSED_S = 1.0
+"""Largest time between two checks that counts, s: the supervisor may have been paused too."""
+
+
+class Node(Forked):
+    """Process of a node, and how it ended."""
+
+    def __init__(self, spec: NodeSpec, parameter_file: Path, log: Path) -> None:
+        """Prepare the node with its parameter file; `write_log` writes its output into `log`."""
+        self.name = spec.path
+        self.log = log
+        self.killed = False
+        """Whether it had to be killed because it did not end after the other signals."""
+        self._paused_s = 0.0
+        parameters = ['--ros-args', '--params-file', str(parameter_file)]
+        if spec.namespace:
+            parameters += ['-r', f'__ns:=/{spec.namespace}']
+        super().__init__(spec.module, *parameters, name=spec.path, patience=PATIENCE)
+
+    def check(self, elapsed_s: float) -> None:
+        """Raise DdctError where somebody has paused it for long, `elapsed_s` after the last."""
+        paused = state_of(self.pid) == 'T'
+        self._paused_s = self._paused_s + min(elapsed_s, _MOST_ELAPSED_S) if paused else 0.0
+        if self._paused_s > PAUSED_S:
+            raise DdctError(
+                f'node {self.name} has been paused (SIGSTOP) for {PAUSED_S:g} s; its log is '
+                f'{self.log}'
+            )
+
+    def stop(self, number: signal.Signals) -> None:
+        """Send a signal, and SIGCONT, to a node that has not ended."""
+        if self.running:
+            self.killed = number == signal.SIGKILL
+            self.send(number)
+            self.send(signal.SIGCONT)
+
+    def write_log(self) -> None:
+        """Write the log of an ended node; a full disk has no room for it."""
+        with contextlib.suppress(OSError):
+            self.log.write_bytes(self.printed())
+
+    def summary(self) -> str:
+        """Return one line on how the node ended, with its log."""
+        return f'node {self.name} {self._end()}; its log is {self.log}'
+
+    def _end(self) -> str:
+        code, lines = self.code(), self.lines()
+        if self.killed:
+            return 'did not stop on signals and was killed'
+        if code is None:
+            return 'has ended, and the fork server, which knows why, was killed or is paused'
+        if code < 0:
+            return f'was killed by {signal.Signals(-code).name}'
+        # What the standard library's watch prints before it ends the process.
+        if code and any(line.startswith('Timeout (') and line.endswith(')!') for line in lines):
+            return 'hung and ended itself, its stacks are in its log'
+        program = self.name.rpartition('/')[2]
+        words = lines[-1].strip().removeprefix(f'{program}: ') if lines else ''
+        return f'ended with code {code}{f": {words}" if words else ""}'
+
+
+class Supervisor:
+    """Processes of one graph; as a context manager it always stops them."""
+
+    def __init__(
+        self, logs: Path, parameter_file: Path, stopped: Callable[[], bool] = lambda: False
+    ) -> None:
+        """
+        Store the settings; a log of each node is written into the folder `logs` at the end.
+
+        The nodes read their parameters from `parameter_file`. Waiting raises KeyboardInterrupt
+        when `stopped()`.
+        """
+        self._logs = logs
+        self._parameter_file = parameter_file
+        self._stopped = stopped
+        self._nodes: list[Node] = []
+
+    def __enter__(self) -> 'Supervisor':
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.stop(lambda name: True)
+        for node in self._nodes:
+            node.write_log()
+        # A killed node leaves its shared memory, and one that ended with an error may leave it.
+        if any(node.code() != 0 for node in self._nodes):
+            remove_dead_segments()
+        for node in self._nodes:
+            node.close()
+
+    def start(self, specs: Sequence[NodeSpec]) -> None:
+        """Start one process per node; raise the errors of `start_processes`."""
+        nodes = [Node(spec, self._parameter_file, self._logs / spec.log_name) for spec in specs]
+        try:
+            start_processes([node.process for node in nodes], self._stopped)
+        finally:
+            for node in nodes:
+                if node.pid:
+                    node.begin()
+                    self._nodes.append(node)
+                else:
+                    node.close()
+
+    def wait_for(self, name: str) -> None:
+        """
+        Wait until node `name` has ended with code 0.
+
+        Raise DdctError when any node fails, hangs, or is paused for long.
+        """
+        self._watch(lambda: any(not node.running for node in self._nodes), name)
+
+    def wait_until(self, condition: Callable[[], bool], within_s: float) -> None:
+        """
+        Wait until `condition()` is true, at most for `within_s` in s.
+
+        Raise DdctError when any node ends or is paused for long.
+        """
+        deadline = time.monotonic() + within_s
+        self._watch(lambda: condition() or time.monotonic() > deadline)
+
+    def _watch(self, over: Callable[[], bool], may_end: str = '') -> None:
+        """
+        Check the nodes until `over()` is true.
+
+        Raise DdctError when a node fails, or ends before the node `may_end`.
+        """
+        checked_at = time.monotonic()
+        while True:
+            done = over()
+            ended = [node for node in self._nodes if not node.running]
+            if any(node.name != may_end or node.code() != 0 for node in ended):
+                # The cause is a node that was killed or failed; others may have ended after it.
+                raise DdctError(min(ended, key=_consequence).summary())
+            if done:
+                return
+            if self._stopped():
+                raise KeyboardInterrupt
+            now = time.monotonic()
+            if now - checked_at >= CHECK_PERIOD_S:
+                for node in self._nodes:
+                    node.check(now - checked_at)
+                checked_at = now
+            time.sleep(POLL_S)
+
+    def stop(self, chosen: Callable[[str], bool]) -> None:
+        """Stop the chosen nodes, by SIGINT, then by stronger signals; paused ones are resumed."""
+        nodes = [node for node in self._nodes if chosen(node.name)]
+        for number, patience_s in STOP_LADDER:
+            for node in nodes:
+                node.stop(number)
+            deadline = time.monotonic() + patience_s
+            while time.monotonic() < deadline and any(node.running for node in nodes):
+                time.sleep(POLL_S)
+
+    def require_clean_end(self) -> None:
+        """Raise DdctError unless every node has ended with code 0."""
+        for node in self._nodes:
+            if node.code() != 0:
+                raise DdctError(node.summary())
+
+
+def _consequence(node: Node) -> tuple[bool, bool]:
+    """Return a key that is larger for an ended node whose end others have caused."""
+    return node.code() == 0, node.name == DRIVELINE.path
