@@ -285,7 +285,7 @@ def test_a_run_that_is_not_valid_leaves_a_good_result_as_it_is(tmp_path, monkeyp
     good = api.run('ls8', duration=SHORT_S, out=tmp_path)
     before = {file.name: file.read_bytes() for file in good.path.parent.iterdir()}
 
-    def half(plan, folder, parent):
+    def half(plan, folder):
         settings = RunSettings(load_scenario('thesis', [f'duration_s={SHORT_S / 2}']))
         data = custom_data(plan.settings, plan.name, plan.steps)
         info = {'load': {'version': '0.1.0'}}

@@ -222,5 +222,8 @@ def end_after(timeout_s: float, *, ask: bool = True) -> None:
     """Let the kernel end this process after a time in s; `ask` it by SIGTERM at once."""
     # Its action is the default one unless foreign code has set another.
     signal.setitimer(signal.ITIMER_REAL, timeout_s)
-    if ask:
-        os.kill(os.getpid(), signal.SIGTERM)
+    main = threading.main_thread().ident
+    if ask and main is not None:
+        # Not to the process: while its main thread is resumed another one would receive it, and
+        # a system call of the main thread went on.
+        signal.pthread_kill(main, signal.SIGTERM)

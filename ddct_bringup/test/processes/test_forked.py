@@ -1,0 +1,401 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Forks of the fork server are like new processes."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack
+from pathlib import Path
+
+import pytest
+from stub_programs import WITHIN_S, gone, wait_until
+
+from ddct_bringup.processes import fork_server
+from ddct_bringup.processes.fork_server import server_pid, start_processes, stop_server
+from ddct_bringup.processes.forked import Forked
+from ddct_bringup.run import description
+from ddct_bringup.run.description import commit_of
+from ddct_plant.base.errors import DdctError
+from ddct_plant.graph.domain import own_domain
+from ddct_plant.program.supervision import Patience
+
+pytestmark = pytest.mark.process
+
+Start = Callable[..., Forked]
+ABOUT_ITSELF = """
+import json, os, signal, sys, threading
+def main():
+    print(json.dumps({
+        'pid': os.getpid(),
+        'group': os.getpgrp(),
+        'arguments': sys.argv[1:],
+        'variables': [os.environ.get(name) for name in ('OF_THE_TEST', 'DDCT_FORK_SERVER')],
+        'input': sys.stdin.read(),
+        'folder': os.getcwd(),
+        'path': sys.path,
+        'comm': open('/proc/self/comm').read().strip(),
+        'streams': [os.readlink(f'/proc/self/fd/{each}') for each in (1, 2)],
+        'blocked': [*map(int, signal.pthread_sigmask(signal.SIG_BLOCK, ()))],
+    }))
+"""
+
+
+@pytest.fixture
+def start(module: Callable[[str], str]) -> Iterator[Start]:
+    """Return a function that starts a text as a program; it is killed at the end."""
+    with ExitStack() as started:
+
+        def fork(text: str, *arguments: str, patience: Patience | None = None) -> Forked:
+            forked = Forked(module(text), *arguments, patience=patience)
+            started.callback(forked.close)
+            start_processes([forked.process])
+            forked.begin()
+            started.callback(forked.send, signal.SIGKILL)
+            return forked
+
+        yield fork
+
+
+@pytest.fixture
+def run(start: Start) -> Start:
+    """Return a function that runs a text as a program to its end."""
+
+    def to_its_end(text: str, *arguments: str) -> Forked:
+        forked = start(text, *arguments)
+        assert forked.wait(WITHIN_S)
+        return forked
+
+    return to_its_end
+
+
+def test_a_fork_has_our_environment_as_it_is_now_and_nothing_else_of_ours(
+    run: Start, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setenv('OF_THE_TEST', 'as \udcff it is')
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, 'path', ['', str(tmp_path), *sys.path])
+    forked = run(ABOUT_ITSELF, 'a', 'b c')
+    report = json.loads(forked.printed())
+    assert forked.code() == 0
+    assert report['pid'] == forked.pid
+    assert report['group'] == server_pid() != os.getpgrp(), 'Ctrl-C reaches the program alone'
+    assert report['arguments'] == ['a', 'b c']
+    assert report['variables'] == ['as \udcff it is', None]
+    assert report['input'] == ''
+    assert report['folder'] == str(tmp_path)
+    assert not {'', str(tmp_path)} & set(report['path']), 'a file here hides no module'
+    assert report['comm'] == forked.process.name[:15]
+    assert report['streams'][0] == report['streams'][1]
+    assert report['blocked'] == []
+    monkeypatch.delenv('OF_THE_TEST')
+    assert json.loads(run(ABOUT_ITSELF).printed())['variables'] == [None, None]
+
+
+@pytest.mark.parametrize(
+    ('text', 'code', 'last_line'),
+    [
+        ('def main(): return 0', 0, ''),
+        ('def main(): pass', 0, ''),
+        ('def main(): return 3', 3, ''),
+        ('import sys\ndef main(): sys.exit("no more disk")', 1, 'no more disk'),
+        ('def main(): raise ValueError("of the test")', 1, 'ValueError: of the test'),
+        ('import os\ndef main(): os.abort()', -signal.SIGABRT, ''),
+        ('import os\ndef main(): os._exit(255)', 255, ''),
+        ('import atexit\ndef main(): atexit.register(print, "at the end")', 0, 'at the end'),
+    ],
+)
+def test_a_fork_ends_as_a_program_of_its_own_would(
+    run: Start, text: str, code: int, last_line: str
+) -> None:
+    forked = run(text)
+    assert forked.code() == code
+    assert ['', *forked.lines()][-1] == last_line
+
+
+def test_two_forks_draw_other_random_numbers(run: Start) -> None:
+    text = (
+        'import random\n'
+        'from numpy import random as others\n'
+        'def main(): print(random.random(), others.random(), others.default_rng().random())\n'
+    )
+    first, second = (run(text).printed_text().split() for _ in range(2))
+    assert all(one != other for one, other in zip(first, second, strict=True))
+
+
+def test_a_fork_knows_the_commit_of_the_sources_without_git(run: Start) -> None:
+    pytest.importorskip('rclpy')
+    text = (
+        'import os\n'
+        'from ddct_bringup.run.description import source_commit\n'
+        'def main():\n'
+        '    os.environ["PATH"] = "/nowhere"\n'
+        '    print(source_commit())\n'
+    )
+    assert run(text).lines() == [commit_of(Path(description.__file__))]
+
+
+def test_a_node_imports_no_generator_of_messages_and_can_import_all_of_it(
+    run: Start, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip('rclpy')
+    monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
+    with own_domain():
+        forked = run(
+            'import sys, rclpy\n'
+            'def main():\n'
+            '    rclpy.init()\n'
+            '    rclpy.create_node("alone").destroy_node()\n'
+            '    print({"em", "lark", "rosidl_generator_py"} & set(sys.modules))\n'
+            '    rclpy.shutdown()\n'
+            '    from rosidl_generator_py import generate_py\n'
+            '    print(generate_py.__name__)\n'
+        )
+    assert forked.lines() == ['set()', 'generate_py']
+
+
+def test_the_fork_server_has_imported_the_nodes_and_no_thread_of_python(run: Start) -> None:
+    pytest.importorskip('rclpy')
+    text = (
+        'import sys, threading\n'
+        'MODULES = ("rclpy", "ddct_bringup.record.recorder_node", "scipy.linalg")\n'
+        'BEFORE = [name for name in MODULES if name in sys.modules]\n'
+        'def main(): print(*BEFORE, threading.active_count())\n'
+    )
+    names = 'rclpy ddct_bringup.record.recorder_node scipy.linalg'
+    # The second thread is ours: it waits for the end of the program.
+    assert run(text).lines() == [f'{names} 2']
+
+
+HANGS = {
+    'without the lock of the interpreter': 'import time\ndef hang(): time.sleep(600)\n',
+    'with the lock of the interpreter': 'def hang(): sum(range(10**15))\n',
+}
+WATCHED = (
+    'from ddct_plant.program.supervision import announce_exit, beat\n'
+    'def main():\n    beat()\n    hang()\n'
+)
+
+
+@pytest.mark.parametrize('text', HANGS.values(), ids=HANGS)
+def test_a_node_that_hangs_ends_itself_and_prints_where(start: Start, text: str) -> None:
+    forked = start(text + WATCHED, patience=Patience(silent_s=0.1))
+    assert forked.wait(WITHIN_S)
+    assert forked.code() == 1
+    first, *stacks = forked.lines()
+    assert first.startswith('Timeout (')
+    assert any('in hang' in line for line in stacks)
+
+
+def test_a_node_that_never_begins_ends_itself_too(start: Start) -> None:
+    forked = start('import time\ndef main(): time.sleep(600)\n', patience=Patience(start_s=0.1))
+    assert forked.wait(WITHIN_S)
+    assert forked.code() == 1
+
+
+def test_a_node_that_beats_goes_on(start: Start) -> None:
+    text = (
+        'import time\nfrom ddct_plant.program.supervision import announce_exit, beat\n'
+        'def main():\n'
+        '    for _ in range(60):\n        beat()\n        time.sleep(0.02)\n'
+        '    announce_exit(0)\n'
+    )
+    forked = start(text, patience=Patience(start_s=0.6, silent_s=0.6))
+    assert forked.wait(WITHIN_S)
+    assert (forked.code(), forked.lines()) == (0, [])
+
+
+LEAVING = (
+    'import signal, time\nfrom ddct_plant.program.supervision import announce_exit\n'
+    'def main():\n'
+    '    signal.signal(signal.SIGALRM, signal.SIG_IGN)\n'
+    "    print('clutch: no more disk', flush=True)\n"
+    '    announce_exit({code})\n'
+    '    time.sleep(600)\n'
+)
+
+
+@pytest.mark.parametrize('code', [0, 1])
+def test_a_node_that_hangs_while_it_leaves_is_ended_and_its_announced_code_counts(
+    start: Start, code: int
+) -> None:
+    """Fast DDS may hang while a node leaves."""
+    forked = start(LEAVING.format(code=code), patience=Patience(leave_s=0.1))
+    assert forked.wait(WITHIN_S)
+    assert (forked.code(), forked.lines()) == (code, ['clutch: no more disk'])
+
+
+def test_a_node_that_dies_otherwise_while_it_leaves_has_not_ended_well(start: Start) -> None:
+    text = LEAVING.format(code=0).replace('time.sleep(600)', 'signal.raise_signal(11)')
+    forked = start(text, patience=Patience())
+    assert forked.wait(WITHIN_S)
+    assert forked.code() == -signal.SIGSEGV
+
+
+@pytest.mark.parametrize('announced', [0, None])
+def test_without_its_fork_server_the_announced_code_of_a_node_is_known_and_no_other(
+    start: Start, announced: int | None
+) -> None:
+    text = (
+        'import time\nfrom ddct_plant.program.supervision import announce_exit\n'
+        'def main():\n    input()\n'
+    )
+    text = text.replace('input()', 'time.sleep(0.5)')
+    text += '    announce_exit(0)\n' if announced == 0 else '    raise SystemExit(1)\n'
+    forked = start(text, patience=Patience())
+    stop_server()
+    assert forked.running, 'it goes on'
+    assert forked.wait(WITHIN_S)
+    assert forked.code() == announced
+
+
+def test_a_server_that_was_killed_since_the_last_start_is_replaced(run: Start) -> None:
+    run('def main(): pass')
+    before = server_pid()
+    stop_server()
+    assert server_pid() == 0
+    assert json.loads(run(ABOUT_ITSELF).printed())['group'] == server_pid() != before
+
+
+def _paused_server(start: Start) -> int:
+    start('def main(): pass')
+    pid = server_pid()
+    os.kill(pid, signal.SIGSTOP)
+    return pid
+
+
+def test_a_server_that_hangs_is_not_waited_for_without_end(
+    start: Start, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    paused = _paused_server(start)
+    monkeypatch.setattr(fork_server, 'START_S', 0.2)
+    with pytest.raises(DdctError, match=r'could not be started within 0\.2 s'):
+        start('def main(): pass')
+    assert gone(paused)
+    monkeypatch.undo()
+    assert server_pid() == 0
+
+
+def test_ctrl_c_while_it_imports_ends_it_at_once(
+    start: Start, module: Callable[[str], str]
+) -> None:
+    paused = _paused_server(start)
+    forked = Forked(module('def main(): pass'))
+    with pytest.raises(KeyboardInterrupt):
+        start_processes([forked.process], stopped=lambda: True)
+    assert gone(paused)
+    forked.close()
+
+
+def test_a_server_that_is_killed_while_it_should_fork_is_named(
+    start: Start, module: Callable[[str], str]
+) -> None:
+    paused = _paused_server(start)
+    forked = Forked(module('def main(): pass'))
+
+    def stopped() -> bool:
+        if not gone(paused):
+            os.kill(paused, signal.SIGKILL)
+        return False
+
+    with pytest.raises(DdctError, match='cannot be started: the fork server, which forks them, w'):
+        start_processes([forked.process], stopped)
+    forked.close()
+
+
+def test_a_folder_for_temporary_files_with_a_long_name_is_reported(
+    tmp_path: Path,
+) -> None:
+    folder = tmp_path / ('long' * 30)
+    folder.mkdir()
+    text = 'from ddct_bringup.processes.fork_server import start_server; start_server()'
+    done = subprocess.run(
+        [sys.executable, '-c', text],
+        env={**os.environ, 'TMPDIR': str(folder)},
+        capture_output=True,
+        text=True,
+    )
+    assert done.stderr.splitlines()[-1].endswith('set TMPDIR to a folder with a shorter name')
+
+
+PROGRAM = """
+import os, sys, time
+from pathlib import Path
+sys.path.insert(0, sys.argv[1])
+from ddct_bringup.processes.fork_server import server_pid, start_processes
+from ddct_bringup.processes.forked import Forked
+nodes = [Forked(name) for name in sys.argv[2:]]
+start_processes([node.process for node in nodes])
+for node in nodes:
+    node.begin()
+while not all('ready' in node.printed_text() for node in nodes):
+    time.sleep(0.01)
+print(server_pid(), *(node.pid for node in nodes), flush=True)
+time.sleep(600)
+"""
+FINISHING = """
+import pathlib, signal, sys, time
+def finish(*_):
+    pathlib.Path({whole!r}).touch()
+    sys.exit(0)
+def main():
+    signal.signal(signal.SIGTERM, finish)
+    print('ready', flush=True)
+    time.sleep(600)
+"""
+DEAF = """
+import signal, time
+def main():
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)
+    print('ready', flush=True)
+    while True:
+        time.sleep(600)
+"""
+
+
+@pytest.mark.parametrize('paused', ['nobody', 'one', 'all'])
+def test_after_a_killed_program_every_node_ends_even_a_paused_one(
+    module: Callable[[str], str], tmp_path: Path, paused: str
+) -> None:
+    """The fork server removes the socket of the program too."""
+    whole = tmp_path / 'whole'
+    names = [
+        module(FINISHING.format(whole=str(whole))),
+        module(FINISHING.format(whole='/dev/null')),
+    ]
+    temporary = Path(tempfile.mkdtemp(prefix='ddct-'))
+    program = subprocess.Popen(
+        [sys.executable, '-c', PROGRAM, str(tmp_path / 'path'), *names],
+        stdout=subprocess.PIPE,
+        env={**os.environ, 'TMPDIR': str(temporary)},
+        start_new_session=True,
+    )
+    assert program.stdout
+    server, *nodes = map(int, program.stdout.readline().split())
+    for pid in {'nobody': [], 'one': nodes[:1], 'all': nodes}[paused]:
+        os.kill(pid, signal.SIGSTOP)
+    program.kill()
+    program.communicate()
+    wait_until(lambda: all(map(gone, [server, *nodes])))
+    assert whole.exists(), 'the recorder could not finish'
+    temporary.rmdir()  # it is empty
+
+
+def test_a_node_that_ignores_the_end_of_its_program_is_ended(
+    module: Callable[[str], str], tmp_path: Path
+) -> None:
+    sooner = 'from ddct_bringup.processes import forked\nforked.ORPHANED_S = 0.2\n'
+    program = subprocess.Popen(
+        [sys.executable, '-c', PROGRAM, str(tmp_path / 'path'), module(sooner + DEAF)],
+        stdout=subprocess.PIPE,
+        start_new_session=True,
+    )
+    assert program.stdout
+    pids = [*map(int, program.stdout.readline().split())]
+    program.kill()
+    program.communicate()
+    wait_until(lambda: all(map(gone, pids)))
