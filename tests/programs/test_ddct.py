@@ -15,7 +15,7 @@ from support.complaints import assert_one_line
 from support.processes import Programs, processes_left
 
 from ddct_bringup.processes import fork_server
-from ddct_bringup.programs import bringup, compare, ddct
+from ddct_bringup.programs import ddct
 from ddct_plant.program import start
 from ddct_plant.program.start import programs
 
@@ -233,9 +233,6 @@ def test_the_fork_server_starts_ahead_where_nodes_are_to_come(
 ) -> None:
     started: list[bool] = []
     monkeypatch.setattr(fork_server, 'start_server', lambda: started.append(True))
-    # What the program itself imports has the function from before.
-    monkeypatch.setattr(bringup, 'start_server', lambda: None)
-    monkeypatch.setattr(compare, 'start_server', lambda: None)
     monkeypatch.setattr(sys, 'argv', ['ddct'])
     with suppress(SystemExit):
         ddct.main(arguments)

@@ -108,15 +108,14 @@ def run_with_fault(case: Case, folder: Path, harm: Callable[[int], None]) -> Obs
             leftovers.note(pid)
         harm(pids[case.target])
 
-    real, modules = execution.Supervisor, execution
-    setattr(modules, 'Supervisor', Tapped)  # noqa: B010
+    supervisor.Supervisor = Tapped  # type: ignore[misc]
     try:
         with _short_patience(), at_step(case.begin, act):
             execution.execute(case.run, folder)
     except DdctError as error:
         seen.error = str(error).partition('; its log is')[0]
     finally:
-        setattr(modules, 'Supervisor', real)  # noqa: B010
+        supervisor.Supervisor = Supervisor  # type: ignore[misc]
     seen.read(folder, case.run)
     seen.left = leftovers.found()
     return seen

@@ -39,10 +39,8 @@ def start_server() -> None:
     CONTEXT.set_forkserver_preload([_PRELOADED])
     atexit.unregister(_stop_with)
     atexit.register(_stop_with, os.getpid())
-    # -P as a variable: a file of the current folder must not hide a module of the same name. The
-    # numerics must have no threads at a fork.
+    # -P as a variable: a file of the current folder must not hide a module of the same name.
     given = {MARK: 'yes', 'PYTHONSAFEPATH': '1'}
-    given['OPENBLAS_NUM_THREADS'] = os.environ.get('OPENBLAS_NUM_THREADS', '1')
     with deferred_signals(), _own_modules_alone(), _environment(given):
         # Until the server has its own group: Ctrl-C in a terminal is not for it.
         before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})

@@ -8,7 +8,6 @@ from contextlib import nullcontext
 from functools import partial
 from pathlib import Path
 
-from ddct_bringup.processes.fork_server import start_server
 from ddct_bringup.processes.live_process import DEFAULT_PORT, live_view
 from ddct_bringup.run.execution import print_logs_with_warnings, run_with_progress
 from ddct_bringup.run.options import add_run_options, print_choices, scheduling_of
@@ -56,6 +55,9 @@ def _bringup(argv: list[str]) -> int:
     if options.out is None:
         raise ParameterError('--out is missing: name the folder for the bag')
     if options.layout == 'processes':
+        # Only here: a headless run needs no processes.
+        from ddct_bringup.processes.fork_server import start_server
+
         start_server()  # it imports while the run is planned
     limits = load_limits(options.limits)
     settings = settings_of(options, [controller_label(options.controller)])

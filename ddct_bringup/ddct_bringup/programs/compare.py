@@ -8,7 +8,6 @@ from functools import partial
 from pathlib import Path
 
 from ddct_bringup.digests.writing import write_run_digests
-from ddct_bringup.processes.fork_server import start_server
 from ddct_bringup.programs.report import REPORT_FILE, require_chart_library, write_report
 from ddct_bringup.report.evidence import FREQUENCY_FILE
 from ddct_bringup.report.run_labels import in_order
@@ -75,6 +74,9 @@ def _compare(argv: list[str]) -> int:
     require_place('--json', options.json)
     unusable: list[DdctError] = []
     if options.layout == 'processes':
+        # Only here: a headless run needs no processes.
+        from ddct_bringup.processes.fork_server import start_server
+
         start_server()  # it imports while the runs are planned, and serves them all
     limits = load_limits(options.limits)
     names = controllers_of(options.controllers)

@@ -8,6 +8,7 @@ import time
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from rich.console import Console
 
@@ -16,8 +17,6 @@ from ddct_bringup.bag.run_info import RunInfoOfNodes
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.bag.trajectory_bag import write_trajectory
 from ddct_bringup.processes.graph_nodes import DRIVELINE, RECORDER, nodes_of
-from ddct_bringup.processes.live_process import RECEIVE_S, LiveView
-from ddct_bringup.processes.supervisor import Supervisor
 from ddct_bringup.run.description import custom_data, facts_of, run_info_of
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.run.plan import RunPlan
@@ -31,6 +30,9 @@ from ddct_plant.program.supervision import stop_signals
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.signals.gain_changes import GainChange
 
+if TYPE_CHECKING:
+    from ddct_bringup.processes.live_process import LiveView
+
 WORK_FOLDER = 'work'
 """
 Name of the folder for scenario, parameters and logs; a good run keeps only logs with warnings.
@@ -42,7 +44,7 @@ def run_with_progress(
     plan: RunPlan,
     folder: Path,
     label: str = '',
-    live: LiveView | None = None,
+    live: 'LiveView | None' = None,
 ) -> Recording | None:
     """
     `execute` a plan into `folder`; print its progress, the stability of its loop and its speed.
@@ -67,7 +69,7 @@ def execute(
     plan: RunPlan,
     folder: Path,
     stopped: Callable[[], bool] = lambda: False,
-    live: LiveView | None = None,
+    live: 'LiveView | None' = None,
 ) -> Recording | None:
     """
     Execute `plan` and write its bag and `timing.json` into the existing `folder`.
@@ -143,8 +145,12 @@ def _execute_processes(
     folder: Path,
     work: Path,
     stopped: Callable[[], bool],
-    live: LiveView | None,
+    live: 'LiveView | None',
 ) -> None:
+    # Only here: a headless run needs no processes.
+    from ddct_bringup.processes.live_process import RECEIVE_S
+    from ddct_bringup.processes.supervisor import Supervisor
+
     parameter_file = plan.write_parameter_file(folder, work)
     with Supervisor(work, parameter_file, stopped) as processes:
         nodes = nodes_of(shift=plan.settings.shift)
