@@ -6,14 +6,7 @@ from collections.abc import Callable, Mapping
 from numbers import Real
 from typing import Any
 
-from ddct_controllers.interface import (
-    SCENARIO,
-    THESIS,
-    UNSTATED,
-    Controller,
-    ControllerContext,
-    ControllerSpec,
-)
+from ddct_controllers.interface import Controller, ControllerContext, ControllerSpec
 from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError
 from ddct_plant.base.options import Option
 
@@ -39,13 +32,6 @@ def factory_spec(
                 place=f'controller {name!r}',
             ) from error
 
-    computed_from = getattr(factory, 'computed_from', UNSTATED)
-    _require(
-        computed_from in (SCENARIO, THESIS, UNSTATED),
-        name,
-        f'computed_from is {computed_from!r}',
-        f'{SCENARIO!r} or {THESIS!r}',
-    )
     options = getattr(factory, 'options', None)
     _require(
         options is None or _is_mapping(options, Option),
@@ -53,7 +39,7 @@ def factory_spec(
         f'options are {options!r}',
         'a mapping of names to ddct_plant.base.options.Option, or None',
     )
-    return ControllerSpec(name, make, options, computed_from)
+    return ControllerSpec(name, make, options)
 
 
 def _plain(name: str, source: str, controller: object) -> Controller:

@@ -16,8 +16,6 @@ from ddct_plant.graph.node_reports import CONTROLLER, TWO_INPUT, flag
 from ddct_plant.linear.lti import StateSpace
 from ddct_plant.scenario.settings import RunSettings
 
-SCENARIO, THESIS, UNSTATED = 'scenario', 'thesis', 'not stated'
-"""Source of a controller's parameters: values of `ControllerSpec.computed_from`."""
 Status = tuple[tuple[str, str], ...]
 """Pairs (key, value) for `controller/status`; deterministic, so no wall time in them."""
 
@@ -44,8 +42,6 @@ class Controller(ABC):
     """Options by name in `controllers.<name>` of a scenario; None and {} are no options."""
     registered_name: str = ''
     """Name in error messages: the registry sets the name under which it was requested."""
-    computed_from: str = UNSTATED
-    """Source of its parameters, as `ControllerSpec.computed_from`; set by the registry."""
     digests: Mapping[str, str] = MappingProxyType({})
     """SHA-256 of its files, as `ControllerSpec.digests`; set by the registry."""
     written_in: str = ''
@@ -94,15 +90,14 @@ class Controller(ABC):
 
     def info(self, name: str) -> dict[str, str]:
         """
-        Return its pairs for `run_info`: name, whether it commands the engine, source and gains.
+        Return its pairs for `run_info`: name, whether it commands the engine, and exact gains.
 
-        The exact gains follow, and the digests of the files that it is made of.
+        The digests of the files that it is made of follow.
         """
         gains = {f'gains.{gain}': repr(value) for gain, value in self.gains().items()}
         return {
             CONTROLLER: name,
             TWO_INPUT: flag(self.commands_engine),
-            'computed_from': self.computed_from,
             **gains,
             **self.digests,
         }
@@ -147,13 +142,6 @@ class ControllerSpec(Generic[Made]):
     make: Callable[[ControllerContext], Made]
     options: Options | None = None
     """Declared options by name; None for a third party's controller that declares none."""
-    computed_from: str = SCENARIO
-    """
-    Source of its parameters: SCENARIO, THESIS or UNSTATED.
-
-    SCENARIO for one computed from the scenario's driveline; THESIS for one that is the same for
-    every driveline: printed, or tuned to the thesis's rows. UNSTATED for others.
-    """
     digests: Mapping[str, str] = field(default_factory=dict)
     """SHA-256 of the files that it is made of, by their key on `run_info`."""
     written_in: str = ''

@@ -4,12 +4,11 @@
 
 import dataclasses
 from collections.abc import Mapping
+from functools import lru_cache
 
 import numpy as np
 
 from ddct_controllers.interface import (
-    THESIS,
-    UNSTATED,
     Command,
     Controller,
     ControllerSpec,
@@ -55,7 +54,17 @@ def sampled(controller: LinearSystem, discretisation: str | None = None) -> Stat
     discretisation, an improper transfer function or, with BILINEAR, a pole at 2/T.
     """
     if isinstance(controller, FactoredTransferFunction):
-        controller, discretisation = controller.to_state_space(), discretisation or HOLD
+        return _sampled_factors(controller, discretisation or HOLD)
+    return _sampled_state_space(controller, discretisation)
+
+
+@lru_cache
+def _sampled_factors(controller: FactoredTransferFunction, discretisation: str) -> StateSpace:
+    # Each run of a campaign asks for those of the printed controllers.
+    return _sampled_state_space(controller.to_state_space(), discretisation)
+
+
+def _sampled_state_space(controller: StateSpace, discretisation: str | None) -> StateSpace:
     if discretisation is not None:
         require_choice('discretisation', discretisation, (HOLD, BILINEAR))
     periods = (PERIOD_S,) if discretisation is None else (PERIOD_S, None)
@@ -141,9 +150,7 @@ def linear_spec(
     discretisation: str | None = None,
 ) -> ControllerSpec[Controller]:
     """Return the specification of a linear controller called `name`, without options."""
-    return ControllerSpec(
-        name, lambda context: LinearController(controller, discretisation), {}, UNSTATED
-    )
+    return ControllerSpec(name, lambda context: LinearController(controller, discretisation), {})
 
 
 class PiController(Controller):
@@ -194,4 +201,4 @@ class PiController(Controller):
         self._gains[name] = PI_OPTIONS[name].checked(f'controllers.pi.{name}', value)
 
 
-PI = ControllerSpec('pi', lambda context: PiController(**context.gains), PI_OPTIONS, THESIS)
+PI = ControllerSpec('pi', lambda context: PiController(**context.gains), PI_OPTIONS)

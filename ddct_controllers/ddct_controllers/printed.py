@@ -4,7 +4,7 @@
 
 from dataclasses import replace
 
-from ddct_controllers.interface import THESIS, Controller, ControllerContext, ControllerSpec
+from ddct_controllers.interface import Controller, ControllerContext, ControllerSpec
 from ddct_controllers.linear import LinearController
 from ddct_plant.base.options import Option
 from ddct_plant.linear.lti import FactoredTransferFunction
@@ -78,4 +78,4 @@ def printed_spec(name: str, g_c: FactoredTransferFunction) -> ControllerSpec[Con
         return LinearController(replace(g_c, gain=context.gains['gain']))
 
     options = {'gain': Option(g_c.gain, 'gain before the factors of the printed G_c(s)')}
-    return ControllerSpec(name, make, options, THESIS)
+    return ControllerSpec(name, make, options)

@@ -125,7 +125,6 @@ def make_controller(
     given = {**settings.scenario.controllers.get(spec.name, {}), **(changes or {})}
     controller = spec(ControllerContext(settings, given))
     controller.registered_name = spec.name
-    controller.computed_from = spec.computed_from
     controller.digests = spec.digests
     controller.written_in = spec.written_in
     return controller

@@ -4,7 +4,7 @@
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from itertools import chain
 from typing import Any
 
@@ -27,8 +27,7 @@ from ddct_bringup.campaign.run_set import ImpossibleRow, PlannedRow, RunSet
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.scores.scoring import run_without_score
 from ddct_bringup.verdict.limits import Limits
-from ddct_controllers.interface import THESIS, Controller
-from ddct_controllers.registry import make_controller, own_controller_names
+from ddct_controllers.registry import make_controller
 from ddct_plant.base.errors import FOREIGN_FAILURES
 from ddct_plant.program.workers import in_processes, worker_count
 
@@ -62,14 +61,13 @@ class ScoredRow:
 
 @dataclass
 class Scorer:
-    """Scores runs; controllers that no run changes are built once."""
+    """Scores runs, those of linear plants and controllers together."""
 
     limits: Limits
     at_once: bool = True
     """Whether linear runs are computed together, to 1e-9 of the run step by step."""
     floors: bool = False
     """Whether peak jerks are compared with the least; such runs are computed step by step."""
-    _shared: dict[str, Controller] = field(default_factory=dict)
 
     def scored(self, runs: Iterable[PlannedRow | ImpossibleRow]) -> list[ScoredRow]:
         """
@@ -100,7 +98,7 @@ class Scorer:
             if run.controller.compiled or (self.floors and run.has_floors):
                 continue
             try:
-                controller = self._controller(run)
+                controller = make_controller(run.controller, run.settings)
             except FOREIGN_FAILURES:
                 continue  # the run step by step gives the reason
             if not why_not_batchable(run.settings, controller):
@@ -113,16 +111,6 @@ class Scorer:
             for (run, _), result in zip(suited, results, strict=True)
             if result is not None
         }
-
-    def _controller(self, run: PlannedRow) -> Controller:
-        """Return the controller of a run; a packaged one that no run changes is built once."""
-        spec = run.controller
-        if spec.computed_from != THESIS or spec.name not in own_controller_names():
-            return make_controller(spec, run.settings)
-        key = repr((spec.name, run.settings.scenario.controllers.get(spec.name)))
-        if key not in self._shared:
-            self._shared[key] = make_controller(spec, run.settings)
-        return self._shared[key]
 
 
 def are_linear(campaign: Campaign) -> bool:

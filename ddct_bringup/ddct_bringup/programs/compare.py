@@ -19,7 +19,6 @@ from ddct_bringup.run.options import (
     add_run_options,
     controllers_of,
     print_choices,
-    print_computed_from,
     scheduling_of,
 )
 from ddct_bringup.run.output_folder import StagedFolder, locked_folders, mark_folder
@@ -167,7 +166,6 @@ def _report(
     for line in settings.scenario.adjusted:
         print(printable(line), file=stream)
     print_comparison(scored, settings, options.overrides, stream)
-    print_computed_from([plan.controller for plan in plans], stream)
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -7,14 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ddct_bringup.bag.run_info import CONTROLLER_NODE
 from ddct_bringup.run.description import UNKNOWN
 from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_bringup.scores.scored_recording import ScoredRecording
 from ddct_plant.base.timebase import PERIOD_S
 
 _CONDITIONS = ('controller', 'architecture', 'clutch', 'wear_gain', 'mode', 'seed')
-_REPEATED = ('version', 'scenario', 'scenario_digest', 'computed_from', *_CONDITIONS[1:])
+_REPEATED = ('version', 'scenario', 'scenario_digest', *_CONDITIONS[1:])
 """Facts that every node publishes and that the page shows elsewhere."""
 _FIRST_US, _LAST_US = 1.0, 1e5
 
@@ -37,8 +36,6 @@ def run_origin(run: ScoredRecording) -> RunOrigin:
         (name, '–' if facts is None or name in unknown else str(getattr(facts, name)))
         for name in _CONDITIONS
     )
-    run_info = {} if run.recording is None else run.recording.run_info.get(CONTROLLER_NODE, {})
-    conditions += (('computed_from', run_info.get('computed_from', '–')),)
     if run.recording is None or run.measured:
         return RunOrigin(conditions, (), '–', '–')
     nodes = {

@@ -3,13 +3,9 @@
 """Command-line options shared by the programs that run controllers."""
 
 import argparse
-import sys
 from collections.abc import Iterable, Sequence
-from typing import TextIO
 
-from ddct_controllers.interface import UNSTATED, Controller, ControllerSpec
 from ddct_controllers.registry import (
-    Chosen,
     controller_label,
     controller_names,
     controller_spec,
@@ -29,13 +25,6 @@ from ddct_plant.scenario.settings import RunSettings
 
 ALL = 'all'
 """Value of --controllers that selects every controller."""
-_FROM_FILES = 'as their files have them, whatever driveline the scenario has: {}'
-_FROM_CLASSES = (
-    'not known whether another driveline in the scenario changes their gains: {} (write into the '
-    "class computed_from = 'scenario' if they are computed from the scenario, or "
-    "computed_from = 'thesis' if they are fixed numbers)"
-)
-_NOT_LOADED = 'cannot be loaded, as the options of controllers say: {}'
 
 
 def add_settings_options(parser: argparse.ArgumentParser) -> None:
@@ -151,29 +140,7 @@ def print_choices() -> None:
     for title, names in rows:
         print_note(f'{title}: {", ".join(names)}')
     print()
-    print_computed_from(controller_names(), sys.stdout)
-    print()
     print_table(controller_options_table())
-
-
-def print_computed_from(names: Sequence[Chosen], stream: TextIO) -> None:
-    """Print the source of each controller's values, one line for all with the same source."""
-    found: dict[str, list[str]] = {}
-    for name in names:
-        try:
-            spec = controller_spec(name)
-            found.setdefault(_origin(spec), []).append(spec.name)
-        except DdctError:  # a third party's controller that cannot be loaded
-            found.setdefault(_NOT_LOADED, []).append(str(name))
-    for origin, labels in found.items():
-        print_note(origin.format(', '.join(labels)), stream)
-
-
-def _origin(spec: ControllerSpec[Controller]) -> str:
-    """Return the line on a controller's source, with a placeholder for names."""
-    if spec.computed_from != UNSTATED:
-        return f'computed from {spec.computed_from}: {{}}'
-    return _FROM_FILES if spec.written_in else _FROM_CLASSES
 
 
 def controller_options_table() -> Table:

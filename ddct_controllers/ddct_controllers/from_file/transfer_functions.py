@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ddct_controllers.from_file.controller_file import ControllerFile, mapping, option_name
-from ddct_controllers.interface import UNSTATED, Controller, ControllerContext, ControllerSpec
+from ddct_controllers.interface import Controller, ControllerContext, ControllerSpec
 from ddct_controllers.linear import (
     BILINEAR,
     HOLD,
@@ -107,7 +107,7 @@ def _linear_spec(kind: str, file: ControllerFile) -> ControllerSpec[Controller]:
             system = _system(kind, _with_numbers('', form, changed), in_z_already=in_z_already)
             return LinearController(system, discretisation)
 
-    return ControllerSpec(file.name, make, options, UNSTATED)
+    return ControllerSpec(file.name, make, options)
 
 
 def _numbers(path: str, form: Any) -> Iterator[tuple[str, float]]:

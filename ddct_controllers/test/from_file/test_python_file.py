@@ -10,7 +10,6 @@ from python_controllers import PROPORTIONAL
 from refusals import refused
 
 from ddct_controllers.check.checks import FAIL, PASS, check_controller
-from ddct_controllers.interface import UNSTATED
 from ddct_controllers.registry import controller_label, controller_spec, make_controller
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.scenario.file import load_scenario
@@ -36,7 +35,6 @@ def test_it_is_called_as_its_class_and_takes_its_options(file: Path) -> None:
     made = make_controller(str(file), settings)
     assert controller_label(str(file)) == made.registered_name == 'Mine'
     assert vars(made)['gain'] == 0.3
-    assert made.computed_from == UNSTATED
     with refused(ParameterError, key='controllers.Mine.gian'):
         make_controller(
             str(file), RunSettings(load_scenario('thesis', ['controllers.Mine.gian=1']))

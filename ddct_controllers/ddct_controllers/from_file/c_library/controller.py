@@ -10,7 +10,6 @@ from types import MappingProxyType
 from ddct_controllers.from_file.c_library.library import Library, LibraryError, interface
 from ddct_controllers.from_file.controller_file import ControllerFile, mapping
 from ddct_controllers.interface import (
-    UNSTATED,
     Command,
     Controller,
     ControllerContext,
@@ -41,7 +40,7 @@ def c_library_spec(file: ControllerFile) -> ControllerSpec[Controller]:
             return CLibraryController(path, context.gains)
 
     code = file.compiled_code(KIND, path)
-    return ControllerSpec(file.name, make, options, UNSTATED, compiled=code)
+    return ControllerSpec(file.name, make, options, compiled=code)
 
 
 def _options(given: object) -> Options:

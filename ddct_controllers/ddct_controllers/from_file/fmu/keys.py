@@ -12,7 +12,7 @@ from ddct_controllers.from_file.fmu.variables import (
     require_all_inputs,
     start_value,
 )
-from ddct_controllers.interface import UNSTATED, Controller, ControllerContext, ControllerSpec
+from ddct_controllers.interface import Controller, ControllerContext, ControllerSpec
 from ddct_plant.base.errors import ParameterError
 
 KIND = 'fmu'
@@ -54,4 +54,4 @@ def fmu_spec(file: ControllerFile) -> ControllerSpec[Controller]:
         return FmuController(file, fmu, inputs, outputs, starts)
 
     code = file.compiled_code(KIND, path)
-    return ControllerSpec(file.name, make, options, UNSTATED, compiled=code)
+    return ControllerSpec(file.name, make, options, compiled=code)
