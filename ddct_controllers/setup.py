@@ -29,7 +29,7 @@ setup(
     package_data={
         PACKAGE: [
             'py.typed',
-            *('c_code/c/*.c', 'mpc/export/c/*.c', 'mpc/export/c/*.h', 'least_jerk/export/c/*.c'),
+            *('mpc/export/c/*.c', 'mpc/export/c/*.h'),
             'template/files/*.in',
             *(f'from_file/c_library/template/*.{end}' for end in ('c', 'h', 'yaml')),
         ]

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from support.exported_mpc import STATUS, compile_c
 
-from ddct_controllers.c_code.parts import DOUBLES, MEASURED_MACROS, text_of
+from ddct_controllers.mpc.export.controller_tables import MEASURED_MACROS
 from ddct_controllers.mpc.export.dual_form import dual_form
-from ddct_controllers.mpc.export.export_controller import c_part, constants, macros
+from ddct_controllers.mpc.export.export_controller import c_parts, constants, macros
 from ddct_controllers.mpc.qp.backend import make_backend
 from ddct_controllers.mpc.qp.problem import QpStructure
 
@@ -33,14 +33,13 @@ class ExportedSolver:
         self._form = form = dual_form(structure)
         rows, size = form.normals.shape
         sizes = {'STATES': 1, 'REFERENCES': 1, 'MOVES': size, 'ITERATIONS': limit}
-        header = c_part('ddct_mpc.h').replace('@SIZES@', macros(sizes, 'DDCT_MPC_'))
+        header = c_parts('ddct_mpc.h').replace('@SIZES@', macros(sizes, 'DDCT_MPC_'))
         tables = {'NORMAL': form.normals, 'RELAXATION': form.relaxation}
         parts = [
             header,
             macros({'ROWS': rows, 'ACTIVE': form.capacity, **MEASURED_MACROS}),
             constants(tables),
-            text_of([DOUBLES]),
-            c_part('solver.c'),
+            c_parts('doubles.c', 'solver.c'),
             _CALL,
         ]
         folder.mkdir()

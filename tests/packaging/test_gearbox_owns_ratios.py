@@ -12,7 +12,6 @@ OWNER = 'ddct_plant/ddct_plant/models/gearbox.py'
 KEYS = {
     'ddct_plant/ddct_plant/models/parameters.py': {'total_ratio'},
     'ddct_bringup/ddct_bringup/bag/measured_keys.py': {'total_ratio'},
-    'ddct_controllers/ddct_controllers/least_jerk/export/numbers.py': {'total_ratio'},
 }
 """
 Modules that declare a key of files, and what they read of it to make a gear or its range.

@@ -4,7 +4,6 @@
 
 from ddct_controllers.workflows import (
     h_infinity_command,
-    least_jerk_command,
     loop_shaping_command,
     margins_command,
     mpc_command,
@@ -17,7 +16,6 @@ _COMMANDS = (
     loop_shaping_command,
     h_infinity_command,
     mpc_command,
-    least_jerk_command,
     margins_command,
     plant_command,
 )
@@ -29,7 +27,6 @@ examples:
   ddct design loop-shaping --rise-time 0.6 --overshoot 14 --name mine --out designs
   ddct design h-infinity                                   Chapter 3, step by step
   ddct design mpc --export control_unit --controller mpc3  C for a control unit
-  ddct design least-jerk --export control_unit             C of least_jerk
   ddct design margins --controller all                     the sampled loop with hold and delay
   ddct design plant --export plant.m                       the plant's equations and numbers
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ddct_controllers.c_code.parts import MEASURED_MACROS, authority_macros
 from ddct_controllers.interface import Controller
+from ddct_controllers.measurement import MOST
 from ddct_controllers.mpc.controller import MpcController
 from ddct_controllers.mpc.estimate.observer import Observer
 from ddct_controllers.mpc.export.dual_form import DualForm, dual_form, known_columns
@@ -18,7 +18,10 @@ from ddct_controllers.mpc.program.horizon import CondensedProgram
 from ddct_controllers.mpc.program.settings import MpcSettings
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.models.engine import EngineAuthority
 
+MEASURED_MACROS = {'MOST_MEASURED': MOST}
+"""Largest size of a measured value, in its SI unit."""
 CHANGES_PER_ROW = 10
 """Changes of the active set allowed for each row that can be active, if no limit is given."""
 
@@ -61,7 +64,7 @@ def controller_tables(controller: MpcController[Observer], observer: Observer) -
     columns = known_columns(program, len(model.a), settings)
     clutch = settings.inputs[CLUTCH]
     limits_rate = math.isfinite(clutch.rate_n_m_s)
-    engine = authority_macros(controller.authority) if controller.authority else {}
+    engine = _authority_macros(controller.authority) if controller.authority else {}
     return ControllerTables(
         public={
             'PERIOD_S': PERIOD_S,
@@ -152,3 +155,14 @@ def _iterations(settings: MpcSettings, form: DualForm) -> int:
     if settings.iteration_limit is not None and settings.backend == 'daqp':
         return settings.iteration_limit  # counted in the same unit
     return CHANGES_PER_ROW * form.capacity
+
+
+def _authority_macros(authority: EngineAuthority) -> dict[str, float]:
+    """Return what a controller may do to the engine; a change is that in one period, in N m."""
+    return {
+        'MOST_DEVIATION': authority.deviation_n_m,
+        'MOST_CHANGE': authority.slew_n_m_s * PERIOD_S,
+        'LAG_SHARE': authority.lag_share,
+        'LEAST_ENGINE_TORQUE': authority.minimum_torque_n_m,
+        'MOST_ENGINE_TORQUE': authority.maximum_torque_n_m,
+    }

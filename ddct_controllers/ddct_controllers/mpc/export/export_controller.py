@@ -5,9 +5,6 @@
 import math
 from pathlib import Path
 
-from ddct_controllers.c_code.folder import require_free, write_files
-from ddct_controllers.c_code.parts import DOUBLES, ENGINE, text_of
-from ddct_controllers.c_code.text import constants, macros, remark
 from ddct_controllers.from_file.c_library.library import HEADER as INTERFACE
 from ddct_controllers.from_file.c_library.library import TEMPLATE
 from ddct_controllers.interface import Controller
@@ -16,6 +13,8 @@ from ddct_controllers.mpc.export.controller_tables import (
     controller_tables,
     exportable,
 )
+from ddct_controllers.mpc.export.folder import require_free, write_files
+from ddct_controllers.mpc.export.text import constants, macros, remark
 from ddct_controllers.mpc.model.transmission_model import SLIP_SPEED
 from ddct_controllers.mpc.program.settings import MpcSettings
 from ddct_plant.program.command_line import package_version
@@ -53,23 +52,23 @@ def export_controller(
 
 def _texts(tables: ControllerTables, about: list[str]) -> dict[str, str]:
     note = remark(about)
-    engine = [ENGINE, _OURS / 'engine.c'] if tables.public['COMMANDS_ENGINE'] else []
+    engine = ['engine.c'] if tables.public['COMMANDS_ENGINE'] else []
     # In the order of their use.
-    parts = [DOUBLES, _OURS / 'solver.c', *engine, _OURS / 'controller.c']
+    parts = ['doubles.c', 'solver.c', *engine, 'controller.c']
     return {
         HEADER: f'{note}\n'
-        + c_part('ddct_mpc.h').replace('@SIZES@', macros(tables.public, _PREFIX)),
+        + c_parts('ddct_mpc.h').replace('@SIZES@', macros(tables.public, _PREFIX)),
         SOURCE: '\n\n'.join(
             [
                 note,
                 f'#include <limits.h>\n#include <math.h>\n\n#include "{HEADER}"',
                 macros(tables.private),
                 constants(tables.arrays),
-                text_of(parts),
+                c_parts(*parts),
             ]
         ),
-        EXAMPLE: f'{note}\n{c_part("example.c")}',
-        LIBRARY: f'{note}\n{c_part("library.c")}',
+        EXAMPLE: f'{note}\n{c_parts("example.c")}',
+        LIBRARY: f'{note}\n{c_parts("library.c")}',
         INTERFACE: f'{note}\n{(TEMPLATE / INTERFACE).read_text(encoding="utf-8")}',
     }
 
@@ -99,6 +98,6 @@ def _about(name: str, settings: RunSettings, chosen: MpcSettings) -> list[str]:
     ]
 
 
-def c_part(name: str) -> str:
-    """Return the text of the hand-written C in the file `name`."""
-    return text_of([_OURS / name])
+def c_parts(*names: str) -> str:
+    """Return the text of files of hand-written C, one after another."""
+    return '\n'.join((_OURS / name).read_text(encoding='utf-8') for name in names)
