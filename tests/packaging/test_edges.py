@@ -16,7 +16,6 @@ FILES = {
     'ddct_bringup/bag/writer.py': 'metadata of a bag',
     'ddct_bringup/benchmark/cases.py': 'cases of a benchmark, YAML',
     'ddct_bringup/benchmark/manifest.py': 'manifest.json of a benchmark',
-    'ddct_bringup/benchmark/report/folder.py': 'benchmark --json',
     'ddct_bringup/campaign/columns.py': 'rows of results.parquet',
     'ddct_bringup/campaign/manifest.py': 'manifest.json',
     'ddct_bringup/campaign/rows.py': 'rows of results.parquet',

@@ -14,7 +14,7 @@ from ddct_bringup.benchmark.manifest import BenchmarkManifest
 from ddct_bringup.benchmark.release import release_rows
 from ddct_bringup.benchmark.report.page import benchmark_page
 from ddct_bringup.benchmark.result import result_of
-from ddct_bringup.benchmark.update_times import UpdateTime
+from ddct_bringup.benchmark.update_times import UpdateTime, UpdateTimesFile
 
 pytestmark = [
     pytest.mark.browser,
@@ -29,12 +29,7 @@ SORT = """(() => {
   document.querySelectorAll('#board .sort')[2].click();
   return before !== body.rows[0].textContent;
 })()"""
-TIMES: UpdateTime = {
-    'ratio_to_pi': 1.5,
-    'lowest_ratio': 1.4,
-    'highest_ratio': 1.6,
-    'update_time_median_us': 6.0,
-}
+TIMES = UpdateTime(1.5, 1.4, 1.6, 6.0, 4.0)
 
 
 @pytest.fixture(scope='module')
@@ -48,7 +43,7 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
     result = result_of(manifest, release, judged, {})
     file = tmp_path_factory.mktemp('benchmark') / 'report.html'
     file.write_text(
-        benchmark_page(result, {'reference': 'pi', 'controllers': {'ls8': TIMES}}, file.parent),
+        benchmark_page(result, UpdateTimesFile('pi', {'ls8': TIMES}), file.parent),
         encoding='utf-8',
     )
     return file

@@ -11,11 +11,12 @@ from ddct_bringup.benchmark.conduct import DEVELOPMENT, HELD_OUT, Options, carry
 from ddct_bringup.benchmark.evaluated import MAIN
 from ddct_bringup.benchmark.judged import Judged
 from ddct_bringup.benchmark.report.folder import PAGE, write_result
-from ddct_bringup.benchmark.result_types import Evaluation, Result
+from ddct_bringup.benchmark.result_types import Evaluation
 from ddct_bringup.benchmark.update_times import write_update_times
 from ddct_bringup.campaign.rows import require_suitable
 from ddct_controllers.registry import controller_spec
 from ddct_plant.base.errors import DdctError
+from ddct_plant.files.json_records import to_json
 
 
 class BenchmarkResults(NamedTuple):
@@ -28,8 +29,8 @@ class BenchmarkResults(NamedTuple):
     Columns for the sets `development` and `held_out`: `SET.success`, the share of successes, 0 to
     1, and `SET.FIGURE`, the median of each of the five figures over the successes.
     """
-    result: Result
-    """Content of `result.json`."""
+    result: Any
+    """Content of `result.json`, a dict."""
     page: Path
     """Path of the page `report.html`."""
 
@@ -58,24 +59,24 @@ def benchmark(
         raise DdctError(f'{name}: {reason}')
     write_update_times(judged, cases, folder)
     result = write_result(folder, failed)
-    (found,) = result['controllers']
+    (found,) = result.controllers
     columns = {
         f'{part}.{name}': values
-        for part, each in ((DEVELOPMENT, found['development']), (HELD_OUT, found['held_out']))
+        for part, each in ((DEVELOPMENT, found.development), (HELD_OUT, found.held_out))
         for name, values in _columns(each or []).items()
     }
     table = pandas.DataFrame(columns).rename_axis('controller')
-    return BenchmarkResults(table, result, folder / PAGE)
+    return BenchmarkResults(table, to_json(result), folder / PAGE)
 
 
 def _columns(controllers: list[Evaluation]) -> dict[str, dict[str, float | None]]:
     """Return the share of successes, and the median of each figure, by controller."""
-    found = {'success': {each['controller']: each['success']['share'] for each in controllers}}
+    found = {'success': {each.controller: each.success.share for each in controllers}}
     for key in MAIN:
         found[key] = {
-            each['controller']: quantity['p50']
+            each.controller: quantity.spread.quantiles.p50
             for each in controllers
-            for quantity in each['quantities']
-            if quantity['name'] == key
+            for quantity in each.quantities
+            if quantity.name == key
         }
     return found

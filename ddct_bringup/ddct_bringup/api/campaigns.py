@@ -17,11 +17,11 @@ from ddct_bringup.campaign.spec import read_spec, spec_of
 from ddct_bringup.campaign_report.folder import write_campaign_page
 from ddct_bringup.campaign_report.reading import read_table, results_of
 from ddct_bringup.campaign_report.summary import summary_of
-from ddct_bringup.campaign_report.summary_types import Summary
 from ddct_bringup.sweep.axis import Axis, axis, axis_of
 from ddct_bringup.sweep.sweep import Sweep
 from ddct_bringup.verdict.limits import load_limits
 from ddct_controllers.registry import controller_label
+from ddct_plant.files.json_records import to_json
 
 
 class CampaignResults(NamedTuple):
@@ -29,8 +29,8 @@ class CampaignResults(NamedTuple):
 
     table: Any
     """pandas DataFrame with a row per run, by its index: varied values, metrics, verdict."""
-    summary: Summary
-    """Content of `summary.json`."""
+    summary: Any
+    """Content of `summary.json`, a dict."""
 
 
 def campaign(
@@ -63,7 +63,7 @@ def read_campaign(folder: str | Path) -> CampaignResults:
     pandas_module()
     manifest = Manifest.read(Path(folder))
     table = read_table(Path(folder), manifest)
-    summary = summary_of(results_of(manifest, table))
+    summary = to_json(summary_of(results_of(manifest, table)))
     return CampaignResults(table.to_pandas().set_index(INDEX), summary)
 
 

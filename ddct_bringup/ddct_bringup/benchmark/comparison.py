@@ -31,24 +31,24 @@ def paired_results(figures: dict[str, CaseFigures], judged: str) -> list[PairedR
 def _paired_result(figures: dict[str, CaseFigures], judged: str, other: str) -> PairedResult:
     ours = compare(figures[judged], figures[other])
     theirs = compare(figures[other], figures[judged])
-    return {
-        'other': other,
-        'cases': ours.cases,
-        'dominates': ours.dominates(among=len(figures)),
-        'dominated': theirs.dominates(among=len(figures)),
-        'figures': [_figure_in_cases(each) for each in ours.figures],
-    }
+    return PairedResult(
+        other=other,
+        cases=ours.cases,
+        dominates=ours.dominates(among=len(figures)),
+        dominated=theirs.dominates(among=len(figures)),
+        figures=[_figure_in_cases(each) for each in ours.figures],
+    )
 
 
 def _figure_in_cases(found: FigureComparison) -> FigureInCases:
     median = found.median_difference
-    return {
-        'name': found.name,
-        'better': found.better,
-        'worse': found.worse,
-        'left_out': found.null,
-        'median_difference': median if math.isfinite(median) else None,
-    }
+    return FigureInCases(
+        name=found.name,
+        better=found.better,
+        worse=found.worse,
+        left_out=found.null,
+        median_difference=median if math.isfinite(median) else None,
+    )
 
 
 def gaps_between(development: Columns, held_out: Columns) -> list[Gap]:
@@ -59,13 +59,13 @@ def gaps_between(development: Columns, held_out: Columns) -> list[Gap]:
     """
     ours, theirs = ((case_figures_in(each), _scenarios(each)) for each in (development, held_out))
     return [
-        {
-            'name': gap.name,
-            'p_value': gap.p_value,
-            'worse': gap.worse,
-            'left_out': gap.null,
-            'differs': gap.differs,
-        }
+        Gap(
+            name=gap.name,
+            p_value=gap.p_value,
+            worse=gap.worse,
+            left_out=gap.null,
+            differs=gap.differs,
+        )
         for gap in gaps_of(ours, theirs)
     ]
 
@@ -83,31 +83,18 @@ def pairs_of(rows: CaseRows, judged: str) -> list[PairSummary]:
 def _pair(rows: CaseRows, first: str, second: str) -> PairSummary:
     ours, theirs = rows.of(first), rows.of(second)
     outcomes = outcomes_in(ours), outcomes_in(theirs)
-    joint = paired.joint_outcomes(*outcomes)
     differences: list[DifferenceSummary] = []
     for key, quantity in EVALUATED.items():
         mine, others = values_of(ours, key), values_of(theirs, key)
         if mine is None or others is None:
             continue
         found = paired.difference_of(mine, others, outcomes)
-        differences.append(
-            {
-                'name': key,
-                'unit': quantity.unit,
-                'cases': found.cases,
-                **found.quantiles,
-                'interval': list(found.interval) if found.interval else None,
-            }
-        )
-    return {
-        'first': first,
-        'second': second,
-        'varied': {},
-        'cases': joint.cases,
-        'both': joint.both,
-        'first_only': joint.first_only,
-        'second_only': joint.second_only,
-        'neither': joint.neither,
-        'no_interval': '',
-        'differences': differences,
-    }
+        differences.append(DifferenceSummary(key, quantity.unit, found))
+    return PairSummary(
+        first=first,
+        second=second,
+        varied={},
+        outcomes=paired.joint_outcomes(*outcomes),
+        no_interval='',
+        differences=differences,
+    )

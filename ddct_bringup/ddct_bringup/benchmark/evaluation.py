@@ -60,10 +60,10 @@ def scenarios_in(columns: Columns) -> dict[str, ScenarioResult]:
     names = columns[SCENARIO]
     for name in dict.fromkeys(names.tolist()):
         part = {key: column[names == name] for key, column in columns.items()}
-        found[str(name)] = {
-            'success': share_of_successes(part),
-            'quantities': quantities_in(part, SHOWN),
-        }
+        found[str(name)] = ScenarioResult(
+            success=share_of_successes(part),
+            quantities=quantities_in(part, SHOWN),
+        )
     return found
 
 
@@ -72,7 +72,7 @@ def reasons_in(columns: Columns) -> list[Reason]:
     places = np.flatnonzero(outcomes_in(columns) == INVALID).tolist()
     reasons = [str(columns['reason'][place]) for place in places]
     return [
-        {'reason': reason, 'runs': runs, 'index': places[reasons.index(reason)]}
+        Reason(reason, runs, places[reasons.index(reason)])
         for reason, runs in Counter(reasons).most_common(MOST_REASONS)
     ]
 
@@ -84,7 +84,7 @@ def quantities_in(columns: Columns, names: Sequence[str] = ()) -> list[QuantityR
         values = values_of(columns, key)
         if values is not None:
             spread = spread_in(columns, values)
-            found.append({'name': key, 'unit': EVALUATED[key].unit, **spread})
+            found.append(QuantityResult(key, EVALUATED[key].unit, spread))
     return found
 
 
@@ -101,25 +101,25 @@ def causes_in(columns: Columns, varied: list[str]) -> Causes:
     """
     failed = ~successes_in(columns)
     if why := attribution.too_few(failed):
-        return {'too_few': why, 'keys': []}
+        return Causes(too_few=why, keys=[])
     values = {key: columns[key] for key in (*varied, SCENARIO)}
     several = {key: each for key, each in values.items() if len(set(each.tolist())) > 1}
     effects = attribution.effects_of(several, failed)
-    return {'too_few': '', 'keys': [_effect(each) for each in effects]}
+    return Causes(too_few='', keys=[_effect(each) for each in effects])
 
 
 def _effect(effect: attribution.Effect) -> KeyEffect:
     part = effect.worst_part
-    return {
-        'key': effect.key,
-        'drives': effect.drives,
-        'explained': effect.explained,
-        'interval': list(effect.interval),
-        'p_value': effect.p_value,
-        'worst_part': where_text(part),
-        'worst_part_runs': part.runs,
-        'worst_part_failed': part.failed,
-    }
+    return KeyEffect(
+        key=effect.key,
+        drives=effect.drives,
+        explained=effect.explained,
+        interval=effect.interval,
+        p_value=effect.p_value,
+        worst_part=where_text(part),
+        worst_part_runs=part.runs,
+        worst_part_failed=part.failed,
+    )
 
 
 def evaluations_of(rows: CaseRows, varied: list[str], judged: str) -> list[Evaluation]:
@@ -132,16 +132,16 @@ def evaluations_of(rows: CaseRows, varied: list[str], judged: str) -> list[Evalu
     for name in rows.controllers:
         columns = rows.of(name)
         found.append(
-            {
-                'controller': name,
-                'runs': rows.cases,
-                'success': share_of_successes(columns),
-                'states': states_in(columns),
-                'scenarios': scenarios_in(columns),
-                'reasons': reasons_in(columns),
-                'quantities': quantities_in(columns),
-                'least_is_no_bound': least_is_no_bound_in(columns),
-                'causes': causes_in(columns, varied) if name == judged else None,
-            }
+            Evaluation(
+                controller=name,
+                runs=rows.cases,
+                success=share_of_successes(columns),
+                states=states_in(columns),
+                scenarios=scenarios_in(columns),
+                reasons=reasons_in(columns),
+                quantities=quantities_in(columns),
+                least_is_no_bound=least_is_no_bound_in(columns),
+                causes=causes_in(columns, varied) if name == judged else None,
+            )
         )
     return found

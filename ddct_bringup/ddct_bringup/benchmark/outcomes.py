@@ -6,7 +6,7 @@ import numpy as np
 
 from ddct_bringup.benchmark.case_rows import CASE
 from ddct_bringup.benchmark.evaluated import Columns
-from ddct_bringup.benchmark.result_types import RunShare, ValueSpread
+from ddct_bringup.benchmark.result_types import RunShare, ValueSpread, WorstCase
 from ddct_bringup.benchmark.statistics.case_figures import CaseFigures
 from ddct_bringup.campaign.rows import STATE
 from ddct_bringup.campaign_report.statistics import outcome
@@ -17,11 +17,11 @@ from ddct_bringup.verdict.state import ENGAGED
 def share_of(runs: int, among: int) -> RunShare:
     """Return a share of runs with its Clopper-Pearson interval; None of no runs."""
     found = outcome.Share(runs, 0, among)
-    return {
-        'runs': runs,
-        'share': found.share,
-        'interval': list(found.interval()) if among else None,
-    }
+    return RunShare(
+        runs=runs,
+        share=found.share,
+        interval=found.interval() if among else None,
+    )
 
 
 def outcomes_in(columns: Columns) -> np.ndarray:
@@ -50,8 +50,8 @@ def spread_in(columns: Columns, values: np.ndarray) -> ValueSpread:
     found = spread_of(values, outcomes_in(columns))
     place = found.worst_engaged
     worst = None if place is None else float(values[place])
-    return {
-        **found.quantiles,
-        'with_value': found.with_value,
-        'worst': {'value': worst, 'case': None if place is None else int(columns[CASE][place])},
-    }
+    return ValueSpread(
+        quantiles=found.quantiles,
+        with_value=found.with_value,
+        worst=WorstCase(worst, None if place is None else int(columns[CASE][place])),
+    )

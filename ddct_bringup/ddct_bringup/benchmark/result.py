@@ -3,6 +3,7 @@
 """Result of a benchmark from its rows: the content of `result.json`."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 from ddct_bringup.benchmark.case_rows import CaseRows
 from ddct_bringup.benchmark.comparison import (
@@ -48,64 +49,64 @@ def result_of(
     """
     board = _board_rows(manifest, release, rows)
     figures = None if manifest.quick else figures_in(board)
-    return {
-        'schema_version': SCHEMA_VERSION,
-        'release': manifest.origin.entry(),
-        'cases': _cases(manifest, release),
-        'judge_seed': manifest.judge_seed,
-        'method': _method(figures),
-        'controllers': [
+    return Result(
+        schema_version=SCHEMA_VERSION,
+        release=manifest.origin,
+        cases=_cases(manifest, release),
+        judge_seed=manifest.judge_seed,
+        method=_method(figures),
+        controllers=[
             _judged(entry, manifest, release, rows[entry.name], figures)
             if entry.name in rows
             else _not_judged(entry, failed.get(entry.name))
             for entry in manifest.controllers
         ],
-        'board': _board(board, rows, figures),
-    }
+        board=_board(board, rows, figures),
+    )
 
 
 def _cases(manifest: BenchmarkManifest, release: ReleaseRows) -> CasesResult:
     cases = manifest.run_cases
     spec = cases.planned.spec
-    return {
-        'digest': cases.digest,
-        'quick': cases.quick,
-        'scenarios': list(spec.values_of(SCENARIO)),
-        'samples': spec.samples,
-        'floor_samples': spec.floor_samples,
-        'varied': list(spec.vary),
-        'development_seed': spec.root,
-        'release_rows': release.origin.entry(),
-        'other_code': release.other_code(manifest.origin),
-    }
+    return CasesResult(
+        digest=cases.digest,
+        quick=cases.quick,
+        scenarios=list(spec.values_of(SCENARIO)),
+        samples=spec.samples,
+        floor_samples=spec.floor_samples,
+        varied=list(spec.vary),
+        development_seed=spec.root,
+        release_rows=release.origin,
+        other_code=release.other_code(manifest.origin),
+    )
 
 
 def _method(figures: dict[str, CaseFigures] | None) -> Method:
-    return {
-        'share_interval': outcome.METHOD,
-        'difference_interval': paired.METHOD,
-        'gap': GAP_METHOD,
-        'causes': attribution.METHOD,
-        'confidence': outcome.CONFIDENCE,
-        'figures': list(MAIN),
-        'dominance_level': level_among(len(figures)) if figures else None,
-    }
+    return Method(
+        share_interval=outcome.METHOD,
+        difference_interval=paired.METHOD,
+        gap=GAP_METHOD,
+        causes=attribution.METHOD,
+        confidence=outcome.CONFIDENCE,
+        figures=list(MAIN),
+        dominance_level=level_among(len(figures)) if figures else None,
+    )
 
 
 def _not_judged(entry: JudgedEntry, error: str | None) -> JudgedResult:
     """Return the result of a controller without rows."""
-    return {
-        'controller': entry.name,
-        'digests': dict(entry.digests),
-        'held_out_seed': entry.held_out_seed,
-        'error': error,
-        'development': None,
-        'held_out': None,
-        'gaps': None,
-        'dominance': None,
-        'development_pairs': None,
-        'held_out_pairs': None,
-    }
+    return JudgedResult(
+        controller=entry.name,
+        digests=dict(entry.digests),
+        held_out_seed=entry.held_out_seed,
+        error=error,
+        development=None,
+        held_out=None,
+        gaps=None,
+        dominance=None,
+        development_pairs=None,
+        held_out_pairs=None,
+    )
 
 
 def _judged(
@@ -119,15 +120,15 @@ def _judged(
     name = entry.name
     development = _development(rows, release).only(rows.held_out.controllers)
     varied = list(manifest.run_cases.planned.spec.vary)
-    return {
-        **_not_judged(entry, None),
-        'development': evaluations_of(development, varied, name),
-        'held_out': evaluations_of(rows.held_out, varied, name),
-        'gaps': gaps_between(development.of(name), rows.held_out.of(name)),
-        'dominance': paired_results(figures, name) if figures else None,
-        'development_pairs': pairs_of(development, name),
-        'held_out_pairs': pairs_of(rows.held_out, name),
-    }
+    return replace(
+        _not_judged(entry, None),
+        development=evaluations_of(development, varied, name),
+        held_out=evaluations_of(rows.held_out, varied, name),
+        gaps=gaps_between(development.of(name), rows.held_out.of(name)),
+        dominance=paired_results(figures, name) if figures else None,
+        development_pairs=pairs_of(development, name),
+        held_out_pairs=pairs_of(rows.held_out, name),
+    )
 
 
 def _development(rows: JudgedRows, release: ReleaseRows) -> CaseRows:
@@ -159,12 +160,12 @@ def _board(
     for name in together.controllers:
         columns = together.of(name)
         found.append(
-            {
-                'controller': name,
-                'judged': name in judged,
-                'success': share_of_successes(columns),
-                'quantities': quantities_in(columns, SHOWN),
-                'dominated_by': dominators.get(name),
-            }
+            BoardRow(
+                controller=name,
+                judged=name in judged,
+                success=share_of_successes(columns),
+                quantities=quantities_in(columns, SHOWN),
+                dominated_by=dominators.get(name),
+            )
         )
     return found

@@ -2,42 +2,52 @@
 # SPDX-License-Identifier: Apache-2.0
 """Types of `result.json`; docs/use/benchmark.md describes what its keys mean."""
 
-from typing import TypedDict
+from dataclasses import dataclass
 
-from ddct_bringup.campaign_report.summary_types import PairSummary, Quantiles, Reason
-from ddct_bringup.digests.origin import OriginEntry
+from ddct_bringup.benchmark.update_times import UpdateTimesFile
+from ddct_bringup.campaign_report.statistics.spread import Quantiles
+from ddct_bringup.campaign_report.summary_types import PairSummary, Reason
+from ddct_bringup.digests.origin import CodeOrigin
+from ddct_plant.files.json_records import Inline
 
 
-class RunShare(TypedDict):
+@dataclass(frozen=True)
+class RunShare:
     """Number of runs, their share among all runs of the set, 0 to 1, and its interval."""
 
     runs: int
     share: float | None
-    interval: list[float] | None
+    interval: tuple[float, float] | None
 
 
-class WorstCase(TypedDict):
+@dataclass(frozen=True)
+class WorstCase:
     """Largest magnitude, with its case; null without one."""
 
     value: float | None
     case: int | None
 
 
-class ValueSpread(Quantiles):
+@dataclass(frozen=True)
+class ValueSpread:
     """Distribution over the successes that have a value."""
 
+    quantiles: Inline[Quantiles]
     with_value: int
     worst: WorstCase
 
 
-class QuantityResult(ValueSpread):
+@dataclass(frozen=True)
+class QuantityResult:
     """Distribution of one quantity."""
 
     name: str
     unit: str
+    spread: Inline[ValueSpread]
 
 
-class ScenarioResult(TypedDict):
+@dataclass(frozen=True)
+class ScenarioResult:
     """Result of a controller in one scenario."""
 
     success: RunShare
@@ -45,13 +55,14 @@ class ScenarioResult(TypedDict):
     """The five figures, and the peak jerk over the least."""
 
 
-class KeyEffect(TypedDict):
+@dataclass(frozen=True)
+class KeyEffect:
     """Effect of one varied key on failure, as in the summary of a campaign."""
 
     key: str
     drives: bool
     explained: float
-    interval: list[float]
+    interval: tuple[float, float]
     p_value: float
     worst_part: str
     """Part of the key's range, or the scenario, in which failure is most frequent."""
@@ -59,14 +70,16 @@ class KeyEffect(TypedDict):
     worst_part_failed: int
 
 
-class Causes(TypedDict):
+@dataclass(frozen=True)
+class Causes:
     """Keys that drive failure; none where failed runs, or others, are too few."""
 
     too_few: str
     keys: list[KeyEffect]
 
 
-class Evaluation(TypedDict):
+@dataclass(frozen=True)
+class Evaluation:
     """Result of one controller on one set of cases."""
 
     controller: str
@@ -85,7 +98,8 @@ class Evaluation(TypedDict):
     """Null of a controller that only runs beside the judged one."""
 
 
-class BoardRow(TypedDict):
+@dataclass(frozen=True)
+class BoardRow:
     """One controller among all of the release, on the development cases."""
 
     controller: str
@@ -97,7 +111,8 @@ class BoardRow(TypedDict):
     """Controllers that dominate it; null in a quick benchmark."""
 
 
-class FigureInCases(TypedDict):
+@dataclass(frozen=True)
+class FigureInCases:
     """One figure of the judged controller and another one, case by case."""
 
     name: str
@@ -110,7 +125,8 @@ class FigureInCases(TypedDict):
     """Median of judged less other; null where failures of one alone decide it."""
 
 
-class PairedResult(TypedDict):
+@dataclass(frozen=True)
+class PairedResult:
     """The judged controller and another one on the same cases."""
 
     other: str
@@ -122,7 +138,8 @@ class PairedResult(TypedDict):
     figures: list[FigureInCases]
 
 
-class Gap(TypedDict):
+@dataclass(frozen=True)
+class Gap:
     """Difference of one figure between development and held-out cases."""
 
     name: str
@@ -138,7 +155,8 @@ class Gap(TypedDict):
     """Whether it is beyond chance, with all figures of the controller taken together."""
 
 
-class JudgedResult(TypedDict):
+@dataclass(frozen=True)
+class JudgedResult:
     """Result of one judged controller."""
 
     controller: str
@@ -159,7 +177,8 @@ class JudgedResult(TypedDict):
     held_out_pairs: list[PairSummary] | None
 
 
-class CasesResult(TypedDict):
+@dataclass(frozen=True)
+class CasesResult:
     """Cases that were run."""
 
     digest: str
@@ -169,13 +188,14 @@ class CasesResult(TypedDict):
     floor_samples: int
     varied: list[str]
     development_seed: int
-    release_rows: OriginEntry
+    release_rows: CodeOrigin
     """Code that computed the kept rows of our controllers."""
     other_code: str
     """What to know where that is other code than `release`; empty where it is the same."""
 
 
-class Method(TypedDict):
+@dataclass(frozen=True)
+class Method:
     """Methods of intervals and tests."""
 
     share_interval: str
@@ -189,11 +209,12 @@ class Method(TypedDict):
     """Level of one figure of one ordered pair of controllers; null in a quick benchmark."""
 
 
-class Result(TypedDict):
+@dataclass(frozen=True)
+class Result:
     """Content of `result.json`."""
 
     schema_version: int
-    release: OriginEntry
+    release: CodeOrigin
     """Code of the release that judged."""
     cases: CasesResult
     judge_seed: int | None
@@ -202,3 +223,11 @@ class Result(TypedDict):
     controllers: list[JudgedResult]
     board: list[BoardRow]
     """Every judged controller, then all controllers of the release."""
+
+
+@dataclass(frozen=True)
+class ResultWithTimes:
+    """Result with the update times, as `--json` has it."""
+
+    result: Inline[Result]
+    update_times: UpdateTimesFile

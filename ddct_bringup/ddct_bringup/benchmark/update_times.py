@@ -8,48 +8,48 @@ They are wall-clock times, so they differ each time, and stand in a file of thei
 
 import statistics
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal, TypedDict, cast, get_args
 
 from ddct_bringup.benchmark.cases import Cases
 from ddct_bringup.benchmark.judged import Judged
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.run.timing_and_failure import TIMING_FILE, RunTiming
 from ddct_controllers.registry import Chosen
-from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError, ParameterError, require_number
-from ddct_plant.files.input_file import read_text_file
-from ddct_plant.files.json_records import parse_json, write_json
+from ddct_plant.base.errors import FOREIGN_FAILURES
+from ddct_plant.files.json_records import read_json, write_json
 from ddct_plant.scenario.settings import RunSettings
 
 REFERENCE = 'pi'
-_Time = Literal[
-    'ratio_to_pi',
-    'lowest_ratio',
-    'highest_ratio',
-    'update_time_median_us',
-    'pi_update_time_median_us',
-]
-_TIMES: tuple[_Time, ...] = get_args(_Time)
 _ROUNDS = 3
 """Number of runs of each, in turn, so that a busy machine slows both alike."""
 
 
-class UpdateTime(TypedDict, total=False):
-    """Update time of a controller; without a ratio there is the reason alone."""
+@dataclass(frozen=True)
+class UpdateTime:
+    """Update time of a controller."""
 
-    ratio_to_pi: float | None
-    reason: str
+    ratio_to_pi: float
     lowest_ratio: float
     highest_ratio: float
     update_time_median_us: float
     pi_update_time_median_us: float
 
 
-class UpdateTimesFile(TypedDict):
+@dataclass(frozen=True)
+class NoUpdateTime:
+    """Reason for the missing update time of a controller."""
+
+    ratio_to_pi: None
+    reason: str
+
+
+@dataclass(frozen=True)
+class UpdateTimesFile:
     """Content of the file: the controller of the denominator, and the update times by name."""
 
     reference: str
-    controllers: Mapping[str, UpdateTime]
+    controllers: Mapping[str, UpdateTime | NoUpdateTime]
 
 
 def write_update_times(judged: Sequence[Judged], cases: Cases, out: Path) -> None:
@@ -58,33 +58,13 @@ def write_update_times(judged: Sequence[Judged], cases: Cases, out: Path) -> Non
         return
     settings = cases.planned.run(0).settings
     found = {each.name: _update_time(each, settings) for each in judged}
-    content: UpdateTimesFile = {'reference': REFERENCE, 'controllers': found}
-    write_json(str(out / TIMING_FILE), content)
+    write_json(str(out / TIMING_FILE), UpdateTimesFile(REFERENCE, found))
 
 
 def read_update_times(out: Path) -> UpdateTimesFile:
     """Return the content of the file in a folder; raise DdctError for one that is damaged."""
-    path = out / TIMING_FILE
-    try:
-        content = parse_json(read_text_file(path))
-        for name, found in content['controllers'].items():
-            _require_complete(name, found)
-    except (OSError, ParameterError, LookupError, TypeError, AttributeError) as error:
-        raise DdctError(
-            f'it has no update times ({error}): delete it, and the same command measures them '
-            'again',
-            place=path,
-        ) from error
-    return cast(UpdateTimesFile, content)
-
-
-def _require_complete(name: str, found: UpdateTime) -> None:
-    """Raise ParameterError or LookupError unless there are all times, or a reason for none."""
-    if found['ratio_to_pi'] is not None:
-        for key in _TIMES:
-            require_number(f'{name}.{key}', found[key])
-    elif not isinstance(found['reason'], str):
-        raise ParameterError(f'{name}.reason is no text', key='reason')
+    advice = 'delete the file, and the same command measures the update times again'
+    return read_json(UpdateTimesFile, out / TIMING_FILE, advice=advice)
 
 
 def median_ratio(chosen: Chosen, reference: str, settings: RunSettings) -> float:
@@ -96,7 +76,7 @@ def median_ratio(chosen: Chosen, reference: str, settings: RunSettings) -> float
     return statistics.median(ratios)
 
 
-def _update_time(judged: Judged, settings: RunSettings) -> UpdateTime:
+def _update_time(judged: Judged, settings: RunSettings) -> UpdateTime | NoUpdateTime:
     """Return the median update times in us, and the median of their ratios over the rounds."""
     ours, theirs = [], []
     try:
@@ -104,15 +84,15 @@ def _update_time(judged: Judged, settings: RunSettings) -> UpdateTime:
             theirs.append(_median_us(REFERENCE, settings))
             ours.append(_median_us(judged.path, settings))
     except FOREIGN_FAILURES as error:
-        return {'ratio_to_pi': None, 'reason': f'{type(error).__name__}: {error}'}
+        return NoUpdateTime(ratio_to_pi=None, reason=f'{type(error).__name__}: {error}')
     ratios = [mine / other for mine, other in zip(ours, theirs, strict=True)]
-    return {
-        'ratio_to_pi': statistics.median(ratios),
-        'lowest_ratio': min(ratios),
-        'highest_ratio': max(ratios),
-        'update_time_median_us': statistics.median(ours),
-        'pi_update_time_median_us': statistics.median(theirs),
-    }
+    return UpdateTime(
+        ratio_to_pi=statistics.median(ratios),
+        lowest_ratio=min(ratios),
+        highest_ratio=max(ratios),
+        update_time_median_us=statistics.median(ours),
+        pi_update_time_median_us=statistics.median(theirs),
+    )
 
 
 def _median_us(chosen: Chosen, settings: RunSettings) -> float:

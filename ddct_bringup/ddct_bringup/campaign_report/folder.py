@@ -32,7 +32,7 @@ from ddct_bringup.report.page_parts import (
 )
 from ddct_bringup.run.output_folder import locked_folders
 from ddct_controllers.design.drawing.chart_style import chart_bytes, chart_style
-from ddct_plant.files.json_records import write_json
+from ddct_plant.files.json_records import to_json, write_json
 from ddct_plant.files.output_file import write_text
 from ddct_plant.files.yaml_text import dump_yaml
 from ddct_plant.program.command_line import package_version
@@ -96,9 +96,9 @@ def campaign_page(
         marker=Markup(MARKER),
         style=page_part(_REPORT, 'page.css') + page_part(_ROOM, 'campaign.css'),
         script=page_part(_REPORT, 'common.js') + page_part(_ROOM, 'campaign.js'),
-        data=json_data({'maps': maps, 'ramp': _ramp(), 'replay': replay}),
+        data=json_data({'maps': to_json(maps), 'ramp': _ramp(), 'replay': replay}),
         maps=maps,
-        chosen=_chosen(maps['quantities']) if maps else 0,
+        chosen=_chosen(maps.quantities) if maps else 0,
         summary=summary,
         labels=[group.label for group in results.groups],
         lines=results.lines,
@@ -124,7 +124,7 @@ def _distributions(results: Results, scenario: str) -> str:
 
 def _chosen(quantities: Sequence[MapScale]) -> int:
     """Return the index of the quantity that the maps show when the page opens."""
-    keys = [each['key'] for each in quantities]
+    keys = [each.key for each in quantities]
     return next((keys.index(key) for key in _SHOWN_FIRST if key in keys), 0)
 
 

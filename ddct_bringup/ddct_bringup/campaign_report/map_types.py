@@ -2,10 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Types of the JSON content from which the script of the page draws the maps."""
 
-from typing import Literal, TypedDict
+from dataclasses import dataclass
+from typing import Literal
 
 
-class MapScale(TypedDict):
+@dataclass(frozen=True)
+class MapScale:
     """Quantity of the maps, and the ends of its colour scale by magnitude."""
 
     key: str
@@ -15,7 +17,8 @@ class MapScale(TypedDict):
     high: float
 
 
-class MapPanel(TypedDict):
+@dataclass(frozen=True)
+class MapPanel:
     """Cells or points of one group, as columns of equal length."""
 
     at: list[list[float]]
@@ -35,7 +38,8 @@ class MapPanel(TypedDict):
     """Index of the run with this value; None where no place has several runs."""
 
 
-class CellMap(TypedDict):
+@dataclass(frozen=True)
+class CellMap:
     """Map over the grid."""
 
     keys: list[str]
@@ -46,7 +50,8 @@ class CellMap(TypedDict):
     panels: list[MapPanel]
 
 
-class PointMap(TypedDict):
+@dataclass(frozen=True)
+class PointMap:
     """Map of random samples, whose points are part of those of all maps."""
 
     keys: list[str]
@@ -57,7 +62,8 @@ class PointMap(TypedDict):
     """Positions of the points of each group; None for all."""
 
 
-class CampaignMaps(TypedDict):
+@dataclass(frozen=True)
+class CampaignMaps:
     """Maps of a campaign."""
 
     quantities: list[MapScale]

@@ -46,23 +46,23 @@ def campaign_maps(results: Results) -> CampaignMaps | None:
         return None
     pairs = [[*pair] for pair in combinations(numbers, 2)][:MOST_MAPS] or [numbers]
     cells = [_cells(results, keys) for keys in pairs if _on_grid(results, keys)]
-    repeated = any(max(panel['runs'], default=0) > 1 for each in cells for panel in each['panels'])
-    share: MapScale = {
-        'key': FAILED_SHARE,
-        'title': 'share of failed engagements',
-        'low': 0.0,
-        'high': 1.0,
-    }
+    repeated = any(max(panel.runs, default=0) > 1 for each in cells for panel in each.panels)
+    share: MapScale = MapScale(
+        key=FAILED_SHARE,
+        title='share of failed engagements',
+        low=0.0,
+        high=1.0,
+    )
     drawn, points = _points(results, [keys for keys in pairs if not _on_grid(results, keys)])
     drawn_maps: list[CellMap | PointMap] = [*cells, *points]
-    maps = {tuple(each['keys']): each for each in drawn_maps}
-    return {
-        'quantities': [*([share] if repeated else []), *_scales(results)],
-        'groups': [group.label for group in results.groups],
-        'points': drawn,
-        'numbers': numbers,
-        'maps': [maps[tuple(keys)] for keys in pairs],
-    }
+    maps = {tuple(each.keys): each for each in drawn_maps}
+    return CampaignMaps(
+        quantities=[*([share] if repeated else []), *_scales(results)],
+        groups=[group.label for group in results.groups],
+        points=drawn,
+        numbers=numbers,
+        maps=[maps[tuple(keys)] for keys in pairs],
+    )
 
 
 def _on_grid(results: Results, keys: Sequence[str]) -> bool:
@@ -78,7 +78,7 @@ def _scales(results: Results) -> list[MapScale]:
         values = values[~np.isnan(values)]
         low, high = (values.min(), values.max()) if values.size else (0.0, 0.0)
         title = f'{quantity.symbol}, {unit_text(quantity.unit)}'.removesuffix(', ')
-        found.append({'key': quantity.key, 'title': title, 'low': low, 'high': high})
+        found.append(MapScale(key=quantity.key, title=title, low=low, high=high))
     return found
 
 
@@ -88,13 +88,13 @@ def _cells(results: Results, keys: Sequence[str]) -> CellMap:
         results.alike(results.others_nominal(group.rows, keys), keys) for group in results.groups
     ]
     runs = sum(len(rows) for each in parts for rows in each)
-    return {
-        'keys': list(keys),
-        'cells': True,
-        'others': _others(results, keys),
-        'extent': _extent(runs, results.rows),
-        'panels': [_panel(results, each, keys) for each in parts],
-    }
+    return CellMap(
+        keys=list(keys),
+        cells=True,
+        others=_others(results, keys),
+        extent=_extent(runs, results.rows),
+        panels=[_panel(results, each, keys) for each in parts],
+    )
 
 
 def _points(
@@ -111,16 +111,16 @@ def _points(
     }
     drawn = [np.unique(np.concatenate(rows)) for rows in zip(*chosen.values(), strict=True)]
     maps: list[PointMap] = [
-        {
-            'keys': list(keys),
-            'cells': False,
-            'others': _others(results, keys),
-            'extent': _extent(sum(map(len, rows)), results.rows),
-            'panels': [
+        PointMap(
+            keys=list(keys),
+            cells=False,
+            others=_others(results, keys),
+            extent=_extent(sum(map(len, rows)), results.rows),
+            panels=[
                 None if len(ours) == len(every) else np.searchsorted(every, ours).tolist()
                 for ours, every in zip(rows, drawn, strict=True)
             ],
-        }
+        )
         for keys, rows in chosen.items()
     ]
     points = [_panel(results, rows[:, np.newaxis], results.numbers) for rows in drawn]
@@ -152,19 +152,19 @@ def _panel(
     marking = [_marking(results, rows) for rows in parts]
     states, index = results.columns[STATE], results.columns['index']
     worst = {quantity.key: _worst(results, quantity.key, parts) for quantity in results.quantities}
-    return {
-        'at': [_places(results.columns[key], parts) for key in keys],
-        'runs': [len(rows) for rows in parts],
-        'failed': [each.failed for each in counts],
-        'invalid': [each.invalid for each in counts],
-        'intervals': [each.failed_share.interval() for each in counts] if repeated else None,
-        'state': [str(states[row]) for row in marking],
-        'index': [int(index[row]) for row in marking],
-        'values': {key: [value for value, _ in found] for key, found in worst.items()},
-        'rows': {key: [row for _, row in found] for key, found in worst.items()}
+    return MapPanel(
+        at=[_places(results.columns[key], parts) for key in keys],
+        runs=[len(rows) for rows in parts],
+        failed=[each.failed for each in counts],
+        invalid=[each.invalid for each in counts],
+        intervals=[each.failed_share.interval() for each in counts] if repeated else None,
+        state=[str(states[row]) for row in marking],
+        index=[int(index[row]) for row in marking],
+        values={key: [value for value, _ in found] for key, found in worst.items()},
+        rows={key: [row for _, row in found] for key, found in worst.items()}
         if repeated
         else None,
-    }
+    )
 
 
 def _counts(outcomes: np.ndarray, parts: Sequence[np.ndarray] | np.ndarray) -> Sequence[Outcomes]:

@@ -63,15 +63,15 @@ def _failed(summary: Summary) -> Table:
     rows = [
         (
             texts.label_of(group),
-            texts.share_text(failed['share']),
-            texts.interval_text(failed['interval']),
-            *map(str, (failed['runs'], failed['engaged'], failed['failed'], failed['invalid'])),
+            texts.share_text(failed.share),
+            texts.interval_text(failed.interval),
+            *map(str, (failed.runs, failed.engaged, failed.failed, failed.invalid)),
             texts.states_text(failed) or UNDEFINED,
         )
-        for group in summary['groups']
-        for failed in [group['failed']]
+        for group in summary.groups
+        for failed in [group.failed]
     ]
-    method = summary['interval']['method']
+    method = summary.interval.method
     headers = 'controller', 'failed', '95 % interval', 'runs', 'engaged', 'failed', 'invalid', 'as'
     title = f'How often engagement fails (intervals: {method})'
     weights = (
@@ -84,18 +84,18 @@ def _failed(summary: Summary) -> Table:
 def _boundaries(summary: Summary) -> Iterator[Table]:
     rows = [
         (
-            found['key'],
+            found.key,
             texts.label_of(group),
-            texts.value_text(found['start']),
+            texts.value_text(found.start),
             *(
                 text(side)
-                for side in (found['below'], found['above'])
+                for side in (found.below, found.above)
                 for text in (texts.good_text, texts.boundary_text)
             ),
-            ', '.join(f'{key} {texts.value_text(at)}' for key, at in found['others'].items())
+            ', '.join(f'{key} {texts.value_text(at)}' for key, at in found.others.items())
             or UNDEFINED,
         )
-        for group, found in _by_place(summary, lambda group: group['boundaries'])
+        for group, found in _by_place(summary, lambda group: group.boundaries)
     ]
     headers = 'varied', 'controller', 'from', 'below', 'fails at', 'above', 'fails at', 'others at'
     if rows:
@@ -108,16 +108,16 @@ def _attribution(summary: Summary) -> Iterator[Table]:
     rows = [
         (
             texts.label_of(group),
-            each['key'],
-            'yes' if each['drives'] else 'no evidence',
-            f'{each["explained"]:.2f}',
-            '{:.2f} to {:.2f}'.format(*each['interval']),
-            texts.p_text(each['p_value']),
-            texts.part_text(each['worst_part']) if each['drives'] else UNDEFINED,
+            each.key,
+            'yes' if each.drives else 'no evidence',
+            f'{each.explained:.2f}',
+            '{:.2f} to {:.2f}'.format(*each.interval),
+            texts.p_text(each.p_value),
+            texts.part_text(each.worst_part) if each.drives else UNDEFINED,
         )
-        for group in summary['groups']
-        if group['attribution']
-        for each in group['attribution']['keys']
+        for group in summary.groups
+        if group.attribution
+        for each in group.attribution.keys
     ]
     headers = (
         *('controller', 'key', 'drives failure', 'explains', '95 % interval', 'p'),
@@ -131,15 +131,15 @@ def _by_place(
     summary: Summary, entries_of: Callable[[GroupSummary], Sequence[Entry]]
 ) -> Iterator[tuple[GroupSummary, Entry]]:
     """Yield the entries of all groups: the first of each, then the second of each."""
-    for of_place in zip(*map(entries_of, summary['groups']), strict=True):
-        yield from zip(summary['groups'], of_place, strict=True)
+    for of_place in zip(*map(entries_of, summary.groups), strict=True):
+        yield from zip(summary.groups, of_place, strict=True)
 
 
 def _quantities(summary: Summary) -> Table:
     """Return the table of the figures and metrics that a run has."""
     rows = [
         _quantity(texts.label_of(group), found)
-        for group, found in _by_place(summary, lambda group: group['quantities'])
+        for group, found in _by_place(summary, lambda group: group.quantities)
     ]
     headers = (
         *('quantity', 'controller', 'n', 'P5', 'P50', 'P95', 'CVaR', 'worst engaged', 'run'),
@@ -154,48 +154,48 @@ def _quantities(summary: Summary) -> Table:
 
 
 def _quantile_cells(found: Quantiles, form: str) -> Iterator[str]:
-    return (text_or_dash(value, form) for value in (found['p5'], found['p50'], found['p95']))
+    return (text_or_dash(value, form) for value in (found.p5, found.p50, found.p95))
 
 
 def _quantity(label: str, found: QuantitySummary) -> Sequence[str]:
-    metric = METRICS[found['name']]
-    worst = found['worst']
-    engaged = found['worst_engaged']
+    metric = METRICS[found.name]
+    worst = found.worst
+    engaged = found.worst_engaged
     return (
         metric.heading,
         label,
-        str(found['with_value']),
-        *_quantile_cells(found, metric.form),
-        text_or_dash(found['cvar_engaged'], metric.form),
-        text_or_dash(engaged['value'], metric.form),
-        text_or_dash(engaged['index'], 'd'),
-        text_or_dash(worst['value'], metric.form),
-        UNDEFINED
-        if worst['index'] is None
-        else f'{worst["index"]} ({texts.state_text(worst["state"])})',
+        str(found.with_value),
+        *_quantile_cells(found.quantiles, metric.form),
+        text_or_dash(found.cvar_engaged, metric.form),
+        text_or_dash(engaged.value, metric.form),
+        text_or_dash(engaged.index, 'd'),
+        text_or_dash(worst.value, metric.form),
+        UNDEFINED if worst.index is None else f'{worst.index} ({texts.state_text(worst.state)})',
     )
 
 
 def _differences(summary: Summary) -> Iterator[Table]:
     """Yield the differences of the other controllers from the first in the main metrics."""
-    if not summary['pairs']:
+    if not summary.pairs:
         return
-    first = summary['pairs'][0]['first']
-    pairs = [pair for pair in summary['pairs'] if pair['first'] == first]
+    first = summary.pairs[0].first
+    pairs = [pair for pair in summary.pairs if pair.first == first]
     rows = [
         (
-            METRICS[found['name']].heading,
+            METRICS[found.name].heading,
             texts.pair_label(pair),
-            str(found['cases']),
-            *_quantile_cells(found, METRICS[found['name']].form),
+            str(found.difference.cases),
+            *_quantile_cells(found.difference.quantiles, METRICS[found.name].form),
             UNDEFINED
-            if found['interval'] is None
-            else ' to '.join(f'{end:{METRICS[found["name"]].form}}' for end in found['interval']),
+            if found.difference.interval is None
+            else ' to '.join(
+                f'{end:{METRICS[found.name].form}}' for end in found.difference.interval
+            ),
         )
         for name in MAIN
         for pair in pairs
-        for found in pair['differences']
-        if found['name'] == name
+        for found in pair.differences
+        if found.name == name
     ]
     headers = 'quantity', 'controllers', 'cases', 'P5', 'P50', 'P95', '95 % interval of P50'
     title = 'Differences on the same cases, where both engaged (interval: sign test)'

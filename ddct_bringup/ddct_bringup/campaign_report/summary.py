@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Build the summary of a campaign: the content of `summary.json`."""
 
+from dataclasses import replace
+
 from ddct_bringup.campaign.columns import CONTROLLER
 from ddct_bringup.campaign_report.failure_summary import (
     NO_SAMPLE,
@@ -17,6 +19,7 @@ from ddct_bringup.campaign_report.statistics.spread import ONE_IN, spread_of
 from ddct_bringup.campaign_report.summary_types import (
     DifferenceSummary,
     GroupSummary,
+    IntervalMethod,
     PairSummary,
     QuantitySummary,
     Summary,
@@ -29,79 +32,64 @@ SCHEMA_VERSION = 2
 
 def summary_of(results: Results) -> Summary:
     """Return the summary of the results of a campaign."""
-    return {
-        'schema_version': SCHEMA_VERSION,
-        'runs': results.rows,
-        'grid': list(results.grid),
-        'random': list(results.random),
-        'interval': {'method': METHOD, 'confidence': CONFIDENCE},
-        'attribution_method': attribution.METHOD,
-        'difference_interval_method': paired.METHOD,
-        'tail_share': 1.0 / ONE_IN,
-        'other_version': {
-            'absent': list(results.other.absent),
-            'unknown': list(results.other.unknown),
-            'no_nominal': results.other.no_nominal,
-        },
-        'groups': [_group(results, group) for group in results.groups],
-        'pairs': [_pair(results, *pair) for pair in results.pairs],
-    }
+    return Summary(
+        schema_version=SCHEMA_VERSION,
+        runs=results.rows,
+        grid=list(results.grid),
+        random=list(results.random),
+        interval=IntervalMethod(METHOD, CONFIDENCE),
+        attribution_method=attribution.METHOD,
+        difference_interval_method=paired.METHOD,
+        tail_share=1.0 / ONE_IN,
+        other_version=results.other,
+        groups=[_group(results, group) for group in results.groups],
+        pairs=[_pair(results, *pair) for pair in results.pairs],
+    )
 
 
 def _group(results: Results, group: Group) -> GroupSummary:
-    return {
-        'controller': group.names[CONTROLLER],
-        'varied': group.varied,
-        'failed': failed_summary(results, group),
-        'boundaries': [boundary_summary(results, group, key) for key in results.lines],
-        'attribution': attribution_summary(results, group) if results.random else None,
-        'quantities': [_quantity(results, group, quantity) for quantity in results.quantities],
-    }
+    return GroupSummary(
+        controller=group.names[CONTROLLER],
+        varied=group.varied,
+        failed=failed_summary(results, group),
+        boundaries=[boundary_summary(results, group, key) for key in results.lines],
+        attribution=attribution_summary(results, group) if results.random else None,
+        quantities=[_quantity(results, group, quantity) for quantity in results.quantities],
+    )
 
 
 def _quantity(results: Results, group: Group, quantity: Quantity) -> QuantitySummary:
     """Return the distribution of a quantity over the engaged runs, and its worst cases."""
     values = results.columns[quantity.key][group.rows]
     spread = spread_of(values, results.outcomes[group.rows])
-    return {
-        'name': quantity.key,
-        'unit': quantity.unit,
-        'engaged': spread.engaged,
-        'with_value': spread.with_value,
-        **spread.quantiles,
-        'cvar_engaged': spread.cvar,
-        'worst_engaged': case_of(results, group.rows, values, spread.worst_engaged),
-        'worst': case_of(results, group.rows, values, spread.worst),
-    }
+    return QuantitySummary(
+        name=quantity.key,
+        unit=quantity.unit,
+        engaged=spread.engaged,
+        with_value=spread.with_value,
+        quantiles=spread.quantiles,
+        cvar_engaged=spread.cvar,
+        worst_engaged=case_of(results, group.rows, values, spread.worst_engaged),
+        worst=case_of(results, group.rows, values, spread.worst),
+    )
 
 
 def _pair(results: Results, first: Group, second: Group) -> PairSummary:
     """Return the differences of two controllers, first minus second, case by case."""
     outcomes = results.outcomes[first.rows], results.outcomes[second.rows]
-    joint = paired.joint_outcomes(*outcomes)
     sample = results.is_sample(first)
     differences: list[DifferenceSummary] = []
     for quantity in results.quantities:
         column = results.columns[quantity.key]
         found = paired.difference_of(column[first.rows], column[second.rows], outcomes)
-        differences.append(
-            {
-                'name': quantity.key,
-                'unit': quantity.unit,
-                'cases': found.cases,
-                **found.quantiles,
-                'interval': list(found.interval) if found.interval and sample else None,
-            }
-        )
-    return {
-        'first': first.names[CONTROLLER],
-        'second': second.names[CONTROLLER],
-        'varied': first.varied,
-        'cases': joint.cases,
-        'both': joint.both,
-        'first_only': joint.first_only,
-        'second_only': joint.second_only,
-        'neither': joint.neither,
-        'no_interval': '' if sample else NO_SAMPLE,
-        'differences': differences,
-    }
+        if not sample:
+            found = replace(found, interval=None)
+        differences.append(DifferenceSummary(quantity.key, quantity.unit, found))
+    return PairSummary(
+        first=first.names[CONTROLLER],
+        second=second.names[CONTROLLER],
+        varied=first.varied,
+        outcomes=paired.joint_outcomes(*outcomes),
+        no_interval='' if sample else NO_SAMPLE,
+        differences=differences,
+    )

@@ -2,31 +2,27 @@
 # SPDX-License-Identifier: Apache-2.0
 """Types of `summary.json`; the page on campaigns describes what its keys mean."""
 
-from typing import TypedDict
+from dataclasses import dataclass
+
+from ddct_bringup.campaign_report.results import OtherVersion
+from ddct_bringup.campaign_report.statistics.paired import JointOutcomes, PairedDifference
+from ddct_bringup.campaign_report.statistics.spread import Quantiles
+from ddct_plant.files.json_records import Inline
 
 
-class Quantiles(TypedDict):
-    """Quantiles P5, P50 and P95; null without a value."""
-
-    p5: float | None
-    p50: float | None
-    p95: float | None
-
-
-class ShareOfRuns(TypedDict):
-    """Share of the valid runs, 0 to 1, and its interval; null without a valid run or a sample."""
-
-    share: float | None
-    interval: list[float] | None
-
-
-class StateSummary(ShareOfRuns):
+@dataclass(frozen=True)
+class StateSummary:
     """Valid runs in one state."""
 
     runs: int
+    share: float | None
+    """Share of the valid runs, 0 to 1; None without one."""
+    interval: tuple[float, float] | None
+    """Interval of the share; None without a sample."""
 
 
-class Reason(TypedDict):
+@dataclass(frozen=True)
+class Reason:
     """Reason for invalid runs, their number, and the index of the first."""
 
     reason: str
@@ -34,33 +30,35 @@ class Reason(TypedDict):
     index: int
 
 
-class FailedSummary(ShareOfRuns):
+@dataclass(frozen=True)
+class FailedSummary:
     """Numbers of runs of a group by outcome, and the share of the failed ones."""
 
     runs: int
     engaged: int
     failed: int
     invalid: int
+    share: float | None
+    """Share of the valid runs, 0 to 1; None without one."""
+    interval: tuple[float, float] | None
+    """Interval of the share; None without a sample."""
     no_interval: str
     """Reason for the missing interval, empty where there is one."""
     states: dict[str, StateSummary]
     reasons: list[Reason]
 
 
-class RunReference(TypedDict):
-    """Index and state of a run; null without one."""
+@dataclass(frozen=True)
+class RunValue:
+    """Value of a quantity in one run, with its index and state; all None without one."""
 
+    value: float | None
     index: int | None
     state: str | None
 
 
-class RunValue(RunReference):
-    """Value of a quantity in one run."""
-
-    value: float | None
-
-
-class BoundarySide(RunReference):
+@dataclass(frozen=True)
+class BoundarySide:
     """Boundary of failure on one side of a line, as in `FailureBoundary`, and its first run."""
 
     last_good: float | None
@@ -68,9 +66,12 @@ class BoundarySide(RunReference):
     failed: int
     runs: int
     invalid: int
+    index: int | None
+    state: str | None
 
 
-class BoundarySummary(TypedDict):
+@dataclass(frozen=True)
+class BoundarySummary:
     """Boundaries of failure on a line over one key."""
 
     key: str
@@ -82,7 +83,8 @@ class BoundarySummary(TypedDict):
     above: BoundarySide
 
 
-class PartSummary(TypedDict):
+@dataclass(frozen=True)
+class PartSummary:
     """Runs in one part of a key's range, from `low` to `high`."""
 
     low: float
@@ -91,18 +93,20 @@ class PartSummary(TypedDict):
     failed: int
 
 
-class EffectSummary(TypedDict):
+@dataclass(frozen=True)
+class EffectSummary:
     """Effect of one key on failure, as in `Effect`."""
 
     key: str
     drives: bool
     explained: float
-    interval: list[float]
+    interval: tuple[float, float]
     p_value: float
     worst_part: PartSummary
 
 
-class AttributionSummary(TypedDict):
+@dataclass(frozen=True)
+class AttributionSummary:
     """Keys that drive failure; none where the failed runs are too few."""
 
     runs: int
@@ -112,19 +116,22 @@ class AttributionSummary(TypedDict):
     keys: list[EffectSummary]
 
 
-class QuantitySummary(Quantiles):
+@dataclass(frozen=True)
+class QuantitySummary:
     """Distribution of a quantity over the engaged runs of a group, and its worst cases."""
 
     name: str
     unit: str
     engaged: int
     with_value: int
+    quantiles: Inline[Quantiles]
     cvar_engaged: float | None
     worst_engaged: RunValue
     worst: RunValue
 
 
-class GroupSummary(TypedDict):
+@dataclass(frozen=True)
+class GroupSummary:
     """Runs that are evaluated together."""
 
     controller: str
@@ -136,46 +143,37 @@ class GroupSummary(TypedDict):
     quantities: list[QuantitySummary]
 
 
-class DifferenceSummary(Quantiles):
+@dataclass(frozen=True)
+class DifferenceSummary:
     """Difference of two controllers in one quantity, first minus second, by magnitude."""
 
     name: str
     unit: str
-    cases: int
-    interval: list[float] | None
+    difference: Inline[PairedDifference]
 
 
-class PairSummary(TypedDict):
+@dataclass(frozen=True)
+class PairSummary:
     """Two controllers on the same cases."""
 
     first: str
     second: str
     varied: dict[str, str]
-    cases: int
-    both: int
-    first_only: int
-    second_only: int
-    neither: int
+    outcomes: Inline[JointOutcomes]
     no_interval: str
     differences: list[DifferenceSummary]
 
 
-class IntervalMethod(TypedDict):
+@dataclass(frozen=True)
+class IntervalMethod:
     """Method and confidence of the intervals of shares."""
 
     method: str
     confidence: float
 
 
-class OtherVersionSummary(TypedDict):
-    """Differences of results from those of this version; all empty where there are none."""
-
-    absent: list[str]
-    unknown: list[str]
-    no_nominal: str
-
-
-class Summary(TypedDict):
+@dataclass(frozen=True)
+class Summary:
     """Content of `summary.json`."""
 
     schema_version: int
@@ -186,6 +184,6 @@ class Summary(TypedDict):
     attribution_method: str
     difference_interval_method: str
     tail_share: float
-    other_version: OtherVersionSummary
+    other_version: OtherVersion
     groups: list[GroupSummary]
     pairs: list[PairSummary]

@@ -71,7 +71,7 @@ def share_text(share: float | None) -> str:
     return UNDEFINED if share is None else f'{100.0 * share:.1f} %'
 
 
-def interval_text(interval: list[float] | None) -> str:
+def interval_text(interval: tuple[float, float] | None) -> str:
     """Return the ends of the interval of a share, or a dash."""
     if interval is None:
         return UNDEFINED
@@ -82,28 +82,28 @@ def interval_text(interval: list[float] | None) -> str:
 def states_text(failed: FailedSummary) -> str:
     """Return the numbers of runs in states other than engaged, with the shares of a sample."""
     return ', '.join(
-        f'{found["runs"]} {state_text(state)}'
-        + (f' ({interval_text(found["interval"])})' if found['interval'] else '')
-        for state, found in failed['states'].items()
+        f'{found.runs} {state_text(state)}'
+        + (f' ({interval_text(found.interval)})' if found.interval else '')
+        for state, found in failed.states.items()
         if state != 'engaged'
     )
 
 
 def boundary_text(side: BoundarySide) -> str:
     """Return the first failure on one side of a line."""
-    if side['first_failure'] is None:
-        return 'no run on this side' if side['last_good'] is None else 'none in the range'
-    several = f', {side["failed"]} of {side["runs"]} runs' if side['runs'] > 1 else ''
-    first = _apart(side['first_failure'], side['last_good'])
-    return f'{first} ({state_text(side["state"])}, run {side["index"]}{several})'
+    if side.first_failure is None:
+        return 'no run on this side' if side.last_good is None else 'none in the range'
+    several = f', {side.failed} of {side.runs} runs' if side.runs > 1 else ''
+    first = _apart(side.first_failure, side.last_good)
+    return f'{first} ({state_text(side.state)}, run {side.index}{several})'
 
 
 def good_text(side: BoundarySide) -> str:
     """Return the last good value on one side of a line, and the number of invalid runs."""
-    invalid = f', {side["invalid"]} invalid on the way' if side['invalid'] else ''
-    if side['last_good'] is None:
-        return f'no good value before{invalid}' if side['first_failure'] is not None else ''
-    return f'good to {_apart(side["last_good"], side["first_failure"])}{invalid}'
+    invalid = f', {side.invalid} invalid on the way' if side.invalid else ''
+    if side.last_good is None:
+        return f'no good value before{invalid}' if side.first_failure is not None else ''
+    return f'good to {_apart(side.last_good, side.first_failure)}{invalid}'
 
 
 def _apart(value: float, other: float | None) -> str:
@@ -139,7 +139,7 @@ def p_text(p_value: float) -> str:
 
 def part_text(part: PartSummary) -> str:
     """Return the part of a key's range in which failure is most frequent."""
-    return f'{part["failed"]} of {part["runs"]} at {range_text(part["low"], part["high"])}'
+    return f'{part.failed} of {part.runs} at {range_text(part.low, part.high)}'
 
 
 def state_text(state: str | None) -> str:
@@ -149,41 +149,42 @@ def state_text(state: str | None) -> str:
 
 def label_of(group: GroupSummary) -> str:
     """Return the label of a group of a summary in tables."""
-    return ', '.join([group['controller'], *group['varied'].values()])
+    return ', '.join([group.controller, *group.varied.values()])
 
 
 def pair_label(pair: PairSummary) -> str:
     """Return the label of a pair of controllers in tables."""
-    return ', '.join([f'{pair["first"]} less {pair["second"]}', *pair['varied'].values()])
+    return ', '.join([f'{pair.first} less {pair.second}', *pair.varied.values()])
 
 
 def joint_outcomes_text(pair: PairSummary) -> str:
     """Return the number of cases in which both, one or none of two controllers engaged."""
+    found = pair.outcomes
     return (
-        f'{pair["both"]} of {pair["cases"]} cases (only {pair["first"]} {pair["first_only"]}, '
-        f'only {pair["second"]} {pair["second_only"]}, neither {pair["neither"]})'
+        f'{found.both} of {found.cases} cases (only {pair.first} {found.first_only}, '
+        f'only {pair.second} {found.second_only}, neither {found.neither})'
     )
 
 
 def notes_of(summary: Summary) -> list[str]:
     """Return notes to be shown next to the tables, a line each."""
-    other = summary['other_version']
+    other = summary.other_version
     found = [
         f'no interval: {reason}'
-        for reason in dict.fromkeys(each['failed']['no_interval'] for each in summary['groups'])
+        for reason in dict.fromkeys(each.failed.no_interval for each in summary.groups)
         if reason
     ]
     found += [
-        f'{label_of(group)}: {group["attribution"]["too_few"]}'
-        for group in summary['groups']
-        if group['attribution'] and group['attribution']['too_few']
+        f'{label_of(group)}: {group.attribution.too_few}'
+        for group in summary.groups
+        if group.attribution and group.attribution.too_few
     ]
-    if other['absent']:
-        found.append(f'results of another version, without {", ".join(other["absent"])}')
-    if other['unknown']:
+    if other.absent:
+        found.append(f'results of another version, without {", ".join(other.absent)}')
+    if other.unknown:
         found.append(
-            f'results of another version, also with {", ".join(other["unknown"])}: in --csv only'
+            f'results of another version, also with {", ".join(other.unknown)}: in --csv only'
         )
-    if other['no_nominal']:
-        found.append(f'the nominal values are not known: {other["no_nominal"]}')
+    if other.no_nominal:
+        found.append(f'the nominal values are not known: {other.no_nominal}')
     return found

@@ -3,19 +3,10 @@
 """Origin of computed rows: the version, the commit and the digest of the code that made them."""
 
 from dataclasses import dataclass
-from typing import TypedDict
 
 from ddct_bringup.digests.code import code_digest
 from ddct_bringup.run.description import short_commit, source_commit
 from ddct_plant.program.command_line import package_version
-
-
-class OriginEntry(TypedDict):
-    """Origin of computed rows in JSON; the keys are as in `CodeOrigin`."""
-
-    version: str
-    commit: str
-    code: str
 
 
 @dataclass(frozen=True)
@@ -43,7 +34,3 @@ class CodeOrigin:
     def text(self) -> str:
         """Version, commit and digest as text."""
         return f'version {self.version}, commit {self.short}'
-
-    def entry(self) -> OriginEntry:
-        """Return the origin as JSON."""
-        return {'version': self.version, 'commit': self.commit, 'code': self.code}

@@ -98,13 +98,13 @@ def _judged(names: list[str], cases: Cases) -> list[Judged] | None:
 def _complaints(result: Result) -> bool:
     """Print a line for each controller that has no result; return whether there is one."""
     found = False
-    for judged in result['controllers']:
-        name = judged['controller']
-        if judged['error']:
-            complain(PROGRAM, f'{name}: {judged["error"]}')
+    for judged in result.controllers:
+        name = judged.controller
+        if judged.error:
+            complain(PROGRAM, f'{name}: {judged.error}')
             found = True
-        elif judged['held_out'] and judged['held_out'][0]['states'].keys() == {'invalid'}:
-            reason = judged['held_out'][0]['reasons'][0]['reason']
+        elif judged.held_out and judged.held_out[0].states.keys() == {'invalid'}:
+            reason = judged.held_out[0].reasons[0].reason
             complain(PROGRAM, f'{name}: every held-out run is invalid, such as: {reason}')
             found = True
     return found

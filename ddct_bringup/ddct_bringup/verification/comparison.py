@@ -6,7 +6,6 @@ Compare numbers and texts of a result with those of its repetition: to the last 
 The bound is for another kind of processor or other versions, where the last bits may differ.
 """
 
-import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -20,7 +19,7 @@ from ddct_bringup.metrics.catalogue import JERK_OVER_LEAST
 from ddct_bringup.verification.deviation import deviation_of, deviations_of
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.files.input_file import read_text_file
-from ddct_plant.files.json_records import parse_json
+from ddct_plant.files.json_records import json_text, parse_json
 
 SAME_BITS, SAME_WITHIN = 'same_bits', 'same_within'
 DIFFERENT, DIGEST_ONLY = 'different', 'digest_only'
@@ -177,7 +176,7 @@ def _plain(value: Any) -> Any:
 
 def plain_json(value: Any) -> Any:
     """Return a value as JSON reads it back: lists for tuples, texts for keys."""
-    return parse_json(json.dumps(value))
+    return parse_json(json_text(value))
 
 
 def recorded_json(path: Path) -> Any:

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """States, figures, gaps and dominance of rows that are made by hand."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -20,9 +21,10 @@ from ddct_bringup.benchmark.evaluated import MAIN, OVER_LEAST
 from ddct_bringup.benchmark.evaluation import SHOWN, causes_in, evaluations_of
 from ddct_bringup.benchmark.report import printed
 from ddct_bringup.benchmark.report.texts import dominance_lines
-from ddct_bringup.benchmark.result_types import Evaluation, QuantityResult
+from ddct_bringup.benchmark.result_types import Evaluation, JudgedResult, QuantityResult, WorstCase
 from ddct_bringup.benchmark.update_times import read_update_times
 from ddct_bringup.campaign.keys import SCENARIO
+from ddct_bringup.campaign_report.summary_types import Reason
 from ddct_bringup.metrics.catalogue import FIGURES
 from ddct_plant.base.errors import DdctError
 
@@ -61,7 +63,7 @@ def _kind(name: str) -> Any:
 
 def quantity_of(evaluation: Evaluation, key: str) -> QuantityResult:
     """Return the distribution of one quantity."""
-    (found,) = [each for each in evaluation['quantities'] if each['name'] == key]
+    (found,) = [each for each in evaluation.quantities if each.name == key]
     return found
 
 
@@ -69,25 +71,25 @@ def test_engaged_is_the_only_success_and_an_invalid_run_has_a_state_of_its_own()
     state = ['invalid', 'late', 'stalled'] + ['engaged'] * 3
     rows = rows_of(ours={'valid': [False] + [True] * 5, 'state': state, 'reason': 'why'})
     (found,) = evaluations_of(rows, ['wear_gain'], 'ours')
-    assert (found['success']['runs'], found['success']['share']) == (3, 3 / 6)
-    assert {name: each['runs'] for name, each in found['states'].items()} == {
+    assert (found.success.runs, found.success.share) == (3, 3 / 6)
+    assert {name: each.runs for name, each in found.states.items()} == {
         'engaged': 3,
         'late': 1,
         'stalled': 1,
         'invalid': 1,
     }
-    assert [name for name, each in found['scenarios'].items()] == ['thesis', 'launch']
-    assert found['scenarios']['thesis']['success']['runs'] == 0
-    assert found['reasons'] == [{'reason': 'why', 'runs': 1, 'index': 0}]
-    assert found['causes'] is not None
-    assert 'too few' in found['causes']['too_few']
+    assert [name for name, each in found.scenarios.items()] == ['thesis', 'launch']
+    assert found.scenarios['thesis'].success.runs == 0
+    assert found.reasons == [Reason('why', 1, 0)]
+    assert found.causes is not None
+    assert 'too few' in found.causes.too_few
 
 
 def test_the_response_is_the_time_to_the_lock_and_the_late_torque() -> None:
     times = {'time_to_final_lock_s': [1.0] * 5 + [2.0], 'torque_late_s': [0.1] * 5 + [0.5]}
     (found,) = evaluations_of(rows_of(ours=times), ['wear_gain'], 'ours')
     response = quantity_of(found, 'response_s')
-    assert (response['p50'], response['worst']) == (1.1, {'value': 2.5, 'case': 5})
+    assert (response.spread.quantiles.p50, response.spread.worst) == (1.1, WorstCase(2.5, 5))
 
 
 def test_a_figure_that_a_launch_cannot_have_is_left_out() -> None:
@@ -95,10 +97,10 @@ def test_a_figure_that_a_launch_cannot_have_is_left_out() -> None:
     dip = [np.nan] * 3 + [10.0, 20.0, 30.0]
     rows = rows_of(ours={'torque_dip_percent': dip}, other={})
     (found, _) = evaluations_of(rows, ['wear_gain'], 'ours')
-    assert (quantity_of(found, 'torque_dip_percent')['with_value']) == 3
-    assert quantity_of(found, 'torque_dip_percent')['p50'] == 20.0
+    assert (quantity_of(found, 'torque_dip_percent').spread.with_value) == 3
+    assert quantity_of(found, 'torque_dip_percent').spread.quantiles.p50 == 20.0
     (pair,) = paired_results(figures_in(rows), 'ours')
-    assert [figure['name'] for figure in pair['figures']] == list(MAIN)
+    assert [figure.name for figure in pair.figures] == list(MAIN)
 
 
 def test_scenarios_that_fail_are_named_without_their_neighbours_in_the_specification() -> None:
@@ -111,11 +113,11 @@ def test_scenarios_that_fail_are_named_without_their_neighbours_in_the_specifica
     }
     failed = np.isin(columns['scenario'], fails)
     columns['state'] = np.where(failed, 'stalled', 'engaged').astype(object)
-    scenario, wear = causes_in(columns, ['wear_gain'])['keys']
-    assert (scenario['key'], scenario['drives']) == ('scenario', True)
-    assert scenario['worst_part'] == 'launch, launch_hot'
-    assert (scenario['worst_part_failed'], scenario['worst_part_runs']) == (6, 6)
-    assert (wear['key'], wear['drives']) == ('wear_gain', False)
+    scenario, wear = causes_in(columns, ['wear_gain']).keys
+    assert (scenario.key, scenario.drives) == ('scenario', True)
+    assert scenario.worst_part == 'launch, launch_hot'
+    assert (scenario.worst_part_failed, scenario.worst_part_runs) == (6, 6)
+    assert (wear.key, wear.drives) == ('wear_gain', False)
 
 
 def test_the_worst_case_is_that_of_the_successes() -> None:
@@ -124,14 +126,14 @@ def test_the_worst_case_is_that_of_the_successes() -> None:
     rows = rows_of(ours={'peak_jerk_m_s3': jerk, 'state': state}, other={})
     found, _ = evaluations_of(rows, ['wear_gain'], 'ours')
     quantity = quantity_of(found, 'peak_jerk_m_s3')
-    assert (quantity['worst'], quantity['p50']) == ({'value': 8.0, 'case': 4}, 3.0)
-    launch = found['scenarios']['launch']['quantities']
-    assert [each['worst']['case'] for each in launch if each['name'] == quantity['name']] == [4]
-    assert [each['name'] for each in launch] == list(SHOWN)
+    assert (quantity.spread.worst, quantity.spread.quantiles.p50) == (WorstCase(8.0, 4), 3.0)
+    launch = found.scenarios['launch'].quantities
+    assert [each.spread.worst.case for each in launch if each.name == quantity.name] == [4]
+    assert [each.name for each in launch] == list(SHOWN)
     (pair,) = pairs_of(rows, 'ours')
-    assert (pair['both'], pair['second_only']) == (5, 1)
-    differences = {each['name']: each for each in pair['differences']}
-    assert (differences['response_s']['cases'], differences['response_s']['p50']) == (5, 0.0)
+    assert (pair.outcomes.both, pair.outcomes.second_only) == (5, 1)
+    response = next(each.difference for each in pair.differences if each.name == 'response_s')
+    assert (response.cases, response.quantiles.p50) == (5, 0.0)
 
 
 def test_a_least_that_is_no_bound_of_a_success_is_counted_and_has_a_star() -> None:
@@ -139,8 +141,8 @@ def test_a_least_that_is_no_bound_of_a_success_is_counted_and_has_a_star() -> No
     state = ['not_engaged'] + ['engaged'] * 5
     rows = rows_of(ours={OVER_LEAST: over, IS_BOUND: bound, 'state': state}, other={})
     ours, other = evaluations_of(rows, ['wear_gain'], 'ours')
-    assert (ours['least_is_no_bound'], other['least_is_no_bound']) == (1, 0)
-    assert quantity_of(ours, OVER_LEAST)['worst'] == {'value': 3.0, 'case': 4}
+    assert (ours.least_is_no_bound, other.least_is_no_bound) == (1, 0)
+    assert quantity_of(ours, OVER_LEAST).spread.worst == WorstCase(3.0, 4)
     assert printed._spread_cells(ours, OVER_LEAST) == ('2.50*', '2.95*', '3.00*', '4')
     assert printed._spread_cells(other, OVER_LEAST) == ('-', '-', '-', '-')
     assert printed._spread_cells(ours, 'releases') == ('1', '1', '1', '1')
@@ -164,29 +166,28 @@ def test_the_dominance_names_its_cases_and_those_left_out() -> None:
         quick={'torque_late_s': 0.5, 'peak_jerk_m_s3': 2.0},
     )
     dominance = paired_results(figures_in(rows), 'ours')
-    assert [(each['other'], each['dominates'], each['dominated']) for each in dominance] == [
+    assert [(each.other, each.dominates, each.dominated) for each in dominance] == [
         ('jerky', True, False),
         ('quick', False, False),
     ]
-    response, jerk, *_ = dominance[0]['figures']
-    assert (response['left_out'], response['better'], response['worse']) == (4, 0, 0)
-    assert (jerk['left_out'], jerk['better'], jerk['median_difference']) == (0, 40, -1.0)
-    judged: Any = {'controller': 'ours', 'dominance': dominance}
+    response, jerk, *_ = dominance[0].figures
+    assert (response.left_out, response.better, response.worse) == (4, 0, 0)
+    assert (jerk.left_out, jerk.better, jerk.median_difference) == (0, 40, -1.0)
+    judged = JudgedResult('ours', {}, 1, None, None, None, None, dominance, None, None)
     assert list(dominance_lines(judged)) == [
         'no controller dominates ours: 40 cases, left out at most: response 4, peak jerk 0, '
         'friction work 0, weighted A_x 0, releases 0',
         'ours dominates jerky: 40 cases, left out: response 4, peak jerk 0, friction work 0, '
         'weighted A_x 0, releases 0',
     ]
-    judged['dominance'] = None  # of a quick benchmark
-    assert list(dominance_lines(judged)) == []
+    assert list(dominance_lines(replace(judged, dominance=None))) == []  # of a quick benchmark
 
 
 def test_a_controller_that_fails_is_dominated_by_one_that_does_not() -> None:
     rows = rows_of(40, fails={'state': 'stalled', 'peak_jerk_m_s3': 0.1}, other={})
     (pair,) = paired_results(figures_in(rows), 'fails')
-    assert (pair['dominated'], pair['dominates']) == (True, False)
-    assert [figure['median_difference'] for figure in pair['figures']] == [None] * 5
+    assert (pair.dominated, pair.dominates) == (True, False)
+    assert [figure.median_difference for figure in pair.figures] == [None] * 5
 
 
 def test_the_gaps_are_those_of_ranks_within_scenarios_with_failures_as_worst() -> None:
@@ -197,22 +198,22 @@ def test_the_gaps_are_those_of_ranks_within_scenarios_with_failures_as_worst() -
         jerk = [levels[name] + added + place / 10 for place, name in enumerate(scenarios)]
         rows = rows_of(ours={'scenario': scenarios, 'peak_jerk_m_s3': jerk})
         sets.append(rows.of('ours'))
-    found = {gap['name']: gap for gap in gaps_between(*sets)}
+    found = {gap.name: gap for gap in gaps_between(*sets)}
     assert list(found) == list(MAIN)
-    assert found['peak_jerk_m_s3']['worse'] == 1.0
-    assert found['releases']['worse'] == 0.5
+    assert found['peak_jerk_m_s3'].worse == 1.0
+    assert found['releases'].worse == 0.5
     without = [{key: column for key, column in each.items() if key != SCENARIO} for each in sets]
     jerk_gap = gaps_between(*without)[MAIN.index('peak_jerk_m_s3')]
-    assert jerk_gap['worse'] is not None
-    assert jerk_gap['worse'] < 0.5
+    assert jerk_gap.worse is not None
+    assert jerk_gap.worse < 0.5
 
 
 @pytest.mark.parametrize('place', [0, 1])
 def test_failures_in_one_set_are_a_gap_only_if_they_are_held_out(place: int) -> None:
     sets = [rows_of(20, ours={'state': state}).of('ours') for state in STATES]
     found = gaps_between(sets[place], sets[1 - place])
-    assert [gap['differs'] for gap in found] == [place == 0] * 5
-    assert [gap['left_out'] for gap in found] == [0] * 5
+    assert [gap.differs for gap in found] == [place == 0] * 5
+    assert [gap.left_out for gap in found] == [0] * 5
 
 
 def test_each_printed_quantile_is_that_of_its_own_quantity() -> None:
@@ -223,11 +224,11 @@ def test_each_printed_quantile_is_that_of_its_own_quantity() -> None:
     expected = {**values, 'response_s': 2.0, OVER_LEAST: 1.5}
     assert {name: float(cells[0]) for name, cells in shown.items()} == expected
     assert {cells[-1] for cells in shown.values()} == {'0'}
-    assert printed._spread_cells({**found, 'quantities': []}, MAIN[0]) == ('-',) * 4
+    assert printed._spread_cells(replace(found, quantities=[]), MAIN[0]) == ('-',) * 4
 
 
 @pytest.mark.parametrize('text', ['{}', '[1]', '{"controllers": {"ls8": 2.0}}'])
 def test_damaged_update_times_are_refused(text: str, tmp_path: Path) -> None:
     (tmp_path / 'timing.json').write_text(text, encoding='utf-8')
-    with pytest.raises(DdctError, match='measures them again'):
+    with pytest.raises(DdctError, match='measures the update times again'):
         read_update_times(tmp_path)

@@ -34,10 +34,12 @@ from ddct_bringup.benchmark.release import ROWS, write_release_rows
 from ddct_bringup.benchmark.report import page as page_module
 from ddct_bringup.benchmark.report.folder import PAGE, RESULT
 from ddct_bringup.benchmark.report.rules import NO_GAIN, left_open_here, states_that_count
+from ddct_bringup.benchmark.result_types import Result
 from ddct_bringup.digests.origin import CodeOrigin
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_bringup.verdict.state import STATES
 from ddct_plant.base.errors import DdctError
+from ddct_plant.files.json_records import json_text, read_json, to_json
 
 pytestmark = pytest.mark.slow
 place = pytest.fixture(scope='module')(benchmark_of_a_controller_that_remembers)
@@ -139,9 +141,14 @@ def test_the_page_has_what_counts_what_nobody_gains_by_and_what_stays_open(place
         assert text in page
 
 
+def test_the_result_is_read_as_its_record_and_written_as_it_was(place: Path) -> None:
+    file = place / 'first' / RESULT
+    assert json_text(read_json(Result, file)) == file.read_text(encoding='utf-8')
+
+
 def test_no_main_quantity_is_among_the_further_ones_of_the_page(place: Path) -> None:
     page: Any = page_module
-    further = page._further(result_in(place / 'first'))
+    further = page._further(read_json(Result, place / 'first' / RESULT))
     assert further
     assert not {*further} & {*MAIN}
 
@@ -273,7 +280,7 @@ def test_rows_of_the_release_that_other_code_computed_are_named_wherever_the_res
     assert notes[ROWS] == f'computed by other code: {before}'
     # Rows of the same code need no word.
     same = result_in(place / 'first')
-    assert same['release'] == same['cases']['release_rows'] == here.entry()
+    assert same['release'] == same['cases']['release_rows'] == to_json(here)
     assert same['cases']['other_code'] == ''
     assert 'other code' not in (place / 'first' / PAGE).read_text(encoding='utf-8')
 

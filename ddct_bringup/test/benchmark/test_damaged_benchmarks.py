@@ -19,6 +19,7 @@ from ddct_bringup.benchmark.update_times import read_update_times
 from ddct_bringup.digests.origin import CodeOrigin
 from ddct_bringup.run.timing_and_failure import TIMING_FILE
 from ddct_plant.base.errors import DdctError
+from ddct_plant.files.json_records import to_json
 
 Edit = Callable[[dict[str, Any]], object]
 RATIO = {'ratio_to_pi': 2.0, 'lowest_ratio': 1.9, 'highest_ratio': 2.1}
@@ -58,7 +59,7 @@ def test_update_times_are_whole_or_have_a_reason(tmp_path: Path) -> None:
     failed = {'ratio_to_pi': None, 'reason': 'it failed'}
     content = {'reference': 'pi', 'controllers': {'mine': TIMES, 'other': failed}}
     (tmp_path / TIMING_FILE).write_text(json.dumps(content), encoding='utf-8')
-    assert read_update_times(tmp_path) == content
+    assert to_json(read_update_times(tmp_path)) == content
 
 
 @pytest.mark.parametrize(
@@ -74,6 +75,7 @@ def test_damaged_update_times_are_refused(tmp_path: Path, text: str) -> None:
     with pytest.raises(DdctError) as error:
         read_update_times(tmp_path)
     assert error.value.place == str(tmp_path / TIMING_FILE)
+    assert str(error.value).endswith('the same command measures the update times again')
 
 
 def test_rows_with_fewer_cases_than_their_specification_are_refused(tmp_path: Path) -> None:

@@ -15,6 +15,7 @@ from ddct_bringup.campaign_report.statistics.parts import NamesPart, parts_of, w
 from ddct_bringup.campaign_report.summary import summary_of
 from ddct_bringup.campaign_report.texts import p_text
 from ddct_bringup.verdict.state import ENGAGED, INVALID
+from ddct_plant.files.json_records import to_json
 
 pytestmark = pytest.mark.slow
 
@@ -24,7 +25,7 @@ def attribution(values, failed, **invalid):
     for row in invalid.get('rows', ()):
         states[row] = INVALID
     results = made_results(states.tolist(), values, random=list(values))
-    return summary_of(results)['groups'][0]['attribution']
+    return to_json(summary_of(results))['groups'][0]['attribution']
 
 
 def test_failures_that_wear_alone_causes_are_attributed_to_wear_and_to_no_other_key():
@@ -160,7 +161,7 @@ def test_a_run_for_each_name_says_nothing_of_names():
 
 def test_a_grid_has_no_attribution():
     results = made_results([ENGAGED, 'stalled'], {'wear_gain': [1.0, 0.8]})
-    assert summary_of(results)['groups'][0]['attribution'] is None
+    assert to_json(summary_of(results))['groups'][0]['attribution'] is None
 
 
 def test_a_p_value_below_its_last_digit_is_a_bound() -> None:

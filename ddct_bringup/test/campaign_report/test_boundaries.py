@@ -11,6 +11,7 @@ from ddct_bringup.campaign_report.summary import summary_of
 from ddct_bringup.campaign_report.summary_types import BoundarySide
 from ddct_bringup.campaign_report.texts import boundary_text, good_text
 from ddct_bringup.verdict.state import ENGAGED, INVALID
+from ddct_plant.files.json_records import to_json
 
 WEAR = [0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.3]
 
@@ -71,15 +72,15 @@ def test_the_last_good_value_and_the_first_failure_are_never_the_same(seed):
 
 @pytest.mark.parametrize(('good', 'bad'), [(1500.1, 1500.2), (0.1234561, 0.1234562), (0.9, 0.8)])
 def test_their_texts_have_enough_digits_to_differ(good, bad):
-    side: BoundarySide = {
-        'last_good': good,
-        'first_failure': bad,
-        'runs': 1,
-        'failed': 1,
-        'invalid': 0,
-        'index': 3,
-        'state': 'stalled',
-    }
+    side = BoundarySide(
+        last_good=good,
+        first_failure=bad,
+        runs=1,
+        failed=1,
+        invalid=0,
+        index=3,
+        state='stalled',
+    )
     assert float(boundary_text(side).split()[0]) == bad
     assert good_text(side) == f'good to {good}'
 
@@ -88,7 +89,7 @@ def summary_over_wear_and_mass(states):
     wear, mass = [0.8, 0.9, 1.0] * 3, [1000.0] * 3 + [1400.0] * 3 + [1800.0] * 3
     varied = {'wear_gain': wear, 'vehicle.mass_kg': mass}
     nominal = {'wear_gain': 1.0, 'vehicle.mass_kg': 1500.0}
-    return summary_of(made_results(states, varied, nominal=nominal))['groups'][0]
+    return to_json(summary_of(made_results(states, varied, nominal=nominal)))['groups'][0]
 
 
 def test_on_a_grid_the_others_are_at_the_value_nearest_to_nominal():
@@ -117,17 +118,17 @@ def test_random_samples_have_no_boundary():
     wear = [0.95, 0.8, 1.2]
     states = [ENGAGED, 'stalled', ENGAGED]
     results = made_results(states, {'wear_gain': wear}, random=['wear_gain'])
-    (group,) = summary_of(results)['groups']
+    (group,) = to_json(summary_of(results))['groups']
     assert group['boundaries'] == []
     mixed = made_results(
         states, {'gear': [1.0, 2.0, 2.0], 'wear_gain': wear}, random=['wear_gain']
     )
-    assert summary_of(mixed)['groups'][0]['boundaries'] == []
+    assert to_json(summary_of(mixed))['groups'][0]['boundaries'] == []
 
 
 def test_a_number_that_the_scenario_has_not_starts_at_the_value_nearest_to_zero():
     results = made_results([ENGAGED, 'withheld'], {'sensors.delay_s': [0.01, 0.02]})
-    (delay,) = summary_of(results)['groups'][0]['boundaries']
+    (delay,) = to_json(summary_of(results))['groups'][0]['boundaries']
     assert (delay['nominal'], delay['start']) == (None, 0.01)
     assert delay['above']['first_failure'] == 0.02
 
@@ -135,7 +136,9 @@ def test_a_number_that_the_scenario_has_not_starts_at_the_value_nearest_to_zero(
 def test_a_seed_is_no_number_that_failure_begins_at():
     varied = {'seed': [1, 2, 1, 2], 'wear_gain': [0.8, 0.8, 1.0, 1.0]}
     states = [ENGAGED, 'stalled', ENGAGED, ENGAGED]
-    found = summary_of(made_results(states, varied, nominal={'seed': 0.0, 'wear_gain': 1.0}))
+    found = to_json(
+        summary_of(made_results(states, varied, nominal={'seed': 0.0, 'wear_gain': 1.0}))
+    )
     (wear,) = found['groups'][0]['boundaries']
     assert wear['key'] == 'wear_gain'
     assert (wear['below']['failed'], wear['below']['runs']) == (1, 2)

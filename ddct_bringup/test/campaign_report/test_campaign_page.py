@@ -19,7 +19,9 @@ from ddct_bringup.campaign_report.folder import (
     write_campaign_page,
 )
 from ddct_bringup.campaign_report.summary import summary_of
+from ddct_bringup.campaign_report.summary_types import Summary
 from ddct_bringup.verdict.state import ENGAGED, INVALID
+from ddct_plant.files.json_records import json_text, read_json
 
 pytestmark = pytest.mark.slow
 
@@ -92,6 +94,11 @@ def test_every_number_of_the_summary_is_on_the_page(folder: Path, page: Elements
         assert set(wanted) <= set(page.numbers)
 
 
+def test_the_summary_is_read_as_its_record_and_written_as_it_was(folder: Path) -> None:
+    file = folder / SUMMARY
+    assert json_text(read_json(Summary, file)) == file.read_text(encoding='utf-8')
+
+
 def test_the_summary_has_the_failed_runs(folder: Path) -> None:
     summary = json.loads((folder / SUMMARY).read_text(encoding='utf-8'))
     pi, ls8 = summary['groups']
@@ -133,10 +140,11 @@ def test_the_keys_that_drive_failure_are_on_the_page_of_random_samples(tmp_path:
         return 'not_engaged' if run.varied['wear_gain'] < 0.8 else ENGAGED
 
     made = make_campaign(tmp_path / 'random', content, state)
-    (group,) = write_campaign_page(made)['groups']
+    (group,) = write_campaign_page(made).groups
     page = Elements((made / PAGE).read_text(encoding='utf-8'))
-    assert [each['drives'] for each in group['attribution']['keys']] == [True, False]
-    assert {each['explained'] for each in group['attribution']['keys']} <= set(page.numbers)
+    assert group.attribution is not None
+    assert [each.drives for each in group.attribution.keys] == [True, False]
+    assert {each.explained for each in group.attribution.keys} <= set(page.numbers)
     assert 'Which keys drive failure' in page.text
     assert 'Where failure begins' not in page.text
 
@@ -168,5 +176,5 @@ def test_one_run_is_enough_for_a_page(tmp_path: Path, state: str) -> None:
     content = {'controllers': ['pi'], 'grid': {'wear_gain': [1.0]}}
     made = make_campaign(tmp_path / 'one', content, lambda run: state)
     summary = write_campaign_page(made)
-    assert summary['groups'][0]['failed']['runs'] == 1
+    assert summary.groups[0].failed.runs == 1
     assert 'No number was varied' in (made / PAGE).read_text(encoding='utf-8')

@@ -8,8 +8,8 @@ from made_results import made_results
 
 from ddct_bringup.campaign_report.statistics.outcome import Share, count_outcomes, outcomes_of
 from ddct_bringup.campaign_report.summary import summary_of
-from ddct_bringup.campaign_report.summary_types import StateSummary
 from ddct_bringup.verdict.state import ENGAGED, INVALID, STATES
+from ddct_plant.files.json_records import to_json
 
 
 def test_every_state_but_engaged_and_invalid_is_a_failed_engagement():
@@ -24,7 +24,7 @@ def test_failures_of_one_state_have_a_share_and_an_interval_of_their_own():
 
     states = [ENGAGED, 'late', 'late', 'not_engaged']
     results = made_results(states, {'wear_gain': [0.7, 0.8, 0.9, 1.0]}, random=['wear_gain'])
-    failed = summary_of(results)['groups'][0]['failed']
+    failed = to_json(summary_of(results))['groups'][0]['failed']
     assert (failed['engaged'], failed['failed'], failed['share']) == (1, 3, 0.75)
     late = failed['states']['late']
     assert (late['runs'], late['share']) == (2, 0.5)
@@ -34,7 +34,7 @@ def test_failures_of_one_state_have_a_share_and_an_interval_of_their_own():
 
 def test_a_state_of_another_version_is_a_failure_and_is_named():
     results = made_results([ENGAGED, 'crumbled'], {'wear_gain': [0.7, 1.0]})
-    failed = summary_of(results)['groups'][0]['failed']
+    failed = to_json(summary_of(results))['groups'][0]['failed']
     assert failed['failed'] == 1
     assert failed['states']['crumbled']['runs'] == 1
 
@@ -77,7 +77,7 @@ def test_of_invalid_runs_alone_there_is_no_share():
 
 
 def test_runs_on_a_grid_have_a_share_but_no_interval_with_a_reason():
-    found = summary_of(made_results([ENGAGED, 'withheld'], {'wear_gain': [1.0, 1.2]}))
+    found = to_json(summary_of(made_results([ENGAGED, 'withheld'], {'wear_gain': [1.0, 1.2]})))
     failed = found['groups'][0]['failed']
     assert (failed['share'], failed['interval']) == (0.5, None)
     assert 'no random sample' in failed['no_interval']
@@ -86,10 +86,10 @@ def test_runs_on_a_grid_have_a_share_but_no_interval_with_a_reason():
 def test_random_runs_at_one_point_of_a_grid_have_an_interval_and_at_two_have_none():
     varied = {'gear': [1.0] * 4, 'wear_gain': [0.7, 0.8, 0.9, 1.0]}
     states = ['stalled', ENGAGED, ENGAGED, ENGAGED]
-    one = summary_of(made_results(states, varied, random=['wear_gain']))
+    one = to_json(summary_of(made_results(states, varied, random=['wear_gain'])))
     assert one['groups'][0]['failed']['interval'] is not None
     varied['gear'] = [1.0, 1.0, 2.0, 2.0]
-    two = summary_of(made_results(states, varied, random=['wear_gain']))
+    two = to_json(summary_of(made_results(states, varied, random=['wear_gain'])))
     assert two['groups'][0]['failed']['interval'] is None
 
 
@@ -99,7 +99,7 @@ def test_a_varied_text_key_makes_separate_groups():
         {'clutch': ['linear', 'stick_slip'] * 2, 'wear_gain': [1.0] * 4},
         controllers=['pi', 'pi', 'ls8', 'ls8'],
     )
-    groups = summary_of(results)['groups']
+    groups = to_json(summary_of(results))['groups']
     assert [(each['controller'], each['varied']['clutch']) for each in groups] == [
         ('pi', 'linear'),
         ('pi', 'stick_slip'),
@@ -107,14 +107,14 @@ def test_a_varied_text_key_makes_separate_groups():
         ('ls8', 'stick_slip'),
     ]
     assert [each['failed']['share'] for each in groups] == [0.0, 1.0, 1.0, 0.0]
-    stalled: StateSummary = {'runs': 1, 'share': 1.0, 'interval': None}
+    stalled = {'runs': 1, 'share': 1.0, 'interval': None}
     assert groups[1]['failed']['states'] == {'stalled': stalled}
 
 
 def test_reasons_of_invalid_runs_are_listed_the_most_frequent_first():
     results = made_results([INVALID, ENGAGED, INVALID, INVALID], {'wear_gain': [1.0] * 4})
     results.columns['reason'][:] = ['once', '', 'twice', 'twice']
-    assert summary_of(results)['groups'][0]['failed']['reasons'] == [
+    assert to_json(summary_of(results))['groups'][0]['failed']['reasons'] == [
         {'reason': 'twice', 'runs': 2, 'index': 2},
         {'reason': 'once', 'runs': 1, 'index': 0},
     ]

@@ -11,6 +11,7 @@ from made_results import made_results
 from ddct_bringup.campaign_report.maps import MOST_POINTS, campaign_maps
 from ddct_bringup.campaign_report.results import Results
 from ddct_bringup.verdict.state import ENGAGED, INVALID
+from ddct_plant.files.json_records import to_json
 
 WEAR, MASS, SLOPE = 'wear_gain', 'vehicle.mass_kg', 'load.slope_rad'
 JERK = 'peak_jerk_m_s3'
@@ -19,7 +20,7 @@ JERK = 'peak_jerk_m_s3'
 def maps_of(results: Results) -> Any:
     found = campaign_maps(results)
     assert found is not None
-    return found
+    return to_json(found)
 
 
 def test_every_cell_of_the_grid_is_there_with_its_state_value_and_index():

@@ -9,6 +9,7 @@ from made_results import made_results
 from ddct_bringup.campaign_report.statistics.paired import difference_of, median_interval
 from ddct_bringup.campaign_report.summary import summary_of
 from ddct_bringup.verdict.state import ENGAGED
+from ddct_plant.files.json_records import to_json
 
 JERK = 'peak_jerk_m_s3'
 
@@ -21,7 +22,7 @@ def test_only_cases_in_which_both_engaged_are_compared_and_the_others_are_counte
         controllers=['pi'] * 4 + ['ls8'] * 4,
         random=['wear_gain'],
     )
-    (pair,) = summary_of(results)['pairs']
+    (pair,) = to_json(summary_of(results))['pairs']
     assert (pair['first'], pair['second'], pair['varied']) == ('pi', 'ls8', {})
     counts = [pair[name] for name in ('cases', 'both', 'first_only', 'second_only', 'neither')]
     assert counts == [4, 1, 1, 1, 1]
@@ -37,7 +38,7 @@ def test_cases_are_joined_by_their_number_whatever_varies_between_the_groups():
         {JERK: [1.0, 10.0, 2.0, 20.0, 3.0, 30.0, 11.0, 10.5, 12.0, 20.5, 13.0, 30.5]},
         controllers=['pi'] * 6 + ['ls8'] * 6,
     )
-    linear, sticking = summary_of(results)['pairs']
+    linear, sticking = to_json(summary_of(results))['pairs']
     assert linear['varied'] == {'clutch': 'linear'}
     assert [linear['differences'][0][name] for name in ('p5', 'p50', 'p95')] == [-10.0] * 3
     assert [sticking['differences'][0][name] for name in ('p5', 'p50', 'p95')] == [-0.5] * 3
@@ -46,7 +47,7 @@ def test_cases_are_joined_by_their_number_whatever_varies_between_the_groups():
 def test_of_a_signed_quantity_magnitudes_are_compared():
     outcomes = np.array([ENGAGED] * 2, dtype=object)
     found = difference_of(np.array([-7.0, 2.0]), np.array([5.0, -1.0]), (outcomes, outcomes))
-    assert found.quantiles['p50'] == 1.5
+    assert found.quantiles.p50 == 1.5
 
 
 def test_a_case_without_a_value_is_left_out():
@@ -80,7 +81,7 @@ def test_points_of_a_grid_have_no_interval():
         {JERK: np.arange(2.0 * runs).tolist()},
         controllers=['pi'] * runs + ['ls8'] * runs,
     )
-    (pair,) = summary_of(results)['pairs']
+    (pair,) = to_json(summary_of(results))['pairs']
     assert pair['differences'][0]['interval'] is None
     assert 'no random sample' in pair['no_interval']
     sampled = made_results(
@@ -90,4 +91,4 @@ def test_points_of_a_grid_have_no_interval():
         controllers=['pi'] * runs + ['ls8'] * runs,
         random=['wear_gain'],
     )
-    assert summary_of(sampled)['pairs'][0]['differences'][0]['interval'] == [-10.0, -10.0]
+    assert to_json(summary_of(sampled))['pairs'][0]['differences'][0]['interval'] == [-10.0, -10.0]

@@ -6,9 +6,14 @@ import numpy as np
 import pytest
 from made_results import made_results
 
-from ddct_bringup.campaign_report.statistics.spread import conditional_value_at_risk, spread_of
+from ddct_bringup.campaign_report.statistics.spread import (
+    Quantiles,
+    conditional_value_at_risk,
+    spread_of,
+)
 from ddct_bringup.campaign_report.summary import summary_of
 from ddct_bringup.verdict.state import ENGAGED, INVALID
+from ddct_plant.files.json_records import to_json
 
 
 def engaged(count):
@@ -36,7 +41,7 @@ def test_a_run_that_is_not_engaged_has_no_place_among_the_quantiles(outcome):
     values = np.concatenate([np.arange(1.0, 102.0), [1e6] * 30, [0.0] * 30])
     outcomes = np.array([ENGAGED] * 101 + [outcome] * 60, dtype=object)
     found = spread_of(values, outcomes)
-    assert found.quantiles == {'p5': 6.0, 'p50': 51.0, 'p95': 96.0}
+    assert found.quantiles == Quantiles(6.0, 51.0, 96.0)
     assert found.cvar == pytest.approx(conditional_value_at_risk(values[:101]))
     assert (found.engaged, found.with_value, found.worst_engaged) == (101, 101, 100)
 
@@ -46,7 +51,7 @@ def test_half_of_the_runs_failed_and_the_median_is_still_that_of_the_engaged_one
     results = made_results(
         states, {'wear_gain': list(range(8))}, {'peak_jerk_m_s3': [4.0, 6.0, 5.0, *[90.0] * 5]}
     )
-    (found,) = summary_of(results)['groups'][0]['quantities']
+    (found,) = to_json(summary_of(results))['groups'][0]['quantities']
     assert (found['p50'], found['engaged'], found['with_value']) == (5.0, 3, 3)
 
 
@@ -60,12 +65,12 @@ def test_fewer_than_twenty_engaged_runs_have_no_cvar():
 
 def test_a_value_that_is_not_defined_is_counted_and_left_out():
     found = spread_of(np.array([1.0, 2.0, np.nan]), engaged(3))
-    assert (found.engaged, found.with_value, found.quantiles['p50']) == (3, 2, 1.5)
+    assert (found.engaged, found.with_value, found.quantiles.p50) == (3, 2, 1.5)
 
 
 def test_without_an_engaged_run_there_are_no_quantiles():
     found = spread_of(np.array([1.0]), np.array(['failed'], dtype=object))
-    assert found.quantiles == {'p5': None, 'p50': None, 'p95': None}
+    assert found.quantiles == Quantiles(None, None, None)
     assert (found.worst_engaged, found.worst) == (None, 0)
 
 
@@ -73,9 +78,9 @@ def test_quantiles_keep_their_signs_and_the_worst_case_is_the_largest_magnitude_
     slips = [*np.linspace(-236.88, 60.0, 21).tolist(), -500.0, 900.0]
     states = [ENGAGED] * 21 + ['withheld', INVALID]
     wear = {'wear_gain': list(range(23))}
-    (found,) = summary_of(made_results(states, wear, {'slip_final_rpm': slips}))['groups'][0][
-        'quantities'
-    ]
+    (found,) = to_json(summary_of(made_results(states, wear, {'slip_final_rpm': slips})))[
+        'groups'
+    ][0]['quantities']
     assert found['p5'] < found['p50'] < 0.0 < found['p95']
     assert found['worst_engaged'] == {'value': -236.88, 'index': 0, 'state': ENGAGED}
     assert found['worst'] == {'value': -500.0, 'index': 21, 'state': 'withheld'}

@@ -87,13 +87,30 @@ def parse_json(text: str) -> Any:
 
 
 def read_json(
-    kind: type[T], path: Path, *, newest: int | None = None, most_bytes: int = MOST_TEXT_BYTES
+    kind: type[T],
+    path: Path,
+    *,
+    newest: int | None = None,
+    most_bytes: int = MOST_TEXT_BYTES,
+    advice: str = '',
 ) -> T:
     """
     Return the record of this type in a file.
 
-    Raise DdctError that names the file, for what cannot be read and as `from_json` does.
+    Raise DdctError that names the file, for what cannot be read and as `from_json` does, with the
+    advice, if any, at its end.
     """
+    try:
+        return _record_in(kind, path, newest, most_bytes)
+    except DdctError as error:
+        if not advice:
+            raise
+        found = DdctError(f'{error}: {advice}', key=error.key)
+        found.place = error.place
+        raise found from error
+
+
+def _record_in(kind: type[T], path: Path, newest: int | None, most_bytes: int) -> T:
     try:
         data = parse_json(read_text_file(path, most_bytes))
     except OSError as error:

@@ -2,31 +2,30 @@
 # SPDX-License-Identifier: Apache-2.0
 """Readers of the files of a benchmark: its manifest, the rows of the release, update times."""
 
-import json
 from pathlib import Path
 
 from ddct_bringup.benchmark.cases import Cases, packaged_folder
 from ddct_bringup.benchmark.judged import Judged
 from ddct_bringup.benchmark.manifest import MANIFEST, BenchmarkManifest, JudgedEntry
 from ddct_bringup.benchmark.release import ROWS, release_rows
-from ddct_bringup.benchmark.update_times import UpdateTimesFile, read_update_times
+from ddct_bringup.benchmark.update_times import (
+    NoUpdateTime,
+    UpdateTime,
+    UpdateTimesFile,
+    read_update_times,
+)
 from ddct_bringup.run.timing_and_failure import TIMING_FILE
+from ddct_plant.files.json_records import json_text
 from fuzz.reader import Reader
 from fuzz.targets.run_readers import in_folder
 
-_UPDATE_TIMES: UpdateTimesFile = {
-    'reference': 'pi',
-    'controllers': {
-        'mine': {
-            'ratio_to_pi': 2.0,
-            'lowest_ratio': 1.9,
-            'highest_ratio': 2.1,
-            'update_time_median_us': 10.0,
-            'pi_update_time_median_us': 5.0,
-        },
-        'other': {'ratio_to_pi': None, 'reason': 'ValueError: it failed'},
+_UPDATE_TIMES = UpdateTimesFile(
+    'pi',
+    {
+        'mine': UpdateTime(2.0, 1.9, 2.1, 10.0, 5.0),
+        'other': NoUpdateTime(None, 'ValueError: it failed'),
     },
-}
+)
 
 
 def benchmark_readers(folder: Path) -> list[Reader]:
@@ -34,7 +33,7 @@ def benchmark_readers(folder: Path) -> list[Reader]:
     judged = [Judged.of(name) for name in ('pi', 'ls8')]
     BenchmarkManifest.of(judged, Cases.packaged(quick=True), None).write(folder)
     rows = (packaged_folder() / ROWS).read_bytes()
-    times = json.dumps(_UPDATE_TIMES).encode()
+    times = json_text(_UPDATE_TIMES).encode()
     return [
         Reader('benchmark', MANIFEST, in_folder(_manifest), ((folder / MANIFEST).read_bytes(),)),
         Reader('benchmark_rows', ROWS, in_folder(_release), (rows,)),

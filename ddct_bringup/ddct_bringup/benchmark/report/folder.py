@@ -4,14 +4,13 @@
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 from ddct_bringup.benchmark.conduct import JudgedRows, read_judged_rows
 from ddct_bringup.benchmark.manifest import BenchmarkManifest
 from ddct_bringup.benchmark.release import release_rows
 from ddct_bringup.benchmark.report.page import benchmark_page
 from ddct_bringup.benchmark.result import result_of
-from ddct_bringup.benchmark.result_types import Result
+from ddct_bringup.benchmark.result_types import Result, ResultWithTimes
 from ddct_bringup.benchmark.update_times import read_update_times
 from ddct_bringup.digests.digest_file import BENCHMARK
 from ddct_bringup.digests.writing import write_folder_digests
@@ -48,6 +47,6 @@ def write_result(out: Path, failed: Mapping[str, str]) -> Result:
     return result
 
 
-def document_of(result: Result, out: Path) -> Mapping[str, Any]:
+def document_of(result: Result, out: Path) -> ResultWithTimes:
     """Return the result with the update times, as `--json` has it."""
-    return {**result, 'update_times': read_update_times(out)}
+    return ResultWithTimes(result, read_update_times(out))

@@ -103,13 +103,13 @@ def _overall(rows: CaseRows) -> Iterator[tuple[str, ...]]:
     for name in rows.controllers:
         columns = rows.of(name)
         engaged, others = _state_cells(columns)
-        interval = interval_text(share_of_successes(columns)['interval'])
+        interval = interval_text(share_of_successes(columns).interval)
         yield name, engaged, interval, others
 
 
 def _state_cells(columns: Columns) -> tuple[str, str]:
     """Return the engaged runs, and the other states with their numbers."""
-    states = {state: each['runs'] for state, each in states_in(columns).items()}
+    states = {state: each.runs for state, each in states_in(columns).items()}
     engaged, runs = states.pop(ENGAGED, 0), len(columns['valid'])
     others = ', '.join(f'{count} {state_text(state)}' for state, count in states.items())
     return f'{engaged} of {runs}', others or '-'

@@ -12,9 +12,9 @@ from ddct_bringup.benchmark.report import rules, texts
 from ddct_bringup.benchmark.result_types import (
     BoardRow,
     Evaluation,
-    QuantityResult,
     Result,
     ScenarioResult,
+    ValueSpread,
 )
 from ddct_bringup.benchmark.update_times import UpdateTimesFile
 from ddct_bringup.campaign_report import texts as campaign_texts
@@ -47,7 +47,7 @@ def benchmark_page(result: Result, update_times: UpdateTimesFile, folder: Path) 
         + page_part(_ROOM, 'benchmark.css'),
         script=page_part(_REPORT, 'common.js') + page_part(_ROOM, 'benchmark.js'),
         result=result,
-        update_times=update_times['controllers'],
+        update_times=update_times.controllers,
         notes=list(texts.notes_of(result)),
         warnings=list(texts.warnings_of(result)),
         texts=texts,
@@ -77,17 +77,15 @@ def _shell_line(*words: object) -> str:
 def _further(result: Result) -> list[str]:
     """Return the quantities besides the figures that a run of a judged controller has."""
     there = {
-        quantity['name']
-        for judged in result['controllers']
-        for evaluation in (*(judged['development'] or ()), *(judged['held_out'] or ()))
-        for quantity in evaluation['quantities']
-        if quantity['with_value']
+        quantity.name
+        for judged in result.controllers
+        for evaluation in (*(judged.development or ()), *(judged.held_out or ()))
+        for quantity in evaluation.quantities
+        if quantity.spread.with_value
     }
     return [key for key in EVALUATED if key in there and key not in (*MAIN, *_OVER_LEAST)]
 
 
-def _spread(
-    evaluation: Evaluation | ScenarioResult | BoardRow, name: str
-) -> QuantityResult | None:
+def _spread(evaluation: Evaluation | ScenarioResult | BoardRow, name: str) -> ValueSpread | None:
     """Return the distribution of one quantity, None where no run has it."""
-    return next((each for each in evaluation['quantities'] if each['name'] == name), None)
+    return next((each.spread for each in evaluation.quantities if each.name == name), None)

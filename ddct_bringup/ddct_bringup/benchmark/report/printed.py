@@ -26,13 +26,13 @@ _OF_SPREAD = 'P50', 'P95', 'worst'
 
 def print_result(result: Result, update_times: UpdateTimesFile) -> None:
     """Print the main tables of a benchmark; the page has all."""
-    for judged in result['controllers']:
-        if judged['development'] and judged['held_out']:
-            print_tables(_tables(judged, judged['development'], judged['held_out']))
+    for judged in result.controllers:
+        if judged.development and judged.held_out:
+            print_tables(_tables(judged, judged.development, judged.held_out))
         for line in texts.dominance_lines(judged):
             print_note(line)
-    for name, found in update_times['controllers'].items():
-        ratio = text_or_dash(found['ratio_to_pi'], '.2f')
+    for name, found in update_times.controllers.items():
+        ratio = text_or_dash(found.ratio_to_pi, '.2f')
         print_note(f'update time of {name} over that of pi: {ratio}')
     print_note(left_open_here())
 
@@ -40,19 +40,19 @@ def print_result(result: Result, update_times: UpdateTimesFile) -> None:
 def _tables(
     judged: JudgedResult, ours: list[Evaluation], theirs: list[Evaluation]
 ) -> Iterator[Table]:
-    name = judged['controller']
+    name = judged.controller
     rows = [
-        (first['controller'], *_share_cells(first['success']), *_share_cells(second['success']))
+        (first.controller, *_share_cells(first.success), *_share_cells(second.success))
         for first, second in zip(ours, theirs, strict=True)
     ]
     yield Table(f'{name}: engaged', ('controller', *_SHARES), rows)
     for part, evaluations in (('development', ours), ('held out', theirs)):
-        starred = any(each['least_is_no_bound'] for each in evaluations)
+        starred = any(each.least_is_no_bound for each in evaluations)
         spreads = Table(
             f'{name}: successes, {part}',
             ('figure', 'controller', *_OF_SPREAD, 'worst case'),
             [
-                (EVALUATED[key].heading, each['controller'], *_spread_cells(each, key))
+                (EVALUATED[key].heading, each.controller, *_spread_cells(each, key))
                 for key in SHOWN
                 for each in evaluations
             ],
@@ -66,28 +66,28 @@ def _tables(
         ('figure', 'a held-out run is worse', 'p', 'beyond chance'),
         [
             (
-                texts.figure_name(gap['name']),
-                share_text(gap['worse']),
-                UNDEFINED if gap['p_value'] is None else p_text(gap['p_value']),
-                'yes' if gap['differs'] else 'no',
+                texts.figure_name(gap.name),
+                share_text(gap.worse),
+                UNDEFINED if gap.p_value is None else p_text(gap.p_value),
+                'yes' if gap.differs else 'no',
             )
-            for gap in judged['gaps'] or ()
+            for gap in judged.gaps or ()
         ],
     )
     yield with_reasons(gaps, lambda header, row: 'too few runs have a value')
 
 
 def _share_cells(share: RunShare) -> tuple[str, str]:
-    return share_text(share['share']), interval_text(share['interval'])
+    return share_text(share.share), interval_text(share.interval)
 
 
 def _spread_cells(evaluation: Evaluation, key: str) -> tuple[str, ...]:
     """Return P50, P95 and worst of a quantity, and the case of the worst."""
-    for found in evaluation['quantities']:
-        if found['name'] == key:
-            star = texts.STAR if key == OVER_LEAST and evaluation['least_is_no_bound'] else ''
-            cells = spread_texts(found, EVALUATED[key].form, mark=star)
-            return *cells, text_or_dash(found['worst']['case'], 'd')
+    for found in evaluation.quantities:
+        if found.name == key:
+            star = texts.STAR if key == OVER_LEAST and evaluation.least_is_no_bound else ''
+            cells = spread_texts(found.spread, EVALUATED[key].form, mark=star)
+            return *cells, text_or_dash(found.spread.worst.case, 'd')
     return (UNDEFINED,) * 4
 
 
@@ -95,7 +95,7 @@ def spread_texts(
     found: ValueSpread, form: str, factor: float = 1.0, mark: str = ''
 ) -> tuple[str, str, str]:
     """Return P50, P95 and worst, times a factor and with a mark behind each value."""
-    values = found['p50'], found['p95'], found['worst']['value']
+    values = found.quantiles.p50, found.quantiles.p95, found.worst.value
     p50, p95, worst = (
         UNDEFINED if value is None else f'{factor * value:{form}}{mark}' for value in values
     )

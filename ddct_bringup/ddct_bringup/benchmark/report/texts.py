@@ -69,8 +69,8 @@ RULES = {
 def states_text(evaluation: Evaluation) -> str:
     """Return the numbers of runs in states other than engaged."""
     return ', '.join(
-        f'{found["runs"]} {state_text(state)}'
-        for state, found in evaluation['states'].items()
+        f'{found.runs} {state_text(state)}'
+        for state, found in evaluation.states.items()
         if state != ENGAGED
     )
 
@@ -87,63 +87,63 @@ def left_out_text(left_out: Mapping[str, int]) -> str:
 
 def dominance_lines(judged: JudgedResult) -> Iterator[str]:
     """Yield sentences on which controllers dominate the judged one, and which it dominates."""
-    name, pairs = judged['controller'], judged['dominance']
+    name, pairs = judged.controller, judged.dominance
     if not pairs:
         return
     for chosen, one, none in (
         (
-            [pair for pair in pairs if pair['dominated']],
+            [pair for pair in pairs if pair.dominated],
             f'{name} is dominated by',
             f'no controller dominates {name}',
         ),
         (
-            [pair for pair in pairs if pair['dominates']],
+            [pair for pair in pairs if pair.dominates],
             f'{name} dominates',
             f'{name} dominates no controller',
         ),
     ):
-        found = f'{one} {", ".join(pair["other"] for pair in chosen)}' if chosen else none
+        found = f'{one} {", ".join(pair.other for pair in chosen)}' if chosen else none
         yield f'{found}: {_cases_text(chosen or pairs)}'
 
 
 def _cases_text(pairs: Sequence[PairedResult]) -> str:
     left_out: dict[str, int] = {}
     for pair in pairs:
-        for figure in pair['figures']:
-            key = figure['name']
-            left_out[key] = max(left_out.get(key, 0), figure['left_out'])
+        for figure in pair.figures:
+            key = figure.name
+            left_out[key] = max(left_out.get(key, 0), figure.left_out)
     most = ' at most' if len(pairs) > 1 else ''
-    return f'{pairs[0]["cases"]} cases, left out{most}: {left_out_text(left_out)}'
+    return f'{pairs[0].cases} cases, left out{most}: {left_out_text(left_out)}'
 
 
 def notes_of(result: Result) -> Iterator[str]:
     """Yield how the cases differ from those of a plain benchmark, a line each."""
-    if result['judge_seed'] is not None:
-        yield f'the held-out cases are those of a judge: --seed {result["judge_seed"]}'
-    if result['cases']['quick']:
+    if result.judge_seed is not None:
+        yield f'the held-out cases are those of a judge: --seed {result.judge_seed}'
+    if result.cases.quick:
         yield 'a quick benchmark: a tenth of the cases, too few to say who dominates whom'
 
 
 def warnings_of(result: Result) -> Iterator[str]:
     """Yield what to know of the rows and of controllers before reading the tables, a line each."""
-    if result['cases']['other_code']:
-        yield result['cases']['other_code']
-    for judged in result['controllers']:
+    if result.cases.other_code:
+        yield result.cases.other_code
+    for judged in result.controllers:
         yield from _warnings(judged)
 
 
 def _warnings(judged: JudgedResult) -> Iterator[str]:
-    name = judged['controller']
-    if judged['error']:
-        yield f'{name}: not judged: {judged["error"]}'
+    name = judged.controller
+    if judged.error:
+        yield f'{name}: not judged: {judged.error}'
     for part, evaluations in (
-        ('development', judged['development']),
-        ('held-out', judged['held_out']),
+        ('development', judged.development),
+        ('held-out', judged.held_out),
     ):
-        if evaluations and (invalid := evaluations[0]['states'].get(INVALID)):
-            reason = evaluations[0]['reasons'][0]['reason']
-            yield f'{name}: {invalid["runs"]} {part} runs are invalid, such as: {reason}'
-    worse = [gap['name'] for gap in judged['gaps'] or () if gap['differs']]
+        if evaluations and (invalid := evaluations[0].states.get(INVALID)):
+            reason = evaluations[0].reasons[0].reason
+            yield f'{name}: {invalid.runs} {part} runs are invalid, such as: {reason}'
+    worse = [gap.name for gap in judged.gaps or () if gap.differs]
     if worse:
         yield f'{name}: worse on held-out cases, beyond chance: {_symbols(worse)}'
 

@@ -9,9 +9,9 @@ import numpy as np
 import scipy
 
 from ddct_bringup.campaign_report.statistics.outcome import CONFIDENCE
-from ddct_bringup.campaign_report.statistics.spread import quantiles_of
-from ddct_bringup.campaign_report.summary_types import Quantiles
+from ddct_bringup.campaign_report.statistics.spread import Quantiles, quantiles_of
 from ddct_bringup.verdict.state import ENGAGED
+from ddct_plant.files.json_records import Inline
 
 METHOD = 'sign test'
 
@@ -40,7 +40,7 @@ class PairedDifference:
 
     cases: int
     """Number of cases in which both engaged and have a value."""
-    quantiles: Quantiles
+    quantiles: Inline[Quantiles]
     """Quantiles P5, P50, P95 of the difference of magnitudes."""
     interval: tuple[float, float] | None
     """Interval of the median for a random sample of cases; None for fewer than six."""

@@ -6,13 +6,21 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ddct_bringup.campaign_report.summary_types import Quantiles
 from ddct_bringup.verdict.state import ENGAGED, INVALID
 
 _PROBABILITIES = (0.05, 0.50, 0.95)
 """Probabilities of P5, P50 and P95."""
 ONE_IN = 20
 """Inverse of the share of worst runs, 5 %; with fewer engaged runs there is no CVaR."""
+
+
+@dataclass(frozen=True)
+class Quantiles:
+    """Quantiles P5, P50 and P95; None without a value."""
+
+    p5: float | None
+    p50: float | None
+    p95: float | None
 
 
 @dataclass(frozen=True)
@@ -58,9 +66,8 @@ def spread_of(values: np.ndarray, outcomes: np.ndarray) -> Spread:
 def quantiles_of(values: np.ndarray) -> Quantiles:
     """Return P5, P50 and P95 of (n,) values with linear interpolation (Hyndman-Fan 7)."""
     if not len(values):
-        return {'p5': None, 'p50': None, 'p95': None}
-    p5, p50, p95 = np.quantile(values, _PROBABILITIES).tolist()
-    return {'p5': p5, 'p50': p50, 'p95': p95}
+        return Quantiles(None, None, None)
+    return Quantiles(*np.quantile(values, _PROBABILITIES).tolist())
 
 
 def conditional_value_at_risk(values: np.ndarray) -> float:

@@ -39,7 +39,7 @@ def notes_of(result: TuningResult) -> Iterator[str]:
     best = next(each for each in result['front'] if each['number'] == result['best'])
     if best['held_out'] and not best['held_out']['keeps_constraints']:
         yield 'the best trial keeps the constraints on development cases, not on held-out ones'
-    if any(each['differs'] for each in result['gaps']):
+    if any(each.differs for each in result['gaps']):
         yield 'the best trial is worse on held-out cases, beyond chance'
     if result['before'] is None:
         yield 'the values from before are outside of the ranges, and were not tried'
