@@ -3,7 +3,9 @@
 """Each run of a controller in C has fresh static variables, and ends itself alone."""
 
 import json
+import os
 from pathlib import Path
+from typing import Any
 
 import pytest
 from refusals import refused
@@ -13,14 +15,17 @@ from support.exported_mpc import run_settings
 from ddct_bringup import api
 from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.programs.compare import main as compare
+from ddct_bringup.run import headless
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.run.plan import RunPlan
 from ddct_controllers.check.checks import FAIL, PASS, check_controller
+from ddct_controllers.interface import Controller
 from ddct_controllers.registry import controller_spec
 from ddct_controllers.workflows.evidence import frequency_evidence
 from ddct_controllers.workflows.loop_summary import loop_summary
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.program import own_process
+from ddct_plant.scenario.settings import RunSettings
 
 SETTINGS = run_settings('duration_s=0.7')
 OPTIONS = {'duration_s': 0.7}
@@ -57,6 +62,21 @@ def test_runs_one_after_another_count_from_one_again(counter: str) -> None:
     assert torques(first)[59:62] == [0.0, 0.001, 0.002]
     assert torques(again) == torques(first)
     assert run_headless(SETTINGS, controller_spec(counter)).closed_loop_torque[61] == 0.002
+
+
+def test_a_loop_is_built_here_first_so_that_not_every_process_does_its_imports(
+    counter: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    built: list[int] = []
+    build = headless.closed_loop
+
+    def noted(settings: RunSettings, controller: Controller) -> headless.Loop[Any]:
+        built.append(os.getpid())
+        return build(settings, controller)
+
+    monkeypatch.setattr(headless, 'closed_loop', noted)
+    run_headless(SETTINGS, counter)
+    assert built == [os.getpid()]
 
 
 def test_two_of_a_comparison_count_from_one(counter: str, folder: Path, tmp_path: Path) -> None:
@@ -134,8 +154,6 @@ def test_a_crash_while_it_is_loaded_does_not_end_a_comparison(
 
 
 def _abort(_: object) -> None:
-    import os
-
     os.abort()
 
 

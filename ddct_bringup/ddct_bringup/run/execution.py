@@ -18,12 +18,12 @@ from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.bag.trajectory_bag import write_trajectory
 from ddct_bringup.processes.graph_nodes import DRIVELINE, RECORDER, nodes_of
 from ddct_bringup.run.description import custom_data, facts_of, run_info_of
-from ddct_bringup.run.headless import run_headless
+from ddct_bringup.run.headless import run_headless, separate_run
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_controllers.from_file.controller_file import is_controller_file
 from ddct_controllers.from_file.fmu.unpacked import remove_left_folders
-from ddct_controllers.registry import Chosen, make_controller, separately
+from ddct_controllers.registry import Chosen, make_controller
 from ddct_plant.base.errors import DdctError
 from ddct_plant.graph.domain import own_domain
 from ddct_plant.program.supervision import stop_signals
@@ -182,7 +182,7 @@ def simulate(plan: RunPlan, changes: Sequence[GainChange] = ()) -> tuple[Recordi
         described = run_info_of(plan.settings, plan.name, controller, plan.steps)
         return described, run_headless(plan.settings, controller, timing, changes), timing
 
-    described, trajectory, timing = separately(plan.controller, work)
+    described, trajectory, timing = separate_run(plan.settings, plan.controller, work)
     recording = replace(
         recording_in_memory(plan.settings, plan.name, trajectory),
         custom_data=custom_data(plan.settings, plan.name, plan.steps),

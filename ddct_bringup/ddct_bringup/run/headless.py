@@ -10,7 +10,7 @@ The result equals that of the graph, in any process layout, to the last bit.
 """
 
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, Protocol, TypeVar
 
 import numpy as np
@@ -20,7 +20,8 @@ from ddct_bringup.run.shift_loop import ShiftLoop
 from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_controllers.architecture import Architecture, make_architecture
 from ddct_controllers.interface import Controller, Measurement
-from ddct_controllers.registry import Chosen, make_controller, separately
+from ddct_controllers.linear import PiController
+from ddct_controllers.registry import Chosen, compiled_code, make_controller, separately
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.scenario.whole_plant import PlantReply, WholePlant
 from ddct_plant.shift_plant.plant import ShiftPlant, ShiftReply
@@ -66,6 +67,7 @@ class ClosedLoop:
 
 
 Reply = TypeVar('Reply', PlantReply, ShiftReply)
+Result = TypeVar('Result')
 
 
 class Loop(Protocol[Reply]):
@@ -96,7 +98,7 @@ def run_headless(
     Simulate one run from t_0 to t_N and return every signal; fill `timing` if it is given.
 
     `controller` is a value that `make_controller` accepts, or an object; `changes` are gains that
-    are changed in the run. Compiled code has a process of its own (`separately`), unless it is
+    are changed in the run. Compiled code has a process of its own (`separate_run`), unless it is
     an object. Raise ParameterError for a loop that cannot be built, or for a gain that the
     controller does not take, DdctError when it commands a value that is not finite.
     """
@@ -106,12 +108,22 @@ def run_headless(
             found = RunTiming()
             return run_headless(settings, make_controller(chosen, settings), found, changes), found
 
-        trajectory, found = separately(controller, work)
+        trajectory, found = separate_run(settings, controller, work)
         if timing is not None:
             vars(timing).update(vars(found))
         return trajectory
     loop = closed_loop(settings, controller)
     return run_loop(loop, settings.scenario.steps, timing, changes)
+
+
+def separate_run(
+    settings: RunSettings, chosen: Chosen, work: Callable[[Chosen], Result]
+) -> Result:
+    """Return `separately(chosen, work)`, where `work` makes the controller and its run."""
+    if compiled_code(chosen):
+        # Built here once, so that not every process imports and computes the same again.
+        closed_loop(settings, PiController(0.0, 0.0))
+    return separately(chosen, work)
 
 
 def closed_loop(settings: RunSettings, controller: Controller) -> Loop[Any]:
