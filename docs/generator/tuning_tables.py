@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 
 from ddct_bringup.tuning.report.texts import goal_text
 from ddct_bringup.tuning.result import FrontEntry, TuningResult
-from ddct_bringup.tuning.specification.spec import packaged_specs
+from ddct_bringup.tuning.specification.packaged_specs import packaged_specs
 from ddct_plant.program.table import Table
 from generator.pages import DOCS
 

@@ -6,6 +6,7 @@ import json
 
 import pytest
 
+from ddct_bringup.api import shell
 from ddct_bringup.bag.reader import mcap_of
 from ddct_bringup.bag.writer import BagWriter
 from ddct_bringup.programs import bringup, compare, score
@@ -52,8 +53,7 @@ def leave(bags, trajectory, monkeypatch):
                 (folder / 'work').mkdir()
                 (folder / 'work' / 'actuator.log').write_text(log, encoding='utf-8')
 
-        for program in (bringup, compare):
-            monkeypatch.setattr(program, 'run_with_progress', run)
+        monkeypatch.setattr(shell, 'run_with_progress', run)
 
     return leave_behind
 

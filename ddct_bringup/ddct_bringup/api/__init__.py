@@ -34,5 +34,5 @@ if TYPE_CHECKING:
     from ddct_plant.base.errors import DdctError, ParameterError
     from ddct_plant.base.options import Option
     from ddct_plant.scenario.choices.scenarios import scenario_names
-
-__getattr__, __dir__, __all__ = late_names(__name__)
+else:
+    __getattr__, __dir__, __all__ = late_names(__name__)

@@ -1,22 +1,28 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Arguments of `run`, `compare` and `sweep` as controllers, settings and metrics."""
+"""Arguments of `run`, `compare` and `sweep` as controllers, settings and plans."""
 
 import warnings
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.run.run_base import RunBase
 from ddct_controllers.from_python import chosen_from
 from ddct_controllers.registry import (
     Chosen,
+    controller_label,
+    controller_names,
+    working_controllers,
 )
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import options_of, require_known
+from ddct_plant.program.scheduling import Scheduling
 from ddct_plant.scenario.file import ScenarioFile
+from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
 
 
@@ -37,12 +43,34 @@ def controllers_from(controllers: str | Iterable[Any] | Mapping[str, Any]) -> li
     return chosen
 
 
-def ready_settings(labels: list[str], *options: Any, **given: Any) -> RunSettings:
+def planned(
+    controllers: Iterable[Any] | Mapping[str, Any] | str | None,
+    layout: str,
+    complain: Callable[[str], None],
+    scheduling: Scheduling | None = None,
+    **options: Any,
+) -> list[RunPlan]:
+    """
+    Return a plan for each controller, given as for `compare`, all with the same options of `run`.
+
+    None is every controller that can be built here; `complain` gets a line for each other one.
+    """
+    chosen = controllers_from(controller_names() if controllers is None else controllers)
+    settings = run_settings([controller_label(each) for each in chosen], **options)
+    if controllers is None:
+        chosen = [*working_controllers(settings, complain)]
+    return [RunPlan(settings, each, layout, scheduling or Scheduling()) for each in chosen]
+
+
+def run_settings(labels: Iterable[str], *options: Any, **given: Any) -> RunSettings:
     """Return the settings of one run, or of runs, with the controllers called `labels`."""
-    settings = base_from(labels, *options, **given).at()
-    for line in settings.scenario.adjusted:
-        warnings.warn(f'scenario {settings.scenario.name}: {line}', stacklevel=3)
-    return settings
+    return base_from(labels, *options, **given).at()
+
+
+def warn_of_adjusted(scenario: Scenario) -> None:
+    """Warn the caller of the caller of values that moved with those that were set."""
+    for line in scenario.adjusted:
+        warnings.warn(f'scenario {scenario.name}: {line}', stacklevel=3)
 
 
 def base_from(

@@ -6,15 +6,12 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from ddct_bringup.api.result import pandas_module
+from ddct_bringup.api.shell.judging import judge_into, judged_of
 from ddct_bringup.benchmark.cases import Cases
-from ddct_bringup.benchmark.conduct import DEVELOPMENT, HELD_OUT, Options, carry_out_benchmark
+from ddct_bringup.benchmark.conduct import DEVELOPMENT, HELD_OUT
 from ddct_bringup.benchmark.evaluated import MAIN
-from ddct_bringup.benchmark.judged import Judged
-from ddct_bringup.benchmark.report.folder import PAGE, write_result
+from ddct_bringup.benchmark.file_names import PAGE
 from ddct_bringup.benchmark.result_types import Evaluation
-from ddct_bringup.benchmark.update_times import write_update_times
-from ddct_bringup.campaign.rows import require_suitable
-from ddct_controllers.registry import controller_spec
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.json_records import to_json
 
@@ -52,13 +49,11 @@ def benchmark(
     """
     pandas = pandas_module()
     cases, folder = Cases.packaged(quick=quick), Path(out)
-    require_suitable(controller_spec(controller), cases.planned.run(0).settings)
-    judged = [Judged.of(controller)]
-    failed = carry_out_benchmark(judged, cases, folder, seed, Options(workers))
+    result, failed = judge_into(
+        [judged_of(controller, cases)], cases, folder, seed, workers=workers
+    )
     for name, reason in failed.items():
         raise DdctError(f'{name}: {reason}')
-    write_update_times(judged, cases, folder)
-    result = write_result(folder, failed)
     (found,) = result.controllers
     columns = {
         f'{part}.{name}': values

@@ -2,25 +2,24 @@
 # SPDX-License-Identifier: Apache-2.0
 """Run sweeps and campaigns, many runs each, from Python."""
 
+import warnings
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from ddct_bringup.api.arguments import base_from, controllers_from, plain
+from ddct_bringup.api.arguments import plain
 from ddct_bringup.api.result import pandas_module
+from ddct_bringup.api.shell.campaigns import carry_out_campaign
+from ddct_bringup.api.shell.sweeps import planned_sweep
 from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.columns import INDEX
-from ddct_bringup.campaign.conduct import carry_out
 from ddct_bringup.campaign.manifest import Manifest
 from ddct_bringup.campaign.rows import result_row
 from ddct_bringup.campaign.spec import read_spec, spec_of
-from ddct_bringup.campaign_report.folder import write_campaign_page
 from ddct_bringup.campaign_report.reading import read_table, results_of
 from ddct_bringup.campaign_report.summary import summary_of
 from ddct_bringup.sweep.axis import Axis, axis, axis_of
-from ddct_bringup.sweep.sweep import Sweep
 from ddct_bringup.verdict.limits import load_limits
-from ddct_controllers.registry import controller_label
 from ddct_plant.files.json_records import to_json
 
 
@@ -51,10 +50,9 @@ def campaign(
     pandas_module()
     given = spec_of(spec, Path.cwd()) if isinstance(spec, Mapping) else read_spec(spec)
     judged_by = load_limits(limits)
-    carry_out(
+    carry_out_campaign(
         Campaign(given), judged_by, Path(out), workers=workers, scheduler=scheduler, resume=resume
     )
-    write_campaign_page(Path(out))
     return read_campaign(out)
 
 
@@ -82,10 +80,8 @@ def sweep(
     controller, the values under their keys, every figure and metric, `valid`, `reason`, `state`,
     `why` and `least_is_bound`.
     """
-    chosen = controllers_from(controllers)
-    base = base_from([controller_label(each) for each in chosen], **options)
-    judged_by = load_limits(limits)
-    planned = Sweep(base, [_axis(key, over[key]) for key in over], chosen, judged_by)
+    axes = [_axis(key, over[key]) for key in over]
+    planned = planned_sweep(controllers, axes, load_limits(limits), warnings.warn, **options)
     with planned.runs() as runs:
         return pandas_module().DataFrame([result_row(each.scores, each.varied) for each in runs])
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from ddct_bringup.api import shell
 from ddct_bringup.bag.recording import Recording
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.metrics.metric import Metrics
@@ -18,7 +19,6 @@ from ddct_bringup.scores.scored_recording import ScoredRecording
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.verdict.limits import LimitResult, Limits
 from ddct_controllers.registry import Chosen
-from ddct_controllers.workflows.evidence import frequency_evidence
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.json_records import to_json
 from ddct_plant.scenario.settings import RunSettings
@@ -136,7 +136,8 @@ class Run:
         Raise DdctError where the controller of a loaded run cannot be found here, or its
         `linear_model` cannot be used.
         """
-        return to_json(frequency_evidence([self.chosen], self.settings).controllers[0])
+        evidence = shell.frequency_evidence([self.chosen], self.settings)
+        return to_json(evidence.controllers[0])
 
 
 def table(runs: Run | Iterable[Run]) -> Any:

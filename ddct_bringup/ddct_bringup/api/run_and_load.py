@@ -7,18 +7,16 @@ import threading
 import warnings
 from collections.abc import Iterable, Mapping
 from contextlib import nullcontext
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
 
-from ddct_bringup.api.arguments import controllers_from, ready_settings
+from ddct_bringup.api.arguments import planned, run_settings, warn_of_adjusted
 from ddct_bringup.api.result import Run
+from ddct_bringup.api.shell.kept_run import keep_run
 from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.bag.recording import Recording
-from ddct_bringup.bag.writer import bag_file
 from ddct_bringup.run.execution import execute
-from ddct_bringup.run.output_folder import run_folder
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.scores.scored_recording import (
     ScoredRecording,
@@ -31,8 +29,6 @@ from ddct_controllers.from_python import chosen_from
 from ddct_controllers.registry import (
     Chosen,
     controller_label,
-    controller_names,
-    working_controllers,
 )
 
 _ONE_GRAPH = threading.Lock()
@@ -67,9 +63,8 @@ def run(
     controllers whose options `set` may hold too.
     """
     chosen = chosen_from(controller, name)
-    ready = ready_settings(
-        [controller_label(chosen), *beside], scenario, set, duration, **settings
-    )
+    ready = run_settings([controller_label(chosen), *beside], scenario, set, duration, **settings)
+    warn_of_adjusted(ready.scenario)
     plan = RunPlan(ready, chosen, _layout(headless))
     judged_by = load_limits(limits)
     found = _run(plan, out, judged_by, overwrite=overwrite)
@@ -89,12 +84,12 @@ def _run(
 ) -> Run:
     """Return the judged run of a plan."""
     if out is not None:
-        return _kept(plan, Path(out), limits, overwrite=overwrite)
+        kept = keep_run(plan, Path(out), limits, _execute, overwrite=overwrite)
+        return _run_of(kept, plan.controller)
     if plan.layout == 'headless':
         return _run_of(simulate_and_score(plan, limits), plan.controller)
     with tempfile.TemporaryDirectory(prefix='ddct-') as folder:
-        scored = run_and_score(plan, Path(folder), limits, _execute)
-        return _run_of(scored, plan.controller)
+        return _run_of(run_and_score(plan, Path(folder), limits, _execute), plan.controller)
 
 
 def compare(
@@ -114,15 +109,11 @@ def compare(
     'pi,ls8', or 'all', which leaves out a third party's controller that cannot be built, with a
     warning.
     """
-    if controllers == 'all':
-        warn = partial(warnings.warn, stacklevel=3)
-        controllers = working_controllers(ready_settings(controller_names(), **options), warn)
-    chosen = controllers_from(controllers)
-    ready = ready_settings([controller_label(each) for each in chosen], **options)
     layout, judged_by = _layout(headless), load_limits(limits)
-    runs = [
-        _run(RunPlan(ready, each, layout), out, judged_by, overwrite=overwrite) for each in chosen
-    ]
+    warn = partial(warnings.warn, stacklevel=4)
+    plans = planned(None if controllers == 'all' else controllers, layout, warn, **options)
+    warn_of_adjusted(plans[0].settings.scenario)
+    runs = [_run(plan, out, judged_by, overwrite=overwrite) for plan in plans]
     return [each.with_least(judged_by) for each in runs] if floors else runs
 
 
@@ -136,18 +127,6 @@ def load(bag: str | Path, *, limits: str | Path | None = None, floors: bool = Fa
     scored = score_recording(read_bag(path), path.as_posix(), judged_by)
     found = _run_of(scored)
     return found.with_least(judged_by) if floors else found
-
-
-def _kept(plan: RunPlan, out: Path, limits: Limits, *, overwrite: bool) -> Run:
-    with run_folder(out, plan.name, overwrite=overwrite) as folder:
-        scored = run_and_score(plan, folder.path, limits, _execute)
-        kept = _run_of(scored, plan.controller)
-        if not kept.valid:
-            return kept
-        folder.commit()
-    path = bag_file(folder.final, plan.name)
-    recording = replace(kept.recording, path=path)
-    return replace(kept, scored=replace(kept.scored, recording=recording))
 
 
 def _execute(plan: RunPlan, folder: Path) -> Recording | None:

@@ -14,7 +14,8 @@ from ddct_bringup.reproduction.numbers.number_files import thesis_numbers as lis
 from ddct_bringup.reproduction.studies.table_5_2 import rated_rows
 from ddct_bringup.reproduction.values.orders import WORN
 from ddct_bringup.thesis.predictions import predicted_range
-from ddct_bringup.thesis.table_5_1 import PREDICTED, TABLE_METRICS, is_thesis_run, thesis_row
+from ddct_bringup.thesis.table_5_1 import PREDICTED, is_thesis_run, thesis_row
+from ddct_bringup.thesis.table_metrics import TABLE_METRICS
 from ddct_plant.base.clutch_kinds import CLUTCHES
 from ddct_plant.base.options import require_known
 

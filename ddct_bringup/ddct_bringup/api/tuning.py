@@ -7,16 +7,11 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from ddct_bringup.api.result import pandas_module
-from ddct_bringup.tuning.conduct import carry_out_tuning
+from ddct_bringup.api.shell.tunings import tune_into
 from ddct_bringup.tuning.record import TRIALS, read_entries
-from ddct_bringup.tuning.report.folder import write_tuning
 from ddct_bringup.tuning.result import FrontEntry, TuningResult
-from ddct_bringup.tuning.specification.spec import read_tuning_spec, tuning_spec_of
 from ddct_bringup.tuning.trial import TrialEntry
-from ddct_bringup.tuning.tuned_files import BEST
-from ddct_bringup.tuning.tuning import tuning_of
-from ddct_bringup.verdict.limits import packaged_limits
-from ddct_controllers.registry import controller_spec
+from ddct_bringup.tuning.tuned_names import BEST
 
 
 class TuningResults(NamedTuple):
@@ -51,14 +46,9 @@ def tune(
     names are relative to the working directory.
     """
     pandas = pandas_module()
-    known, folder = controller_spec(controller), Path(out)
-    if isinstance(spec, Mapping):
-        given = tuning_spec_of(spec, Path.cwd(), known)
-    else:
-        given = read_tuning_spec(str(spec), known)
-    tuning = tuning_of(controller, given, packaged_limits())
-    trials = carry_out_tuning(tuning, folder, workers=workers, resume=resume)
-    result = write_tuning(tuning, folder, trials, workers=workers)
+    folder = Path(out)
+    given = spec if isinstance(spec, Mapping) else str(spec)
+    result = tune_into(controller, given, folder, workers=workers, resume=resume)
     front = pandas.DataFrame(_front_rows(result['front'])).set_index('number')
     tried = pandas.DataFrame(_trial_rows(read_entries(folder / TRIALS))).set_index('number')
     return TuningResults(front, tried, result, folder / BEST)

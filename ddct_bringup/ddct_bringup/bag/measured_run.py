@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Convert a log of another tool to a recording, so that it is scored and shown as a bag is."""
 
-import argparse
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -37,15 +36,6 @@ _MORE_SIGNALS = {
     'load_torque': ('wheel_effort',),
 }
 """Signals that have a quantity too, besides the one in `QUANTITIES`."""
-
-
-def add_columns_option(parser: argparse.ArgumentParser) -> None:
-    """Add --columns to the options of a program that reads logs of other tools as well as bags."""
-    parser.add_argument(
-        '--columns',
-        metavar='FILE',
-        help='column map of a CSV log: which column holds which quantity',
-    )
 
 
 def is_log(path: Path) -> bool:

@@ -12,10 +12,11 @@ from ddct_bringup.floor.cache import KnownFloor, cached, digest_of, store
 from ddct_bringup.floor.case import Case
 from ddct_bringup.floor.dynamics.torque_cut import gives_demand
 from ddct_bringup.floor.friction_work import least_friction_work
+from ddct_bringup.floor.metric_units import FRICTION
 from ddct_bringup.floor.objectives import Signals
 from ddct_bringup.floor.program.linear_program import CLOSED_FORM, RAY
 from ddct_bringup.floor.replays.attained import Replays, replays_of
-from ddct_bringup.floor.values import FRICTION, Floor, Proof, objective_of
+from ddct_bringup.floor.values import Floor, Proof, objective_of
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.program.kernel import threads
 

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ddct_bringup.floor.front import ControllerRow
-from ddct_bringup.floor.values import METRICS, Floor
+from ddct_bringup.floor.metric_units import METRICS
+from ddct_bringup.floor.values import Floor
 from ddct_controllers.design.drawing.chart_style import chart_style, save_chart
 from ddct_controllers.design.drawing.line_styles import BLACK, GREY, LineStyle, controller_style
 

@@ -63,7 +63,6 @@ Rows = Callable[[Signals], np.ndarray | None]
 class Peak:
     """A metric that is the largest magnitude, or value, of a linear map of the signals."""
 
-    unit: str
     of: Rows
     """Function that returns the mapped signals, (..., n); None where the metric is undefined."""
     one_sided: bool = False
@@ -81,7 +80,6 @@ class Peak:
 class RootMeanSquare:
     """A metric that is a root mean square of a linear map of the signals."""
 
-    unit: str
     of: Rows
     """Function that returns the mapped signals, (..., n)."""
     samples: int = 0
@@ -120,16 +118,16 @@ def _weighted(signals: Signals) -> np.ndarray | None:
 
 
 OBJECTIVES: Mapping[str, Objective] = {
-    'peak_jerk': Peak('m/s^3', _jerk),
-    'peak_acceleration': Peak('m/s^2', _acceleration),
-    'traction': Peak('m/s^2', lambda signals: signals.driving, one_sided=True),
+    'peak_jerk': Peak(_jerk),
+    'peak_acceleration': Peak(_acceleration),
+    'traction': Peak(lambda signals: signals.driving, one_sided=True),
     'acceleration_std_m_s2': RootMeanSquare(
-        'm/s^2', lambda signals: _centred(signals.acceleration, signals)
+        lambda signals: _centred(signals.acceleration, signals)
     ),
     'torsion_speed_std_rpm': RootMeanSquare(
-        'rpm', lambda signals: _centred(rpm_from_rad_s(signals.torsion_speed), signals)
+        lambda signals: _centred(rpm_from_rad_s(signals.torsion_speed), signals)
     ),
-    'slip_acceleration_at_lock': Peak('rad/s^2', lambda signals: signals.slip_acceleration),
-    'weighted_acceleration': RootMeanSquare('m/s^2', _weighted, STEPS_PER_S),
+    'slip_acceleration_at_lock': Peak(lambda signals: signals.slip_acceleration),
+    'weighted_acceleration': RootMeanSquare(_weighted, STEPS_PER_S),
 }
 """Metrics by name."""

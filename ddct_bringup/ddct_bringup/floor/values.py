@@ -2,25 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Metrics that have a floor, their values in a run, and what a floor consists of."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.floor.metric_units import FRICTION, METRICS
 from ddct_bringup.floor.objectives import OBJECTIVES, Objective
 from ddct_bringup.floor.replays.attained import signals_of_run
 from ddct_bringup.metrics.friction_work import friction_work
 from ddct_plant.base.errors import require_choice
 from ddct_plant.scenario.settings import RunSettings
-
-FRICTION = 'friction_energy'
-"""Metric whose bound has a closed form."""
-METRICS: Mapping[str, str] = {
-    **{name: objective.unit for name, objective in OBJECTIVES.items()},
-    FRICTION: 'J',
-}
-"""Units of the metrics that have a floor, by name."""
-OF_STICK_SLIP = 'slip_acceleration_at_lock'
-"""Metric that only a clutch that sticks has."""
 
 
 @dataclass(frozen=True)

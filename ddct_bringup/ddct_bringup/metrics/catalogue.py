@@ -10,7 +10,7 @@ batch, campaigns, report and pages take it from here.
 from ddct_bringup.metrics import control, figures, limited, table_5_1
 from ddct_bringup.metrics.metric import Metric
 from ddct_bringup.metrics.shift import quantities as shift
-from ddct_bringup.thesis.table_5_1 import TABLE_METRICS
+from ddct_bringup.thesis.table_metrics import TABLE_METRICS
 
 _DECLARED: tuple[Metric, ...] = (
     *figures.QUANTITIES,

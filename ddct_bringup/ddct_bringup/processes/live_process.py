@@ -14,8 +14,6 @@ from ddct_bringup.processes.supervisor import POLL_S
 from ddct_plant.base.errors import DdctError
 from ddct_plant.graph.domain import own_domain
 
-DEFAULT_PORT = 8765
-"""Default port of Foxglove's WebSocket connection."""
 VIEWER_SUBSCRIBED = 'a viewer shows'
 """Start of the line that `live` prints when a viewer subscribes to a topic."""
 ALL_TOPICS_RECEIVED = 'every topic of a tick has come'

@@ -6,18 +6,9 @@ import argparse
 import sys
 from pathlib import Path
 
-from ddct_bringup.benchmark.cases import Cases
-from ddct_bringup.benchmark.conduct import Options, carry_out_benchmark
-from ddct_bringup.benchmark.judged import Judged
-from ddct_bringup.benchmark.report import texts
-from ddct_bringup.benchmark.report.folder import PAGE, RESULT, document_of, write_result
-from ddct_bringup.benchmark.report.packaged import packaged_lines, packaged_tables
-from ddct_bringup.benchmark.report.printed import print_result
-from ddct_bringup.benchmark.result_types import Result
-from ddct_bringup.benchmark.update_times import read_update_times, write_update_times
-from ddct_bringup.campaign.rows import require_suitable
-from ddct_bringup.run.options import add_workers_option
-from ddct_controllers.registry import controller_spec
+from ddct_bringup.api import shell
+from ddct_bringup.benchmark.file_names import PAGE, RESULT
+from ddct_bringup.programs.options.of_runs import add_workers_option
 from ddct_plant.base.errors import DdctError, ParameterError, printable
 from ddct_plant.base.options import Option
 from ddct_plant.files.output_file import require_place
@@ -27,7 +18,6 @@ from ddct_plant.program.command_line import (
     run_program,
     show_and_write,
 )
-from ddct_plant.program.printed_table import print_note, print_tables
 from ddct_plant.program.supervision import stop_signals
 
 PROGRAM = 'ddct benchmark'
@@ -64,29 +54,29 @@ def _benchmark(argv: list[str]) -> int:
         raise ParameterError('give controllers and --out, or --packaged')
     if options.seed is not None:
         _SEED.checked('--seed', options.seed)
-    cases = Cases.packaged(quick=options.quick)
+    cases = shell.Cases.packaged(quick=options.quick)
     judged = _judged(options.controllers, cases)
     if judged is None:
         return 1
     with stop_signals() as stops:
-        given = Options(options.workers, lambda: bool(stops))
-        failed = carry_out_benchmark(judged, cases, options.out, options.seed, given)
-        write_update_times(
-            [each for each in judged if each.name not in failed], cases, options.out
+        result, _ = shell.judge_into(
+            judged,
+            cases,
+            options.out,
+            options.seed,
+            workers=options.workers,
+            stopped=lambda: bool(stops),
         )
-        result = write_result(options.out, failed)
     _show(result, options)
     return 1 if _complaints(result) else 0
 
 
-def _judged(names: list[str], cases: Cases) -> list[Judged] | None:
+def _judged(names: list[str], cases: 'shell.Cases') -> 'list[shell.Judged] | None':
     """Return the controllers; print a line for each that cannot be built, and return None."""
     found = []
-    settings = cases.planned.run(0).settings
     for name in names:
         try:
-            require_suitable(controller_spec(name), settings)
-            found.append(Judged.of(name))
+            found.append(shell.judged_of(name, cases))
         except DdctError as error:
             complain(PROGRAM, error)
     labels = [each.name for each in found]
@@ -95,7 +85,7 @@ def _judged(names: list[str], cases: Cases) -> list[Judged] | None:
     return found if len(found) == len(names) else None
 
 
-def _complaints(result: Result) -> bool:
+def _complaints(result: 'shell.Result') -> bool:
     """Print a line for each controller that has no result; return whether there is one."""
     found = False
     for judged in result.controllers:
@@ -110,27 +100,27 @@ def _complaints(result: Result) -> bool:
     return found
 
 
-def _show(result: Result, options: argparse.Namespace) -> None:
+def _show(result: 'shell.Result', options: argparse.Namespace) -> None:
     def show() -> None:
-        print_result(result, read_update_times(options.out))
-        for note in (*texts.notes_of(result), *texts.warnings_of(result)):
+        shell.print_result(result, shell.read_update_times(options.out))
+        for note in (*shell.notes_of(result), *shell.warnings_of(result)):
             print(printable(note))
         print(options.out / PAGE, flush=True)
 
-    show_and_write(options.json, document_of(result, options.out), show)
+    show_and_write(options.json, shell.document_of(result, options.out), show)
 
 
 def _show_packaged(options: argparse.Namespace) -> int:
     """Print or write the figures of the packaged controllers; they come with the release."""
     if options.controllers or options.out or options.quick or options.seed is not None:
         raise ParameterError('--packaged runs nothing: give it alone, or with --json')
-    tables = packaged_tables()
+    tables = shell.packaged_tables()
     document = {name: table.as_dict() for name, table in tables.items()}
 
     def show() -> None:
-        print_tables(tables.values())
-        for line in packaged_lines():
-            print_note(line)
+        shell.print_tables(tables.values())
+        for line in shell.packaged_lines():
+            shell.print_note(line)
 
     show_and_write(options.json, document, show)
     return 0

@@ -3,29 +3,25 @@
 """Program `bringup`: start the graph, wait for its end, stop it, leave one bag."""
 
 import argparse
-import sys
 from contextlib import nullcontext
 from functools import partial
 from pathlib import Path
 
-from ddct_bringup.processes.live_process import DEFAULT_PORT, live_view
-from ddct_bringup.run.execution import print_logs_with_warnings, run_with_progress
-from ddct_bringup.run.options import add_run_options, print_choices, scheduling_of
-from ddct_bringup.run.output_folder import StagedFolder, run_folder
-from ddct_bringup.run.plan import RunPlan
-from ddct_bringup.run.run_base import settings_of
-from ddct_bringup.scores.floors import NONE, add_floors_option, with_least
-from ddct_bringup.scores.run_notes import slow_notes
-from ddct_bringup.scores.scored_recording import ScoredRecording, run_and_score
-from ddct_bringup.scores.validity import realtime_summary
-from ddct_bringup.verdict.limits import Limits, add_limits_option, load_limits
-from ddct_controllers.registry import controller_label
+from ddct_bringup.api import shell
+from ddct_bringup.programs.options.of_runs import (
+    DEFAULT_PORT,
+    add_floors_option,
+    add_limits_option,
+    add_run_options,
+    scheduling_of,
+    settings_given,
+    wants_floors,
+)
 from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.program.command_line import ProgramParser, run_program
-from ddct_plant.scenario.differences import scenario_title
-from ddct_plant.signals.gain_changes import changes_note
+from ddct_plant.program.command_line import ProgramParser, complain, run_program
 
 PROGRAM = 'ddct bringup'
+_complain = partial(complain, PROGRAM)
 
 _EPILOG = """\
 examples:
@@ -50,57 +46,55 @@ def main(argv: list[str] | None = None) -> int:
 def _bringup(argv: list[str]) -> int:
     options = _parser().parse_args(argv)
     if options.list:
-        print_choices()
+        shell.print_choices()
         return 0
     if options.out is None:
         raise ParameterError('--out is missing: name the folder for the bag')
     if options.layout == 'processes':
-        # Only here: a headless run needs no processes.
-        from ddct_bringup.processes.fork_server import start_server
-
-        start_server()  # it imports while the run is planned
-    limits = load_limits(options.limits)
-    settings = settings_of(options, [controller_label(options.controller)])
-    plan = RunPlan(settings, options.controller, options.layout, scheduling_of(options))
+        shell.start_server()  # it imports while the run is planned
+    limits = shell.load_limits(options.limits)
+    (plan,) = shell.planned(
+        [options.controller],
+        options.layout,
+        _complain,
+        scheduling_of(options),
+        **settings_given(options),
+    )
+    shell.print_adjusted(plan.settings.scenario)
     if options.live is not None and plan.layout != 'processes':
         raise ParameterError(f'--live shows a process per node: drop it or --{plan.layout}')
-    with run_folder(options.out, plan.name, overwrite=options.overwrite) as folder:
-        _run(plan, folder, options, limits)
+
+    def execute(plan: 'shell.RunPlan', folder: Path) -> 'shell.Recording | None':
+        live = options.live is not None
+        with shell.live_view(options.live) if live else nullcontext() as view:
+            return shell.run_with_progress(plan, folder, live=view)
+
+    run = shell.keep_run(plan, options.out, limits, execute, overwrite=options.overwrite)
+    folder = run.path.parent
+    if not run.scores.valid:
+        _print_notes(run, folder)
+        raise DdctError(f'{folder}: not valid: {run.scores.reason}')
+    print(folder, flush=True)
+    _show(shell.with_least(run, limits) if wants_floors(options) else run, folder)
     return 0
 
 
-def _run(
-    plan: RunPlan,
-    folder: StagedFolder,
-    options: argparse.Namespace,
-    limits: Limits,
-) -> None:
-    with live_view(options.live) if options.live is not None else nullcontext() as live:
-        execute = partial(run_with_progress, live=live)
-        run = run_and_score(plan, folder.path, limits, execute)
+def _show(run: 'shell.ScoredRecording', folder: Path) -> None:
+    """Print the state of a valid run, and notes on it, on standard error."""
     scores = run.scores
-    if not scores.valid:
-        _print_notes(run, folder.path)
-        raise DdctError(f'{folder.path}: not valid: {scores.reason}')
-    folder.commit()
-    print(folder.final, flush=True)
-    if options.floors != NONE:
-        scores = with_least(run, limits).scores
-    if changes := scores.scenario_changes:
-        title = scenario_title(plan.settings.scenario.name, changes)
-        print(f'{PROGRAM}: {title}', file=sys.stderr)
-    _print_notes(run, folder.final)
-    for note in filter(None, (changes_note(scores.gain_changes), *slow_notes(scores))):
-        print(f'{PROGRAM}: {note}', file=sys.stderr)
-    why = f': {scores.why}' if scores.why else ''
-    print(f'{PROGRAM}: {scores.state}{why}', file=sys.stderr)
+    if scores.scenario_changes:
+        _complain(shell.scenario_title(scores.scenario or '', scores.scenario_changes))
+    _print_notes(run, folder)
+    for note in filter(None, (shell.changes_note(scores.gain_changes), *shell.slow_notes(scores))):
+        _complain(note)
+    _complain(f'{scores.state}{f": {scores.why}" if scores.why else ""}')
 
 
-def _print_notes(run: ScoredRecording, folder: Path) -> None:
+def _print_notes(run: 'shell.ScoredRecording', folder: Path) -> None:
     """Print the logs with warnings and the summary of a real-time run on standard error."""
-    print_logs_with_warnings(PROGRAM, [folder])
+    shell.print_logs_with_warnings(PROGRAM, [folder])
     if run.recording and not run.recording.facts.lockstep:
-        print(f'{PROGRAM}: {realtime_summary(run.recording)}', file=sys.stderr)
+        _complain(shell.realtime_summary(run.recording))
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -6,17 +6,13 @@ import argparse
 import sys
 from pathlib import Path
 
-from ddct_bringup.campaign.campaign import Campaign
-from ddct_bringup.campaign.conduct import PROGRAM, carry_out
-from ddct_bringup.campaign.spec import read_spec
-from ddct_bringup.campaign_report.folder import PAGE, write_campaign_page
-from ddct_bringup.campaign_report.printed_summary import print_summary
+from ddct_bringup.api import shell
 from ddct_bringup.programs import campaign_folder
-from ddct_bringup.run.options import add_workers_option
-from ddct_bringup.verdict.limits import add_limits_option, load_limits
+from ddct_bringup.programs.options.of_runs import add_limits_option, add_workers_option
 from ddct_plant.program.command_line import ProgramParser, run_program, run_subcommands
 from ddct_plant.program.supervision import stop_signals
 
+PROGRAM = 'ddct campaign'
 _COMMANDS = ('replay', 'show')
 """Subcommands for the folder of a campaign."""
 
@@ -46,20 +42,20 @@ def main(argv: list[str] | None = None) -> int:
 
 def _campaign(argv: list[str]) -> int:
     options = _parser().parse_args(argv)
-    campaign = Campaign(read_spec(options.spec))
+    campaign = shell.Campaign(shell.read_spec(options.spec))
     with stop_signals() as stops:
-        results = carry_out(
+        done = shell.carry_out_campaign(
             campaign,
-            load_limits(options.limits),
+            shell.load_limits(options.limits),
             options.out,
             workers=options.workers,
             scheduler=options.scheduler,
             resume=options.resume,
             stopped=lambda: bool(stops),
         )
-    print_summary(write_campaign_page(options.out), options.out)
-    print(results)
-    print(options.out / PAGE, flush=True)
+    shell.print_summary(done.summary, options.out)
+    print(done.rows)
+    print(done.page, flush=True)
     return 0
 
 

@@ -9,7 +9,7 @@ from functools import partial
 from rclpy.utilities import remove_ros_args
 
 from ddct_bringup.live.live_node import LiveNode
-from ddct_bringup.processes.live_process import DEFAULT_PORT
+from ddct_bringup.programs.options.of_runs import DEFAULT_PORT
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.graph.spin import run_node
 from ddct_plant.program.command_line import ProgramParser, run_program

@@ -8,29 +8,16 @@ import time
 from functools import partial
 from pathlib import Path
 
-from ddct_bringup.campaign.scored import ScoredRow
-from ddct_bringup.metrics.catalogue import METRICS, TABLE_5_1
-from ddct_bringup.run.options import (
+from ddct_bringup.api import shell
+from ddct_bringup.programs.options.of_runs import (
     ALL,
     add_controllers_option,
+    add_limits_option,
     add_settings_options,
-    controllers_of,
-    metrics_of,
-    print_choices,
+    settings_given,
 )
-from ddct_bringup.run.run_base import base_of
-from ddct_bringup.sweep.axis import axis_of
-from ddct_bringup.sweep.sweep import (
-    Sweep,
-    sweep_csv,
-    sweep_document,
-    sweep_notes,
-    sweep_table,
-)
-from ddct_bringup.verdict.limits import add_limits_option, load_limits
-from ddct_controllers.registry import controller_label, working_controllers
+from ddct_bringup.thesis.table_metrics import TABLE_METRICS
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.files.json_records import write_json
 from ddct_plant.files.output_file import (
     STDOUT,
     require_one_for_stdout,
@@ -39,10 +26,9 @@ from ddct_plant.files.output_file import (
     write_text,
 )
 from ddct_plant.program.command_line import ProgramParser, complain, run_program
-from ddct_plant.program.printed_table import print_note, print_table
-from ddct_plant.program.progress import with_progress
 
 PROGRAM = 'ddct sweep'
+_complain = partial(complain, PROGRAM)
 _MOST_DRAWN = 2
 _EPILOG = """\
 examples:
@@ -65,57 +51,43 @@ def main(argv: list[str] | None = None) -> int:
 def _sweep(argv: list[str]) -> int:
     options = _parser().parse_args(argv)
     if options.list:
-        print_choices()
+        shell.print_choices()
         return 0
     if not options.over:
         raise ParameterError('--over is missing: give KEY=START:STOP:COUNT')
-    metrics = [METRICS[name] for name in metrics_of('--metrics', options.metrics, METRICS)]
+    metrics = shell.metrics_called('--metrics', options.metrics)
     require_one_for_stdout(options.json, options.csv)
     require_place('--json', options.json)
     require_place('--csv', options.csv)
     if options.figure:
         _require_picture(options.figure, len(options.over))
-    sweep = _planned(options)
-    runs = _carried_out(sweep)
+    sweep = shell.planned_sweep(
+        None if options.controllers == ALL else shell.controllers_of(options.controllers),
+        [shell.axis_of(text) for text in options.over],
+        shell.load_limits(options.limits),
+        _complain,
+        **settings_given(options),
+    )
+    for line in sweep.first.scenario.adjusted:
+        _complain(f'at the first point {line}')
+    started = time.perf_counter()
+    with sweep.runs() as each:
+        runs = list(shell.with_progress(each, len(sweep), f'{len(sweep)} runs'))
+    _complain(f'{len(runs)} runs in {time.perf_counter() - started:.1f} s')
     if options.json:
-        write_json(options.json, sweep_document(sweep, runs))
+        shell.write_json(options.json, shell.sweep_document(sweep, runs))
     if options.csv:
-        write_text(options.csv, sweep_csv(runs))
+        write_text(options.csv, shell.sweep_csv(runs))
     stream = sys.stderr if STDOUT in (options.json, options.csv) else sys.stdout
-    print_table(sweep_table(sweep, runs, metrics), stream)
-    for text in sweep_notes(runs):
-        print_note(text, stream)
+    shell.print_table(shell.sweep_table(sweep, runs, metrics), stream)
+    for text in shell.sweep_notes(runs):
+        shell.print_note(text, stream)
     if options.figure:
-        # Only here: matplotlib takes long to import.
-        from ddct_bringup.sweep.sweep_figure import write_sweep_figure
-
-        write_sweep_figure(sweep, runs, metrics, Path(options.figure))
+        shell.write_sweep_figure(sweep, runs, metrics, Path(options.figure))
     failed = sum(not run.scores.valid for run in runs)
     if failed:
-        complain(PROGRAM, f'{failed} of {len(runs)} runs are not valid: the lines above say why')
+        _complain(f'{failed} of {len(runs)} runs are not valid: the lines above say why')
     return 1 if failed else 0
-
-
-def _planned(options: argparse.Namespace) -> Sweep:
-    """Return the sweep that the options describe; print its adjusted values on standard error."""
-    names = controllers_of(options.controllers)
-    base = base_of(options, [controller_label(name) for name in names])
-    axes = [axis_of(text) for text in options.over]
-    if options.controllers == ALL:
-        first = base.at({axis.key: axis.values[0] for axis in axes})
-        names = working_controllers(first, partial(complain, PROGRAM))
-    sweep = Sweep(base, axes, names, load_limits(options.limits))
-    for line in sweep.first.scenario.adjusted:
-        complain(PROGRAM, f'at the first point {line}')
-    return sweep
-
-
-def _carried_out(sweep: Sweep) -> list[ScoredRow]:
-    started = time.perf_counter()
-    with sweep.runs() as runs:
-        done = list(with_progress(runs, len(sweep), f'{len(sweep)} runs'))
-    complain(PROGRAM, f'{len(done)} runs in {time.perf_counter() - started:.1f} s')
-    return done
 
 
 def _require_picture(target: str, keys: int) -> None:
@@ -143,7 +115,7 @@ def _parser() -> argparse.ArgumentParser:
     add_controllers_option(parser)
     parser.add_argument(
         '--metrics',
-        default=','.join(figure.key for figure in TABLE_5_1),
+        default=','.join(TABLE_METRICS),
         metavar='A,B,...',
         help='metrics for table and figure, named as in scores.json; default: %(default)s',
     )

@@ -6,20 +6,15 @@ import argparse
 import sys
 from pathlib import Path
 
-from ddct_bringup.run.options import add_workers_option
-from ddct_bringup.tuning.conduct import PROGRAM, carry_out_tuning
-from ddct_bringup.tuning.report.folder import PAGE, RESULT, write_tuning
-from ddct_bringup.tuning.report.printed import print_tuning
-from ddct_bringup.tuning.search import require_optuna
-from ddct_bringup.tuning.specification.spec import packaged_specs, read_tuning_spec
-from ddct_bringup.tuning.tuned_files import BEST
-from ddct_bringup.tuning.tuning import tuning_of
-from ddct_bringup.verdict.limits import packaged_limits
-from ddct_controllers.registry import controller_spec
+from ddct_bringup.api import shell
+from ddct_bringup.programs.options.of_runs import add_workers_option
+from ddct_bringup.tuning.specification.packaged_specs import packaged_specs
+from ddct_bringup.tuning.tuned_names import BEST, PAGE, RESULT
 from ddct_plant.files.output_file import require_place
 from ddct_plant.program.command_line import ProgramParser, run_program, show_and_write
 from ddct_plant.program.supervision import stop_signals
 
+PROGRAM = 'ddct tune'
 _EPILOG = f"""\
 examples:
   ddct tune --controller pi --spec pi_launches --out tuned/pi      a packaged specification
@@ -44,23 +39,19 @@ def main(argv: list[str] | None = None) -> int:
 def _tune(argv: list[str]) -> int:
     options = _parser().parse_args(argv)
     require_place('--json', options.json)
-    require_optuna()
-    spec = read_tuning_spec(options.spec, controller_spec(options.controller))
-    tuning = tuning_of(options.controller, spec, packaged_limits())
+    shell.require_optuna()
     with stop_signals() as stops:
-
-        def stopped() -> bool:
-            return bool(stops)
-
-        trials = carry_out_tuning(
-            tuning, options.out, workers=options.workers, resume=options.resume, stopped=stopped
-        )
-        result = write_tuning(
-            tuning, options.out, trials, workers=options.workers, stopped=stopped
+        result = shell.tune_into(
+            options.controller,
+            options.spec,
+            options.out,
+            workers=options.workers,
+            resume=options.resume,
+            stopped=lambda: bool(stops),
         )
 
     def show() -> None:
-        print_tuning(result)
+        shell.print_tuning(result)
         print(options.out / BEST)
         print(options.out / PAGE, flush=True)
 

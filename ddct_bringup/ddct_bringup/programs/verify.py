@@ -9,8 +9,9 @@ from pathlib import Path
 from typing import Any
 
 from ddct_bringup.digests.digest_file import DIGESTS, read_digests
+from ddct_bringup.programs.options.of_runs import add_limits_option
 from ddct_bringup.run.output_folder import locked_folders
-from ddct_bringup.verdict.limits import add_limits_option, load_limits
+from ddct_bringup.verdict.limits import load_limits
 from ddct_bringup.verification.comparison import BOUND
 from ddct_bringup.verification.folder import (
     Verification,

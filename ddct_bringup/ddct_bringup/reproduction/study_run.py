@@ -14,7 +14,7 @@ from ddct_bringup.run.execution import recording_in_memory
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.scores.scoring import score_run
-from ddct_bringup.thesis.table_5_1 import TABLE_METRICS
+from ddct_bringup.thesis.table_metrics import TABLE_METRICS
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_controllers.interface import Command, Controller, Measurement
 from ddct_plant.base.units import rpm_from_rad_s

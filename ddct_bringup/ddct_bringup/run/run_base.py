@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Settings of runs from a scenario, changed keys and options; the only constructor of them."""
 
-import argparse
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -10,7 +9,6 @@ from typing import Any
 from ddct_controllers.registry import require_known_controllers
 from ddct_plant.base.clutch_kinds import LINEAR
 from ddct_plant.base.options import options_of
-from ddct_plant.scenario.chosen import print_adjusted
 from ddct_plant.scenario.file import ScenarioFile
 from ddct_plant.scenario.overrides import parsed_override
 from ddct_plant.scenario.scenario import Scenario
@@ -103,25 +101,10 @@ def _is_known(key: str, drawn: Collection[str]) -> bool:
     return section in _KNOWN and not (section == 'sensors' and key in drawn)
 
 
-def base_of(options: argparse.Namespace, labels: Sequence[str]) -> RunBase:
-    """Return the common settings of runs with these controllers from program options."""
+def changes_of(overrides: Sequence[str]) -> dict[str, object]:
+    """Return the values by dotted key of overrides KEY=VALUE; raise DdctError for another text."""
     changes: dict[str, object] = {}
-    for key, value in map(parsed_override, options.overrides):
+    for key, value in map(parsed_override, overrides):
         changes.pop(key, None)  # the last of a repeated key counts, in its place
         changes[key] = value
-    if options.duration is not None:
-        changes['duration_s'] = options.duration
-    settings = {name: getattr(options, name) for name in _SETTINGS}
-    return RunBase(ScenarioFile.read(options.scenario), changes, settings, labels)
-
-
-def settings_of(options: argparse.Namespace, labels: Sequence[str]) -> RunSettings:
-    """
-    Return the settings of one run, or of runs, with the controllers called `labels`.
-
-    Print adjusted values of the scenario on standard error. Raise DdctError for values that
-    cannot be used.
-    """
-    settings = base_of(options, labels).at()
-    print_adjusted(settings.scenario)
-    return settings
+    return changes

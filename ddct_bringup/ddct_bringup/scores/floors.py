@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Peak jerk of a run over the least of its case: the share of the drive apart from its own."""
 
-import argparse
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -23,7 +22,6 @@ from ddct_plant.base.timebase import steps_in
 from ddct_plant.program.progress import with_progress
 from ddct_plant.scenario.settings import RunSettings
 
-USUAL, NONE = 'usual', 'none'
 PEAK_JERK = 'peak_jerk'
 """Metric of `ddct limit` whose least a run is compared with."""
 _MOST_PERIODS = 500
@@ -35,23 +33,8 @@ The program grows with each period: twice as many take about five times as long.
 _NO_INSTANT = 'the run has no final lock after the start of feedback'
 
 
-def add_floors_option(parser: argparse.ArgumentParser, default: str = USUAL) -> None:
-    """Add the option --floors to a parser."""
-    parser.add_argument(
-        '--floors',
-        default=default,
-        choices=(USUAL, NONE),
-        help='whether to compare the peak jerk with the least of its case, see docs/use/limit.md; '
-        'default: %(default)s',
-    )
-
-
-def with_floors(
-    runs: Sequence[ScoredRecording], limits: Limits, floors: str
-) -> list[ScoredRecording]:
-    """Return runs with `peak_jerk_over_least`, with their progress; as they are for NONE."""
-    if floors == NONE:
-        return [*runs]
+def with_floors(runs: Sequence[ScoredRecording], limits: Limits) -> list[ScoredRecording]:
+    """Return runs with `peak_jerk_over_least`; print the progress."""
     return [with_least(run, limits) for run in with_progress(runs, len(runs), 'floors')]
 
 

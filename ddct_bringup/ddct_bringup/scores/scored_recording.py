@@ -36,6 +36,13 @@ class ScoredRecording:
     """Times on the wall clock, and counts; None without a `timing.json`."""
 
     @property
+    def path(self) -> Path:
+        """Path of the MCAP file; raise DdctError where the bag cannot be read."""
+        if self.recording is None:
+            raise DdctError(f'{self.scores.bag}: cannot be read: {self.scores.reason}')
+        return self.recording.path
+
+    @property
     def measured(self) -> bool:
         """Whether it is the log of a car."""
         return self.recording is not None and self.recording.measured

@@ -4,6 +4,7 @@
 
 from dataclasses import dataclass
 
+from ddct_bringup.thesis.table_metrics import TABLE_METRICS
 from ddct_plant.scenario.file import load_scenario, scenario_digest
 from ddct_plant.scenario.settings import RunSettings
 
@@ -48,8 +49,6 @@ class ThesisRow:
         return 'hit' if self.hit(name, value) else 'miss'
 
 
-TABLE_METRICS = ('engagement_time_s', 'torsion_speed_std_rpm', 'acceleration_std_m_s2')
-"""Metrics of Table 5.1, in the order of its columns."""
 FORMS = dict(zip(TABLE_METRICS, ('.3f', '.2f', '.3f'), strict=True))
 """Formats of the computed values by metric."""
 TOLERANCES = dict(zip(TABLE_METRICS, (0.05, 0.10, 0.10), strict=True))

@@ -18,7 +18,8 @@ from ddct_bringup.tuning.sensitivity import ParameterEffect, effects_on
 from ddct_bringup.tuning.specification.goals import MINIMISE, RunColumns
 from ddct_bringup.tuning.specification.spec import TuningSpec
 from ddct_bringup.tuning.trial import FEASIBLE, Trial
-from ddct_bringup.tuning.tuned_files import BEST, trial_file
+from ddct_bringup.tuning.tuned_files import trial_file
+from ddct_bringup.tuning.tuned_names import BEST
 from ddct_bringup.tuning.tuning import Tuning
 
 SCHEMA_VERSION = 1

@@ -8,12 +8,12 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ddct_bringup.tuning.trial import Trial
+from ddct_bringup.tuning.tuned_names import BEST, FRONT_FOLDER
 from ddct_bringup.tuning.tuning import Tuning
 from ddct_controllers.from_file.controller_file import is_controller_file
 from ddct_controllers.from_file.with_options import with_options_text
 from ddct_plant.files.output_file import write_text
 
-FRONT_FOLDER, BEST = 'front', 'best.yaml'
 _LONGEST = 24
 """Largest number of characters of the controller's name in that of a trial."""
 

@@ -6,7 +6,6 @@ Thresholds of the states and limits of metrics, read from a limits file.
 Every error in a limits file is reported with file, line and key.
 """
 
-import argparse
 import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -118,16 +117,6 @@ def packaged_limits() -> Limits:
     """Return the limits of the package, named `packaged`."""
     file = files('ddct_bringup.verdict') / 'limits.yaml'
     return limits_of_text(file.read_text(encoding='utf-8'), 'packaged')
-
-
-def add_limits_option(parser: argparse.ArgumentParser) -> None:
-    """Add the option --limits to a parser; its value is an argument of `load_limits`."""
-    parser.add_argument(
-        '--limits',
-        type=Path,
-        metavar='FILE',
-        help='limits to judge runs by, see docs/use/verdict.md; default: the packaged ones',
-    )
 
 
 def load_limits(file: str | Path | None) -> Limits:

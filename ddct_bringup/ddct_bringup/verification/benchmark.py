@@ -8,10 +8,11 @@ from pathlib import Path
 
 from ddct_bringup.benchmark.cases import Cases, packaged_folder
 from ddct_bringup.benchmark.conduct import campaigns_of
+from ddct_bringup.benchmark.file_names import RESULT
 from ddct_bringup.benchmark.judged import Judged
 from ddct_bringup.benchmark.manifest import MANIFEST, BenchmarkManifest, JudgedEntry
 from ddct_bringup.benchmark.release import ROWS, release_rows
-from ddct_bringup.benchmark.report.folder import RESULT, result_in
+from ddct_bringup.benchmark.report.folder import result_in
 from ddct_bringup.campaign.manifest import Manifest
 from ddct_bringup.digests.digest_file import read_digests
 from ddct_bringup.verification.campaign import verified_campaign

@@ -32,11 +32,11 @@ from ddct_bringup.tuning.record import (
     read_json,
     trials_of,
 )
-from ddct_bringup.tuning.report.folder import RESULT
 from ddct_bringup.tuning.result import result_of
 from ddct_bringup.tuning.specification.goals import UPDATE_TIME
 from ddct_bringup.tuning.trial import Trial
 from ddct_bringup.tuning.tuned_files import tuned_files
+from ddct_bringup.tuning.tuned_names import RESULT
 from ddct_bringup.tuning.tuning import Tuning
 from ddct_bringup.verification.campaign import verified_campaign
 from ddct_bringup.verification.comparison import Comparison, plain_json

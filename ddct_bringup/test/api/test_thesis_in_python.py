@@ -17,7 +17,8 @@ from ddct_bringup.api import (
 )
 from ddct_bringup.api import thesis as module
 from ddct_bringup.reproduction.numbers.thesis_number import Value
-from ddct_bringup.thesis.table_5_1 import TABLE_METRICS, THESIS_TABLE
+from ddct_bringup.thesis.table_5_1 import THESIS_TABLE
+from ddct_bringup.thesis.table_metrics import TABLE_METRICS
 
 
 @pytest.fixture(autouse=True)

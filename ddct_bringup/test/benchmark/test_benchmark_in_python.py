@@ -9,7 +9,7 @@ import pytest
 from small_benchmark import use_small_release
 
 from ddct_bringup.api import DdctError, benchmark
-from ddct_bringup.benchmark.report.folder import RESULT
+from ddct_bringup.benchmark.file_names import RESULT
 
 pytestmark = pytest.mark.slow
 GAIN = """\

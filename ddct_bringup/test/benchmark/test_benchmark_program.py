@@ -29,10 +29,10 @@ from verified import copied, edit_json_with_digest, states, verified
 from ddct_bringup.benchmark.cases import Cases
 from ddct_bringup.benchmark.conduct import AGAIN, Options, carry_out_benchmark
 from ddct_bringup.benchmark.evaluated import MAIN
+from ddct_bringup.benchmark.file_names import PAGE, RESULT
 from ddct_bringup.benchmark.judged import Judged
 from ddct_bringup.benchmark.release import ROWS, write_release_rows
 from ddct_bringup.benchmark.report import page as page_module
-from ddct_bringup.benchmark.report.folder import PAGE, RESULT
 from ddct_bringup.benchmark.report.rules import NO_GAIN, left_open_here, states_that_count
 from ddct_bringup.benchmark.result_types import Result
 from ddct_bringup.digests.origin import CodeOrigin

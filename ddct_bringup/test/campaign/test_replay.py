@@ -110,7 +110,7 @@ def test_every_row_of_a_campaign_replays_to_the_last_bit(
 def test_a_replay_that_differs_ends_with_exit_code_1_and_the_differences(
     folder: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr('ddct_bringup.programs.campaign_folder.read_row', _another_row)
+    monkeypatch.setattr('ddct_bringup.api.shell.campaigns.read_row', _another_row)
     assert replay(folder, '--index', '0', '--overwrite') == 1
     assert 'run 0: state is ' in capfd.readouterr().err
 

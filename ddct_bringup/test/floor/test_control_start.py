@@ -10,7 +10,7 @@ from ddct_bringup.floor.dynamics.start import start_of
 from ddct_bringup.report.front_view import front_view
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.run.plan import RunPlan
-from ddct_bringup.scores.floors import USUAL, with_floors
+from ddct_bringup.scores.floors import with_floors
 from ddct_bringup.scores.scored_recording import simulate_and_score
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.base.errors import ParameterError
@@ -43,7 +43,7 @@ def test_one_simulation_up_to_control_start_serves_a_comparison_and_its_report(s
     for controller in ('pi', 'ls8', 'mpc3'):
         plan = RunPlan(settings_of(), controller, 'headless')
         runs.append(simulate_and_score(plan, packaged_limits()))
-    assert front_view(with_floors(runs, packaged_limits(), USUAL)) is not None
+    assert front_view(with_floors(runs, packaged_limits())) is not None
     assert simulated == [settings_of().scenario.control_start_step]
 
 

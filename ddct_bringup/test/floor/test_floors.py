@@ -20,10 +20,11 @@ from ddct_bringup.floor.floor import floor_of, floors_of_run
 from ddct_bringup.floor.friction_work import least_friction_work
 from ddct_bringup.floor.front import least_lock_time
 from ddct_bringup.floor.lock import Lock, final_lock_of, lock_of
+from ddct_bringup.floor.metric_units import METRICS, OF_STICK_SLIP
 from ddct_bringup.floor.point import point_of
 from ddct_bringup.floor.program.linear_program import RAY
 from ddct_bringup.floor.replays import attained, replay
-from ddct_bringup.floor.values import METRICS, OF_STICK_SLIP, value_of
+from ddct_bringup.floor.values import value_of
 from ddct_bringup.run.execution import recording_in_memory
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.scores.scoring import score_run

@@ -48,9 +48,7 @@ RATIOS = {
 }
 """Last lock in s, peak jerk in m/s^3 and its ratio to the least at that time, by controller."""
 WITHIN = 0.02
-RAW_JERK = Peak(
-    'm/s^3', lambda signals: 100.0 * np.diff(signals.acceleration[..., signals.start :])
-)
+RAW_JERK = Peak(lambda signals: 100.0 * np.diff(signals.acceleration[..., signals.start :]))
 
 
 class GivenTorques(Case):

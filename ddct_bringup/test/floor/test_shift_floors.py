@@ -14,8 +14,9 @@ from ddct_bringup.floor.case import case_at, case_of_run
 from ddct_bringup.floor.control_start import control_start
 from ddct_bringup.floor.floor import floor_of, floors_of_run
 from ddct_bringup.floor.lock import lock_of
+from ddct_bringup.floor.metric_units import METRICS
 from ddct_bringup.floor.point import point_of
-from ddct_bringup.floor.values import METRICS, value_of
+from ddct_bringup.floor.values import value_of
 from ddct_bringup.metrics.shift.course import ShiftCourse
 from ddct_bringup.metrics.signals.vibration import jerk
 from ddct_bringup.run.execution import recording_in_memory

@@ -11,9 +11,9 @@ import pytest
 
 from ddct_bringup.benchmark import cases, conduct, release
 from ddct_bringup.benchmark.cases import SPECIFICATION, Cases
+from ddct_bringup.benchmark.file_names import PAGE, RESULT
 from ddct_bringup.benchmark.release import write_release_rows
 from ddct_bringup.benchmark.report import packaged
-from ddct_bringup.benchmark.report.folder import PAGE, RESULT
 from ddct_bringup.digests.digest_file import DIGESTS
 from ddct_bringup.programs import benchmark
 from ddct_bringup.run.headless import run_headless

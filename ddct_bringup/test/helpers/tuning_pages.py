@@ -7,7 +7,7 @@ from pathlib import Path
 from printed_commands import printed_commands
 
 from ddct_bringup.bag.reader import read_bag
-from ddct_bringup.tuning.report.folder import PAGE
+from ddct_bringup.tuning.tuned_names import PAGE
 from ddct_plant.scenario.settings import RunSettings
 
 FILE = 'name: mine\nwith_options: {controller: pi, options: {%s}}\n'

@@ -10,7 +10,7 @@ from ddct_bringup.report.evidence import evidence_of
 from ddct_bringup.report.front_view import front_view
 from ddct_bringup.report.page import report_page
 from ddct_bringup.run.plan import RunPlan
-from ddct_bringup.scores.floors import NONE, USUAL, with_floors
+from ddct_bringup.scores.floors import with_floors
 from ddct_bringup.scores.scored_recording import ScoredRecording, simulate_and_score
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.scenario.file import load_scenario
@@ -25,11 +25,12 @@ LESS = 3e-4
 """Share by which a bound with a certificate may be below the least, printed with four digits."""
 
 
-def runs_of(*controllers: str, floors: str = USUAL) -> list[ScoredRecording]:
+def runs_of(*controllers: str, floors: bool = True) -> list[ScoredRecording]:
     """Return runs in `launch` with their jerk over the least."""
     settings = RunSettings(load_scenario('launch'), clutch='stick_slip')
     plans = [RunPlan(settings, each, 'headless') for each in controllers]
-    return with_floors([simulate_and_score(plan, LIMITS) for plan in plans], LIMITS, floors)
+    scored = [simulate_and_score(plan, LIMITS) for plan in plans]
+    return with_floors(scored, LIMITS) if floors else scored
 
 
 @pytest.fixture(scope='module')
@@ -86,6 +87,6 @@ def test_on_the_logarithmic_scale_the_distance_from_the_least_is_the_ratio(runs)
 
 
 def test_without_a_least_there_is_no_drawing() -> None:
-    runs = runs_of('ls8', floors=NONE)
+    runs = runs_of('ls8', floors=False)
     assert front_view(runs, LIMITS.rules) is None
     assert '<svg class="floor-front"' not in report_page(runs, evidence_of(runs), LIMITS)

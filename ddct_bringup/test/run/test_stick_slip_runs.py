@@ -9,9 +9,9 @@ import pytest
 from refusals import refused
 
 from ddct_bringup import api
+from ddct_bringup.api.arguments import run_settings
+from ddct_bringup.programs.options.of_runs import add_run_options, settings_given
 from ddct_bringup.run.headless import run_headless
-from ddct_bringup.run.options import add_run_options
-from ddct_bringup.run.run_base import settings_of
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.models.load import RoadLoad
 from ddct_plant.models.static_torque import StaticTorque
@@ -219,6 +219,6 @@ def test_a_driveline_too_fast_for_a_clutch_that_sticks_is_refused_before_the_run
     add_run_options(parser)
     options = parser.parse_args(['--scenario', str(path), '--clutch', 'stick_slip'])
     with refused(ParameterError, 'driveline.shaft_inertia', place):
-        settings_of(options, [])
+        run_settings([], **settings_given(options))
     with refused(ParameterError, 'driveline.shaft_inertia', place):
         api.run('pi', scenario=path, clutch='stick_slip')

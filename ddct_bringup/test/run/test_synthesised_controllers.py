@@ -11,7 +11,8 @@ from tight_tolerance import tight_tolerance_run
 from ddct_bringup.metrics.metric import Metrics
 from ddct_bringup.metrics.values import compute_metrics
 from ddct_bringup.run.headless import run_headless
-from ddct_bringup.thesis.table_5_1 import TABLE_METRICS, thesis_row
+from ddct_bringup.thesis.table_5_1 import thesis_row
+from ddct_bringup.thesis.table_metrics import TABLE_METRICS
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 

@@ -13,7 +13,7 @@ from ddct_bringup.floor.control_start import control_start
 from ddct_bringup.floor.floor import floor_of, floor_of_case
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.scores.csv_text import score_row
-from ddct_bringup.scores.floors import NONE, with_floors, with_least
+from ddct_bringup.scores.floors import with_least
 from ddct_bringup.scores.scored_recording import ScoredRecording, simulate_and_score
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.verdict.limits import Limits, packaged_limits
@@ -122,8 +122,6 @@ def test_the_ratio_depends_on_the_final_lock_and_not_on_what_else_the_run_did() 
 def test_without_floors_nothing_is_computed() -> None:
     plan = RunPlan(settings_of('launch', 'stick_slip'), 'ls8', 'headless')
     run = simulate_and_score(plan, packaged_limits())
-    (same,) = with_floors([run], packaged_limits(), NONE)
-    assert same is run
     assert run.scores.metrics['peak_jerk_over_least'] is None
     assert run.scores.null_reasons['peak_jerk_over_least'] == 'the least was not computed'
 

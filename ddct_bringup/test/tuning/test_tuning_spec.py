@@ -8,8 +8,9 @@ from typing import Any
 import pytest
 from refusals import refused
 
+from ddct_bringup.tuning.specification.packaged_specs import packaged_specs
 from ddct_bringup.tuning.specification.parameters import Parameter
-from ddct_bringup.tuning.specification.spec import packaged_specs, read_tuning_spec, tuning_spec_of
+from ddct_bringup.tuning.specification.spec import read_tuning_spec, tuning_spec_of
 from ddct_controllers.registry import controller_spec
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.option import Option

@@ -7,7 +7,7 @@ from shift_cases import require_all_controllers_start_alike
 from shift_cases import settings_of as shift_of
 
 from ddct_bringup.floor.floor import floors_of_run
-from ddct_bringup.floor.values import METRICS, OF_STICK_SLIP
+from ddct_bringup.floor.metric_units import METRICS, OF_STICK_SLIP
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.scores.floors import with_least

@@ -9,7 +9,7 @@ from printed_commands import run_printed
 from small_tuning import made_tuning
 from tuning_pages import ENGAGED, FILE, VARIED, commands_of, compared_settings
 
-from ddct_bringup.tuning.report.folder import PAGE
+from ddct_bringup.tuning.tuned_names import PAGE
 
 
 def test_of_several_scenarios_the_command_has_the_first_and_the_page_names_the_others(

@@ -13,11 +13,8 @@ from ddct_bringup.benchmark.judged import Judged
 from ddct_bringup.campaign.columns import schema_of
 from ddct_bringup.tuning.manifest import MANIFEST, TuningManifest
 from ddct_bringup.tuning.record import RUNS, TRIALS, read_entries, rows_bytes, trials_of
-from ddct_bringup.tuning.specification.spec import (
-    packaged_specs,
-    read_tuning_spec,
-    tuning_spec_of,
-)
+from ddct_bringup.tuning.specification.packaged_specs import packaged_specs
+from ddct_bringup.tuning.specification.spec import read_tuning_spec, tuning_spec_of
 from ddct_bringup.tuning.trial import Trial
 from ddct_bringup.tuning.tuning import Tuning
 from ddct_bringup.verdict.limits import packaged_limits

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from ddct_bringup.benchmark.conduct import JudgedRows, read_judged_rows
+from ddct_bringup.benchmark.file_names import PAGE, RESULT
 from ddct_bringup.benchmark.manifest import BenchmarkManifest
 from ddct_bringup.benchmark.release import release_rows
 from ddct_bringup.benchmark.report.page import benchmark_page
@@ -18,7 +19,6 @@ from ddct_bringup.run.output_folder import locked_folders
 from ddct_plant.files.json_records import write_json
 from ddct_plant.files.output_file import write_text
 
-RESULT, PAGE = 'result.json', 'report.html'
 _NOTHING: Mapping[str, str] = {}
 
 

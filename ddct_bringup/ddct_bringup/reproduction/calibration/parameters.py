@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ddct_bringup.reproduction.calibration.record_types import ResidualEntry
-from ddct_bringup.thesis.table_5_1 import CALIBRATED, TABLE_METRICS, THESIS_TABLE, TOLERANCES
+from ddct_bringup.thesis.table_5_1 import CALIBRATED, THESIS_TABLE, TOLERANCES
+from ddct_bringup.thesis.table_metrics import TABLE_METRICS
 from ddct_controllers.design.analysis.loops import sampled_plant
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.base.timebase import PERIOD_S

@@ -19,7 +19,8 @@ from ddct_bringup.reproduction.values.orders import (
     rows_of_table_5_2,
 )
 from ddct_bringup.thesis.predictions import Prediction, Predictions, Value
-from ddct_bringup.thesis.table_5_1 import PREDICTED_ROWS, TABLE_METRICS
+from ddct_bringup.thesis.table_5_1 import PREDICTED_ROWS
+from ddct_bringup.thesis.table_metrics import TABLE_METRICS
 from ddct_plant.scenario.file import scenario_digest
 from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings

@@ -30,7 +30,7 @@ from ddct_bringup.reproduction.calibration.parameters import (
 )
 from ddct_bringup.reproduction.calibration.record_types import FitEntry
 from ddct_bringup.reproduction.study_run import study_run
-from ddct_bringup.thesis.table_5_1 import TABLE_METRICS
+from ddct_bringup.thesis.table_metrics import TABLE_METRICS
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.units import rad_s_from_rpm
 from ddct_plant.models.engine import TorqueProfile

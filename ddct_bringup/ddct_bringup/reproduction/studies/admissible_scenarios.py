@@ -25,13 +25,8 @@ from ddct_bringup.reproduction.study_run import (
 )
 from ddct_bringup.reproduction.values.orders import OSCILLATION_RATINGS, SLIP_RATINGS, WORN
 from ddct_bringup.thesis.predictions import Prediction, kept_predictions
-from ddct_bringup.thesis.table_5_1 import (
-    FORMS,
-    PREDICTED_ROWS,
-    ROW_OF,
-    TABLE_METRICS,
-    ThesisRow,
-)
+from ddct_bringup.thesis.table_5_1 import FORMS, PREDICTED_ROWS, ROW_OF, ThesisRow
+from ddct_bringup.thesis.table_metrics import TABLE_METRICS
 from ddct_controllers.mpc.costs import TABLE_4_1
 from ddct_controllers.mpc.estimators import FULL
 from ddct_plant.program.table import text_or_dash

@@ -25,7 +25,8 @@ from ddct_bringup.reproduction.values.orders import (
     text,
 )
 from ddct_bringup.reproduction.values.plant_values import deviation_bound_percent
-from ddct_bringup.thesis.table_5_1 import ROW_OF, TABLE_METRICS
+from ddct_bringup.thesis.table_5_1 import ROW_OF
+from ddct_bringup.thesis.table_metrics import TABLE_METRICS
 
 LOOP_SHAPING = tuple(f'ls{number}' for number in range(1, 10))
 H_INFINITY = ('hinf1', 'hinf2', 'hinf3')

@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from ddct_bringup.reproduction.numbers.thesis_number import Finding
 from ddct_bringup.reproduction.study_run import StudyRun, thesis_run
-from ddct_bringup.thesis.table_5_1 import TABLE_METRICS
+from ddct_bringup.thesis.table_metrics import TABLE_METRICS
 from ddct_plant.base.timebase import steps_in
 
 CLEARLY = 2.0

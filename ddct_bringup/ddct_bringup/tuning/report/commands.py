@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ddct_bringup.campaign.keys import SCENARIO, run_options
-from ddct_bringup.tuning.tuned_files import BEST
+from ddct_bringup.tuning.tuned_names import BEST
 from ddct_bringup.tuning.tuning import Tuning
 from ddct_plant.scenario.file import is_packaged
 

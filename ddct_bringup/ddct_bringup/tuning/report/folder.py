@@ -21,14 +21,13 @@ from ddct_bringup.tuning.report.page import tuning_page
 from ddct_bringup.tuning.result import TuningResult, result_of
 from ddct_bringup.tuning.trial import Trial
 from ddct_bringup.tuning.tuned_files import write_tuned_files
+from ddct_bringup.tuning.tuned_names import PAGE, RESULT
 from ddct_bringup.tuning.tuning import Tuning
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.json_records import write_json
 from ddct_plant.files.output_file import write_bytes, write_text
 from ddct_plant.files.yaml_text import dump_yaml
 from ddct_plant.program.command_line import package_version
-
-RESULT, PAGE = 'front.json', 'report.html'
 
 
 def write_tuning(

@@ -5,7 +5,6 @@
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass
-from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +20,7 @@ from ddct_bringup.tuning.specification.goals import (
     objectives_of,
     require_engaged,
 )
+from ddct_bringup.tuning.specification.packaged_specs import PACKAGED, packaged_specs
 from ddct_bringup.tuning.specification.parameters import PARAMETERS, Parameter, parameters_of
 from ddct_controllers.interface import Controller, ControllerSpec
 from ddct_plant.base.errors import ParameterError
@@ -66,17 +66,11 @@ class TuningSpec:
         return json.dumps(self.content)
 
 
-def packaged_specs() -> list[str]:
-    """Return the names of the specifications that come with this package."""
-    folder = files('ddct_bringup.tuning') / 'packaged'
-    return sorted(each.name.removesuffix('.yaml') for each in folder.iterdir())
-
-
 def read_tuning_spec(given: str, controller: ControllerSpec[Controller]) -> TuningSpec:
     """Read a file, or a packaged one by its name; raise DdctError with file, line and key."""
     path = Path(given)
     if given in packaged_specs():
-        path = Path(str(files('ddct_bringup.tuning') / 'packaged' / f'{given}.yaml'))
+        path = PACKAGED / f'{given}.yaml'
     with located(str(path)):
         content, lines = parse_yaml_with_lines(user_text(path))
     with located(str(path), lines):

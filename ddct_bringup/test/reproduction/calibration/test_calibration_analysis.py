@@ -12,7 +12,7 @@ from ddct_bringup.reproduction.calibration import analysis
 from ddct_bringup.reproduction.calibration.parameters import PARAMETERS, PI_ONLY, ROWS
 from ddct_bringup.reproduction.calibration.problem import Fit, Problem
 from ddct_bringup.reproduction.calibration.record import _torque_and_slopes
-from ddct_bringup.thesis.table_5_1 import TABLE_METRICS
+from ddct_bringup.thesis.table_metrics import TABLE_METRICS
 
 VALUES = np.array([20.0, 280.0, 0.5, 105.0, 0.05, 0.1])
 

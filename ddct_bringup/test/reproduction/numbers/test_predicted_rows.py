@@ -13,13 +13,8 @@ from ddct_bringup.reproduction.numbers.number_files import thesis_numbers
 from ddct_bringup.scores.comparison_table import print_comparison
 from ddct_bringup.thesis import predictions
 from ddct_bringup.thesis.predictions import Prediction, Predictions, predicted_range
-from ddct_bringup.thesis.table_5_1 import (
-    PREDICTED,
-    PREDICTION_TOLERANCE,
-    TABLE_METRICS,
-    THESIS_TABLE,
-    thesis_row,
-)
+from ddct_bringup.thesis.table_5_1 import PREDICTED, PREDICTION_TOLERANCE, THESIS_TABLE, thesis_row
+from ddct_bringup.thesis.table_metrics import TABLE_METRICS
 from ddct_plant.scenario.file import load_scenario, scenario_digest
 from ddct_plant.scenario.settings import RunSettings
 

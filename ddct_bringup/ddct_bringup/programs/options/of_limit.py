@@ -5,8 +5,8 @@
 import argparse
 from collections.abc import Sequence
 
-from ddct_bringup.floor.values import METRICS
-from ddct_bringup.run.options import add_settings_options
+from ddct_bringup.floor.metric_units import METRICS
+from ddct_bringup.programs.options.of_runs import add_settings_options
 from ddct_plant.base.errors import DdctError, ParameterError, require_number
 from ddct_plant.program.command_line import ProgramParser
 

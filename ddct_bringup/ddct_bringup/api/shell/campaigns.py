@@ -1,0 +1,145 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Carry out a campaign with its page, make a row again, and write what came out to files."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pyarrow as pa
+import pyarrow.csv as arrow_csv
+
+from ddct_bringup.api import shell
+from ddct_bringup.api.shell.kept_run import keep_run
+from ddct_bringup.bag.recording import Recording
+from ddct_bringup.campaign.campaign import Campaign
+from ddct_bringup.campaign.columns import (
+    PATH,
+    SEED,
+    VECTORISED_RTOL,
+    compared_in,
+    differences,
+    read_row,
+)
+from ddct_bringup.campaign.conduct import RESULTS, carry_out
+from ddct_bringup.campaign.manifest import Manifest
+from ddct_bringup.campaign.rows import SERIAL, result_row
+from ddct_bringup.campaign_report.folder import PAGE, scenario_of, write_campaign_page
+from ddct_bringup.campaign_report.reading import read_table, require_as_written, results_of
+from ddct_bringup.campaign_report.summary_types import Summary
+from ddct_bringup.digests.code import code_digest
+from ddct_bringup.digests.writing import keep_digests
+from ddct_bringup.run.plan import RunPlan
+from ddct_bringup.scores.scored_recording import ScoredRecording
+from ddct_bringup.verdict.limits import Limits
+from ddct_plant.base.errors import DdctError, printable
+from ddct_plant.files.csv_table import plain_cell
+from ddct_plant.files.json_records import write_json
+from ddct_plant.files.output_file import STDOUT, write_text
+
+
+@dataclass(frozen=True)
+class CampaignDone:
+    """A finished campaign: its summary, and its files."""
+
+    summary: Summary
+    rows: Path
+    page: Path
+
+
+def carry_out_campaign(
+    campaign: Campaign, limits: Limits, out: Path, **options: Any
+) -> CampaignDone:
+    """Carry out a campaign, with the options of `carry_out`, and write its summary and page."""
+    rows = carry_out(campaign, limits, out, **options)
+    return CampaignDone(write_campaign_page(out), rows, out / PAGE)
+
+
+@dataclass(frozen=True)
+class Replay:
+    """A row of a campaign that was made again."""
+
+    index: int
+    path: str
+    """Path of the row: step by step, or vectorised."""
+    differences: list[str]
+    """What differs from the row, a line each; none where it came out again."""
+    compared: str
+    """Number of compared values, and how exactly they were compared."""
+    kept: ScoredRecording
+
+    @property
+    def document(self) -> dict[str, Any]:
+        """Document of `--json`."""
+        return {'index': self.index, 'path': self.path, 'differences': self.differences}
+
+
+def replay_row(
+    campaign_folder: Path,
+    index: int,
+    out: Path,
+    limits: Limits,
+    execute: Callable[[RunPlan, Path], Recording | None],
+    complain: Callable[[str], None],
+    *,
+    layout: str,
+    overwrite: bool,
+) -> Replay:
+    """
+    Make the run of a row again, keep its bag in `out`, and compare its scores with the row.
+
+    Raise DdctError for a folder that was altered, for other limits, and where the run fails.
+    """
+    manifest = Manifest.read(campaign_folder)
+    manifest.require_limits(limits, campaign_folder)
+    campaign = manifest.campaign(campaign_folder)
+    require_as_written(campaign_folder)
+    row = read_row(campaign_folder / RESULTS, index, manifest.runs)
+    if manifest.code_digest != code_digest():
+        complain(f'the campaign is of {manifest.origin.short}, this is another code')
+    run = campaign.run(index)
+    plan = RunPlan(run.settings, campaign.chosen(index), layout)
+
+    def as_its_row(plan: RunPlan, folder: Path) -> Recording | None:
+        try:
+            return execute(plan, folder)
+        except DdctError as error:
+            if row['valid'] or not row['reason']:
+                raise
+            raise DdctError(f'it fails as its row says ({row["reason"]}): {error}') from error
+
+    kept = keep_run(plan, out, limits, as_its_row, overwrite=overwrite)
+    found = differences(row, {SEED: run.settings.seed, **result_row(kept.scores, run.varied)})
+    how = 'bit for bit' if row[PATH] == SERIAL else f'to {VECTORISED_RTOL:g}'
+    words = f'its {len(compared_in(row))} figures and words are those of the row, {how}'
+    return Replay(index, row[PATH], found, words, kept)
+
+
+def show_campaign(
+    folder: Path, *, json: str | None, csv: str | None, figure: str | None
+) -> Summary:
+    """Write the page of a campaign anew, and what else is wanted to files; return the summary."""
+    summary = write_campaign_page(folder)
+    if json:
+        write_json(json, summary)
+    if csv:
+        write_text(csv, _csv(folder))
+    if figure:
+        manifest = Manifest.read(folder)
+        results = results_of(manifest, read_table(folder, manifest))
+        shell.write_distributions(results, scenario_of(manifest), Path(figure))
+    keep_digests(file for file in (json, csv, figure) if file not in (None, STDOUT))
+    return summary
+
+
+def _csv(folder: Path) -> str:
+    """Return every row of a campaign as CSV, with control characters in its texts escaped."""
+    table = read_table(folder, Manifest.read(folder))
+    for place, field in enumerate(table.schema):
+        if pa.types.is_string(field.type):
+            words = [plain_cell(printable(each)) for each in table[field.name].to_pylist()]
+            table = table.set_column(place, field, pa.array(words, field.type))
+    sink = pa.BufferOutputStream()
+    arrow_csv.write_csv(table, sink)
+    return sink.getvalue().to_pybytes().decode()

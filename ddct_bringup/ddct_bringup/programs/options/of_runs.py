@@ -1,0 +1,132 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Options that several programs have, and their values as arguments of the Python interface."""
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+from ddct_bringup.api import shell
+from ddct_plant.base.options import options_of
+from ddct_plant.program.scheduling import Scheduling
+from ddct_plant.scenario.choices.command_line import add_option, add_scenario_options
+from ddct_plant.scenario.choices.settings import SETTINGS
+
+ALL = 'all'
+"""Value of --controllers that selects every controller."""
+DEFAULT_PORT = 8765
+"""Default port of Foxglove's WebSocket connection."""
+USUAL, NONE = 'usual', 'none'
+"""Values of --floors."""
+
+
+def add_settings_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options that describe a run to a program's parser."""
+    add_scenario_options(parser)
+    for name, described in SETTINGS.items():
+        add_option(parser, name, described)
+    parser.add_argument(
+        '--duration', type=float, metavar='S', help="length of the run; default: the scenario's"
+    )
+    parser.add_argument('--list', action='store_true', help='print what can be chosen, and end')
+
+
+def add_run_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options that describe a run and its process layout to a program's parser."""
+    add_settings_options(parser)
+    add_layout_options(parser)
+    add_scheduling_options(parser)
+    parser.add_argument('--overwrite', action='store_true', help='replace an earlier result')
+
+
+def add_layout_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of the process layout to a program's parser, as `layout`."""
+    layout = parser.add_mutually_exclusive_group()
+    layout.add_argument(
+        '--single-process',
+        action='store_const',
+        const='single-process',
+        default='processes',
+        dest='layout',
+        help='all nodes in one process',
+    )
+    layout.add_argument(
+        '--headless', action='store_const', const='headless', dest='layout', help='no ROS graph'
+    )
+
+
+def add_workers_option(parser: argparse._ActionsContainer) -> None:
+    """Add --workers to a parser or to a group of one."""
+    parser.add_argument(
+        '--workers', type=int, metavar='N', help='processes here; default: one for each core'
+    )
+
+
+def add_scheduling_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `Scheduling` to a program's parser; `scheduling_of` reads them."""
+    described = options_of(Scheduling)
+    add_option(parser, 'realtime_priority', described['realtime_priority'])
+    parser.add_argument(
+        '--lock-memory', action='store_true', help=described['lock_memory'].meaning
+    )
+    parser.add_argument('--cpus', default='', metavar='LIST', help=described['cpus'].meaning)
+
+
+def scheduling_of(options: argparse.Namespace) -> Scheduling:
+    """Return what the options of `add_scheduling_options` ask for; raise ParameterError."""
+    return Scheduling(**{name: getattr(options, name) for name in options_of(Scheduling)})
+
+
+def add_controllers_option(parser: argparse.ArgumentParser) -> None:
+    """Add --controllers to a program's parser; `controllers_of` parses its value."""
+    parser.add_argument(
+        '--controllers',
+        default=ALL,
+        metavar='A,B,...|all',
+        help='names of --list, or controller files, .py or .yaml; default: %(default)s',
+    )
+
+
+def add_limits_option(parser: argparse.ArgumentParser) -> None:
+    """Add the option --limits to a parser; its value is an argument of `load_limits`."""
+    parser.add_argument(
+        '--limits',
+        type=Path,
+        metavar='FILE',
+        help='limits to judge runs by, see docs/use/verdict.md; default: the packaged ones',
+    )
+
+
+def add_floors_option(parser: argparse.ArgumentParser) -> None:
+    """Add the option --floors to a parser; `wants_floors` reads it."""
+    parser.add_argument(
+        '--floors',
+        default=USUAL,
+        choices=(USUAL, NONE),
+        help='whether to compare the peak jerk with the least of its case, see docs/use/limit.md; '
+        'default: %(default)s',
+    )
+
+
+def wants_floors(options: argparse.Namespace) -> bool:
+    """Return whether runs are compared with the least of their case."""
+    return options.floors != NONE
+
+
+def add_columns_option(parser: argparse.ArgumentParser) -> None:
+    """Add --columns to the options of a program that reads logs of other tools as well as bags."""
+    parser.add_argument(
+        '--columns',
+        metavar='FILE',
+        help='column map of a CSV log: which column holds which quantity',
+    )
+
+
+def settings_given(options: argparse.Namespace) -> dict[str, Any]:
+    """Return what the options of `add_settings_options` give, as arguments of `base_from`."""
+    return {
+        'scenario': options.scenario,
+        'set': shell.changes_of(options.overrides),
+        'duration': options.duration,
+        **{name: getattr(options, name) for name in SETTINGS},
+    }
