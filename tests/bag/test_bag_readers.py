@@ -1,6 +1,9 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Other readers accept the bags: rosbags and the MCAP library with its ROS 2 decoder."""
+"""Other readers accept the bags: rclpy, and the MCAP library with its ROS 2 decoder."""
+
+from collections import defaultdict
+from typing import Any
 
 import numpy as np
 import pytest
@@ -9,11 +12,9 @@ from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 
 from ddct_bringup.bag.reader import mcap_of, read_bag
+from ddct_plant.signals.message_kind import stamp_ns
 from ddct_plant.signals.signal import RunKind
 from ddct_plant.signals.topics import recorded_topics
-
-rosbags_rosbag2 = pytest.importorskip('rosbags.rosbag2', reason='rosbags reads the bag')
-rosbags_typesys = pytest.importorskip('rosbags.typesys', reason='rosbags reads the bag')
 
 # Keys that rosbag2's decoder of version 9 requires, in its order.
 INFORMATION_KEYS = [
@@ -48,18 +49,21 @@ def bag(bags, trajectory):
     return bags.write(trajectory)
 
 
-def test_rosbags_reads_every_message(bag, trajectory):
-    store = rosbags_typesys.get_typestore(rosbags_typesys.Stores.ROS2_JAZZY)
+def test_rclpy_reads_every_message(bag, trajectory):
+    serialization = pytest.importorskip('rclpy.serialization', reason='rclpy reads the messages')
     slips, points, statuses = [], [], []
-    with rosbags_rosbag2.Reader(bag) as reader:
-        assert reader.message_count == 2 + 15 * (trajectory.steps + 1)
-        for connection, _, data in reader.messages():
-            message = store.deserialize_cdr(data, connection.msgtype)
-            if connection.topic == '/clutch/slip':
+    known = {topic.resolved_name: topic for topic in recorded_topics(RunKind())}
+    with mcap_of(bag).open('rb') as stream:
+        for schema, channel, stored in make_reader(stream).iter_messages():
+            topic = known[channel.topic]
+            assert schema.name == topic.type
+            message = serialization.deserialize_message(stored.data, topic.message_class)
+            assert stamp_ns(message) == stored.log_time
+            if channel.topic == '/clutch/slip':
                 slips.append(message.twist.angular.x)
-            elif connection.topic == '/clutch/torque':
+            elif channel.topic == '/clutch/torque':
                 points.append([point.effort[0] for point in message.points])
-            elif connection.topic == '/controller/status':
+            elif channel.topic == '/controller/status':
                 pairs = message.status[0].values
                 statuses.append(tuple((pair.key, pair.value) for pair in pairs))
     assert np.array_equal(slips, trajectory.slip_speed)
@@ -67,23 +71,28 @@ def test_rosbags_reads_every_message(bag, trajectory):
     assert tuple(statuses) == trajectory.status
 
 
-def test_rosbags_computes_the_same_type_hashes_from_our_schemas(bag):
-    with rosbags_rosbag2.Reader(bag) as reader:
-        for connection in reader.connections:
-            store = rosbags_typesys.get_typestore(rosbags_typesys.Stores.EMPTY)
-            definition = connection.msgdef.data
-            store.register(rosbags_typesys.get_types_from_msg(definition, connection.msgtype))
-            assert store.hash_rihs01(connection.msgtype) == connection.digest
+def test_mcap_ros2_decodes_every_message_by_the_schemas_in_the_file(bag, trajectory):
+    decoded: defaultdict[str, list[Any]] = defaultdict(list)
+    with mcap_of(bag).open('rb') as stream:
+        reader = make_reader(stream, validate_crcs=True, decoder_factories=[DecoderFactory()])
+        for _, channel, _, message in reader.iter_decoded_messages():
+            decoded[channel.topic].append(message)
+    assert sum(map(len, decoded.values())) == 2 + 15 * (trajectory.steps + 1)
+    slips = [message.twist.angular.x for message in decoded['/clutch/slip']]
+    assert np.array_equal(slips, trajectory.slip_speed)
+    speeds = [message.velocity for message in decoded['/driveline/joint_states']]
+    assert np.array_equal(speeds, trajectory.joint_speed)
 
 
 def test_latched_topics_are_marked_transient_local(bag):
-    with rosbags_rosbag2.Reader(bag) as reader:
-        for connection in reader.connections:
-            (qos,) = connection.ext.offered_qos_profiles
-            latched = connection.topic == '/run_info'
-            assert qos.durability.name == ('TRANSIENT_LOCAL' if latched else 'VOLATILE')
-            assert qos.depth == (1 if latched else 10)
-            assert qos.reliability.name == 'RELIABLE'
+    with mcap_of(bag).open('rb') as stream:
+        channels = make_reader(stream).get_summary().channels.values()
+    for channel in channels:
+        (qos,) = yaml.safe_load(channel.metadata['offered_qos_profiles'])
+        latched = channel.topic == '/run_info'
+        assert qos['durability'] == ('transient_local' if latched else 'volatile')
+        assert qos['depth'] == (1 if latched else 10)
+        assert qos['reliability'] == 'reliable'
 
 
 def test_the_index_leads_to_every_message_with_simulated_time(bag, trajectory):

@@ -10,6 +10,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from bench.bags import READ, WRITE, bag_s
 from bench.chain import chain_step_s
 from bench.ratios import Comparison
 from bench.workspaces import ROOT, run
@@ -76,9 +77,14 @@ def beside(base: Path) -> list[Comparison]:
         sides = partial(cost, ROOT, *words), partial(cost, base, *words)
         return Comparison(name, 'the base commit', lambda: sides)
 
-    sticking = ('--controller', 'mpc3', '--clutch', 'stick_slip')
     demo = ('--controllers', 'pi,ls8,hinf1,mpc3,mpc4')
+    stick_slip = ('--clutch', 'stick_slip')
+    sticking = ('--controller', 'mpc3', *stick_slip)
     return [
+        compared('bag read', bag_s, READ),
+        compared('bag written', bag_s, WRITE),
+        compared('bag read, sticking plates', bag_s, READ, *stick_slip),
+        compared('bag written, sticking plates', bag_s, WRITE, *stick_slip),
         compared(PROCESSES_STEP, step_s),
         compared(SINGLE_STEP, step_s, SINGLE),
         compared('headless step of pi', step_s, *_HEADLESS),
