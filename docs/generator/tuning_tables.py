@@ -2,12 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tables of the packaged tunings, from the `front.json` that `ddct tune` wrote for each."""
 
-import json
 from collections.abc import Iterator, Mapping
 
 from ddct_bringup.tuning.report.texts import goal_text
 from ddct_bringup.tuning.result import FrontEntry, TuningResult
 from ddct_bringup.tuning.specification.packaged_specs import packaged_specs
+from ddct_plant.files.json_records import read_json
 from ddct_plant.program.table import Table
 from generator.pages import DOCS
 
@@ -19,7 +19,7 @@ def tuning_tables() -> Mapping[str, Table]:
     """Return the front and the effects of each packaged tuning."""
     found = {}
     for name in packaged_specs():
-        result = json.loads((FOLDER / f'{name}.json').read_text(encoding='utf-8'))
+        result = read_json(TuningResult, FOLDER / f'{name}.json')
         found[name] = _front(result)
         found[f'{name}_effects'] = _effects(result)
     return found
@@ -27,38 +27,38 @@ def tuning_tables() -> Mapping[str, Table]:
 
 def _front(result: TuningResult) -> Table:
     """Return the ends of the front, its best trial, and the values from before."""
-    goals = [*result['objectives'], *result['constraints']]
-    headers = ('trial', 'cases', *result['parameters'], *(goal['title'] for goal in goals))
+    goals = [*result.objectives, *result.constraints]
+    headers = ('trial', 'cases', *result.parameters, *(goal.title for goal in goals))
     rows = []
     for label, entry in _entries(result):
         for cases, figures in (
-            ('development', entry['development']),
-            ('held out', entry['held_out']),
+            ('development', entry.development),
+            ('held out', entry.held_out),
         ):
             if figures:
-                values = {**figures['objectives'], **figures['constraints']}
+                values = {**figures.objectives, **figures.constraints}
                 cells = [goal_text(goal, values) for goal in goals]
-                given = [f'{value:.4g}' for value in entry['parameters'].values()]
+                given = [f'{value:.4g}' for value in entry.parameters.values()]
                 rows.append((label, cases, *given, *cells))
-    return Table(f'Front of {result["controller"]}', headers, rows)
+    return Table(f'Front of {result.controller}', headers, rows)
 
 
 def _entries(result: TuningResult) -> Iterator[tuple[str, FrontEntry]]:
-    front = result['front']
-    if result['before']:
-        yield 'before', result['before']
+    front = result.front
+    if result.before:
+        yield 'before', result.before
     for entry in front:
-        if entry['number'] == result['best']:
-            yield f'{entry["number"]}, best', entry
+        if entry.number == result.best:
+            yield f'{entry.number}, best', entry
         elif entry in (front[0], front[-1]):
-            yield f'{entry["number"]}, end of the front', entry
+            yield f'{entry.number}, end of the front', entry
 
 
 def _effects(result: TuningResult) -> Table:
     rows = [
-        (goal['title'], each['parameter'], f'{each["explained"]:.2f}', f'{each["p_value"]:.3f}')
-        for goal in result['objectives']
-        for each in result['sensitivity'][goal['name']]
+        (goal.title, each.parameter, f'{each.explained:.2f}', f'{each.p_value:.3f}')
+        for goal in result.objectives
+        for each in result.sensitivity[goal.name]
     ]
     headers = ('objective', 'parameter', 'explains', 'p')
-    return Table(f'What decides, {result["controller"]}', headers, rows)
+    return Table(f'What decides, {result.controller}', headers, rows)

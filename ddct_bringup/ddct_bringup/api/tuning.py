@@ -9,9 +9,10 @@ from typing import Any, NamedTuple
 from ddct_bringup.api.result import pandas_module
 from ddct_bringup.api.shell.tunings import tune_into
 from ddct_bringup.tuning.record import TRIALS, read_entries
-from ddct_bringup.tuning.result import FrontEntry, TuningResult
+from ddct_bringup.tuning.result import FrontEntry
 from ddct_bringup.tuning.trial import TrialEntry
 from ddct_bringup.tuning.tuned_names import BEST
+from ddct_plant.files.json_records import to_json
 
 
 class TuningResults(NamedTuple):
@@ -25,8 +26,8 @@ class TuningResults(NamedTuple):
     """
     trials: Any
     """pandas DataFrame with a row per trial, by its number: parameters, objectives, state."""
-    result: TuningResult
-    """Content of `front.json`."""
+    result: Any
+    """Content of `front.json`, a dict."""
     best: Path
     """Controller file of the best trial."""
 
@@ -49,26 +50,26 @@ def tune(
     folder = Path(out)
     given = spec if isinstance(spec, Mapping) else str(spec)
     result = tune_into(controller, given, folder, workers=workers, resume=resume)
-    front = pandas.DataFrame(_front_rows(result['front'])).set_index('number')
+    front = pandas.DataFrame(_front_rows(result.front)).set_index('number')
     tried = pandas.DataFrame(_trial_rows(read_entries(folder / TRIALS))).set_index('number')
-    return TuningResults(front, tried, result, folder / BEST)
+    return TuningResults(front, tried, to_json(result), folder / BEST)
 
 
 def _front_rows(front: Sequence[FrontEntry]) -> list[dict[str, float | str | None]]:
     return [
         {
-            'number': each['number'],
-            **each['parameters'],
+            'number': each.number,
+            **each.parameters,
             **{
                 f'{name}.{key}': value
                 for name, figures in (
-                    ('development', each['development']),
-                    ('held_out', each['held_out']),
+                    ('development', each.development),
+                    ('held_out', each.held_out),
                 )
                 if figures
-                for key, value in figures['objectives'].items()
+                for key, value in figures.objectives.items()
             },
-            'file': each['file'],
+            'file': each.file,
         }
         for each in front
     ]
@@ -77,12 +78,12 @@ def _front_rows(front: Sequence[FrontEntry]) -> list[dict[str, float | str | Non
 def _trial_rows(trials: Sequence[TrialEntry]) -> list[dict[str, float | str | None]]:
     return [
         {
-            'number': each['number'],
-            **each['parameters'],
-            **each['objectives'],
-            'state': each['state'],
-            'reason': each['reason'],
-            'runs': each['runs'],
+            'number': each.number,
+            **each.parameters,
+            **each.objectives,
+            'state': each.state,
+            'reason': each.reason,
+            'runs': each.runs,
         }
         for each in trials
     ]

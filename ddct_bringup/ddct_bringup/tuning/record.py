@@ -2,10 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The record of trials: their rows and entries by batch, each written completely."""
 
-from collections.abc import Iterable, Mapping, Sequence
-from itertools import chain
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import pyarrow as pa
 
@@ -15,10 +13,9 @@ from ddct_bringup.campaign.conduct import RESUME, SHARDS
 from ddct_bringup.campaign.rows import Row
 from ddct_bringup.campaign.spec import CampaignSpec
 from ddct_bringup.tuning.specification.spec import TuningSpec
-from ddct_bringup.tuning.trial import STATES, Trial, TrialEntry
-from ddct_plant.base.errors import DdctError, ParameterError, require_choice, require_number
-from ddct_plant.files.input_file import read_text_file
-from ddct_plant.files.json_records import parse_json, write_json
+from ddct_bringup.tuning.trial import Trial, TrialEntry
+from ddct_plant.base.errors import DdctError
+from ddct_plant.files.json_records import read_json, write_json
 from ddct_plant.files.output_file import write_bytes
 
 TRIAL = 'trial'
@@ -27,6 +24,8 @@ RUNS, TRIALS = 'runs.parquet', 'trials.json'
 """Files with the rows of all runs, and with the entries of all trials."""
 _MOST_BYTES = 100_000_000
 """Largest size of a file of JSON in bytes."""
+ANEW = 'start the tuning anew'
+"""What to do where the record of a tuning cannot be read."""
 
 
 def run_schema(spec: CampaignSpec) -> pa.Schema:
@@ -66,19 +65,7 @@ def read_batch(out: Path, batch: int) -> list[Trial] | None:
 
 def read_entries(path: Path) -> list[TrialEntry]:
     """Return the entries of trials in a file; raise DdctError where it cannot be read."""
-    content = read_json(path)
-    try:
-        return [_checked(entry) for entry in content]
-    except (ParameterError, LookupError, TypeError, AttributeError) as error:
-        raise DdctError(f'cannot be read ({error}): start the tuning anew', place=path) from error
-
-
-def read_json(path: Path) -> Any:
-    """Return the content of a file of JSON; raise DdctError where it cannot be read."""
-    try:
-        return parse_json(read_text_file(path, _MOST_BYTES))
-    except (OSError, ValueError) as error:
-        raise DdctError(f'cannot be read ({error}): start the tuning anew', place=path) from error
+    return read_json(list[TrialEntry], path, most_bytes=_MOST_BYTES, advice=ANEW)
 
 
 def trials_of(entries: Sequence[TrialEntry], rows: Path) -> list[Trial]:
@@ -88,25 +75,10 @@ def trials_of(entries: Sequence[TrialEntry], rows: Path) -> list[Trial]:
         by_trial: dict[int, list[Row]] = {}
         for row in table:
             by_trial.setdefault(row.pop(TRIAL), []).append(row)
-        return [_trial(entry, by_trial.get(entry['number'], [])) for entry in entries]
+        return [_trial(entry, by_trial.get(entry.number, [])) for entry in entries]
     except (OSError, pa.ArrowException, LookupError, TypeError) as error:
-        raise DdctError(f'cannot be read ({error}): start the tuning anew', place=rows) from error
-
-
-def _checked(entry: TrialEntry) -> TrialEntry:
-    """Return an entry; raise ParameterError for a value of another type in what a trial has."""
-    if type(entry['number']) is not int or not isinstance(entry['reason'], str):
-        raise ParameterError('a trial has no whole number, or no text of a reason')
-    require_choice('state', entry['state'], STATES)
-    values: Iterable[tuple[str, float | None]] = entry['parameters'].items()
-    defined = ((name, value) for name, value in entry['further'].items() if value is not None)
-    for name, value in chain(values, defined):
-        require_number(name, value)
-    return entry
+        raise DdctError(f'cannot be read ({error}): {ANEW}', place=rows) from error
 
 
 def _trial(entry: TrialEntry, rows: Sequence[Row]) -> Trial:
-    further: Mapping[str, float | None] = entry['further']
-    return Trial(
-        entry['number'], entry['parameters'], rows, further, entry['state'], entry['reason']
-    )
+    return Trial(entry.number, entry.parameters, rows, entry.further, entry.state, entry.reason)

@@ -4,7 +4,7 @@
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from typing import TypedDict
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -26,7 +26,8 @@ SCHEMA_VERSION = 1
 """Schema version of `front.json`."""
 
 
-class Figures(TypedDict):
+@dataclass(frozen=True)
+class Figures:
     """Objectives and constraints of one controller on one set of cases."""
 
     objectives: Mapping[str, float | None]
@@ -37,7 +38,8 @@ class Figures(TypedDict):
     keeps_constraints: bool
 
 
-class FrontEntry(TypedDict):
+@dataclass(frozen=True)
+class FrontEntry:
     """A trial on the front, or the first one."""
 
     number: int
@@ -49,7 +51,8 @@ class FrontEntry(TypedDict):
     """None for a trial that did not run on the held-out cases."""
 
 
-class GoalEntry(TypedDict):
+@dataclass(frozen=True)
+class GoalEntry:
     """An objective or a constraint."""
 
     name: str
@@ -61,13 +64,23 @@ class GoalEntry(TypedDict):
     """Limit of a constraint; None for an objective."""
 
 
-class TuningResult(TypedDict):
+@dataclass(frozen=True)
+class ParameterRange:
+    """Range in which a parameter was searched."""
+
+    low: float
+    high: float
+    scale: str
+    """LINEAR or LOG, as in `Parameter`."""
+
+
+@dataclass(frozen=True)
+class TuningResult:
     """Content of `front.json`."""
 
     schema_version: int
     controller: str
-    parameters: Mapping[str, Mapping[str, float | str]]
-    """Range and scale by name."""
+    parameters: Mapping[str, ParameterRange]
     objectives: list[GoalEntry]
     constraints: list[GoalEntry]
     trials: int
@@ -99,30 +112,29 @@ def result_of(
     spec = tuning.spec
     front = front_of(trials, spec)
     best = best_of(front, spec)
-    return {
-        'schema_version': SCHEMA_VERSION,
-        'controller': tuning.controller.name,
-        'parameters': {
-            each.name: {'low': each.low, 'high': each.high, 'scale': each.scale}
-            for each in spec.parameters
+    return TuningResult(
+        schema_version=SCHEMA_VERSION,
+        controller=tuning.controller.name,
+        parameters={
+            each.name: ParameterRange(each.low, each.high, each.scale) for each in spec.parameters
         },
-        'objectives': _goal_entries(spec, constraints=False),
-        'constraints': _goal_entries(spec, constraints=True),
-        'trials': len(trials),
-        'states': dict(sorted(Counter(each.state for each in trials).items())),
-        'reasons': dict(Counter(each.reason for each in trials if each.reason).most_common()),
-        'runs': sum(len(each.rows) for each in trials),
-        'all_runs': len(trials) * len(tuning.cases),
-        'cases': len(tuning.cases),
-        'held_out_seed': seed,
-        'best': best.number,
-        'best_file': BEST,
-        'front': [_entry(spec, each, held_out.get(each.number)) for each in front],
-        'before': _entry(spec, trials[0], held_out.get(0)) if tuning.present else None,
-        'gaps': gaps_between(*(_columns(each.rows) for each in (best, held_out[best.number]))),
-        'sensitivity': {goal.name: effects_on(goal, trials, spec) for goal in spec.objectives},
-        'convergence': _convergence(spec, trials),
-    }
+        objectives=_goal_entries(spec, constraints=False),
+        constraints=_goal_entries(spec, constraints=True),
+        trials=len(trials),
+        states=dict(sorted(Counter(each.state for each in trials).items())),
+        reasons=dict(Counter(each.reason for each in trials if each.reason).most_common()),
+        runs=sum(len(each.rows) for each in trials),
+        all_runs=len(trials) * len(tuning.cases),
+        cases=len(tuning.cases),
+        held_out_seed=seed,
+        best=best.number,
+        best_file=BEST,
+        front=[_entry(spec, each, held_out.get(each.number)) for each in front],
+        before=_entry(spec, trials[0], held_out.get(0)) if tuning.present else None,
+        gaps=gaps_between(*(_columns(each.rows) for each in (best, held_out[best.number]))),
+        sensitivity={goal.name: effects_on(goal, trials, spec) for goal in spec.objectives},
+        convergence=_convergence(spec, trials),
+    )
 
 
 def _goal_entries(spec: TuningSpec, *, constraints: bool) -> list[GoalEntry]:
@@ -132,39 +144,39 @@ def _goal_entries(spec: TuningSpec, *, constraints: bool) -> list[GoalEntry]:
         else [(each, each.title, None) for each in spec.objectives]
     )
     return [
-        {
-            'name': goal.name,
-            'title': title,
-            'unit': goal.quantity.unit,
-            'form': goal.quantity.form,
-            'sense': goal.sense,
-            'limit': limit,
-        }
+        GoalEntry(
+            name=goal.name,
+            title=title,
+            unit=goal.quantity.unit,
+            form=goal.quantity.form,
+            sense=goal.sense,
+            limit=limit,
+        )
         for goal, title, limit in pairs
     ]
 
 
 def _entry(spec: TuningSpec, trial: Trial, held_out: Trial | None) -> FrontEntry:
-    return {
-        'number': trial.number,
-        'parameters': dict(trial.values),
-        'file': trial_file(trial.number) if held_out else None,
-        'development': _figures(spec, trial),
-        'held_out': _figures(spec, held_out) if held_out else None,
-    }
+    return FrontEntry(
+        number=trial.number,
+        parameters=dict(trial.values),
+        file=trial_file(trial.number) if held_out else None,
+        development=_figures(spec, trial),
+        held_out=_figures(spec, held_out) if held_out else None,
+    )
 
 
 def _figures(spec: TuningSpec, trial: Trial) -> Figures:
     entry = trial.entry(spec)
     columns = RunColumns.of(trial.rows, (), 0)
     checked = Trial(trial.number, trial.values, trial.rows, trial.further)
-    return {
-        'objectives': entry['objectives'],
-        'constraints': entry['constraints'],
-        'engaged': float(np.mean(columns.engaged)) if len(trial.rows) else 0.0,
-        'runs': len(trial.rows),
-        'keeps_constraints': checked.checked(spec, len(trial.rows)).state == FEASIBLE,
-    }
+    return Figures(
+        objectives=entry.objectives,
+        constraints=entry.constraints,
+        engaged=float(np.mean(columns.engaged)) if len(trial.rows) else 0.0,
+        runs=len(trial.rows),
+        keeps_constraints=checked.checked(spec, len(trial.rows)).state == FEASIBLE,
+    )
 
 
 def _columns(rows: Sequence[Row]) -> dict[str, np.ndarray]:

@@ -10,7 +10,7 @@ tests whether it is more than chance; the p-values are Holm's.
 """
 
 from collections.abc import Sequence
-from typing import TypedDict
+from dataclasses import dataclass
 
 import numpy as np
 import scipy
@@ -30,7 +30,8 @@ _SEED = 0
 """Seed of the permutations, so that the same trials give the same figures."""
 
 
-class ParameterEffect(TypedDict):
+@dataclass(frozen=True)
+class ParameterEffect:
     """Effect of one parameter on one objective."""
 
     parameter: str
@@ -57,14 +58,14 @@ def effects_on(goal: Goal, trials: Sequence[Trial], spec: TuningSpec) -> list[Pa
         chances[parameter.name] = (1 + as_much) / (1 + _PERMUTATIONS)
     corrected = holm(chances)
     effects: list[ParameterEffect] = [
-        {
-            'parameter': name,
-            'explained': float(np.clip(value, 0.0, 1.0)),
-            'p_value': corrected[name],
-        }
+        ParameterEffect(
+            parameter=name,
+            explained=float(np.clip(value, 0.0, 1.0)),
+            p_value=corrected[name],
+        )
         for name, value in explained.items()
     ]
-    return sorted(effects, key=lambda each: (-each['explained'], each['parameter']))
+    return sorted(effects, key=lambda each: (-each.explained, each.parameter))
 
 
 def _explained(parts: np.ndarray, ranks: np.ndarray) -> float:

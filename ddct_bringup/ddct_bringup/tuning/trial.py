@@ -4,26 +4,29 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TypedDict
+from typing import Literal, get_args
 
 from ddct_bringup.campaign.rows import Row
 from ddct_bringup.tuning.specification.goals import MINIMISE, Goal, RunColumns
 from ddct_bringup.tuning.specification.parameters import Values
 from ddct_bringup.tuning.specification.spec import TuningSpec
 
-STATES = FEASIBLE, INFEASIBLE, DOMINATED = 'feasible', 'infeasible', 'dominated'
+State = Literal['feasible', 'infeasible', 'dominated']
+STATES: tuple[State, ...] = get_args(State)
+FEASIBLE, INFEASIBLE, DOMINATED = STATES
 """
 States of a trial: it keeps all constraints; it breaks one, or has no value of an objective; it
 was ended because another one is better in every objective, whatever its other runs come to.
 """
 
 
-class TrialEntry(TypedDict):
+@dataclass(frozen=True)
+class TrialEntry:
     """A trial in `trials.json`."""
 
     number: int
     parameters: Mapping[str, float]
-    state: str
+    state: State
     reason: str
     """What ended it or makes it infeasible; empty for a feasible one."""
     runs: int
@@ -43,14 +46,14 @@ class Trial:
     values: Values
     rows: Sequence[Row] = ()
     further: Mapping[str, float | None] = field(default_factory=dict)
-    state: str = FEASIBLE
+    state: State = FEASIBLE
     reason: str = ''
 
     def with_rows(self, rows: Sequence[Row]) -> 'Trial':
         """Return the trial with further runs."""
         return replace(self, rows=[*self.rows, *rows])
 
-    def ended(self, state: str, reason: str) -> 'Trial':
+    def ended(self, state: State, reason: str) -> 'Trial':
         """Return the trial in another state."""
         return replace(self, state=state, reason=reason)
 
@@ -100,15 +103,15 @@ class Trial:
 
     def entry(self, spec: TuningSpec) -> TrialEntry:
         """Return the trial as JSON."""
-        return {
-            'number': self.number,
-            'parameters': dict(self.values),
-            'state': self.state,
-            'reason': self.reason,
-            'runs': len(self.rows),
-            'objectives': {each.name: self.estimate(each, spec) for each in spec.objectives},
-            'constraints': {
+        return TrialEntry(
+            number=self.number,
+            parameters=dict(self.values),
+            state=self.state,
+            reason=self.reason,
+            runs=len(self.rows),
+            objectives={each.name: self.estimate(each, spec) for each in spec.objectives},
+            constraints={
                 each.goal.name: self.estimate(each.goal, spec) for each in spec.constraints
             },
-            'further': dict(self.further),
-        }
+            further=dict(self.further),
+        )

@@ -29,7 +29,6 @@ from ddct_bringup.tuning.record import (
     batch_files,
     read_batch,
     read_entries,
-    read_json,
     trials_of,
 )
 from ddct_bringup.tuning.result import result_of
@@ -39,7 +38,7 @@ from ddct_bringup.tuning.tuned_files import tuned_files
 from ddct_bringup.tuning.tuned_names import RESULT
 from ddct_bringup.tuning.tuning import Tuning
 from ddct_bringup.verification.campaign import verified_campaign
-from ddct_bringup.verification.comparison import Comparison, plain_json
+from ddct_bringup.verification.comparison import Comparison, plain_json, recorded_json
 from ddct_bringup.verification.request import VerificationRequest
 from ddct_bringup.verification.result import RepetitionResult
 from ddct_plant.base.errors import DdctError
@@ -181,5 +180,5 @@ def _verified_result(
     folder = request.folder
     seed = Manifest.read(folder / HELD_OUT).root_seed
     again = result_of(tuning, trials, held_out_trials(tuning, folder, judged), seed)
-    comparison.add_nested('', read_json(folder / RESULT), plain_json(again))
+    comparison.add_nested('', recorded_json(folder / RESULT), plain_json(again))
     return _of(request, RESULT, comparison)

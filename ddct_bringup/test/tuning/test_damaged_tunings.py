@@ -11,6 +11,7 @@ import pytest
 from ddct_bringup.tuning.manifest import MANIFEST, TuningManifest
 from ddct_bringup.tuning.record import TRIALS, read_entries
 from ddct_plant.base.errors import DdctError
+from ddct_plant.files.json_records import to_json
 
 CONTROLLER = {'name': 'pi', 'chosen': 'pi', 'folder': '.', 'digests': {'ddct': 'a'}}
 CONTENT: dict[str, Any] = {
@@ -58,8 +59,9 @@ def test_a_manifest_with_a_value_of_another_type_is_refused(
 def test_an_entry_with_a_value_of_another_type_is_refused(tmp_path: Path, content: object) -> None:
     file = tmp_path / TRIALS
     file.write_text(json.dumps([ENTRY]), encoding='utf-8')
-    assert read_entries(file) == [ENTRY]
+    assert to_json(read_entries(file)) == [ENTRY]
     file.write_text(json.dumps(content), encoding='utf-8')
     with pytest.raises(DdctError) as error:
         read_entries(file)
     assert error.value.place == str(file)
+    assert str(error.value).endswith('start the tuning anew')

@@ -9,12 +9,12 @@ import pytest
 from small_tuning import tuning
 
 from ddct_bringup.tuning.front import best_of, front_of, why_no_front
-from ddct_bringup.tuning.trial import FEASIBLE, INFEASIBLE, Trial
+from ddct_bringup.tuning.trial import FEASIBLE, INFEASIBLE, State, Trial
 
 SPEC = tuning().spec
 
 
-def trial(number: int, *values: float, status: str = FEASIBLE, **row: Any) -> Trial:
+def trial(number: int, *values: float, status: State = FEASIBLE, **row: Any) -> Trial:
     """Return a trial of one run with these objectives."""
     names = [goal.name for goal in SPEC.objectives]
     made = {'state': 'engaged', 'valid': True, 'reason': '', **row}

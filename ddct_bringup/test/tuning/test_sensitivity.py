@@ -26,14 +26,14 @@ def trials(count: int, noise: float) -> list[Trial]:
 
 def test_the_parameter_that_decides_explains_most() -> None:
     first, second = effects_on(GOAL, trials(200, 0.0), SPEC)
-    assert (first['parameter'], second['parameter']) == ('proportional_gain', 'integral_gain')
-    assert first['explained'] > 0.8 and first['p_value'] < 0.01
-    assert second['explained'] < 0.1 and second['p_value'] > 0.05
+    assert (first.parameter, second.parameter) == ('proportional_gain', 'integral_gain')
+    assert first.explained > 0.8 and first.p_value < 0.01
+    assert second.explained < 0.1 and second.p_value > 0.05
 
 
 def test_chance_explains_nothing() -> None:
     effects = effects_on(GOAL, trials(200, 1e3), SPEC)
-    assert all(each['p_value'] > 0.05 and each['explained'] < 0.1 for each in effects)
+    assert all(each.p_value > 0.05 and each.explained < 0.1 for each in effects)
 
 
 def test_few_trials_say_nothing() -> None:

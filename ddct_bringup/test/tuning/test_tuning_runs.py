@@ -20,10 +20,12 @@ from ddct_bringup.tuning import conduct, search
 from ddct_bringup.tuning.conduct import carry_out_tuning, computed_batch
 from ddct_bringup.tuning.evaluation import TrialRuns
 from ddct_bringup.tuning.front import front_of
-from ddct_bringup.tuning.record import RUNS, read_batch, trials_of
+from ddct_bringup.tuning.record import RUNS, read_batch, read_entries, trials_of
 from ddct_bringup.tuning.report.folder import write_tuning
+from ddct_bringup.tuning.result import TuningResult
 from ddct_bringup.tuning.trial import DOMINATED, FEASIBLE, INFEASIBLE, Trial
 from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.files.json_records import json_text, read_json
 from ddct_plant.scenario.file import load_scenario, scenario_to_yaml
 
 pytestmark = pytest.mark.slow
@@ -108,8 +110,13 @@ def test_an_altered_batch_is_computed_again_and_one_with_its_digest_is_refused(
         carry_out_tuning(tuning(trials=2), out, workers=1, resume=True)
 
 
+def test_the_result_is_read_as_its_record_and_written_as_it_was(finished: Path) -> None:
+    file = finished / 'front.json'
+    assert json_text(read_json(TuningResult, file)) == file.read_text(encoding='utf-8')
+
+
 def test_no_trial_of_the_front_ends_early(finished: Path) -> None:
-    trials = trials_of(json.loads((finished / 'trials.json').read_text()), finished / RUNS)
+    trials = trials_of(read_entries(finished / 'trials.json'), finished / RUNS)
     tuned = tuning()
     ended = [each for each in trials[1:] if len(each.rows) < len(tuned.cases)]
     assert ended and FEASIBLE not in {each.state for each in ended}
@@ -152,7 +159,7 @@ def _whole(tuned: Any, alone: TrialRuns, trial: Trial) -> Trial:
 
 def test_the_file_of_the_best_gives_the_runs_of_the_trial(finished: Path) -> None:
     result = json.loads((finished / 'front.json').read_text())
-    trials = trials_of(json.loads((finished / 'trials.json').read_text()), finished / RUNS)
+    trials = trials_of(read_entries(finished / 'trials.json'), finished / RUNS)
     row = trials[result['best']].rows[0]
     again = run(str(finished / 'best.yaml'), wear_gain=row['wear_gain'])
     for name in ('peak_jerk_m_s3', 'torsion_speed_std_rpm'):

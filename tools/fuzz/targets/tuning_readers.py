@@ -20,6 +20,7 @@ from ddct_bringup.tuning.tuning import Tuning
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_controllers.interface import Controller, ControllerSpec
 from ddct_controllers.registry import controller_spec
+from ddct_plant.files.json_records import json_text
 from fuzz.reader import Reader
 from fuzz.targets.run_readers import in_folder
 
@@ -48,7 +49,7 @@ def tuning_readers(folder: Path) -> list[Reader]:
         Trial(number, {'proportional_gain': 0.1 + number}, [_row(tuning, number)], {'corner': 1.5})
         for number in range(2)
     ]
-    entries = json.dumps([each.entry(spec) for each in trials]).encode()
+    entries = json_text([each.entry(spec) for each in trials]).encode()
     rows = rows_bytes(trials, tuning.campaign.spec)
     return [
         *_specifications(),

@@ -30,22 +30,22 @@ def front_figure(
     """Return the trials over two objectives, those of the front with their held-out figures."""
     from matplotlib.figure import Figure
 
-    goals = result['objectives']
+    goals = result.objectives
     first, second = goals[across], goals[up]
     figure = Figure(figsize=_SIZE)
     axes = figure.subplots()
-    shown = [each for each in trials if each['state'] == FEASIBLE]
-    places = [(e['objectives'][first['name']], e['objectives'][second['name']]) for e in shown]
+    shown = [each for each in trials if each.state == FEASIBLE]
+    places = [(e.objectives[first.name], e.objectives[second.name]) for e in shown]
     across_up = np.array(places, dtype=float).reshape(-1, 2).T
     axes.scatter(across_up[0], across_up[1], s=12, color=_TRIED, label='trial that keeps all')
-    for entry in result['front']:
-        _draw_pair(axes, entry, first, second, _FRONT, best=entry['number'] == result['best'])
-    if result['before']:
-        _draw_pair(axes, result['before'], first, second, _BEFORE, best=False)
+    for entry in result.front:
+        _draw_pair(axes, entry, first, second, _FRONT, best=entry.number == result.best)
+    if result.before:
+        _draw_pair(axes, result.before, first, second, _BEFORE, best=False)
     axes.scatter([], [], s=36, color=_FRONT, label='front, development')
     axes.scatter([], [], s=36, facecolors='none', edgecolors=_HELD, label='the same, held out')
     axes.scatter([], [], s=110, facecolors='none', edgecolors=_FRONT, label='best')
-    if result['before']:
+    if result.before:
         axes.scatter([], [], s=36, marker='s', color=_BEFORE, label='before')
     axes.set_xlabel(_label(first))
     axes.set_ylabel(_label(second))
@@ -64,8 +64,8 @@ def _draw_pair(
     best: bool,
 ) -> None:
     marker = 's' if colour == _BEFORE else 'o'
-    ours = _place(entry['development'], first, second)
-    theirs = _place(entry['held_out'], first, second)
+    ours = _place(entry.development, first, second)
+    theirs = _place(entry.held_out, first, second)
     if ours is None:
         return
     x, y = ours
@@ -82,20 +82,20 @@ def _draw_pair(
 def _place(
     figures: Figures | None, first: GoalEntry, second: GoalEntry
 ) -> tuple[float, float] | None:
-    values = figures['objectives'] if figures else {}
-    x, y = values.get(first['name']), values.get(second['name'])
+    values = figures.objectives if figures else {}
+    x, y = values.get(first.name), values.get(second.name)
     return None if x is None or y is None else (x, y)
 
 
 def _limit(axes: 'Axes', result: TuningResult, first: GoalEntry, second: GoalEntry) -> None:
     """Leave out what is far from the front, which would press it into a corner."""
-    drawn = [*result['front'], *([result['before']] if result['before'] else [])]
+    drawn = [*result.front, *([result.before] if result.before else [])]
     for goal, setting in ((first, axes.set_xlim), (second, axes.set_ylim)):
         values = [
             value
             for entry in drawn
-            for figures in (entry['development'], entry['held_out'])
-            if figures and (value := figures['objectives'][goal['name']]) is not None
+            for figures in (entry.development, entry.held_out)
+            if figures and (value := figures.objectives[goal.name]) is not None
         ]
         low, high = min(values), max(values)
         span = (high - low) or abs(high) or 1.0
@@ -114,7 +114,7 @@ def convergence_figure(result: TuningResult, goal: GoalEntry) -> 'Figure':
 
     figure = Figure(figsize=_SIZE)
     axes = figure.subplots()
-    values = np.array(result['convergence'][goal['name']], dtype=float)
+    values = np.array(result.convergence[goal.name], dtype=float)
     axes.plot(np.arange(1, len(values) + 1), values, drawstyle='steps-post', color=_FRONT)
     axes.set_xlabel('trials')
     axes.set_ylabel(f'best {_label(goal)}')
@@ -128,21 +128,21 @@ def sensitivity_figure(
     from matplotlib.figure import Figure
     from matplotlib.ticker import LogLocator, NullFormatter
 
-    names = list(result['parameters'])
+    names = list(result.parameters)
     across = min(2, len(names))
     rows = -(-len(names) // across)
     figure = Figure(figsize=(_SIZE[0], 0.6 + 2.1 * rows))
     panels = figure.subplots(rows, across, squeeze=False, sharey=True)
-    values = [each['objectives'][goal['name']] for each in trials]
-    kept = np.array([each['state'] == FEASIBLE for each in trials], dtype=bool)
+    values = [each.objectives[goal.name] for each in trials]
+    kept = np.array([each.state == FEASIBLE for each in trials], dtype=bool)
     known = np.array([value is not None for value in values], dtype=bool)
     heights = np.array([np.nan if value is None else value for value in values])
     for axes, name in zip(panels.flat, names, strict=False):
-        tried = np.array([each['parameters'][name] for each in trials], dtype=float)
+        tried = np.array([each.parameters[name] for each in trials], dtype=float)
         for chosen, colour in ((known & ~kept, _TRIED), (known & kept, _FRONT)):
             axes.scatter(tried[chosen], heights[chosen], s=8, color=colour)
         axes.set_xlabel(name, fontsize=9)
-        if result['parameters'][name]['scale'] == LOG:
+        if result.parameters[name].scale == LOG:
             axes.set_xscale('log')
             axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 3.0), numticks=4))
             axes.xaxis.set_major_formatter('{x:g}')
@@ -159,5 +159,5 @@ def sensitivity_figure(
 
 
 def _label(goal: GoalEntry) -> str:
-    unit = unit_text(goal['unit'])
-    return f'{goal["title"]}, {unit}' if unit else goal['title']
+    unit = unit_text(goal.unit)
+    return f'{goal.title}, {unit}' if unit else goal.title

@@ -41,19 +41,18 @@ def tuning_page(
     with chart_style():
         fronts = [
             (
-                f'{goals[0]["title"]} and {goals[1]["title"]}',
+                f'{goals[0].title} and {goals[1].title}',
                 _picture(front_figure(result, trials, *at)),
             )
-            for at in combinations(range(len(result['objectives'])), 2)
-            for goals in [[result['objectives'][place] for place in at]]
+            for at in combinations(range(len(result.objectives)), 2)
+            for goals in [[result.objectives[place] for place in at]]
         ]
         convergence = {
-            goal['name']: _picture(convergence_figure(result, goal))
-            for goal in result['objectives']
+            goal.name: _picture(convergence_figure(result, goal)) for goal in result.objectives
         }
         sensitivity = {
-            goal['name']: _picture(sensitivity_figure(result, trials, goal))
-            for goal in result['objectives']
+            goal.name: _picture(sensitivity_figure(result, trials, goal))
+            for goal in result.objectives
         }
     return page_template(_ROOM, 'tuning.html.j2').render(
         marker=Markup(MARKER),

@@ -18,29 +18,29 @@ def print_tuning(result: TuningResult) -> None:
 
 
 def _tables(result: TuningResult) -> Iterator[Table]:
-    goals = [*result['objectives'], *result['constraints']]
-    entries = [(_label(result, each), each) for each in result['front']]
-    if result['before']:
-        entries.append(('before', result['before']))
+    goals = [*result.objectives, *result.constraints]
+    entries = [(_label(result, each), each) for each in result.front]
+    if result.before:
+        entries.append(('before', result.before))
     rows = [
-        (label, where, *(f'{value:g}' for value in entry['parameters'].values()), *cells)
+        (label, where, *(f'{value:g}' for value in entry.parameters.values()), *cells)
         for label, entry in entries
         for where, figures in (
-            ('development', entry['development']),
-            ('held out', entry['held_out']),
+            ('development', entry.development),
+            ('held out', entry.held_out),
         )
         if figures
         for cells in [
             [
-                goal_text(goal, figures['objectives' if goal['limit'] is None else 'constraints'])
+                goal_text(goal, figures.objectives if goal.limit is None else figures.constraints)
                 for goal in goals
             ]
         ]
     ]
-    headers = ('trial', 'cases', *result['parameters'], *(each['title'] for each in goals))
-    parameters = len(result['parameters'])
+    headers = ('trial', 'cases', *result.parameters, *(each.title for each in goals))
+    parameters = len(result.parameters)
     front = Table(
-        f'Front of {result["controller"]}',
+        f'Front of {result.controller}',
         headers,
         rows,
         numbers=_numbers(len(headers)),
@@ -49,9 +49,9 @@ def _tables(result: TuningResult) -> Iterator[Table]:
     )
     yield with_reasons(front, lambda header, row: 'no run has a value')
     effects = [
-        (goal['title'], each['parameter'], f'{each["explained"]:.2f}', f'{each["p_value"]:.3f}')
-        for goal in result['objectives']
-        for each in result['sensitivity'][goal['name']]
+        (goal.title, each.parameter, f'{each.explained:.2f}', f'{each.p_value:.3f}')
+        for goal in result.objectives
+        for each in result.sensitivity[goal.name]
     ]
     if effects:
         weights = [Weight.IDENTIFYING] * 2
@@ -60,8 +60,8 @@ def _tables(result: TuningResult) -> Iterator[Table]:
 
 
 def _label(result: TuningResult, entry: FrontEntry) -> str:
-    best = ' (best)' if entry['number'] == result['best'] else ''
-    return f'{entry["number"]}{best}' or UNDEFINED
+    best = ' (best)' if entry.number == result.best else ''
+    return f'{entry.number}{best}' or UNDEFINED
 
 
 def _numbers(count: int) -> list[bool]:

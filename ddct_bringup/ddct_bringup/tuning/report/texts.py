@@ -31,19 +31,19 @@ RULES = {
 
 def goal_text(goal: GoalEntry, values: Mapping[str, float | None]) -> str:
     """Return the value of an objective or a constraint as text."""
-    return number_text(values[goal['name']], goal['form'])
+    return number_text(values[goal.name], goal.form)
 
 
 def notes_of(result: TuningResult) -> Iterator[str]:
     """Yield what a reader should know before the tables."""
-    best = next(each for each in result['front'] if each['number'] == result['best'])
-    if best['held_out'] and not best['held_out']['keeps_constraints']:
+    best = next(each for each in result.front if each.number == result.best)
+    if best.held_out and not best.held_out.keeps_constraints:
         yield 'the best trial keeps the constraints on development cases, not on held-out ones'
-    if any(each.differs for each in result['gaps']):
+    if any(each.differs for each in result.gaps):
         yield 'the best trial is worse on held-out cases, beyond chance'
-    if result['before'] is None:
+    if result.before is None:
         yield 'the values from before are outside of the ranges, and were not tried'
-    if result['trials'] < FEWEST:
+    if result.trials < FEWEST:
         yield f'fewer than {FEWEST} trials: too few to say which parameters decide'
-    saved = result['all_runs'] - result['runs']
-    yield f'{saved} of {result["all_runs"]} runs were saved by trials that ended early'
+    saved = result.all_runs - result.runs
+    yield f'{saved} of {result.all_runs} runs were saved by trials that ended early'
