@@ -6,7 +6,7 @@ import math
 
 from ddct_bringup.floor.case import Case
 from ddct_bringup.metrics.plant import JudgedPlant
-from ddct_plant.scenario.shift_rules import gears_of
+from ddct_plant.scenario.rules.shift import gears_of
 
 
 def least_friction_work(case: Case) -> float:

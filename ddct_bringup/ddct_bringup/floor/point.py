@@ -8,7 +8,7 @@ from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.floor.case import Case
 from ddct_bringup.floor.dynamics.off_going import effects_of_run
 from ddct_bringup.floor.dynamics.shapes import shape_effects
-from ddct_plant.scenario.shift_rules import gears_of
+from ddct_plant.scenario.rules.shift import gears_of
 
 
 def point_of(case: Case, run: Trajectory) -> np.ndarray:

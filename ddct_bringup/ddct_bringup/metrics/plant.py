@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 from ddct_plant.models.gearbox import EngagedGear
 from ddct_plant.models.parameters import DrivelineParameters, VehicleParameters
+from ddct_plant.scenario.rules.shift import gears_of
 from ddct_plant.scenario.scenario import Scenario
-from ddct_plant.scenario.shift_rules import gears_of
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from ddct_bringup.floor.dynamics.shapes import SHAPES, most_shapes, shape_effect
 from ddct_bringup.floor.friction_work import least_friction_work
 from ddct_plant.linear.sampling import hold_inputs
 from ddct_plant.models.driveline_model import states_and_torques
-from ddct_plant.scenario.shift_rules import gears_of
+from ddct_plant.scenario.rules.shift import gears_of
 
 LOCK_S = 0.4
 UNDAMPED = (

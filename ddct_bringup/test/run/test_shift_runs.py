@@ -22,8 +22,8 @@ from ddct_plant.models.driveline import LOCKED, PHASES
 from ddct_plant.models.load import RoadLoad
 from ddct_plant.models.static_torque import StaticTorque
 from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.rules.shift import gears_of
 from ddct_plant.scenario.settings import RunSettings
-from ddct_plant.scenario.shift_rules import gears_of
 
 pytestmark = pytest.mark.slow
 

@@ -30,7 +30,7 @@ from ddct_plant.models.clutch import Capacity
 from ddct_plant.models.gearbox import C635
 from ddct_plant.models.parameters import DrivelineParameters, VehicleParameters
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.shift_rules import gears_of
+from ddct_plant.scenario.rules.shift import gears_of
 from ddct_plant.shift.driveline import ShiftDriveline
 from ddct_plant.shift.gear_pair import GearPair
 from ddct_plant.shift.start import ShiftStart, driving_start

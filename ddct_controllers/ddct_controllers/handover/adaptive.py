@@ -13,8 +13,8 @@ from ddct_controllers.handover.interface import (
 from ddct_controllers.handover.on_coming_estimate import OnComingEstimate
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.models.engine_limits import LimitedEngine
+from ddct_plant.scenario.rules.shift import gears_of
 from ddct_plant.scenario.settings import RunSettings
-from ddct_plant.scenario.shift_rules import gears_of
 from ddct_plant.signals.handover_share import OnComingShare
 
 SLIPS_RAD_S = 1.0

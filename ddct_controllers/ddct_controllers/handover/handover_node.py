@@ -11,7 +11,7 @@ from ddct_plant.base.clutch_kinds import STICK_SLIP
 from ddct_plant.graph.follower import FollowerNode, Reply
 from ddct_plant.graph.output import Output
 from ddct_plant.graph.spin import run_node
-from ddct_plant.scenario.shift_rules import gears_of
+from ddct_plant.scenario.rules.shift import gears_of
 from ddct_plant.signals.topics import (
     HANDOVER_SHARE,
     OFF_GOING_SLIP,

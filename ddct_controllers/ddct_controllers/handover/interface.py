@@ -8,8 +8,8 @@ from typing import NamedTuple, Self
 from ddct_plant.base.timebase import PERIOD_S, steps_in, time_of_step
 from ddct_plant.models.load import RoadLoad
 from ddct_plant.models.static_torque import StaticTorque
+from ddct_plant.scenario.rules.shift import gears_of, shift_of
 from ddct_plant.scenario.settings import RunSettings
-from ddct_plant.scenario.shift_rules import gears_of, shift_of
 from ddct_plant.sensors.sensed import MeasuredSpeeds
 from ddct_plant.shift.balance import off_going_torque
 from ddct_plant.shift_plant.start import locked_request

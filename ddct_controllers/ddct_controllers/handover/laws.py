@@ -13,8 +13,8 @@ from ddct_controllers.handover.interface import (
 )
 from ddct_controllers.handover.third_party import third_party_handover
 from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.scenario.rules.shift import shift_of
 from ddct_plant.scenario.settings import RunSettings
-from ddct_plant.scenario.shift_rules import shift_of
 
 PROPORTIONAL, INTEGRAL = 0.3, 6.0
 """

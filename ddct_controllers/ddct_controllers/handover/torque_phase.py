@@ -4,8 +4,8 @@
 
 from ddct_controllers.interface import Measurement
 from ddct_plant.models.actuator import Actuator
+from ddct_plant.scenario.rules.shift import gears_of
 from ddct_plant.scenario.settings import RunSettings
-from ddct_plant.scenario.shift_rules import gears_of
 from ddct_plant.shift.balance import off_going_torque
 
 

@@ -11,8 +11,8 @@ from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import OptionGroup, option_field
 from ddct_plant.scenario.choices.settings import SETTINGS
 from ddct_plant.scenario.control import ENGINE_SPEED_TARGET, PROFILE
+from ddct_plant.scenario.rules.shift import require_shift
 from ddct_plant.scenario.scenario import Scenario
-from ddct_plant.scenario.shift_rules import require_shift
 from ddct_plant.signals.signal import RunKind
 
 _PYTHON = '.py'

@@ -13,8 +13,8 @@ from ddct_plant.scenario.plant import (
     make_load,
     torque_estimate,
 )
+from ddct_plant.scenario.rules.shift import gears_of
 from ddct_plant.scenario.settings import RunSettings
-from ddct_plant.scenario.shift_rules import gears_of
 from ddct_plant.scenario.whole_plant import Observation
 from ddct_plant.sensors.sensed import MeasuredSpeeds
 from ddct_plant.shift.driveline import ShiftOutputs

@@ -8,8 +8,8 @@ from ddct_plant.models.clutch import FrictionClutch
 from ddct_plant.models.driveline import DrivelineOutputs
 from ddct_plant.scenario.initial_state import initial_request
 from ddct_plant.scenario.plant import stick_slip_clutch
+from ddct_plant.scenario.rules.shift import gears_of, shift_of
 from ddct_plant.scenario.settings import RunSettings
-from ddct_plant.scenario.shift_rules import gears_of, shift_of
 from ddct_plant.shift.driveline import OffGoingOutputs, ShiftDriveline, ShiftOutputs
 from ddct_plant.shift.roles import OFF_GOING, ON_COMING
 from ddct_plant.shift_plant.start import locked_request, shift_start

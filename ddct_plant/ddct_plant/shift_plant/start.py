@@ -4,9 +4,9 @@
 
 from ddct_plant.scenario.control import ClosingParameters
 from ddct_plant.scenario.plant import holding_torque, make_engine, make_load
+from ddct_plant.scenario.rules.shift import gears_of, shift_of
 from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
-from ddct_plant.scenario.shift_rules import gears_of, shift_of
 from ddct_plant.shift.start import ShiftStart, driving_start
 
 

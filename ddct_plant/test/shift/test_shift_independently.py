@@ -13,8 +13,8 @@ from shifts import Law, Sample, run, shift_settings
 from ddct_plant.base.timebase import PERIOD_S, SUBSTEP_S, SUBSTEPS
 from ddct_plant.models.actuator import Actuator
 from ddct_plant.models.load import HoldingTorque, RoadLoad, air_and_slope
+from ddct_plant.scenario.rules.shift import gears_of
 from ddct_plant.scenario.settings import RunSettings
-from ddct_plant.scenario.shift_rules import gears_of
 from ddct_plant.shift.driveline import ShiftOutputs
 from ddct_plant.shift_plant.plant import ShiftPlant, ShiftReply
 from ddct_plant.shift_plant.sides import OPEN_BELOW

@@ -11,8 +11,8 @@ from ddct_bringup.floor.dynamics.laws import Law
 from ddct_bringup.floor.dynamics.propagators import ENGINE, NODES, WHEEL
 from ddct_bringup.floor.dynamics.shapes import shape_effects
 from ddct_bringup.floor.dynamics.start import ActuatorModel, Start
+from ddct_plant.scenario.rules.shift import gears_of
 from ddct_plant.scenario.settings import RunSettings
-from ddct_plant.scenario.shift_rules import gears_of
 
 
 class Inputs:
