@@ -17,7 +17,11 @@ from ddct_plant.program.table import Table
 from ddct_plant.scenario.settings import RunSettings
 
 HEADERS = ('parameter', 'default', 'meaning')
-SHARED = {'scenario', 'known_scenario', *options_of(RunSettings), *options_of(Scheduling)}
+SHARED = {
+    *('known', 'case', 'scenario', 'known_scenario'),
+    *options_of(RunSettings),
+    *options_of(Scheduling),
+}
 """Names of the parameters that every node has."""
 OF_CONTROLLER = 'gains.'
 """Prefix of the parameters that differ with the chosen controller."""

@@ -9,8 +9,12 @@ from refusals import refused
 from support.damages import tried_damages
 
 from ddct_bringup.bag.reader import mcap_of, read_bag
+from ddct_bringup.bag.writer import BagWriter
+from ddct_plant.bag_file.records import read_records
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import stamp_of_step
+from ddct_plant.signals.signal import RunKind
+from ddct_plant.signals.topics import recorded_topics
 
 
 def test_a_missing_bag_is_an_error(tmp_path):
@@ -83,10 +87,14 @@ def test_a_foreign_type_on_our_topic_is_an_error(
     assert capsys.readouterr().err == ''
 
 
-def test_a_bag_without_the_facts_of_the_run_is_reported_as_foreign(bags, trajectory):
-    bag = bags.rewrite(bags.write(trajectory), 'bare', score_window_s='')
-    with refused(DdctError, 'score_window_s', place='bare_0.mcap'):
-        read_bag(bag)
+def test_a_bag_without_the_settings_of_the_run_is_reported_as_foreign(bags, trajectory):
+    source = read_records(mcap_of(bags.write(trajectory)))
+    bare = bags.folder / 'bare'
+    with BagWriter(bare, 'bare', recorded_topics(RunKind()), {'version': '1.0'}) as writer:
+        for message in source.messages():
+            writer.write(*message)
+    with refused(DdctError, 'settings', place='bare_0.mcap'):
+        read_bag(bare)
 
 
 def without(topic, step):

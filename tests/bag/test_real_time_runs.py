@@ -5,6 +5,7 @@
 import json
 
 import pytest
+from support.made_bags import edited
 
 from ddct_bringup.api import shell
 from ddct_bringup.bag.reader import mcap_of
@@ -36,7 +37,7 @@ def leave(bags, trajectory, monkeypatch):
 
     def write(folder, missed, safe):
         records = read_records(mcap_of(bags.write(trajectory, folder='source')))
-        facts = {**records.custom_data, 'mode': 'realtime'}
+        facts = edited(records.custom_data, mode='realtime')
         topics = recorded_topics(RunKind(lockstep=False))
         with BagWriter(folder, 'pi', topics, facts) as bag:
             for message in records.messages():

@@ -20,7 +20,6 @@ from ddct_bringup.metrics.catalogue import FIGURES
 from ddct_bringup.programs.score import main
 from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_bringup.verdict.limits import load_limits
-from ddct_plant.scenario.file import load_scenario, scenario_to_yaml
 
 ENTRY_KEYS = [
     'bag',
@@ -41,7 +40,6 @@ ENTRY_KEYS = [
     'null_reasons',
     'fallbacks',
     'safe_state',
-    'before_schema',
     'scenario_changes',
     'gain_changes',
 ]
@@ -187,35 +185,6 @@ def test_a_bad_limits_file_is_a_mistake(bags, trajectory, tmp_path, capsys):
         f'ddct score: limits {mine}: line 2: unknown key limit: did you mean limits?\n'
     )
     assert captured.out == ''
-
-
-def test_a_bag_older_than_the_schema_is_scored_and_marked(bags, trajectory, capsys, monkeypatch):
-    bag = bags.write(trajectory, scenario='thesis')
-    changes = ['duration_s=0.6', 'control_start_s=0.1', 'score_window_s=[0.3, 0.6]']
-    scenario = load_scenario('thesis', changes)
-    later = bags.rewrite(bag, 'later', scenario_yaml=scenario_to_yaml(scenario))
-    monkeypatch.chdir(bag.parent)
-    entries, printed = [], []
-    for name in (bag.name, later.name):
-        assert main([name, '--json', '-']) == 0
-        captured = capsys.readouterr()
-        entries += runs_in(captured.out)
-        printed.append(' '.join(captured.err.split()))
-    before, after = entries
-    assert (before['before_schema'], after['before_schema']) == (True, False)
-    assert before['state'] == after['state']
-    # Without a scenario the inertias and the traction limit of the wheels are unknown.
-    unknown = {'friction_work_over_least', 'driving_acceleration_m_s2'}
-    for part in ('figures', 'metrics'):
-        known = before[part].keys() - unknown
-        assert {key: before[part][key] for key in known} == {
-            key: after[part][key] for key in known
-        }
-    assert before['null_reasons'].keys() >= unknown
-    assert limits_of(after).keys() - limits_of(before).keys() == {'driving_acceleration_m_s2'}
-    noted = [f'{bag.name}: recorded before scenarios had a schema_version' in printed[0]]
-    noted.append('recorded before' in printed[1])
-    assert noted == [True, False]
 
 
 def test_a_run_that_ended_early_is_not_valid(bags, trajectory, capsys):

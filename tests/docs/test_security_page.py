@@ -15,6 +15,7 @@ import pytest
 from support.documented import ROOT
 
 from ddct_bringup.bag.recording import Recording
+from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.keys import FILE_KEY, SCENARIO, run_options, sections
@@ -23,7 +24,6 @@ from ddct_bringup.campaign.spec import spec_of
 from ddct_bringup.campaign.specification.named_files import digest_of
 from ddct_bringup.digests.digest_file import RUNS, Digests, RunDigests
 from ddct_bringup.digests.environment import this_environment
-from ddct_bringup.run.description import facts_of
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_bringup.verification.repetition import plan_of
@@ -177,8 +177,8 @@ def test_those_of_a_controller_file_are_listed(place: Path) -> None:
 def test_those_of_the_digests_of_a_run_are_listed(place: Path) -> None:
     digests = Digests(1, RUNS, {}, this_environment())
     request = VerificationRequest(place, digests, packaged_limits())
-    facts = facts_of(SHIFT, 'pi', SHIFT.scenario.steps)
-    recording = Recording(Path(), Trajectory({}), facts, {}, simulated=SHIFT)
+    facts = RunFacts.of(SHIFT, 'pi', SHIFT.scenario.steps)
+    recording = Recording(Path(), Trajectory({}), facts, {}, settings=SHIFT)
     known = RunDigests('', 'pi', {})
     found = set()
     for name in (field.name for field in fields(RunDigests)):

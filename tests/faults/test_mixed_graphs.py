@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Nodes that do not belong together: other settings, a second publisher, an earlier graph."""
+"""Nodes that do not belong together: a second publisher, an earlier graph."""
 
 import re
 from pathlib import Path
@@ -12,27 +12,6 @@ from support.runs import expected, plan, record
 from ddct_bringup.run.execution import execute
 from ddct_plant.base.errors import DdctError
 from ddct_plant.nodes.load_node import LoadNode
-
-
-@pytest.mark.parametrize(
-    ('name', 'changes', 'words'),
-    [
-        ('clutch', {'wear_gain': 0.5}, ['wear_gain 0.5', 'recorder with 1.0']),
-        ('load', {'scenario': 'thesis'}, ['scenario_digest']),
-        ('actuator', {'mode': 'realtime'}, ['mode realtime', 'recorder with lockstep']),
-        ('engine', {'seed': 7}, ['seed 7', 'recorder with 0']),
-    ],
-)
-def test_a_node_with_other_settings_is_named(
-    graph_of: GraphOf, name: str, changes: dict[str, object], words: list[str]
-) -> None:
-    graph = graph_of(plan())
-    graph.add(name, changes)
-    graph.add_all()
-    node, complaint = graph.first_failure()
-    assert node == 'recorder'
-    for word in (f'node /{name} ', 'same settings', *words):
-        assert word in complaint
 
 
 def test_two_controllers_on_one_topic_are_detected(graph_of: GraphOf) -> None:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import yaml
 from received import (
     UNKNOWN,
     UNKNOWN_IN_A_SHIFT,
@@ -17,8 +18,9 @@ from received import (
 )
 from support.runs import LAYOUTS, bag_bytes, expected, record
 
+from ddct_bringup.processes.graph_nodes import nodes_of
 from ddct_bringup.run.plan import RunPlan
-from ddct_plant.graph.node_reports import run_info_pairs
+from ddct_plant.scenario.recorded_settings import settings_of_bag
 
 SENSORS = {'engine_speed': {'noise_rad_s': 0.1}}
 CONTROL = ('controller', 'reference', 'handover')
@@ -28,7 +30,10 @@ CONTROL = ('controller', 'reference', 'handover')
 @pytest.mark.parametrize(
     ('scenario', 'varied'),
     [
-        ('thesis', {'wear_gain': 2.0, 'seed': 5, 'vehicle.mass_kg': 1800.0, 'sensors': SENSORS}),
+        (
+            'thesis',
+            {'wear_gain': 2.0625, 'seed': 424243, 'vehicle.mass_kg': 1800.0, 'sensors': SENSORS},
+        ),
         ('upshift', {**UNKNOWN_IN_A_SHIFT, 'sensors': SENSORS}),
     ],
 )
@@ -44,12 +49,11 @@ def test_every_layout_leaves_the_same_bytes_with_settings_that_control_nodes_do_
         assert recording.trajectory.sha256() == expected(run).sha256(), layout
         bags.append(bag_bytes(tmp_path / layout))
     assert all(bag == bags[0] for bag in bags)
-    ours = {node.strip('/'): pairs for node, pairs in recording.run_info.items()}
-    known, true = run_info_pairs(settings.known), run_info_pairs(settings)
-    for node, pairs in ours.items():
-        expected_pairs = known if node in CONTROL else true
-        assert expected_pairs.items() <= pairs.items(), node
-    assert not found_in([ours[node] for node in CONTROL if node in ours], true_values(settings))
+    values = true_values(settings)
+    recorded = settings_of_bag(recording.custom_data)
+    assert not found_in([recording.run_info, recorded.known], values)
+    of_case = [value for value in values if value in found_in(recorded.case, values)]
+    assert of_case == values, 'the rest of the settings is in the case alone'
 
 
 @pytest.mark.parametrize(
@@ -72,9 +76,26 @@ def test_control_nodes_find_no_true_value_in_their_parameters_and_objects(
             continue
         given = {each: node.get_parameter(each).value for each in node.own_parameters()}
         given |= {each: of.value for each, of in node._parameter_overrides.items()}
-        assert not {'wear_gain', 'seed', 'off_going_wear_gain', 'known_scenario'} & given.keys()
+        assert not {'case', 'wear_gain', 'seed', 'off_going_wear_gain'} & given.keys()
         assert not found_in([given, node.settings], values)
-        written = Path(given['scenario']).read_text(encoding='utf-8')
+        written = Path(given['known']).read_text(encoding='utf-8')
         assert not found_in(written, values)
-    parameters = [each.value for each in graph.nodes['clutch']._parameter_overrides.values()]
-    assert settings.wear_gain in found_in(parameters, values)
+    assert graph.nodes['clutch'].settings == settings
+    for node in graph.nodes.values():
+        parameters = node.get_parameters(node.own_parameters())
+        assert not found_in([each.value for each in parameters], values), node.get_name()
+
+
+def test_what_a_program_writes_for_control_nodes_has_no_true_value(tmp_path: Path) -> None:
+    settings = settings_with(UNKNOWN_IN_A_SHIFT, 'upshift', duration_s=0.5)
+    values = true_values(settings)
+    file = RunPlan(settings, 'pi', 'processes').write_parameter_file(tmp_path, tmp_path)
+    files = {each.name: each.read_text(encoding='utf-8') for each in tmp_path.iterdir()}
+    assert sorted(files) == ['case.json', 'known.json', file.name]
+    assert sorted(found_in(files.pop('case.json'), values)) == sorted(values)
+    assert not found_in(files, values)
+    parameters = yaml.safe_load(file.read_text(encoding='utf-8'))
+    of_case = {node for node, each in parameters.items() if 'case' in each['ros__parameters']}
+    assert of_case == {
+        f'/**/{node.path}' for node in nodes_of(shift=True) if node.path not in CONTROL
+    }

@@ -5,7 +5,7 @@
 from pathlib import Path
 
 import pytest
-from support.in_process_graph import GraphOf
+from support.in_process_graph import GraphOf, by_hand
 from support.runs import LAYOUTS, bag_bytes, expected, plan, record
 
 from ddct_bringup.scores.scored_recording import score_recording
@@ -83,6 +83,7 @@ def test_a_node_with_another_clutch_ends_the_run_with_an_error(
     graph_of: GraphOf, node: str, complaint: str
 ) -> None:
     graph = graph_of(plan('pi', 'single-process', clutch='stick_slip'))
+    by_hand(graph, {'clutch': 'stick_slip'})
     changes = {'driveline': {'require_recorder': False, 'answer_timeout_s': 1.0}}
     graph.add(node, {'clutch': 'linear'})
     graph.add('driveline', changes['driveline'])

@@ -88,19 +88,6 @@ def test_an_engine_that_does_not_expect_requests_ends_with_an_error(graph_of: Gr
         assert words in complaint
 
 
-@pytest.mark.parametrize(('name', 'other'), [('engine', 'true'), ('recorder', 'false')])
-def test_nodes_that_differ_about_the_second_input_are_named(
-    graph_of: GraphOf, name: str, other: str
-) -> None:
-    graph = graph_of(plan('ls8'))
-    graph.add(name, {'two_input': True})
-    graph.add_all()
-    node, complaint = graph.first_failure()
-    assert node == 'recorder'
-    assert f'runs with two_input {other} and the recorder with' in complaint
-    assert 'start engine and recorder with the two_input of the controller' in complaint
-
-
 class _Listener(Node):
     """Subscriber that stores the engine's torques by topic and step."""
 

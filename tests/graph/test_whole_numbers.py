@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from rclpy.exceptions import ParameterNotDeclaredException
 from rclpy.parameter import Parameter
-from support.in_process_graph import GraphOf
+from support.in_process_graph import GraphOf, by_hand
 from support.processes import Programs
 from support.runs import plan
 
@@ -33,6 +33,8 @@ def test_whole_numbers_are_values_of_each_parameter_that_is_a_number(
     graph_of: GraphOf, spec: Any
 ) -> None:
     graph = graph_of(SHIFT)
+    # By hand: a program gives files in place of true values.
+    by_hand(graph, {'scenario': 'upshift', 'clutch': 'stick_slip'})
     usual = numbers_of(graph.add(spec.path))
     wear = {'wear_gain', 'off_going_wear_gain'}
     # A node that controls does not know the wear.
@@ -60,7 +62,7 @@ def test_a_gain_takes_a_whole_number_while_it_runs(graph_of: GraphOf) -> None:
 
 
 def test_a_parameter_of_whole_numbers_takes_those_with_a_decimal_point(graph_of: GraphOf) -> None:
-    graph = graph_of(plan('pi'))
+    graph = by_hand(graph_of(plan('pi')), {})
     seed = graph.add('engine', {'seed': 3.0}).get_parameter('seed')
     assert (seed.type_, seed.value) == (Parameter.Type.INTEGER, 3)
 

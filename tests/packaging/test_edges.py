@@ -12,7 +12,6 @@ MAPPINGS = {'dict', 'Mapping', 'MutableMapping'}
 FILES = {
     'ddct_plant/bag_file/metadata.py': 'metadata.yaml of a bag',
     'ddct_plant/bag_file/records.py': 'metadata in an MCAP file',
-    'ddct_bringup/bag/run_facts.py': 'custom data of a bag',
     'ddct_bringup/bag/writer.py': 'metadata of a bag',
     'ddct_bringup/benchmark/cases.py': 'cases of a benchmark, YAML',
     'ddct_bringup/benchmark/manifest.py': 'manifest.json of a benchmark',
@@ -58,6 +57,7 @@ FILES = {
     'ddct_plant/scenario/csv_profiles.py': 'profiles of a scenario, YAML and CSV',
     'ddct_plant/scenario/file.py': 'scenario, YAML',
     'ddct_plant/scenario/overrides.py': 'options --set of a scenario',
+    'ddct_plant/scenario/recorded_settings.py': 'settings in a bag, JSON',
 }
 """Modules that read or write files, with what they read or write."""
 VALUES_BY_KEY = {

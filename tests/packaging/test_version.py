@@ -13,8 +13,6 @@ import pytest
 import yaml
 
 from ddct_plant.graph.node_reports import run_info_pairs
-from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = ('ddct_plant', 'ddct_reference', 'ddct_controllers', 'ddct_bringup')
@@ -65,7 +63,7 @@ def test_every_program_prints_the_version(module: str, capsys: pytest.CaptureFix
 
 
 def test_nodes_publish_the_version_on_run_info() -> None:
-    pairs = dict(run_info_pairs(RunSettings(load_scenario('thesis'))))
+    pairs = run_info_pairs('load')
     assert pairs['version'] == version_of('ddct_plant')
 
 

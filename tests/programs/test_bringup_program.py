@@ -37,7 +37,8 @@ def test_options_reach_the_bag(tmp_path: Path) -> None:
     assert (facts.controller, facts.architecture, facts.clutch) == ('pi', 'detailed', 'linear')
     assert (facts.scenario, facts.mode, facts.seed) == ('thesis', 'lockstep', 3)
     assert (facts.wear_gain, facts.duration_s) == (0.7, 0.7)
-    assert 'slope_rad: 0.05' in recording.custom_data['scenario_yaml']
+    assert recording.settings is not None
+    assert recording.settings.scenario.load.slope_rad == 0.05
 
 
 def test_a_run_ends_with_its_state_and_the_reason(

@@ -21,9 +21,10 @@ def test_bringup_prints_adjusted_values_the_bag_keeps_them_and_score_repeats_the
     out = tmp_path / 'runs'
     assert bringup.main([*HEAVY, '--out', str(out)]) == 0
     assert f'scenario thesis: {MOVED}' in capfd.readouterr().err
-    custom = read_bag(out / 'pi').custom_data
-    assert custom['adjusted'].startswith(MOVED)
-    assert 'vehicle_inertia: 185.62926' in custom['scenario_yaml']
+    settings = read_bag(out / 'pi').settings
+    assert settings is not None
+    assert settings.scenario.adjusted[0].startswith(MOVED)
+    assert settings.scenario.driveline.vehicle_inertia == pytest.approx(185.62926)
     assert score.main([str(out)]) == 0
     assert f'ddct score: pi: {MOVED}' in capfd.readouterr().err
 

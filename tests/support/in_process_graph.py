@@ -27,6 +27,7 @@ from ddct_plant.graph.node import GraphNode
 from ddct_plant.graph.spin import finish_node, make_executor
 from ddct_plant.graph.steady_time import SteadyTime
 from ddct_plant.nodes.driveline_node import DrivelineNode
+from ddct_plant.scenario.settings import UNKNOWN
 from support.waiting import WITHIN_S, wait_until
 
 CHECK_PERIOD_S = 0.001
@@ -241,6 +242,22 @@ class InProcessGraph:
 
     def _take_mark(self) -> None:
         self._mark_waits = False
+
+
+def by_hand(graph: InProcessGraph, settings: Mapping[str, Any]) -> InProcessGraph:
+    """
+    Give the nodes of a graph settings by their parameters in place of files, as a user would.
+
+    Those of the plant and the recorder get all, those that control none that they do not have.
+    """
+    known = {key: settings[key] for key in settings if key not in UNKNOWN}
+    graph.parameters['*'].pop('known')
+    for path in ('controller', 'reference', 'handover'):
+        graph.parameters.setdefault(path, {}).update(known)
+    for parameters in graph.parameters.values():
+        if parameters.pop('case', None):
+            parameters.update(settings)
+    return graph
 
 
 GraphOf = Callable[..., InProcessGraph]

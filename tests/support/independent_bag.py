@@ -6,6 +6,7 @@ Signals of a bag by the MCAP library and its ROS 2 decoder, without any code of 
 What a topic holds is read from docs/develop/interfaces.md alone. All values are SI.
 """
 
+import json
 from collections import defaultdict
 from dataclasses import dataclass
 from functools import cached_property
@@ -40,8 +41,8 @@ class IndependentBag:
     """Messages of a bag by topic, one for each step, and the settings of the run."""
 
     messages: dict[str, list[Any]]
-    settings: dict[str, str]
-    """Pairs of the run in `metadata.yaml`."""
+    known: dict[str, Any]
+    """Settings of the run that controllers know, in `metadata.yaml`."""
 
     @classmethod
     def read(cls, bag: Path) -> 'IndependentBag':
@@ -59,12 +60,12 @@ class IndependentBag:
                 assert entry.log_time == START_NS + len(of_topic) * PERIOD_NS, channel.topic
                 of_topic.append(message)
         assert len({len(of_topic) for of_topic in messages.values()}) == 1
-        return cls(dict(messages), information['custom_data'])
+        return cls(dict(messages), json.loads(information['custom_data']['settings'])['known'])
 
     @cached_property
     def scenario(self) -> dict[str, Any]:
         """Scenario of the run, nested."""
-        return yaml.safe_load(self.settings['scenario_yaml'])
+        return self.known['scenario']
 
     @property
     def steps(self) -> int:
@@ -74,12 +75,12 @@ class IndependentBag:
     @property
     def planned_steps(self) -> int:
         """Number of periods that the run should have had."""
-        return round(float(self.settings['duration_s']) / PERIOD_S)
+        return round(self.known['duration_s'] / PERIOD_S)
 
     @property
     def start(self) -> int:
         """Step of control start; in a gear shift that of its start."""
-        return round(float(self.settings['control_start_s']) / PERIOD_S)
+        return round(self.scenario['control_start_s'] / PERIOD_S)
 
     @property
     def sticks(self) -> bool:

@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bags of made-up runs: random numbers in every signal, so that no two values are alike."""
 
+import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -9,34 +11,42 @@ import numpy as np
 import pytest
 
 from ddct_bringup.bag.reader import mcap_of
-from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.bag.writer import BagWriter
 from ddct_plant.bag_file.records import read_records
 from ddct_plant.models.driveline import PhaseEvent
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.recorded_settings import SETTINGS, RecordedSettings
+from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.signals.signal import RunKind
 from ddct_plant.signals.topics import all_topics, recorded_topics
 
 RUN_INFO = {'/load': {'version': '1.0'}, '/engine': {'version': '1.0', 'two_input': 'false'}}
 
 
-def facts(steps, **changes):
-    """Return the facts of a run of `steps` steps that is scored over its last half."""
+def described(steps, controller='pi', *, scenario='made-up', **changes):
+    """Return the custom data of a run of `steps` steps that is scored over its last half."""
     duration = steps / 100.0
-    window = (round(duration / 2.0, 2), duration)
-    values = {
-        'controller': 'pi',
-        'architecture': 'detailed',
-        'scenario': 'made-up',
-        'clutch': 'linear',
-        'wear_gain': 1.0,
-        'mode': 'lockstep',
-        'seed': 0,
-        'control_start_s': 0.1,
-        'score_window_s': window,
+    times = {
         'duration_s': duration,
+        'control_start_s': 0.1,
+        'score_window_s': [round(duration / 2.0, 2), duration],
     }
-    return RunFacts(**{**values, **changes})
+    times = {name: changes.pop(name, value) for name, value in times.items()}
+    clutch = changes.pop('clutch', 'linear')
+    made = replace(load_scenario('thesis', times, clutch), name=scenario)
+    settings = RunSettings(made, clutch=clutch, **changes)
+    return {SETTINGS: RecordedSettings.of(settings, controller, times['duration_s']).text()}
+
+
+def edited(custom_data, **changes):
+    """Return custom data with other settings; what is in no part is of the known scenario."""
+    data = json.loads(custom_data[SETTINGS])
+    for key, value in changes.items():
+        parts = (data, data['known'], data['case'])
+        part = next((part for part in parts if key in part), data['known']['scenario'])
+        part[key] = value
+    return {**custom_data, SETTINGS: json.dumps(data)}
 
 
 def random_trajectory(steps, preview_steps=2, clutch='linear'):
@@ -83,23 +93,21 @@ class Bags:
         from ddct_bringup.bag.trajectory_bag import write_trajectory
 
         bag = self.folder / (folder or name)
-        custom_data = facts(trajectory.steps, controller=name, **changes).to_custom_data()
-        write_trajectory(
-            trajectory,
-            bag,
-            name,
-            custom_data,
-            RUN_INFO,
-        )
+        custom_data = described(trajectory.steps, name, **changes)
+        write_trajectory(trajectory, bag, name, custom_data, RUN_INFO)
         return bag
 
-    def rewrite(self, source, name, edit=lambda messages: messages, **changes):
-        """Write the messages of a bag again, edited, as a list of (topic, stamp, bytes)."""
+    def rewrite(self, source, folder, edit=lambda messages: messages, /, **changes):
+        """
+        Write the messages of a bag again, edited, as a list of (topic, stamp, bytes).
+
+        `changes` are those of `edited`.
+        """
         records = read_records(mcap_of(source))
-        bag = self.folder / name
+        bag = self.folder / folder
         known = {topic.resolved_name: topic for topic in all_topics()}
         topics = [known[channel.topic] for channel in records.channels.values()]
-        with BagWriter(bag, name, topics, {**records.custom_data, **changes}) as writer:
+        with BagWriter(bag, folder, topics, edited(records.custom_data, **changes)) as writer:
             for message in edit(list(records.messages())):
                 writer.write(*message)
         return bag

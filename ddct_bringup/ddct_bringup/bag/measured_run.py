@@ -17,7 +17,7 @@ from ddct_bringup.bag.trajectory import Trajectory
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.options import options_of, require_known
 from ddct_plant.base.timebase import PERIOD_S, time_of_step
-from ddct_plant.files.input_file import SCHEMA_KEY, located
+from ddct_plant.files.input_file import located
 from ddct_plant.measured.columns import QUANTITIES, TIME, ColumnMap
 from ddct_plant.measured.log import MeasuredLog, read_log
 from ddct_plant.signals.signal import RunKind, Signal
@@ -92,7 +92,6 @@ def read_measured_run(path: Path, columns: ColumnMap) -> Recording:
         path=path,
         trajectory=_trajectory(values, steps),
         facts=_facts(run, steps),
-        custom_data={'scenario_yaml': f'{SCHEMA_KEY}: 1\n', 'version': MEASURED},
         absent=absent,
     )
 

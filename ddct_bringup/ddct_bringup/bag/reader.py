@@ -10,16 +10,15 @@ from typing import Any
 import numpy as np
 
 from ddct_bringup.bag.realtime_facts import RealtimeFacts
-from ddct_bringup.bag.recording import Recording, require_consistent
-from ddct_bringup.bag.run_facts import RunFacts
+from ddct_bringup.bag.recording import Recording
+from ddct_bringup.bag.run_facts import described_run
 from ddct_bringup.bag.run_info import RUN_INFO_TOPICS, RunInfoOfNodes, add_run_info
 from ddct_bringup.bag.ticks import BEFORE_FIRST_TICK, check_ticks, last_whole_tick
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_plant.bag_file.decoding import Column, TopicColumns, read_columns
-from ddct_plant.bag_file.facts import require_last_step
 from ddct_plant.bag_file.records import BagRecords, read_records
 from ddct_plant.base.errors import DdctError
-from ddct_plant.base.timebase import PERIOD_NS, START_NS
+from ddct_plant.base.timebase import PERIOD_NS, START_NS, time_of_step
 from ddct_plant.files.input_file import located, mcap_of
 from ddct_plant.graph.node_names import StatusName, name_in_graph
 from ddct_plant.signals.signal import RunKind
@@ -43,11 +42,16 @@ def read_bag(path: Path) -> Recording:
 def recording_of(records: BagRecords) -> Recording:
     """Decode the records of a bag; raise the errors of `read_bag`, without the file's name."""
     _require_joint_states(records)
-    facts = RunFacts.from_custom_data(records.custom_data)
+    settings, facts = described_run(records.custom_data)
     run = facts.kind_of_bag(records.topics)
     found = _found(records, run)
     last = check_ticks({name: each.stamps.tolist() for name, each in found.items()}, run)
-    require_last_step(records.custom_data, last)
+    if last > facts.steps:
+        raise DdctError(
+            f'duration_s is {facts.duration_s:g} in its settings, but its last tick is at '
+            f'{time_of_step(last):g} s: take the original bag',
+            key='duration_s',
+        )
     columns: dict[str, Column] = {}
     missed: dict[str, int] = {}
     absent: dict[str, str] = {}
@@ -63,7 +67,7 @@ def recording_of(records: BagRecords) -> Recording:
         columns |= at_ticks
         if missing and topic.in_run(run):
             missed[topic.name] = missing
-    recording = Recording(
+    return Recording(
         path=records.path,
         trajectory=Trajectory.of_columns(columns),
         facts=facts,
@@ -74,9 +78,8 @@ def recording_of(records: BagRecords) -> Recording:
         realtime=_realtime(found[DIAGNOSTICS.resolved_name].messages),
         absent=absent,
         unfinished=records.unfinished,
+        settings=settings,
     )
-    require_consistent(recording)
-    return recording
 
 
 def _require_joint_states(records: BagRecords) -> None:

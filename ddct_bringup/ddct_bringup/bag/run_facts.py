@@ -1,16 +1,16 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Facts of a run, and the custom data of a bag that have them as text."""
+"""Facts of a run that scoring needs, taken from its settings."""
 
-import json
 from collections.abc import Container, Iterable, Mapping
-from dataclasses import dataclass, fields
-from typing import Any, TypedDict
+from dataclasses import dataclass
+from typing import TypedDict
 
-from ddct_plant.bag_file.facts import parsed_fact
-from ddct_plant.base.errors import DdctError, ParameterError, require_name
-from ddct_plant.base.timebase import steps_in
-from ddct_plant.scenario.settings import is_handover_file
+from ddct_plant.base.errors import require_name
+from ddct_plant.base.timebase import steps_in, time_of_step
+from ddct_plant.files.input_file import located
+from ddct_plant.scenario.recorded_settings import run_settings, settings_of_bag
+from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.signals.signal import RunKind
 from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import (
@@ -22,8 +22,6 @@ from ddct_plant.signals.topics import (
 
 _NAMES = ('controller', 'architecture', 'scenario', 'clutch', 'mode')
 """Facts that are plain names, used in tables, labels and file names."""
-_OF_SHIFTS = ('off_going_wear_gain', 'handover')
-"""Facts that only a shift has."""
 MEASURED = 'measured'
 """Mode of the log of another tool, and the text for facts that such a log lacks."""
 
@@ -70,17 +68,6 @@ class RunFacts(RunConditions):
     handover: str | None = None
     """Name of the handover of a shift; None in other runs."""
 
-    def __post_init__(self) -> None:
-        """Raise ParameterError for a name that a bag could not store or return unchanged."""
-        super().__post_init__()
-        if self.handover is not None:
-            require_name('handover', self.handover)
-            if is_handover_file(self.handover):  # a bag is data alone: its facts run no file
-                raise ParameterError(
-                    f'handover is {self.handover!r}, a file: give a name without .py',
-                    key='handover',
-                )
-
     @property
     def of_shift(self) -> ShiftOptions:
         """Settings of a shift by name; none of another run."""
@@ -122,26 +109,33 @@ class RunFacts(RunConditions):
             torque_parts=has_any([TORQUE_PARTS]),
         )
 
-    def to_custom_data(self) -> dict[str, str]:
-        """Return the facts as text by name; numbers as JSON, which keeps them to the last bit."""
-        return {
-            each.name: value if isinstance(value, str) else json.dumps(value)
-            for each in fields(self)
-            for value in [getattr(self, each.name)]
-            if value is not None
-        }
-
     @classmethod
-    def from_custom_data(cls, custom_data: Mapping[str, str]) -> 'RunFacts':
-        """Return the facts in a bag's custom data; DdctError names a missing or invalid one."""
-        values: dict[str, Any] = {}
-        for name in (each.name for each in fields(cls)):
-            if name not in custom_data:
-                if name in _OF_SHIFTS:
-                    continue
-                raise DdctError(
-                    f'no {name} in the custom data: not a recording of this project', key=name
-                )
-            text = custom_data[name]
-            values[name] = text if name in (*_NAMES, 'handover') else parsed_fact(name, text)
-        return cls(**{**values, 'seed': int(values['seed'])})
+    def of(cls, settings: RunSettings, controller: str, steps: int) -> 'RunFacts':
+        """Return the facts of a run of this many steps."""
+        scenario = settings.scenario
+        return cls(
+            controller=controller,
+            architecture=settings.architecture,
+            scenario=scenario.name,
+            clutch=settings.clutch,
+            wear_gain=settings.wear_gain,
+            mode=settings.mode,
+            seed=settings.seed,
+            control_start_s=scenario.control_start_s,
+            score_window_s=scenario.score_window_s,
+            duration_s=time_of_step(steps),
+            off_going_wear_gain=settings.off_going_wear_gain if settings.shift else None,
+            handover=settings.handover_name if settings.shift else None,
+        )
+
+
+def described_run(custom_data: Mapping[str, str]) -> tuple[RunSettings, RunFacts]:
+    """
+    Return the settings in the custom data of a bag, and the facts of the run.
+
+    Raise DdctError for a bag without settings, and for settings that make no run.
+    """
+    recorded = settings_of_bag(custom_data)
+    with located('settings of the run'):
+        settings = run_settings(recorded.known, recorded.case)
+        return settings, RunFacts.of(settings, recorded.known.controller, recorded.known.steps)

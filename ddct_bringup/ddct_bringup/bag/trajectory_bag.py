@@ -12,13 +12,14 @@ from typing import Any
 
 import numpy as np
 
-from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.run_info import run_info_order, run_info_topic
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.bag.writer import BagWriter
 from ddct_plant.bag_file.message_definitions import encode, message_class
 from ddct_plant.bag_file.number_columns import NumberColumns
 from ddct_plant.base.timebase import START_NS, stamp_of_step
+from ddct_plant.scenario.recorded_settings import settings_of_bag
+from ddct_plant.signals.signal import RunKind
 from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import RUN_INFO, recorded_topics
 
@@ -38,8 +39,11 @@ def write_trajectory(
 
     Raise DdctError when the bag cannot be written.
     """
-    run = RunFacts.from_custom_data(custom_data).kind(
+    known = settings_of_bag(custom_data).known
+    run = RunKind(
+        lockstep=known.mode == 'lockstep',
         two_input=trajectory.two_input,
+        clutch=known.clutch,
         sensed=trajectory.sensed,
         shift=trajectory.shift,
         torque_parts=trajectory.torque_parts,

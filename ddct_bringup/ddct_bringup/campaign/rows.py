@@ -5,8 +5,8 @@
 from collections.abc import Mapping
 from typing import Any
 
+from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.metrics.catalogue import REPEATABLE
-from ddct_bringup.run.description import facts_of
 from ddct_bringup.run.execution import recording_in_memory
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.run.plan import require_headless
@@ -64,7 +64,7 @@ def scored_headless(
         recording = recording_in_memory(settings, name, trajectory)
         scores = score_run(recording, name, limits, RunTiming())
         return scores_with_least(scores, settings, trajectory, limits) if floors else scores
-    facts = facts_of(settings, name, settings.scenario.steps)
+    facts = RunFacts.of(settings, name, settings.scenario.steps)
     return run_without_score(name, facts, reason)
 
 

@@ -18,12 +18,16 @@ from ddct_plant.bag_file.message_definitions import load_definition
 from ddct_plant.base.errors import DdctError
 from ddct_plant.graph.node import GraphNode
 from ddct_plant.graph.node_names import StatusName, name_in_graph
-from ddct_plant.graph.node_reports import update_times
+from ddct_plant.graph.node_reports import CASE, KNOWN, TWO_INPUT, flag, update_times
 from ddct_plant.graph.output import create_publisher
 from ddct_plant.graph.qos import RECORDER_QOS
+from ddct_plant.graph.settings import has_files
 from ddct_plant.graph.sole_publishers import publishers_of
 from ddct_plant.graph.spin import run_node
 from ddct_plant.graph.wire import serialiser
+from ddct_plant.scenario.recorded_settings import known_values, values_of, values_text
+from ddct_plant.signals.tables.off_going import OFF_GOING_RUN_SETTINGS
+from ddct_plant.signals.tables.run import RUN_SETTINGS
 from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import (
     CONTROLLER_TIMING,
@@ -58,7 +62,7 @@ class RecorderNode(GraphNode):
         """Declare the parameters and subscribe to every recorded topic."""
         super().__init__('recorder', **kwargs)
         recording = self._recording = declare_parameters(self)
-        self._nodes = RunInfoCollector(self.settings, recording.two_input, recording.nodes)
+        self._nodes = RunInfoCollector(recording.nodes)
         self._run = self.settings.kind(two_input=recording.two_input)
         self._topics = recorded_topics(self._run)
         ticks = [topic for topic in self._topics if topic.every_tick]
@@ -85,7 +89,8 @@ class RecorderNode(GraphNode):
         self._acknowledged = 0
         self._second_node: DdctError | None = None
         self._subscribe_all()
-        self.publish_run_info()
+        self.publish_run_info(records=True)
+        self._publish_settings()
         self._patience = self.every(PATIENCE_S, self._warn_of_missing_nodes)
 
     def close(self) -> None:
@@ -112,6 +117,22 @@ class RecorderNode(GraphNode):
                 raise self._second_node
         except DdctError as error:
             self.finish(error)
+
+    def _publish_settings(self) -> None:
+        """
+        Publish the settings of the run, which nodes that were started by hand compare.
+
+        The true ones are among them only where this node was started by hand too.
+        """
+        pairs = {
+            TWO_INPUT: flag(self._recording.two_input),
+            KNOWN: values_text(known_values(self.settings)),
+        }
+        if not has_files(self):
+            pairs[CASE] = values_text(values_of(self.settings))
+        self.publish_latched(RUN_SETTINGS, pairs)
+        if self.settings.shift:
+            self.publish_latched(OFF_GOING_RUN_SETTINGS, pairs)
 
     def _subscribe_all(self) -> None:
         special = {

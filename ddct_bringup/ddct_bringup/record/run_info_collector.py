@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Collector of `run_info`: the nodes received so far, and whether their settings agree."""
+"""Collector of `run_info`: the nodes received so far, and what the bag takes from them."""
 
 from collections.abc import Collection, Mapping
 
@@ -10,37 +10,22 @@ from ddct_bringup.bag.run_info import (
     RunInfoOfNodes,
     add_run_info,
     run_info_order,
-    run_info_topic,
 )
 from ddct_plant.base.errors import DdctError
 from ddct_plant.graph.node_names import name_in_graph
-from ddct_plant.graph.node_reports import (
-    CONTROL_NODES,
-    CONTROLLER,
-    PARTS,
-    ROLE,
-    STEPS,
-    TWO_INPUT,
-    flag,
-    run_info_pairs,
-    settings_of_node,
-)
-from ddct_plant.scenario.settings import RunSettings
-from ddct_plant.shift.roles import OFF_GOING, ON_COMING
-from ddct_plant.signals.topics import OFF_GOING_RUN_INFO, RUN_INFO
+from ddct_plant.graph.node_reports import CONTROLLER, PARTS, STEPS, flag
+from ddct_plant.signals.topics import RUN_INFO
 
 
 class RunInfoCollector:
     """Collector of the `run_info` of every node that a recording needs."""
 
-    def __init__(self, settings: RunSettings, two_input: bool, expected: Collection[str]) -> None:
+    def __init__(self, expected: Collection[str]) -> None:
         """
-        Store the recorder's own settings, and the names of the nodes to wait for.
+        Store the names of the nodes to wait for.
 
         A name without a slash is that of a node in the recorder's own namespace.
         """
-        self._settings = settings
-        self._two_input = flag(two_input)
         self._expected = {name_in_graph(node) for node in expected}
         self._received: RunInfoOfNodes = {}
 
@@ -48,25 +33,8 @@ class RunInfoCollector:
         """
         Store the `run_info` of a node, given by its full name.
 
-        Raise DdctError when its settings differ from the recorder's, or its pairs from
-        earlier ones.
+        Raise DdctError when two nodes have this name.
         """
-        for key, ours in run_info_pairs(settings_of_node(self._settings, node)).items():
-            if pairs.get(key, ours) != ours:
-                raise DdctError(
-                    f'node {node} runs with {key} {pairs[key]} and the recorder with {ours}'
-                    f'{" for its controllers" if node in CONTROL_NODES else ""}: '
-                    'start every node with the same settings',
-                    key=key,
-                )
-        if pairs.get(TWO_INPUT, self._two_input) != self._two_input:
-            raise DdctError(
-                f'node {node} runs with two_input {pairs[TWO_INPUT]} and the recorder with '
-                f'{self._two_input}: start engine and recorder with the two_input of the '
-                'controller, as --ros-args -p two_input:=true when it commands the engine',
-                key=TWO_INPUT,
-            )
-        self._require_role(node, pairs)
         add_run_info(self._received, node, pairs)
 
     def missing(self) -> list[str]:
@@ -116,15 +84,6 @@ class RunInfoCollector:
                 key=PARTS,
             )
         return text == flag(True)
-
-    def _require_role(self, node: str, pairs: Mapping[str, str]) -> None:
-        """Raise DdctError for a side of a gear shift other than that of the node's namespace."""
-        place = OFF_GOING if run_info_topic(node) is OFF_GOING_RUN_INFO else ON_COMING
-        if pairs.get(ROLE, place) != place:
-            raise DdctError(
-                f'node {node} has the role {pairs[ROLE]}, but its name is that of the {place} '
-                f'side: start it with --ros-args -p role:={place}, or in another namespace'
-            )
 
     def _value(self, node: str, key: str) -> str:
         pairs = self._received.get(node, {})

@@ -36,6 +36,7 @@ from ddct_controllers.design.analysis.loop_quantities import LOOP_QUANTITIES
 from ddct_controllers.design.drawing.line_looks import DARK_COLOURS, LIGHT_COLOURS, css_colours
 from ddct_plant.program.command_line import package_version
 from ddct_plant.scenario.differences import scenario_title
+from ddct_plant.scenario.file import scenario_to_yaml
 
 _ROOM = 'ddct_bringup.report'
 _SCRIPTS = ('common.js', 'nearest.js', 'paper.js', 'page.js')
@@ -59,6 +60,7 @@ def report_page(
     pareto = pareto_view(runs)
     data = {'document': document, 'roots': roots, 'pareto': pareto and asdict(pareto)}
     recordings = _simulated_first(runs)
+    settings = recordings[0].settings
     shift = any(run.scores.is_shift for run in runs)
     table_5_1, figures = table_5_1_columns(runs, thesis_rows), figure_columns(runs)
     return page_template(_ROOM, 'page.html.j2').render(
@@ -100,9 +102,7 @@ def report_page(
         scenario_title=_scenario_title(runs),
         conditions=common_conditions([run.scores for run in runs]),
         sensors=_sensors(runs),
-        scenario_text=''
-        if recordings[0].measured
-        else recordings[0].custom_data.get('scenario_yaml', ''),
+        scenario_text=scenario_to_yaml(settings.scenario) if settings else '',
         dashed=dashed_lines(charted),
         other_times=_other_times(shown, recordings[0].facts),
         digest=next((run.digest for run in runs if run.digest), None),

@@ -7,15 +7,13 @@ import subprocess
 from functools import cache
 from pathlib import Path
 
-from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.run_info import RunInfoOfNodes
 from ddct_controllers.interface import Controller
-from ddct_plant.bag_file.facts import KNOWN_SCENARIO, SCENARIO
 from ddct_plant.base.timebase import time_of_step
 from ddct_plant.graph.node_names import name_in_graph
 from ddct_plant.graph.node_reports import node_info
 from ddct_plant.program.command_line import package_version
-from ddct_plant.scenario.file import scenario_to_yaml
+from ddct_plant.scenario.recorded_settings import SETTINGS, RecordedSettings
 from ddct_plant.scenario.settings import RunSettings
 
 UNKNOWN = 'unknown'
@@ -26,40 +24,10 @@ _PACKAGES = 'ddct_*'
 _TIMEOUT_S = 10.0
 
 
-def facts_of(settings: RunSettings, controller: str, steps: int) -> RunFacts:
-    """Return the facts that scoring needs of a run of this many steps."""
-    scenario = settings.scenario
-    return RunFacts(
-        controller=controller,
-        architecture=settings.architecture,
-        scenario=scenario.name,
-        clutch=settings.clutch,
-        wear_gain=settings.wear_gain,
-        mode=settings.mode,
-        seed=settings.seed,
-        control_start_s=scenario.control_start_s,
-        score_window_s=scenario.score_window_s,
-        duration_s=time_of_step(steps),
-        off_going_wear_gain=settings.off_going_wear_gain if settings.shift else None,
-        handover=settings.handover_name if settings.shift else None,
-    )
-
-
 def custom_data(settings: RunSettings, controller: str, steps: int) -> dict[str, str]:
-    """
-    Return the bag's custom data: the facts of the run, its whole scenario and the version.
-
-    The scenario that controllers know is there where it differs.
-    """
-    scenario, known = settings.scenario, settings.known_scenario
-    return {
-        **facts_of(settings, controller, steps).to_custom_data(),
-        SCENARIO: scenario_to_yaml(scenario),
-        **({KNOWN_SCENARIO: scenario_to_yaml(known)} if known else {}),
-        'adjusted': '\n'.join(scenario.adjusted),
-        'version': package_version(),
-        'commit': source_commit(),
-    }
+    """Return the bag's custom data: the settings of the run as one JSON, version and commit."""
+    recorded = RecordedSettings.of(settings, controller, time_of_step(steps))
+    return {SETTINGS: recorded.text(), 'version': package_version(), 'commit': source_commit()}
 
 
 def run_info_of(

@@ -13,11 +13,12 @@ from typing import TYPE_CHECKING
 from rich.console import Console
 
 from ddct_bringup.bag.recording import Recording
+from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.run_info import RunInfoOfNodes
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.bag.trajectory_bag import write_trajectory
 from ddct_bringup.processes.graph_nodes import DRIVELINE, RECORDER, nodes_of
-from ddct_bringup.run.description import custom_data, facts_of, run_info_of
+from ddct_bringup.run.description import custom_data, run_info_of
 from ddct_bringup.run.headless import run_headless, separate_run
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.run.timing_and_failure import RunTiming
@@ -198,6 +199,6 @@ def recording_in_memory(
     return Recording(
         path=Path(),
         trajectory=trajectory,
-        facts=facts_of(settings, controller, settings.scenario.steps),
-        simulated=settings,
+        facts=RunFacts.of(settings, controller, settings.scenario.steps),
+        settings=settings,
     )

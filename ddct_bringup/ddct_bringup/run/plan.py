@@ -11,16 +11,16 @@ from ddct_controllers.architecture import loop_needs
 from ddct_controllers.handover.laws import make_handover
 from ddct_controllers.registry import Chosen, compiled_code, controller_label
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.base.options import options_of
+from ddct_plant.base.timebase import time_of_step
+from ddct_plant.files.json_records import write_json
 from ddct_plant.files.yaml_text import dump_yaml
 from ddct_plant.graph.domain import require_domain, require_ros
 from ddct_plant.graph.node_names import name_in_graph
 from ddct_plant.graph.node_reports import CONTROL_NODES
 from ddct_plant.program.own_process import ProcessEndedError
 from ddct_plant.program.scheduling import Scheduling
-from ddct_plant.scenario.file import scenario_to_yaml
-from ddct_plant.scenario.scenario import Scenario
-from ddct_plant.scenario.settings import UNKNOWN, RunSettings
+from ddct_plant.scenario.recorded_settings import RecordedSettings
+from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.shift.roles import OFF_GOING
 
 
@@ -81,16 +81,14 @@ class RunPlan:
         """
         Return the ROS parameters by node path for a bag in `folder`; '*' is every node.
 
-        Every node has the known settings, and those that do not control the true ones besides.
-        The scenarios, changes included, are written into the folder `work` for the nodes to read.
+        The settings of the run are written into the folder `work`, in a file for each part. Every
+        node gets the known ones, and those that do not control the case besides.
         """
         two_input, preview_steps = loop_needs(self.controller, self.settings)
+        known, case = self._write_settings(work)
         parameters: dict[str, dict[str, object]] = {
-            '*': {
-                **_settings_parameters(self.settings.known, work),
-                # Only these: an empty text is no value on the command line of a node.
-                **self.scheduling.chosen,
-            },
+            # Only the chosen ones: an empty text is no value on the command line of a node.
+            '*': {'known': known, **self.scheduling.chosen},
             'recorder': {
                 **{'out': str(folder), 'name': self.name, 'two_input': two_input},
                 # No step waits for it, so it comes after the others; but before usual programs, as
@@ -102,14 +100,23 @@ class RunPlan:
             'controller': {'controller': self.controller},
             'driveline': {'require_recorder': True, 'answer_timeout_s': ANSWER_TIMEOUT_S},
         }
-        true = _true_parameters(self.settings, work)
+        if self.settings.shift:  # the settings have the name of a file alone
+            parameters['handover'] = {'handover': self.settings.handover}
         for node in nodes_of(shift=self.settings.shift):
             own = parameters.setdefault(node.path, {})
             if node.namespace:
                 own['role'] = OFF_GOING
             if name_in_graph(node.path) not in CONTROL_NODES:
-                own.update(true)
+                own['case'] = case
         return parameters
+
+    def _write_settings(self, work: Path) -> tuple[str, str]:
+        """Write the settings of the run into `work`; return the files of their two parts."""
+        recorded = RecordedSettings.of(self.settings, self.name, time_of_step(self.steps))
+        files = str(work / 'known.json'), str(work / 'case.json')
+        for file, part in zip(files, recorded.parts, strict=True):
+            write_json(file, part)
+        return files
 
     def write_parameter_file(self, folder: Path, work: Path) -> Path:
         """Write `node_parameters` as a ROS 2 parameter file into `work` and return its path."""
@@ -120,39 +127,6 @@ class RunPlan:
         }
         path.write_text(dump_yaml(content), encoding='utf-8')
         return path
-
-
-def _settings_parameters(settings: RunSettings, work: Path) -> dict[str, object]:
-    """Return the parameters of settings that controllers know; write the scenario into `work`."""
-    return {
-        'scenario': _written(settings.scenario, work),
-        **{
-            name: option.kind(getattr(settings, name))
-            for name, option in options_of(RunSettings).items()
-            if name not in UNKNOWN
-        },
-    }
-
-
-def _true_parameters(settings: RunSettings, work: Path) -> dict[str, object]:
-    """Return the parameters that controllers do not have; write the scenario into `work`."""
-    options = options_of(RunSettings)
-    true: dict[str, object] = {
-        name: options[name].kind(getattr(settings, name)) for name in UNKNOWN
-    }
-    if settings.known_scenario is not None:
-        true |= {
-            'scenario': _written(settings.scenario, work, 'true_'),
-            'known_scenario': _written(settings.known_scenario, work),
-        }
-    return true
-
-
-def _written(scenario: Scenario, work: Path, prefix: str = '') -> str:
-    """Write a scenario into `work`; return the path of its file."""
-    file = work / f'{prefix}{scenario.name}.yaml'
-    file.write_text(scenario_to_yaml(scenario), encoding='utf-8')
-    return str(file)
 
 
 def require_headless(settings: RunSettings) -> None:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from ddct_bringup.bag.realtime_facts import RealtimeCounts
-from ddct_bringup.bag.run_facts import RunFacts
+from ddct_bringup.bag.run_facts import RunFacts, described_run
 from ddct_plant.base.errors import DdctError, printable, require_number
 from ddct_plant.files.input_file import read_text_file
 from ddct_plant.files.json_records import parse_json, write_json
@@ -123,7 +123,7 @@ def failed_run(folder: Path) -> RunFailure | None:
         known = note['run']
         if not all(isinstance(text, str) for text in known.values()):
             raise DdctError('its run has values that are no texts')
-        return RunFailure(printable(note['reason']), RunFacts.from_custom_data(known), known)
+        return RunFailure(printable(note['reason']), described_run(known)[1], known)
     except FileNotFoundError:
         return None
     except (OSError, DdctError, LookupError, TypeError, AttributeError) as error:

@@ -46,7 +46,6 @@ def score_row(run: ScoredRun) -> dict[str, Cell]:
         'reason': run.reason,
         'fallbacks': run.fallbacks,
         'safe_state': run.safe_state,
-        'before_schema': run.before_schema,
         'scenario_changes': None if run.scenario_changes is None else list(run.scenario_changes),
         'gain_changes': [each.text for each in run.gain_changes],
         **run.metrics,

@@ -49,7 +49,6 @@ def run_entry(run: ScoredRun) -> Mapping[str, Any]:
         'null_reasons': {key: why for key, why in run.null_reasons.items() if key in shown},
         'fallbacks': run.fallbacks,
         'safe_state': run.safe_state,
-        'before_schema': run.before_schema,
         'scenario_changes': None if run.scenario_changes is None else list(run.scenario_changes),
         'gain_changes': [gain_change_entry(each) for each in run.gain_changes],
     }
@@ -101,7 +100,6 @@ def _run_of(entry: Mapping[str, Any]) -> ScoredRun:
         limits=tuple(LimitResult(**each) for each in entry['limits']),
         fallbacks=entry['fallbacks'],
         safe_state=entry['safe_state'],
-        before_schema=entry['before_schema'],
         scenario_changes=None if changes is None else tuple(changes),
         gain_changes=tuple(_gain_change_of(each) for each in entry['gain_changes']),
         null_reasons=entry['null_reasons'],

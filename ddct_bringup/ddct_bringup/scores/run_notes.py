@@ -15,8 +15,6 @@ def run_notes(run: ScoredRun) -> list[str]:
     if run.gain_changes:
         notes.append(changes_note(run.gain_changes))
     notes += slow_notes(run)
-    if run.before_schema:
-        notes.append('recorded before scenarios had a schema_version: judged by what it holds')
     return notes
 
 

@@ -49,21 +49,13 @@ class ScoredRecording:
 
     @property
     def settings(self) -> RunSettings | None:
-        """Settings of the run; None where this version cannot build them from the recording."""
+        """Settings of the run; None of a log, and of a bag that cannot be read."""
         return self.recording.settings if self.recording else None
 
     @cached_property
     def digest(self) -> str | None:
-        """
-        Digest that distinguishes scenarios of one name, None where the bag has no settings.
-
-        It is computed from the settings: the bag's own digest changes when a version adds a
-        scenario key.
-        """
-        if self.settings:
-            return scenario_digest(self.settings.scenario)
-        nodes = self.recording.run_info.values() if self.recording else ()
-        return next((node['scenario_digest'] for node in nodes if 'scenario_digest' in node), None)
+        """Digest that distinguishes scenarios of one name, None without settings."""
+        return scenario_digest(self.settings.scenario) if self.settings else None
 
 
 def run_and_score(

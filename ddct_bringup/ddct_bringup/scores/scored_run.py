@@ -41,8 +41,6 @@ class ScoredRun:
     """Number of steps without a solution of the controller's program; None without a count."""
     safe_state: str | None = None
     """Nodes in their safe state with the scenario time; None in lock-step."""
-    before_schema: bool | None = None
-    """Whether the scenario is older than its version numbers; None of an unreadable run."""
     scenario_changes: tuple[str, ...] | None = None
     """Changes of the packaged scenario as KEY=VALUE; None where the scenario is unknown."""
     gain_changes: tuple[GainChange, ...] = ()

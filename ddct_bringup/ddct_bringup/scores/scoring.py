@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from ddct_bringup.bag.recording import Recording
-from ddct_bringup.bag.run_facts import RunFacts
+from ddct_bringup.bag.run_facts import RunFacts, described_run
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.metrics.catalogue import JERK_OVER_LEAST, METRICS, NEEDED_BY
 from ddct_bringup.metrics.engagement import Engagement
@@ -69,7 +69,6 @@ def score_run(
         limits=limits.beside(metrics, facts.scenario, engagement.plant),
         fallbacks=fallbacks_in(recording.trajectory),
         safe_state=None if facts.lockstep else safe_state(recording),
-        before_schema=recording.before_schema,
         scenario_changes=tuple(changed_values(settings.scenario)) if settings else None,
         gain_changes=recording.gain_changes,
         null_reasons={
@@ -90,7 +89,7 @@ def unreadable_run(path: Path, error: DdctError, *, relative_to: Path | None = N
     if failure := failed_run(path if path.is_dir() else path.parent):
         return run_without_score(name, failure.facts, failure.reason)
     try:
-        facts = RunFacts.from_custom_data(readable_custom_data(mcap_of(path)))
+        _, facts = described_run(readable_custom_data(mcap_of(path)))
     except DdctError:
         return run_without_score(name, None, str(error))
     return run_without_score(name, facts, str(error))

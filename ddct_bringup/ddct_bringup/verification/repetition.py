@@ -19,11 +19,7 @@ def plan_of(request: VerificationRequest, recording: Recording, digests: RunDige
     """Return the headless plan of a recorded run; raise DdctError where it cannot be made."""
     settings = recording.settings
     if settings is None:
-        version = recording.custom_data.get('version', 'unknown')
-        raise DdctError(
-            f'this version cannot build its settings; it was recorded by version {version}: '
-            'verify it with that one'
-        )
+        raise DdctError('it is the log of another tool, and has no settings to repeat it with')
     if digests.handover is not None:
         settings = replace(settings, handover=_handover_of(request, digests.handover, digests))
     plan = RunPlan(settings, controller_of(request, digests), 'headless')

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.bag.recording import Recording
+from ddct_bringup.bag.run_facts import described_run
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.bag.trajectory_bag import write_trajectory
 from ddct_bringup.digests.digest_file import RunDigests
@@ -118,7 +119,8 @@ def _verified_failure(
         return RepetitionResult.failed(name, failure.reason)
     if not facts.lockstep:
         return RepetitionResult.by_digest(name, _REAL_TIME)
-    described = Recording(bag, Trajectory({}), facts, failure.custom_data)
+    settings, _ = described_run(failure.custom_data)
+    described = Recording(bag, Trajectory({}), facts, failure.custom_data, settings=settings)
     comparison = Comparison()
     try:
         simulate(plan_of(request, described, digests))

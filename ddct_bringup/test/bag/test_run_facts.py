@@ -1,80 +1,50 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""The facts of a run are written to and read from a bag's custom data unchanged."""
+"""The facts that scoring needs come from the settings of a run, and from its bag unchanged."""
 
-import dataclasses
 import math
 
 import pytest
 from refusals import refused
 
-from ddct_bringup.bag.run_facts import RunFacts
-from ddct_plant.base.errors import DdctError
+from ddct_bringup.bag.run_facts import RunConditions, RunFacts, described_run
+from ddct_bringup.run.description import custom_data
+from ddct_plant.base.errors import ParameterError
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
 
-FACTS = RunFacts(
-    controller='pi',
-    architecture='detailed',
-    scenario='thesis',
-    clutch='linear',
-    wear_gain=math.nextafter(0.7, 1.0),
-    mode='lockstep',
-    seed=7,
-    control_start_s=0.6,
-    score_window_s=(0.6, 2.5),
-    duration_s=3.0,
-)
 NAMES = ('controller', 'architecture', 'scenario', 'clutch', 'mode')
-
-
-def test_facts_come_back_to_the_last_bit():
-    custom_data = FACTS.to_custom_data()
-    assert all(isinstance(value, str) for value in custom_data.values())
-    assert RunFacts.from_custom_data({**custom_data, 'commit': 'abc'}) == FACTS
-
-
-@pytest.mark.parametrize('name', ['controller', 'seed', 'score_window_s'])
-def test_a_missing_fact_is_named(name):
-    custom_data = FACTS.to_custom_data()
-    del custom_data[name]
-    with refused(DdctError, name):
-        RunFacts.from_custom_data(custom_data)
-
-
-def test_a_handover_of_a_bag_is_a_name_and_no_file_that_would_run():
-    custom_data = {**FACTS.to_custom_data(), 'off_going_wear_gain': '1.0'}
-    assert RunFacts.from_custom_data({**custom_data, 'handover': 'mine'}).handover == 'mine'
-    for file in ('mine.py', '../mine.py'):
-        with refused(DdctError, 'handover'):
-            RunFacts.from_custom_data({**custom_data, 'handover': file})
-
-
-def test_the_largest_seed_comes_back():
-    facts = dataclasses.replace(FACTS, seed=2**31 - 1)
-    assert RunFacts.from_custom_data(facts.to_custom_data()) == facts
-
-
-@pytest.mark.parametrize(
-    ('name', 'text'),
-    [
-        ('wear_gain', 'much'),
-        ('wear_gain', 'true'),
-        ('seed', '[1]'),
-        ('score_window_s', '0.6'),
-        ('score_window_s', '[0.6]'),
-        ('score_window_s', '[0.6, "a"]'),
-        ('score_window_s', '[0.6, true]'),
-        ('seed', '1e400'),
-        ('seed', 'NaN'),
-        ('duration_s', '1' + '0' * 400),
-        ('duration_s', '{"a": 1, "a": 2}'),
-        *((name, '../../evil') for name in NAMES),
-        *((name, '\x1b[31mred') for name in NAMES),
-        *((name, '</script>') for name in NAMES),
-        ('controller', 'x' * 300),
-        ('scenario', ''),
-    ],
+LAUNCH = RunSettings(load_scenario('thesis'), wear_gain=math.nextafter(0.7, 1.0), seed=2**31 - 1)
+SHIFT = RunSettings(
+    load_scenario('upshift', clutch='stick_slip'),
+    clutch='stick_slip',
+    off_going_wear_gain=0.9,
+    handover='/home/somebody/mine.py',
 )
-def test_an_unusable_fact_is_named(name, text):
-    with refused(DdctError, name) as caught:
-        RunFacts.from_custom_data({**FACTS.to_custom_data(), name: text})
-    assert str(caught.value).isprintable()
+
+
+def test_facts_are_those_of_the_settings():
+    facts = RunFacts.of(LAUNCH, 'pi', 150)
+    assert (facts.controller, facts.scenario, facts.duration_s) == ('pi', 'thesis', 1.5)
+    assert (facts.wear_gain, facts.seed) == (math.nextafter(0.7, 1.0), 2**31 - 1)
+    assert (facts.control_start_s, facts.score_window_s) == (0.6, (0.6, 1.7))
+    assert (facts.handover, facts.off_going_wear_gain, facts.of_shift) == (None, None, {})
+
+
+def test_facts_of_a_shift_have_the_name_of_its_handover():
+    facts = RunFacts.of(SHIFT, 'pi', 250)
+    assert facts.of_shift == {'off_going_wear_gain': 0.9, 'handover': 'mine'}
+
+
+@pytest.mark.parametrize('settings', [LAUNCH, SHIFT], ids=['launch', 'shift'])
+def test_facts_come_back_to_the_last_bit(settings):
+    _, facts = described_run(custom_data(settings, 'pi', 120))
+    assert facts == RunFacts.of(settings, 'pi', 120)
+
+
+@pytest.mark.parametrize('name', NAMES)
+@pytest.mark.parametrize('text', ['../../evil', '</script>', '\x1b[31mred', ''])
+def test_an_unusable_name_is_named(name, text):
+    names = dict.fromkeys(NAMES, 'a') | {name: text}
+    with refused(ParameterError, name):
+        RunConditions(**names, wear_gain=1.0, seed=0)

@@ -26,7 +26,6 @@ def made_scores(controller: str = 'pi', **values: Any) -> ScoredRun:
         'reason': '',
         'metrics': {**dict.fromkeys(METRICS), **values},
         'state': 'engaged',
-        'before_schema': False,
         'scenario_changes': (),
     }
     return ScoredRun(**{**made, **named})

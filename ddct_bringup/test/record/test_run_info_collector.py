@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""The collector of `run_info` names missing nodes and refuses nodes that do not agree."""
+"""The collector of `run_info` names missing nodes, and two nodes of one name."""
 
 import pytest
 from refusals import refused
@@ -8,16 +8,12 @@ from refusals import refused
 from ddct_bringup.record.run_info_collector import RunInfoCollector
 from ddct_plant.base.errors import DdctError
 from ddct_plant.graph.node_reports import controller_info, run_info_pairs
-from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
-
-SETTINGS = RunSettings(load_scenario('thesis'))
 
 
 def collected(**extras: dict[str, str]) -> RunInfoCollector:
-    nodes = RunInfoCollector(SETTINGS, two_input=False, expected=['driveline', 'controller'])
+    nodes = RunInfoCollector(['driveline', 'controller'])
     for node, extra in extras.items():
-        nodes.receive(f'/{node}', dict(run_info_pairs(SETTINGS, extra)))
+        nodes.receive(f'/{node}', run_info_pairs(node, extra))
     return nodes
 
 
@@ -44,43 +40,24 @@ def test_a_missing_name_of_the_controller_is_named():
         _ = collected(controller={}).controller
 
 
-def test_other_settings_are_refused():
-    nodes = collected()
-    with refused(DdctError, 'seed'):
-        nodes.receive('/load', {'seed': '7'})
-    with refused(DdctError, 'two_input'):
-        nodes.receive('/engine', {'two_input': 'true'})
-
-
-@pytest.mark.parametrize(
-    ('node', 'role'), [('/off_going/clutch', 'on_coming'), ('/actuator', 'off_going')]
-)
-def test_a_node_whose_role_is_not_that_of_its_namespace_is_refused(node, role):
-    scenario = load_scenario('upshift', clutch='stick_slip')
-    settings = RunSettings(scenario, clutch='stick_slip')
-    nodes = RunInfoCollector(settings, two_input=False, expected=[])
-    with pytest.raises(DdctError, match=f'node {node} has the role {role}, but its name is'):
-        nodes.receive(node, run_info_pairs(settings, {'role': role}))
-
-
 def test_a_node_that_repeats_its_run_info_is_recorded_once():
     nodes = collected(controller={'controller': 'ls8'}, driveline={'steps': '80'})
-    nodes.receive('/controller', dict(run_info_pairs(SETTINGS, {'controller': 'ls8'})))
+    nodes.receive('/controller', run_info_pairs('controller', {'controller': 'ls8'}))
     assert list(nodes.received()) == ['/driveline', '/controller']
 
 
 def test_a_node_name_with_two_different_run_info_is_refused():
     nodes = collected(controller={'controller': 'ls8'}, driveline={'steps': '80'})
     with refused(DdctError, 'controller'):
-        nodes.receive('/controller', dict(run_info_pairs(SETTINGS, {'controller': 'pi'})))
+        nodes.receive('/controller', run_info_pairs('controller', {'controller': 'pi'}))
     assert nodes.controller == 'ls8'
 
 
 def test_nodes_of_one_name_in_two_namespaces_are_two_nodes():
-    nodes = RunInfoCollector(SETTINGS, two_input=False, expected=['actuator', '/off/actuator'])
-    nodes.receive('/actuator', dict(run_info_pairs(SETTINGS, {'timeout': '1'})))
+    nodes = RunInfoCollector(['actuator', '/off/actuator'])
+    nodes.receive('/actuator', run_info_pairs('actuator', {'timeout': '1'}))
     assert nodes.missing() == ['/off/actuator']
-    nodes.receive('/off/actuator', dict(run_info_pairs(SETTINGS, {'timeout': '2'})))
+    nodes.receive('/off/actuator', run_info_pairs('actuator', {'timeout': '2'}))
     assert [pairs['timeout'] for pairs in nodes.received().values()] == ['1', '2']
     assert nodes.has('/off/actuator')
     assert not nodes.has('/other/actuator')

@@ -69,7 +69,7 @@ def recording(text: str) -> Recording:
         path=Path('/nowhere') / text.replace('/', '_') / 'pi_0.mcap',
         trajectory=Trajectory({**trajectory.signals, 'status': status}),
         facts=facts,
-        custom_data={'commit': text, 'version': text, 'scenario_yaml': text},
+        custom_data={'commit': text, 'version': text},
         run_info={text: {text: text}},
         counts={text: 1},
         missed={},

@@ -36,7 +36,7 @@ def remark(tmp_path, monkeypatch, whole, run):
 
     def read(text: str, settings: RunSettings = SETTINGS) -> str:
         (tmp_path / FREQUENCY_FILE).write_text(text, encoding='utf-8')
-        recorded = dataclasses.replace(found, simulated=settings)
+        recorded = dataclasses.replace(found, settings=settings)
         (loop,) = evidence.evidence_of([ScoredRecording(made_scores('pi'), recorded)])
         assert len(loop_rows([loop])) == 1
         return loop.remark

@@ -4,16 +4,15 @@
 
 from pathlib import Path
 
-from made_run import made_facts
-
 from ddct_bringup.bag.realtime_facts import RealtimeFacts
 from ddct_bringup.bag.recording import Recording
+from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.report.page import report_page
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.scores.scored_recording import ScoredRecording
 from ddct_bringup.scores.scoring import score_run
 from ddct_bringup.verdict.limits import packaged_limits
-from ddct_plant.scenario.file import load_scenario, scenario_to_yaml
+from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
 CHART = 'Slip speed as measured, less the true one'
@@ -23,17 +22,11 @@ def page(*changes: str) -> str:
     """Return the report of a short run of `pi`."""
     given = ['duration_s=0.7', 'score_window_s=[0.1,0.6]', *changes]
     settings = RunSettings(load_scenario('thesis', given))
-    scenario = settings.scenario
     recording = Recording(
         path=Path('/nowhere/pi_0.mcap'),
         trajectory=run_headless(settings, 'pi'),
-        facts=made_facts(
-            controller='pi',
-            control_start_s=scenario.control_start_s,
-            score_window_s=scenario.score_window_s,
-            duration_s=scenario.duration_s,
-        ),
-        custom_data={'scenario_yaml': scenario_to_yaml(scenario)},
+        facts=RunFacts.of(settings, 'pi', settings.scenario.steps),
+        settings=settings,
         run_info={},
         counts={},
         missed={},

@@ -28,7 +28,7 @@ THESIS = load_scenario('thesis')
 def run(controller='ls8', settings=None, timing=None, valid=True, **metrics):
     facts = made_facts(controller=controller)
     trajectory = made_run(times())
-    recording = Recording(Path(), trajectory, facts, simulated=settings)
+    recording = Recording(Path(), trajectory, facts, settings=settings)
     return ScoredRecording(made_scores(controller, valid=valid, **metrics), recording, timing)
 
 

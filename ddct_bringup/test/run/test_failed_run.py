@@ -48,7 +48,7 @@ def test_a_note_that_cannot_be_read_still_marks_the_run_as_failed(
 
 
 def test_a_run_with_a_value_that_is_no_text_cannot_be_read(tmp_path: Path) -> None:
-    content = {'reason': 'failed', 'run': {**FACTS, 'scenario_yaml': 5}}
+    content = {'reason': 'failed', 'run': {**FACTS, 'settings': 5}}
     (tmp_path / NOTE_FILE).write_text(json.dumps(content), encoding='utf-8')
     found = failed_run(tmp_path)
     assert found is not None

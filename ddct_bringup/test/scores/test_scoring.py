@@ -9,14 +9,13 @@ import numpy as np
 import pytest
 from made_run import made_facts
 
-from ddct_bringup.bag.realtime_facts import RealtimeFacts
 from ddct_bringup.bag.recording import Recording
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.scores.scored_recording import score_recording
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.models.engine_limits import EngineLimits
-from ddct_plant.scenario.file import load_scenario, scenario_to_yaml
+from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
 SETTINGS = RunSettings(load_scenario('thesis'))
@@ -34,8 +33,8 @@ def scored(last_engine_speed, rows=301, engine_limits=ENGINE_LIMITS, **signals):
     speeds[-1, 0] = last_engine_speed
     trajectory = Trajectory({**cut, 'joint_speed': speeds})
     scenario = dataclasses.replace(SETTINGS.scenario, engine_limits=engine_limits)
-    data = {'scenario_yaml': scenario_to_yaml(scenario)}
-    recording = Recording(Path('x.mcap'), trajectory, FACTS, data, {}, {}, {}, RealtimeFacts())
+    settings = dataclasses.replace(SETTINGS, scenario=scenario)
+    recording = Recording(Path('x.mcap'), trajectory, FACTS, settings=settings)
     return score_recording(recording, 'x', packaged_limits()).scores
 
 

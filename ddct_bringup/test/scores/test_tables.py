@@ -216,10 +216,6 @@ def test_a_run_that_could_not_be_read_has_one_reason_for_its_dashes():
     assert '\n  --  ' not in text
 
 
-def test_a_bag_from_before_the_schema_is_marked():
-    assert 'pi: recorded before' in printed([run(before_schema=True)])
-
-
 def test_gains_that_were_changed_in_a_run_are_named_below_the_table():
     changes = (GainChange('kp', 0.103, 0.25, 62), GainChange('ki', 0.02, 0.0, 90))
     text = printed([run(gain_changes=changes)])

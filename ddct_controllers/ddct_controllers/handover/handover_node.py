@@ -9,6 +9,7 @@ from ddct_controllers.handover.interface import HandoverMeasurement
 from ddct_controllers.handover.laws import make_handover
 from ddct_plant.base.clutch_kinds import STICK_SLIP
 from ddct_plant.graph.follower import FollowerNode, Reply
+from ddct_plant.graph.node_reports import handover_info
 from ddct_plant.graph.output import Output
 from ddct_plant.graph.spin import run_node
 from ddct_plant.scenario.rules.shift import gears_of
@@ -42,7 +43,7 @@ class HandoverNode(FollowerNode):
         self._share = Output(self, HANDOVER_SHARE)
         self._request = Output(self, OFF_GOING_TORQUE_REQUEST)
         self._cut = Output(self, TORQUE_CUT)
-        self.publish_run_info()
+        self.publish_run_info(handover_info(self.settings))
         self._ratio = gears_of(self.settings.scenario).ratio
         self._topics = measurement_topics(sensed=self.settings.sensed)
         self.follow(

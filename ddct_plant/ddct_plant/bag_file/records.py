@@ -22,10 +22,9 @@ from mcap.records import Channel, Chunk, DataEnd, Message, Metadata, Schema
 from mcap.stream_reader import StreamReader, get_chunk_data_stream
 from zstandard import ZstdError
 
-from ddct_plant.bag_file.facts import require_duration
 from ddct_plant.bag_file.metadata import RECORD_NAME, information_of
 from ddct_plant.base.errors import DdctError
-from ddct_plant.files.input_file import located, open_file
+from ddct_plant.files.input_file import open_file
 
 MAGIC = b'\x89MCAP0\r\n'
 """First and last bytes of an MCAP file."""
@@ -157,8 +156,6 @@ def read_records(path: Path) -> BagRecords:
             bag.add_all(data)
         except _ERRORS as error:
             raise _damaged(path, error) from error
-    with located(str(path)):
-        require_duration(bag.custom_data)
     return bag
 
 

@@ -16,7 +16,7 @@ from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.base.options import require_known
 from ddct_plant.base.timebase import stamp_of_step
 from ddct_plant.graph.node_names import topic_in_graph
-from ddct_plant.graph.node_reports import run_info_pairs
+from ddct_plant.graph.node_reports import CASE, KNOWN, TWO_INPUT, run_info_pairs
 from ddct_plant.graph.output import Output
 from ddct_plant.graph.qos import (
     LOOP_QOS,
@@ -32,13 +32,19 @@ from ddct_plant.graph.settings import (
     as_declared,
     declare_scheduling,
     declare_settings,
+    full_name,
+    has_files,
 )
 from ddct_plant.graph.steady_time import Cancellable, SteadyTime
 from ddct_plant.graph.wire import decoder
-from ddct_plant.signals.topic import Topic
-from ddct_plant.signals.topics import (
-    RUN_INFO,
+from ddct_plant.scenario.recorded_settings import (
+    known_values,
+    require_agreement,
+    require_same,
+    values_of,
 )
+from ddct_plant.signals.tables.run import RUN_INFO, RUN_SETTINGS
+from ddct_plant.signals.topic import Topic
 from ddct_plant.ticks.stamp_limit import StampLimit
 
 _FOREIGN = ('use_sim_time', 'start_type_description_service', QOS_OVERRIDES)
@@ -47,7 +53,10 @@ _FOREIGN = ('use_sim_time', 'start_type_description_service', QOS_OVERRIDES)
 
 class GraphNode(Node):
     """
-    Base node: it declares the settings of the run and publishes them on `run_info`.
+    Base node: it has the settings of the run, and publishes on `run_info` what it is.
+
+    A node that was started by hand, with parameters in place of files, compares its settings with
+    those that the recorder publishes.
 
     Not a lifecycle node: nothing in this project would drive the transitions.
     """
@@ -62,6 +71,7 @@ class GraphNode(Node):
     def __init__(self, name: str, *, steady_time: SteadyTime | None = None, **kwargs: Any) -> None:
         """Declare the shared parameters; raise ParameterError when one cannot be used."""
         super().__init__(name, **kwargs)
+        self._kind = name
         self.steady_time = steady_time or SteadyTime()
         """Time by which the node waits."""
         self.settings = declare_settings(self, self.DEFAULTS, known_only=self.KNOWN_ONLY)
@@ -80,11 +90,35 @@ class GraphNode(Node):
         # The same as done.done(), which takes long enough to matter for every message.
         self._over = False
 
-    def publish_run_info(self, extra: Mapping[str, str] | None = None) -> None:
-        """Publish this node's settings, latched and stamped t_0, with `extra` entries."""
-        pairs = run_info_pairs(self.settings, extra)
+    def publish_run_info(
+        self, extra: Mapping[str, str] | None = None, *, records: bool = False
+    ) -> None:
+        """
+        Publish what this node is, latched and stamped t_0, with `extra` entries.
+
+        Unless it records or has the files of the run, it compares its settings with those of the
+        recorder, once they come, and ends with a DdctError where they differ.
+        """
+        own = dict(extra or {})
+        self.publish_latched(RUN_INFO, run_info_pairs(self._kind, own))
+        if not records and not has_files(self):
+            ours = {key: own[key] for key in (TWO_INPUT,) if key in own}
+            self.subscribe_messages(RUN_SETTINGS, partial(self._compare_settings, ours))
+
+    def publish_latched(self, topic: Topic, pairs: Mapping[str, str]) -> None:
+        """Publish pairs of this node, latched and stamped t_0."""
         name = self.get_fully_qualified_name()
-        Output(self, RUN_INFO).fill(stamp_of_step(0), pairs.items(), name=name).publish()
+        Output(self, topic).fill(stamp_of_step(0), pairs.items(), name=name).publish()
+
+    def _compare_settings(self, ours: Mapping[str, str], message: Any) -> None:
+        """Raise DdctError where settings or other values of this node are not the recorder's."""
+        _, pairs = RUN_SETTINGS.read(message)
+        theirs = {key: pairs[key] for key in ours if key in pairs}
+        require_agreement(full_name(self), {key: ours[key] for key in theirs}, theirs)
+        if CASE in pairs and not self.KNOWN_ONLY:
+            require_same(full_name(self), values_of(self.settings), pairs[CASE])
+        elif KNOWN in pairs:
+            require_same(full_name(self), known_values(self.settings), pairs[KNOWN])
 
     def subscribe_values(
         self,

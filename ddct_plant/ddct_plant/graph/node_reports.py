@@ -3,8 +3,8 @@
 """
 Reports of nodes about themselves and about a run: pairs of key and text, and their reader.
 
-`run_info` is equal in the graph and in headless runs. Counts, safe states and update times exist
-in graphs only. No ROS is needed here.
+`run_info` says what a node is, and is equal in the graph and in headless runs. Counts, safe
+states and update times exist in graphs only. No ROS is needed here.
 """
 
 import math
@@ -17,9 +17,7 @@ from ddct_plant.fail_safe.request_watch import (
     REQUEST_TIMEOUT_S,
     FailSafeSettings,
 )
-from ddct_plant.graph.node_names import name_in_graph
 from ddct_plant.program.command_line import package_version
-from ddct_plant.scenario.file import scenario_digest
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.shift.roles import OFF_GOING, ON_COMING
 from ddct_plant.signals.topics import CONTROLLER_TIMING
@@ -28,11 +26,13 @@ from ddct_plant.ticks.durations import DurationHistogram
 Pairs = dict[str, str]
 """Texts by key."""
 CONTROLLER, STEPS, TWO_INPUT = 'controller', 'steps', 'two_input'
-"""Keys on `run_info` without which there is no recording, or which the recorder compares."""
-DIGEST = 'scenario_digest'
-"""Key on `run_info` of the digest of a node's scenario."""
-KNOWN_DIGEST = 'known_scenario_digest'
-"""Key on `run_info`, but of control nodes, of the scenario that they know where it differs."""
+"""Keys on `run_info`: name of the controller, N, and whether a node has the request of C_m."""
+KNOWN, CASE = 'known', 'case'
+"""
+Keys on `run_settings`: JSON of the known settings of a run, and of all its true ones.
+
+The latter is there only where the recorder was started by hand.
+"""
 CONTROL_NODES = ('/controller', '/reference', '/handover')
 """Full names within the graph of the nodes that have the known settings alone."""
 ROLE = 'role'
@@ -49,36 +49,23 @@ _LATENESS = 'worst_tick_lateness_us'
 _HISTOGRAM = 'histogram '
 
 
-def run_info_pairs(settings: RunSettings, own: Mapping[str, str] | None = None) -> Pairs:
-    """
-    Return the `run_info` of a node: version and settings of the run, then `own` pairs.
-
-    Only a run with a gear shift has the settings of the off-going side and the handover.
-    """
-    known = settings.known_scenario
-    return {
-        'version': package_version(),
-        'scenario': settings.scenario.name,
-        DIGEST: scenario_digest(settings.scenario),
-        **({KNOWN_DIGEST: scenario_digest(known)} if known else {}),
-        'architecture': settings.architecture,
-        'clutch': settings.clutch,
-        'wear_gain': repr(settings.wear_gain),
-        'mode': settings.mode,
-        'seed': str(settings.seed),
-        **(_of_shift(settings) if settings.shift else {}),
-        **(own or {}),
-    }
+_ABOUT = {
+    'engine': 'torque that the engine delivers',
+    'load': 'resistance of the road at the wheels',
+    'clutch': 'torque between the plates of a clutch',
+    'driveline': 'shafts, wheels and car; owns time',
+    'actuator': 'hydraulic actuator of a clutch',
+    'reference': 'slip speed that the controller follows',
+    'controller': 'torque that is requested of the clutch',
+    'handover': 'share of the torque of each clutch in a gear shift',
+    'recorder': 'writes the bag',
+}
+"""What each of our nodes is or computes, by its name."""
 
 
-def settings_of_node(settings: RunSettings, node: str) -> RunSettings:
-    """Return the settings of a run that a node has, by its full name within the graph."""
-    return settings.known if node in CONTROL_NODES else settings
-
-
-def _of_shift(settings: RunSettings) -> Pairs:
-    wear_gain = repr(settings.off_going_wear_gain)
-    return {'off_going_wear_gain': wear_gain, 'handover': settings.handover_name}
+def run_info_pairs(name: str, own: Mapping[str, str] | None = None) -> Pairs:
+    """Return the `run_info` of the node of this name: what it is, its version, `own` pairs."""
+    return {'about': _ABOUT[name], 'version': package_version(), **(own or {})}
 
 
 def engine_info(two_input: bool, request_timeout_s: float = REQUEST_TIMEOUT_S) -> Pairs:
@@ -102,6 +89,11 @@ def driveline_info(steps: int, fail_safe: FailSafeSettings | None = None) -> Pai
     fail_safe = fail_safe or FailSafeSettings(CLUTCH_TIMEOUT_S)
     timeout = {'clutch_timeout_s': repr(fail_safe.request_timeout_s)}
     return {STEPS: str(steps), **timeout, **_ramp(fail_safe)}
+
+
+def handover_info(settings: RunSettings) -> Pairs:
+    """Return the handover's own pair, the name of its law."""
+    return {'handover': settings.handover_name}
 
 
 def reference_info(preview_steps: int) -> Pairs:
@@ -135,14 +127,11 @@ def node_info(
     if settings.shift:
         role = role_info(settings, OFF_GOING)
         own |= {
-            'handover': {},
+            'handover': handover_info(settings),
             f'{OFF_GOING}/clutch': role,
             f'{OFF_GOING}/actuator': {**role, **actuator_info()},
         }
-    return {
-        node: run_info_pairs(settings_of_node(settings, name_in_graph(node)), pairs)
-        for node, pairs in own.items()
-    }
+    return {node: run_info_pairs(node.rpartition('/')[2], pairs) for node, pairs in own.items()}
 
 
 def flag(value: bool) -> str:

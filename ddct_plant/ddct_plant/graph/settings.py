@@ -1,6 +1,11 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""The ROS parameters that every node declares, as validated `RunSettings`, and the role."""
+"""
+The settings of a run as a node gets them, by its parameters or from files, and its role.
+
+Nodes that a program starts read the files of the run. A value that is given besides must agree
+with them.
+"""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -18,15 +23,37 @@ from rclpy.parameter import Parameter
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import Option, options_of
 from ddct_plant.fail_safe.request_watch import FailSafeSettings
+from ddct_plant.graph.node_names import name_in_graph
 from ddct_plant.program.scheduling import Scheduling
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import UNKNOWN, RunSettings
+from ddct_plant.scenario.recorded_settings import (
+    CasePart,
+    KnownPart,
+    read_part,
+    require_agreement,
+    run_settings,
+    values_of,
+    values_of_scenario,
+)
+from ddct_plant.scenario.settings import UNKNOWN, RunSettings, handover_name
 from ddct_plant.shift.roles import OFF_GOING, ON_COMING, ROLES
 
 _SCENARIO = Option('thesis', 'name of a packaged scenario, or path of a YAML file')
 _KNOWN_SCENARIO = Option(
     '', 'scenario that controllers know, as `scenario` is given; empty: the same as `scenario`'
 )
+_FILES = {
+    'known': Option(
+        '',
+        'JSON file with the known settings of the run, which the program that starts a run '
+        'writes; other settings that are given must agree with it',
+    ),
+    'case': Option(
+        '', 'JSON file with the settings that controllers do not know; only beside `known`'
+    ),
+}
+_OF_CASE = ('case', 'known_scenario', *UNKNOWN)
+"""Parameters that nodes which control do not have."""
 _ROLE = Option(
     ON_COMING, 'side of a gear shift; a run without a shift has the first alone', choices=ROLES
 )
@@ -37,22 +64,80 @@ def declare_settings(
     node: Node, defaults: Mapping[str, Any], *, known_only: bool = False
 ) -> RunSettings:
     """
-    Declare the shared parameters on `node`, with other `defaults` by name where given.
+    Return the settings of a run that `node` has, from its files or from its parameters.
 
-    A node with `known_only` has no parameters for what controllers do not know. Raise
-    ParameterError for a value out of range.
+    The shared parameters are declared, with other `defaults` by name where given. A node with
+    `known_only` has none for what controllers do not know. Raise DdctError for a value out of
+    range, for an unusable file, and for a value that does not agree with the files.
     """
     shared = {'scenario': _SCENARIO, 'known_scenario': _KNOWN_SCENARIO, **options_of(RunSettings)}
+    shared = {name: shared[name] for name in shared if not known_only or name not in _OF_CASE}
+    files = {
+        name: declare(node, name, each)
+        for name, each in _FILES.items()
+        if not known_only or name not in _OF_CASE
+    }
+    if any(files.values()):
+        settings = _of_files(node, shared, files)
+    else:
+        settings = _of_parameters(node, shared, defaults)
+    for line in settings.scenario.adjusted:
+        node.get_logger().info(line)
+    return settings
+
+
+def has_files(node: Node) -> bool:
+    """Return whether a node has its settings from the files of a run, not by its parameters."""
+    return bool(node.get_parameter('known').value)
+
+
+def _of_parameters(
+    node: Node, shared: Mapping[str, Option], defaults: Mapping[str, Any]
+) -> RunSettings:
     values = {
         name: declare(node, name, replace(each, default=defaults.get(name, each.default)))
         for name, each in shared.items()
-        if not known_only or name not in ('known_scenario', *UNKNOWN)
     }
     scenario = load_scenario(values.pop('scenario'))
-    for line in scenario.adjusted:
-        node.get_logger().info(line)
     known = values.pop('known_scenario', '')
     return RunSettings(scenario, **values, known_scenario=load_scenario(known) if known else None)
+
+
+def _of_files(node: Node, shared: Mapping[str, Option], files: Mapping[str, str]) -> RunSettings:
+    """Return the settings in files; parameters have known values, or what is given and agrees."""
+    if not all(files.values()):
+        missing = next(name for name, file in files.items() if not file)
+        raise ParameterError(
+            f'parameter {missing} is missing: give the files of both parts of the settings, '
+            'known and case, or none of them',
+            key=missing,
+        )
+    known = read_part(KnownPart, files['known']).known
+    case = read_part(CasePart, files['case']).case if 'case' in files else None
+    settings = run_settings(known, case)
+    given: dict[str, Any] = {}
+    for name, each in shared.items():
+        if name in node._parameter_overrides:
+            given[name] = declare(node, name, each)
+        elif name not in _OF_CASE:  # true values stay out of what others can read
+            usual = settings.scenario.name if name == 'scenario' else getattr(settings, name)
+            declare(node, name, replace(each, default=usual))
+    theirs = values_of(settings)
+    ours: dict[str, object] = {}
+    for name, value in given.items():
+        if name in ('scenario', 'known_scenario'):
+            ours |= values_of_scenario(name, load_scenario(value)) if value else {}
+        else:
+            ours[name] = handover_name(value) if name == 'handover' else value
+    sections = tuple(f'{name}.' for name in given)
+    compared = {key: theirs[key] for key in theirs if key in given or key.startswith(sections)}
+    require_agreement(full_name(node), ours, compared)
+    return replace(settings, handover=given.get('handover', settings.handover))
+
+
+def full_name(node: Node) -> str:
+    """Return the full name of a node."""
+    return name_in_graph(node.get_fully_qualified_name())
 
 
 def declare_scheduling(node: Node, *, lockstep: bool) -> Scheduling:
@@ -71,13 +156,21 @@ def declare_role(node: Node, settings: RunSettings) -> str:
     """
     Declare the side of a gear shift on which a node is, as parameter `role`, and return it.
 
-    Raise ParameterError for the off-going side in a run without a shift.
+    Raise ParameterError for the off-going side in a run without a shift, and for a side other
+    than that of the node's namespace.
     """
     role = declare(node, 'role', _ROLE)
     if role == OFF_GOING and not settings.shift:
         raise ParameterError(
             f'parameter role is {role}, but scenario {settings.scenario.name} is no gear shift: '
             'choose one with a section shift, such as upshift, or leave role out',
+            key='role',
+        )
+    place = OFF_GOING if node.get_namespace().rpartition('/')[2] == OFF_GOING else ON_COMING
+    if settings.shift and role != place:
+        raise ParameterError(
+            f'node {full_name(node)} has the role {role}, but its name is that of the {place} '
+            f'side: start it with --ros-args -p role:={place}, or in another namespace',
             key='role',
         )
     return role

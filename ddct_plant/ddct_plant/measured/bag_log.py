@@ -8,11 +8,10 @@ from pathlib import Path
 import numpy as np
 
 from ddct_plant.bag_file.decoding import TopicColumns, read_columns
-from ddct_plant.bag_file.facts import require_last_step
 from ddct_plant.bag_file.records import BagRecords, read_records
 from ddct_plant.base.clutch_kinds import LINEAR, STICK_SLIP
 from ddct_plant.base.errors import DdctError
-from ddct_plant.base.timebase import PERIOD_NS, START_NS, SUBSTEP_NS, SUBSTEPS, step_of_stamp
+from ddct_plant.base.timebase import PERIOD_NS, START_NS, SUBSTEP_NS, SUBSTEPS
 from ddct_plant.files.input_file import located
 from ddct_plant.measured.columns import QUANTITIES
 from ddct_plant.signals.signal import RunKind
@@ -106,13 +105,12 @@ def _ticks(records: BagRecords) -> dict[Topic, TopicColumns]:
         stamps, counts = np.unique(each.stamps, return_counts=True)
         if counts.max() > 1:
             raise DdctError(f'{name} has two messages at {stamps[counts > 1][0]} ns', key=name)
-    _require_steps(records, np.sort(found[JOINT_STATES].stamps))
+    _require_steps(np.sort(found[JOINT_STATES].stamps))
     return found
 
 
-def _require_steps(records: BagRecords, stamps: np.ndarray) -> None:
+def _require_steps(stamps: np.ndarray) -> None:
     """Raise DdctError unless rising stamps in ns are those of each step of the run."""
-    require_last_step(records.custom_data, step_of_stamp(int(stamps[-1])))
     missing = np.flatnonzero(stamps != START_NS + PERIOD_NS * np.arange(len(stamps)))
     if missing.size:
         name = JOINT_STATES.resolved_name

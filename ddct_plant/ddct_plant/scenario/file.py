@@ -148,17 +148,8 @@ def scenario_digest(scenario: Scenario) -> str:
     Optional keys count only where they are given, so that the hash of a scenario stays when the
     schema gets a new key.
     """
-    return content_digest(scenario_content(scenario))
-
-
-def content_digest(content: Mapping[str, Any]) -> str:
-    """
-    Return the digest of a scenario by the content of its file, of whatever version of the schema.
-
-    The number of that version does not count. Raise TypeError for content that no scenario has.
-    """
-    counted = {key: value for key, value in content.items() if key != SCHEMA_KEY}
-    return hashlib.sha256(json.dumps(counted, sort_keys=True).encode()).hexdigest()[:16]
+    text = json.dumps(scenario_content(scenario), sort_keys=True)
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
 def _read(name_or_file: str) -> tuple[str, str]:

@@ -27,6 +27,11 @@ def is_handover_file(handover: str) -> bool:
     return handover.endswith(_PYTHON)
 
 
+def handover_name(handover: str) -> str:
+    """Return the name of a handover in bags and tables: of a file its name without the ending."""
+    return handover.rpartition('/')[2].removesuffix(_PYTHON)
+
+
 @dataclass(frozen=True)
 class RunSettings(OptionGroup):
     """
@@ -108,8 +113,8 @@ class RunSettings(OptionGroup):
 
     @property
     def handover_name(self) -> str:
-        """Name of the handover in bags and tables: of a file its name without the ending."""
-        return self.handover.rpartition('/')[2].removesuffix(_PYTHON)
+        """Name of the handover in bags and tables."""
+        return handover_name(self.handover)
 
     def kind(self, *, two_input: bool = False) -> RunKind:
         """Return the kind of the run, which decides its topics; `two_input` if it commands C_m."""

@@ -14,12 +14,12 @@ from ddct_plant.bag_file.metadata import RECORD_NAME, metadata_record
 from ddct_plant.bag_file.records import MAGIC, read_records, readable_custom_data
 from ddct_plant.base.errors import DdctError
 
-HOUR = {'duration_s': '3600.0'}
+FACTS = {'controller': 'pi'}
 COUNT = 40
 
 
 def bag_of_messages(
-    facts: dict[str, str] = HOUR,
+    facts: dict[str, str] = FACTS,
     count: int = COUNT,
     chunk_bytes: int = 200,
     compression: CompressionType = CompressionType.ZSTD,
@@ -57,7 +57,7 @@ def file(tmp_path: Path) -> Path:
     return tmp_path / 'bag.mcap'
 
 
-@pytest.mark.parametrize('facts', [HOUR, {}])
+@pytest.mark.parametrize('facts', [FACTS, {}])
 @pytest.mark.parametrize('compression', CompressionType)
 @pytest.mark.parametrize('chunk_bytes', [0, 200, 10**6])
 def test_every_message_of_a_whole_file_is_read(file, facts, compression, chunk_bytes) -> None:
@@ -105,11 +105,7 @@ def test_an_unfinished_file_is_read_until_a_damaged_chunk(file) -> None:
     for place in range(100, len(unfinished), 5):
         changed = bytearray(unfinished)
         changed[place] ^= 0x10
-        try:
-            found = found_in(file, bytes(changed))
-        except DdctError as error:
-            assert 'duration_s' in str(error)  # the metadata has no checksum before the end
-            continue
+        found = found_in(file, bytes(changed))
         # One that is no longer a chunk is skipped, as that of a later version of MCAP: the hole
         # in the ticks shows it.
         assert [each for each in EXPECTED if each in found] == found
@@ -186,20 +182,4 @@ def test_a_file_that_cannot_be_read_is_named(tmp_path: Path) -> None:
 def test_the_custom_data_of_a_damaged_file_can_be_read(file) -> None:
     whole = bag_of_messages()
     file.write_bytes(whole[: len(whole) // 2] + b'damage' + whole[len(whole) // 2 :])
-    assert readable_custom_data(file) == HOUR
-
-
-@pytest.mark.parametrize(
-    'facts',
-    [
-        {'duration_s': '3600.01'},
-        {'duration_s': '0.0'},
-        {'duration_s': 'long'},
-        {**HOUR, 'scenario_yaml': 'duration_s: 3.0'},
-    ],
-)
-@pytest.mark.parametrize('end', [None, -20])
-def test_a_duration_that_no_run_has_is_refused(file, facts, end) -> None:
-    file.write_bytes(bag_of_messages(facts)[:end])
-    with refused(DdctError, 'duration_s', place='bag.mcap'):
-        read_records(file)
+    assert readable_custom_data(file) == FACTS

@@ -102,7 +102,7 @@ def _scored(
         try:
             recording = read_recording(bag, columns)
             name = bag_name(bag, folder)
-            for line in recording.custom_data.get('adjusted', '').splitlines():
+            for line in recording.settings.scenario.adjusted if recording.settings else ():
                 scorer.complain(f'{name}: {line}')
             runs.append(scorer.scores(recording, name))
         except DdctError as error:

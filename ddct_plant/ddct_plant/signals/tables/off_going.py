@@ -20,6 +20,10 @@ from ddct_plant.signals.tables.rows import (
 )
 from ddct_plant.signals.topic import Topic
 
+OFF_GOING_RUN_SETTINGS = status_topic(
+    'off_going/run_settings', 'recorder', every_tick=False, latched=True, when=if_shift
+)
+"""As `run_settings`, for the nodes of the off-going side; in no recording."""
 OFF_GOING_RUN_INFO = status_topic(
     'off_going/run_info', 'every node of off_going', every_tick=False, latched=True, when=if_shift
 )

@@ -7,6 +7,12 @@ from ddct_plant.signals.tables.rows import status_topic
 from ddct_plant.signals.topic import Topic
 
 RUN_INFO = status_topic('run_info', 'every node', every_tick=False, latched=True)
+RUN_SETTINGS = status_topic('run_settings', 'recorder', every_tick=False, latched=True)
+"""
+Settings of the run, which nodes that are started by hand compare with their own.
+
+It is in no recording, which has the settings once in its metadata, and so not in the table.
+"""
 CLOCK = Topic('/clock', MessageKind('rosgraph_msgs/msg/Clock'), 'driveline')
 RECORDER_ACK = Topic('recorder/ack', MessageKind('std_msgs/msg/Header'), 'recorder')
 CONTROLLER_TIMING = status_topic(

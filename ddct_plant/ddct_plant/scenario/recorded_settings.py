@@ -1,0 +1,277 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""
+The settings of a run as one JSON: in its bag, and in the files from which its nodes get them.
+
+It has two parts. `known` is what every node and controller knows, `case` what the plant alone has.
+"""
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, TypeVar
+
+from ddct_plant.base.errors import DdctError, ParameterError, require_name, require_number
+from ddct_plant.base.options import options_of
+from ddct_plant.base.timebase import LONGEST_S, PERIOD_S, steps_in
+from ddct_plant.files.json_records import from_json, parse_json, read_json, to_json
+from ddct_plant.scenario.content import scenario_content, scenario_from_mapping
+from ddct_plant.scenario.differences import values_by_key
+from ddct_plant.scenario.scenario import Scenario
+from ddct_plant.scenario.settings import UNKNOWN, RunSettings, is_handover_file
+
+SETTINGS = 'settings'
+"""Key of the JSON in the custom data of a bag."""
+SCHEMA = 1
+"""Version of the keys of the JSON; those of the scenarios in it have the same."""
+_NAMES = ('controller', 'architecture', 'clutch', 'mode')
+_NOT_COMPARED = ('description', 'adjusted')
+"""Keys of a scenario that change nothing in a run."""
+_ABSENT = 'left out'
+
+
+@dataclass(frozen=True)
+class KnownSettings:
+    """Settings that every node of a run has, and every controller knows."""
+
+    controller: str
+    """Name of the controller, in tables and of the bag."""
+    duration_s: float
+    """Planned duration of the run, s."""
+    architecture: str
+    clutch: str
+    mode: str
+    handover: str | None
+    """Name of the handover of a gear shift; None in other runs."""
+    scenario: dict[str, Any]
+    """Content of the scenario's file, whole."""
+
+    def __post_init__(self) -> None:
+        """Raise ParameterError for a name that tables and files could not have."""
+        for name in _NAMES:
+            require_name(name, getattr(self, name))
+        require_number(
+            'duration_s', self.duration_s, unit='s', at_least=PERIOD_S, at_most=LONGEST_S
+        )
+        if self.handover is None:
+            return
+        require_name('handover', self.handover)
+        if is_handover_file(self.handover):  # a bag is data alone: its settings run no file
+            raise ParameterError(
+                f'handover is {self.handover!r}, a file: give a name without .py', key='handover'
+            )
+
+    @property
+    def steps(self) -> int:
+        """Planned number of periods; raise ParameterError for a duration that no run has."""
+        return steps_in('duration_s', self.duration_s)
+
+
+@dataclass(frozen=True)
+class CaseSettings:
+    """True settings of a run that controllers, handovers and the reference do not know."""
+
+    wear_gain: float
+    seed: int
+    off_going_wear_gain: float | None
+    """Wear gain of the off-going clutch of a gear shift; None in other runs."""
+    scenario: dict[str, Any]
+    """
+    Values of the true scenario that differ from those known, as a merge patch (RFC 7396).
+
+    None stands for a value that the true scenario leaves out.
+    """
+
+
+@dataclass(frozen=True)
+class KnownPart:
+    """Content of the file with the known settings, which every node reads."""
+
+    schema_version: int
+    known: KnownSettings
+
+
+@dataclass(frozen=True)
+class CasePart:
+    """Content of the file with the rest of the settings, which nodes of the plant read."""
+
+    schema_version: int
+    case: CaseSettings
+
+
+@dataclass(frozen=True)
+class RecordedSettings:
+    """Settings of a run as its bag has them."""
+
+    schema_version: int
+    known: KnownSettings
+    case: CaseSettings
+
+    @classmethod
+    def of(cls, settings: RunSettings, controller: str, duration_s: float) -> 'RecordedSettings':
+        """Return the record of a run with the controller of this name."""
+        shift = settings.shift
+        true, known = settings.scenario, settings.known.scenario
+        return cls(
+            SCHEMA,
+            KnownSettings(
+                controller=controller,
+                duration_s=duration_s,
+                architecture=settings.architecture,
+                clutch=settings.clutch,
+                mode=settings.mode,
+                handover=settings.handover_name if shift else None,
+                scenario=scenario_content(known),
+            ),
+            CaseSettings(
+                wear_gain=float(settings.wear_gain),
+                seed=settings.seed,
+                off_going_wear_gain=float(settings.off_going_wear_gain) if shift else None,
+                scenario=_patch(scenario_content(known), scenario_content(true)),
+            ),
+        )
+
+    @property
+    def parts(self) -> tuple[KnownPart, CasePart]:
+        """The two parts, for a file each."""
+        return KnownPart(SCHEMA, self.known), CasePart(SCHEMA, self.case)
+
+    def text(self) -> str:
+        """Return the JSON text in one line; numbers keep every bit."""
+        return json.dumps(to_json(self), allow_nan=False)
+
+
+def settings_of_bag(custom_data: Mapping[str, str]) -> RecordedSettings:
+    """
+    Return the settings in the custom data of a bag.
+
+    Raise DdctError for a bag without, of another version of the schema, or with bad values.
+    """
+    if SETTINGS not in custom_data:
+        raise DdctError(
+            f'no {SETTINGS} in the custom data: not a recording of this project', key=SETTINGS
+        )
+    try:
+        data = parse_json(custom_data[SETTINGS])
+    except ParameterError as error:
+        raise error.at(f'{SETTINGS} of the run') from error
+    return from_json(RecordedSettings, data, f'{SETTINGS} of the run', newest=SCHEMA)
+
+
+Part = TypeVar('Part', KnownPart, CasePart)
+
+
+def read_part(kind: type[Part], file: str) -> Part:
+    """Return the part of a run's settings in a file; raise DdctError that names the file."""
+    return read_json(kind, Path(file), newest=SCHEMA)
+
+
+def run_settings(known: KnownSettings, case: CaseSettings | None = None) -> RunSettings:
+    """
+    Return the settings of a run; those that controllers know without a case.
+
+    Raise DdctError for values that make no run.
+    """
+    known_scenario = _scenario(known.scenario)
+    shared: dict[str, Any] = {
+        'architecture': known.architecture,
+        'clutch': known.clutch,
+        'mode': known.mode,
+        **({} if known.handover is None else {'handover': known.handover}),
+    }
+    if case is None:
+        return RunSettings(known_scenario, **shared)
+    differs = bool(case.scenario)
+    of_case = {name: getattr(case, name) for name in UNKNOWN}
+    return RunSettings(
+        _scenario(_merged(known.scenario, case.scenario)) if differs else known_scenario,
+        **shared,
+        **{name: value for name, value in of_case.items() if value is not None},
+        known_scenario=known_scenario if differs else None,
+    )
+
+
+def values_of(settings: RunSettings) -> dict[str, object]:
+    """
+    Return the values of all settings by key, to be compared.
+
+    Keys of scenarios are dotted, below `scenario` and `known_scenario`. A handover has its name.
+    """
+    values = {name: getattr(settings, name) for name in options_of(RunSettings)}
+    return {
+        **values,
+        'handover': settings.handover_name,
+        **values_of_scenario('scenario', settings.scenario),
+        **values_of_scenario('known_scenario', settings.known.scenario),
+    }
+
+
+def known_values(settings: RunSettings) -> dict[str, object]:
+    """Return the values that controllers know, as `values_of` without any that they do not."""
+    values = values_of(settings.known)
+    unknown = ('known_scenario.', *UNKNOWN)
+    return {key: values[key] for key in values if not key.startswith(unknown)}
+
+
+def values_text(values: Mapping[str, object]) -> str:
+    """Return values of settings as JSON, for another node to compare."""
+    return json.dumps(to_json(values), allow_nan=False)
+
+
+def values_of_scenario(name: str, scenario: Scenario) -> dict[str, object]:
+    """Return the values of a scenario that change a run, by dotted key below `name`."""
+    values = values_by_key(scenario)
+    return {f'{name}.{key}': values[key] for key in values if key not in _NOT_COMPARED}
+
+
+def require_agreement(node: str, ours: Mapping[str, object], theirs: Mapping[str, object]) -> None:
+    """Raise ParameterError for the first setting of a node that differs from that of the run."""
+    for key in (*ours, *theirs):
+        mine, others = ours.get(key, _ABSENT), theirs.get(key, _ABSENT)
+        if mine != others:
+            raise ParameterError(
+                f'node {node} has {key} {mine}, but the settings of the run have {others}: '
+                'start every node with the same settings',
+                key=key,
+            )
+
+
+def require_same(node: str, ours: Mapping[str, object], text: str) -> None:
+    """Raise the errors of `require_agreement` for the values in a text of `values_text`."""
+    theirs = from_json(dict[str, Any], parse_json(text), 'the settings of the run')
+    require_agreement(node, parse_json(values_text(ours)), theirs)
+
+
+def _scenario(content: Mapping[str, Any]) -> Scenario:
+    try:
+        return scenario_from_mapping(content)
+    except DdctError:
+        raise
+    except (TypeError, ValueError) as error:
+        raise DdctError(f'its scenario cannot be used ({error})', key='scenario') from error
+
+
+def _patch(known: Mapping[str, Any], true: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the merge patch that makes the true content out of the known one."""
+    patch: dict[str, Any] = {key: None for key in known if key not in true}
+    for key, value in true.items():
+        before = known.get(key)
+        if isinstance(before, Mapping) and isinstance(value, Mapping):
+            if changed := _patch(before, value):
+                patch[key] = changed
+        elif key not in known or before != value:
+            patch[key] = value
+    return patch
+
+
+def _merged(known: Mapping[str, Any], patch: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the known content with the values of a merge patch."""
+    content = {key: value for key, value in known.items() if key not in patch}
+    for key, value in patch.items():
+        before = known.get(key)
+        if isinstance(value, Mapping) and isinstance(before, Mapping):
+            content[key] = _merged(before, value)
+        elif value is not None:
+            content[key] = value
+    return content
