@@ -26,7 +26,7 @@ from ddct_controllers.from_file.controller_file import is_controller_file
 from ddct_controllers.from_file.fmu.unpacked import remove_left_folders
 from ddct_controllers.registry import Chosen, make_controller
 from ddct_plant.base.errors import DdctError
-from ddct_plant.graph.domain import own_domain
+from ddct_plant.graph.domain import own_domain, sole_graph
 from ddct_plant.program.supervision import stop_signals
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.signals.gain_changes import GainChange
@@ -93,7 +93,7 @@ def execute(
     work = folder / WORK_FOLDER
     try:
         work.mkdir()
-        with own_domain():
+        with own_domain() as domain, sole_graph(domain):
             if plan.layout == 'processes':
                 _execute_processes(plan, folder, work, stopped, live)
             else:

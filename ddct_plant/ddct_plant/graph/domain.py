@@ -7,6 +7,7 @@ import os
 import socket
 from collections.abc import Iterator
 from contextlib import contextmanager
+from hashlib import sha256
 
 from ddct_plant.base.errors import DdctError
 from ddct_plant.graph.security import require_security_if_asked
@@ -73,6 +74,27 @@ def own_domain() -> Iterator[int]:
             yield domain
         finally:
             os.environ.pop('ROS_DOMAIN_ID', None)
+
+
+@contextmanager
+def sole_graph(domain: int, clock: str = '/clock') -> Iterator[None]:
+    """
+    Keep the topic of simulated time in a domain for one graph of this machine, within.
+
+    Raise DdctError where another one has it. Two graphs in one domain can run at once where each
+    has a namespace and a clock of its own.
+    """
+    with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as lock:
+        # An abstract name: the kernel removes it with the process. It has at most 107 bytes.
+        name = sha256(f'{domain} {clock}'.encode()).hexdigest()
+        try:
+            lock.bind(f'\0ddct_graph {name}')
+        except OSError as error:
+            raise DdctError(
+                f'another graph runs on this machine with {clock} in ROS domain {domain}: wait '
+                'for its end, or use another ROS_DOMAIN_ID'
+            ) from error
+        yield
 
 
 @contextmanager

@@ -2,11 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Node `driveline`: owns time, integrates the stiff states and publishes them at every tick."""
 
+from contextlib import ExitStack
 from dataclasses import replace
 from functools import partial
 from typing import Any, ClassVar
 
+from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import PERIOD_S, STEPS_PER_S, stamp_of_step
+from ddct_plant.graph.domain import sole_graph
 from ddct_plant.graph.node import GraphNode
 from ddct_plant.graph.node_names import StatusName
 from ddct_plant.graph.node_reports import TICKS, TickCounts, driveline_info
@@ -14,6 +17,7 @@ from ddct_plant.graph.output import Output, SafeStateReport
 from ddct_plant.graph.sole_publishers import SolePublishers
 from ddct_plant.graph.spin import run_node
 from ddct_plant.nodes.tick_plan import declare_tick_plan
+from ddct_plant.program.supervision import is_supervised
 from ddct_plant.scenario.initial_state import initial_state
 from ddct_plant.scenario.plant import driveline_sensors, make_driveline
 from ddct_plant.shift.driveline import ShiftOutputs
@@ -72,9 +76,16 @@ class DrivelineNode(GraphNode):
 
     EXAMPLES: ClassVar[tuple[str, ...]] = ('-p require_recorder:=true -p duration:=2.0',)
 
-    def __init__(self, **kwargs: Any) -> None:
-        """Build the driveline in its initial state; a timer starts the run once the node spins."""
+    def __init__(self, *, keeps_graph: bool = False, **kwargs: Any) -> None:
+        """
+        Build the driveline in its initial state; a timer starts the run once the node spins.
+
+        With `keeps_graph` no other graph may have its clock in its domain meanwhile, else the
+        node ends with an error.
+        """
         super().__init__('driveline', **kwargs)
+        self._keeps_graph = keeps_graph
+        self._kept = ExitStack()
         self._run = self.settings.kind()
         self._torques = [topic for topic in TORQUES if topic.in_run(self._run)]
         self._clutches = [topic for topic in CLUTCHES if topic.in_run(self._run)]
@@ -100,8 +111,9 @@ class DrivelineNode(GraphNode):
         self.every(WATCH_PERIOD_S, self.owner.watch)
 
     def close(self) -> None:
-        """End the check for second publishers."""
+        """End the check for second publishers, and leave the clock of the domain to others."""
         self._sole_publishers.close()
+        self._kept.close()
 
     def _make_owner(self) -> TickOwner:
         parts = (
@@ -133,6 +145,13 @@ class DrivelineNode(GraphNode):
 
     def _begin(self) -> None:
         self._start_timer.cancel()
+        if self._keeps_graph:
+            domain, clock = self.context.get_domain_id(), self.resolve_topic_name(CLOCK.name)
+            try:
+                self._kept.enter_context(sole_graph(domain, clock))
+            except DdctError as error:
+                self.finish(error)
+                return
         self.owner.start()
 
     def _publish_tick(self, step: int) -> None:
@@ -170,7 +189,8 @@ class DrivelineNode(GraphNode):
 
 def main() -> int:
     """Run the node until the run is over or it is stopped."""
-    return run_node('driveline', DrivelineNode)
+    # A supervisor has done so already for its graph.
+    return run_node('driveline', partial(DrivelineNode, keeps_graph=not is_supervised()))
 
 
 if __name__ == '__main__':

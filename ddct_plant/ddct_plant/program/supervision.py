@@ -201,6 +201,11 @@ def supervise(patience: Patience, announce: Callable[[int], None]) -> None:
     faulthandler.dump_traceback_later(patience.start_s, exit=True)
 
 
+def is_supervised() -> bool:
+    """Return whether a supervisor has started this process, a node."""
+    return _supervised is not None
+
+
 def beat() -> None:
     """Tell the watch that the node runs; called periodically."""
     if _supervised:

@@ -22,6 +22,9 @@ class JoinResult(Enum):
     """Every input of a new stamp is here: compute the reply."""
     REPEAT = auto()
     """The owner of time repeats its tick: publish the last reply once more."""
+    BEGUN_ANEW = auto()
+    """The owner of time begins a run after a later step of another: publish the last reply, whose
+    stamp shows that this node has run already."""
     IGNORE = auto()
     """The input was already used, or is older than the last complete stamp."""
 
@@ -56,8 +59,11 @@ class StampJoin:
             name = self.shown(topic)
             raise DdctError(f'{name}: {error}', key=name) from error
         if step <= self.last_step:
-            again = step == self.last_step and topic == self.topics[0]
-            return JoinResult.REPEAT if again else JoinResult.IGNORE
+            if topic != self.topics[0]:
+                return JoinResult.IGNORE
+            if step == self.last_step:
+                return JoinResult.REPEAT
+            return JoinResult.IGNORE if step else JoinResult.BEGUN_ANEW
         inputs = self._waiting.get(step)
         if inputs is None:
             self._make_room(topic, step)

@@ -49,3 +49,5 @@ class StampReplies:
                 self._dispute(topic, stamp_ns)
             else:
                 self._publish()
+        elif result is JoinResult.BEGUN_ANEW:
+            self._publish()

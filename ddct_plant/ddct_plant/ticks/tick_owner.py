@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The owner of time: when the driveline steps, and on which replies. Independent of ROS."""
 
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -15,6 +16,9 @@ Reply = float | Rows | None
 """Values of a reply: a torque in N m, those of the clutch, or None for an acknowledgement."""
 RESEND_AFTER_S = 0.1
 """Time in s after which an unanswered tick is published again."""
+PROOF = 30
+"""Number of replies to t_0 with a later stamp, one for each time that it is sent, by which a node
+has proved that it has run already."""
 
 
 @dataclass(frozen=True)
@@ -68,6 +72,8 @@ class TickOwner:
         self.late = 0
         """Number of replies to a tick that was already complete."""
         self._awaited: tuple[str, ...] = ()
+        self._have_run: Counter[str] = Counter()
+        """Number of replies to a later tick that came before the first step, by topic."""
         self._replies: dict[str, Reply] = {}
         """Replies to the present tick that have arrived, by topic."""
         self._integrate = integrate
@@ -86,6 +92,8 @@ class TickOwner:
     def offer(self, topic: str, stamp_ns: int, reply: Reply) -> None:
         """Add one reply; the reply that completes the tick makes the driveline step."""
         due = stamp_of_step(self.step)
+        if self.step == 0 and stamp_ns > due:
+            self._have_run[topic] += 1
         if stamp_ns != due or topic not in self._awaited or topic in self._replies:
             self.late += stamp_ns < due
             return
@@ -103,18 +111,28 @@ class TickOwner:
         missing = self.missing()
         if not missing:
             return
-        if now - self._opened_at > self._plan.answer_timeout_s:
+        waited_s = min(now - self._opened_at, self._plan.answer_timeout_s)
+        # One false stamp proves nothing.
+        begun_anew = self.step == 0 and all(self._have_run[each] >= PROOF for each in missing)
+        if now - self._opened_at > self._plan.answer_timeout_s or begun_anew:
             self._finish(
                 DdctError(
                     f'no {" and no ".join(missing)} for stamp {stamp_of_step(self.step)} ns '
-                    f'(step {self.step}) within {self._plan.answer_timeout_s:g} s: '
-                    'check that the nodes which publish them are running'
+                    f'(step {self.step}) within {waited_s:.3g} s: ' + self._advice(missing)
                 )
             )
         elif now - self._sent_at > RESEND_AFTER_S:
             self._sent_at = now
             self.resends += 1
             self._publish(self.step)
+
+    def _advice(self, missing: Sequence[str]) -> str:
+        if self.step == 0 and (have_run := [each for each in missing if self._have_run[each]]):
+            return (
+                f'the nodes which publish {" and ".join(have_run)} have already run with another '
+                'driveline, so stop all nodes and start the graph again'
+            )
+        return 'check that the nodes which publish them are running'
 
     def _awaited_at(self, step: int) -> tuple[str, ...]:
         return self._plan.topics

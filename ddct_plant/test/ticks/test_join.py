@@ -30,12 +30,15 @@ def test_only_the_trigger_requests_the_reply_again():
     assert offer(join, 'b', 0) is JoinResult.IGNORE
 
 
-def test_an_older_stamp_is_dropped():
-    join = StampJoin(['a'])
-    for step in (0, 1):
+def test_an_older_stamp_is_dropped_unless_the_trigger_begins_another_run():
+    join = StampJoin(['a', 'b'])
+    for step in (0, 1, 2):
         offer(join, 'a', step)
+        offer(join, 'b', step)
         join.take()
-    assert offer(join, 'a', 0) is JoinResult.IGNORE
+    assert offer(join, 'a', 1) is JoinResult.IGNORE
+    assert offer(join, 'b', 0) is JoinResult.IGNORE
+    assert offer(join, 'a', 0) is JoinResult.BEGUN_ANEW
 
 
 def test_a_repeated_input_of_an_open_stamp_does_not_complete_it():

@@ -7,7 +7,7 @@ import pytest
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import stamp_of_step
 from ddct_plant.ticks.realtime_owner import RECORDER_PATIENCE_S, RealtimeOwner
-from ddct_plant.ticks.tick_owner import TickOwner, TickPlan
+from ddct_plant.ticks.tick_owner import PROOF, TickOwner, TickPlan
 
 TORQUES = ('engine/torque', 'load/torque', 'clutch/torque')
 ENGINE, LOAD, CLUTCH = TORQUES
@@ -88,6 +88,42 @@ def test_lockstep_runs_to_the_last_tick_and_ends_well(lockstep):
     assert lockstep.published == [0, 1, 2, 3]
     assert lockstep.driveline.steps == [(1.0, 2.0, POINTS)] * 3
     assert lockstep.ends == [None]
+
+
+@pytest.mark.parametrize('owner', [TickOwner, RealtimeOwner])
+def test_a_run_that_begins_on_nodes_which_have_run_already_names_them(owner):
+    harness = Harness(owner)
+    harness.owner.start()
+    harness.answer(3, topics=(ENGINE, CLUTCH))
+    harness.answer(0, topics=(ENGINE,))
+    harness.now = 1.01
+    harness.owner.watch()
+    assert [str(end) for end in harness.ends] == [
+        'no load/torque and no clutch/torque for stamp 1000000000 ns (step 0) within 1 s: the '
+        'nodes which publish clutch/torque have already run with another driveline, so stop all '
+        'nodes and start the graph again'
+    ]
+
+
+def test_nodes_that_have_run_are_not_waited_for_to_the_end(lockstep):
+    lockstep.owner.start()
+    for _ in range(PROOF):
+        lockstep.owner.watch()
+        assert not lockstep.ends
+        lockstep.answer(3)
+    lockstep.owner.watch()
+    (end,) = lockstep.ends
+    assert 'within 0 s: the nodes which publish engine/torque and load/torque and' in str(end)
+
+
+def test_a_false_stamp_before_the_first_step_explains_no_silence_after_it(lockstep):
+    lockstep.owner.start()
+    lockstep.answer(3, topics=(ENGINE,))
+    lockstep.answer(0)
+    lockstep.now = 1.01
+    lockstep.owner.watch()
+    (end,) = lockstep.ends
+    assert str(end).endswith('check that the nodes which publish them are running')
 
 
 def test_lockstep_never_steps_on_a_reply_to_another_tick(lockstep):

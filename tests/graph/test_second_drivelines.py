@@ -1,0 +1,81 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""A second graph with the clock of another is refused; one on nodes that have run says so."""
+
+from pathlib import Path
+
+import pytest
+from support.complaints import assert_one_line
+from support.nodes_by_hand import MODULES, start_nodes
+from support.processes import Programs
+from support.runs import expected, plan
+from support.waiting import wait_until
+
+from ddct_bringup.bag.reader import read_bag
+from ddct_plant.base.errors import DdctError
+from ddct_plant.graph.domain import own_domain, sole_graph
+
+FOLLOWERS = [name for name in MODULES if name not in ('driveline', 'recorder')]
+DRIVELINE = MODULES['driveline']
+SHORT = {'duration': 0.1, 'require_recorder': False, 'answer_timeout_s': 600.0}
+
+
+def test_a_driveline_that_is_started_again_on_the_same_nodes_says_that_they_have_run(
+    programs: Programs,
+) -> None:
+    nodes = start_nodes(programs.start_node, FOLLOWERS, None)
+    first = programs.start_node(DRIVELINE, SHORT)
+    assert first.wait() == 0, first.errors()
+    second = programs.start_node(DRIVELINE, SHORT)
+    assert second.wait() == 1
+    assert_one_line(second.errors(), 'driveline', 'have already run with another driveline')
+    for node in nodes.values():
+        node.stop()
+
+
+def test_a_driveline_beside_another_is_refused_and_disturbs_nothing(programs: Programs) -> None:
+    first = programs.start_node(DRIVELINE, {'answer_timeout_s': 600.0})
+
+    def kept() -> bool:
+        try:
+            with own_domain() as domain, sole_graph(domain):
+                return False
+        except DdctError:
+            return True
+
+    wait_until(kept, 'a driveline that has begun')
+    second = programs.start_node(DRIVELINE, {})
+    assert second.wait() == 1
+    assert_one_line(second.errors(), 'driveline', 'another graph runs', 'with /clock in')
+    first.stop()
+
+
+@pytest.mark.parametrize('layout', [[], ['--single-process']])
+def test_a_bringup_beside_another_in_one_domain_is_refused_and_the_first_goes_on(
+    programs: Programs, tmp_path: Path, layout: list[str]
+) -> None:
+    def start(out: str) -> list[str]:
+        options = ['--controller', 'ls8', '--duration', '2', *layout]
+        return ['ddct_bringup.programs.bringup', *options, '--out', str(tmp_path / out)]
+
+    first = programs.fork(*start('first'))
+    bag = tmp_path / 'first' / 'ls8.partial' / 'ls8_0.mcap'
+    wait_until(lambda: bag.exists() or first.process.poll() is not None, 'a bag')
+    second = programs.fork(*start('second'))
+    assert second.wait() == 1
+    with own_domain() as domain:
+        words = f'another graph runs on this machine with /clock in ROS domain {domain}: wait'
+    assert_one_line(second.errors(), 'ddct bringup', words)
+    assert first.wait() == 0, first.errors()
+    trajectory = read_bag(tmp_path / 'first' / 'ls8').trajectory
+    assert trajectory.sha256() == expected(plan(duration_s=2.0)).sha256()
+
+
+def test_domains_and_clocks_are_kept_apart() -> None:
+    long = f'/{"a" * 300}/clock'
+    with sole_graph(7), sole_graph(8), sole_graph(7, '/car/clock'), sole_graph(7, long):
+        again = pytest.raises(DdctError, match='with /car/clock in ROS domain 7: wait for')
+        with again, sole_graph(7, '/car/clock'):
+            pass
+    with sole_graph(7, '/car/clock'):
+        pass
