@@ -47,12 +47,19 @@ def counting(folder: Path, name: str = 'counting') -> str:
 
 
 def harmful(folder: Path, name: str = 'harmful') -> str:
-    """Return the file of a controller with the option `fault`, a key of ENDS, or 0 for none."""
-    start = '#include <signal.h>\n#include <stdlib.h>\n'
-    variables = 'double fault = 0.0;\ntypedef struct'
-    body = f'{HARMS} command->clutch_torque = 0.0;'
-    source = start + with_update(body).replace('typedef struct', variables)
+    """Return the file of a PI controller that harms itself by `fault`, a key of ENDS."""
+    before = '#include <signal.h>\n#include <stdlib.h>\ndouble fault = 0.0;\n'
+    body = '    const double slip ='
+    source = before + SOURCE.replace(body, f'    {HARMS}\n{body}')
     return _file(folder, name, source, ', parameters: {fault: 0.0}')
+
+
+def harmed_on_a_hill(folder: Path, name: str = 'harmed') -> str:
+    """Return the file of a PI controller that crashes where the road load is that of a hill."""
+    body = '    const double slip ='
+    harm = '    if (m->step == 65 && m->load_torque > 200.0) raise(SIGSEGV);'
+    source = '#include <signal.h>\n' + SOURCE.replace(body, f'{harm}\n{body}')
+    return _file(folder, name, source)
 
 
 def _file(folder: Path, name: str, source: str, more: str = '') -> str:

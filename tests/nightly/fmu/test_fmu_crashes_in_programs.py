@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 
 import pytest
-from support.fmu import EXIT, faulty, unpacked
+from support.fmu import CRASH, EXIT, faulty, unpacked
 
 from ddct_bringup.programs.bringup import main as bringup
 from ddct_bringup.programs.compare import main as compare
@@ -28,10 +28,13 @@ def test_the_runs_of_other_controllers_are_kept(capsys: pytest.CaptureFixture[st
     assert len(lines) == 1
 
 
-def test_in_the_graph_too_it_is_one_line_and_another_exit_code(
-    capsys: pytest.CaptureFixture[str],
+@pytest.mark.parametrize(
+    ('fault', 'end'), [(EXIT, 'ended with code 0'), (CRASH, 'was killed by SIGSEGV')]
+)
+def test_in_the_graph_it_ends_its_node_which_is_one_line_and_another_exit_code(
+    capsys: pytest.CaptureFixture[str], fault: int, end: str
 ) -> None:
-    assert bringup(['--controller', faulty(3, EXIT), *SHORT, '--out', 'runs']) == 1
-    printed = capsys.readouterr().err
-    assert 'node controller ended with code 0' in printed
+    assert bringup(['--controller', faulty(3, fault), *SHORT, '--out', 'runs']) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert f'node controller {end}' in line
     assert unpacked() == []
