@@ -62,6 +62,8 @@ def sources_of(file: Path) -> Sources:
             relative = frozenset()  # they stay in the package, which counts anyway
         for name in absolute | relative:
             files = {} if name in found else _files_of(name, path.parent)
+            if path in files.values():
+                continue  # an import of the file itself is refused when it runs
             if files and (name in relative or not _comes_first(name)):
                 found |= {each: _source(file) for each, file in files.items()}
                 waiting += files
@@ -128,8 +130,12 @@ class _Finder(MetaPathFinder, Loader):
     ) -> ModuleSpec | None:
         """Return what `import` needs; a package has no path, so no other file is found in it."""
         package, _, name = fullname.partition('.')
-        source = self.sources.get(package, {}).get(name)
+        sources = self.sources.get(package, {})
+        source = sources.get(name)
         if source is None:
+            if sources and name == sources[''].path.stem:
+                # A second module of it would have classes and variables of its own.
+                raise ImportError(f'{sources[""].path.name} imports itself')
             return None
         spec = ModuleSpec(fullname, self, origin=str(source.path), is_package=source.is_package)
         spec.has_location = True
@@ -154,8 +160,9 @@ class _Finder(MetaPathFinder, Loader):
         level: int = 0,
     ) -> ModuleType:
         """Do what `__import__` does, for a module of the file whose module is `package`."""
-        top = name.partition('.')[0]
-        if level or top not in self.sources[package] or _comes_first(top):
+        top, sources = name.partition('.')[0], self.sources[package]
+        own = top in sources or top == sources[''].path.stem
+        if level or not own or _comes_first(top):
             return builtins.__import__(name, globals, locals, fromlist or (), level)
         found = builtins.__import__(f'{package}.{name}', globals, locals, fromlist or ())
         return found if fromlist else sys.modules[f'{package}.{top}']

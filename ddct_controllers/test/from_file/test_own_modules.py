@@ -201,6 +201,43 @@ def test_a_mistake_in_a_helper_is_one_line_with_its_place(
     assert text.endswith(f', in {tmp_path / "helper.py"} line {line}): mend its code')
 
 
+@pytest.mark.parametrize(
+    ('imports', 'helper', 'place'),
+    [
+        ('import mine', '', 'mine.py line 1'),
+        ('from mine import GAIN', '', 'mine.py line 1'),
+        ('from . import mine', '', 'mine.py line 1'),
+        ('import helper', 'GAIN = 1\nfrom mine import Mine', 'helper.py line 2'),
+    ],
+)
+def test_a_file_that_imports_itself_is_refused_in_one_line(
+    tmp_path: Path, imports: str, helper: str, place: str
+) -> None:
+    files = {'mine.py': controller(imports, '0.5'), 'helper.py': helper}
+    text = refusal(written(tmp_path, files) / 'mine.py')
+    assert 'mine.py imports itself' in text
+    assert place in text
+    assert '\n' not in text
+
+
+def test_a_helper_may_name_the_file_for_type_checkers_alone(tmp_path: Path) -> None:
+    helper = 'from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from mine import Mine\n'
+    files = {'mine.py': controller('import helper', '0.5'), 'helper.py': helper}
+    file = written(tmp_path, files) / 'mine.py'
+    assert gain(made(file)) == 0.5
+    assert controller_digests(str(file)).keys() == {FILE, 'helper.py_sha256'}
+
+
+def test_a_module_that_has_the_name_of_the_file_but_is_another_one_is_found(
+    tmp_path: Path,
+) -> None:
+    files = {
+        'mine.py': controller('import mine', 'mine.GAIN'),
+        'mine/__init__.py': 'GAIN = 0.25',
+    }
+    assert gain(made(written(tmp_path, files) / 'mine.py')) == 0.25
+
+
 def test_a_helper_that_cannot_be_read_is_named(tmp_path: Path) -> None:
     written(tmp_path, {'mine.py': EAGER})
     (tmp_path / 'helper.py').write_bytes(b'GAIN = "\xff"\n')
