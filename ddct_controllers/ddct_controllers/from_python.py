@@ -6,10 +6,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from ddct_controllers.factories import factory_spec
 from ddct_controllers.interface import Controller, ControllerContext, ControllerSpec
 from ddct_controllers.linear import HOLD, LinearSystem, linear_spec
 from ddct_controllers.lti_objects import linear_system
+from ddct_controllers.plugins import factory_spec
 from ddct_controllers.registry import Chosen, controller_names
 from ddct_plant.base.errors import ParameterError, require_name
 

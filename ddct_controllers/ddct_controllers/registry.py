@@ -2,14 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Controllers by name: our own, those of other packages, and those in a file."""
 
-import importlib.metadata
-import sys
 from collections.abc import Callable, Iterable, Mapping
-from functools import lru_cache, partial
-from pathlib import Path
+from functools import partial
 from typing import Any, TypeVar
 
-from ddct_controllers.factories import factory_spec
 from ddct_controllers.from_file.controller_file import YAML_SUFFIXES, is_controller_file
 from ddct_controllers.from_file.fmu.unpacked import remove_left_folders
 from ddct_controllers.from_file.kinds import load_spec
@@ -22,21 +18,14 @@ from ddct_controllers.interface import (
 from ddct_controllers.least_jerk.controller import SPEC as LEAST_JERK
 from ddct_controllers.linear import PI, LinearController
 from ddct_controllers.mpc.variants import PREDICTIVE
+from ddct_controllers.plugins import CONTROLLERS, factory_spec
 from ddct_controllers.printed import PRINTED_CONTROLLERS, printed_spec
 from ddct_controllers.state_of_art.controllers import STATE_OF_ART
 from ddct_controllers.synthesised import SYNTHESISED, synthesised_design
-from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError, ParameterError, require_name
+from ddct_plant.base.errors import DdctError, ParameterError, require_name
 from ddct_plant.program.own_process import ProcessEndedError, in_own_process
 from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
-
-ENTRY_POINT_GROUP = 'ddct.controllers'
-"""
-Entry point group of third parties' controllers, `name = module:factory`.
-
-The factory takes a ControllerContext.
-"""
-
 
 Chosen = str | ControllerSpec[Controller]
 """Choice of a controller: its name or file, or the specification of one without either."""
@@ -66,7 +55,7 @@ def own_controller_names() -> list[str]:
 def controller_names() -> list[str]:
     """Return every name that `make_controller` accepts besides files, our own first."""
     own = own_controller_names()
-    return own + sorted(point.name for point in _entry_points() if point.name not in own)
+    return own + [name for name in CONTROLLERS.names() if name not in own]
 
 
 def require_known_controllers(scenario: Scenario, labels: Iterable[str]) -> None:
@@ -182,18 +171,9 @@ def controller_label(chosen: Chosen) -> str:
 
 
 def _third_party(name: str) -> ControllerSpec[Controller]:
-    for point in _entry_points().select(name=name):
+    if point := CONTROLLERS.point(name):
         require_name('controller name', name)  # it names the folder of the bag
-        try:
-            factory = point.load()
-        except FOREIGN_FAILURES as error:
-            raise DdctError(
-                f'the entry point {point.value} cannot be loaded ({type(error).__name__}: '
-                f'{error}): mend or uninstall the package that adds it',
-                key=point.value,
-                place=f'controller {name!r}',
-            ) from error
-        return factory_spec(name, factory, point.value)
+        return factory_spec(name, CONTROLLERS.load(point), point.value)
     if '.' in name or '/' in name:
         raise ParameterError(
             f'{name} is no controller file: give a Python file or a YAML file; for an FMU or a '
@@ -207,21 +187,3 @@ def _third_party(name: str) -> ControllerSpec[Controller]:
         'file, .py or .yaml',
         key=name,
     )
-
-
-def _entry_points() -> importlib.metadata.EntryPoints:
-    return _entry_points_in(tuple((folder, _changed_ns(folder)) for folder in sys.path))
-
-
-@lru_cache(maxsize=1)
-def _entry_points_in(_folders: tuple[tuple[str, int], ...]) -> importlib.metadata.EntryPoints:
-    """Read the metadata of all packages, which takes as long as a short run."""
-    return importlib.metadata.entry_points(group=ENTRY_POINT_GROUP)
-
-
-def _changed_ns(folder: str) -> int:
-    """Return when a package was last added to a folder or removed from it, 0 without one."""
-    try:
-        return Path(folder).stat().st_mtime_ns
-    except OSError:
-        return 0

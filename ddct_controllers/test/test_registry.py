@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from refusals import refused
 
-from ddct_controllers import registry
+from ddct_controllers import plugins
 from ddct_controllers.interface import Command, Controller
+from ddct_controllers.plugins import CONTROLLERS
 from ddct_controllers.registry import (
-    ENTRY_POINT_GROUP,
     controller_names,
     make_controller,
     require_known_controllers,
@@ -59,9 +59,9 @@ def make_nothing(context):
 @pytest.fixture
 def add_entry_point(monkeypatch):
     def add(name, value):
-        point = importlib.metadata.EntryPoint(name, value, ENTRY_POINT_GROUP)
+        point = importlib.metadata.EntryPoint(name, value, CONTROLLERS.group)
         monkeypatch.setattr(
-            registry, '_entry_points', lambda: importlib.metadata.EntryPoints([point])
+            plugins, '_installed', lambda _: importlib.metadata.EntryPoints([point])
         )
 
     return add
@@ -114,7 +114,7 @@ def test_installed_packages_are_searched_once_until_another_is_added(tmp_path, m
     added = tmp_path / 'later-1.0.dist-info'
     added.mkdir()
     (added / 'METADATA').write_text('Metadata-Version: 2.1\nName: later\nVersion: 1.0\n')
-    (added / 'entry_points.txt').write_text(f'[{ENTRY_POINT_GROUP}]\nlater = later:make\n')
+    (added / 'entry_points.txt').write_text(f'[{CONTROLLERS.group}]\nlater = later:make\n')
     assert 'later' in controller_names()
     assert len(searches) == 2
 

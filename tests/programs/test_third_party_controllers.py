@@ -14,7 +14,7 @@ from support.runs import bag_bytes, expected, plan, record
 from support.third_party import EXAMPLE, example_entry_points, install, install_broken
 
 from ddct_bringup.programs import bringup, compare, ddct, score, verify
-from ddct_controllers import registry
+from ddct_controllers import plugins, registry
 from ddct_controllers.linear import PI
 from ddct_controllers.registry import make_controller
 from ddct_plant.base.errors import DdctError
@@ -92,7 +92,7 @@ def test_a_controller_that_cannot_be_built_stops_only_the_programs_that_need_it(
 ) -> None:
     install(monkeypatch, tmp_path / 'absent', SUPPORT, {'absent': 'no_such_package:make'})
     monkeypatch.setattr(registry, '_OWN', {'pi': PI})
-    monkeypatch.setattr(registry, '_entry_points', lambda: entry_points(name='absent'))
+    monkeypatch.setattr(plugins, '_installed', lambda _: entry_points(name='absent'))
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys, 'argv', ['ddct', *command])
     assert ddct.main() == 0

@@ -3,7 +3,6 @@
 """A judged controller, and the seed of its held-out cases, which nobody can choose."""
 
 import hashlib
-import importlib.metadata
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -12,8 +11,8 @@ from pathlib import Path
 from ddct_bringup.digests.code import code_digest, package_digest
 from ddct_bringup.digests.user_files import require_same_controller
 from ddct_controllers.from_file.controller_file import is_controller_file
+from ddct_controllers.plugins import CONTROLLERS
 from ddct_controllers.registry import (
-    ENTRY_POINT_GROUP,
     controller_spec,
     own_controller_names,
 )
@@ -97,7 +96,7 @@ def _package_digests(name: str) -> dict[str, str]:
     """Return the digest of the package that has a controller, by the package's name."""
     if name in own_controller_names():
         return {'ddct': code_digest()}
-    for point in importlib.metadata.entry_points(group=ENTRY_POINT_GROUP, name=name):
+    if point := CONTROLLERS.point(name):
         package = point.module.partition('.')[0]
         return {package: package_digest(package)}
     return {}

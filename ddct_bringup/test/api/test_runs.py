@@ -24,7 +24,7 @@ from ddct_bringup.programs.bringup import main as bringup
 from ddct_bringup.programs.score import main as score
 from ddct_bringup.run.description import custom_data
 from ddct_bringup.run.headless import run_headless
-from ddct_controllers import registry
+from ddct_controllers import plugins, registry
 from ddct_controllers.design.drawing.line_looks import controller_look
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
@@ -194,10 +194,10 @@ def test_a_broken_controller_of_another_package_does_not_stop_the_comparison_of_
     monkeypatch, tmp_path
 ):
     points = [
-        EntryPoint('absent', 'no_such_package:make', registry.ENTRY_POINT_GROUP),
-        EntryPoint('soft', f'{__name__}:Soft', registry.ENTRY_POINT_GROUP),
+        EntryPoint('absent', 'no_such_package:make', plugins.CONTROLLERS.group),
+        EntryPoint('soft', f'{__name__}:Soft', plugins.CONTROLLERS.group),
     ]
-    monkeypatch.setattr(registry, '_entry_points', lambda: EntryPoints(points))
+    monkeypatch.setattr(plugins, '_installed', lambda _: EntryPoints(points))
     monkeypatch.setattr(registry, 'own_controller_names', lambda: ['pi'])
     with pytest.warns(UserWarning, match="'absent'.*no_such_package.*; left out") as warned:
         runs = api.compare('all', duration=SHORT_S, out=tmp_path, wear_gain=0.9)

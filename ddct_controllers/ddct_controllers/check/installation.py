@@ -14,7 +14,8 @@ from ddct_controllers.check.subject import CheckFailedError, CheckSkippedError, 
 from ddct_controllers.check.watch import RecordedGains
 from ddct_controllers.from_file.controller_file import is_controller_file
 from ddct_controllers.interface import Controller, ControllerContext
-from ddct_controllers.registry import ENTRY_POINT_GROUP, require_known_controllers
+from ddct_controllers.plugins import CONTROLLERS
+from ddct_controllers.registry import require_known_controllers
 from ddct_controllers.template.new_controller import install_command
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.options import close_name
@@ -93,7 +94,7 @@ def _installed_from(controller: str) -> Iterator[tuple[Path, bool]]:
             origin = parse_json(distribution.read_text('direct_url.json') or '{}')
             folder = Path(unquote(urlparse(origin['url']).path))
             text = (folder / 'pyproject.toml').read_text(encoding='utf-8')
-            points = tomllib.loads(text)['project']['entry-points'][ENTRY_POINT_GROUP]
+            points = tomllib.loads(text)['project']['entry-points'][CONTROLLERS.group]
         except (LookupError, OSError, ValueError, TypeError):
             continue  # from an index, gone, or not one of this kind
         if controller in points:

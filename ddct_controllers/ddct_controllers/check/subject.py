@@ -25,7 +25,8 @@ from ddct_controllers.from_file.python_file import SUFFIX, python_spec
 from ddct_controllers.interface import Controller, ControllerSpec, Measurement
 from ddct_controllers.linear import PiController
 from ddct_controllers.places import place_of_error
-from ddct_controllers.registry import ENTRY_POINT_GROUP, controller_spec, make_controller
+from ddct_controllers.plugins import CONTROLLERS
+from ddct_controllers.registry import controller_spec, make_controller
 from ddct_plant.base.errors import DdctError, ForeignError
 from ddct_plant.scenario.settings import RunSettings
 
@@ -59,7 +60,7 @@ class Subject:
     @cached_property
     def entry_points(self) -> list[importlib.metadata.EntryPoint]:
         """Entry points of the controller's name: none for one of ours or in a file."""
-        return list(importlib.metadata.entry_points(group=ENTRY_POINT_GROUP, name=self.name))
+        return list(CONTROLLERS.points().select(name=self.name))
 
     @property
     def package(self) -> str:

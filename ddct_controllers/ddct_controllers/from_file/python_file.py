@@ -8,7 +8,6 @@ from pathlib import Path
 from types import ModuleType
 from typing import TypeVar
 
-from ddct_controllers.factories import factory_spec
 from ddct_controllers.from_file.controller_file import FILE_DIGEST
 from ddct_controllers.from_file.own_modules import (
     Sources,
@@ -19,6 +18,7 @@ from ddct_controllers.from_file.own_modules import (
 )
 from ddct_controllers.interface import Controller, ControllerContext, ControllerSpec
 from ddct_controllers.places import place_of_error
+from ddct_controllers.plugins import factory_spec
 from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError, ParameterError, require_name
 from ddct_plant.files.input_file import located
 

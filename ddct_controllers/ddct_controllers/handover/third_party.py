@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Handovers of third parties: by the name of an entry point, or in a file of Python."""
 
-import importlib.metadata
 from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
@@ -10,6 +9,7 @@ from typing import Any
 from ddct_controllers.from_file.python_file import the_one_class
 from ddct_controllers.handover.interface import Handover, HandoverCommand, HandoverMeasurement
 from ddct_controllers.places import place_of_error
+from ddct_controllers.plugins import HANDOVERS
 from ddct_plant.base.errors import (
     FOREIGN_FAILURES,
     DdctError,
@@ -20,8 +20,6 @@ from ddct_plant.base.errors import (
 from ddct_plant.scenario.settings import RunSettings, is_handover_file
 from ddct_plant.signals.handover_share import LEAST_DEVIATION
 
-ENTRY_POINT_GROUP = 'ddct.handovers'
-"""Entry point group of handovers, `name = module:Class`; the class takes a RunSettings."""
 _PAGE = 'docs/develop/gear_shift.md'
 
 
@@ -55,7 +53,7 @@ def third_party_handover(settings: RunSettings, own: Iterable[str]) -> Handover:
 
 def _require_new(label: str, file: str, own: Iterable[str]) -> None:
     """Raise ParameterError where a file has the name of another handover in bags and tables."""
-    if label in own or importlib.metadata.entry_points(group=ENTRY_POINT_GROUP, name=label):
+    if label in own or HANDOVERS.point(label):
         raise ParameterError(
             f'handover {file!r}: {label} is the name of another handover: rename the file',
             key='handover',
@@ -63,20 +61,11 @@ def _require_new(label: str, file: str, own: Iterable[str]) -> None:
 
 
 def _entry_point(name: str, own: Iterable[str]) -> Callable[[RunSettings], Any]:
-    points = importlib.metadata.entry_points(group=ENTRY_POINT_GROUP)
-    for point in points.select(name=name):
-        try:
-            found: Callable[[RunSettings], Any] = point.load()
-        except FOREIGN_FAILURES as error:
-            raise DdctError(
-                f'handover {name!r}: the entry point {point.value} cannot be loaded '
-                f'({type(error).__name__}: {error}): mend or uninstall the package that adds it'
-            ) from error
-        return found
-    names = [*own, *sorted(point.name for point in points)]
+    if point := HANDOVERS.point(name):
+        return HANDOVERS.load(point)
+    names = ', '.join([*own, *HANDOVERS.names()])
     raise ParameterError(
-        f'unknown handover {name!r}: choose from {", ".join(names)}, or give the path of a Python '
-        'file',
+        f'unknown handover {name!r}: choose from {names}, or give the path of a Python file',
         key='handover',
     )
 

@@ -10,7 +10,7 @@ from textwrap import dedent
 import pytest
 from shifts import shift_settings
 
-from ddct_controllers.handover import third_party
+from ddct_controllers import plugins
 from ddct_controllers.handover.interface import Handover, HandoverCommand, HandoverMeasurement
 from ddct_controllers.handover.laws import TimedHandover, make_handover
 from ddct_plant.base.errors import DdctError
@@ -67,16 +67,14 @@ def test_a_file_with_the_name_of_another_handover_is_refused_before_it_runs(tmp_
 
 def test_a_package_adds_one_by_an_entry_point(monkeypatch):
     points = importlib.metadata.EntryPoints(
-        importlib.metadata.EntryPoint(name, value, third_party.ENTRY_POINT_GROUP)
+        importlib.metadata.EntryPoint(name, value, plugins.HANDOVERS.group)
         for name, value in (
             ('theirs', 'ddct_controllers.handover.laws:TimedHandover'),
             ('broken', 'no_such_module:Law'),
             ('foreign', 'ddct_controllers.handover.interface:HandoverCommand'),
         )
     )
-    monkeypatch.setattr(
-        third_party.importlib.metadata, 'entry_points', lambda group: points.select(group=group)
-    )
+    monkeypatch.setattr(plugins, '_installed', lambda _: points)
     settings = shift_settings('upshift')
     theirs = make_handover(replace(settings, handover='theirs'))
     assert theirs.update(NOW) == TimedHandover(settings).update(NOW)
