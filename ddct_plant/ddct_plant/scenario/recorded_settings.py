@@ -159,7 +159,7 @@ def settings_of_bag(custom_data: Mapping[str, str]) -> RecordedSettings:
     return from_json(RecordedSettings, data, f'{SETTINGS} of the run', newest=SCHEMA)
 
 
-Part = TypeVar('Part', KnownPart, CasePart)
+Part = TypeVar('Part', bound=KnownPart | CasePart)
 
 
 def read_part(kind: type[Part], file: str) -> Part:
