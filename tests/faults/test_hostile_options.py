@@ -89,8 +89,8 @@ def test_help_into_a_full_disk_is_one_line(module: str) -> None:
     assert_one_line(done.stderr, program, 'No space left on device')
 
 
-WRAPPERS = ('run_program', 'run_subcommands', 'run_node')
-"""Wrappers of programs' main; `run_subcommands` chooses the subcommand and calls `run_program`."""
+WRAPPERS = ('run_program', 'run_subcommands', 'run_late_subcommands', 'run_node')
+"""Wrappers of programs' main; the two of subcommands call `run_program`."""
 
 
 @pytest.mark.parametrize('package', sorted({package_of(spec) for spec in NODE_PROGRAMS}))

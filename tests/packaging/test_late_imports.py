@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What is heavy to import is imported where it is first needed, by no clock but by its name."""
 
+import pkgutil
 import re
 import subprocess
 import sys
@@ -10,8 +11,10 @@ from types import ModuleType
 
 import pytest
 
-from ddct_bringup import api
+from ddct_bringup import api, processes
 from ddct_bringup.api import shell
+from ddct_controllers import workflows
+from ddct_plant.program.start import programs
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -41,6 +44,28 @@ def test_the_python_interface_imports_nothing_heavy() -> None:
     assert heavy_after('import ddct_bringup.api') == set()
 
 
+PROGRAMS = {
+    name: point.module
+    for name, point in programs().items()
+    if point.module.startswith(('ddct_bringup.programs.', 'ddct_controllers.workflows.'))
+    and name != 'verify'
+}
+"""Modules of the programs that are no node, by name."""
+
+
+@pytest.mark.process
+@pytest.mark.parametrize('module', PROGRAMS.values(), ids=PROGRAMS)
+def test_the_help_of_a_program_imports_nothing_heavy(module: str) -> None:
+    code = f"""
+from {module} import main
+try:
+    main(['--help'])
+except SystemExit as end:
+    assert not end.code
+"""
+    assert heavy_after(code) == set()
+
+
 @pytest.mark.process
 def test_a_run_imports_nothing_that_draws_tunes_or_makes_tables() -> None:
     assert heavy_after('from ddct_bringup.api import run').isdisjoint(
@@ -48,13 +73,16 @@ def test_a_run_imports_nothing_that_draws_tunes_or_makes_tables() -> None:
     )
 
 
-@pytest.mark.parametrize('package', [api, shell])
+@pytest.mark.parametrize('package', [api, shell, processes, workflows])
 def test_every_name_of_a_package_with_late_imports_is_there(package: ModuleType) -> None:
-    assert len(package.__all__) > 20
+    assert len(package.__all__) > 5
+    modules = {each.name for each in pkgutil.iter_modules(package.__path__)}
     for name in package.__all__:
         found = getattr(package, name)
         assert vars(package)[name] is found, 'it is kept'
-        assert getattr(found, '__name__', name) == name
+        words = getattr(found, '__name__', name).split('.')
+        assert name in words or f'{words[-2]}_{words[-1]}' == name
+        assert name not in modules or isinstance(found, ModuleType), 'a module hides it'
     assert set(package.__all__) <= set(dir(package))
 
 

@@ -14,7 +14,7 @@ import pytest
 from support.complaints import assert_one_line
 from support.processes import Programs, processes_left
 
-from ddct_bringup.processes import fork_server
+from ddct_bringup import processes
 from ddct_bringup.programs import ddct
 from ddct_plant.program import start
 from ddct_plant.program.start import programs
@@ -232,7 +232,7 @@ def test_the_fork_server_starts_ahead_where_nodes_are_to_come(
     arguments: list[str], expected: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     started: list[bool] = []
-    monkeypatch.setattr(fork_server, 'start_server', lambda: started.append(True))
+    monkeypatch.setattr(processes, 'start_server', lambda: started.append(True))
     monkeypatch.setattr(sys, 'argv', ['ddct'])
     with suppress(SystemExit):
         ddct.main(arguments)

@@ -9,7 +9,8 @@ from pathlib import Path
 from ddct_bringup.api import shell
 from ddct_bringup.programs import campaign_folder
 from ddct_bringup.programs.options.of_runs import add_limits_option, add_workers_option
-from ddct_plant.program.command_line import ProgramParser, run_program, run_subcommands
+from ddct_plant.program.command_line import ProgramParser, run_program
+from ddct_plant.program.subcommands import run_subcommands
 from ddct_plant.program.supervision import stop_signals
 
 PROGRAM = 'ddct campaign'

@@ -10,6 +10,7 @@ from importlib.util import find_spec
 from itertools import groupby
 from pathlib import Path
 
+from ddct_bringup import processes
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.options import close_name
 from ddct_plant.graph.domain import require_ros
@@ -51,11 +52,9 @@ def _ddct(argv: list[str]) -> int:
         name = parser.parse_args(argv[:1]).program
         parser.error(f'unknown program {name}: {close_name(name, sorted(known))}')
     if _starts_nodes(argv):
-        # Only here: what is imported before `run_program` cannot be interrupted without a
+        # Imported here: what is imported before `run_program` cannot be interrupted without a
         # traceback.
-        from ddct_bringup.processes.fork_server import start_server
-
-        start_server()
+        processes.start_server()
     sys.argv[1:] = argv[1:]
     return _load(known[argv[0]])()
 

@@ -6,16 +6,15 @@ import argparse
 import os
 from functools import partial
 
-from rclpy.utilities import remove_ros_args
-
-from ddct_bringup.live.live_node import LiveNode
+from ddct_bringup.api import shell
 from ddct_bringup.programs.options.of_runs import DEFAULT_PORT
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.graph.spin import run_node
+from ddct_plant.graph.domain import require_ros
 from ddct_plant.program.command_line import ProgramParser, run_program
 
 PROGRAM = 'ddct live'
 _LAST_PORT = 65_535
+_ROS_ARGS = '--ros-args'
 _NICENESS = 10
 
 _EPILOG = """\
@@ -36,14 +35,15 @@ def main(argv: list[str] | None = None) -> int:
 
 
 def _live(argv: list[str]) -> int:
-    options = _parser().parse_args(remove_ros_args(argv))
+    options = _parser().parse_args(shell.remove_ros_args(argv) if _ROS_ARGS in argv else argv)
+    require_ros()
     if not 0 <= options.port <= _LAST_PORT:
         raise ParameterError(f'--port is {options.port}: give a number from 0 to {_LAST_PORT}')
     # On a busy machine the nodes of the loop have priority; messages for this one are buffered.
     os.nice(_NICENESS)
     print_line = partial(print, f'{PROGRAM}:', flush=True)
-    factory = partial(LiveNode, options.host, options.port, print_line)
-    return run_node(PROGRAM, factory, [PROGRAM, *argv])
+    factory = partial(shell.LiveNode, options.host, options.port, print_line)
+    return shell.run_node(PROGRAM, factory, [PROGRAM, *argv])
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -2,14 +2,23 @@
 # SPDX-License-Identifier: Apache-2.0
 """Program `reproduce`: the thesis's numbers, figures, studies and calibration, made again."""
 
-from ddct_bringup.reproduction.calibration import command as calibration_command
-from ddct_bringup.reproduction.figures import command as figures_command
-from ddct_bringup.reproduction.numbers import command as numbers_command
-from ddct_bringup.reproduction.studies import command as studies_command
-from ddct_plant.program.command_line import ProgramParser, run_subcommands
+from ddct_bringup.api import shell
+from ddct_plant.program.command_line import ProgramParser
+from ddct_plant.program.subcommands import LateSubcommand, run_late_subcommands
 
 PROGRAM = 'ddct reproduce'
-_COMMANDS = (numbers_command, figures_command, studies_command, calibration_command)
+_COMMANDS = {
+    'numbers': LateSubcommand("the thesis's numbers beside ours", lambda: shell.numbers_command),
+    'figures': LateSubcommand(
+        'the figures of the thesis, and a page that shows them', lambda: shell.figures_command
+    ),
+    'studies': LateSubcommand(
+        'studies of the predictive controllers', lambda: shell.studies_command
+    ),
+    'calibration': LateSubcommand(
+        'the thesis scenario, fitted to three rows of Table 5.1', lambda: shell.calibration_command
+    ),
+}
 
 _DESCRIPTION = 'Compute what the thesis prints, and hold it against the print.'
 _EPILOG = """\
@@ -25,7 +34,7 @@ Each of them has its own --help."""
 def main(argv: list[str] | None = None) -> int:
     """Run the program and return its exit code."""
     parser = ProgramParser(prog=PROGRAM, description=_DESCRIPTION, epilog=_EPILOG)
-    return run_subcommands(parser, _COMMANDS, argv, metavar='WHAT')
+    return run_late_subcommands(parser, _COMMANDS, argv, metavar='WHAT')
 
 
 if __name__ == '__main__':

@@ -8,10 +8,10 @@ import time
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from rich.console import Console
 
+from ddct_bringup import processes
 from ddct_bringup.bag.recording import Recording
 from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.run_info import RunInfoOfNodes
@@ -22,6 +22,7 @@ from ddct_bringup.run.description import custom_data, run_info_of
 from ddct_bringup.run.headless import run_headless, separate_run
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.run.timing_and_failure import RunTiming
+from ddct_controllers import workflows
 from ddct_controllers.from_file.controller_file import is_controller_file
 from ddct_controllers.from_file.fmu.unpacked import remove_left_folders
 from ddct_controllers.registry import Chosen, make_controller
@@ -30,9 +31,6 @@ from ddct_plant.graph.domain import own_domain, sole_graph
 from ddct_plant.program.supervision import stop_signals
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.signals.gain_changes import GainChange
-
-if TYPE_CHECKING:
-    from ddct_bringup.processes.live_process import LiveView
 
 WORK_FOLDER = 'work'
 """
@@ -45,7 +43,7 @@ def run_with_progress(
     plan: RunPlan,
     folder: Path,
     label: str = '',
-    live: 'LiveView | None' = None,
+    live: 'processes.LiveView | None' = None,
 ) -> Recording | None:
     """
     `execute` a plan into `folder`; print its progress, the stability of its loop and its speed.
@@ -70,7 +68,7 @@ def execute(
     plan: RunPlan,
     folder: Path,
     stopped: Callable[[], bool] = lambda: False,
-    live: 'LiveView | None' = None,
+    live: 'processes.LiveView | None' = None,
 ) -> Recording | None:
     """
     Execute `plan` and write its bag and `timing.json` into the existing `folder`.
@@ -97,11 +95,8 @@ def execute(
             if plan.layout == 'processes':
                 _execute_processes(plan, folder, work, stopped, live)
             else:
-                # The graph needs ROS installed and sourced; a headless run does not.
-                from ddct_bringup.processes.single_process import run_single_process
-
                 nodes = nodes_of(shift=plan.settings.shift)
-                run_single_process(nodes, plan.node_parameters(folder, work), stopped)
+                processes.run_single_process(nodes, plan.node_parameters(folder, work), stopped)
         _keep_warnings(work)
     except OSError as error:
         raise DdctError(f'{error.filename or folder}: {error.strerror or error}') from error
@@ -114,10 +109,7 @@ def _print_loop_summary(plan: RunPlan) -> None:
     """Print the loop analysis of a controller from a file on standard error."""
     if not isinstance(plan.controller, str) or not is_controller_file(plan.controller):
         return
-    # Only here: scipy's searches take long to import.
-    from ddct_controllers.workflows.loop_summary import loop_summary
-
-    for line in loop_summary(plan.controller, plan.settings):
+    for line in workflows.loop_summary.loop_summary(plan.controller, plan.settings):
         print(line, file=sys.stderr, flush=True)
 
 
@@ -146,27 +138,23 @@ def _execute_processes(
     folder: Path,
     work: Path,
     stopped: Callable[[], bool],
-    live: 'LiveView | None',
+    live: 'processes.LiveView | None',
 ) -> None:
-    # Only here: a headless run needs no processes.
-    from ddct_bringup.processes.live_process import RECEIVE_S
-    from ddct_bringup.processes.supervisor import Supervisor
-
     parameter_file = plan.write_parameter_file(folder, work)
-    with Supervisor(work, parameter_file, stopped) as processes:
+    with processes.Supervisor(work, parameter_file, stopped) as supervisor:
         nodes = nodes_of(shift=plan.settings.shift)
-        processes.start([node for node in nodes if node is not RECORDER or not live])
+        supervisor.start([node for node in nodes if node is not RECORDER or not live])
         if live:
             # Without its recorder the graph stays at t_0 and publishes that tick repeatedly.
-            processes.wait_until(live.receives, RECEIVE_S)
-            processes.start([RECORDER])
+            supervisor.wait_until(live.receives, processes.RECEIVE_S)
+            supervisor.start([RECORDER])
         try:
-            processes.wait_for(DRIVELINE.path)
+            supervisor.wait_for(DRIVELINE.path)
         finally:
             # The recorder stops last: it must receive what the others publish when they stop.
-            processes.stop(lambda name: name != RECORDER.path)
-            processes.stop(lambda name: name == RECORDER.path)
-        processes.require_clean_end()
+            supervisor.stop(lambda name: name != RECORDER.path)
+            supervisor.stop(lambda name: name == RECORDER.path)
+        supervisor.require_clean_end()
 
 
 def simulate(plan: RunPlan, changes: Sequence[GainChange] = ()) -> tuple[Recording, RunTiming]:

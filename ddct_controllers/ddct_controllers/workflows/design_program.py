@@ -2,23 +2,31 @@
 # SPDX-License-Identifier: Apache-2.0
 """Program `design`: from specifications to a verified controller and its margins."""
 
-from ddct_controllers.workflows import (
-    h_infinity_command,
-    loop_shaping_command,
-    margins_command,
-    mpc_command,
-    plant_command,
-)
-from ddct_plant.program.command_line import ProgramParser, run_subcommands
+from ddct_controllers import workflows
+from ddct_plant.program.command_line import ProgramParser
+from ddct_plant.program.subcommands import LateSubcommand, run_late_subcommands
 
 PROGRAM = 'ddct design'
-_COMMANDS = (
-    loop_shaping_command,
-    h_infinity_command,
-    mpc_command,
-    margins_command,
-    plant_command,
-)
+_COMMANDS = {
+    'loop-shaping': LateSubcommand(
+        'Chapter 2 step by step, or a controller from your specifications',
+        lambda: workflows.loop_shaping_command,
+    ),
+    'h-infinity': LateSubcommand(
+        'Chapter 3 step by step, or a controller from your specifications',
+        lambda: workflows.h_infinity_command,
+    ),
+    'mpc': LateSubcommand(
+        'a predictive controller as C for a control unit', lambda: workflows.mpc_command
+    ),
+    'margins': LateSubcommand(
+        'margins of the sampled loop, over wear and plant corners',
+        lambda: workflows.margins_command,
+    ),
+    'plant': LateSubcommand(
+        'the linear plant with its numbers, for JSON and MATLAB', lambda: workflows.plant_command
+    ),
+}
 
 _DESCRIPTION = 'Design controllers, and check them in the loop as it runs.'
 _EPILOG = """\
@@ -36,7 +44,7 @@ Each workflow has its own --help. The thesis's numbers, figures and studies: rep
 def main(argv: list[str] | None = None) -> int:
     """Run the program and return its exit code."""
     parser = ProgramParser(prog=PROGRAM, description=_DESCRIPTION, epilog=_EPILOG)
-    return run_subcommands(parser, _COMMANDS, argv, metavar='WORKFLOW')
+    return run_late_subcommands(parser, _COMMANDS, argv, metavar='WORKFLOW')
 
 
 if __name__ == '__main__':

@@ -72,7 +72,6 @@ def add_parser(subparsers: Any) -> None:
     """Add `h-infinity` to the subcommands of `design`."""
     parser = subparsers.add_parser(
         'h-infinity',
-        help='Chapter 3 step by step, or a controller from your specifications',
         description=_DESCRIPTION,
         epilog=_EXAMPLES,
     )

@@ -57,7 +57,6 @@ def add_parser(subparsers: Any) -> None:
     """Add `loop-shaping` to the subcommands of `design`."""
     parser = subparsers.add_parser(
         'loop-shaping',
-        help='Chapter 2 step by step, or a controller from your specifications',
         description=_DESCRIPTION,
         epilog=_EXAMPLES,
     )

@@ -61,7 +61,6 @@ def add_parser(subparsers: Any) -> None:
     """Add `margins` to the subcommands of `design`."""
     parser = subparsers.add_parser(
         'margins',
-        help='margins of the sampled loop, over wear and plant corners',
         description=_DESCRIPTION,
         epilog=_EXAMPLES,
     )

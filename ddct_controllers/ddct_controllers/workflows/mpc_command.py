@@ -30,7 +30,6 @@ def add_parser(subparsers: Any) -> None:
     """Add `mpc` to the subcommands of `design`."""
     parser = subparsers.add_parser(
         'mpc',
-        help='a predictive controller as C for a control unit',
         description=_DESCRIPTION,
         epilog=_EPILOG,
     )

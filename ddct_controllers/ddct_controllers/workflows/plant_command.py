@@ -34,7 +34,6 @@ def add_parser(subparsers: Any) -> None:
     """Add `plant` to the subcommands of `design`."""
     parser = subparsers.add_parser(
         'plant',
-        help='the linear plant with its numbers, for JSON and MATLAB',
         description=_DESCRIPTION,
         epilog=_EXAMPLES,
     )

@@ -17,26 +17,33 @@ def late_names(package: str) -> tuple[Callable[[str], Any], Callable[[], list[st
     The names are those that its `__init__.py` imports under `if TYPE_CHECKING:`, so that type
     checkers and Python read one list. A name that was used once stays in the package.
     """
-    module_of = _imports_for_type_checkers(package)
+    places = _imports_for_type_checkers(package)
 
     def getattr_(name: str) -> Any:
-        if name not in module_of:
+        if name not in places:
             raise AttributeError(f'module {package!r} has no attribute {name!r}', name=name)
-        found = getattr(importlib.import_module(module_of[name]), name)
+        found = _imported(*places[name])
         setattr(sys.modules[package], name, found)
         return found
 
     def dir_() -> list[str]:
-        return sorted({*vars(sys.modules[package]), *module_of})
+        return sorted({*vars(sys.modules[package]), *places})
 
-    return getattr_, dir_, sorted(module_of)
+    return getattr_, dir_, sorted(places)
 
 
-def _imports_for_type_checkers(package: str) -> dict[str, str]:
-    """Return the module of each name under `if TYPE_CHECKING:` in a package."""
+def _imported(module: str, name: str) -> Any:
+    """Return what `from module import name` imports: a value of the module, or a submodule."""
+    found = importlib.import_module(module)
+    known = vars(found)
+    return known[name] if name in known else importlib.import_module(f'{module}.{name}')
+
+
+def _imports_for_type_checkers(package: str) -> dict[str, tuple[str, str]]:
+    """Return module and name there of each name under `if TYPE_CHECKING:` in a package."""
     tree = ast.parse(inspect.getsource(sys.modules[package]))
     return {
-        alias.name: node.module or ''
+        alias.asname or alias.name: (node.module or '', alias.name)
         for block in tree.body
         if isinstance(block, ast.If)
         for node in block.body

@@ -9,8 +9,7 @@ import gc
 import importlib.metadata
 import os
 import sys
-from collections.abc import Callable, Iterator, Sequence
-from types import ModuleType
+from collections.abc import Callable, Iterator
 from typing import Any, NoReturn
 
 from ddct_plant.base.errors import DdctError, printable
@@ -134,30 +133,6 @@ def _interrupted(name: str, text: str = '') -> int:
     if is_first_report():
         complain(name, text or 'interrupted')
     return 128 + interrupted_by() if interrupted_by() else INTERRUPTED
-
-
-def run_subcommands(
-    parser: ProgramParser,
-    commands: Sequence[ModuleType],
-    argv: list[str] | None,
-    *,
-    metavar: str,
-) -> int:
-    """
-    Run the subcommand that `argv` chooses, by `run_program`, and return the exit code.
-
-    `add_parser(subparsers)` of each module in `commands` adds one; its parser's default `run`
-    takes the options and returns the exit code.
-    """
-
-    def chosen(argv: list[str]) -> int:
-        subparsers = parser.add_subparsers(required=True, metavar=metavar)
-        for command in commands:
-            command.add_parser(subparsers)
-        options = parser.parse_args(argv)
-        return options.run(options)
-
-    return run_program(parser.prog, chosen, argv)
 
 
 def show_and_write(target: str | None, content: Any, show: Callable[[], None]) -> None:

@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING
 from ddct_plant.base.late_names import late_names
 
 if TYPE_CHECKING:
+    from rclpy.utilities import remove_ros_args
+
     from ddct_bringup.api.arguments import planned, run_settings
     from ddct_bringup.api.shell.campaigns import carry_out_campaign, replay_row, show_campaign
     from ddct_bringup.api.shell.comparison import FILES, Comparer, NoValidRunError, compare_into
@@ -36,9 +38,14 @@ if TYPE_CHECKING:
     from ddct_bringup.campaign_report.printed_summary import print_summary
     from ddct_bringup.campaign_report.texts import RULES
     from ddct_bringup.floor.figure import write_front_figure
+    from ddct_bringup.live.live_node import LiveNode
     from ddct_bringup.processes.fork_server import start_server
     from ddct_bringup.processes.live_process import live_view
     from ddct_bringup.report.page import report_page
+    from ddct_bringup.reproduction.calibration import command as calibration_command
+    from ddct_bringup.reproduction.figures import command as figures_command
+    from ddct_bringup.reproduction.numbers import command as numbers_command
+    from ddct_bringup.reproduction.studies import command as studies_command
     from ddct_bringup.run.execution import print_logs_with_warnings, run_with_progress
     from ddct_bringup.run.options import (
         controllers_of,
@@ -65,6 +72,7 @@ if TYPE_CHECKING:
     from ddct_controllers.registry import controller_label, controller_names, working_controllers
     from ddct_controllers.workflows.evidence import frequency_evidence
     from ddct_plant.files.json_records import write_json
+    from ddct_plant.graph.spin import run_node
     from ddct_plant.program.printed_table import print_note, print_table, print_tables
     from ddct_plant.program.progress import with_progress
     from ddct_plant.scenario.chosen import print_adjusted

@@ -57,7 +57,6 @@ def add_parser(subparsers: Any) -> None:
     """Add `calibration` to the subcommands of `reproduce`."""
     parser = subparsers.add_parser(
         'calibration',
-        help='the thesis scenario, fitted to three rows of Table 5.1',
         description=_DESCRIPTION,
         epilog=_EPILOG,
     )

@@ -53,7 +53,6 @@ def add_parser(subparsers: Any) -> None:
     """Add `figures` to the subcommands of `reproduce`."""
     parser = subparsers.add_parser(
         'figures',
-        help='the figures of the thesis, and a page that shows them',
         description=_DESCRIPTION,
         epilog=_EXAMPLES,
     )

@@ -55,7 +55,6 @@ def add_parser(subparsers: Any) -> None:
     """Add `numbers` to the subcommands of `reproduce`."""
     parser = subparsers.add_parser(
         'numbers',
-        help="the thesis's numbers beside ours",
         description=_DESCRIPTION,
         epilog=_EPILOG,
     )

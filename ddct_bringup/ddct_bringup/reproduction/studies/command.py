@@ -67,7 +67,6 @@ def add_parser(subparsers: Any) -> None:
     """Add `studies` to the subcommands of `reproduce`."""
     parser = subparsers.add_parser(
         'studies',
-        help='studies of the predictive controllers',
         description=_DESCRIPTION,
         epilog=f'{_studies()}\n\n{_EPILOG}',
     )
