@@ -133,9 +133,9 @@ def test_a_killed_recording_is_invalid_with_its_number_of_steps_and_without_figu
     assert loaded.recording.trajectory.steps == steps
 
 
-def test_a_report_of_a_killed_recording_shows_its_signals_and_the_reason(killed, source, tmp_path):
+def test_a_report_of_a_killed_recording_shows_its_signals_and_the_reason(killed, tmp_path):
     page = tmp_path / 'report.html'
-    assert report.main([str(source), str(killed), '--out', str(page)]) == 1
+    assert report.main([str(killed), '--out', str(page)]) == 1
     steps = read_bag(killed).trajectory.steps
     assert f'incomplete: {steps} of 200 steps' in page.read_text(encoding='utf-8')
 
