@@ -44,7 +44,7 @@ class Forked:
         self._printed = Connection(os.memfd_create(module), readable=False)
         self._announced, self._theirs = CONTEXT.Pipe(duplex=False)
         self._code: int | None = None
-        self._ended: int | None = None
+        self.ended: int | None = None
         """Descriptor of the started process, which becomes readable at its end."""
         job = module, arguments, dict(os.environ), self._printed, self._theirs, patience
         self.process = CONTEXT.Process(target=_run, args=job, name=name or module)
@@ -54,7 +54,7 @@ class Forked:
         self._theirs.close()
         # The library's own sentinel ends with the fork server too.
         with contextlib.suppress(ProcessLookupError):
-            self._ended = os.pidfd_open(self.pid)
+            self.ended = os.pidfd_open(self.pid)
 
     @property
     def pid(self) -> int:
@@ -68,7 +68,7 @@ class Forked:
 
     def wait(self, within_s: float) -> bool:
         """Wait for the end, at most `within_s` in s; return whether it has ended."""
-        return self._ended is None or bool(select.select([self._ended], [], [], within_s)[0])
+        return self.ended is None or bool(select.select([self.ended], [], [], within_s)[0])
 
     def code(self) -> int | None:
         """
@@ -90,9 +90,9 @@ class Forked:
 
     def send(self, number: signal.Signals) -> None:
         """Send a signal to the process unless it has ended."""
-        if self._ended is not None:
+        if self.ended is not None:
             with contextlib.suppress(ProcessLookupError):
-                signal.pidfd_send_signal(self._ended, number)
+                signal.pidfd_send_signal(self.ended, number)
 
     def printed(self) -> bytes:
         """Return the output of the process so far, standard output and error."""
@@ -112,9 +112,9 @@ class Forked:
         """Close what belongs to the process here, after its end or where it was not started."""
         for each in (self._printed, self._announced, self._theirs):
             each.close()
-        if self._ended is not None:
-            os.close(self._ended)
-            self._ended = None
+        if self.ended is not None:
+            os.close(self.ended)
+            self.ended = None
 
 
 def _run(

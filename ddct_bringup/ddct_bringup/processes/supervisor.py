@@ -8,6 +8,7 @@ Nobody guards the nodes from outside: a node ends itself when the program ends, 
 """
 
 import contextlib
+import select
 import signal
 import time
 from collections.abc import Callable, Sequence
@@ -28,7 +29,8 @@ PAUSED_S = 15.0
 Wall time in s after which a paused node (SIGSTOP) ends the run: before it would count as hung, so
 that it is resumed in time to end in order.
 """
-POLL_S = 0.01
+POLL_S = 0.05
+"""Period in s at which a wait looks whether it is over; it ends at once when a node ends."""
 CHECK_PERIOD_S = 0.5
 """Period in s at which paused nodes are looked for."""
 _MOST_ELAPSED_S = 1.0
@@ -174,7 +176,7 @@ class Supervisor:
                 for node in self._nodes:
                     node.check(now - checked_at)
                 checked_at = now
-            time.sleep(POLL_S)
+            _any_ends(self._nodes, POLL_S)
 
     def stop(self, chosen: Callable[[str], bool]) -> None:
         """Stop the chosen nodes, by SIGINT, then by stronger signals; paused ones are resumed."""
@@ -183,14 +185,20 @@ class Supervisor:
             for node in nodes:
                 node.stop(number)
             deadline = time.monotonic() + patience_s
-            while time.monotonic() < deadline and any(node.running for node in nodes):
-                time.sleep(POLL_S)
+            while nodes and (left_s := deadline - time.monotonic()) > 0.0:
+                _any_ends(nodes, left_s)
+                nodes = [node for node in nodes if node.running]
 
     def require_clean_end(self) -> None:
         """Raise DdctError unless every node has ended with code 0."""
         for node in self._nodes:
             if node.code() != 0:
                 raise DdctError(node.summary())
+
+
+def _any_ends(nodes: Sequence[Node], within_s: float) -> None:
+    """Wait until one of the nodes has ended, at most for `within_s` in s."""
+    select.select([node.ended for node in nodes if node.ended is not None], [], [], within_s)
 
 
 def _consequence(node: Node) -> tuple[bool, bool]:

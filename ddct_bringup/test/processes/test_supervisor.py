@@ -241,12 +241,12 @@ def test_a_node_has_ten_seconds_to_end_by_itself_and_five_to_be_terminated(
     now_s = 0.0
     signals: list[tuple[signal.Signals, float]] = []
 
-    def sleep(duration_s: float) -> None:
+    def wait(_nodes: object, within_s: float) -> None:
         nonlocal now_s
-        now_s += duration_s
+        now_s += within_s
 
-    clock = SimpleNamespace(monotonic=lambda: now_s, sleep=sleep)
-    monkeypatch.setattr(supervisor, 'time', clock)
+    monkeypatch.setattr(supervisor, 'time', SimpleNamespace(monotonic=lambda: now_s))
+    monkeypatch.setattr(supervisor, '_any_ends', wait)
     deaf: Any = SimpleNamespace(
         name='load', running=True, stop=lambda number: signals.append((number, round(now_s, 1)))
     )
