@@ -10,6 +10,7 @@ from support.documented import ROOT
 from ddct_bringup.metrics.catalogue import FIGURES, OTHERS
 from ddct_bringup.scores.document import run_entry
 from ddct_bringup.scores.scoring import run_without_score
+from ddct_plant.files.json_records import to_json
 
 USE = ROOT / 'docs' / 'use'
 
@@ -28,5 +29,5 @@ def test_every_figure_is_on_the_page_of_the_verdict() -> None:
 def test_every_metric_and_every_other_key_of_a_run_is_on_the_page() -> None:
     page = USE / 'metrics_and_symbols.md'
     assert named(page, 'Metrics of scores.json') == [each.key for each in OTHERS]
-    others = run_entry(run_without_score('bag', None, 'why')).keys() - {'metrics'}
+    others = to_json(run_entry(run_without_score('bag', None, 'why'))).keys() - {'metrics'}
     assert sorted(named(page, 'Other keys of a run')) == sorted(others)

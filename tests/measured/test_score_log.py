@@ -22,6 +22,7 @@ from ddct_bringup.scores.csv_text import signals_csv
 from ddct_bringup.scores.document import run_entry
 from ddct_bringup.scores.scored_recording import score_recording
 from ddct_bringup.verdict.limits import packaged_limits
+from ddct_plant.files.json_records import to_json
 from ddct_plant.measured.columns import QUANTITIES, load_columns
 
 pytestmark = pytest.mark.slow
@@ -75,7 +76,7 @@ def test_our_own_signals_as_a_foreign_log_have_the_scores_of_the_bag(tmp_path: P
     (tmp_path / 'drive.csv').write_text(signals_csv(recording))
     (tmp_path / 'map.yaml').write_text(OURS.replace('run: {', f'run: {{total_ratio: {ratio!r}, '))
     scores = score_recording(recording, 'pi', packaged_limits()).scores
-    found, wanted = scored(tmp_path), run_entry(scores)
+    found, wanted = scored(tmp_path), to_json(run_entry(scores))
     of_plant = {
         'friction_work_over_least': 'a log has no inertias of the car',
         'driving_acceleration_m_s2': 'the plant is not known',

@@ -27,7 +27,6 @@ FILES = {
     'ddct_bringup/api/shell/campaigns.py': 'a row of results.parquet',
     'ddct_bringup/programs/verify.py': 'verify --json',
     'ddct_bringup/reproduction/numbers/number_files.py': 'claims of the thesis, YAML',
-    'ddct_bringup/scores/document.py': 'scores.json',
     'ddct_bringup/sweep/sweep.py': 'sweep --json',
     'ddct_bringup/tuning/specification/development.py': 'specification of a tuning, YAML',
     'ddct_bringup/tuning/specification/goals.py': 'specification of a tuning; rows',

@@ -83,7 +83,8 @@ class Run:
     @property
     def entry(self) -> Mapping[str, Any]:
         """Entry of the run in `scores.json`."""
-        return run_entry(self.scores)
+        entry: Mapping[str, Any] = to_json(run_entry(self.scores))
+        return entry
 
     @property
     def figures(self) -> Mapping[str, float | bool | None]:

@@ -3,61 +3,156 @@
 """`scores.json`: scored runs as JSON, written and read."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, fields
+from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Any
+from typing import Literal
 
 from ddct_bringup.bag.run_facts import RunConditions, RunFacts
 from ddct_bringup.metrics.catalogue import FIGURES, METRICS, OTHERS
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.verdict.limits import LimitResult, Limits
-from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import steps_in
-from ddct_plant.files.input_file import read_text_file
-from ddct_plant.files.json_records import parse_json
+from ddct_plant.files.json_records import Inline, read_json
 from ddct_plant.signals.gain_changes import GainChange
 
-SCHEMA_VERSION = 4
-"""Schema version of `scores.json`."""
 FACTS = tuple(each.name for each in fields(RunConditions))
 """Conditions of a run in its entry, in order."""
+LEAST_IS_BOUND = 'least_is_bound'
+"""Key among the figures that is no number."""
+_MOST_BYTES = 100_000_000
+"""Largest size of the file in bytes; a run takes some thousands."""
 
 
-def scores_document(runs: Sequence[ScoredRun], limits: Limits) -> Mapping[str, Any]:
+@dataclass(frozen=True)
+class NoConditions:
+    """Conditions of a run whose bag has none that can be read."""
+
+    controller: None = None
+    architecture: None = None
+    scenario: None = None
+    clutch: None = None
+    wear_gain: None = None
+    mode: None = None
+    seed: None = None
+
+
+@dataclass(frozen=True)
+class ShiftConditions:
+    """Conditions that only a gear shift has."""
+
+    off_going_wear_gain: float
+    handover: str
+
+
+@dataclass(frozen=True)
+class GainChangeEntry:
+    """A gain that was changed in a run, in force from `time_s` in s on."""
+
+    gain: str
+    before: float
+    after: float
+    time_s: float
+
+    def __post_init__(self) -> None:
+        """Raise ParameterError for a time between two steps."""
+        steps_in('time_s', self.time_s)
+
+
+@dataclass(frozen=True)
+class ScoresEntry:
+    """Verdict, figures and metrics of a run."""
+
+    valid: bool
+    reason: str
+    state: str
+    why: str
+    figures: Mapping[str, float | bool | None]
+    metrics: Mapping[str, float | None]
+    limits: Sequence[LimitResult]
+    null_reasons: Mapping[str, str]
+    fallbacks: int | None
+    safe_state: str | None
+    scenario_changes: Sequence[str] | None
+    gain_changes: Sequence[GainChangeEntry]
+
+
+@dataclass(frozen=True)
+class RunEntry:
+    """A run that is no gear shift."""
+
+    bag: str
+    conditions: Inline[RunConditions]
+    scores: Inline[ScoresEntry]
+
+
+@dataclass(frozen=True)
+class ShiftEntry:
+    """A gear shift."""
+
+    bag: str
+    conditions: Inline[RunConditions]
+    shift: Inline[ShiftConditions]
+    scores: Inline[ScoresEntry]
+
+
+@dataclass(frozen=True)
+class UnreadableEntry:
+    """A run without conditions that can be read."""
+
+    bag: str
+    conditions: Inline[NoConditions]
+    scores: Inline[ScoresEntry]
+
+
+Entry = RunEntry | ShiftEntry | UnreadableEntry
+
+
+@dataclass(frozen=True)
+class ScoresDocument:
+    """Content of `scores.json`."""
+
+    schema_version: Literal[4]
+    limits: Mapping[str, str | int]
+    """Origin of the limits by which the runs were judged."""
+    runs: Sequence[Entry]
+
+
+def scores_document(runs: Sequence[ScoredRun], limits: Limits) -> ScoresDocument:
     """Return the content of `scores.json` for runs that were judged by these limits."""
-    return {
-        'schema_version': SCHEMA_VERSION,
-        'limits': limits.origin,
-        'runs': [run_entry(run) for run in runs],
-    }
+    return ScoresDocument(4, limits.origin, [run_entry(run) for run in runs])
 
 
-def run_entry(run: ScoredRun) -> Mapping[str, Any]:
+def run_entry(run: ScoredRun) -> Entry:
     """Return the entry of one run; metrics of a gear shift only where it is one."""
+    scores = _scores_entry(run)
+    if run.facts is None:
+        return UnreadableEntry(run.bag, NoConditions(), scores)
+    conditions = RunConditions(**{name: getattr(run.facts, name) for name in FACTS})
+    of_shift = run.facts.of_shift if isinstance(run.facts, RunFacts) else {}
+    if of_shift:
+        return ShiftEntry(run.bag, conditions, ShiftConditions(**of_shift), scores)
+    return RunEntry(run.bag, conditions, scores)
+
+
+def _scores_entry(run: ScoredRun) -> ScoresEntry:
     shown = {each.key for each in METRICS.values() if run.is_shift or not each.of_shift}
-    return {
-        'bag': run.bag,
-        **{name: getattr(run.facts, name, None) for name in FACTS},
-        **(run.facts.of_shift if isinstance(run.facts, RunFacts) else {}),
-        'valid': run.valid,
-        'reason': run.reason,
-        'state': run.state,
-        'why': run.why,
-        'figures': figures_entry(run),
-        'metrics': {each.key: run.metrics[each.key] for each in OTHERS if each.key in shown},
-        'limits': [asdict(each) for each in run.limits],
-        'null_reasons': {key: why for key, why in run.null_reasons.items() if key in shown},
-        'fallbacks': run.fallbacks,
-        'safe_state': run.safe_state,
-        'scenario_changes': None if run.scenario_changes is None else list(run.scenario_changes),
-        'gain_changes': [gain_change_entry(each) for each in run.gain_changes],
-    }
-
-
-def gain_change_entry(change: GainChange) -> Mapping[str, Any]:
-    """Return the entry of a gain that was changed in a run, in force from `time_s` in s on."""
-    values = {'gain': change.gain, 'before': change.before, 'after': change.after}
-    return {**values, 'time_s': change.time_s}
+    return ScoresEntry(
+        valid=run.valid,
+        reason=run.reason,
+        state=run.state,
+        why=run.why,
+        figures=figures_entry(run),
+        metrics={each.key: run.metrics[each.key] for each in OTHERS if each.key in shown},
+        limits=run.limits,
+        null_reasons={key: why for key, why in run.null_reasons.items() if key in shown},
+        fallbacks=run.fallbacks,
+        safe_state=run.safe_state,
+        scenario_changes=run.scenario_changes,
+        gain_changes=[
+            GainChangeEntry(each.gain, each.before, each.after, each.time_s)
+            for each in run.gain_changes
+        ],
+    )
 
 
 def figures_entry(run: ScoredRun) -> Mapping[str, float | bool | None]:
@@ -65,48 +160,35 @@ def figures_entry(run: ScoredRun) -> Mapping[str, float | bool | None]:
     figures: dict[str, float | bool | None] = {
         each.key: run.metrics[each.key] for each in FIGURES if run.is_shift or not each.of_shift
     }
-    return {**figures, 'least_is_bound': run.least_is_bound}
+    return {**figures, LEAST_IS_BOUND: run.least_is_bound}
 
 
 def read_scores(path: str | Path) -> list[ScoredRun]:
     """Return the runs in a `scores.json`; raise DdctError for a file that is none."""
-    try:
-        content = parse_json(read_text_file(Path(path)))
-        version = content['schema_version']
-        if version != SCHEMA_VERSION:
-            raise DdctError(f'schema_version is {version}, not {SCHEMA_VERSION}')
-        return [_run_of(entry) for entry in content['runs']]
-    except OSError as error:
-        raise DdctError(f'{path}: cannot read the scores: {error.strerror}') from error
-    except (DdctError, LookupError, TypeError, AttributeError) as error:
-        raise DdctError(
-            f'not the scores of runs ({error!r}): score the bags again with ddct score', place=path
-        ) from error
+    advice = 'score the bags again with ddct score'
+    content = read_json(ScoresDocument, Path(path), most_bytes=_MOST_BYTES, advice=advice)
+    return [_run_of(entry) for entry in content.runs]
 
 
-def _run_of(entry: Mapping[str, Any]) -> ScoredRun:
-    changes = entry['scenario_changes']
-    figures = entry['figures']
+def _run_of(entry: Entry) -> ScoredRun:
+    found, conditions = entry.scores, entry.conditions
+    bound = found.figures.get(LEAST_IS_BOUND)
     return ScoredRun(
-        bag=entry['bag'],
-        facts=RunConditions(**{name: entry[name] for name in FACTS})
-        if entry['controller'] is not None
-        else None,
-        valid=entry['valid'],
-        reason=entry['reason'],
-        metrics={key: {**entry['metrics'], **figures}.get(key) for key in METRICS},
-        state=entry['state'],
-        why=entry['why'],
-        limits=tuple(LimitResult(**each) for each in entry['limits']),
-        fallbacks=entry['fallbacks'],
-        safe_state=entry['safe_state'],
-        scenario_changes=None if changes is None else tuple(changes),
-        gain_changes=tuple(_gain_change_of(each) for each in entry['gain_changes']),
-        null_reasons=entry['null_reasons'],
-        least_is_bound=figures['least_is_bound'],
+        bag=entry.bag,
+        facts=None if isinstance(conditions, NoConditions) else conditions,
+        valid=found.valid,
+        reason=found.reason,
+        metrics={key: {**found.metrics, **found.figures}.get(key) for key in METRICS},
+        state=found.state,
+        why=found.why,
+        limits=tuple(found.limits),
+        fallbacks=found.fallbacks,
+        safe_state=found.safe_state,
+        scenario_changes=None if found.scenario_changes is None else tuple(found.scenario_changes),
+        gain_changes=tuple(
+            GainChange(each.gain, each.before, each.after, steps_in('time_s', each.time_s))
+            for each in found.gain_changes
+        ),
+        null_reasons=found.null_reasons,
+        least_is_bound=None if bound is None else bool(bound),
     )
-
-
-def _gain_change_of(entry: Mapping[str, Any]) -> GainChange:
-    step = steps_in('time_s', entry['time_s'])
-    return GainChange(entry['gain'], entry['before'], entry['after'], step)

@@ -23,6 +23,7 @@ from ddct_bringup.sweep.axis import MOST, Axis, value_text
 from ddct_bringup.verdict.limits import Limits
 from ddct_controllers.registry import Chosen, controller_label, controller_spec
 from ddct_plant.base.errors import ParameterError
+from ddct_plant.files.json_records import to_json
 from ddct_plant.program.table import Column, Table, Weight, table_of
 from ddct_plant.scenario.differences import scenario_title
 from ddct_plant.scenario.settings import RunSettings
@@ -126,7 +127,7 @@ def sweep_document(sweep: Sweep, runs: Sequence[ScoredRow]) -> Mapping[str, Any]
 
 
 def _row(run: ScoredRow) -> Mapping[str, Any]:
-    entry = run_entry(run.scores)
+    entry = to_json(run_entry(run.scores))
     return {OVER: run.varied, **{key: value for key, value in entry.items() if key != 'bag'}}
 
 

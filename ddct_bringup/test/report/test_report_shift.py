@@ -31,6 +31,7 @@ from ddct_bringup.sweep.axis import axis_of
 from ddct_bringup.sweep.sweep import Sweep
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.base.timebase import time_of_step
+from ddct_plant.files.json_records import to_json
 from ddct_plant.scenario.file import ScenarioFile, load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
@@ -185,6 +186,6 @@ def test_a_campaign_has_the_scores_of_the_single_run_to_the_last_bit(runs):
 
 
 def test_scores_of_a_shift_name_its_handover_and_those_of_other_runs_do_not(runs):
-    entry = run_entry(runs[0].scores)
+    entry = to_json(run_entry(runs[0].scores))
     assert (entry['handover'], entry['off_going_wear_gain']) == ('timed', 1.0)
-    assert 'handover' not in run_entry(made_scores())
+    assert 'handover' not in to_json(run_entry(made_scores()))

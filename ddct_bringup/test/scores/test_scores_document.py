@@ -11,11 +11,20 @@ import pytest
 from made_scores import made_limit, made_scores
 
 from ddct_bringup.metrics.catalogue import FIGURES, METRICS
-from ddct_bringup.scores.document import read_scores, scores_document
+from ddct_bringup.scores.document import (
+    RunEntry,
+    ScoresDocument,
+    ShiftConditions,
+    ShiftEntry,
+    read_scores,
+    run_entry,
+    scores_document,
+)
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.scores.scoring import run_without_score
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.base.errors import DdctError
+from ddct_plant.files.json_records import from_json, to_json
 from ddct_plant.signals.gain_changes import GainChange
 
 RUN = made_scores(
@@ -33,7 +42,7 @@ RUN = made_scores(
 
 def content(*runs: ScoredRun) -> Any:
     """Return the content of the file of runs."""
-    return json.loads(json.dumps(scores_document(runs, packaged_limits())))
+    return to_json(scores_document(runs, packaged_limits()))
 
 
 def read(folder: Path, document: Any) -> list[ScoredRun]:
@@ -82,10 +91,55 @@ def test_a_run_that_is_no_gear_shift_has_no_figure_of_one() -> None:
         assert not of_shift & {*entry[part]}
 
 
+def test_a_gear_shift_is_read_as_it_was_written(tmp_path: Path) -> None:
+    entry = to_json(run_entry(RUN))
+    assert isinstance(run_entry(RUN), RunEntry)
+    shift = {'off_going_wear_gain': 0.9, 'handover': 'model'}
+    found = from_json(ScoresDocument, {**content(), 'runs': [{**entry, **shift}]}, 'x')
+    (read_entry,) = found.runs
+    assert isinstance(read_entry, ShiftEntry)
+    assert read_entry.shift == ShiftConditions(0.9, 'model')
+
+
 @pytest.mark.parametrize(
-    'document', [[], {}, {'runs': []}, {'schema_version': 3, 'runs': []}, {'schema_version': 4}]
+    ('document', 'complaint'),
+    [
+        ([], 'it is a list: give an object'),
+        ({'runs': []}, 'the key schema_version is missing'),
+        ({'schema_version': 3, 'limits': {}, 'runs': []}, 'schema_version is 3: give 4'),
+        ({'schema_version': 4, 'limits': {}}, 'the key runs is missing'),
+        ({**content(RUN), 'verdict': 1}, 'unknown key verdict'),
+    ],
 )
-def test_another_file_is_refused_in_one_line(tmp_path: Path, document: Any) -> None:
-    with pytest.raises(DdctError, match='scores.json: not the scores of runs') as caught:
+def test_another_file_is_refused_in_one_line(
+    tmp_path: Path, document: Any, complaint: str
+) -> None:
+    with pytest.raises(DdctError, match=complaint) as caught:
         read(tmp_path, document)
+    assert str(caught.value).startswith(str(tmp_path / 'scores.json'))
+    assert str(caught.value).endswith(': score the bags again with ddct score')
     assert '\n' not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ('key', 'value', 'complaint'),
+    [
+        ('valid', 'yes', r"runs\[0\].valid is 'yes': give true or false"),
+        ('limits', [{'name': 'x'}], r'the key runs\[0\].limits\[0\].value is missing'),
+        ('seed', None, r'runs\[0\].seed is null: give a whole number'),
+        ('extra', 1, r'unknown key runs\[0\].extra'),
+        ('scenario', 'a b/c', r'runs\[0\]: scenario is'),
+        (
+            'gain_changes',
+            [{'gain': 'k', 'before': 1.0, 'after': 2.0, 'time_s': 0.123}],
+            r'runs\[0\].gain_changes\[0\]: time_s',
+        ),
+    ],
+)
+def test_a_damaged_run_is_refused_with_its_key(
+    tmp_path: Path, key: str, value: Any, complaint: str
+) -> None:
+    document = content(RUN)
+    document['runs'][0][key] = value
+    with pytest.raises(DdctError, match=complaint):
+        read(tmp_path, document)

@@ -15,6 +15,7 @@ from ddct_bringup.run.run_base import RunBase
 from ddct_bringup.scores.document import run_entry
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_controllers.from_python import chosen_from
+from ddct_plant.files.json_records import to_json
 from ddct_plant.scenario.file import ScenarioFile
 
 SHORT_S = 1.0
@@ -51,7 +52,7 @@ def test_rows_are_those_of_the_runs_alone_with_what_belongs_to_the_key(swept):
         ScenarioFile.read('thesis'), {'duration_s': SHORT_S}, {'wear_gain': 0.9}, ['ls8']
     )
     settings = base.at({'vehicle.mass_kg': 1800.0})
-    alone = run_entry(scored_headless(settings, 'ls8', packaged_limits()))
+    alone = to_json(run_entry(scored_headless(settings, 'ls8', packaged_limits())))
     assert {key: row[key] for key in OUTCOME} == {key: alone[key] for key in OUTCOME}
     assert row['metrics']['slip_final_rpm'] == alone['metrics']['slip_final_rpm']
     assert row['scenario_changes'] == list(alone['scenario_changes'])

@@ -19,6 +19,7 @@ from support.documented import ROOT
 from ddct_bringup.api import run
 from ddct_bringup.scores.document import scores_document
 from ddct_bringup.verdict.limits import packaged_limits
+from ddct_plant.files.json_records import write_json
 
 KEY = 'slip_peak_rpm'
 
@@ -34,7 +35,7 @@ def patched(tmp_path_factory: pytest.TempPathFactory) -> Path:
     subprocess.run(['git', 'apply', '-'], input=diff, text=True, cwd=folder, check=True)
     before = [run('pi', out=folder / 'before').scores]
     document = scores_document(before, packaged_limits())
-    (folder / 'scores.json').write_text(json.dumps(document), encoding='utf-8')
+    write_json(str(folder / 'scores.json'), document)
     return folder
 
 
