@@ -8,7 +8,7 @@ Two runs with the same settings and code have the same bits where `differences` 
 
 import platform
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -57,7 +57,7 @@ class Arithmetic:
     """Versions of Python and of the packages that compute or write results, by name."""
     machine: str
     """Architecture of the processor."""
-    processor: str
+    processor: str = field(compare=False)
     """Name of the processor: information, as the same kernel has the same bits on each."""
 
     def differences(self, other: 'Arithmetic') -> list[str]:

@@ -139,4 +139,5 @@ def test_another_version_is_a_difference_and_another_processor_is_none():
     assert replace(here, versions=versions).differences(here) == [
         f'numpy none, here {here.versions["numpy"]}'
     ]
-    assert replace(here, processor='another').differences(here) == []
+    other = replace(here, processor='another')
+    assert (other.differences(here), other) == ([], here)
