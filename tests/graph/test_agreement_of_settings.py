@@ -45,10 +45,13 @@ def test_a_node_that_is_given_another_value_than_the_files_of_the_run_names_both
     assert_names(str(caught.value), f'node /{name} has', 'same settings', *words)
 
 
-def test_values_that_agree_with_the_files_of_the_run_may_be_given_too(graph_of: GraphOf) -> None:
+def test_values_that_agree_with_the_files_of_the_run_may_be_given_too(
+    graph_of: GraphOf, tmp_path: Path
+) -> None:
     run = plan(wear_gain=0.8)
     graph = graph_of(run)
-    graph.add('clutch', {'wear_gain': 0.8, 'clutch': 'linear', 'mode': 'lockstep'})
+    given = {'wear_gain': 0.8, 'clutch': 'linear', 'mode': 'lockstep', 'known_scenario': ''}
+    graph.add('clutch', {**given, 'scenario': scenario_file(tmp_path)})
     graph.add('controller', {'architecture': 'detailed'})
     graph.add_all()
     graph.run()

@@ -60,7 +60,11 @@ def test_every_layout_leaves_the_same_bytes_with_settings_that_control_nodes_do_
     ('scenario', 'varied'), [('launch', UNKNOWN), ('upshift', UNKNOWN_IN_A_SHIFT)]
 )
 def test_control_nodes_find_no_true_value_in_their_parameters_and_objects(
-    tmp_path: Path, graph_of: Callable[..., Any], scenario: str, varied: dict[str, Any]
+    tmp_path: Path,
+    graph_of: Callable[..., Any],
+    capfd: pytest.CaptureFixture[str],
+    scenario: str,
+    varied: dict[str, Any],
 ) -> None:
     settings = settings_with(varied, scenario, duration_s=0.5)
     values = true_values(settings)
@@ -68,6 +72,7 @@ def test_control_nodes_find_no_true_value_in_their_parameters_and_objects(
     graph = graph_of(RunPlan(settings, file, 'single-process'))
     graph.add_all()
     graph.run()
+    assert not found_in(capfd.readouterr().err, values), 'what nodes log is on /rosout too'
     assert kept[-1].measurements
     assert not found_in(kept, values)
     for name in CONTROL:

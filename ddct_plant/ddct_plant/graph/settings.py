@@ -81,7 +81,7 @@ def declare_settings(
         settings = _of_files(node, shared, files)
     else:
         settings = _of_parameters(node, shared, defaults)
-    for line in settings.scenario.adjusted:
+    for line in settings.known.scenario.adjusted:  # of the known one: every node can read the log
         node.get_logger().info(line)
     return settings
 
@@ -122,17 +122,24 @@ def _of_files(node: Node, shared: Mapping[str, Option], files: Mapping[str, str]
         elif name not in _OF_CASE:  # true values stay out of what others can read
             usual = settings.scenario.name if name == 'scenario' else getattr(settings, name)
             declare(node, name, replace(each, default=usual))
-    theirs = values_of(settings)
+    _require_given(
+        full_name(node), {key: given[key] for key in given if given[key] != ''}, settings
+    )
+    return replace(settings, handover=given.get('handover', settings.handover))
+
+
+def _require_given(node: str, given: Mapping[str, Any], settings: RunSettings) -> None:
+    """Raise ParameterError for a given parameter that is not that of the run."""
     ours: dict[str, object] = {}
     for name, value in given.items():
         if name in ('scenario', 'known_scenario'):
-            ours |= values_of_scenario(name, load_scenario(value)) if value else {}
+            ours |= values_of_scenario(name, load_scenario(value))
         else:
             ours[name] = handover_name(value) if name == 'handover' else value
     sections = tuple(f'{name}.' for name in given)
+    theirs = values_of(settings)
     compared = {key: theirs[key] for key in theirs if key in given or key.startswith(sections)}
-    require_agreement(full_name(node), ours, compared)
-    return replace(settings, handover=given.get('handover', settings.handover))
+    require_agreement(node, ours, compared)
 
 
 def full_name(node: Node) -> str:
