@@ -86,7 +86,28 @@ def test_the_page_lists_every_room_below_those_that_it_imports(package: str) -> 
         assert imported <= set(rows[: rows.index(room)]), room
 
 
-@pytest.mark.parametrize(('name', 'least'), [('architecture.md', 9), ('path_of_a_run.md', 16)])
+TABLES_OF_NAMES = {
+    'benchmark.file_names',
+    'floor.metric_units',
+    'thesis.table_metrics',
+    'tuning.specification.packaged_specs',
+    'tuning.tuned_names',
+}
+"""Modules that are cheap to import, from which programs take the words of their --help."""
+
+
+def test_programs_call_the_python_interface_alone() -> None:
+    others = {
+        (file.name, '.'.join(name))
+        for file, (package, *name) in imports('ddct_bringup')
+        if file.parts[0] == 'programs' and package == 'ddct_bringup' and file.name != 'verify.py'
+        if name[0] not in {'api', 'programs', 'processes'}
+        if '.'.join(name[:-1]) not in TABLES_OF_NAMES
+    }
+    assert others == set()
+
+
+@pytest.mark.parametrize(('name', 'least'), [('architecture.md', 11), ('path_of_a_run.md', 16)])
 def test_the_steps_from_a_program_to_the_model_are_there(name: str, least: int) -> None:
     page = (ROOT / 'docs' / 'develop' / name).read_text(encoding='utf-8')
     steps = re.findall(r'^\| \d+ \| `([\w/]+\.py)`(?:: (.*?))? \|', page, re.MULTILINE)
