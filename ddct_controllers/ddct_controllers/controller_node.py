@@ -20,6 +20,7 @@ from ddct_plant.graph.node_reports import controller_info, timing_pairs
 from ddct_plant.graph.output import Output
 from ddct_plant.graph.settings import declare
 from ddct_plant.graph.spin import run_node
+from ddct_plant.program.own_process import end_at_exit
 from ddct_plant.signals.handover_share import WHOLE
 from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import (
@@ -153,6 +154,8 @@ class ControllerNode(FollowerNode):
             key: self._declare_gain(key, replace(options[key], default=section[key]))
             for key in options
         }
+        if spec.compiled:
+            end_at_exit()  # the middleware's threads run on
         controller = make_controller(name, self.settings, given)
         for key, value in controller.gains().items():
             if key not in given:

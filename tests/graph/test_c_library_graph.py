@@ -6,14 +6,23 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from support.c_controllers import harmful
 from support.exported_mpc import compile_c
 from support.runs import expected, plan, record
 
 from ddct_controllers.mpc.export.export_controller import export_controller
 from ddct_controllers.registry import make_controller
+from ddct_plant.base.errors import DdctError
 
 TOLERANCE_N_M = 1e-6
 """Tolerance between the C and Python of one controller, N m, as in tests/export."""
+
+
+@pytest.mark.compiler
+def test_the_end_of_its_process_is_that_of_its_node(tmp_path: Path) -> None:
+    run = plan(harmful(tmp_path), duration_s=0.7, changes=('controllers.harmful.fault=1',))
+    with pytest.raises(DdctError, match='^node controller ended with code 0; '):
+        record(run, tmp_path / 'runs')
 
 
 @pytest.mark.compiler

@@ -57,6 +57,19 @@ def keep(resource: object) -> None:
         _kept.append(resource)
 
 
+def end_at_exit() -> None:
+    """
+    Let exit() in C end this process at once, with what C has printed and its exit code.
+
+    Else the libraries of the program clean up: they may wait for threads that a fork does not
+    have, or crash beside those that still run.
+    """
+    libc = ctypes.CDLL(None)
+    # The handlers run in the reverse order.
+    libc.on_exit(libc._exit, None)
+    libc.__cxa_atexit(libc.fflush, None, None)
+
+
 def in_own_process(work: Callable[[], Result]) -> Result:
     """
     Return `work()`, computed in a fork of this process; what it prints goes to standard error.
@@ -142,11 +155,7 @@ def _compute(work: Callable[[], object], shared: mmap.mmap, result: int, parent:
         with suppress(OSError):
             os.dup2(2, 1)  # what the code prints is no result of the program
             os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
-        libc = ctypes.CDLL(None)
-        # exit() in C is the end at once: the libraries of the program may wait at their end for
-        # threads that are not here. Handlers run in the reverse order.
-        libc.on_exit(libc._exit, None)
-        libc.__cxa_atexit(libc.fflush, None, None)
+        end_at_exit()
         gc.freeze()  # collecting what the program has made would copy it
         _shared = shared
         with os.fdopen(result, 'wb') as file:
