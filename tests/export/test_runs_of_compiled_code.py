@@ -25,6 +25,7 @@ from ddct_controllers.workflows.evidence import frequency_evidence
 from ddct_controllers.workflows.loop_summary import loop_summary
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.program import own_process
+from ddct_plant.program.own_process import ProcessEndedError
 from ddct_plant.scenario.settings import RunSettings
 
 SETTINGS = run_settings('duration_s=0.7')
@@ -180,13 +181,27 @@ def test_static_variables_are_no_shared_state_but_must_be_reset(counter: str) ->
 
 
 def test_no_program_loads_the_code_beside_its_runs(
-    harm: str, monkeypatch: pytest.MonkeyPatch
+    harm: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr('ddct_controllers.from_file.c_library.controller.Library', _abort)
     (entry,) = frequency_evidence([harm], SETTINGS).controllers
     assert entry.linear is False
     assert loop_summary(harm, SETTINGS) == []
     RunPlan(SETTINGS, harm, 'headless')
+    spec = {'controllers': [harm], 'grid': {'duration_s': [0.7]}}
+    (reason,) = api.campaign(spec, tmp_path / 'out', workers=1).table.reason
+    assert reason.endswith(f'{ENDS[2]} when it was loaded: mend it')
+
+
+def test_another_controller_with_its_options_is_compiled_code_too(
+    harm: str, tmp_path: Path
+) -> None:
+    file = tmp_path / 'tuned.yaml'
+    options = f'{{controller: {harm}, options: {{fault: 3.0}}}}'
+    file.write_text(f'name: tuned\nwith_options: {options}\n', encoding='utf-8')
+    with refused(ProcessEndedError, 'c_library.file', place=f'{harm}: line 2') as raised:
+        run_headless(SETTINGS, str(file))
+    assert f'{ENDS[3]} when update was called at step 65' in str(raised.value)
 
 
 def test_all_nodes_in_one_process_are_refused(harm: str) -> None:

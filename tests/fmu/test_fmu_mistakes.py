@@ -8,7 +8,7 @@ import zipfile
 from pathlib import Path
 
 import pytest
-from support.fmu import GAINS, controller_file, write_fmu
+from support.fmu import EVENTS, GAINS, controller_file, faulty, write_fmu
 
 from ddct_bringup.run.headless import run_headless
 from ddct_controllers.registry import make_controller
@@ -120,6 +120,33 @@ def test_an_fmu_that_fails_in_a_run_ends_it(version: int, fault: int, words: str
     assert str(raised.value).startswith('controller file mine.yaml: line ')
     assert ('out of oil after 10 steps' in str(raised.value)) == (fault in (1, 2))
     del raised  # the error refers to the controller, which has processes
+
+
+def test_an_fmu_that_cannot_be_unpacked_is_refused_and_leaves_nothing(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    import fmpy
+
+    def full(*_: object) -> None:
+        raise OSError('No space left on device')
+
+    monkeypatch.setattr(fmpy, 'extract', full)
+    text = complaint(controller_file(2))
+    assert 'pi.fmu failed when it is loaded (No space left on device): mend' in text
+    assert list(Path('tmp').iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ('fault', 'events'), [(1, ['instantiated', 'freed']), (2, ['instantiated'])]
+)
+def test_after_a_fatal_failure_alone_an_fmu_is_not_freed(
+    fault: int, events: list[str], folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv(EVENTS, str(folder / 'events'))
+    with pytest.raises(DdctError):
+        run_headless(SETTINGS, faulty(2, fault))
+    assert (folder / 'events').read_text().split() == events
+    assert list(Path('tmp').iterdir()) == []
 
 
 def test_the_error_without_fmpy_names_the_command_that_installs_it(

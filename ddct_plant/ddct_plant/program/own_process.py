@@ -36,8 +36,8 @@ _DONE = _CALL.size
 _numbers = itertools.count(1)
 _shared: mmap.mmap | None = None
 """Memory that this process shares with the one that waits for it; None in any other process."""
-_kept: list[object] = []
-"""Objects that end after the result is complete."""
+_kept: list[tuple[object, Callable[[], object]]] = []
+"""Objects that stay until the result is complete, each with the function that ends it then."""
 Result = TypeVar('Result')
 
 
@@ -51,10 +51,10 @@ def calling(name: str, step: int = -1) -> None:
         _CALL.pack_into(_shared, 0, next(_numbers), name.encode(), step)
 
 
-def keep(resource: object) -> None:
-    """In a process of its own, keep an object until the result is complete; it may crash then."""
+def keep(resource: object, end: Callable[[], object]) -> None:
+    """In a process of its own, keep an object until the result is complete; `end` may crash."""
     if _shared is not None:
-        _kept.append(resource)
+        _kept.append((resource, end))
 
 
 def end_at_exit() -> None:
@@ -161,7 +161,8 @@ def _compute(work: Callable[[], object], shared: mmap.mmap, result: int, parent:
         with os.fdopen(result, 'wb') as file:
             file.write(_outcome(work))
         shared[_DONE] = 1
-        _kept.clear()
+        for _, end in _kept:
+            end()
         code = 0
     finally:
         # As at the end of a program in C: what it has printed is written.

@@ -3,6 +3,7 @@
 """Work in a process of its own returns its result, or how the process ended."""
 
 import ctypes
+import faulthandler
 import os
 import signal
 import subprocess
@@ -10,6 +11,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable
+from contextlib import nullcontext
 from pathlib import Path
 
 import pytest
@@ -111,23 +113,31 @@ def test_work_that_goes_on_calling_may_take_longer_than_the_limit(
     assert in_own_process(work) == 5
 
 
-class CrashesAtItsEnd:
-    """Object that ends the process when it is freed."""
-
-    def __del__(self) -> None:
-        os.abort()
-
-
 def test_a_crash_after_the_result_does_not_lose_it() -> None:
     def work() -> int:
-        keep(CrashesAtItsEnd())
+        keep(object(), os.abort)
         return 5
 
     assert in_own_process(work) == 5
 
 
+@pytest.mark.parametrize('fails', [False, True])
+def test_what_was_kept_is_ended_also_after_an_error(tmp_path: Path, *, fails: bool) -> None:
+    ended = tmp_path / 'ended'
+
+    def work() -> bool:
+        keep(object(), ended.touch)
+        if fails:
+            raise DdctError('it has failed')
+        return ended.exists()
+
+    with pytest.raises(DdctError) if fails else nullcontext():
+        assert not in_own_process(work)
+    assert ended.exists()
+
+
 def test_nothing_is_kept_outside_of_such_a_process() -> None:
-    keep(object())
+    keep(object(), os.abort)
     calling('update', 1)
     assert (own_process._kept, own_process._shared) == ([], None)
 
@@ -136,6 +146,19 @@ def test_what_it_prints_goes_to_standard_error(capfd: pytest.CaptureFixture[str]
     in_own_process(lambda: ctypes.CDLL(None).puts(b'hello') and 0)
     printed = capfd.readouterr()
     assert (printed.out, printed.err) == ('', 'hello\n')
+
+
+def test_what_c_printed_before_is_not_printed_again(capfd: pytest.CaptureFixture[str]) -> None:
+    libc = ctypes.CDLL(None)
+    libc.puts(b'before')
+    in_own_process(lambda: None)
+    libc.fflush(None)
+    assert capfd.readouterr() == ('before\n', '')
+
+
+def test_a_crash_in_it_writes_no_stacks() -> None:
+    assert faulthandler.is_enabled(), 'this test shows nothing'
+    assert not in_own_process(faulthandler.is_enabled)
 
 
 def test_it_reads_no_input_and_ignores_ctrl_c() -> None:

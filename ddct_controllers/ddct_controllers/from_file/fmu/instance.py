@@ -44,7 +44,7 @@ class Instance:
         self._unit, unpacked = self._loaded(fmu)
         self._units = [self._unit]
         self.end = weakref.finalize(self, _end, self._units, unpacked)
-        keep(self)
+        keep(self, self.end)
         try:
             self._set(setting.starts)
         except Exception as error:
