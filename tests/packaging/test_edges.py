@@ -35,7 +35,6 @@ FILES = {
     'ddct_bringup/verdict/limits.py': 'limits, YAML',
     'ddct_bringup/verdict/limits_keys.py': 'limits, YAML',
     'ddct_bringup/verification/comparison.py': 'any JSON, compared with its repetition',
-    'ddct_bringup/run/timing_and_failure.py': 'timing.json',
     'ddct_bringup/verification/folder.py': 'verify --json',
     'ddct_bringup/verification/result.py': 'verify --json',
     'ddct_bringup/verification/scores.py': 'scores.json',

@@ -4,7 +4,6 @@
 
 from collections.abc import Container, Iterable, Mapping
 from dataclasses import dataclass
-from typing import TypedDict
 
 from ddct_plant.base.errors import require_name
 from ddct_plant.base.timebase import steps_in, time_of_step
@@ -46,11 +45,13 @@ class RunConditions:
             require_name(name, getattr(self, name))
 
 
-class ShiftOptions(TypedDict, total=False):
-    """Fields of `RunSettings` that only a shift sets; empty for another run."""
+@dataclass(frozen=True)
+class ShiftConditions:
+    """Conditions that only a gear shift has."""
 
     off_going_wear_gain: float
     handover: str
+    """Name of the handover."""
 
 
 @dataclass(frozen=True)
@@ -69,11 +70,11 @@ class RunFacts(RunConditions):
     """Name of the handover of a shift; None in other runs."""
 
     @property
-    def of_shift(self) -> ShiftOptions:
-        """Settings of a shift by name; none of another run."""
+    def of_shift(self) -> ShiftConditions | None:
+        """Conditions of a gear shift; None of another run."""
         if self.handover is None or self.off_going_wear_gain is None:
-            return {}
-        return {'off_going_wear_gain': self.off_going_wear_gain, 'handover': self.handover}
+            return None
+        return ShiftConditions(self.off_going_wear_gain, self.handover)
 
     @property
     def steps(self) -> int:

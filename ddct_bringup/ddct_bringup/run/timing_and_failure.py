@@ -4,18 +4,15 @@
 
 import json
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 from ddct_bringup.bag.realtime_facts import RealtimeCounts
 from ddct_bringup.bag.run_facts import RunFacts, described_run
-from ddct_plant.base.errors import DdctError, printable, require_number
-from ddct_plant.files.input_file import read_text_file
-from ddct_plant.files.json_records import parse_json, write_json
+from ddct_plant.base.errors import DdctError, ParameterError, printable, require_number
+from ddct_plant.files.json_records import read_json, to_json, write_json
 from ddct_plant.files.output_file import write_text
-from ddct_plant.graph.node_names import name_in_graph
-from ddct_plant.ticks.durations import DurationHistogram, checked
+from ddct_plant.ticks.durations import checked
 
 TIMING_FILE = 'timing.json'
 NOTE_FILE = 'failed_run.json'
@@ -36,59 +33,31 @@ class RunTiming(RealtimeCounts):
     """Wall time from the first tick to the last, s."""
     steps: int = 0
 
+    def __post_init__(self) -> None:
+        """Raise ParameterError for a time or a count below 0, and for impossible histograms."""
+        for name in ('missed_steps', 'resends', 'late_messages', 'refused_messages', 'steps'):
+            require_number(name, getattr(self, name), at_least=0.0)
+        lateness = () if self.worst_lateness_us is None else (self.worst_lateness_us,)
+        times = (self.wall_time_s, *self.update_times_us, *self.safe_states.values(), *lateness)
+        if min(times) < 0.0:
+            raise ParameterError(f'a time is {min(times):g}: it must be at least 0')
+        for name, each in self.durations.items():
+            try:
+                checked(each.largest_us, each.counts)
+            except ValueError as error:
+                raise ParameterError(f'durations.{name}: {error}', key='durations') from error
+
     def write(self, folder: Path) -> None:
         """Write `timing.json` into a bag's folder; raise DdctError when that fails."""
-        write_text(str(folder / TIMING_FILE), json.dumps(asdict(self)) + '\n', _ADVICE)
+        write_text(str(folder / TIMING_FILE), json.dumps(to_json(self)) + '\n', _ADVICE)
 
 
 def read_timing(folder: Path) -> RunTiming | None:
     """Return the timing of a bag folder, None without one; raise DdctError for invalid content."""
     path = folder / TIMING_FILE
-    try:
-        text = read_text_file(path, MOST_BYTES)
-    except FileNotFoundError:
+    if not path.exists():
         return None
-    except OSError as error:
-        raise DdctError(f'cannot read the timing: {error.strerror}', place=path) from error
-    try:
-        values = parse_json(text)
-        lateness = values.get('worst_lateness_us')
-        if lateness is not None:
-            lateness = _at_least_0('worst_lateness_us', lateness)
-        return RunTiming(
-            update_times_us=[_at_least_0('update_times_us', x) for x in values['update_times_us']],
-            missed_steps=_count('missed_steps', values['missed_steps']),
-            resends=_count('resends', values['resends']),
-            late_messages=_count('late_messages', values['late_messages']),
-            refused_messages=_count('refused_messages', values.get('refused_messages', 0)),
-            worst_lateness_us=lateness,
-            safe_states={
-                name_in_graph(node): _count('safe_states', stamp)
-                for node, stamp in values.get('safe_states', {}).items()
-            },
-            durations={
-                str(name): _histogram(each) for name, each in values.get('durations', {}).items()
-            },
-            wall_time_s=_at_least_0('wall_time_s', values['wall_time_s']),
-            steps=_count('steps', values['steps']),
-        )
-    except (DdctError, LookupError, TypeError, AttributeError, ValueError) as error:
-        raise DdctError(
-            f'not the timing of a run ({error!r}): delete it to score without', place=path
-        ) from error
-
-
-def _at_least_0(name: str, value: object) -> float:
-    return require_number(name, value, at_least=0.0)
-
-
-def _count(name: str, value: object) -> int:
-    return int(_at_least_0(name, value))
-
-
-def _histogram(values: Mapping[str, Any]) -> DurationHistogram:
-    counts = {int(place): _count('counts', count) for place, count in values['counts'].items()}
-    return checked(_at_least_0('largest_us', values['largest_us']), counts)
+    return read_json(RunTiming, path, most_bytes=MOST_BYTES, advice='delete it to score without')
 
 
 @dataclass(frozen=True)
@@ -102,13 +71,22 @@ class RunFailure:
     """Custom data that the bag of the run has, or would have; empty without facts."""
 
 
+@dataclass(frozen=True)
+class _FailureNote:
+    """Content of `failed_run.json`."""
+
+    reason: str
+    run: Mapping[str, str]
+    """Custom data that the bag of the run has, or would have."""
+
+
 def note_failure(folder: Path, reason: str, custom_data: Mapping[str, str]) -> None:
     """
     Write the reason of a failure into a run's folder; `custom_data` is that of its bag.
 
     Raise DdctError when that fails.
     """
-    write_json(str(folder / NOTE_FILE), {'reason': reason, 'run': dict(custom_data)}, _ADVICE)
+    write_json(str(folder / NOTE_FILE), _FailureNote(reason, custom_data), _ADVICE)
 
 
 def failed_run(folder: Path) -> RunFailure | None:
@@ -118,13 +96,11 @@ def failed_run(folder: Path) -> RunFailure | None:
     A note that cannot be read still marks the run as failed.
     """
     path = folder / NOTE_FILE
-    try:
-        note = parse_json(read_text_file(path))
-        known = note['run']
-        if not all(isinstance(text, str) for text in known.values()):
-            raise DdctError('its run has values that are no texts')
-        return RunFailure(printable(note['reason']), described_run(known)[1], known)
-    except FileNotFoundError:
+    if not path.exists():
         return None
-    except (OSError, DdctError, LookupError, TypeError, AttributeError) as error:
-        return RunFailure(printable(f'the run failed, and its {path} cannot be read ({error!r})'))
+    try:
+        note = read_json(_FailureNote, path)
+        facts = described_run(note.run)[1]
+    except DdctError as error:
+        return RunFailure(printable(f'the run failed, and why cannot be read: {error}'))
+    return RunFailure(printable(note.reason), facts, dict(note.run))

@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Literal
 
-from ddct_bringup.bag.run_facts import RunConditions, RunFacts
+from ddct_bringup.bag.run_facts import RunConditions, RunFacts, ShiftConditions
 from ddct_bringup.metrics.catalogue import FIGURES, METRICS, OTHERS
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.verdict.limits import LimitResult, Limits
@@ -34,14 +34,6 @@ class NoConditions:
     wear_gain: None = None
     mode: None = None
     seed: None = None
-
-
-@dataclass(frozen=True)
-class ShiftConditions:
-    """Conditions that only a gear shift has."""
-
-    off_going_wear_gain: float
-    handover: str
 
 
 @dataclass(frozen=True)
@@ -128,9 +120,8 @@ def run_entry(run: ScoredRun) -> Entry:
     if run.facts is None:
         return UnreadableEntry(run.bag, NoConditions(), scores)
     conditions = RunConditions(**{name: getattr(run.facts, name) for name in FACTS})
-    of_shift = run.facts.of_shift if isinstance(run.facts, RunFacts) else {}
-    if of_shift:
-        return ShiftEntry(run.bag, conditions, ShiftConditions(**of_shift), scores)
+    if isinstance(run.facts, RunFacts) and (shift := run.facts.of_shift):
+        return ShiftEntry(run.bag, conditions, shift, scores)
     return RunEntry(run.bag, conditions, scores)
 
 

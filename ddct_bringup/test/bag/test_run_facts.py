@@ -7,7 +7,7 @@ import math
 import pytest
 from refusals import refused
 
-from ddct_bringup.bag.run_facts import RunConditions, RunFacts, described_run
+from ddct_bringup.bag.run_facts import RunConditions, RunFacts, ShiftConditions, described_run
 from ddct_bringup.run.description import custom_data
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.scenario.file import load_scenario
@@ -28,12 +28,12 @@ def test_facts_are_those_of_the_settings():
     assert (facts.controller, facts.scenario, facts.duration_s) == ('pi', 'thesis', 1.5)
     assert (facts.wear_gain, facts.seed) == (math.nextafter(0.7, 1.0), 2**31 - 1)
     assert (facts.control_start_s, facts.score_window_s) == (0.6, (0.6, 1.7))
-    assert (facts.handover, facts.off_going_wear_gain, facts.of_shift) == (None, None, {})
+    assert (facts.handover, facts.off_going_wear_gain, facts.of_shift) == (None, None, None)
 
 
 def test_facts_of_a_shift_have_the_name_of_its_handover():
     facts = RunFacts.of(SHIFT, 'pi', 250)
-    assert facts.of_shift == {'off_going_wear_gain': 0.9, 'handover': 'mine'}
+    assert facts.of_shift == ShiftConditions(0.9, 'mine')
 
 
 @pytest.mark.parametrize('settings', [LAUNCH, SHIFT], ids=['launch', 'shift'])

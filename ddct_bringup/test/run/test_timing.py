@@ -3,12 +3,12 @@
 """`timing.json` is read back, and unusable content is an error."""
 
 import json
-from dataclasses import asdict
 
 import pytest
 
 from ddct_bringup.run.timing_and_failure import RunTiming, read_timing
 from ddct_plant.base.errors import DdctError
+from ddct_plant.files.json_records import to_json
 from ddct_plant.ticks.durations import DurationHistogram
 
 
@@ -28,23 +28,12 @@ def test_what_the_recorder_wrote_is_read_back(tmp_path):
     assert read_timing(tmp_path) == timing
 
 
-def test_a_file_from_before_these_quantities_is_read(tmp_path):
-    old = {'update_times_us': [], 'missed_steps': 1, 'resends': 0, 'late_messages': 0}
-    states = {'safe_states': {'actuator': 1870000000}}  # names had no slash
-    text = json.dumps({**old, **states, 'wall_time_s': 1.0, 'steps': 100})
-    (tmp_path / 'timing.json').write_text(text, encoding='utf-8')
-    timing = RunTiming(
-        missed_steps=1, safe_states={'/actuator': 1870000000}, wall_time_s=1.0, steps=100
-    )
-    assert read_timing(tmp_path) == timing
-
-
 def test_a_folder_without_timing_gives_none(tmp_path):
     assert read_timing(tmp_path) is None
 
 
 def changed(**values):
-    return json.dumps({**asdict(RunTiming(update_times_us=[1.5], steps=1)), **values})
+    return json.dumps({**to_json(RunTiming(update_times_us=[1.5], steps=1)), **values})
 
 
 @pytest.mark.parametrize(
@@ -54,6 +43,11 @@ def changed(**values):
         changed(update_times_us=['nan']),
         changed(update_times_us=[float('nan')]),
         changed(wall_time_s=float('inf')),
+        changed(wall_time_s=-1.0),
+        changed(update_times_us=[1.0, -1.0]),
+        changed(worst_lateness_us=-0.5),
+        changed(safe_states={'/actuator': -1}),
+        changed(unknown=1),
         changed(missed_steps=-1),
         changed(missed_steps='many'),
         changed(steps=None),
@@ -65,5 +59,8 @@ def changed(**values):
 )
 def test_unusable_timing_is_an_error_that_names_the_file(tmp_path, text):
     (tmp_path / 'timing.json').write_text(text, encoding='utf-8')
-    with pytest.raises(DdctError, match='timing.json: not the timing of a run'):
+    with pytest.raises(
+        DdctError, match=r'timing\.json: .*: delete it to score without$'
+    ) as caught:
         read_timing(tmp_path)
+    assert caught.value.place == str(tmp_path / 'timing.json')

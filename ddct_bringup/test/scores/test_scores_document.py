@@ -10,11 +10,11 @@ from typing import Any
 import pytest
 from made_scores import made_limit, made_scores
 
+from ddct_bringup.bag.run_facts import ShiftConditions
 from ddct_bringup.metrics.catalogue import FIGURES, METRICS
 from ddct_bringup.scores.document import (
     RunEntry,
     ScoresDocument,
-    ShiftConditions,
     ShiftEntry,
     read_scores,
     run_entry,

@@ -157,6 +157,14 @@ def test_keys_of_an_inline_record_stand_among_those_around_it():
         from_json(Named, plain | {'limits': {}}, 'x.json')
 
 
+def test_whole_numbers_as_keys_are_texts_in_json():
+    assert to_json({3: 'a'}) == {'3': 'a'}
+    assert from_json(dict[int, str], {'3': 'a'}, 'x.json') == {3: 'a'}
+    for key in ('-3', '03', '1.0', 'a', '\u00b2'):
+        with pytest.raises(DdctError, match=f'^x.json: the key {key} is no whole number from 0'):
+            from_json(dict[int, str], {key: 'a'}, 'x.json')
+
+
 def test_numbers_of_numpy_are_written_as_those_of_python():
     values = {'a': np.float64(0.1), 'b': np.int64(3), 'c': np.bool_(True), 'd': np.eye(2)}
     plain = {'a': 0.1, 'b': 3, 'c': True, 'd': [[1.0, 0.0], [0.0, 1.0]]}
@@ -176,7 +184,7 @@ def test_what_json_has_no_number_for_is_not_written(number, tmp_path):
     assert not list(tmp_path.iterdir())
 
 
-@pytest.mark.parametrize('thing', [object(), {1: 2}, Range, {'a': {3}}])
+@pytest.mark.parametrize('thing', [object(), {1.5: 2}, Range, {'a': {3}}])
 def test_what_has_no_form_in_json_is_a_fault_of_the_program(thing):
     with pytest.raises(TypeError):
         to_json(thing)
