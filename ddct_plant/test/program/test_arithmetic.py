@@ -2,16 +2,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """Every process has the same kernel of linear algebra; a result names what decides its bits."""
 
+import importlib.metadata
 import os
 import subprocess
 import sys
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import Any
 
 import pytest
 
+from ddct_plant.program import arithmetic as module
 from ddct_plant.program import kernel
-from ddct_plant.program.arithmetic import arithmetic
+from ddct_plant.program.arithmetic import Arithmetic, arithmetic
 from ddct_plant.program.kernel import HASWELL, KERNEL, THREADS, choose_kernel
 
 PRINTED = (
@@ -141,3 +144,58 @@ def test_another_version_is_a_difference_and_another_processor_is_none():
     ]
     other = replace(here, processor='another')
     assert (other.differences(here), other) == ([], here)
+
+
+def found_library(path: str, **changes: Any) -> dict[str, Any]:
+    usual = {
+        **{'user_api': 'blas', 'internal_api': 'openblas', 'filepath': path, 'version': '0.3.30'},
+        **{'architecture': 'Haswell', 'num_threads': 1},
+    }
+    return {**usual, **changes}
+
+
+@pytest.fixture
+def found_here(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[..., Arithmetic]]:
+    """Yield a function that returns the arithmetic with these libraries loaded."""
+
+    def found(*libraries: dict[str, Any]) -> Arithmetic:
+        monkeypatch.setattr(module, 'threadpool_info', lambda: list(libraries))
+        return arithmetic.__wrapped__()
+
+    yield found
+
+
+def test_what_numpy_and_scipy_share_is_named_once_and_the_rest_with_its_user(found_here) -> None:
+    found = found_here(
+        found_library('/site/scipy.libs/libscipy_openblas.so'),
+        found_library('/site/numpy.libs/libscipy_openblas64_.so', version='0.3.31', num_threads=2),
+    )
+    assert found.blas == 'OpenBLAS 0.3.31 (numpy), OpenBLAS 0.3.30 (scipy)'
+    assert (found.kernel, found.threads) == ('Haswell', '2 (numpy), 1 (scipy)')
+
+
+def test_libraries_that_no_run_uses_are_left_out(found_here) -> None:
+    found = found_here(
+        found_library('/usr/lib/libopenblas.so.0', architecture='Zen'),
+        found_library('/site/slycot.libs/libopenblas.so', architecture='Nehalem'),
+        found_library('/site/numpy.libs/libgomp.so', user_api='openmp', num_threads=8),
+    )
+    assert (found.blas, found.kernel, found.threads) == ('OpenBLAS 0.3.30', 'Zen', '1')
+
+
+def test_a_library_without_names_of_kernels_or_version_is_named_as_far_as_it_is_known(
+    found_here,
+) -> None:
+    mkl = found_library('/opt/mkl/libmkl_rt.so', internal_api='mkl', version=None)
+    del mkl['architecture']
+    found = found_here(mkl)
+    assert (found.blas, found.kernel) == ('MKL of unknown version', '')
+    assert found_here().blas == found_here().kernel == 'unknown'
+
+
+def test_versions_are_those_of_the_installed_packages(found_here) -> None:
+    here = found_here()
+    assert here.versions['python'] == '.'.join(map(str, sys.version_info[:3]))
+    assert here.versions['scipy'] == importlib.metadata.version('scipy')
+    assert not {*here.versions} - {'python', *module._PACKAGES}
+    assert here.processor and here.libc and here.machine == os.uname().machine
