@@ -107,7 +107,7 @@ def test_a_killed_node_that_is_still_in_the_graph_is_no_second_publisher(
 ) -> None:
     run = plan(duration_s=0.3)
     graph = graph_of(run)
-    load = programs.start_node('ddct_plant.nodes.load_node', graph.parameters['*'])
+    load = programs.start_node('ddct_plant.nodes.load_node', graph.parameters_of('load'))
     graph.wait_for_publishers('load/torque')
     load.process.kill()
     load.wait()

@@ -87,6 +87,10 @@ class InProcessGraph:
             node.destroy_node()
         self.context.try_shutdown()
 
+    def parameters_of(self, path: str) -> dict[str, Any]:
+        """Return the parameters of a node, of all and its own."""
+        return {**self.parameters['*'], **self.parameters.get(path, {})}
+
     def add_all(self, *, without: Collection[str] = (), **options: Any) -> None:
         """Add every node of the graph that is not there yet and not in `without`."""
         for spec in self._specs:
@@ -102,7 +106,7 @@ class InProcessGraph:
         **options: Any,
     ) -> GraphNode:
         """Add the node `path` with the run's parameters and `changes`, kept under `key`."""
-        values = {**self.parameters['*'], **self.parameters.get(path, {}), **(changes or {})}
+        values = {**self.parameters_of(path), **(changes or {})}
         overrides = [Parameter(parameter, value=value) for parameter, value in values.items()]
         options = {
             'namespace': node_spec(path).namespace or None,

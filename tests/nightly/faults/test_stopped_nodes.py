@@ -35,7 +35,7 @@ class AdvancedTime(SteadyTime):
 
 def _start_clutch(graph: InProcessGraph, programs: Programs) -> Program:
     """Start the clutch as a process of its own."""
-    clutch = programs.start_node('ddct_plant.nodes.clutch_node', graph.parameters['*'])
+    clutch = programs.start_node('ddct_plant.nodes.clutch_node', graph.parameters_of('clutch'))
     graph.wait_for_publishers(CLUTCH_TORQUE.name)
     return clutch
 
@@ -88,7 +88,7 @@ def test_a_node_that_was_stopped_in_real_time_answers_again_when_it_goes_on(
     graph_of: GraphOf, programs: Programs, name: str, topic: str
 ) -> None:
     graph = graph_of(plan(mode='realtime', duration_s=600.0), wall_clock=True)
-    node = programs.start_node(f'ddct_plant.nodes.{name}_node', graph.parameters['*'])
+    node = programs.start_node(f'ddct_plant.nodes.{name}_node', graph.parameters_of(name))
     graph.wait_for_publishers(topic)
     graph.add_all(without=[name])
     owner = graph.driveline.owner

@@ -19,7 +19,7 @@ def test_the_clutch_is_open_at_the_end_of_a_run_whose_controller_was_killed_or_s
     graph_of: GraphOf, programs: Programs, number: signal.Signals
 ) -> None:
     graph = graph_of(plan(mode='realtime', duration_s=3.0), wall_clock=True)
-    shared = graph.parameters['*'] | graph.parameters['controller']
+    shared = graph.parameters_of('controller')
     controller = programs.start_node('ddct_controllers.controller_node', shared)
     graph.wait_for_publishers('clutch/torque_request')
     graph.add_all(without=['controller'])
