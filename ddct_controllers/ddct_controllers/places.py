@@ -43,7 +43,18 @@ def place_of_method(controller: Controller, name: str) -> str:
 
 
 def place_of_failure(controller: Controller, error: BaseException) -> str:
-    """Return the place at which an update raised `error`, in its author's code."""
+    """
+    Return the place at which an update raised `error`, in its author's code.
+
+    The file is without its folder: the reason of a failed run is the same wherever it runs.
+    """
     package = type(controller).__module__.partition('.')[0]
     line = '' if controller.written_in else place_of_error(error, package)
-    return line or place_of_method(controller, 'update')
+    place = without_folder(line or controller.written_in or place_of_method(controller, 'update'))
+    own_name = controller.method_names.get('update') if controller.written_in else None
+    return f'{own_name} of {place}' if own_name else place
+
+
+def without_folder(place: str) -> str:
+    """Return a place that begins with a file without the folder of that."""
+    return place.rpartition('/')[2]

@@ -5,6 +5,7 @@
 import inspect
 import math
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -177,7 +178,7 @@ def test_a_controller_that_raises_is_named_with_the_step_and_the_line(measuremen
         make_architecture(SETTINGS, controller).update(measurement)
     assert str(caught.value) == (
         f"controller 'mine': it failed at step {measurement.step} (ZeroDivisionError: division by "
-        f'zero, in {__file__} line {line}): mend the controller'
+        f'zero, in {Path(__file__).name} line {line}): mend the controller'
     )
     assert isinstance(caught.value.__cause__, ZeroDivisionError)
 

@@ -77,5 +77,5 @@ def test_a_run_places_an_unusable_command_there_too(in_yaml: str) -> None:
 def test_a_run_places_an_error_of_an_update_there_too(in_yaml: str) -> None:
     controller: Any = make_controller(in_yaml, SETTINGS)
     controller._filter = None
-    with pytest.raises(DdctError, match=re.escape(f'in {in_yaml} line 3 (polynomial)')):
+    with pytest.raises(DdctError, match=re.escape('in mine.yaml line 3 (polynomial)')):
         make_architecture(SETTINGS, controller).update(NOW)

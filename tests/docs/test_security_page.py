@@ -3,10 +3,11 @@
 """The page on security lists each key that names a file: those for which the code opens one."""
 
 import re
+import shutil
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import suppress
-from dataclasses import fields
+from dataclasses import fields, replace
 from functools import cache, partial
 from pathlib import Path
 from typing import Any
@@ -14,20 +15,14 @@ from typing import Any
 import pytest
 from support.documented import ROOT
 
-from ddct_bringup.bag.recording import Recording
-from ddct_bringup.bag.run_facts import RunFacts
-from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.keys import FILE_KEY, SCENARIO, run_options, sections
 from ddct_bringup.campaign.spec import _KEYS as CAMPAIGN_KEYS
 from ddct_bringup.campaign.spec import spec_of
 from ddct_bringup.campaign.specification.named_files import digest_of
-from ddct_bringup.digests.digest_file import RUNS, Digests, RunDigests
-from ddct_bringup.digests.environment import this_environment
+from ddct_bringup.manifest.inputs import INPUTS, Inputs
+from ddct_bringup.manifest.runs import PlannedRun
 from ddct_bringup.run.plan import RunPlan
-from ddct_bringup.verdict.limits import packaged_limits
-from ddct_bringup.verification.repetition import plan_of
-from ddct_bringup.verification.request import VerificationRequest
 from ddct_controllers.from_file.kinds import KINDS
 from ddct_controllers.from_file.with_options import KIND as WITH_OPTIONS
 from ddct_controllers.registry import controller_spec
@@ -108,11 +103,14 @@ def digested(place: Path, content: dict[str, Any]) -> str:
     return digest_of(spec_of(content, place))
 
 
-def repeated(
-    request: VerificationRequest, recording: Recording, digests: dict[str, Any]
-) -> RunPlan:
-    """Return the plan of a recorded run with these digests."""
-    return plan_of(request, recording, RunDigests(**digests))
+def _with(known: PlannedRun, name: str, value: Any) -> PlannedRun:
+    return replace(known, **{name: value})
+
+
+def made_from(planned_run: PlannedRun, place: Path) -> None:
+    """Make the plan of a run; a value of another type could not be in a manifest."""
+    with suppress(TypeError, AttributeError, ValueError):
+        planned_run.headless_plan(place)
 
 
 def contents() -> Iterator[tuple[str, dict[str, Any]]]:
@@ -174,16 +172,17 @@ def test_those_of_a_controller_file_are_listed(place: Path) -> None:
     assert found == listed('a controller file')
 
 
-def test_those_of_the_digests_of_a_run_are_listed(place: Path) -> None:
-    digests = Digests(1, RUNS, {}, this_environment())
-    request = VerificationRequest(place, digests, packaged_limits())
-    facts = RunFacts.of(SHIFT, 'pi', SHIFT.scenario.steps)
-    recording = Recording(Path(), Trajectory({}), facts, {}, settings=SHIFT)
-    known = RunDigests('', 'pi', {})
+def test_those_of_the_plan_of_a_run_are_listed(place: Path) -> None:
+    shutil.copytree(place, place / INPUTS)
+    known = PlannedRun.of(RunPlan(SHIFT, 'pi', 'headless'), Inputs())
     found = set()
-    for name in (field.name for field in fields(RunDigests)):
-        for file in FILES:
-            changed = {**vars(known), name: file}
-            if opens(partial(repeated, request, recording, changed)):
-                found.add(name)
-    assert found == listed('`digests.json` of a run')
+    for file in FILES:
+        changed = {
+            **{each.name: _with(known, each.name, file) for each in fields(PlannedRun)},
+            **{
+                f'settings.{name}': replace(known, settings={**known.settings, name: file})
+                for name in known.settings
+            },
+        }
+        found |= {name for name, plan in changed.items() if opens(partial(made_from, plan, place))}
+    assert found == listed('the plan of a run')

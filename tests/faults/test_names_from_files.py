@@ -5,6 +5,7 @@
 import json
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 from refusals import refused
@@ -12,12 +13,11 @@ from support.complaints import assert_one_line
 from support.processes import Programs
 
 from ddct_bringup.bag.run_facts import RunConditions
-from ddct_bringup.benchmark.manifest import BenchmarkManifest, JudgedEntry
-from ddct_bringup.digests.digest_file import Digests, read_digests
-from ddct_bringup.digests.environment import this_environment
+from ddct_bringup.benchmark.plan import JudgedEntry
+from ddct_bringup.manifest.inputs import Inputs
+from ddct_bringup.manifest.manifest import RUNS, begin_manifest, read_manifest
 from ddct_bringup.programs import bringup, compare
-from ddct_bringup.tuning.manifest import TuningManifest
-from ddct_bringup.verdict.limits import packaged_limits
+from ddct_bringup.tuning.plan import TunedEntry
 from ddct_controllers.registry import controller_spec
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.scenario.file import load_scenario, scenario_to_yaml
@@ -53,7 +53,7 @@ def bag_with_scenario(name: str, _: Path) -> None:
 
 
 def judged(name: str, _: Path) -> None:
-    JudgedEntry(name, 'pi', {}, 0)
+    JudgedEntry(name, 'pi', '.', {}, 0)
 
 
 @pytest.mark.parametrize('name', HOSTILE)
@@ -98,28 +98,23 @@ def test_the_recorder_writes_no_bag_elsewhere(programs: Programs, tmp_path: Path
 
 
 @pytest.mark.parametrize('chosen', ['../mine.py', '/tmp/mine.py', 'a/mine.yaml'])
-def test_a_benchmark_names_no_controller_file_elsewhere(chosen: str, tmp_path: Path) -> None:
+def test_a_benchmark_names_no_controller_file_elsewhere(chosen: str) -> None:
     with refused(ParameterError, 'controllers.chosen'):
-        JudgedEntry('mine', chosen, {}, 0)
-    manifest = {'schema_version': 1, 'controllers': [{'name': 'mine', 'chosen': chosen}]}
-    (tmp_path / 'benchmark.json').write_text(json.dumps(manifest))
-    with pytest.raises(DdctError):
-        BenchmarkManifest.read(tmp_path)
+        JudgedEntry('mine', chosen, '.', {}, 0)
 
 
 @pytest.mark.parametrize(
     ('key', 'value'),
     [('name', '../escaped'), ('chosen', '../mine.py'), ('chosen', '/tmp/mine.py')],
 )
-def test_a_tuning_names_no_controller_file_elsewhere(key: str, value: str, tmp_path: Path) -> None:
-    controller = {'name': 'mine', 'chosen': 'pi', 'folder': str(tmp_path), 'digests': {}}
-    manifest = TuningManifest(1, '', '', '', {}, {**controller, key: value}, '', {}, '')
+def test_a_tuning_names_no_controller_file_elsewhere(key: str, value: str) -> None:
+    given: dict[str, Any] = {'name': 'mine', 'chosen': 'pi', 'folder': '.', 'digests': {}}
     with refused(ParameterError, f'controllers.{key}'):
-        manifest.tuning(packaged_limits())
+        TunedEntry(**{**given, key: value})
 
 
 @pytest.mark.parametrize('path', ['../outside', '/etc/hostname', 'a/../../b'])
-def test_digests_name_no_file_outside_of_their_folder(path: str, tmp_path: Path) -> None:
-    Digests(1, 'runs', {path: 64 * '0'}, this_environment()).write(tmp_path)
-    with pytest.raises(DdctError, match='outside of the folder'):
-        read_digests(tmp_path)
+def test_a_manifest_names_no_file_outside_of_its_result(path: str, tmp_path: Path) -> None:
+    begin_manifest(tmp_path, RUNS, {}, Inputs()).with_files({path: 64 * '0'}).write(tmp_path)
+    with pytest.raises(DdctError, match='outside of the result'):
+        read_manifest(tmp_path)

@@ -17,10 +17,10 @@ pytestmark = pytest.mark.slow
 
 NAMES = (
     *('bag', 'bag_as_log', 'unfinished_bag', 'log', 'controller', 'fmu_description', 'fmu'),
-    *('timing', 'failed_run', 'repeated_failure', 'digests', 'scores', 'verified_scores'),
-    *('frequency', 'campaign', 'manifest', 'results', 'result_row', 'summary'),
+    *('timing', 'failed_run', 'manifest', 'plan', 'scores'),
+    *('frequency', 'campaign', 'campaign_plan', 'results', 'result_row', 'summary'),
     *('benchmark', 'benchmark_rows', 'update_times', 'floor'),
-    *('tuning_mpc_thesis', 'tuning_pi_launches', 'tuning_manifest', 'tuning_trials'),
+    *('tuning_mpc_thesis', 'tuning_pi_launches', 'tuning_plan', 'tuning_trials'),
     *('tuning_runs', 'scenario', 'profile', 'limits', 'columns', 'parquet'),
     'live_frames',
 )

@@ -10,11 +10,13 @@ from report.headless_chromium import Visitor, chromium
 from ddct_bringup.benchmark.cases import Cases, packaged_folder
 from ddct_bringup.benchmark.conduct import JudgedRows
 from ddct_bringup.benchmark.judged import Judged
-from ddct_bringup.benchmark.manifest import BenchmarkManifest
+from ddct_bringup.benchmark.plan import BenchmarkPlan, RecordedBenchmark
 from ddct_bringup.benchmark.release import release_rows
 from ddct_bringup.benchmark.report.page import benchmark_page
 from ddct_bringup.benchmark.result import result_of
 from ddct_bringup.benchmark.update_times import UpdateTime, UpdateTimesFile
+from ddct_bringup.manifest.inputs import Inputs
+from ddct_bringup.manifest.origin import CodeOrigin
 
 pytestmark = [
     pytest.mark.browser,
@@ -37,13 +39,13 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return the page of a packaged controller whose held-out cases are those of development."""
     cases = Cases.packaged(quick=True)
     release = release_rows(packaged_folder()).of(cases)
-    manifest = BenchmarkManifest.of([Judged.of('ls8')], cases, 3)
+    plan = BenchmarkPlan.of([Judged.of('ls8')], cases, 3, Inputs())
     rows = release.rows.only(['ls8', 'pi', 'hinf_sampled', 'mpc_wear'])
     judged = {'ls8': JudgedRows(None, rows)}
-    result = result_of(manifest, release, judged, {})
+    result = result_of(RecordedBenchmark(plan, CodeOrigin.here()), release, judged, {})
     file = tmp_path_factory.mktemp('benchmark') / 'report.html'
     file.write_text(
-        benchmark_page(result, UpdateTimesFile('pi', {'ls8': TIMES}), file.parent),
+        benchmark_page(result, UpdateTimesFile('pi', {'ls8': TIMES})),
         encoding='utf-8',
     )
     return file

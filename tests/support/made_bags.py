@@ -2,13 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bags of made-up runs: random numbers in every signal, so that no two values are alike."""
 
-import json
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from edited_settings import edited  # noqa: F401
 
 from ddct_bringup.bag.reader import mcap_of
 from ddct_bringup.bag.trajectory import Trajectory
@@ -37,16 +37,6 @@ def described(steps, controller='pi', *, scenario='made-up', **changes):
     made = replace(load_scenario('thesis', times, clutch), name=scenario)
     settings = RunSettings(made, clutch=clutch, **changes)
     return {SETTINGS: RecordedSettings.of(settings, controller, times['duration_s']).text()}
-
-
-def edited(custom_data, **changes):
-    """Return custom data with other settings; what is in no part is of the known scenario."""
-    data = json.loads(custom_data[SETTINGS])
-    for key, value in changes.items():
-        parts = (data, data['known'], data['case'])
-        part = next((part for part in parts if key in part), data['known']['scenario'])
-        part[key] = value
-    return {**custom_data, SETTINGS: json.dumps(data)}
 
 
 def random_trajectory(steps, preview_steps=2, clutch='linear'):

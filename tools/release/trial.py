@@ -36,7 +36,7 @@ print(state, time_s)
 ROWS = """\
 from ddct_bringup.benchmark.cases import packaged_folder
 from ddct_bringup.benchmark.release import release_rows
-from ddct_bringup.digests.origin import CodeOrigin
+from ddct_bringup.manifest.origin import CodeOrigin
 
 print(release_rows(packaged_folder()).other_code(CodeOrigin.here()) or 'computed by this code')
 """

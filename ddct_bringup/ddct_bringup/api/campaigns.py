@@ -13,7 +13,7 @@ from ddct_bringup.api.shell.campaigns import carry_out_campaign
 from ddct_bringup.api.shell.sweeps import planned_sweep
 from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.columns import INDEX
-from ddct_bringup.campaign.manifest import Manifest
+from ddct_bringup.campaign.plan import RecordedCampaign
 from ddct_bringup.campaign.rows import result_row
 from ddct_bringup.campaign.spec import read_spec, spec_of
 from ddct_bringup.campaign_report.reading import read_table, results_of
@@ -59,9 +59,9 @@ def campaign(
 def read_campaign(folder: str | Path) -> CampaignResults:
     """Return the rows and the summary of a finished campaign; raise DdctError without one."""
     pandas_module()
-    manifest = Manifest.read(Path(folder))
-    table = read_table(Path(folder), manifest)
-    summary = to_json(summary_of(results_of(manifest, table)))
+    recorded = RecordedCampaign.read(Path(folder))
+    table = read_table(Path(folder), recorded)
+    summary = to_json(summary_of(results_of(recorded, table)))
     return CampaignResults(table.to_pandas().set_index(INDEX), summary)
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from ddct_bringup.api.result import Run, as_runs
-from ddct_bringup.campaign.manifest import Manifest
+from ddct_bringup.campaign.plan import RecordedCampaign
 from ddct_bringup.campaign_report.distributions_figure import distributions_figure
 from ddct_bringup.campaign_report.folder import scenario_of
 from ddct_bringup.campaign_report.reading import read_table, results_of
@@ -68,10 +68,10 @@ def campaign_figure(folder: str | Path) -> 'Figure':
     A curve is the share of the valid runs that engaged with at most the value. Raise DdctError for
     a folder without a finished campaign.
     """
-    manifest = Manifest.read(Path(folder))
-    results = results_of(manifest, read_table(Path(folder), manifest))
+    recorded = RecordedCampaign.read(Path(folder))
+    results = results_of(recorded, read_table(Path(folder), recorded))
     with chart_style():
-        return distributions_figure(results, scenario_of(manifest))
+        return distributions_figure(results, scenario_of(recorded))
 
 
 class ThesisDrawing(NamedTuple):

@@ -64,12 +64,13 @@ class Cases:
         return list(self.content[CONTROLLERS])
 
     def require_parts(self) -> None:
-        """Raise ParameterError or LookupError without the parts that campaigns replace."""
-        if not isinstance(self.content[CONTROLLERS], list):
+        """Raise ParameterError without the parts that campaigns replace."""
+        random = self.content.get(RANDOM)
+        if not isinstance(self.content.get(CONTROLLERS), list):
             raise ParameterError(f'cases.{CONTROLLERS} is no list', key=CONTROLLERS)
-        if type(self.content[RANDOM][SAMPLES]) is not int:
+        if not isinstance(random, Mapping) or type(random.get(SAMPLES)) is not int:
             raise ParameterError(f'cases.{RANDOM}.{SAMPLES} is no whole number', key=SAMPLES)
-        if type(self.content[ROOT_SEED]) is not int:
+        if type(self.content.get(ROOT_SEED)) is not int:
             raise ParameterError(f'cases.{ROOT_SEED} is no whole number', key=ROOT_SEED)
 
     @cached_property

@@ -5,18 +5,29 @@
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from importlib.resources.abc import Traversable
 from pathlib import Path
 
 from ddct_bringup.benchmark.case_rows import CaseRows
 from ddct_bringup.benchmark.cases import Cases, packaged_folder
 from ddct_bringup.benchmark.judged import Judged
-from ddct_bringup.benchmark.manifest import MANIFEST, BenchmarkManifest
+from ddct_bringup.benchmark.plan import BenchmarkPlan, JudgedEntry, RecordedBenchmark
 from ddct_bringup.benchmark.release import ROWS, copy_release_rows, release_rows
 from ddct_bringup.campaign.campaign import Campaign
-from ddct_bringup.campaign.conduct import RESUME, carry_out
-from ddct_bringup.campaign.manifest import MANIFEST as CAMPAIGN_MANIFEST
-from ddct_bringup.campaign.manifest import Manifest
+from ddct_bringup.campaign.conduct import RESUME, carry_out_part
+from ddct_bringup.campaign.plan import CampaignPlan, RecordedCampaign
 from ddct_bringup.campaign_report.reading import read_table
+from ddct_bringup.manifest.file_states import require_unaltered
+from ddct_bringup.manifest.inputs import INPUTS, Inputs
+from ddct_bringup.manifest.limits import NamedLimits
+from ddct_bringup.manifest.manifest import (
+    BENCHMARK,
+    MANIFEST,
+    begin_manifest,
+    read_manifest,
+    require_same_inputs,
+    resume_manifest,
+)
 from ddct_bringup.run.output_folder import (
     MARKER,
     locked_folders,
@@ -49,6 +60,10 @@ class Options:
     """Number of processes, None for one per core."""
     stopped: Callable[[], bool] = lambda: False
     """Function that returns whether the user has stopped the benchmark."""
+    release: str = ''
+    """Digest of the code by which held-out cases are drawn; that of this process if empty."""
+    rows: Path | None = None
+    """Folder with the rows of the release; None for those of this one."""
 
 
 def carry_out_benchmark(
@@ -65,15 +80,17 @@ def carry_out_benchmark(
     complete. Raise DdctError for a folder that holds something else, KeyboardInterrupt when it is
     stopped: what is done stays, and another call goes on with it.
     """
-    manifest = BenchmarkManifest.of(judged, cases, judge_seed)
+    inputs = Inputs()
+    plan = BenchmarkPlan.of(judged, cases, judge_seed, inputs, options.release)
+    rows = options.rows or packaged_folder()
     ours = [each.name for each in judged if each.is_packaged]
-    release_rows(packaged_folder()).of(cases).rows.only([*cases.beside, *ours])
+    release_rows(rows).of(cases).rows.only([*cases.beside, *ours])
     failed = {}
     with locked_folders(out, shared=True):
-        _begin(manifest, out)
-        for each, entry in zip(judged, manifest.controllers, strict=True):
+        _begin(plan, inputs, rows, out)
+        for each in plan.controllers:
             try:
-                _compute(each, entry.held_out_seed, cases, out / each.name, options)
+                _compute(each, cases, out, options)
             except DdctError as error:
                 failed[each.name] = str(error).replace(RESUME, AGAIN)
             except KeyboardInterrupt as error:
@@ -81,41 +98,53 @@ def carry_out_benchmark(
     return failed
 
 
-def _begin(manifest: BenchmarkManifest, out: Path) -> None:
+def _begin(plan: BenchmarkPlan, inputs: Inputs, rows: Traversable, out: Path) -> None:
     """Write the manifest, or require the same one in the folder."""
     require_ours_or_empty(out)
     if (out / MANIFEST).exists():
-        BenchmarkManifest.read(out).require_same(manifest, out)
+        known = read_manifest(out)
+        RecordedBenchmark.of(known, out).require_same(plan, out)
+        require_same_inputs(out, known, inputs)
+        require_unaltered(out, list(inputs.files))
+        resume_manifest(out, known)
         return
-    begun = {MARKER, ROWS}  # what a start that was killed may leave
+    begun = {MARKER, ROWS, INPUTS}  # what a start that was killed may leave
     if out.is_dir() and {each.name for each in out.iterdir()} - begun:
         raise DdctError(f'{out} holds other results: choose another --out')
     mark_folder(out)
-    copy_release_rows(out)
-    manifest.write(out)
+    copy_release_rows(rows, out)
+    inputs.copy(out)
+    limits = NamedLimits.of(packaged_limits(), inputs)
+    campaigns = {
+        f'{entry.name}/{name}': CampaignPlan.of(campaign, limits, out)
+        for entry in plan.controllers
+        for name, campaign in campaigns_of(entry, plan.run_cases, out).items()
+    }
+    begin_manifest(out, BENCHMARK, plan, inputs, campaigns)
 
 
-def campaigns_of(judged: Judged, cases: Cases, held_out_seed: int) -> dict[str, Campaign]:
+def campaigns_of(entry: JudgedEntry, cases: Cases, out: Path) -> dict[str, Campaign]:
     """Return the campaigns of a judged controller by the names of their folders."""
+    judged = entry.judged(out)
     chosen, folder = judged.chosen, judged.folder
-    held_out = {HELD_OUT: cases.held_out(chosen, folder, held_out_seed)}
+    held_out = {HELD_OUT: cases.held_out(chosen, folder, entry.held_out_seed)}
     if judged.is_packaged:
         return held_out
     return {DEVELOPMENT: cases.development([chosen], folder), **held_out}
 
 
-def _compute(judged: Judged, seed: int, cases: Cases, folder: Path, options: Options) -> None:
+def _compute(entry: JudgedEntry, cases: Cases, out: Path, options: Options) -> None:
     """Compute what is missing of a judged controller's runs."""
-    if not (folder / MARKER).exists():
+    mark_folder(out / entry.name)
+    for name, campaign in campaigns_of(entry, cases, out).items():
+        folder = out / entry.name / name
+        print(f'{entry.name}: {name}, {campaign.runs} runs', file=sys.stderr, flush=True)
         mark_folder(folder)
-    for name, campaign in campaigns_of(judged, cases, seed).items():
-        print(f'{judged.name}: {name}, {campaign.runs} runs', file=sys.stderr, flush=True)
-        carry_out(
-            campaign,
+        carry_out_part(
+            RecordedCampaign.read(folder),
             packaged_limits(),
-            folder / name,
+            folder,
             workers=options.workers,
-            resume=(folder / name / CAMPAIGN_MANIFEST).exists(),
             stopped=options.stopped,
         )
 
@@ -127,4 +156,4 @@ def read_judged_rows(folder: Path) -> JudgedRows:
 
 
 def _rows(folder: Path) -> CaseRows:
-    return CaseRows.of_table(read_table(folder, Manifest.read(folder)))
+    return CaseRows.of_table(read_table(folder, RecordedCampaign.read(folder)))

@@ -8,8 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from ddct_bringup.digests.code import code_digest, package_digest
-from ddct_bringup.digests.user_files import require_same_controller
+from ddct_bringup.manifest.code import code_digest, package_digest
 from ddct_controllers.from_file.controller_file import is_controller_file
 from ddct_controllers.plugins import CONTROLLERS
 from ddct_controllers.registry import (
@@ -58,11 +57,6 @@ class Judged:
     def is_packaged(self) -> bool:
         """Whether it comes with this release, which then has its rows of development cases."""
         return self.chosen in own_controller_names()
-
-    def require_unchanged(self) -> None:
-        """Raise DdctError where one of its files has changed since; none of them runs before."""
-        if is_controller_file(self.chosen):
-            require_same_controller(self.path, self.digests)
 
     def held_out_seed(self, release: str) -> int:
         """

@@ -18,16 +18,17 @@ import pyarrow as pa
 import pyarrow.parquet as parquet
 
 from ddct_bringup.benchmark.case_rows import IS_BOUND, CaseRows
-from ddct_bringup.benchmark.cases import Cases, packaged_folder
+from ddct_bringup.benchmark.cases import Cases
 from ddct_bringup.campaign.arrow_columns import read_parquet
 from ddct_bringup.campaign.columns import CONTROLLER, SEED
 from ddct_bringup.campaign.conduct import carry_out
-from ddct_bringup.campaign.manifest import MANIFEST, Manifest
+from ddct_bringup.campaign.plan import RecordedCampaign
 from ddct_bringup.campaign.rows import STATE
 from ddct_bringup.campaign.spec import CampaignSpec
 from ddct_bringup.campaign_report.evaluated_quantities import QUANTITIES
 from ddct_bringup.campaign_report.reading import read_table
-from ddct_bringup.digests.origin import CodeOrigin
+from ddct_bringup.manifest.manifest import MANIFEST
+from ddct_bringup.manifest.origin import CodeOrigin
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_controllers.registry import own_controller_names
 from ddct_plant.base.errors import DdctError
@@ -97,9 +98,9 @@ def release_rows(folder: Traversable | Path) -> ReleaseRows:
         raise DdctError(f'{folder}: its rows of the release cannot be read ({why})') from error
 
 
-def copy_release_rows(target: Path) -> None:
-    """Write the rows of this release into a folder; raise DdctError when that fails."""
-    write_bytes(str(target / ROWS), (packaged_folder() / ROWS).read_bytes())
+def copy_release_rows(rows: Traversable, target: Path) -> None:
+    """Write the rows in the folder of a release into another; raise DdctError on failure."""
+    write_bytes(str(target / ROWS), (rows / ROWS).read_bytes())
 
 
 def write_release_rows(work: Path, target: Path, workers: int | None = None) -> None:
@@ -112,15 +113,15 @@ def write_release_rows(work: Path, target: Path, workers: int | None = None) -> 
     cases = Cases.packaged()
     campaign = cases.development(own_controller_names(), Path())
     resume = (work / MANIFEST).exists()
-    if resume and (before := Manifest.read(work).origin).code != CodeOrigin.here().code:
+    if resume and (before := RecordedCampaign.read(work).origin).code != CodeOrigin.here().code:
         raise DdctError(
             f'it has runs of other code, {before.text}: remove it, and run {_PROGRAM} again',
             place=work,
         )
     carry_out(campaign, packaged_limits(), work, workers=workers, resume=resume)
-    manifest = Manifest.read(work)
-    table = read_table(work, manifest).select(columns_kept(campaign.spec))
-    origin = manifest.origin
+    recorded = RecordedCampaign.read(work)
+    table = read_table(work, recorded).select(columns_kept(campaign.spec))
+    origin = recorded.origin
     texts = {_VERSION: origin.version, _COMMIT: origin.commit, _CODE: origin.code}
     texts[_CASES] = cases.digest
     table = table.replace_schema_metadata({key: text.encode() for key, text in texts.items()})

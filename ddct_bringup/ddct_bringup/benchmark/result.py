@@ -15,8 +15,8 @@ from ddct_bringup.benchmark.comparison import (
 from ddct_bringup.benchmark.conduct import JudgedRows
 from ddct_bringup.benchmark.evaluated import MAIN
 from ddct_bringup.benchmark.evaluation import SHOWN, evaluations_of, quantities_in
-from ddct_bringup.benchmark.manifest import BenchmarkManifest, JudgedEntry
 from ddct_bringup.benchmark.outcomes import share_of_successes
+from ddct_bringup.benchmark.plan import JudgedEntry, RecordedBenchmark
 from ddct_bringup.benchmark.release import ReleaseRows
 from ddct_bringup.benchmark.result_types import (
     BoardRow,
@@ -36,7 +36,7 @@ SCHEMA_VERSION = 2
 
 
 def result_of(
-    manifest: BenchmarkManifest,
+    recorded: RecordedBenchmark,
     release: ReleaseRows,
     rows: Mapping[str, JudgedRows],
     failed: Mapping[str, str],
@@ -47,26 +47,26 @@ def result_of(
     `release` has the rows of the development cases that ran, `rows` those of the judged
     controllers by name, `failed` the reasons of those that have none.
     """
-    board = _board_rows(manifest, release, rows)
-    figures = None if manifest.quick else figures_in(board)
+    board = _board_rows(recorded, release, rows)
+    figures = None if recorded.plan.quick else figures_in(board)
     return Result(
         schema_version=SCHEMA_VERSION,
-        release=manifest.origin,
-        cases=_cases(manifest, release),
-        judge_seed=manifest.judge_seed,
+        release=recorded.origin,
+        cases=_cases(recorded, release),
+        judge_seed=recorded.plan.judge_seed,
         method=_method(figures),
         controllers=[
-            _judged(entry, manifest, release, rows[entry.name], figures)
+            _judged(entry, recorded, release, rows[entry.name], figures)
             if entry.name in rows
             else _not_judged(entry, failed.get(entry.name))
-            for entry in manifest.controllers
+            for entry in recorded.plan.controllers
         ],
         board=_board(board, rows, figures),
     )
 
 
-def _cases(manifest: BenchmarkManifest, release: ReleaseRows) -> CasesResult:
-    cases = manifest.run_cases
+def _cases(recorded: RecordedBenchmark, release: ReleaseRows) -> CasesResult:
+    cases = recorded.plan.run_cases
     spec = cases.planned.spec
     return CasesResult(
         digest=cases.digest,
@@ -77,7 +77,7 @@ def _cases(manifest: BenchmarkManifest, release: ReleaseRows) -> CasesResult:
         varied=list(spec.vary),
         development_seed=spec.root,
         release_rows=release.origin,
-        other_code=release.other_code(manifest.origin),
+        other_code=release.other_code(recorded.origin),
     )
 
 
@@ -111,7 +111,7 @@ def _not_judged(entry: JudgedEntry, error: str | None) -> JudgedResult:
 
 def _judged(
     entry: JudgedEntry,
-    manifest: BenchmarkManifest,
+    recorded: RecordedBenchmark,
     release: ReleaseRows,
     rows: JudgedRows,
     figures: dict[str, CaseFigures] | None,
@@ -119,7 +119,7 @@ def _judged(
     """Return the result of one controller; `figures` has those of all on development cases."""
     name = entry.name
     development = _development(rows, release).only(rows.held_out.controllers)
-    varied = list(manifest.run_cases.planned.spec.vary)
+    varied = list(recorded.plan.run_cases.planned.spec.vary)
     return replace(
         _not_judged(entry, None),
         development=evaluations_of(development, varied, name),
@@ -139,14 +139,14 @@ def _development(rows: JudgedRows, release: ReleaseRows) -> CaseRows:
 
 
 def _board_rows(
-    manifest: BenchmarkManifest, release: ReleaseRows, rows: Mapping[str, JudgedRows]
+    recorded: RecordedBenchmark, release: ReleaseRows, rows: Mapping[str, JudgedRows]
 ) -> CaseRows:
     """Return the rows of every controller on the development cases, the judged ones first."""
     together = release.rows
     for each in rows.values():
         if each.development is not None:
             together = each.development.beside(together)
-    judged = [entry.name for entry in manifest.controllers if entry.name in rows]
+    judged = [entry.name for entry in recorded.plan.controllers if entry.name in rows]
     others = [name for name in together.controllers if name not in judged]
     return together.only([*judged, *others])
 

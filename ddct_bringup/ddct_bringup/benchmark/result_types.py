@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from ddct_bringup.benchmark.update_times import UpdateTimesFile
 from ddct_bringup.campaign_report.statistics.spread import Quantiles
 from ddct_bringup.campaign_report.summary_types import PairSummary, Reason
-from ddct_bringup.digests.origin import CodeOrigin
+from ddct_bringup.manifest.origin import CodeOrigin
 from ddct_plant.files.json_records import Inline
 
 

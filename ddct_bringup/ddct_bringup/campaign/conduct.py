@@ -4,6 +4,7 @@
 
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Future, wait
+from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
@@ -11,19 +12,27 @@ from pathlib import Path
 from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.columns import merge, schema_of
 from ddct_bringup.campaign.executors import Workers, workers_of
-from ddct_bringup.campaign.manifest import MANIFEST, Manifest
+from ddct_bringup.campaign.plan import CampaignPlan, RecordedCampaign, carried
 from ddct_bringup.campaign.shards import (
     ShardJob,
     TimeLeft,
     each_controller_first,
     timed_shard,
 )
-from ddct_bringup.digests.digest_file import Digests
-from ddct_bringup.digests.files import altered_files, require_unaltered
-from ddct_bringup.digests.writing import (
-    begin_campaign_digests,
-    finish_campaign_digests,
+from ddct_bringup.campaign.spec import spec_of
+from ddct_bringup.manifest.file_states import altered_files, require_unaltered
+from ddct_bringup.manifest.inputs import INPUTS, Inputs, full_path
+from ddct_bringup.manifest.limits import NamedLimits
+from ddct_bringup.manifest.manifest import (
+    CAMPAIGN,
+    ITSELF,
+    MANIFEST,
+    Manifest,
+    begin_manifest,
     keep_digests,
+    read_manifest,
+    require_same_inputs,
+    resume_manifest,
 )
 from ddct_bringup.run.output_folder import (
     MARKER,
@@ -66,77 +75,143 @@ def carry_out(
     becomes true: completed shards stay, and `resume` continues with them.
     """
     with locked_folders(out), workers_of(workers, scheduler) as ready:
-        manifest = _begin(campaign, limits, out, resume=resume, stopped=stopped)
-        digests = begin_campaign_digests(out, SHARDS, one_machine=scheduler is None)
-        shards = _shards(campaign, limits, manifest, out)
-        missing = {file: job for file, job in shards.items() if not _is_done(file, out, digests)}
-        done = manifest.runs - sum(job.last - job.first for job in missing.values())
-        progress = Progress('runs', manifest.runs, done=done)
-        conduct = _Conduct(ready, progress, stopped, TimeLeft(campaign.cases))
-        conduct.compute(missing, done)
-        require_unaltered(out, [file.relative_to(out).as_posix() for file in shards])
-        schema = schema_of(campaign.spec)
-        rows = {file: job.last - job.first for file, job in shards.items()}
-        merge(rows, schema, out / RESULTS, RESUME)
-        finish_campaign_digests(out)
+        recorded, manifest = _begin(
+            campaign, limits, out, resume=resume, stopped=stopped, one_machine=scheduler is None
+        )
+        carry_out_recorded(recorded, manifest, limits, out, ready, stopped)
     return out / RESULTS
 
 
-def _is_done(file: Path, out: Path, digests: Digests) -> bool:
+def carry_out_part(
+    recorded: RecordedCampaign,
+    limits: Limits,
+    out: Path,
+    *,
+    workers: int | None = None,
+    stopped: Callable[[], bool] = lambda: False,
+) -> None:
     """
-    Return whether a shard was written before; report one that was altered since.
+    Compute what is missing of a campaign that is a part of another result.
 
-    Its digest, kept when it was written, says that it has its rows: a campaign is resumed with the
-    same manifest only.
+    Raise as `carry_out`.
     """
-    name = file.relative_to(out).as_posix()
-    if name not in digests.files or not file.exists():
-        return False
-    if altered_files(out, digests, [name]):
-        complain(PROGRAM, f'{file}: altered since it was computed: it is computed again')
-        return False
-    return True
+    with locked_folders(out), workers_of(workers, None) as ready:
+        mark_folder(out)
+        with _written(out):
+            (out / SHARDS).mkdir(exist_ok=True)
+        manifest = read_manifest(recorded.result)
+        carry_out_recorded(recorded, manifest, limits, out, ready, stopped)
+
+
+def carry_out_recorded(
+    recorded: RecordedCampaign,
+    manifest: Manifest,
+    limits: Limits,
+    out: Path,
+    workers: Workers,
+    stopped: Callable[[], bool],
+) -> None:
+    """Compute the missing shards of a campaign whose plan the manifest of its result has."""
+    campaign = recorded.campaign()
+    shards = _shards(campaign, limits, recorded, out)
+    done_before = _Done(recorded.result, manifest)
+    missing = {file: job for file, job in shards.items() if not done_before.has(file)}
+    runs = campaign.runs
+    done = runs - sum(job.last - job.first for job in missing.values())
+    progress = Progress('runs', runs, done=done)
+    _Conduct(workers, progress, stopped, TimeLeft(campaign.cases)).compute(missing, done)
+    require_unaltered(out, [file.relative_to(out).as_posix() for file in shards])
+    schema = schema_of(campaign.spec)
+    rows = {file: job.last - job.first for file, job in shards.items()}
+    merge(rows, schema, out / RESULTS, RESUME)
+    keep_digests([out / RESULTS])
+
+
+@dataclass(frozen=True)
+class _Done:
+    """
+    Shards that were written before.
+
+    Their digests, kept when they were written, say that they have their rows: a campaign is
+    resumed with the same plan only.
+    """
+
+    result: Path
+    manifest: Manifest
+
+    def has(self, file: Path) -> bool:
+        """Return whether a shard was written before; report one that was altered since."""
+        name = full_path(file).relative_to(full_path(self.result)).as_posix()
+        if name not in self.manifest.files or not file.exists():
+            return False
+        if altered_files(self.result, self.manifest, [name]):
+            complain(PROGRAM, f'{file}: altered since it was computed: it is computed again')
+            return False
+        return True
 
 
 def _begin(
-    campaign: Campaign, limits: Limits, out: Path, *, resume: bool, stopped: Callable[[], bool]
-) -> Manifest:
-    """Return the manifest in the folder; write it first unless the campaign is resumed."""
-    manifest = Manifest.of(campaign, limits)
+    campaign: Campaign,
+    limits: Limits,
+    out: Path,
+    *,
+    resume: bool,
+    stopped: Callable[[], bool],
+    one_machine: bool,
+) -> tuple[RecordedCampaign, Manifest]:
+    """Return campaign and manifest of the result; write it first unless it is resumed."""
     require_ours_or_empty(out)
+    inputs = Inputs(campaign.spec.folder)
+    content = carried(campaign.spec, inputs)
+    named = NamedLimits.of(limits, inputs)
     if (out / MANIFEST).exists():
-        known = Manifest.read(out)
+        recorded, known = RecordedCampaign.read(out), read_manifest(out)
         if not resume:
             raise DdctError(
                 f'{out} holds a campaign: go on with --resume, or choose another --out',
                 key='--resume',
             )
-        known.require_same(manifest, out)
-        require_unaltered(out, [MANIFEST])
-        return known
+        require_unaltered(out, list(inputs.files))
+        require_same_inputs(out, known, inputs)
+        spec = spec_of(content, out / INPUTS)
+        recorded.require_same(CampaignPlan.of(Campaign(spec), named, out))
+        return recorded, resume_manifest(out, known, one_machine=one_machine)
     if resume:
         raise DdctError('there is nothing to go on with: leave --resume out', place=out)
-    if out.is_dir() and {each.name for each in out.iterdir()} - {MARKER, SHARDS}:
+    if out.is_dir() and {each.name for each in out.iterdir()} - {MARKER, SHARDS, INPUTS}:
         raise DdctError(f'{out} holds other results: choose another --out', key='--out')
     campaign.require_sound()
     require_going_on(stopped)
     mark_folder(out)
-    (out / SHARDS).mkdir(exist_ok=True)
-    manifest.write(out)
-    return manifest
+    with _written(out):
+        (out / SHARDS).mkdir(exist_ok=True)
+    inputs.copy(out)
+    plan = CampaignPlan.of(Campaign(spec_of(content, out / INPUTS)), named, out)
+    begin_manifest(out, CAMPAIGN, {}, inputs, {ITSELF: plan})
+    manifest = resume_manifest(out, read_manifest(out), one_machine=one_machine)
+    return RecordedCampaign.read(out), manifest
+
+
+@contextmanager
+def _written(folder: Path) -> Iterator[None]:
+    """Raise DdctError where the operating system refuses to write into a folder."""
+    try:
+        yield
+    except OSError as error:
+        raise DdctError(f'cannot be written ({error.strerror})', place=folder) from error
 
 
 def _shards(
-    campaign: Campaign, limits: Limits, manifest: Manifest, out: Path
+    campaign: Campaign, limits: Limits, recorded: RecordedCampaign, out: Path
 ) -> dict[Path, ShardJob]:
     """Return the jobs of the shards by file, in the order of the runs."""
-    size, runs = manifest.shard_size, manifest.runs
+    size, runs = recorded.plan.shard_size, campaign.runs
     return {
         out / SHARDS / f'{first:08d}.parquet': ShardJob(
             campaign.spec,
             limits,
-            manifest.code_digest,
-            manifest.spec_digest,
+            recorded.origin.code,
+            recorded.plan.spec_digest,
             first,
             min(first + size, runs),
         )

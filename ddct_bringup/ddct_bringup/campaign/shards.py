@@ -13,7 +13,7 @@ from pathlib import Path
 
 from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.columns import schema_of, shard_bytes
-from ddct_bringup.campaign.manifest import require_code
+from ddct_bringup.campaign.plan import require_code
 from ddct_bringup.campaign.scored import Scorer
 from ddct_bringup.campaign.spec import CampaignSpec
 from ddct_bringup.campaign.specification.named_files import digest_of

@@ -10,7 +10,7 @@ from pathlib import Path
 from markupsafe import Markup
 
 from ddct_bringup.campaign.keys import COMMON, SCENARIO
-from ddct_bringup.campaign.manifest import Manifest
+from ddct_bringup.campaign.plan import RecordedCampaign
 from ddct_bringup.campaign_report import texts
 from ddct_bringup.campaign_report.distributions_figure import distributions_figure
 from ddct_bringup.campaign_report.map_types import MapScale
@@ -20,7 +20,7 @@ from ddct_bringup.campaign_report.reading import read_table, results_of
 from ddct_bringup.campaign_report.results import Results
 from ddct_bringup.campaign_report.summary import summary_of
 from ddct_bringup.campaign_report.summary_types import Summary
-from ddct_bringup.digests.writing import keep_digests
+from ddct_bringup.manifest.manifest import MANIFEST, finish_manifest, keep_digests
 from ddct_bringup.metrics.catalogue import TABLE_5_1
 from ddct_bringup.report.page_parts import (
     MARKER,
@@ -50,36 +50,39 @@ def write_campaign_page(folder: Path) -> Summary:
 
     Raise DdctError for a folder without a finished campaign, and when a file cannot be written.
     """
-    manifest = Manifest.read(folder)
-    results = results_of(manifest, read_table(folder, manifest))
+    recorded = RecordedCampaign.read(folder)
+    results = results_of(recorded, read_table(folder, recorded))
     summary = summary_of(results)
-    replay = texts.replay_command(folder.as_posix(), 'INDEX', manifest.limits)
-    page = campaign_page(results, summary, replay, facts_of(manifest))
+    replay = texts.replay_command('.', 'INDEX')
+    page = campaign_page(results, summary, replay, facts_of(recorded))
     with locked_folders(folder):
         write_json(str(folder / SUMMARY), summary, ours=True)
         write_text(str(folder / PAGE), page, ours=True)
         keep_digests([folder / SUMMARY, folder / PAGE])
+        if (folder / MANIFEST).exists():  # else it is a part of another result
+            finish_manifest(folder)
     return summary
 
 
-def scenario_of(manifest: Manifest) -> str:
+def scenario_of(recorded: RecordedCampaign) -> str:
     """Return the name of the scenario of a campaign, or that it was varied."""
-    return 'varied' if SCENARIO in manifest.grid else manifest.spec.get(SCENARIO, THESIS)
+    return 'varied' if SCENARIO in recorded.plan.grid else recorded.plan.spec.get(SCENARIO, THESIS)
 
 
-def facts_of(manifest: Manifest) -> dict[str, str]:
+def facts_of(recorded: RecordedCampaign) -> dict[str, str]:
     """Return the origin of a campaign as text by label."""
-    common = {key: manifest.spec[key] for key in COMMON if key in manifest.spec}
-    limits = manifest.limits
+    plan, origin = recorded.plan, recorded.origin
+    common = {key: plan.spec[key] for key in COMMON if key in plan.spec}
+    limits = plan.limits.origin
     return {
         **common,
-        SCENARIO: scenario_of(manifest),
-        'root seed': str(manifest.root_seed),
+        SCENARIO: scenario_of(recorded),
+        'root seed': str(plan.root_seed),
         'limits': f'{limits.get("name")}, digest {limits.get("digest")}',
-        'version of the runs': manifest.version,
-        'commit': manifest.commit,
-        'digest of the specification': manifest.spec_digest,
-        'specification': dump_yaml(manifest.spec),
+        'version of the runs': origin.version,
+        'commit': origin.commit,
+        'digest of the specification': plan.spec_digest,
+        'specification': dump_yaml(dict(plan.spec)),
     }
 
 

@@ -7,7 +7,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TypeVar
 
-from ddct_bringup.campaign.manifest import Manifest
 from ddct_bringup.campaign_report import texts
 from ddct_bringup.campaign_report.summary_types import (
     GroupSummary,
@@ -52,11 +51,10 @@ def _dash_reason(header: str, row: Sequence[str]) -> str:
 
 def print_summary(summary: Summary, folder: Path) -> None:
     """Print the summary of the campaign in a folder."""
-    limits = Manifest.read(folder).limits
     print_tables(summary_tables(summary))
     for note in texts.notes_of(summary):
         print_note(note)
-    print(f'the bag of a run: {texts.replay_command(str(folder), "I", limits)}')
+    print(f'the bag of a run: {texts.replay_command(str(folder), "I")}')
 
 
 def _failed(summary: Summary) -> Table:

@@ -11,11 +11,11 @@ from ddct_bringup.campaign.arrow_columns import numpy_column, read_parquet
 from ddct_bringup.campaign.columns import COMPARED, CONTROLLER, INDEX, PATH, SCHEMA_VERSION
 from ddct_bringup.campaign.conduct import RESULTS
 from ddct_bringup.campaign.keys import COMMON, SCENARIO, option_of
-from ddct_bringup.campaign.manifest import MANIFEST, Manifest
+from ddct_bringup.campaign.plan import RecordedCampaign
 from ddct_bringup.campaign.rows import STATE
 from ddct_bringup.campaign.spec import CampaignSpec
 from ddct_bringup.campaign_report.results import OtherVersion, Results
-from ddct_bringup.digests.files import require_unaltered
+from ddct_bringup.manifest.file_states import require_unaltered
 from ddct_plant.base.clutch_kinds import LINEAR
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.files.input_file import SCHEMA_KEY, require_schema_version
@@ -32,14 +32,14 @@ _RESUME_ADVICE = 'give --resume to ddct campaign, which writes it from what is d
 
 def require_as_written(folder: Path) -> None:
     """
-    Raise DdctError unless the manifest and the rows of a campaign are as their digests.
+    Raise DdctError unless the rows of a campaign are as their digest.
 
     Flipped bits may change numbers and nothing else.
     """
-    require_unaltered(folder, (MANIFEST, RESULTS), advice=_DIGEST_ADVICE)
+    require_unaltered(folder, (RESULTS,), advice=_DIGEST_ADVICE)
 
 
-def read_table(folder: Path, manifest: Manifest) -> pa.Table:
+def read_table(folder: Path, recorded: RecordedCampaign) -> pa.Table:
     """
     Return the rows of a finished campaign, with the columns that its file has.
 
@@ -49,7 +49,7 @@ def read_table(folder: Path, manifest: Manifest) -> pa.Table:
     path = folder / RESULTS
     require_as_written(folder)
     try:
-        table = read_parquet(path, manifest.runs)
+        table = read_parquet(path, recorded.plan.runs)
         metadata = table.schema.metadata or {}
         _require_single(table)
         require_schema_version(
@@ -65,13 +65,13 @@ def read_table(folder: Path, manifest: Manifest) -> pa.Table:
         why = next(iter(str(error).splitlines()), type(error).__name__)
         raise DdctError(f'{path}: it is damaged ({why}): {_RESUME_ADVICE}') from error
     _require_types(table, path)
-    for name in (*REQUIRED, *manifest.grid, *manifest.random):
+    for name in (*REQUIRED, *recorded.plan.grid, *recorded.plan.random):
         if name not in table.column_names:
             raise DdctError(f'it has no column {name}: {_RESUME_ADVICE}', place=path)
-    if not np.array_equal(numpy_column(table[INDEX]), np.arange(manifest.runs)):
+    if not np.array_equal(numpy_column(table[INDEX]), np.arange(recorded.plan.runs)):
         raise DdctError(
-            f'{path}: its rows are not the {manifest.runs} runs that {folder} was started with: '
-            f'{_RESUME_ADVICE}'
+            f'{path}: its rows are not the {recorded.plan.runs} runs that {folder} was started '
+            f'with: {_RESUME_ADVICE}'
         )
     return table
 
@@ -90,20 +90,20 @@ def _require_single(table: pa.Table) -> None:
             raise ValueError(f'the column {field.name} is there twice')
 
 
-def results_of(manifest: Manifest, table: pa.Table) -> Results:
+def results_of(recorded: RecordedCampaign, table: pa.Table) -> Results:
     """Return the results from the rows and the manifest."""
     columns = {name: numpy_column(table[name]) for name in table.column_names}
-    expected = (*REQUIRED, PATH, *COMPARED, *manifest.grid, *manifest.random)
+    expected = (*REQUIRED, PATH, *COMPARED, *recorded.plan.grid, *recorded.plan.random)
     absent = tuple(name for name in COMPARED if name not in columns)
     unknown = tuple(name for name in columns if name not in expected)
     nominal: dict[str, float] = {}
     why = ''
     try:
-        nominal = nominal_values(manifest.campaign_spec())
+        nominal = nominal_values(recorded.campaign_spec())
     except DdctError as error:  # a key or a scenario of another version, or a file that is gone
         why = str(error)
     other = OtherVersion(absent, unknown, why)
-    return Results(columns, manifest.grid, manifest.random, nominal, other)
+    return Results(columns, recorded.plan.grid, recorded.plan.random, nominal, other)
 
 
 def nominal_values(spec: CampaignSpec) -> dict[str, float]:

@@ -3,7 +3,6 @@
 """Definitions and texts of a summary for the page and the terminal."""
 
 import shlex
-from collections.abc import Mapping
 
 from ddct_bringup.campaign_report.statistics.attribution import FEWEST
 from ddct_bringup.campaign_report.statistics.outcome import CONFIDENCE, METHOD
@@ -18,7 +17,6 @@ from ddct_bringup.campaign_report.summary_types import (
     Summary,
 )
 from ddct_bringup.report.page_parts import value_text
-from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.program.table import UNDEFINED
 
 RULES = {
@@ -58,12 +56,10 @@ RULES = {
 """Definitions by term."""
 
 
-def replay_command(folder: str, index: int | str, limits: Mapping[str, object]) -> str:
-    """Return the command that makes the bag of one row, judged by limits of this origin."""
-    words = ['ddct', 'campaign', 'replay', folder, '--index', str(index)]
-    if limits != packaged_limits().origin:
-        words += ['--limits', str(limits['name'])]
-    return shlex.join([*words, '--out', f'replay-{index}'])
+def replay_command(folder: str, index: int | str) -> str:
+    """Return the command that makes the bag of one row; a page has the folder that it is in."""
+    out = f'../replay-{index}' if folder == '.' else f'replay-{index}'
+    return shlex.join(['ddct', 'campaign', 'replay', folder, '--index', str(index), '--out', out])
 
 
 def share_text(share: float | None) -> str:

@@ -12,14 +12,14 @@ from pathlib import Path
 import numpy as np
 import scipy
 
-from ddct_bringup.digests.code import code_digest
-from ddct_bringup.digests.digest_file import file_digest
 from ddct_bringup.floor.case import Case
 from ddct_bringup.floor.dynamics.capacity import CapacityRange
 from ddct_bringup.floor.dynamics.off_going import OffGoing
 from ddct_bringup.floor.dynamics.start import Start
 from ddct_bringup.floor.dynamics.tube import Tube
 from ddct_bringup.floor.values import Floor
+from ddct_bringup.manifest.code import code_digest
+from ddct_bringup.manifest.manifest import file_digest
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.json_records import read_json, to_json
 from ddct_plant.files.output_file import write_text

@@ -8,7 +8,7 @@ from pathlib import Path
 from textwrap import fill
 
 from ddct_bringup.api import shell
-from ddct_bringup.programs.options.of_runs import add_layout_options, add_limits_option
+from ddct_bringup.programs.options.of_runs import add_layout_options
 from ddct_plant.files.output_file import (
     STDOUT,
     require_one_for_stdout,
@@ -52,7 +52,6 @@ def add_parser(subparsers: 'argparse._SubParsersAction[ProgramParser]') -> None:
     replay.add_argument('--overwrite', action='store_true', help='replace an earlier result')
     replay.add_argument('--json', metavar='FILE', help="write what was found; '-' is stdout")
     add_layout_options(replay)
-    add_limits_option(replay)
     show.add_argument('--json', metavar='FILE', help="write summary.json to FILE; '-': stdout")
     show.add_argument('--csv', metavar='FILE', help="write the rows as CSV to FILE; '-': stdout")
     show.add_argument(
@@ -80,7 +79,6 @@ def _replay(options: argparse.Namespace) -> int:
         options.folder,
         options.index,
         options.out,
-        shell.load_limits(options.limits),
         shell.run_with_progress,
         partial(complain, _REPLAY),
         layout=options.layout,

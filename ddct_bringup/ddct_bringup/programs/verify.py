@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Program `verify`: check the digests of a result, run everything again, and compare."""
+"""Program `verify`: check the files of a result, make everything again, and compare."""
 
 import argparse
 import sys
@@ -8,18 +8,12 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from ddct_bringup.digests.digest_file import DIGESTS, read_digests
-from ddct_bringup.programs.options.of_runs import add_limits_option
+from ddct_bringup.manifest.manifest import MANIFEST
+from ddct_bringup.programs.options.of_runs import add_workers_option
 from ddct_bringup.run.output_folder import locked_folders
-from ddct_bringup.verdict.limits import load_limits
 from ddct_bringup.verification.comparison import BOUND
-from ddct_bringup.verification.folder import (
-    Verification,
-    entry_of,
-    folders_with_digests,
-    verified_folder,
-)
-from ddct_bringup.verification.request import VerificationRequest
+from ddct_bringup.verification.folder import Verification, entry_of, results_in, verified
+from ddct_bringup.verification.result import DIFFERENT, NOT_REPEATED, SAME_BITS, SAME_WITHIN
 from ddct_bringup.verification.text import complaints, print_verification
 from ddct_plant.files.output_file import require_place
 from ddct_plant.program.command_line import (
@@ -30,18 +24,22 @@ from ddct_plant.program.command_line import (
 )
 
 PROGRAM = 'ddct verify'
+_CODES = {SAME_BITS: 0, DIFFERENT: 1, SAME_WITHIN: 3, NOT_REPEATED: 3}
+"""Exit codes by the state of the results."""
+_WORST = (DIFFERENT, NOT_REPEATED, SAME_WITHIN)
 
 _EPILOG = f"""\
 examples:
   ddct verify runs/demo                   the runs of compare or bringup
   ddct verify campaigns/wear --workers 2  a campaign: every row again
-  ddct verify runs/mine --files ~/mine    its controller files are in that folder now
   ddct verify runs/demo --json -          the result as JSON
 
-First every file is compared with its digest in {DIGESTS}. Then all runs are executed again,
-headless, and compared: to the last bit where code, versions and processor are those of the result,
-else to {BOUND:g} of the largest value. Of runs in real time only digests and scores are checked.
-Nothing in PATH is changed. The exit code is 0 only if all is the same.
+First every file is compared with its digest in {MANIFEST}. Then everything is made again in a
+scratch folder, headless, from the inputs in PATH, and compared file by file: to the last bit
+where code, libraries and versions are those of the result, else to {BOUND:g} of each signal's
+peak. Nothing in PATH is changed. The exit code is 0 where everything was made again and is equal,
+3 where it is equal as far as it could be repeated (the last line says what could not), 1 where
+something differs.
 """
 
 
@@ -53,17 +51,19 @@ def main(argv: list[str] | None = None) -> int:
 def _verify(argv: list[str]) -> int:
     options = _parser().parse_args(argv)
     require_place('--json', options.json)
-    limits = load_limits(options.limits)
     found = []
-    for folder in folders_with_digests(options.path):
+    for folder in results_in(options.path):
         with locked_folders(folder, shared=True):
-            digests = read_digests(folder)
-            request = VerificationRequest(folder, digests, limits, options.files, options.workers)
-            found.append(verified_folder(request))
+            found.append(verified(folder, options.workers))
     show_and_write(options.json, _document(found), lambda: _show(found))
     for line in (line for each in found for line in complaints(each)):
         complain(PROGRAM, line)
-    return 0 if all(each.same for each in found) else 1
+    return _CODES[_state(found)]
+
+
+def _state(found: Sequence[Verification]) -> str:
+    states = {each.state for each in found}
+    return next((each for each in _WORST if each in states), SAME_BITS)
 
 
 def _show(found: Sequence[Verification]) -> None:
@@ -81,8 +81,9 @@ def _document(found: Sequence[Verification]) -> Mapping[str, Any]:
         name = each['folder']
         files += [{**file, 'path': f'{name}/{file["path"]}'} for file in each.pop('files')]
         runs += [{**run, 'run': f'{name}: {run["run"]}'} for run in each.pop('runs')]
-    same = all(each.same for each in found)
-    return {'same': same, 'files': files, 'runs': runs, 'folders': folders}
+    state = _state(found)
+    same = state != DIFFERENT
+    return {'same': same, 'state': state, 'files': files, 'runs': runs, 'folders': folders}
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -92,19 +93,10 @@ def _parser() -> argparse.ArgumentParser:
         epilog=_EPILOG,
     )
     parser.add_argument(
-        'path', metavar='PATH', type=Path, help=f'a folder with {DIGESTS}, or one around such'
+        'path', metavar='PATH', type=Path, help=f'a folder with {MANIFEST}, or one around such'
     )
-    parser.add_argument(
-        '--files',
-        metavar='DIR',
-        type=Path,
-        help='folder of the controller, handover and scenario files of the result, if moved',
-    )
-    parser.add_argument(
-        '--workers', type=int, metavar='N', help='processes of a campaign; default: one per core'
-    )
+    add_workers_option(parser)
     parser.add_argument('--json', metavar='FILE', help="write the result; '-' is standard output")
-    add_limits_option(parser)
     return parser
 
 

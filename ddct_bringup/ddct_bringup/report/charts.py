@@ -3,7 +3,7 @@
 """Time charts of the page: one per signal with all runs, on one time axis."""
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -77,7 +77,27 @@ def chart_document(runs: Sequence[ChartRun]) -> tuple[Mapping[str, object], dict
     with document.models.freeze():  # or it would be searched for models after each chart
         for chart in charts.values():
             document.add_root(chart)
-    return dict(document.to_json(deferred=False)), {key: str(charts[key].id) for key in charts}
+    ids: dict[str, str] = {}
+    content = _with_fixed_ids(document.to_json(deferred=False), ids)
+    return content, {key: ids[str(charts[key].id)] for key in charts}
+
+
+def _with_fixed_ids(content: Any, ids: dict[str, str]) -> Any:
+    """
+    Return the JSON of a document with ids that count its models, so that it comes out again.
+
+    Bokeh's own count all models of the process. `ids` gets the new ones by the old.
+    """
+    if isinstance(content, Mapping):
+        return {
+            key: ids.setdefault(value, f'p{len(ids)}')
+            if key == 'id' and isinstance(value, str)
+            else _with_fixed_ids(value, ids)
+            for key, value in content.items()
+        }
+    if isinstance(content, (list, tuple)):
+        return [_with_fixed_ids(each, ids) for each in content]
+    return content
 
 
 def charted_signals(runs: Sequence[ChartRun]) -> list[ChartSignal]:

@@ -4,6 +4,9 @@
 
 import os
 import subprocess
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from functools import cache
 from pathlib import Path
 
@@ -38,8 +41,27 @@ def run_info_of(
     return {name_in_graph(node): pairs for node, pairs in info.items()}
 
 
-@cache
+_AS_OF: ContextVar[str | None] = ContextVar('_AS_OF', default=None)
+"""Commit that stands for that of this process."""
+
+
+@contextmanager
+def as_of_commit(commit: str) -> Iterator[None]:
+    """Let `source_commit` be another one of the same code, as a repeated run describes it."""
+    token = _AS_OF.set(commit)
+    try:
+        yield
+    finally:
+        _AS_OF.reset(token)
+
+
 def source_commit() -> str:
+    """Return the commit of the sources of this process, or that of `as_of_commit`."""
+    return _AS_OF.get() or _loaded_commit()
+
+
+@cache
+def _loaded_commit() -> str:
     """
     Return the `commit_of` the sources of this process, found at first use and then kept.
 

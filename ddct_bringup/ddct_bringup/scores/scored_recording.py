@@ -10,7 +10,6 @@ from pathlib import Path
 from ddct_bringup.bag.measured_run import read_recording
 from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.bag.recording import Recording
-from ddct_bringup.digests.writing import ITSELF, write_run_digests
 from ddct_bringup.run.execution import execute, simulate
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.run.timing_and_failure import RunTiming, failed_run, read_timing
@@ -65,13 +64,12 @@ def run_and_score(
     carry_out: Callable[[RunPlan, Path], Recording | None] = execute,
 ) -> ScoredRecording:
     """
-    Execute a plan into the existing `folder`, write its digests and score it.
+    Execute a plan into the existing `folder` and score it.
 
     What `carry_out`, which executes, returns is scored from memory; where it returns None, the bag
     is read. Raise the errors of `carry_out`, and DdctError for a bag that cannot be read.
     """
     recording = carry_out(plan, folder)
-    write_run_digests(folder, {ITSELF: plan})
     return score_recording(recording or read_bag(folder), plan.name, limits)
 
 

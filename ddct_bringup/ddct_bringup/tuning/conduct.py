@@ -7,9 +7,18 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ddct_bringup.campaign.conduct import RESUME, SHARDS, require_going_on
-from ddct_bringup.digests.digest_file import TUNING, Digests
-from ddct_bringup.digests.files import altered_files, require_unaltered
-from ddct_bringup.digests.writing import begin_campaign_digests, keep_digests
+from ddct_bringup.manifest.file_states import altered_files, require_unaltered
+from ddct_bringup.manifest.inputs import INPUTS, Inputs
+from ddct_bringup.manifest.manifest import (
+    MANIFEST,
+    TUNING,
+    Manifest,
+    begin_manifest,
+    keep_digests,
+    read_manifest,
+    require_same_inputs,
+    resume_manifest,
+)
 from ddct_bringup.run.output_folder import (
     MARKER,
     locked_folders,
@@ -19,7 +28,7 @@ from ddct_bringup.run.output_folder import (
 from ddct_bringup.tuning.evaluation import TrialRuns, evaluation
 from ddct_bringup.tuning.front import dominates, why_all_invalid
 from ddct_bringup.tuning.loop_quantities import update_time
-from ddct_bringup.tuning.manifest import MANIFEST, TuningManifest
+from ddct_bringup.tuning.plan import RecordedTuning, TuningPlan
 from ddct_bringup.tuning.record import batch_files, read_batch, write_batch
 from ddct_bringup.tuning.search import BATCH, Search, require_optuna
 from ddct_bringup.tuning.specification.development import parts_of
@@ -34,6 +43,7 @@ from ddct_plant.program.progress import Progress
 PROGRAM = 'ddct tune'
 _HOPELESS = 2 * BATCH
 """Number of trials after which a tuning ends if every run so far is invalid."""
+_NO_TIMES: Mapping[int, Mapping[str, float | None]] = {}
 
 
 def carry_out_tuning(
@@ -43,24 +53,30 @@ def carry_out_tuning(
     workers: int | None = None,
     resume: bool = False,
     stopped: Callable[[], bool] = lambda: False,
+    known_times: Mapping[int, Mapping[str, float | None]] = _NO_TIMES,
 ) -> list[Trial]:
     """
     Compute the trials of a tuning into a folder and return them.
 
     Raise DdctError for unusable arguments, another tuning in the folder, and where every run is
     invalid; KeyboardInterrupt when `stopped()` becomes true. What is done stays, and `resume`
-    continues with it.
+    continues with it. `known_times` are update times by trial that are not measured again.
     """
     search = Search(tuning.spec, tuning.present)
     with locked_folders(out):
-        digests = _begin(tuning, out, resume=resume)
-        with evaluation(tuning, workers, stopped) as computed:
-            return _Search(tuning, out, search, computed, digests).trials()
+        recorded, manifest = _begin(tuning, out, resume=resume)
+        with evaluation(recorded, workers, stopped) as computed:
+            return _Search(recorded, out, search, computed, manifest, known_times).trials()
 
 
-def _begin(tuning: Tuning, out: Path, *, resume: bool) -> Digests:
-    """Write the manifest, or require the same one in the folder; return the folder's digests."""
-    manifest = TuningManifest.of(tuning, require_optuna())
+def _begin(tuning: Tuning, out: Path, *, resume: bool) -> tuple[Tuning, Manifest]:
+    """
+    Write the manifest, or require the same one in the folder.
+
+    Return the tuning, with the files that are in the folder, and the manifest.
+    """
+    inputs = Inputs(tuning.spec.folder)
+    plan = TuningPlan.of(tuning, require_optuna(), inputs)
     require_ours_or_empty(out)
     if (out / MANIFEST).exists():
         if not resume:
@@ -68,18 +84,24 @@ def _begin(tuning: Tuning, out: Path, *, resume: bool) -> Digests:
                 f'{out} holds a tuning: go on with --resume, or choose another --out',
                 key='--resume',
             )
-        TuningManifest.read(out).require_same(manifest, out)
-        require_unaltered(out, [MANIFEST])
-    elif resume:
+        known = read_manifest(out)
+        recorded = RecordedTuning.of(known, out)
+        recorded.require_same(plan, out)
+        require_same_inputs(out, known, inputs)
+        require_unaltered(out, list(inputs.files))
+        return recorded.tuning(out), resume_manifest(out, known)
+    if resume:
         raise DdctError('there is nothing to go on with: leave --resume out', place=out)
-    else:
-        if out.is_dir() and {each.name for each in out.iterdir()} - {MARKER, SHARDS}:
-            raise DdctError(f'{out} holds other results: choose another --out', key='--out')
-        tuning.require_sound()
-        mark_folder(out)
+    if out.is_dir() and {each.name for each in out.iterdir()} - {MARKER, SHARDS, INPUTS}:
+        raise DdctError(f'{out} holds other results: choose another --out', key='--out')
+    tuning.require_sound()
+    mark_folder(out)
+    try:
         (out / SHARDS).mkdir(exist_ok=True)
-        manifest.write(out)
-    return begin_campaign_digests(out, SHARDS, one_machine=True, kind=TUNING)
+    except OSError as error:
+        raise DdctError(f'cannot be written ({error.strerror})', place=out) from error
+    manifest = begin_manifest(out, TUNING, plan, inputs)
+    return RecordedTuning.of(manifest, out).tuning(out), manifest
 
 
 @dataclass
@@ -90,8 +112,10 @@ class _Search:
     out: Path
     search: Search
     computed: TrialRuns
-    digests: Digests
-    """Digests of the batches that were recorded before."""
+    manifest: Manifest
+    """Manifest with the digests of the batches that were recorded before."""
+    known_times: Mapping[int, Mapping[str, float | None]]
+    """Update times by trial where they are not measured again, as they never come out again."""
 
     def trials(self) -> list[Trial]:
         """Return all trials."""
@@ -123,9 +147,9 @@ class _Search:
     def _recorded(self, batch: int) -> list[Trial] | None:
         """Return the trials of a batch that was recorded before; report one that was altered."""
         names = [file.relative_to(self.out).as_posix() for file in batch_files(self.out, batch)]
-        if not all(name in self.digests.files for name in names):
+        if not all(name in self.manifest.files for name in names):
             return None
-        if altered := altered_files(self.out, self.digests, names):
+        if altered := altered_files(self.out, self.manifest, names):
             complain(PROGRAM, f'{altered[0]}: altered since it was computed: it is computed again')
             return None
         return read_batch(self.out, batch)
@@ -135,7 +159,9 @@ class _Search:
         if not any(goal.name == UPDATE_TIME for goal in self.tuning.spec.goals):
             return trial
         campaign = self.tuning.with_values(trial.values)
-        measured = update_time(campaign, self.tuning.cases[0])
+        measured = self.known_times.get(trial.number)
+        if measured is None:
+            measured = update_time(campaign, self.tuning.cases[0])
         return replace(trial, further={**trial.further, **measured})
 
 

@@ -11,11 +11,13 @@ from pathlib import Path
 
 from ddct_bringup.benchmark.judged import seed_of
 from ddct_bringup.campaign.campaign import Campaign
-from ddct_bringup.campaign.conduct import carry_out
-from ddct_bringup.campaign.manifest import MANIFEST, Manifest
+from ddct_bringup.campaign.conduct import carry_out_part
+from ddct_bringup.campaign.plan import CampaignPlan, RecordedCampaign
 from ddct_bringup.campaign.rows import CONTROLLER, Row
 from ddct_bringup.campaign_report.reading import read_table
-from ddct_bringup.digests.digest_file import file_digest
+from ddct_bringup.manifest.limits import NamedLimits
+from ddct_bringup.manifest.manifest import add_campaign, file_digest
+from ddct_bringup.run.output_folder import mark_folder
 from ddct_bringup.tuning.trial import Trial
 from ddct_bringup.tuning.tuned_files import trial_file, trial_name
 from ddct_bringup.tuning.tuning import Tuning
@@ -53,19 +55,27 @@ def held_out_campaign(
 
 
 def compute_held_out(
-    tuning: Tuning, campaign: Campaign, out: Path, workers: int | None, stopped: Callable[[], bool]
+    tuning: Tuning,
+    campaign: Campaign,
+    limits: NamedLimits,
+    out: Path,
+    workers: int | None,
+    stopped: Callable[[], bool],
 ) -> None:
     """Compute what is missing of the held-out runs; raise DdctError or KeyboardInterrupt."""
+    add_campaign(out, HELD_OUT, CampaignPlan.of(campaign, limits, out))
     folder = out / HELD_OUT
-    resume = (folder / MANIFEST).exists()
-    carry_out(campaign, tuning.limits, folder, workers=workers, resume=resume, stopped=stopped)
+    mark_folder(folder)
+    carry_out_part(
+        RecordedCampaign.read(folder), tuning.limits, folder, workers=workers, stopped=stopped
+    )
 
 
 def held_out_trials(tuning: Tuning, out: Path, judged: Sequence[Trial]) -> Mapping[int, Trial]:
     """Return the judged trials with their rows of the held-out cases, by number."""
     folder = out / HELD_OUT
     rows: dict[str, list[Row]] = {}
-    for row in read_table(folder, Manifest.read(folder)).to_pylist():
+    for row in read_table(folder, RecordedCampaign.read(folder)).to_pylist():
         rows.setdefault(row[CONTROLLER], []).append(row)
     return {
         each.number: Trial(each.number, each.values, rows[trial_name(tuning, each)], each.further)

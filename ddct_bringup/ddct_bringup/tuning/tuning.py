@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A tuning: a controller with its specification, the campaign of its cases, its present values."""
 
+import os
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -12,6 +13,7 @@ from ddct_bringup.tuning.loop_quantities import nominal_settings
 from ddct_bringup.tuning.specification.parameters import Values
 from ddct_bringup.tuning.specification.spec import TuningSpec
 from ddct_bringup.verdict.limits import Limits
+from ddct_controllers.from_file.controller_file import is_controller_file
 from ddct_controllers.interface import Controller, ControllerSpec
 from ddct_controllers.registry import controller_spec
 from ddct_plant.base.errors import ParameterError
@@ -35,8 +37,10 @@ class Tuning:
     @cached_property
     def campaign(self) -> Campaign:
         """Campaign that contains the development cases."""
-        folder = self.spec.folder
-        return self.spec.development.campaign(self.judged.path, folder, floors=self.spec.floors)
+        folder, chosen = self.spec.folder, self.judged.path
+        if is_controller_file(chosen):  # so that a moved result has the same specification
+            chosen = os.path.relpath(chosen, folder)
+        return self.spec.development.campaign(chosen, folder, floors=self.spec.floors)
 
     @cached_property
     def cases(self) -> list[int]:

@@ -8,7 +8,7 @@ Every error in a limits file is reported with file, line and key.
 
 import hashlib
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
 from importlib.resources import files
 from operator import attrgetter
@@ -83,6 +83,8 @@ class Limits:
     """Limit of the traction of the driven axle; None where the file has none."""
     origin: Mapping[str, str | int] = field(compare=False)
     """Name, digest and schema version of the file, under the keys of `scores.json`."""
+    text: str = field(default='', compare=False, repr=False)
+    """Text of the file; empty for the packaged one."""
 
     def beside(
         self, metrics: Metrics, scenario: str, plant: JudgedPlant | None
@@ -126,7 +128,7 @@ def load_limits(file: str | Path | None) -> Limits:
     path = Path(file)
     with located(f'limits {path}'):
         text = user_text(path)
-    return limits_of_text(text, str(path))
+    return replace(limits_of_text(text, str(path)), text=text)
 
 
 def limits_of_text(text: str, name: str) -> Limits:

@@ -21,9 +21,8 @@ from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.files.input_file import read_text_file
 from ddct_plant.files.json_records import json_text, parse_json
 
-SAME_BITS, SAME_WITHIN = 'same_bits', 'same_within'
-DIFFERENT, DIGEST_ONLY = 'different', 'digest_only'
-"""States of a repeated run; DIGEST_ONLY of one that cannot be repeated."""
+SAME_BITS, SAME_WITHIN, DIFFERENT = 'same_bits', 'same_within', 'different'
+"""States of a comparison."""
 BOUND = 1e-9
 """
 Largest difference of two numbers that are the same, relative to the largest magnitude.
@@ -63,25 +62,18 @@ class Comparison:
     """First difference beyond the bound."""
     largest: float = 0.0
     """Largest difference, relative as BOUND; infinite for values that are no numbers."""
-    bound: float = BOUND
-    """Bound of values that have none of their own."""
-    used: float = BOUND
-    """Largest bound that a difference made necessary."""
 
-    def add(self, place: Place, recorded: Any, repeated: Any, bound: float | None = None) -> None:
-        """Compare two values: numbers, texts, or None; `bound` may be that of a run."""
+    def add(self, place: Place, recorded: Any, repeated: Any, bound: float = BOUND) -> None:
+        """Compare two values: numbers, texts, or None."""
         deviation = deviation_of(recorded, repeated)
         if deviation is not None:
             difference = Difference(place, recorded, repeated)
-            bound = self.bound if bound is None else bound
             figure, own = OF_PROGRAM
             if any(str(each).endswith(figure) for each in place.values()):
                 bound = max(bound, own)
             self._note(deviation, difference, bound)
 
-    def add_nested(
-        self, key: str, recorded: Any, repeated: Any, bound: float | None = None
-    ) -> None:
+    def add_nested(self, key: str, recorded: Any, repeated: Any, bound: float = BOUND) -> None:
         """
         Compare two values of JSON, whose place is a dotted key.
 
@@ -110,10 +102,10 @@ class Comparison:
         found = [
             each
             for name in (*ours, *(name for name in theirs if name not in ours))
-            for each in _signal_differences(name, ours.get(name), theirs.get(name), self.bound)
+            for each in _signal_differences(name, ours.get(name), theirs.get(name))
         ]
         for deviation, difference in sorted(found, key=lambda each: each[1].place['step']):
-            self._note(deviation, difference, self.bound)
+            self._note(deviation, difference, BOUND)
 
     def state(self, *, same_environment: bool) -> str:
         """Return the state: with the same code, versions and processor only equal bits count."""
@@ -130,14 +122,12 @@ class Comparison:
     def _note(self, deviation: float, difference: Difference, bound: float) -> None:
         self.largest = max(self.largest, deviation)
         self.bits = self.bits or difference
-        if deviation > BOUND:
-            self.used = max(self.used, bound)
         if deviation > bound:
             self.beyond = self.beyond or difference
 
 
 def _signal_differences(
-    name: str, recorded: Any, repeated: Any, bound: float
+    name: str, recorded: Any, repeated: Any
 ) -> Iterator[tuple[float, Difference]]:
     """Yield the first difference of a signal, the first beyond the bound, and the largest one."""
     ours, theirs = _form(recorded), _form(repeated)
@@ -146,7 +136,7 @@ def _signal_differences(
         return
     steps = min(len(recorded), len(repeated))
     deviations = deviations_of(recorded[:steps], repeated[:steps])
-    places = [*np.flatnonzero(deviations >= 0.0)[:1], *np.flatnonzero(deviations > bound)[:1]]
+    places = [*np.flatnonzero(deviations >= 0.0)[:1], *np.flatnonzero(deviations > BOUND)[:1]]
     for step in (*places, *([deviations.argmax()] if places else [])):
         values = (recorded[step], repeated[step])
         yield float(deviations[step]), Difference({'signal': name, 'step': int(step)}, *values)

@@ -1,66 +1,79 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Verify one folder: its files first, then its runs; the result as JSON."""
+"""Verify a result: its files first, then everything again, then file against file."""
 
+import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from ddct_bringup.digests.digest_file import DIGESTS
-from ddct_bringup.digests.environment import this_environment
-from ddct_bringup.digests.files import SAME, UNLISTED, FileState, file_states
+from ddct_bringup.manifest.file_states import SAME, UNLISTED, FileState, file_states
+from ddct_bringup.manifest.manifest import MANIFEST, Manifest, read_manifest, result_around
+from ddct_bringup.manifest.origin import CodeOrigin
 from ddct_bringup.run.output_folder import PARTIAL
-from ddct_bringup.verification.comparison import BOUND, DIGEST_ONLY
-from ddct_bringup.verification.kinds import KINDS
-from ddct_bringup.verification.request import VerificationRequest
-from ddct_bringup.verification.result import RepetitionResult
+from ddct_bringup.verification.comparison import BOUND
+from ddct_bringup.verification.files import FileComparison
+from ddct_bringup.verification.repetition import repeat
+from ddct_bringup.verification.result import (
+    DIFFERENT,
+    NOT_REPEATED,
+    SAME_BITS,
+    SAME_WITHIN,
+    RepetitionResult,
+)
 from ddct_plant.base.errors import DdctError
-
-BY_DIGEST = frozenset({'report.html', 'timing.json'})
-"""Names of files that no run gives again: pages, times on the wall clock."""
+from ddct_plant.files.json_records import to_json
+from ddct_plant.program.arithmetic import arithmetic
 
 
 @dataclass(frozen=True)
 class Verification:
-    """Result of one folder."""
+    """What was found of one result."""
 
-    request: VerificationRequest
+    folder: Path
+    manifest: Manifest
     files: Sequence[FileState]
-    runs: Sequence[RepetitionResult]
-    """Results of the runs; none where a file was not the same, so that nothing was repeated."""
+    runs: Sequence[RepetitionResult] = ()
+    """What was made again; nothing where a file was not the same."""
+    by_digest: Sequence[str] = ()
+    """Names of files with times on the wall clock: their digests alone are checked."""
     error: str = ''
-    """Reason why the runs could not be repeated; empty in general."""
+    """Reason why the result could not be made again; empty in general."""
 
     @property
     def same(self) -> bool:
-        """Whether every file, and every run that can be repeated, is the same."""
+        """Whether nothing differs."""
         return (
             not self.error
             and all(file.state == SAME for file in self.files)
-            and all(run.same for run in self.runs)
+            and all(run.state != DIFFERENT for run in self.runs)
         )
 
     @property
     def intact(self) -> bool:
-        """Whether every listed file is the same, so that the runs were repeated."""
+        """Whether every listed file is the same, so that the result was made again."""
         return all(file.state in (SAME, UNLISTED) for file in self.files)
 
     @property
-    def repeated(self) -> bool:
-        """Whether at least one result was computed again."""
-        return not all(run.state == DIGEST_ONLY for run in self.runs)
+    def state(self) -> str:
+        """State of all: different, not repeated in a part, the same within a bound, or in bits."""
+        if not self.same:
+            return DIFFERENT
+        states = {run.state for run in self.runs}
+        order = (NOT_REPEATED, SAME_WITHIN)
+        return next((each for each in order if each in states), SAME_BITS)
 
-    @property
-    def by_digest(self) -> list[str]:
-        """Kinds of files that no run gives again, so that their digests alone are checked."""
-        names = {Path(file.path).name for file in self.files if file.state == SAME}
-        return sorted(names & BY_DIGEST)
+    @cached_property
+    def environment_differences(self) -> list[str]:
+        """Differences of code, libraries and versions from those here, as text."""
+        return _differences(self.manifest)
 
 
-def folders_with_digests(path: Path) -> list[Path]:
+def results_in(path: Path) -> list[Path]:
     """
-    Return the folder at `path` if it has digests, else those below it, without those in others.
+    Return the folder at `path` if it is that of a result, else those below it.
 
     Raise DdctError where there is none.
     """
@@ -68,50 +81,82 @@ def folders_with_digests(path: Path) -> list[Path]:
         raise DdctError(f'{path}: no such file or folder')
     if not path.is_dir():
         raise DdctError(f'{path} is a file: give the folder that it is in')
-    found = [file.parent for file in sorted(path.rglob(DIGESTS))]
+    found = [file.parent for file in sorted(path.rglob(MANIFEST))]
     top = [each for each in found if not any(other in each.parents for other in found)]
     if not top:
+        if around := result_around(path):
+            raise DdctError(f'{path} is a part of the result {around}: give that')
         interrupted = path.resolve().name.endswith(PARTIAL)
-        why = (
-            'an interrupted run left this folder'
-            if interrupted
-            else 'it was recorded before results had digests, or they were lost'
-        )
-        raise DdctError(f'{path}: no {DIGESTS} in it or below it: {why}: make the result again')
+        why = 'an interrupted run left it' if interrupted else 'it is no result, or that was lost'
+        raise DdctError(f'{path}: no {MANIFEST} in it or below it: {why}: make the result again')
     return top
 
 
-def verified_folder(request: VerificationRequest) -> Verification:
-    """Compare the files of a folder with their digests, then repeat its runs."""
-    files = file_states(request.folder, request.digests)
-    found = Verification(request, files, ())
+def verified(result: Path, workers: int | None = None) -> Verification:
+    """
+    Compare the files of a result with its manifest, make it again, and compare both.
+
+    `workers` is the number of processes of a campaign, None for one per core. Raise DdctError for
+    a damaged manifest, and for a result that is not complete.
+    """
+    manifest = read_manifest(result)
+    if manifest.state != 'done':
+        raise DdctError(
+            f'{result}: it is not complete: it was interrupted, or still runs: finish it, or make '
+            'it again'
+        )
+    found = Verification(result, manifest, file_states(result, manifest))
     if not found.intact:
         return found
-    repeat = KINDS.get(request.digests.kind)
-    if repeat is None:
-        error = f'this version cannot verify a folder of the kind {request.digests.kind!r}'
-        return Verification(request, files, (), error)
-    runs: list[RepetitionResult] = []
-    try:
-        runs.extend(repeat(request))
-    except DdctError as error:
-        return Verification(request, files, runs, str(error))
-    return Verification(request, files, runs)
+    with tempfile.TemporaryDirectory(prefix='ddct-verify-') as place:
+        scratch = Path(place) / 'again'
+        scratch.mkdir()
+        try:
+            repeated = repeat(result, manifest, scratch, workers)
+            comparison = FileComparison(
+                result,
+                scratch,
+                manifest,
+                repeated,
+                not found.environment_differences,
+                manifest.origin.code == CodeOrigin.here().code,
+            )
+            runs = list(comparison.results())
+        except DdctError as error:
+            text = str(error).replace(f'{scratch}/', '')
+            return Verification(result, manifest, found.files, error=f'{result}: {text}')
+    return Verification(result, manifest, found.files, runs, sorted(comparison.wall_clock))
+
+
+def _differences(manifest: Manifest) -> list[str]:
+    ours, here = manifest.origin, CodeOrigin.here()
+    found = []
+    if ours.version != here.version:
+        found.append(f'version {ours.version}, here {here.version}')
+    if ours.code != here.code:
+        found.append(f'code {ours.code[:10]}, here {here.code[:10]}')
+    if manifest.arithmetic is None:
+        return [*found, 'machines or versions that differ among its parts']
+    return found + manifest.arithmetic.differences(arithmetic())
 
 
 def entry_of(found: Verification) -> Mapping[str, Any]:
-    """Return the result of a folder as JSON."""
-    environment = found.request.digests.environment
+    """Return what was found of a result as JSON."""
     return {
-        'folder': str(found.request.folder),
-        'kind': found.request.digests.kind,
+        'folder': str(found.folder),
+        'kind': found.manifest.kind,
         'same': found.same,
+        'state': found.state,
         'error': found.error or None,
-        'environment': asdict(environment),
-        'environment_here': asdict(this_environment()),
-        'environment_differences': found.request.environment_differences,
-        'bound': 0.0 if found.request.same_environment else BOUND,
+        'environment': to_json(_environment(found.manifest)),
+        'environment_here': to_json({**to_json(CodeOrigin.here()), 'arithmetic': arithmetic()}),
+        'environment_differences': found.environment_differences,
+        'bound': BOUND if found.environment_differences else 0.0,
         'files': [asdict(file) for file in found.files],
-        'by_digest': found.by_digest,
+        'by_digest': list(found.by_digest),
         'runs': [run.entry() for run in found.runs],
     }
+
+
+def _environment(manifest: Manifest) -> Mapping[str, Any]:
+    return {**to_json(manifest.origin), 'arithmetic': manifest.arithmetic}

@@ -1,64 +1,196 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Plan the repetition of a recorded run: its settings and its controller, unchanged."""
+"""Make a result again in a scratch folder, from the plan and the inputs that it carries."""
 
-import os
-from dataclasses import replace
+import shutil
+from collections.abc import Callable, Mapping
+from contextlib import nullcontext
+from dataclasses import dataclass, field
 from pathlib import Path
 
-from ddct_bringup.bag.recording import Recording
-from ddct_bringup.digests.digest_file import RunDigests
-from ddct_bringup.digests.user_files import require_same_controller, require_same_handover
-from ddct_bringup.run.plan import RunPlan
-from ddct_bringup.verification.request import VerificationRequest
-from ddct_controllers.from_file.controller_file import is_controller_file
-from ddct_plant.base.errors import DdctError
+from ddct_bringup.api.shell.comparison import SCORES_FILE
+from ddct_bringup.api.shell.pages import REPORT_FILE, write_report
+from ddct_bringup.bag.reader import read_bag
+from ddct_bringup.bag.trajectory_bag import write_trajectory
+from ddct_bringup.benchmark.cases import Cases
+from ddct_bringup.benchmark.conduct import Options, carry_out_benchmark
+from ddct_bringup.benchmark.judged import Judged
+from ddct_bringup.benchmark.plan import RecordedBenchmark
+from ddct_bringup.benchmark.release import ROWS, release_rows
+from ddct_bringup.benchmark.report.folder import write_result
+from ddct_bringup.campaign.conduct import carry_out
+from ddct_bringup.campaign.plan import RecordedCampaign
+from ddct_bringup.campaign_report.folder import PAGE, write_campaign_page
+from ddct_bringup.manifest.manifest import BENCHMARK, CAMPAIGN, RUNS, TUNING, Manifest
+from ddct_bringup.manifest.origin import CodeOrigin
+from ddct_bringup.manifest.runs import PlannedRun, RunsPlan
+from ddct_bringup.report.evidence import FREQUENCY_FILE
+from ddct_bringup.report.run_labels import in_order
+from ddct_bringup.run.description import as_of_commit, custom_data
+from ddct_bringup.run.execution import simulate
+from ddct_bringup.run.output_folder import mark_folder
+from ddct_bringup.run.plan import RunPlan, require_headless
+from ddct_bringup.run.timing_and_failure import TIMING_FILE, failed_run, note_failure
+from ddct_bringup.scores.document import scores_document
+from ddct_bringup.scores.floors import with_floors
+from ddct_bringup.scores.scored_recording import score_any_bag
+from ddct_bringup.tuning.conduct import carry_out_tuning
+from ddct_bringup.tuning.front import front_of
+from ddct_bringup.tuning.plan import RecordedTuning
+from ddct_bringup.tuning.record import TRIALS, read_entries
+from ddct_bringup.tuning.report.folder import write_tuning
+from ddct_bringup.tuning.specification.goals import UPDATE_TIME
+from ddct_controllers.workflows.evidence import frequency_evidence
+from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError
+from ddct_plant.files.json_records import from_json, write_json
+from ddct_plant.signals.gain_changes import changes_note
+
+REAL_TIME = 'real time'
+"""Reason why a run is not repeated."""
+_OBJECT = 'a controller that was an object of a Python program'
 
 
-def plan_of(request: VerificationRequest, recording: Recording, digests: RunDigests) -> RunPlan:
-    """Return the headless plan of a recorded run; raise DdctError where it cannot be made."""
-    settings = recording.settings
-    if settings is None:
-        raise DdctError('it is the log of another tool, and has no settings to repeat it with')
-    if digests.handover is not None:
-        settings = replace(settings, handover=_handover_of(request, digests.handover, digests))
-    plan = RunPlan(settings, controller_of(request, digests), 'headless')
-    if plan.name != recording.facts.controller:
-        raise DdctError(
-            f'its controller is {recording.facts.controller}, its digests are of {plan.name}'
-        )
-    return plan
+@dataclass
+class Repeated:
+    """What was not as planned when a result was made again, by the folder of the run."""
+
+    left_out: dict[str, str] = field(default_factory=dict)
+    """Reasons why runs cannot be repeated."""
+    failed: dict[str, str] = field(default_factory=dict)
+    """Reasons why runs could not be repeated, though they should be."""
+    notes: dict[str, str] = field(default_factory=dict)
+    """What else to know of runs, or of files by their path."""
 
 
-def controller_of(request: VerificationRequest, digests: RunDigests) -> str:
-    """Return the name or the file of a run's controller; raise DdctError unless it is the same."""
-    chosen = digests.controller
-    if chosen is None:
-        raise DdctError(
-            'its controller was an object of a Python program, and cannot be made again: record '
-            'it with a controller file'
-        )
-    if is_controller_file(chosen):
-        chosen = str(_found(request, 'controller', Path(chosen)))
-    require_same_controller(chosen, digests.controller_files)
-    return chosen
+def repeat(result: Path, manifest: Manifest, scratch: Path, workers: int | None) -> Repeated:
+    """
+    Make a result again in the folder `scratch`.
+
+    Times on the wall clock, which never come out again, are taken from the result. Raise
+    DdctError where it cannot be made.
+    """
+    same_code = manifest.origin.code == CodeOrigin.here().code
+    with as_of_commit(manifest.origin.commit) if same_code else nullcontext():
+        return _KINDS[manifest.kind](result, manifest, scratch, workers)
 
 
-def _handover_of(request: VerificationRequest, named: str, digests: RunDigests) -> str:
-    """Return the path of a run's handover file; raise DdctError unless it is the same."""
-    file = str(_found(request, 'handover', Path(named)))
-    require_same_handover(file, digests.handover_files)  # first: a plan runs the file
-    return file
+def _repeat_runs(result: Path, manifest: Manifest, scratch: Path, workers: int | None) -> Repeated:
+    plan = from_json(RunsPlan, manifest.plan, f'{result}, plan')
+    limits = plan.limits.load(result)
+    found = Repeated()
+    mark_folder(scratch)
+    for name, planned in plan.runs.items():
+        mark_folder(scratch / name)
+        try:
+            _repeat_run(result, scratch, name, planned, found)
+        except DdctError as error:
+            found.failed[name] = str(error)
+    if plan.compared and not found.failed:
+        runs = [score_any_bag(scratch / name, scratch, limits) for name in plan.runs]
+        if plan.floors:
+            runs = with_floors(runs, limits)
+        document = scores_document([run.scores for run in runs], limits)
+        write_json(str(scratch / SCORES_FILE), document)
+        plans = [each.headless_plan(result) for each in plan.runs.values()]
+        chosen, settings = [each.controller for each in plans], plans[0].settings
+        evidence = frequency_evidence(chosen, settings, report=lambda error: None)
+        write_json(str(scratch / FREQUENCY_FILE), evidence)
+        write_report(in_order(runs), str(scratch / REPORT_FILE), limits)
+    return found
 
 
-def _found(request: VerificationRequest, what: str, file: Path) -> Path:
-    """Return the path of the file of a controller or a handover; raise DdctError if it is gone."""
-    places = [Path(os.path.normpath(request.folder / file))]
-    if request.files:
-        places.insert(0, request.files / file.name)
-    for place in places:
-        if place.is_file():
-            return place
-    raise DdctError(
-        f'the {what} file {places[0]} is gone: put it back, or name its folder with --files'
+def _repeat_run(
+    result: Path, scratch: Path, name: str, planned: PlannedRun, found: Repeated
+) -> None:
+    """Make a run again headless, or copy one that cannot be; raise DdctError where it fails."""
+    ours, again = result / name, scratch / name
+    settings = planned.run_settings(result)
+    if planned.layout == 'headless':
+        require_headless(settings)
+    lockstep = settings.lockstep
+    if not lockstep or planned.controller is None:
+        found.left_out[name] = _OBJECT if lockstep else REAL_TIME
+        for file in ours.iterdir():
+            if file.is_file():
+                shutil.copy(file, again)
+        return
+    if (ours / TIMING_FILE).exists():
+        shutil.copy(ours / TIMING_FILE, again)
+    plan, failure = planned.headless_plan(result), failed_run(ours)
+    recorded = read_bag(ours) if failure is None else None
+    changes = recorded.gain_changes if recorded and planned.layout != 'headless' else ()
+    found.notes[name] = changes_note(changes)
+    try:
+        recording, _ = simulate(plan, changes)
+    except FOREIGN_FAILURES as error:
+        if failure is None:
+            raise DdctError(f'its repetition fails: {error}') from error
+        _note(plan, again, str(error))
+        return
+    if failure is not None:
+        _note(plan, again, 'its repetition does not fail')
+        return
+    write_trajectory(
+        recording.trajectory, again, plan.name, recording.custom_data, recording.run_info
     )
+
+
+def _note(plan: RunPlan, folder: Path, reason: str) -> None:
+    note_failure(folder, reason, custom_data(plan.settings, plan.name, plan.steps))
+
+
+def _repeat_campaign(
+    result: Path, manifest: Manifest, scratch: Path, workers: int | None
+) -> Repeated:
+    recorded = RecordedCampaign.read(result)
+    carry_out(recorded.campaign(), recorded.limits(), scratch, workers=workers)
+    if (result / PAGE).exists():
+        write_campaign_page(scratch)
+    return Repeated()
+
+
+def _repeat_benchmark(
+    result: Path, manifest: Manifest, scratch: Path, workers: int | None
+) -> Repeated:
+    recorded = RecordedBenchmark.of(manifest, result)
+    plan, code = recorded.plan, recorded.origin.code
+    judged = [each.judged(result) for each in plan.controllers]
+    options = Options(workers, release=code, rows=result)
+    cases = plan.run_cases
+    if code == CodeOrigin.here().code:
+        judged = [Judged.of(each.path) for each in judged]
+        options, cases = Options(workers), Cases.packaged(quick=plan.quick)
+    failed = carry_out_benchmark(judged, cases, scratch, plan.judge_seed, options)
+    shutil.copy(result / TIMING_FILE, scratch)
+    write_result(scratch, failed)
+    rows = release_rows(result).origin
+    return Repeated(
+        notes={ROWS: f'computed by other code: {rows.text}'} if rows.code != code else {}
+    )
+
+
+def _repeat_tuning(
+    result: Path, manifest: Manifest, scratch: Path, workers: int | None
+) -> Repeated:
+    recorded = RecordedTuning.of(manifest, result)
+    times = {
+        each.number: {UPDATE_TIME: each.further[UPDATE_TIME]}
+        for each in read_entries(result / TRIALS)
+        if UPDATE_TIME in each.further
+    }
+    tuning = recorded.tuning(result)
+    trials = carry_out_tuning(tuning, scratch, workers=workers, known_times=times)
+    try:
+        write_tuning(scratch, trials, workers=workers, release=recorded.origin.code)
+    except DdctError:
+        if front_of(trials, tuning.spec):  # else the record is written all the same
+            raise
+    return Repeated()
+
+
+_KINDS: Mapping[str, Callable[[Path, Manifest, Path, int | None], Repeated]] = {
+    RUNS: _repeat_runs,
+    CAMPAIGN: _repeat_campaign,
+    BENCHMARK: _repeat_benchmark,
+    TUNING: _repeat_tuning,
+}

@@ -1,26 +1,25 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Results of a verification: the state of each repeated run, with its first difference."""
+"""Results of a verification: the state of each repeated run or file, with its first difference."""
 
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from ddct_bringup.verification.comparison import (
-    BOUND,
-    DIFFERENT,
-    DIGEST_ONLY,
-    Comparison,
-)
+from ddct_bringup.verification.comparison import DIFFERENT, SAME_BITS, SAME_WITHIN, Comparison
+
+__all__ = ['DIFFERENT', 'NOT_REPEATED', 'SAME_BITS', 'SAME_WITHIN', 'RepetitionResult']
+NOT_REPEATED = 'not_repeated'
+"""State of what was not made again, or made and not compared."""
 
 
 @dataclass(frozen=True)
 class RepetitionResult:
-    """State of one run, or of one file with values that follow from the runs."""
+    """State of one run, table, document or page."""
 
     run: str
-    """Name of the bag, of the file, or of the rows of a controller."""
+    """Name of the bag, or path of the file."""
     state: str
     first_difference: Mapping[str, Any] | None = None
     """Place of the first difference with both values, or its `reason`; None in another state."""
@@ -28,26 +27,25 @@ class RepetitionResult:
     """Largest difference, relative as `BOUND`; 0 for equal bits."""
     note: str = ''
     """Reason why it was not repeated, or what else to know of it."""
-    bound: float = BOUND
-    """Bound that was used where bits may differ: BOUND, or that of a run which amplifies them."""
 
     @classmethod
-    def of(cls, run: str, comparison: Comparison, *, same_environment: bool) -> 'RepetitionResult':
+    def of(
+        cls, run: str, comparison: Comparison, *, same_environment: bool, note: str = ''
+    ) -> 'RepetitionResult':
         """Return the result of a comparison."""
         first = comparison.first(same_environment=same_environment)
         state = comparison.state(same_environment=same_environment)
-        entry = first.entry() if first else None
-        return cls(run, state, entry, comparison.largest, bound=comparison.used)
+        return cls(run, state, first.entry() if first else None, comparison.largest, note)
 
     @classmethod
-    def failed(cls, run: str, reason: object) -> 'RepetitionResult':
+    def failed(cls, run: str, reason: object, note: str = '') -> 'RepetitionResult':
         """Return the result of a run that could not be repeated, though it should be."""
-        return cls(run, DIFFERENT, {'reason': str(reason)})
+        return cls(run, DIFFERENT, {'reason': str(reason)}, note=note)
 
     @classmethod
-    def by_digest(cls, run: str, note: str) -> 'RepetitionResult':
-        """Return the result of a run of which only digests and scores can be checked."""
-        return cls(run, DIGEST_ONLY, note=note)
+    def not_repeated(cls, run: str, note: str) -> 'RepetitionResult':
+        """Return the result of what was not made again, or not compared."""
+        return cls(run, NOT_REPEATED, note=note)
 
     def entry(self) -> Mapping[str, Any]:
         """Return the result as JSON; a largest difference that is infinite is None."""
@@ -58,10 +56,4 @@ class RepetitionResult:
             'first_difference': self.first_difference,
             'largest_difference': largest,
             'note': self.note,
-            'bound': self.bound,
         }
-
-    @property
-    def same(self) -> bool:
-        """Whether all that can be compared is the same."""
-        return self.state != DIFFERENT

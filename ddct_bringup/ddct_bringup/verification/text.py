@@ -1,51 +1,66 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""A verification as text: the table of its runs, the bound that was used, what is not the same."""
+"""A verification as text: a table of what was repeated, and what is not the same."""
 
 from collections.abc import Iterator
 
-from ddct_bringup.digests.files import SAME
-from ddct_bringup.verification.comparison import (
-    BOUND,
+from ddct_bringup.manifest.file_states import SAME
+from ddct_bringup.verification.comparison import BOUND
+from ddct_bringup.verification.folder import Verification
+from ddct_bringup.verification.result import (
     DIFFERENT,
-    DIGEST_ONLY,
+    NOT_REPEATED,
     SAME_BITS,
     SAME_WITHIN,
+    RepetitionResult,
 )
-from ddct_bringup.verification.folder import Verification
-from ddct_bringup.verification.result import RepetitionResult
 from ddct_plant.base.errors import printable
 from ddct_plant.program.printed_table import print_note, print_table
 from ddct_plant.program.table import Table
 
 _WORDS = {
     SAME_BITS: 'same bits',
-    SAME_WITHIN: 'same within',
+    SAME_WITHIN: f'same within {BOUND:g}',
     DIFFERENT: 'different',
-    DIGEST_ONLY: 'digest only',
+    NOT_REPEATED: 'not repeated',
 }
 _MOST_FILES = 20
 """Largest number of files that are named on the terminal."""
 
 
 def print_verification(found: Verification) -> None:
-    """Print the runs of a folder as a table, the bound that was used, and whether all is same."""
-    folder = printable(found.request.folder)
+    """Print what was repeated as a table, and what the comparison showed as the last line."""
+    folder = printable(found.folder)
     if found.runs:
-        rows = [(run.run, _word(run), _detail(run)) for run in found.runs]
-        print_table(Table(f'{folder}, repeated', ('run', 'state', 'detail'), rows))
-    if found.repeated:
-        print_note(_bound(found))
-        if by_digest := found.by_digest:
-            print_note(f'By their digests alone: {", ".join(by_digest)}.')
+        rows = [(run.run, _WORDS[run.state], _detail(run)) for run in found.runs]
+        print_table(Table(f'{folder}, made again', ('what', 'state', 'detail'), rows))
+    if found.by_digest:
+        print_note(f'On the wall clock, by their digests alone: {", ".join(found.by_digest)}.')
     if found.same:
-        what = 'every run is the same' if found.repeated else 'no run could be repeated'
-        print_note(f'{folder}: {len(found.files)} files are as their digests; {what}.')
+        # One line, however wide the terminal is, for those who read the last one.
+        print(f'{folder}: {len(found.files)} files are as their digests; {_summary(found)}.')
+
+
+def _summary(found: Verification) -> str:
+    """Return what a comparison without a difference showed."""
+    left = [f'{run.run} ({run.note})' for run in found.runs if run.state == NOT_REPEATED]
+    parts = []
+    if any(run.state == SAME_BITS for run in found.runs):
+        whole = all(run.state == SAME_BITS for run in found.runs)
+        parts.append('everything was made again, with equal bits' if whole else 'equal bits')
+    if within := [run.run for run in found.runs if run.state == SAME_WITHIN]:
+        cause = '; '.join(found.environment_differences)
+        parts.append(f'{", ".join(within)} within {BOUND:g} of each peak, because of {cause}')
+    if left:
+        parts.append(f'not repeated: {", ".join(left)}')
+    if not parts:
+        parts.append('nothing was repeated')
+    return printable('; '.join(parts))
 
 
 def complaints(found: Verification) -> Iterator[str]:
     """Yield a line for each file and run that is not the same."""
-    folder = found.request.folder
+    folder = found.folder
     wrong = [file for file in found.files if file.state != SAME]
     for file in wrong[:_MOST_FILES]:
         yield f'{folder / file.path}: {file.state}'
@@ -56,34 +71,8 @@ def complaints(found: Verification) -> Iterator[str]:
     if found.error:
         yield found.error
     for run in found.runs:
-        if not run.same:
+        if run.state == DIFFERENT:
             yield f'{folder}: {run.run}: {_detail(run)}'
-
-
-def _word(run: RepetitionResult) -> str:
-    """Return the state of a run in words, with its bound where that was needed."""
-    return (
-        f'{_WORDS[run.state]} {run.bound:.1g}' if run.state == SAME_WITHIN else _WORDS[run.state]
-    )
-
-
-def _bound(found: Verification) -> str:
-    request = found.request
-    if request.same_environment:
-        return 'Code, versions and processor are those of the result: every bit was compared.'
-    differences = printable('; '.join(request.environment_differences))
-    return (
-        f'The result was made with {differences}. Other code or processors may round '
-        f'otherwise: the bound is {BOUND:g} of the largest value.{_measured(found)}'
-    )
-
-
-def _measured(found: Verification) -> str:
-    runs = [run.run for run in found.runs if run.bound > BOUND]
-    if not runs:
-        return ''
-    names = printable(', '.join(runs))
-    return f' These amplify rounding, and have a larger one that was measured: {names}.'
 
 
 def _detail(run: RepetitionResult) -> str:

@@ -24,7 +24,7 @@ from small_benchmark import (
     result_in,
     use_release,
 )
-from verified import copied, edit_json_with_digest, states, verified
+from verified import copied, edit_json_with_digest, edit_manifest, states, verified
 
 from ddct_bringup.benchmark.cases import Cases
 from ddct_bringup.benchmark.conduct import AGAIN, Options, carry_out_benchmark
@@ -35,9 +35,11 @@ from ddct_bringup.benchmark.release import ROWS, write_release_rows
 from ddct_bringup.benchmark.report import page as page_module
 from ddct_bringup.benchmark.report.rules import NO_GAIN, left_open_here, states_that_count
 from ddct_bringup.benchmark.result_types import Result
-from ddct_bringup.digests.origin import CodeOrigin
+from ddct_bringup.manifest.manifest import MANIFEST
+from ddct_bringup.manifest.origin import CodeOrigin
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_bringup.verdict.state import STATES
+from ddct_bringup.verification import repetition
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.json_records import json_text, read_json, to_json
 
@@ -115,9 +117,7 @@ def test_the_bytes_are_the_same_after_an_interruption(place: Path, tmp_path: Pat
     assert 1 < left < len([*out.rglob('*.parquet')])
     pages = [(each / PAGE).read_text().splitlines() for each in (place / 'first', out)]
     other = [a for a, b in zip(*pages, strict=True) if a != b]
-    of_folder = [line for line in other if '<code>ddct ' in line]
-    assert len(of_folder) == 2
-    assert [line for line in other if 'class="num wall"' not in line] == of_folder
+    assert [line for line in other if 'class="num wall"' not in line] == []
 
 
 def test_verify_computes_all_of_it_again(
@@ -127,9 +127,10 @@ def test_verify_computes_all_of_it_again(
     code, document, errors = verified(folder, capfd, '--workers', '1')
     assert (code, 'ddct verify' in errors) == (0, False)
     found = states(document)
-    assert {'benchmark.json', 'development.parquet', RESULT} <= found.keys()
-    assert f'{NAME}/held_out: {NAME}: rows 0 to 5' in found
+    tables = {f'{NAME}/{part}/results.parquet' for part in ('development', 'held_out')}
+    assert {MANIFEST, 'development.parquet', RESULT, PAGE, *tables} <= found.keys()
     assert set(found.values()) == {'same_bits'}
+    assert [path.parent for path in folder.rglob(MANIFEST)] == [folder]
 
 
 def test_the_page_has_what_counts_what_nobody_gains_by_and_what_stays_open(place: Path) -> None:
@@ -153,37 +154,36 @@ def test_no_main_quantity_is_among_the_further_ones_of_the_page(place: Path) -> 
     assert not {*further} & {*MAIN}
 
 
-def test_the_commands_on_the_page_name_the_folder_and_run(
+def test_the_commands_on_the_page_run_in_its_folder(
     place: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.chdir(tmp_path)
-    page = (place / 'first' / PAGE).read_text(encoding='utf-8')
-    replay, verify = printed_commands(page)
+    folder = copied(place / 'first', tmp_path / 'there')
+    monkeypatch.chdir(folder)
+    replay, verify = printed_commands((folder / PAGE).read_text(encoding='utf-8'))
     assert run_printed(replay, CASE='1') == 0
-    assert [*tmp_path.glob('runs/again/*/*.mcap')]
+    assert [*tmp_path.glob('again/*/*.mcap')]
     # To run it takes as long as the test before, which does with a copy of the folder.
-    assert shlex.split(verify) == ['ddct', 'verify', str(place / 'first')]
+    assert shlex.split(verify) == ['ddct', 'verify', '.']
 
 
 def test_a_changed_controller_is_refused_before_it_runs(
     place: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    ran = tmp_path / 'ran'
-    other = f'open({str(ran)!r}, "w").close()\n'
-    (tmp_path / 'remembers.py').write_text(other, encoding='utf-8')
-    options = ('--workers', '1', '--files', str(tmp_path))
-    code, _, errors = verified(place / 'first', capfd, *options)
+    ran, folder = tmp_path / 'ran', copied(place / 'first', tmp_path / 'there')
+    carried = folder / 'inputs' / NAME / 'remembers.py'
+    carried.write_text(f'open({str(ran)!r}, "w").close()\n', encoding='utf-8')
+    code, _, errors = verified(folder, capfd, '--workers', '1')
     assert code == 1
-    assert 'controller_file has changed since' in errors
+    assert f'{carried}: altered' in errors
     assert not ran.exists(), 'code of another file has run'
 
 
 def _seed(content: Any) -> None:
-    content['controllers'][0]['held_out_seed'] += 1
+    content['plan']['controllers'][0]['held_out_seed'] += 1
 
 
-def _judge(content: Any) -> None:
-    content['judge_seed'] = content['controllers'][0]['held_out_seed'] = 3
+def _root(content: Any) -> None:
+    content['campaigns'][f'{NAME}/held_out']['root_seed'] += 1
 
 
 def _share(content: Any) -> None:
@@ -191,12 +191,7 @@ def _share(content: Any) -> None:
 
 
 @pytest.mark.parametrize(
-    ('name', 'edit', 'run'),
-    [
-        ('benchmark.json', _seed, 'benchmark.json'),
-        ('benchmark.json', _judge, f'{NAME}/held_out: cases'),
-        (RESULT, _share, RESULT),
-    ],
+    ('name', 'edit'), [(MANIFEST, _seed), (MANIFEST, _root), (RESULT, _share)]
 )
 def test_a_seed_or_a_figure_edited_with_its_digest_is_found(
     place: Path,
@@ -205,18 +200,26 @@ def test_a_seed_or_a_figure_edited_with_its_digest_is_found(
     monkeypatch: pytest.MonkeyPatch,
     name: str,
     edit: Callable[[Any], None],
-    run: str,
 ) -> None:
-    monkeypatch.setattr('ddct_bringup.verification.benchmark.verified_campaign', lambda _: [])
+    def finished(judged: Any, cases: Any, out: Path, *options: Any) -> dict[str, str]:
+        shutil.copytree(place / 'first', out, dirs_exist_ok=True)
+        return {}
+
+    # The test before computes all again.
+    monkeypatch.setattr(repetition, 'carry_out_benchmark', finished)
     folder = copied(place / 'first', tmp_path / 'there')
-    edit_json_with_digest(folder, name, edit)
+    if name == MANIFEST:
+        edit_manifest(folder, edit)
+    else:
+        edit_json_with_digest(folder, name, edit)
     code, document, _ = verified(folder, capfd, '--workers', '1')
-    assert (code, states(document)[run]) == (1, 'different')
+    assert code == 1
+    assert {each for each, state in states(document).items() if state == 'different'} == {name}
 
 
 def test_any_altered_byte_of_a_benchmark_is_found(place: Path) -> None:
     files = kinds_of_files(place / 'first')
-    assert {'.parquet', '.html', RESULT, 'benchmark.json'} <= files.keys()
+    assert {'.parquet', '.html', RESULT, MANIFEST} <= files.keys()
     lost = {name: not_found(place / 'first', file, 20) for name, file in files.items()}
     assert lost == dict.fromkeys(files, [])
 
@@ -290,7 +293,7 @@ def test_rows_of_other_code_are_not_taken_when_the_release_is_computed_again(
 ) -> None:
     work = shutil.copytree(place / 'rows', tmp_path / 'rows')
     before = content_of(work)
-    monkeypatch.setattr('ddct_bringup.digests.origin.code_digest', lambda: '0' * 64)
+    monkeypatch.setattr('ddct_bringup.manifest.origin.code_digest', lambda: '0' * 64)
     with refused(DdctError, place='rows') as caught:
         write_release_rows(work, tmp_path, workers=1)
     assert 'remove it, and run make benchmark-rows again' in str(caught.value)
@@ -334,7 +337,7 @@ def test_a_folder_of_another_benchmark_or_release_is_refused_and_stays(
     file = str(place / 'remembers.py')
     assert judge(folder, file, '--quick') == 1
     assert judge(folder, 'ls8') == 1
-    monkeypatch.setattr('ddct_bringup.digests.origin.code_digest', lambda: '0' * 64)
+    monkeypatch.setattr('ddct_bringup.manifest.origin.code_digest', lambda: '0' * 64)
     assert judge(folder, file) == 1
     quick, others, release = capfd.readouterr().err.splitlines()
     assert 'with another number of cases' in quick

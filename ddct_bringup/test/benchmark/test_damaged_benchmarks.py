@@ -9,14 +9,17 @@ from typing import Any
 
 import numpy as np
 import pytest
+from verified import edit_manifest
 
 from ddct_bringup.benchmark.case_rows import CaseRows
 from ddct_bringup.benchmark.cases import Cases
 from ddct_bringup.benchmark.judged import Judged
-from ddct_bringup.benchmark.manifest import MANIFEST, BenchmarkManifest
+from ddct_bringup.benchmark.plan import BenchmarkPlan, RecordedBenchmark
 from ddct_bringup.benchmark.release import ROWS, ReleaseRows
 from ddct_bringup.benchmark.update_times import read_update_times
-from ddct_bringup.digests.origin import CodeOrigin
+from ddct_bringup.manifest.inputs import Inputs
+from ddct_bringup.manifest.manifest import BENCHMARK, begin_manifest
+from ddct_bringup.manifest.origin import CodeOrigin
 from ddct_bringup.run.timing_and_failure import TIMING_FILE
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.json_records import to_json
@@ -29,7 +32,6 @@ TIMES = {**RATIO, 'update_time_median_us': 10.0, 'pi_update_time_median_us': 5.0
 @pytest.mark.parametrize(
     'edit',
     [
-        lambda content: content.update(version=1),
         lambda content: content.update(limits=[]),
         lambda content: content.update(quick='yes'),
         lambda content: content.update(judge_seed='1'),
@@ -44,15 +46,13 @@ TIMES = {**RATIO, 'update_time_median_us': 10.0, 'pi_update_time_median_us': 5.0
     ],
 )
 def test_a_manifest_with_a_value_of_another_type_is_refused(tmp_path: Path, edit: Edit) -> None:
-    BenchmarkManifest.of([Judged.of('pi')], Cases.packaged(), None).write(tmp_path)
-    file = tmp_path / MANIFEST
-    content = json.loads(file.read_text(encoding='utf-8'))
-    assert BenchmarkManifest.read(tmp_path).controllers[0].name == 'pi'
-    edit(content)
-    file.write_text(json.dumps(content), encoding='utf-8')
-    with pytest.raises(DdctError) as error:
-        BenchmarkManifest.read(tmp_path)
-    assert error.value.place == str(file)
+    inputs = Inputs()
+    plan = BenchmarkPlan.of([Judged.of('pi')], Cases.packaged(), None, inputs)
+    begin_manifest(tmp_path, BENCHMARK, plan, inputs)
+    assert RecordedBenchmark.read(tmp_path).plan.controllers[0].name == 'pi'
+    edit_manifest(tmp_path, lambda content: edit(content['plan']))
+    with pytest.raises(DdctError):
+        RecordedBenchmark.read(tmp_path)
 
 
 def test_update_times_are_whole_or_have_a_reason(tmp_path: Path) -> None:

@@ -8,8 +8,8 @@ import pytest
 from python_controllers import IMPORTS, PROPORTIONAL
 
 from ddct_bringup.benchmark.judged import Judged
-from ddct_bringup.benchmark.manifest import JudgedEntry
-from ddct_bringup.digests.code import code_digest, package_digest
+from ddct_bringup.benchmark.plan import JudgedEntry
+from ddct_bringup.manifest.code import code_digest, package_digest
 
 FILE = 'name: mine\nunits: {input: rpm, output: N m}\npolynomial: {num: [-0.1], den: [1.0, 1.0]}\n'
 RELEASE = 'a' * 64

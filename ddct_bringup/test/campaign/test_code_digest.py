@@ -11,10 +11,10 @@ from refusals import refused
 
 from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.conduct import carry_out
-from ddct_bringup.campaign.manifest import require_code
+from ddct_bringup.campaign.plan import require_code
 from ddct_bringup.campaign.spec import spec_of
-from ddct_bringup.digests import code
-from ddct_bringup.digests.code import code_digest
+from ddct_bringup.manifest import code
+from ddct_bringup.manifest.code import code_digest
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.base.errors import DdctError
 

@@ -3,11 +3,11 @@
 """A campaign gives the same bytes on any workers, and an interruption loses nothing."""
 
 import errno
-import json
 import shutil
 from collections.abc import Callable, Iterator
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import ExitStack
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -16,18 +16,19 @@ import pyarrow.parquet as parquet
 import pytest
 from in_this_process import OneByOne, in_this_process
 from refusals import refused
+from verified import edit_manifest
 
 from ddct_bringup.campaign import conduct, run_set, scored, shards
 from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.columns import COMPARED, differences
 from ddct_bringup.campaign.conduct import RESULTS, SHARDS, carry_out
-from ddct_bringup.campaign.manifest import MANIFEST, Manifest
+from ddct_bringup.campaign.plan import RecordedCampaign
 from ddct_bringup.campaign.rows import METRIC_COLUMNS
 from ddct_bringup.campaign.scored import Scorer
 from ddct_bringup.campaign.spec import spec_of
 from ddct_bringup.campaign_report.reading import read_table
-from ddct_bringup.digests.code import code_digest
-from ddct_bringup.digests.digest_file import DIGESTS
+from ddct_bringup.manifest.code import code_digest
+from ddct_bringup.manifest.manifest import MANIFEST, read_manifest
 from ddct_bringup.run.output_folder import locked_folders
 from ddct_bringup.verdict.limits import limits_of_text, packaged_limits
 from ddct_plant.base.errors import DdctError, ParameterError
@@ -96,7 +97,7 @@ def test_the_bytes_are_the_same_each_time(whole: Path, tmp_path: Path, use) -> N
     assert sorted(workers.computed) == list(range(RUNS))
     assert workers.computed[:3] == [0, 4, 1], 'a controller is measured late'
     names = sorted(path.name for path in (tmp_path / 'out').iterdir())
-    assert names == ['.ddct-output', DIGESTS, MANIFEST, RESULTS, SHARDS]
+    assert names == ['.ddct-output', MANIFEST, RESULTS, SHARDS]
 
 
 def test_the_time_left_counts_each_controller_by_its_own_runs(
@@ -118,11 +119,12 @@ def test_the_time_left_counts_each_controller_by_its_own_runs(
 
 
 def test_the_manifest_describes_the_campaign(whole: Path) -> None:
-    manifest = Manifest.read(whole)
-    assert (manifest.root_seed, manifest.runs, manifest.shard_size) == (0, RUNS, 1)
-    assert manifest.code_digest == code_digest()
-    assert manifest.spec == SPEC
-    assert Campaign(manifest.campaign_spec()).digest() == manifest.spec_digest
+    recorded = RecordedCampaign.read(whole)
+    plan = recorded.plan
+    assert (plan.root_seed, plan.runs, plan.shard_size) == (0, RUNS, 1)
+    assert recorded.origin.code == code_digest()
+    assert plan.spec == SPEC
+    assert recorded.campaign().digest() == plan.spec_digest
 
 
 @pytest.mark.slow
@@ -245,7 +247,7 @@ def test_other_code_or_limits_cannot_go_on(whole: Path, monkeypatch: pytest.Monk
     mine = limits_of_text(file.read_text(encoding='utf-8') + '# mine\n', 'mine.yaml')
     with refused(DdctError, 'limits'):
         carry_out(made(), mine, whole, resume=True)
-    monkeypatch.setattr('ddct_bringup.digests.origin.code_digest', lambda: '0' * 64)
+    monkeypatch.setattr('ddct_bringup.manifest.origin.code_digest', lambda: '0' * 64)
     with refused(DdctError, 'code'):
         carried_out(whole, resume=True)
 
@@ -273,11 +275,11 @@ def test_two_campaigns_into_one_folder_are_one(tmp_path: Path) -> None:
 
 
 def test_a_damaged_manifest_is_reported(tmp_path: Path) -> None:
-    with pytest.raises(DdctError, match='no manifest.json in it: give the folder of a campaign'):
-        Manifest.read(tmp_path)
+    with pytest.raises(DdctError, match='no manifest.json in it: give the folder of a result'):
+        RecordedCampaign.read(tmp_path)
     (tmp_path / MANIFEST).write_text('{"schema_version": 1}', encoding='utf-8')
-    with pytest.raises(DdctError, match='manifest.json: cannot be read'):
-        Manifest.read(tmp_path)
+    with pytest.raises(DdctError, match=r'manifest.json: .*is missing: put the original back'):
+        RecordedCampaign.read(tmp_path)
 
 
 @pytest.mark.parametrize(
@@ -288,7 +290,7 @@ def test_a_damaged_manifest_is_reported(tmp_path: Path) -> None:
         {'runs': True},
         {'shard_size': 0},
         {'root_seed': None},
-        {'commit': 3},
+        {'limits': {'origin': {}}},
         {'limits': []},
         {'spec': 'text'},
         {'spec': {'grid': [1]}},
@@ -299,10 +301,10 @@ def test_a_damaged_manifest_is_reported(tmp_path: Path) -> None:
 def test_a_manifest_with_a_value_of_another_type_is_refused(
     whole: Path, tmp_path: Path, changes: dict[str, Any]
 ) -> None:
-    content = json.loads((whole / MANIFEST).read_text(encoding='utf-8'))
-    (tmp_path / MANIFEST).write_text(json.dumps({**content, **changes}), encoding='utf-8')
-    with refused(DdctError, place=MANIFEST):
-        Manifest.read(tmp_path)
+    out = shutil.copytree(whole, tmp_path / 'out')
+    edit_manifest(out, lambda content: content['campaigns']['.'].update(changes))
+    with pytest.raises(DdctError, match=f'{out}, campaign .: '):
+        RecordedCampaign.read(out)
 
 
 def flip(file: Path, place: int) -> None:
@@ -335,7 +337,7 @@ def test_a_damaged_edited_or_lost_shard_is_computed_again(
 @pytest.mark.slow
 def test_a_shard_without_its_digest_is_computed_again(whole: Path, tmp_path: Path, use) -> None:
     out = shutil.copytree(whole, tmp_path / 'out')
-    (out / DIGESTS).unlink()
+    replace(read_manifest(out), files={}).write(out)
     workers = use(OneByOne())
     assert carried_out(out, resume=True) == (whole / RESULTS).read_bytes()
     assert sorted(workers.computed) == list(range(RUNS))
@@ -345,18 +347,18 @@ def test_a_manifest_that_was_edited_is_not_resumed(whole: Path, tmp_path: Path) 
     out = shutil.copytree(whole, tmp_path / 'out')
     file = out / MANIFEST
     file.write_text(file.read_text(encoding='utf-8') + ' ', encoding='utf-8')
-    with refused(DdctError, MANIFEST, place=MANIFEST):
+    with pytest.raises(DdctError, match='its own digest does not match its content'):
         carried_out(out, resume=True)
 
 
 @pytest.mark.parametrize('name', [MANIFEST, RESULTS])
 def test_altered_files_of_a_campaign_are_not_read(whole: Path, tmp_path: Path, name: str) -> None:
     out = shutil.copytree(whole, tmp_path / 'out')
-    manifest = Manifest.read(out)
-    assert len(read_table(out, manifest)) == RUNS
+    recorded = RecordedCampaign.read(out)
+    assert len(read_table(out, recorded)) == RUNS
     flip(out / name, 300)
-    with refused(DdctError, name, place=name):
-        read_table(out, manifest)
+    with pytest.raises(DdctError, match=name):
+        read_table(out, recorded)
 
 
 def test_what_is_linear_is_computed_at_once_and_all_else_step_by_step(

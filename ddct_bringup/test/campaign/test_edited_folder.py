@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """A campaign's folder that was edited, with its digests removed, is refused in one line."""
 
-import json
 import os
 import shutil
 from dataclasses import replace
@@ -15,15 +14,16 @@ import pytest
 from in_this_process import in_this_process
 from made_campaign import seal
 from refusals import refused
+from verified import edit_manifest
 
 from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.columns import merge, read_row, schema_of
 from ddct_bringup.campaign.conduct import RESULTS, SHARDS, carry_out
-from ddct_bringup.campaign.manifest import MANIFEST, Manifest
+from ddct_bringup.campaign.plan import RecordedCampaign
 from ddct_bringup.campaign.spec import spec_of
 from ddct_bringup.campaign_report.folder import SUMMARY, write_campaign_page
 from ddct_bringup.campaign_report.reading import read_table
-from ddct_bringup.digests.digest_file import DIGESTS, read_digests
+from ddct_bringup.manifest.manifest import read_manifest
 from ddct_bringup.programs.campaign import main
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.base.errors import DdctError
@@ -46,9 +46,9 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def out(whole: Path, tmp_path: Path) -> Path:
-    """Return a copy of the folder without its digests."""
+    """Return a copy of the folder without digests of files."""
     copy = shutil.copytree(whole, tmp_path / 'campaign')
-    (copy / DIGESTS).unlink()
+    replace(read_manifest(copy), files={}).write(copy)
     return copy
 
 
@@ -65,9 +65,8 @@ def replayed(out: Path) -> int:
 
 
 def edit(out: Path, **changes: Any) -> None:
-    """Change values of the manifest."""
-    content = json.loads((out / MANIFEST).read_text(encoding='utf-8'))
-    (out / MANIFEST).write_text(json.dumps({**content, **changes}), encoding='utf-8')
+    """Change values of the plan in the manifest."""
+    edit_manifest(out, lambda content: content['campaigns']['.'].update(changes))
 
 
 @pytest.mark.parametrize(
@@ -85,15 +84,16 @@ def test_a_manifest_that_does_not_follow_from_the_specification_is_not_resumed(
 ) -> None:
     before = (out / RESULTS).read_bytes()
     edit(out, **changes)
-    with refused(DdctError, *changes, place=MANIFEST):
+    with refused(DdctError, *changes, place='campaign'):
         resumed(out)
     assert (out / RESULTS).read_bytes() == before
 
 
 def test_a_campaign_is_not_repeated_with_another_number_of_runs(whole: Path) -> None:
-    more = replace(Manifest.read(whole), runs=RUNS + 3)
-    with refused(DdctError, 'runs', place=MANIFEST):
-        more.campaign(whole)
+    recorded = RecordedCampaign.read(whole)
+    more = replace(recorded, plan=replace(recorded.plan, runs=RUNS + 3))
+    with refused(DdctError, 'runs', place='campaign'):
+        more.campaign()
 
 
 def of_one_row_repeated(file: Path, count: int) -> None:
@@ -106,11 +106,11 @@ def of_one_row_repeated(file: Path, count: int) -> None:
 def test_results_with_more_rows_than_runs_are_refused_by_all_that_reads_them(out: Path) -> None:
     of_one_row_repeated(out / RESULTS, RUNS + 1)
     seal(out)
-    manifest = Manifest.read(out)
+    recorded = RecordedCampaign.read(out)
     with pytest.raises(DdctError, match=f'it has {RUNS + 1} rows, not {RUNS}'):
-        read_table(out, manifest)
+        read_table(out, recorded)
     with pytest.raises(DdctError, match=f'it has {RUNS + 1} rows, not {RUNS}'):
-        read_row(out / RESULTS, 0, manifest.runs)
+        read_row(out / RESULTS, 0, recorded.plan.runs)
 
 
 @pytest.mark.parametrize('count', [0, 2])
@@ -161,43 +161,15 @@ def test_a_file_that_is_written_replaces_a_pipe_or_a_link(
 
 def test_a_pipe_that_is_not_written_is_named(out: Path) -> None:
     os.mkfifo(out / 'notes.txt')
+    resumed(out)
     with pytest.raises(DdctError, match=r'notes.txt: cannot be read \(it is a pipe: give a file'):
-        resumed(out)
+        write_campaign_page(out)
 
 
-@pytest.mark.parametrize('text', ['null', '[]', '3', '"runs"'])
-def test_a_manifest_without_keys_is_refused(out: Path, text: str) -> None:
-    (out / MANIFEST).write_text(text, encoding='utf-8')
-    with pytest.raises(DdctError, match=r'\(it is no group of keys\): put the original back'):
-        Manifest.read(out)
-
-
-def test_a_key_that_the_manifest_lacks_is_named(out: Path) -> None:
-    content = json.loads((out / MANIFEST).read_text(encoding='utf-8'))
-    del content['runs']
-    (out / MANIFEST).write_text(json.dumps(content), encoding='utf-8')
-    with pytest.raises(DdctError, match=r'\(the key runs is missing\): put the original back'):
-        Manifest.read(out)
-
-
-@pytest.mark.parametrize('kept', [None, MANIFEST])
-def test_results_without_a_digest_are_refused_until_they_are_computed_again(
-    whole: Path, out: Path, kept: str | None
-) -> None:
-    if kept:
-        digests = read_digests(whole)
-        replace(digests, files={kept: digests.files[kept]}).write(out)
-    missing = RESULTS if kept else MANIFEST
-    with refused(DdctError, missing, place='campaign') as caught:
-        read_table(out, Manifest.read(out))
+def test_results_without_a_digest_are_refused_until_they_are_computed_again(out: Path) -> None:
+    with refused(DdctError, RESULTS, place='campaign') as caught:
+        read_table(out, RecordedCampaign.read(out))
     assert '--resume' in str(caught.value)
     assert replayed(out) == 1
     resumed(out)
-    assert len(read_table(out, Manifest.read(out))) == RUNS
-
-
-@pytest.mark.parametrize('version', ['0.1.0', '9.9.9'])
-def test_no_version_in_a_manifest_makes_up_for_digests(out: Path, version: str) -> None:
-    edit(out, version=version)
-    with refused(DdctError, MANIFEST, place='campaign'):
-        read_table(out, Manifest.read(out))
+    assert len(read_table(out, RecordedCampaign.read(out))) == RUNS

@@ -12,7 +12,7 @@ from verified import CONTROLLER, HANDOVER
 
 from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.conduct import SHARDS, carry_out
-from ddct_bringup.campaign.manifest import Manifest
+from ddct_bringup.campaign.plan import RecordedCampaign
 from ddct_bringup.campaign.spec import spec_of
 from ddct_bringup.campaign.specification.named_files import with_places
 from ddct_bringup.verdict.limits import packaged_limits
@@ -92,11 +92,13 @@ def test_a_handover_file_is_relative_to_the_specification(tmp_path: Path) -> Non
 
 @pytest.mark.process
 def test_a_changed_handover_is_refused_before_it_runs(tmp_path: Path) -> None:
-    manifest = Manifest.of(campaign(tmp_path, **SHIFT), packaged_limits())
-    assert manifest.campaign(tmp_path / 'out').runs == 2
-    (tmp_path / 'own.py').write_text(f'{HANDOVER}\n', encoding='utf-8')
+    out = tmp_path / 'out'
+    with in_this_process():
+        carry_out(campaign(tmp_path, **SHIFT), packaged_limits(), out)
+    assert RecordedCampaign.read(out).campaign().runs == 2
+    (out / 'inputs' / 'own.py').write_text(f'{HANDOVER}\n', encoding='utf-8')
     with refused(DdctError) as caught:
-        manifest.campaign(tmp_path / 'out')
+        RecordedCampaign.read(out).campaign()
     assert 'has changed since' in str(caught.value)
 
 
@@ -106,7 +108,7 @@ def test_a_campaign_is_not_resumed_with_a_changed_handover(tmp_path: Path) -> No
     with in_this_process():
         carry_out(made, packaged_limits(), out)
         (tmp_path / 'own.py').write_text(f'{HANDOVER}\n', encoding='utf-8')
-        with refused(DdctError, key='specification'):
+        with refused(DdctError, key='inputs/own.py'):
             carry_out(Campaign(made.spec), packaged_limits(), out, resume=True)
 
 
@@ -123,13 +125,15 @@ def test_a_handover_that_changes_meanwhile_ends_the_campaign(tmp_path: Path) -> 
 
 @pytest.mark.parametrize('controller', ['mine.py', 'outer.yaml'])
 def test_a_changed_python_file_is_refused_before_it_runs(tmp_path: Path, controller: str) -> None:
-    made = campaign(tmp_path, controllers=[controller])
-    manifest = Manifest.of(made, packaged_limits())
+    made = campaign(tmp_path, controllers=[controller], grid={'duration_s': [0.7]})
+    out = tmp_path / 'out'
+    with in_this_process():
+        carry_out(made, packaged_limits(), out)
     ran = tmp_path / 'ran'
     other = f'{CONTROLLER}\nopen({str(ran)!r}, "w").close()\n'
-    (tmp_path / 'mine.py').write_text(other, encoding='utf-8')
+    (out / 'inputs' / 'mine.py').write_text(other, encoding='utf-8')
     with refused(DdctError) as caught:
-        manifest.campaign(tmp_path / 'out')
+        RecordedCampaign.read(out).campaign()
     assert 'has changed since' in str(caught.value)
     assert not ran.exists(), 'code of another file has run'
 

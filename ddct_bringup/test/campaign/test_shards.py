@@ -10,9 +10,9 @@ import pytest
 from ddct_bringup.campaign import scored
 from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.columns import differences
-from ddct_bringup.campaign.manifest import Manifest
 from ddct_bringup.campaign.rows import VECTORISED
 from ddct_bringup.campaign.scored import Scorer
+from ddct_bringup.campaign.shard_size import shard_size_of
 from ddct_bringup.campaign.spec import spec_of
 from ddct_bringup.verdict.limits import packaged_limits
 
@@ -63,4 +63,4 @@ def test_shards_of_linear_runs_are_large_as_they_are_computed_together(
     wear = {'wear_gain': {'distribution': 'uniform', 'low': 0.8, 'high': 1.2}}
     random = {'samples': 2000, 'vary': wear}
     campaign = Campaign(spec_of({**content, 'random': random}, Path()))
-    assert Manifest.of(campaign, packaged_limits()).shard_size == size
+    assert shard_size_of(campaign) == size

@@ -13,10 +13,10 @@ from made_campaign import GRID, leave_out_figure, make_campaign, seal
 
 from ddct_bringup.api import DdctError, read_campaign
 from ddct_bringup.campaign.conduct import RESULTS
-from ddct_bringup.campaign.manifest import MANIFEST
 from ddct_bringup.campaign.spec import spec_of
 from ddct_bringup.campaign_report.folder import PAGE, SUMMARY
 from ddct_bringup.campaign_report.reading import nominal_values
+from ddct_bringup.manifest.manifest import MANIFEST
 from ddct_bringup.programs.campaign import main
 from ddct_bringup.verdict.state import ENGAGED, INVALID
 

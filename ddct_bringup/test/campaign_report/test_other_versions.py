@@ -2,17 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """Results of other versions are read with the columns that they have."""
 
-import json
 from pathlib import Path
 
 import pyarrow as pa
 import pyarrow.parquet as parquet
 import pytest
 from made_campaign import GRID, leave_out_figure, make_campaign, seal
+from verified import edit_manifest
 
 from ddct_bringup.api import DdctError, read_campaign
 from ddct_bringup.campaign.conduct import RESULTS
-from ddct_bringup.campaign.manifest import MANIFEST
 from ddct_bringup.campaign_report.folder import PAGE
 from ddct_bringup.programs.campaign import main
 
@@ -76,11 +75,12 @@ def test_without_a_column_that_is_needed_the_line_names_it(changed: Path, name: 
 def test_a_key_of_another_version_is_read_without_its_nominal_value(
     changed: Path,
 ) -> None:
-    manifest = json.loads((changed / MANIFEST).read_text(encoding='utf-8'))
-    grid = manifest['spec']['grid']
-    manifest['spec']['grid'] = {'wear_of_tomorrow': grid['wear_gain'], **grid}
-    del manifest['spec']['grid']['wear_gain']
-    (changed / MANIFEST).write_text(json.dumps(manifest), encoding='utf-8')
+    def rename(manifest):
+        spec = manifest['campaigns']['.']['spec']
+        grid = spec['grid']
+        spec['grid'] = {'wear_of_tomorrow': grid.pop('wear_gain'), **grid}
+
+    edit_manifest(changed, rename)
     table = parquet.read_table(changed / RESULTS)
     names = [{'wear_gain': 'wear_of_tomorrow'}.get(each, each) for each in table.column_names]
     renamed = table.rename_columns(names).replace_schema_metadata(table.schema.metadata)

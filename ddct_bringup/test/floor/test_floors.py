@@ -11,7 +11,6 @@ from refusals import refused
 from scored_metrics import SCORED
 from threadpoolctl import threadpool_limits
 
-from ddct_bringup.digests import code
 from ddct_bringup.floor import computed_floor
 from ddct_bringup.floor.case import case_at, case_of_run
 from ddct_bringup.floor.computed_floor import DEMAND, LIMITS
@@ -25,6 +24,7 @@ from ddct_bringup.floor.point import point_of
 from ddct_bringup.floor.program.linear_program import RAY
 from ddct_bringup.floor.replays import attained, replay
 from ddct_bringup.floor.values import value_of
+from ddct_bringup.manifest import code
 from ddct_bringup.run.execution import recording_in_memory
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.scores.scoring import score_run

@@ -13,8 +13,8 @@ import random
 from collections.abc import Iterator
 from pathlib import Path
 
-from ddct_bringup.digests.digest_file import DIGESTS, read_digests
-from ddct_bringup.digests.files import SAME, file_states, files_in
+from ddct_bringup.manifest.file_states import SAME, file_states
+from ddct_bringup.manifest.manifest import MANIFEST, files_in, read_manifest
 from ddct_plant.base.errors import DdctError
 
 
@@ -22,7 +22,7 @@ def kinds_of_files(folder: Path) -> dict[str, Path]:
     """Return one file of each kind in a result with content, by its name or ending."""
     files = {path.suffix or path.name: path for path in files_in(folder).values()}
     named = {path.name: path for path in files_in(folder).values() if path.suffix == '.json'}
-    both = {**files, **named, DIGESTS: folder / DIGESTS}
+    both = {**files, **named, MANIFEST: folder / MANIFEST}
     return {name: path for name, path in both.items() if path.stat().st_size}
 
 
@@ -50,9 +50,9 @@ def _altered(file: Path, original: bytes, draw: random.Random, count: int) -> It
 def _found(folder: Path, file: Path) -> bool:
     """Return whether the check names this file, and no other."""
     try:
-        states = file_states(folder, read_digests(folder))
+        states = file_states(folder, read_manifest(folder))
     except DdctError as error:
-        return file == folder / DIGESTS and str(error).startswith(str(file))
+        return file == folder / MANIFEST and str(error).startswith(str(file))
     wrong = [each.path for each in states if each.state != SAME]
     return wrong == [file.relative_to(folder).as_posix()]
 

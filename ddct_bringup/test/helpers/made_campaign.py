@@ -11,12 +11,14 @@ import pytest
 from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.columns import schema_of, shard_bytes
 from ddct_bringup.campaign.conduct import RESULTS
-from ddct_bringup.campaign.manifest import Manifest
+from ddct_bringup.campaign.plan import CampaignPlan
 from ddct_bringup.campaign.rows import METRIC_COLUMNS
 from ddct_bringup.campaign.run_set import PlannedRow
 from ddct_bringup.campaign.spec import spec_of
-from ddct_bringup.digests.digest_file import CAMPAIGN
-from ddct_bringup.digests.writing import write_folder_digests
+from ddct_bringup.manifest.inputs import Inputs
+from ddct_bringup.manifest.limits import NamedLimits
+from ddct_bringup.manifest.manifest import CAMPAIGN, ITSELF, begin_manifest, finish_manifest
+from ddct_bringup.run.output_folder import mark_folder
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_bringup.verdict.state import ENGAGED, INVALID
 
@@ -54,7 +56,11 @@ def make_campaign(
             | {'state': state, 'why': '', **run.varied, **cells}
         )
     folder.mkdir(parents=True, exist_ok=True)
-    Manifest.of(campaign, packaged_limits()).write(folder)
+    if not any(folder.iterdir()):
+        mark_folder(folder)
+    inputs = Inputs(folder)
+    plan = CampaignPlan.of(campaign, NamedLimits.of(packaged_limits(), inputs), folder)
+    begin_manifest(folder, CAMPAIGN, {}, inputs, {ITSELF: plan})
     (folder / RESULTS).write_bytes(shard_bytes(schema, rows))
     return seal(folder)
 
@@ -66,5 +72,5 @@ def leave_out_figure(patch: pytest.MonkeyPatch) -> None:
 
 def seal(folder: Path) -> Path:
     """Write the digests of the files of a campaign as they are now, and return the folder."""
-    write_folder_digests(folder, CAMPAIGN)
+    finish_manifest(folder)
     return folder

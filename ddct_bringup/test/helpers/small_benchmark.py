@@ -14,11 +14,10 @@ from ddct_bringup.benchmark.cases import SPECIFICATION, Cases
 from ddct_bringup.benchmark.file_names import PAGE, RESULT
 from ddct_bringup.benchmark.release import write_release_rows
 from ddct_bringup.benchmark.report import packaged
-from ddct_bringup.digests.digest_file import DIGESTS
+from ddct_bringup.manifest.manifest import MANIFEST
 from ddct_bringup.programs import benchmark
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.run.timing_and_failure import TIMING_FILE
-from ddct_bringup.verification import benchmark as verification
 from ddct_plant.program.table import Table
 
 SPEC = """\
@@ -37,7 +36,7 @@ random:
 floors: true
 floor_samples: 1
 """
-WALL_CLOCK = {TIMING_FILE, PAGE, DIGESTS}
+WALL_CLOCK = {TIMING_FILE, PAGE, MANIFEST}
 """Files of a benchmark's folder that depend on the update times."""
 PACKAGED = ('pi', 'ls8', 'hinf1')
 """Controllers of the release with these cases."""
@@ -83,7 +82,7 @@ def use_small_release(place: Path, patch: pytest.MonkeyPatch) -> Path:
 
 def use_release(folder: Path, patch: pytest.MonkeyPatch) -> None:
     """Use the cases and rows in a folder from now on."""
-    for module in (cases, conduct, release, packaged, verification):
+    for module in (cases, conduct, packaged):
         patch.setattr(module, 'packaged_folder', lambda: folder)
 
 

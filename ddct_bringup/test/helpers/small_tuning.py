@@ -54,5 +54,5 @@ def leave_out_pictures(patch: pytest.MonkeyPatch) -> None:
 def made_tuning(out: Path, **changes: Any) -> Path:
     """Carry out a small tuning, and return its folder."""
     made = tuning(**changes)
-    write_tuning(made, out, carry_out_tuning(made, out, workers=2), workers=2)
+    write_tuning(out, carry_out_tuning(made, out, workers=2), workers=2)
     return out

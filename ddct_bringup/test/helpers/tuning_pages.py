@@ -29,5 +29,5 @@ def commands_of(folder: Path) -> tuple[str, str]:
 
 def compared_settings(folder: Path) -> dict[str, RunSettings]:
     """Return the settings of the runs in a folder by the name of the controller."""
-    bags = {path.name: read_bag(path) for path in folder.iterdir() if path.is_dir()}
+    bags = {path.name: read_bag(path) for path in folder.iterdir() if any(path.glob('*.mcap'))}
     return {name: bag.settings for name, bag in bags.items() if bag.settings}

@@ -17,9 +17,15 @@ import pyarrow.parquet as parquet
 import pytest
 
 from ddct_bringup.campaign.conduct import RESULTS, SHARDS
-from ddct_bringup.digests.digest_file import file_digest, read_digests
-from ddct_bringup.digests.files import digests_of_files
+from ddct_bringup.manifest.manifest import (
+    MANIFEST,
+    Manifest,
+    file_digest,
+    finish_manifest,
+    read_manifest,
+)
 from ddct_bringup.programs import bringup, campaign, compare, verify
+from ddct_plant.files.json_records import from_json
 
 SPEC = """\
 controllers: [ls8]
@@ -49,21 +55,6 @@ from ddct_controllers.handover.laws import TimedHandover
 class Mine(TimedHandover):
     pass
 """
-RIPPLED = """\
-import math
-
-from ddct_bringup.api import Command, Controller
-
-
-class Rippled(Controller):
-    def reset(self):
-        pass
-
-    def update(self, measurement):
-        error = measurement.slip_error_rpm
-        return Command(-0.05 * error + {ripple_n_m} * math.sin(1e10 * error))
-"""
-"""Controller whose torque has a ripple that depends on the last bits of the error."""
 
 
 def make_runs(out: Path, controllers: str = 'pi,mpc3', *options: str) -> Path:
@@ -97,8 +88,15 @@ def copied(folder: Path, to: Path) -> Path:
 def edit_with_digest(folder: Path, name: str, content: bytes) -> None:
     """Replace a file of a result, and its digest too."""
     (folder / name).write_bytes(content)
-    digests = read_digests(folder)
-    digests.with_files({name: file_digest(folder / name)}).write(folder)
+    manifest = read_manifest(folder)
+    manifest.with_files({name: file_digest(folder / name)}).write(folder)
+
+
+def edit_manifest(folder: Path, edit: Callable[[Any], None]) -> None:
+    """Edit the content of the manifest of a result, and its own digest."""
+    content = json.loads((folder / MANIFEST).read_text(encoding='utf-8'))
+    edit(content)
+    from_json(Manifest, content, folder).write(folder)
 
 
 def edit_json_with_digest(folder: Path, name: str, edit: Callable[[Any], None]) -> None:
@@ -116,14 +114,13 @@ def edit_rows(folder: Path, name: str, edit: Callable[[list[Any]], list[Any]]) -
         values = edit(table[name].to_pylist())
         column = pa.array(values, table.schema.field(place).type)
         parquet.write_table(table.set_column(place, table.schema.field(place), column), file)
-    read_digests(folder).with_files(digests_of_files(folder)).write(folder)
+    finish_manifest(folder)
 
 
 def of_another_release(folder: Path) -> None:
-    """Give the digests of a result the code of another release."""
-    digests = read_digests(folder)
-    environment = replace(digests.environment, code='f' * 64)
-    replace(digests, environment=environment).write(folder)
+    """Give the manifest of a result the code of another release."""
+    manifest = read_manifest(folder)
+    replace(manifest, origin=replace(manifest.origin, code='f' * 64)).write(folder)
 
 
 def verified(
@@ -143,8 +140,8 @@ def states(document: dict[str, Any]) -> dict[str, str]:
 
 def verified_on_other_kernels(folder: Path) -> subprocess.CompletedProcess[str]:
     """Verify a folder in a process with other kernels of OpenBLAS."""
-    if 'kernels of numpy' not in read_digests(folder).environment.processor:
-        pytest.skip('numpy has no OpenBLAS of its own here')
+    if 'OpenBLAS' not in read_manifest(folder).arithmetic.blas:
+        pytest.skip('numpy has no OpenBLAS here')
     path = ':'.join(sys.path)
     return subprocess.run(
         [sys.executable, '-m', verify.__name__, str(folder), '--json', '-'],

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from ddct_bringup.run import description
-from ddct_bringup.run.description import commit_of, short_commit, source_commit
+from ddct_bringup.run.description import as_of_commit, commit_of, short_commit, source_commit
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
@@ -118,7 +118,7 @@ def test_git_is_called_for_the_first_run_of_a_process_alone(
 ) -> None:
     """A session that goes on while its sources change runs the code that it has loaded."""
     monkeypatch.setattr(description, '__file__', str(sources / MODULE))
-    source_commit.cache_clear()
+    description._loaded_commit.cache_clear()
     try:
         settings = RunSettings(load_scenario('thesis'))
         first = description.custom_data(settings, 'pi', 300)['commit']
@@ -129,7 +129,7 @@ def test_git_is_called_for_the_first_run_of_a_process_alone(
         assert description.custom_data(settings, 'ls8', 300)['commit'] == first
         assert calls == []
     finally:
-        source_commit.cache_clear()
+        description._loaded_commit.cache_clear()
 
 
 def test_the_bag_contains_the_commit(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -143,3 +143,10 @@ def test_a_short_commit_keeps_its_mark() -> None:
     assert short_commit(commit) == '0123456789'
     assert short_commit(f'{commit}-dirty') == '0123456789-dirty'
     assert short_commit('unknown') == 'unknown'
+
+
+def test_a_repetition_is_described_by_the_commit_of_its_result() -> None:
+    before = source_commit()
+    with as_of_commit('abc'):
+        assert source_commit() == 'abc'
+    assert source_commit() == before

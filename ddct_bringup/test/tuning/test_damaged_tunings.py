@@ -7,17 +7,21 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from verified import edit_manifest
 
-from ddct_bringup.tuning.manifest import MANIFEST, TuningManifest
+from ddct_bringup.manifest.inputs import Inputs
+from ddct_bringup.manifest.manifest import TUNING, begin_manifest
+from ddct_bringup.tuning.plan import RecordedTuning
 from ddct_bringup.tuning.record import TRIALS, read_entries
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.json_records import to_json
 
 CONTROLLER = {'name': 'pi', 'chosen': 'pi', 'folder': '.', 'digests': {'ddct': 'a'}}
 CONTENT: dict[str, Any] = {
-    'schema_version': 1,
-    **{'version': '1', 'code_digest': 'a', 'optuna': '4', 'campaign_digest': 'b', 'folder': '.'},
-    **{'limits': {'name': 'x'}, 'controller': CONTROLLER, 'spec': {}},
+    'optuna': '4',
+    'limits': {'origin': {'name': 'x'}, 'file': None},
+    'controller': CONTROLLER,
+    'spec': {},
 }
 ENTRY: dict[str, Any] = {
     **{'number': 0, 'state': 'feasible', 'reason': '', 'runs': 1},
@@ -29,7 +33,7 @@ ENTRY: dict[str, Any] = {
 @pytest.mark.parametrize(
     'changes',
     [
-        *({'version': 1}, {'folder': None}, {'limits': []}, {'spec': 'x'}, {'controller': 'pi'}),
+        *({'optuna': 1}, {'limits': []}, {'spec': 'x'}, {'controller': 'pi'}),
         {'controller': {**CONTROLLER, 'folder': 1}},
         {'controller': {**CONTROLLER, 'digests': ['a']}},
         {'controller': {'name': 'pi', 'chosen': 'pi', 'folder': '.'}},
@@ -38,13 +42,11 @@ ENTRY: dict[str, Any] = {
 def test_a_manifest_with_a_value_of_another_type_is_refused(
     tmp_path: Path, changes: dict[str, Any]
 ) -> None:
-    file = tmp_path / MANIFEST
-    file.write_text(json.dumps(CONTENT), encoding='utf-8')
-    assert TuningManifest.read(tmp_path).controller == CONTROLLER
-    file.write_text(json.dumps({**CONTENT, **changes}), encoding='utf-8')
-    with pytest.raises(DdctError) as error:
-        TuningManifest.read(tmp_path)
-    assert error.value.place == str(file)
+    begin_manifest(tmp_path, TUNING, CONTENT, Inputs())
+    assert RecordedTuning.read(tmp_path).plan.controller.digests == {'ddct': 'a'}
+    edit_manifest(tmp_path, lambda content: content['plan'].update(changes))
+    with pytest.raises(DdctError, match=f'{tmp_path}, plan: '):
+        RecordedTuning.read(tmp_path)
 
 
 @pytest.mark.parametrize(

@@ -36,8 +36,9 @@ def test_the_commands_run_for_a_controller_and_a_scenario_from_files_with_all_op
     options = {'objectives': goals, 'constraints': ENGAGED, 'trials': 2, 'campaign': campaign}
     made_tuning(Path('my tuning'), controller='my pi.yaml', **options)
     compare, verify = commands_of(Path('my tuning'))
+    monkeypatch.chdir('my tuning')
     assert run_printed(compare) == 0
-    found = compared_settings(Path('runs', 'tuned'))
+    found = compared_settings(Path('..', 'tuned'))
     assert found.keys() == {'mine', 'mine_tuned'}
     for settings in found.values():
         assert (settings.architecture, settings.clutch) == ('feedforward', 'linear')

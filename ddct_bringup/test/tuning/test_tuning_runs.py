@@ -43,7 +43,7 @@ def bytes_of(folder: Path) -> list[bytes]:
 
 
 def written(tuned: Any, out: Path, **options: Any) -> Path:
-    write_tuning(tuned, out, carry_out_tuning(tuned, out, **options), workers=1)
+    write_tuning(out, carry_out_tuning(tuned, out, **options), workers=1)
     return out
 
 

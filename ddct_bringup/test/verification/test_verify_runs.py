@@ -1,20 +1,21 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""`verify` repeats the runs of a folder; an edit with its digest is found by the repetition."""
+"""`verify` makes the runs of a result again; an edit with its digest is found by that."""
 
-import json
 import re
+import shutil
 from dataclasses import replace
+from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
 import pytest
-from support.made_bags import edited
+from edited_settings import edited
 from verified import (
     CONTROLLER,
-    RIPPLED,
     copied,
     edit_json_with_digest,
+    edit_manifest,
     edit_with_digest,
     make_bag,
     make_runs,
@@ -23,20 +24,19 @@ from verified import (
     verified,
 )
 
+from ddct_bringup import api
 from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.bag.recording import Recording
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.bag.trajectory_bag import write_trajectory
-from ddct_bringup.digests.digest_file import DIGESTS, read_digests
-from ddct_bringup.digests.files import digests_of_files
+from ddct_bringup.manifest.manifest import MANIFEST, finish_manifest, read_manifest
 from ddct_bringup.programs import compare, report, score, verify
-from ddct_bringup.verdict.limits import packaged_limits
-from ddct_bringup.verification.request import VerificationRequest
-from ddct_bringup.verification.runs import verified_runs
 from ddct_controllers.from_file.with_options import with_options_text
 from ddct_plant.signals.gain_changes import GainChange
 
 pytestmark = pytest.mark.slow
+ALL = ['frequency.json', 'mpc3', 'pi', 'report.html', 'scores.json']
+"""What is made again of two compared runs."""
 
 
 @pytest.fixture(scope='module')
@@ -45,30 +45,36 @@ def runs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return make_runs(tmp_path_factory.mktemp('verified') / 'runs')
 
 
+@pytest.fixture(scope='module')
+def bag(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return the folder of one run of `bringup`."""
+    return make_bag(tmp_path_factory.mktemp('bag') / 'out') / 'pi'
+
+
 def test_an_untouched_folder_is_the_same_to_the_last_bit_wherever_it_is(
     runs: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
     code, document, errors = verified(copied(runs, tmp_path / 'elsewhere'), capfd)
     assert (code, errors) == (0, '')
-    expected = dict.fromkeys(['mpc3', 'pi', 'scores.json', 'frequency.json'], 'same_bits')
-    assert states(document) == expected
+    assert states(document) == dict.fromkeys(ALL, 'same_bits')
     assert {file['state'] for file in document['files']} == {'same'}
-    assert (document['same'], document['bound']) == (True, 0.0)
-    assert document['by_digest'] == ['report.html', 'timing.json']
+    assert (document['same'], document['state'], document['bound']) == (True, 'same_bits', 0.0)
+    assert document['by_digest'] == ['timing.json']
 
 
-def test_a_bag_without_digests_is_different_and_the_reason_is_named(runs: Path) -> None:
-    digests = replace(read_digests(runs), runs={})
-    (found,) = verified_runs(VerificationRequest(runs / 'pi', digests, packaged_limits()))
-    assert (found.run, found.state) == ('pi', 'different')
-    assert found.first_difference == {'reason': 'no digests of this run'}
+def test_a_result_has_one_manifest_and_no_path_of_this_machine(runs: Path) -> None:
+    assert [path.parent for path in runs.rglob(MANIFEST)] == [runs]
+    for path in runs.rglob('*'):
+        if path.is_file():
+            assert str(runs.parent).encode() not in path.read_bytes(), path
 
 
-def test_a_bag_in_its_own_folder_has_digests_too(
-    runs: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+def test_a_part_of_a_result_names_the_result(
+    runs: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    code, document, _ = verified(copied(runs / 'pi', tmp_path / 'pi'), capfd)
-    assert (code, states(document)) == (0, {'pi': 'same_bits'})
+    code, _, errors = verified(runs / 'pi', capfd)
+    assert code == 1
+    assert errors == f'ddct verify: {runs}/pi is a part of the result {runs}: give that\n'
 
 
 def test_the_folder_around_the_runs_of_bringup_is_verified_run_by_run(
@@ -94,7 +100,7 @@ def test_altered_missing_and_unlisted_files_are_named(
     code, document, errors = verified(folder, capfd)
     assert code == 1
     assert errors == f'ddct verify: {folder}/mine.txt: unlisted\n'
-    assert set(states(document).values()) == {'same_bits'}
+    assert states(document) == dict.fromkeys(ALL, 'same_bits')
     (folder / 'scores.json').write_text('{}', encoding='utf-8')
     (folder / 'pi' / 'pi_0.mcap').unlink()
     code, document, errors = verified(folder, capfd)
@@ -126,10 +132,10 @@ def _one_run_less(scores: Any) -> None:
 @pytest.mark.parametrize(
     ('edit', 'key'),
     [
-        (_raise_slip, 'runs.pi.metrics.slip_final_rpm'),
-        (_other_seed, 'runs.mpc3.seed'),
-        (_other_state, 'runs.mpc3.state'),
-        (_one_run_less, 'runs.pi'),
+        (_raise_slip, 'runs[0].metrics.slip_final_rpm'),
+        (_other_seed, 'runs[1].seed'),
+        (_other_state, 'runs[1].state'),
+        (_one_run_less, 'runs'),
     ],
 )
 def test_a_metric_seed_or_row_of_the_scores_edited_with_its_digest_is_found(
@@ -179,13 +185,13 @@ def _write_anew(folder: Path, recording: Recording) -> None:
     (folder / 'metadata.yaml').unlink()
     data, nodes = recording.custom_data, recording.run_info
     write_trajectory(recording.trajectory, folder, folder.name, data, nodes)
-    read_digests(folder).with_files(digests_of_files(folder)).write(folder)
+    finish_manifest(folder)
 
 
 def test_a_signal_of_a_bag_edited_with_its_digest_is_found(
-    runs: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+    bag: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    folder = copied(runs / 'pi', tmp_path / 'pi')
+    folder = copied(bag, tmp_path / 'pi')
     _rewrite_bag(folder)
     code, document, _ = verified(folder, capfd)
     (run,) = document['runs']
@@ -195,14 +201,19 @@ def test_a_signal_of_a_bag_edited_with_its_digest_is_found(
     assert first['recorded'] != first['repeated']
 
 
+def _of_graph(content: Any) -> None:
+    """Give a run the layout of a graph, in which alone gains can be changed."""
+    content['plan']['runs']['.']['layout'] = 'single-process'
+
+
 @pytest.mark.parametrize(
     ('gain', 'found'),
     [('proportional_gain', 'signal '), ('nix', 'its repetition fails: unknown gain nix: known: ')],
 )
 def test_a_changed_gain_is_named_where_the_repetition_with_it_differs(
-    runs: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str], gain: str, found: str
+    bag: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str], gain: str, found: str
 ) -> None:
-    folder = copied(runs / 'pi', tmp_path / 'pi')
+    folder = copied(bag, tmp_path / 'pi')
     change, recording = GainChange(gain, 0.103, 0.25, 65), read_bag(folder)
     status = tuple(
         (*pairs, change.pair) if step >= change.step else pairs
@@ -210,6 +221,7 @@ def test_a_changed_gain_is_named_where_the_repetition_with_it_differs(
     )
     signals = {**recording.trajectory.signals, 'status': status}
     _write_anew(folder, replace(recording, trajectory=Trajectory(signals)))
+    edit_manifest(folder, _of_graph)
     code, document, errors = verified(folder, capfd)
     assert (code, states(document)) == (1, {'pi': 'different'})
     note = f'gains changed in the run: {gain} 0.103 to 0.25 at 0.65 s'
@@ -219,9 +231,9 @@ def test_a_changed_gain_is_named_where_the_repetition_with_it_differs(
 
 
 def test_a_parameter_of_a_node_edited_with_its_digest_is_found(
-    runs: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+    bag: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    folder = copied(runs / 'pi', tmp_path / 'pi')
+    folder = copied(bag, tmp_path / 'pi')
     _rewrite_bag(folder, timeout_s='9.0')
     code, document, _ = verified(folder, capfd)
     (run,) = document['runs']
@@ -230,9 +242,9 @@ def test_a_parameter_of_a_node_edited_with_its_digest_is_found(
 
 
 def test_a_setting_of_a_bag_edited_with_its_digest_is_found(
-    runs: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+    bag: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    folder = copied(runs / 'pi', tmp_path / 'pi')
+    folder = copied(bag, tmp_path / 'pi')
     _rewrite_bag(folder, wear_gain=1.1)
     code, document, _ = verified(folder, capfd)
     (run,) = document['runs']
@@ -240,9 +252,9 @@ def test_a_setting_of_a_bag_edited_with_its_digest_is_found(
 
 
 def test_metadata_edited_with_its_digest_is_found(
-    runs: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+    bag: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    folder = copied(runs / 'pi', tmp_path / 'pi')
+    folder = copied(bag, tmp_path / 'pi')
     text = (folder / 'metadata.yaml').read_text(encoding='utf-8')
     edited = re.sub(r'message_count: 81', 'message_count: 82', text, count=1)
     assert edited != text
@@ -252,81 +264,63 @@ def test_metadata_edited_with_its_digest_is_found(
     assert document['runs'][0]['first_difference']['file'] == 'metadata.yaml'
 
 
-def test_a_run_of_another_release_that_amplifies_rounding_has_a_bound_of_its_own(
-    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+@pytest.mark.parametrize('kind', ['python', 'with_options', 'module'])
+def test_a_result_carries_the_files_of_its_controller(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str], kind: str
 ) -> None:
-    """Its bound on other kernels is that of tests/nightly/verification."""
-    file = tmp_path / 'rippled.py'
-    file.write_text(RIPPLED.format(ripple_n_m=1e-6), encoding='utf-8')
-    folder = make_bag(tmp_path / 'runs', '--controller', str(file)) / 'Rippled'
-    _rewrite_bag(folder)
-    of_another_release(folder)
-    code, document, _ = verified(folder, capfd)
-    (run,) = document['runs']
-    assert (code, run['state'], document['bound']) == (0, 'same_within', 1e-9)
-    assert 1e-9 < run['largest_difference'] < run['bound'] < 1e-3
-
-
-def test_a_controller_file_is_found_beside_the_folder_or_by_its_option(
-    tmp_path: Path, capfd: pytest.CaptureFixture[str]
-) -> None:
-    file = tmp_path / 'work' / 'mine.py'
-    file.parent.mkdir()
+    work = tmp_path / 'work'
+    (work / 'parts').mkdir(parents=True)
+    file = work / 'mine.py'
     file.write_text(CONTROLLER, encoding='utf-8')
-    runs = make_bag(tmp_path / 'work' / 'runs', '--controller', str(file)) / 'Mine'
-    assert verified(runs, capfd)[0] == 0
-    (tmp_path / 'work').rename(tmp_path / 'moved')
-    moved = tmp_path / 'moved' / 'runs' / 'Mine'
-    assert verified(moved, capfd)[0] == 0
-    elsewhere = copied(moved, tmp_path / 'elsewhere' / 'deep' / 'Mine')
-    code, document, errors = verified(elsewhere, capfd)
-    assert (code, states(document)['Mine']) == (1, 'different')
-    assert 'mine.py is gone: put it back, or name its folder with --files' in errors
-    assert verified(elsewhere, capfd, '--files', str(tmp_path / 'moved'))[0] == 0
-    changed = tmp_path / 'moved' / 'mine.py'
-    ran = tmp_path / 'ran'
-    other = f'{CONTROLLER}\nopen({str(ran)!r}, "w").close()\n'
-    changed.write_text(other, encoding='utf-8')
-    code, _, errors = verified(moved, capfd)
-    assert code == 1
-    assert 'has changed since: put the old one back' in errors
-    assert not ran.exists(), 'code of another file has run'
+    if kind == 'with_options':
+        file = work / 'parts' / 'outer.yaml'
+        file.write_text(with_options_text('mine', '../mine.py', {}), encoding='utf-8')
+    if kind == 'module':
+        file.write_text(f'from parts.gains import GAIN\n{CONTROLLER}', encoding='utf-8')
+        (work / 'parts' / 'gains.py').write_text('GAIN = 0.1\n', encoding='utf-8')
+    out = make_bag(tmp_path / 'runs', '--controller', str(file))
+    (folder,) = (each for each in out.iterdir() if each.is_dir())
+    shutil.rmtree(work)
+    moved = tmp_path / 'elsewhere' / 'deep' / 'result'
+    shutil.copytree(folder, moved)
+    shutil.rmtree(out)
+    code, document, errors = verified(moved, capfd)
+    assert (code, states(document), errors) == (0, {'result': 'same_bits'}, '')
 
 
-def test_a_changed_file_behind_another_one_is_refused_before_it_runs(
+def test_an_edited_input_is_refused_before_it_runs(
     tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    (tmp_path / 'mine.py').write_text(CONTROLLER, encoding='utf-8')
-    outer = tmp_path / 'outer.yaml'
-    outer.write_text(with_options_text('outer', 'mine.py', {}), encoding='utf-8')
-    runs = make_bag(tmp_path / 'runs', '--controller', str(outer)) / 'outer'
-    assert verified(runs, capfd)[0] == 0
+    file = tmp_path / 'mine.py'
+    file.write_text(CONTROLLER, encoding='utf-8')
+    folder = make_bag(tmp_path / 'runs', '--controller', str(file)) / 'Mine'
     ran = tmp_path / 'ran'
-    other = f'{CONTROLLER}\nopen({str(ran)!r}, "w").close()\n'
-    (tmp_path / 'mine.py').write_text(other, encoding='utf-8')
-    code, _, errors = verified(runs, capfd)
+    text = f'{CONTROLLER}\nopen({str(ran)!r}, "w").close()\n'
+    (folder / 'inputs' / 'mine.py').write_text(text, encoding='utf-8')
+    code, _, errors = verified(folder, capfd)
     assert code == 1
-    assert 'base_controller_file has changed since' in errors
+    assert f'{folder}/inputs/mine.py: altered' in errors
     assert not ran.exists(), 'code of another file has run'
 
 
-def test_a_changed_module_beside_a_controller_file_is_named_as_the_cause(
+def test_a_controller_that_was_an_object_is_not_repeated(
     tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    file, helper = tmp_path / 'mine.py', tmp_path / 'parts' / 'gains.py'
-    file.write_text(f'from parts.gains import GAIN\n{CONTROLLER}', encoding='utf-8')
-    helper.parent.mkdir()
-    helper.write_text('GAIN = 0.1\n', encoding='utf-8')
-    runs = make_bag(tmp_path / 'runs', '--controller', str(file)) / 'Mine'
-    assert verified(runs, capfd)[0] == 0
-    ran = tmp_path / 'ran'
-    helper.write_text(f'GAIN = open({str(ran)!r}, "w")\n', encoding='utf-8')
-    code, _, errors = verified(runs, capfd)
-    assert code == 1
-    assert f'controller {file}: parts/gains.py has changed since' in errors
-    helper.unlink()
-    assert f'controller {file}: parts/gains.py is gone' in verified(runs, capfd)[2]
-    assert not ran.exists(), 'code of another file has run'
+    class Mine(api.Controller):
+        def reset(self) -> None:
+            pass
+
+        def update(self, measurement: Any) -> api.Command:
+            return api.Command(0.0)
+
+    api.run(Mine, duration=0.8, out=tmp_path)
+    code, document, errors = verified(tmp_path / 'Mine', capfd)
+    assert (code, errors, document['state']) == (3, '', 'not_repeated')
+    assert verify.main([str(tmp_path / 'Mine')]) == 3
+    last = capfd.readouterr().out.splitlines()[-1]
+    assert last.endswith(
+        'not repeated: Mine (a controller that was an object of a Python program).'
+    )
 
 
 def test_a_run_that_failed_fails_again_with_the_same_reason(
@@ -352,9 +346,9 @@ def test_a_run_that_failed_fails_again_with_the_same_reason(
 
 @pytest.mark.parametrize('content', [b'{', b'\xff', b'[]', b'{"reason": "it stalled"}'])
 def test_a_run_with_a_damaged_note_of_its_failure_is_different(
-    runs: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str], content: bytes
+    bag: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str], content: bytes
 ) -> None:
-    folder = copied(runs / 'pi', tmp_path / 'pi')
+    folder = copied(bag, tmp_path / 'pi')
     edit_with_digest(folder, 'failed_run.json', content)
     code, document, _ = verified(folder, capfd)
     assert (code, states(document)) == (1, {'pi': 'different'})
@@ -367,78 +361,83 @@ def test_score_and_report_keep_the_digests_of_what_they_write(
     scores, page = runs / 'scores.json', runs / 'report.html'
     scores.unlink()
     assert verified(runs, capfd)[0] == 1
-    assert score.main([str(runs), '--json', str(scores), '--csv', str(runs / 'pi' / 's.csv')]) == 0
+    assert score.main([str(runs), '--json', str(scores), '--csv', str(runs / 's.csv')]) == 0
     assert report.main([str(runs), '--out', str(page)]) == 0
     code, document, errors = verified(runs, capfd)
-    assert (code, errors) == (0, '')
-    assert states(document)['scores.json'] == 'same_bits'
-    assert 'pi/s.csv' in [file['path'] for file in document['files']]
+    assert (code, errors) == (3, '')
+    left = {name: state for name, state in states(document).items() if state != 'same_bits'}
+    assert left == {'s.csv': 'not_repeated'}
 
 
-def test_scores_by_other_limits_need_these_limits(
-    runs: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
-) -> None:
+def test_a_result_carries_its_limits(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / 'mine.yaml'
+    file.write_bytes((files('ddct_bringup.verdict') / 'limits.yaml').read_bytes() + b'\n')
+    folder = make_runs(tmp_path / 'runs', 'pi', '--limits', str(file))
+    file.unlink()
+    assert verified(folder, capfd)[0] == 0
+
     def edit(scores: Any) -> None:
         scores['limits']['digest'] = '0' * 16
 
-    folder = copied(runs, tmp_path / 'runs')
     edit_json_with_digest(folder, 'scores.json', edit)
-    code, _, errors = verified(folder, capfd)
-    assert code == 1
-    assert 'give --limits with that file' in errors
+    code, document, _ = verified(folder, capfd)
+    assert (code, states(document)['scores.json']) == (1, 'different')
 
 
 @pytest.mark.parametrize(
-    ('key', 'value'),
+    ('key', 'value', 'words'),
     [
-        ('controller', 3),
-        ('controller_files', 'mine.py'),
-        ('handover', ['mine.py']),
-        ('handover_files', 'mine.py'),
+        ('controller', 3, 'runs...controller is 3'),
+        ('settings', 'fast', 'runs...settings is '),
+        ('scenario', {}, 'key name is missing'),
     ],
 )
-def test_digests_of_a_run_with_another_type_are_one_line(
-    runs: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str], key: str, value: Any
+def test_a_plan_with_another_type_is_one_line(
+    bag: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str], key: str, value: Any, words: str
 ) -> None:
-    folder = copied(runs / 'pi', tmp_path / 'pi')
-    text = (folder / DIGESTS).read_text(encoding='utf-8')
-    content = json.loads(text)
-    content['runs']['.'][key] = value
-    (folder / DIGESTS).write_text(json.dumps(content), encoding='utf-8')
+    def edit(content: Any) -> None:
+        content['plan']['runs']['.'][key] = value
+
+    folder = copied(bag, tmp_path / 'pi')
+    edit_manifest(folder, edit)
     code, _, errors = verified(folder, capfd)
     assert (code, errors.count('\n')) == (1, 1)
-    assert 'it is damaged (' in errors and 'is no ' in errors
+    assert words in errors
 
 
 @pytest.mark.parametrize(
     ('content', 'words'),
     [
-        ('', 'it is damaged (not valid JSON'),
-        ('{}', 'it is damaged (KeyError'),
-        ('[]', 'it is damaged'),
+        ('', 'not valid JSON'),
+        ('{}', 'schema_version'),
+        ('[]', 'a list'),
         ('{"schema_version": 2}', 'schema_version'),
+        ('{"schema_version": 1}', 'is missing'),
     ],
 )
-def test_damaged_and_newer_digests_are_one_line(
-    runs: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str], content: str, words: str
+def test_a_damaged_or_newer_manifest_is_one_line(
+    bag: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str], content: str, words: str
 ) -> None:
-    folder = copied(runs / 'pi', tmp_path / 'pi')
-    (folder / DIGESTS).write_text(content, encoding='utf-8')
+    folder = copied(bag, tmp_path / 'pi')
+    (folder / MANIFEST).write_text(content, encoding='utf-8')
     code, _, errors = verified(folder, capfd)
     assert (code, errors.count('\n')) == (1, 1)
-    assert f'{folder}/{DIGESTS}: ' in errors
+    assert f'{folder}/{MANIFEST}: ' in errors
     assert words in errors
 
 
-def test_folders_without_digests_are_one_line(
-    runs: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+def test_a_folder_without_a_complete_result_is_one_line(
+    bag: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    partial = copied(runs / 'pi', tmp_path / 'pi.partial')
-    (partial / DIGESTS).unlink()
+    partial = copied(bag, tmp_path / 'pi.partial')
+    (partial / MANIFEST).unlink()
     earlier = copied(partial, tmp_path / 'earlier')
+    running = copied(bag, tmp_path / 'running')
+    replace(read_manifest(running), state='running').write(running)
     for path, words in (
-        (partial, 'an interrupted run left this folder'),
-        (earlier, 'it was recorded before results had digests'),
+        (partial, 'an interrupted run left it'),
+        (earlier, 'it is no result, or that was lost'),
+        (running, 'it is not complete'),
         (tmp_path / 'absent', 'no such file or folder'),
         (earlier / 'metadata.yaml', 'is a file: give the folder'),
     ):
@@ -449,35 +448,86 @@ def test_folders_without_digests_are_one_line(
     assert (partial / 'pi_0.mcap').is_file()
 
 
-def test_a_folder_of_another_release_is_compared_with_the_bound(
+def test_a_folder_of_another_release_is_compared_within_the_bound_and_its_page_is_not(
     runs: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    folder = copied(runs / 'pi', tmp_path / 'pi')
-    text = (folder / DIGESTS).read_text(encoding='utf-8')
-    content = json.loads(text)
-    del content['own_digest']
-    content['environment'] |= {'version': '0.0.1', 'code': 'f' * 64}
-    _write_digests(folder, content)
+    folder = copied(runs, tmp_path / 'runs')
+    of_another_release(folder)
+    edit_with_digest(folder, 'report.html', b'<!DOCTYPE html>')
     code, document, _ = verified(folder, capfd)
-    assert (code, document['bound']) == (0, 1e-9)
-    assert document['environment_differences'][0].startswith('version 0.0.1, here ')
-    content['kind'] = 'a_later_one'
-    _write_digests(folder, content)
-    code, _, errors = verified(folder, capfd)
-    assert code == 1
-    assert "this version cannot verify a folder of the kind 'a_later_one'" in errors
+    assert (code, document['bound'], document['state']) == (3, 1e-9, 'not_repeated')
+    assert document['environment_differences'][0].startswith('code ffffffffff, here ')
+    assert states(document)['report.html'] == 'not_repeated'
 
 
-def _write_digests(folder: Path, content: dict[str, Any]) -> None:
-    """Write digests with this content, and their own digest."""
-    from ddct_bringup.digests.digest_file import _digests_of
+@pytest.mark.parametrize(('change', 'code'), [(1e-12, 3), (1e-5, 1)])
+def test_a_signal_of_another_release_may_differ_within_the_bound(
+    bag: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str], change: float, code: int
+) -> None:
+    folder = copied(bag, tmp_path / 'pi')
+    recording = read_bag(folder)
+    recording.trajectory.slip_speed[60] *= 1.0 + change
+    _write_anew(folder, recording)
+    of_another_release(folder)
+    assert verify.main([str(folder)]) == code
+    printed = capfd.readouterr()
+    if code == 3:
+        last = printed.out.splitlines()[-1]
+        assert 'pi within 1e-09 of each peak, because of code ffffffffff, here ' in last
+    else:
+        assert 'signal slip_speed, step 60' in printed.err
 
-    _digests_of(content).write(folder)
+
+def test_an_edited_page_is_different(
+    runs: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    folder = copied(runs, tmp_path / 'runs')
+    page = (folder / 'report.html').read_bytes()
+    edit_with_digest(folder, 'report.html', page.replace(b'mpc3', b'mpc9', 1))
+    code, document, errors = verified(folder, capfd)
+    assert (code, states(document)['report.html']) == (1, 'different')
+    assert f'{folder}: report.html: file report.html, line ' in errors
+
+
+def test_a_headless_bag_relabelled_as_real_time_is_different(
+    bag: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    folder = copied(bag, tmp_path / 'pi')
+    recording = read_bag(folder)
+    halved = {**recording.trajectory.signals}
+    halved['vehicle_accel'] = halved['vehicle_accel'] / 2.0
+    data = edited(recording.custom_data, mode='realtime')
+    nodes = {
+        node: {**pairs, 'mode': 'realtime'} if 'mode' in pairs else pairs
+        for node, pairs in recording.run_info.items()
+    }
+    _write_anew(
+        folder,
+        replace(recording, trajectory=Trajectory(halved), custom_data=data, run_info=nodes),
+    )
+    code, document, _ = verified(folder, capfd)
+    assert (code, states(document)) == (1, {'pi': 'different'})
+
+    def relabel(content: Any) -> None:
+        content['plan']['runs']['.']['settings']['mode'] = 'realtime'
+
+    edit_manifest(folder, relabel)
+    assert verify.main([str(folder)]) == 1, 'no headless run is in real time'
+
+
+def test_nothing_is_called_compared_before_it_was_repeated(
+    runs: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    folder = copied(runs, tmp_path / 'runs')
+    (folder / 'pi' / 'pi_0.mcap').unlink()
+    assert verify.main([str(folder)]) == 1
+    assert capfd.readouterr().out == ''
 
 
 def test_the_table_names_what_was_compared(runs: Path, capfd: pytest.CaptureFixture[str]) -> None:
     assert verify.main([str(runs)]) == 0
     printed = capfd.readouterr().out
     assert re.search(r'mpc3 +same bits', printed)
-    assert 'every bit was compared' in printed
-    assert 'By their digests alone: report.html, timing.json.' in printed
+    assert 'On the wall clock, by their digests alone: timing.json.' in printed
+    last = 'files are as their digests; everything was made again, with equal bits.'
+    assert printed.splitlines()[-1].endswith(last)

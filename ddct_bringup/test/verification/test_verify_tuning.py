@@ -3,13 +3,14 @@
 """A tuning is repeated: its trials, its files, its held-out runs, and its front."""
 
 import json
+import shutil
 from pathlib import Path
 from typing import Any
 
 import pytest
 from python_controllers import IMPORTS, PROPORTIONAL
 from small_tuning import leave_out_pictures, made_tuning
-from verified import copied, edit_json_with_digest, edit_with_digest
+from verified import copied, edit_json_with_digest, edit_manifest, edit_with_digest
 
 from ddct_bringup.programs.verify import main as verify
 from ddct_controllers.from_file.with_options import with_options_text
@@ -39,7 +40,8 @@ def states(folder: Path, to: Path) -> dict[str, str]:
 
 def test_a_tuning_comes_out_again_where_it_was_moved_to(finished: Path, tmp_path: Path) -> None:
     found = states(copied(finished, tmp_path / 'elsewhere' / 'copy'), tmp_path / 'found.json')
-    assert {'trials 0 to 7', 'trials 8 to 9', 'front.json', 'controller files'} <= found.keys()
+    names = {'manifest.json', 'shards', 'front.json', 'trials.json', 'best.yaml', 'report.html'}
+    assert {*names, 'held_out/results.parquet'} <= found.keys()
     assert set(found.values()) == {'same_bits'}
 
 
@@ -59,7 +61,6 @@ def _better_front(result: dict[str, Any]) -> None:
 
 def test_every_edit_with_its_digest_is_found(finished: Path, tmp_path: Path) -> None:
     folder = copied(finished, tmp_path / 'copy')
-    edit_json_with_digest(folder, 'shards/000000.json', _better)
     edit_json_with_digest(folder, 'shards/000001.json', _other_state)
     edit_json_with_digest(folder, 'trials.json', _better)
     edit_json_with_digest(folder, 'front.json', _better_front)
@@ -68,18 +69,26 @@ def test_every_edit_with_its_digest_is_found(finished: Path, tmp_path: Path) -> 
     assert changed != text
     edit_with_digest(folder, 'best.yaml', changed.encode())
     found = states(folder, tmp_path / 'found.json')
-    edited = ('trials 0 to 7', 'trials 8 to 9', 'controller files', 'front.json')
     assert {name for name, state in found.items() if state == 'different'} == {
-        *edited,
-        'trials.json, runs.parquet',
+        *('shards', 'trials.json', 'front.json', 'best.yaml')
     }
 
 
-def test_a_changed_controller_is_refused_before_it_runs(
-    tmp_path: Path, capfd: pytest.CaptureFixture[str]
-) -> None:
-    (tmp_path / 'mine.py').write_text(IMPORTS + PROPORTIONAL, encoding='utf-8')
-    outer = tmp_path / 'outer.yaml'
+def test_an_edited_search_seed_is_found(finished: Path, tmp_path: Path) -> None:
+    def other_seed(content: dict[str, Any]) -> None:
+        content['plan']['spec']['seed'] += 1
+
+    folder = copied(finished, tmp_path / 'copy')
+    edit_manifest(folder, other_seed)
+    found = states(folder, tmp_path / 'found.json')
+    assert found['shards'] == found['trials.json'] == 'different'
+
+
+def test_a_tuning_carries_its_controller(tmp_path: Path) -> None:
+    work = tmp_path / 'work'
+    work.mkdir()
+    (work / 'mine.py').write_text(IMPORTS + PROPORTIONAL, encoding='utf-8')
+    outer = work / 'outer.yaml'
     outer.write_text(with_options_text('outer', 'mine.py', {}), encoding='utf-8')
     folder = made_tuning(
         tmp_path / 'out',
@@ -88,9 +97,8 @@ def test_a_changed_controller_is_refused_before_it_runs(
         constraints={'engaged': {'at_least': 0.0}},
         trials=2,
     )
-    ran = tmp_path / 'ran'
-    other = f'open({str(ran)!r}, "w").close()\n'
-    (tmp_path / 'mine.py').write_text(other, encoding='utf-8')
-    assert verify([str(folder), '--workers', '1']) == 1
-    assert 'base_controller_file has changed since' in capfd.readouterr().err
-    assert not ran.exists(), 'code of another file has run'
+    shutil.rmtree(work)
+    moved = folder.rename(tmp_path / 'moved')
+    assert set(states(moved, tmp_path / 'found.json').values()) == {'same_bits'}
+    for file in moved.rglob('*'):
+        assert not file.is_file() or str(tmp_path).encode() not in file.read_bytes(), file

@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Digests of the files behind a controller or a handover, taken without running any of them."""
+"""The files behind a controller or a handover with their digests; none of them runs for it."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -44,6 +44,39 @@ def controller_digests(chosen: str) -> Mapping[str, str]:
         if isinstance(content, Mapping) and _FILE in content:
             file.named_file(kind, content[_FILE], 'the file that it names')
     return file.digests
+
+
+def controller_files(chosen: str) -> list[Path]:
+    """
+    Return the files that a controller is made of, its own first; a name has none.
+
+    Those are the modules beside a Python file that it imports, the library or FMU that a file
+    names, and the files of a controller that is given other options. Raise DdctError for a file
+    that cannot be read.
+    """
+    if not is_controller_file(chosen):
+        return []
+    if chosen.endswith(SUFFIX):
+        return _python_files('controller', chosen)
+    file = read_controller_file(chosen)
+    with file.located():
+        kind = kind_of(file)
+        further = controller_files(base_of(file)) if kind == WITH_OPTIONS else []
+        content = file.content[kind]
+        if isinstance(content, Mapping) and _FILE in content:
+            further = [file.named_file(kind, content[_FILE], 'the file that it names')]
+    return [Path(chosen), *further]
+
+
+def handover_files(file: str) -> list[Path]:
+    """Return the Python file of a handover and the modules beside it that it imports."""
+    return _python_files('handover', file)
+
+
+def _python_files(what: str, file: str) -> list[Path]:
+    with located(f'{what} file {file}'):
+        sources = sources_of(Path(file))
+    return [each.path for each in sources.values() if each.path.is_file()]
 
 
 def handover_digests(file: str) -> Mapping[str, str]:

@@ -8,7 +8,7 @@ from typing import Any
 
 from ddct_controllers.from_file.python_file import the_one_class
 from ddct_controllers.handover.interface import Handover, HandoverCommand, HandoverMeasurement
-from ddct_controllers.places import place_of_error
+from ddct_controllers.places import place_of_error, without_folder
 from ddct_controllers.plugins import HANDOVERS
 from ddct_plant.base.errors import (
     FOREIGN_FAILURES,
@@ -104,5 +104,5 @@ class _Checked(Handover):
 
 def _failure(name: str, made: Any, when: str, error: BaseException) -> str:
     place = place_of_error(error, str(getattr(made, '__module__', '')).partition('.')[0])
-    where = f', in {place}' if place else ''
+    where = f', in {without_folder(place)}' if place else ''
     return f'handover {name!r} {when} ({type(error).__name__}: {error}{where}): mend its code'

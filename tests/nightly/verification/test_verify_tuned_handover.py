@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A tuning of gear shifts is repeated with the file of its handover, and with no other one."""
 
+import shutil
 from pathlib import Path
 
 import pytest
@@ -14,7 +15,7 @@ from ddct_controllers.from_file.with_options import with_options_text
 DURATION = {'distribution': 'choice', 'values': [2.5]}
 
 
-def test_a_changed_handover_is_refused_before_it_runs(
+def test_a_tuning_carries_the_file_of_its_handover(
     tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
     place = tmp_path / 'place'
@@ -30,14 +31,12 @@ def test_a_changed_handover_is_refused_before_it_runs(
     }
     changes = {'constraints': {'engaged': {'at_least': 0.0}}, 'campaign': cases, 'trials': 2}
     folder = made_tuning(place / 'out', controller=str(controller), folder=place, **changes)
-    place.rename(tmp_path / 'moved')
-    there = ('--files', str(tmp_path / 'moved'), '--workers', '1')
-    moved = tmp_path / 'moved' / folder.name
-    assert verify([str(moved), *there]) == 0, capfd.readouterr().err
+    moved = folder.rename(tmp_path / 'moved')
+    shutil.rmtree(place)
+    assert verify([str(moved), '--workers', '1']) == 0, capfd.readouterr().err
     ran = tmp_path / 'ran'
-    (tmp_path / 'moved' / 'own.py').write_text(
-        f'open({str(ran)!r}, "w").close()\n', encoding='utf-8'
-    )
-    assert verify([str(moved), *there]) == 1
-    assert 'handover file of its cases has changed since' in capfd.readouterr().err
+    carried = moved / 'inputs' / 'own.py'
+    carried.write_text(f'open({str(ran)!r}, "w").close()\n', encoding='utf-8')
+    assert verify([str(moved), '--workers', '1']) == 1
+    assert f'{carried}: altered' in capfd.readouterr().err
     assert not ran.exists(), 'code of another file has run'

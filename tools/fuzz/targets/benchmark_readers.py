@@ -6,7 +6,7 @@ from pathlib import Path
 
 from ddct_bringup.benchmark.cases import Cases, packaged_folder
 from ddct_bringup.benchmark.judged import Judged
-from ddct_bringup.benchmark.manifest import MANIFEST, BenchmarkManifest, JudgedEntry
+from ddct_bringup.benchmark.plan import BenchmarkPlan, JudgedEntry
 from ddct_bringup.benchmark.release import ROWS, release_rows
 from ddct_bringup.benchmark.update_times import (
     NoUpdateTime,
@@ -14,8 +14,9 @@ from ddct_bringup.benchmark.update_times import (
     UpdateTimesFile,
     read_update_times,
 )
+from ddct_bringup.manifest.inputs import Inputs
 from ddct_bringup.run.timing_and_failure import TIMING_FILE
-from ddct_plant.files.json_records import json_text
+from ddct_plant.files.json_records import json_text, read_json
 from fuzz.reader import Reader
 from fuzz.targets.run_readers import in_folder
 
@@ -31,27 +32,23 @@ _UPDATE_TIMES = UpdateTimesFile(
 def benchmark_readers(folder: Path) -> list[Reader]:
     """Return the readers of a benchmark's files."""
     judged = [Judged.of(name) for name in ('pi', 'ls8')]
-    BenchmarkManifest.of(judged, Cases.packaged(quick=True), None).write(folder)
+    plan = BenchmarkPlan.of(judged, Cases.packaged(quick=True), None, Inputs())
     rows = (packaged_folder() / ROWS).read_bytes()
     times = json_text(_UPDATE_TIMES).encode()
     return [
-        Reader('benchmark', MANIFEST, in_folder(_manifest), ((folder / MANIFEST).read_bytes(),)),
+        Reader('benchmark', 'plan.json', _plan, (json_text(plan).encode(),)),
         Reader('benchmark_rows', ROWS, in_folder(_release), (rows,)),
         Reader('update_times', TIMING_FILE, in_folder(read_update_times), (times,)),
     ]
 
 
-def _manifest(folder: Path) -> object:
-    """Return all that follows from a manifest alone."""
-    manifest = BenchmarkManifest.read(folder)
-    judged = [
-        Judged(each.name, each.chosen, folder, each.digests) for each in manifest.controllers
-    ]
-    seeds = [
-        JudgedEntry.of(each, manifest.code_digest, manifest.judge_seed).held_out_seed
-        for each in judged
-    ]
-    cases = manifest.run_cases
+def _plan(file: Path) -> object:
+    """Return all that follows from a plan alone."""
+    plan, folder = read_json(BenchmarkPlan, file), file.parent
+    plan.run_cases.require_parts()
+    judged = [each.judged(folder) for each in plan.controllers]
+    seeds = [JudgedEntry.of(each, '', plan.judge_seed).held_out_seed for each in judged]
+    cases = plan.run_cases
     pairs = zip(judged, seeds, strict=True)
     held_out = [cases.held_out(each.chosen, folder, seed).cases for each, seed in pairs]
     return cases.digest, held_out

@@ -3,24 +3,31 @@
 """Readers of the files of a campaign, and of the JSON with which `verify` compares its own."""
 
 import json
+import shutil
+from functools import partial
 from pathlib import Path
 
 from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.columns import read_row
 from ddct_bringup.campaign.conduct import RESULTS, carry_out
-from ddct_bringup.campaign.manifest import MANIFEST, Manifest
+from ddct_bringup.campaign.plan import CampaignPlan, RecordedCampaign
 from ddct_bringup.campaign.spec import read_spec, spec_of
 from ddct_bringup.campaign_report.folder import SUMMARY
 from ddct_bringup.campaign_report.reading import read_table, results_of
 from ddct_bringup.campaign_report.results import Results
 from ddct_bringup.campaign_report.summary import summary_of
-from ddct_bringup.digests.digest_file import CAMPAIGN
-from ddct_bringup.digests.writing import write_folder_digests
+from ddct_bringup.manifest.manifest import (
+    ITSELF,
+    MANIFEST,
+    file_digest,
+    read_manifest,
+)
+from ddct_bringup.run.output_folder import MARKER
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_bringup.verification.comparison import Comparison, plain_json, recorded_json
 from ddct_bringup.verification.result import RepetitionResult
+from ddct_plant.files.json_records import read_json
 from fuzz.reader import Read, Reader
-from fuzz.targets.run_readers import in_folder
 
 _TEMPLATE = Path(__file__).resolve().parents[3] / 'docs' / 'templates' / 'campaign.yaml'
 _SPEC = {'controllers': ['pi', 'ls8'], 'grid': {'wear_gain': [0.8, 1.2], 'duration_s': [0.7]}}
@@ -31,12 +38,13 @@ def campaign_readers(folder: Path) -> list[Reader]:
     """Return the readers of a campaign's files; a good campaign is carried out in a folder."""
     made = folder / 'campaign'
     carry_out(Campaign(spec_of(_SPEC, folder)), packaged_limits(), made, workers=1)
-    manifest, results = ((made / name).read_bytes() for name in (MANIFEST, RESULTS))
+    results = (made / RESULTS).read_bytes()
+    plan = json.dumps(read_manifest(made).campaigns[ITSELF]).encode()
     summary = plain_json(summary_of(_results(made)))
     return [
         Reader('campaign', 'mine.yaml', read_spec, (_TEMPLATE.read_bytes(),)),
-        Reader('manifest', MANIFEST, in_folder(Manifest.read), (manifest,)),
-        Reader('results', RESULTS, _summary_beside(manifest), (results,)),
+        Reader('campaign_plan', 'plan.json', partial(read_json, CampaignPlan), (plan,)),
+        Reader('results', RESULTS, _summary_beside(made), (results,)),
         Reader('result_row', RESULTS, lambda file: read_row(file, _LAST, _LAST + 1), (results,)),
         Reader(
             'summary', SUMMARY, _compared(plain_json(summary)), (json.dumps(summary).encode(),)
@@ -45,16 +53,18 @@ def campaign_readers(folder: Path) -> list[Reader]:
 
 
 def _results(folder: Path) -> Results:
-    manifest = Manifest.read(folder)
-    return results_of(manifest, read_table(folder, manifest))
+    recorded = RecordedCampaign.read(folder)
+    return results_of(recorded, read_table(folder, recorded))
 
 
-def _summary_beside(manifest: bytes) -> Read:
-    """Return a reader of results, with their manifest and the digests of both as they are."""
+def _summary_beside(made: Path) -> Read:
+    """Return a reader of results, with the manifest of a campaign and their digest as they are."""
+    manifest = read_manifest(made)
 
     def read(file: Path) -> object:
-        (file.parent / MANIFEST).write_bytes(manifest)
-        write_folder_digests(file.parent, CAMPAIGN)
+        for name in (MARKER, MANIFEST):
+            shutil.copy(made / name, file.parent)
+        manifest.with_files({RESULTS: file_digest(file)}).write(file.parent)
         return summary_of(_results(file.parent))
 
     return read

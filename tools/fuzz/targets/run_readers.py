@@ -9,12 +9,15 @@ from dataclasses import replace
 from pathlib import Path
 from unittest.mock import patch
 
-from ddct_bringup.digests.digest_file import DIGESTS, RUNS, Digests, RunDigests, read_digests
-from ddct_bringup.digests.environment import this_environment
-from ddct_bringup.digests.writing import ITSELF
+from ddct_bringup.api.shell.comparison import SCORES_FILE
+from ddct_bringup.manifest.inputs import Inputs
+from ddct_bringup.manifest.limits import NamedLimits
+from ddct_bringup.manifest.manifest import ITSELF, MANIFEST, RUNS, begin_manifest, read_manifest
+from ddct_bringup.manifest.runs import PlannedRun, RunsPlan
 from ddct_bringup.programs.score import main as score
 from ddct_bringup.report import evidence
 from ddct_bringup.report.evidence import FREQUENCY_FILE, evidence_of, loop_rows, without_evidence
+from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.run.timing_and_failure import (
     NOTE_FILE,
     TIMING_FILE,
@@ -26,12 +29,10 @@ from ddct_bringup.run.timing_and_failure import (
 from ddct_bringup.scores.document import read_scores
 from ddct_bringup.scores.scored_recording import ScoredRecording, score_any_bag
 from ddct_bringup.verdict.limits import packaged_limits
-from ddct_bringup.verification.request import VerificationRequest
-from ddct_bringup.verification.runs import verified_runs
-from ddct_bringup.verification.scores import SCORES, verified_scores
 from ddct_controllers.workflows.evidence import frequency_evidence
 from ddct_controllers.workflows.evidence_types import FrequencyEvidence
-from ddct_plant.files.json_records import json_text
+from ddct_plant.files.json_records import json_text, read_json
+from ddct_plant.scenario.settings import RunSettings
 from fuzz.reader import Read, Reader
 
 BAG = 'pi_0.mcap'
@@ -44,14 +45,14 @@ def run_readers(bag: Path, folder: Path) -> list[Reader]:
     assert scored.settings is not None
     analyses = frequency_evidence(['pi', 'mpc3'], scored.settings)
     computed = frequency_evidence(['pi'], scored.settings)
+    plan = _plan(scored.settings)
     scores, note = _scores(bag, folder), _note(scored.recording.custom_data, folder)
     return [
         Reader('timing', TIMING_FILE, in_folder(read_timing), (_timing(folder),)),
         Reader('failed_run', NOTE_FILE, in_folder(failed_run), (note,)),
-        Reader('repeated_failure', NOTE_FILE, _beside(bag, _repeated), (note,)),
-        Reader('digests', DIGESTS, in_folder(read_digests), (_digests(),)),
-        Reader('scores', SCORES, read_scores, (scores,)),
-        Reader('verified_scores', SCORES, _beside(bag, _verified), (scores,)),
+        Reader('manifest', MANIFEST, in_folder(read_manifest), (_manifest(plan, folder),)),
+        Reader('plan', 'plan.json', _planned, (json_text(plan).encode(),)),
+        Reader('scores', SCORES_FILE, read_scores, (scores,)),
         Reader(
             'frequency',
             FREQUENCY_FILE,
@@ -64,31 +65,6 @@ def run_readers(bag: Path, folder: Path) -> list[Reader]:
 def in_folder(read: Read) -> Read:
     """Return a reader of a file whose folder `read` takes."""
     return lambda file: read(file.parent)
-
-
-def request_of(folder: Path, runs: Mapping[str, RunDigests]) -> VerificationRequest:
-    """Return the request to verify a folder with these runs."""
-    digests = Digests(1, RUNS, {}, this_environment(), runs)
-    return VerificationRequest(folder, digests, packaged_limits(), workers=1)
-
-
-def _beside(bag: Path, read: Read) -> Read:
-    """Return a reader of a file in the folder of a bag, which `read` takes."""
-    content = bag.read_bytes()
-
-    def beside(file: Path) -> object:
-        (file.parent / BAG).write_bytes(content)
-        return read(file.parent)
-
-    return beside
-
-
-def _repeated(folder: Path) -> object:
-    return list(verified_runs(request_of(folder, {ITSELF: RunDigests('', 'pi', {})})))
-
-
-def _verified(folder: Path) -> object:
-    return verified_scores(request_of(folder, {}))
 
 
 def _evidence(scored: ScoredRecording, computed: FrequencyEvidence) -> Read:
@@ -116,11 +92,24 @@ def _note(custom_data: Mapping[str, str], folder: Path) -> bytes:
     return (folder / NOTE_FILE).read_bytes()
 
 
-def _digests() -> bytes:
-    return Digests(1, RUNS, {BAG: 'ab'}, this_environment()).text().encode()
+def _plan(settings: RunSettings) -> RunsPlan:
+    inputs = Inputs()
+    run = PlannedRun.of(RunPlan(settings, 'pi', 'headless'), inputs)
+    return RunsPlan({ITSELF: run}, NamedLimits.of(packaged_limits(), inputs), False, False)
+
+
+def _manifest(plan: RunsPlan, folder: Path) -> bytes:
+    begin_manifest(folder, RUNS, plan, Inputs())
+    return (folder / MANIFEST).read_bytes()
+
+
+def _planned(file: Path) -> object:
+    """Return the plans of the runs that a plan of a result has."""
+    plan = read_json(RunsPlan, file)
+    return [each.headless_plan(file.parent) for each in plan.runs.values()]
 
 
 def _scores(bag: Path, folder: Path) -> bytes:
     with redirect_stdout(io.StringIO()):
-        assert score([str(bag), '--json', str(folder / SCORES)]) in (0, 1)
-    return (folder / SCORES).read_bytes()
+        assert score([str(bag), '--json', str(folder / SCORES_FILE)]) in (0, 1)
+    return (folder / SCORES_FILE).read_bytes()

@@ -2,16 +2,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """Readers of tunings: specifications, each for its controller, the manifest and the trials."""
 
-import json
 from collections.abc import Iterator
-from dataclasses import asdict
 from functools import partial
 from importlib.resources import files
 from pathlib import Path
 
 from ddct_bringup.benchmark.judged import Judged
 from ddct_bringup.campaign.columns import schema_of
-from ddct_bringup.tuning.manifest import MANIFEST, TuningManifest
+from ddct_bringup.manifest.inputs import Inputs
+from ddct_bringup.manifest.origin import CodeOrigin
+from ddct_bringup.tuning.plan import RecordedTuning, TuningPlan
 from ddct_bringup.tuning.record import RUNS, TRIALS, read_entries, rows_bytes, trials_of
 from ddct_bringup.tuning.specification.packaged_specs import packaged_specs
 from ddct_bringup.tuning.specification.spec import read_tuning_spec, tuning_spec_of
@@ -20,9 +20,8 @@ from ddct_bringup.tuning.tuning import Tuning
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_controllers.interface import Controller, ControllerSpec
 from ddct_controllers.registry import controller_spec
-from ddct_plant.files.json_records import json_text
+from ddct_plant.files.json_records import json_text, read_json
 from fuzz.reader import Reader
-from fuzz.targets.run_readers import in_folder
 
 _CONTROLLERS = {'mpc_thesis': 'mpc3', 'pi_launches': 'pi'}
 """Controllers of the packaged specifications."""
@@ -53,7 +52,7 @@ def tuning_readers(folder: Path) -> list[Reader]:
     rows = rows_bytes(trials, tuning.campaign.spec)
     return [
         *_specifications(),
-        Reader('tuning_manifest', MANIFEST, in_folder(_tuning), (_manifest(tuning),)),
+        Reader('tuning_plan', 'plan.json', _tuning, (_plan(tuning),)),
         Reader('tuning_trials', TRIALS, partial(_trials, rows), (entries,)),
         Reader('tuning_runs', RUNS, partial(_runs, entries), (rows,)),
     ]
@@ -76,14 +75,15 @@ def _row(tuning: Tuning, number: int) -> dict[str, object]:
     return {**columns, 'index': number, 'state': 'engaged', 'engagement_time_s': 0.7}
 
 
-def _manifest(tuning: Tuning) -> bytes:
-    """Return a manifest with a made-up version of Optuna, which need not be there to read it."""
-    return json.dumps(asdict(TuningManifest.of(tuning, '4.0'))).encode()
+def _plan(tuning: Tuning) -> bytes:
+    """Return a plan with a made-up version of Optuna, which need not be there to read it."""
+    return json_text(TuningPlan.of(tuning, '4.0', Inputs())).encode()
 
 
-def _tuning(folder: Path) -> object:
-    """Return the digest of the cases of the tuning in a folder."""
-    return TuningManifest.read(folder).tuning(packaged_limits()).campaign.digest()
+def _tuning(file: Path) -> object:
+    """Return the digest of the cases of the tuning of a plan."""
+    recorded = RecordedTuning(read_json(TuningPlan, file), CodeOrigin.here())
+    return recorded.tuning(file.parent).campaign.digest()
 
 
 def _trials(rows: bytes, file: Path) -> object:

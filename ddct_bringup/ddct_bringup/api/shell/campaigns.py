@@ -23,13 +23,13 @@ from ddct_bringup.campaign.columns import (
     read_row,
 )
 from ddct_bringup.campaign.conduct import RESULTS, carry_out
-from ddct_bringup.campaign.manifest import Manifest
+from ddct_bringup.campaign.plan import RecordedCampaign
 from ddct_bringup.campaign.rows import SERIAL, result_row
 from ddct_bringup.campaign_report.folder import PAGE, scenario_of, write_campaign_page
 from ddct_bringup.campaign_report.reading import read_table, require_as_written, results_of
 from ddct_bringup.campaign_report.summary_types import Summary
-from ddct_bringup.digests.code import code_digest
-from ddct_bringup.digests.writing import keep_digests
+from ddct_bringup.manifest.code import code_digest
+from ddct_bringup.manifest.manifest import keep_digests
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.scores.scored_recording import ScoredRecording
 from ddct_bringup.verdict.limits import Limits
@@ -79,7 +79,6 @@ def replay_row(
     campaign_folder: Path,
     index: int,
     out: Path,
-    limits: Limits,
     execute: Callable[[RunPlan, Path], Recording | None],
     complain: Callable[[str], None],
     *,
@@ -89,15 +88,14 @@ def replay_row(
     """
     Make the run of a row again, keep its bag in `out`, and compare its scores with the row.
 
-    Raise DdctError for a folder that was altered, for other limits, and where the run fails.
+    Raise DdctError for a folder that was altered, and where the run fails.
     """
-    manifest = Manifest.read(campaign_folder)
-    manifest.require_limits(limits, campaign_folder)
-    campaign = manifest.campaign(campaign_folder)
+    recorded = RecordedCampaign.read(campaign_folder)
+    limits, campaign = recorded.limits(), recorded.campaign()
     require_as_written(campaign_folder)
-    row = read_row(campaign_folder / RESULTS, index, manifest.runs)
-    if manifest.code_digest != code_digest():
-        complain(f'the campaign is of {manifest.origin.short}, this is another code')
+    row = read_row(campaign_folder / RESULTS, index, recorded.plan.runs)
+    if recorded.origin.code != code_digest():
+        complain(f'the campaign is of {recorded.origin.short}, this is another code')
     run = campaign.run(index)
     plan = RunPlan(run.settings, campaign.chosen(index), layout)
 
@@ -126,16 +124,16 @@ def show_campaign(
     if csv:
         write_text(csv, _csv(folder))
     if figure:
-        manifest = Manifest.read(folder)
-        results = results_of(manifest, read_table(folder, manifest))
-        shell.write_distributions(results, scenario_of(manifest), Path(figure))
+        recorded = RecordedCampaign.read(folder)
+        results = results_of(recorded, read_table(folder, recorded))
+        shell.write_distributions(results, scenario_of(recorded), Path(figure))
     keep_digests(file for file in (json, csv, figure) if file not in (None, STDOUT))
     return summary
 
 
 def _csv(folder: Path) -> str:
     """Return every row of a campaign as CSV, with control characters in its texts escaped."""
-    table = read_table(folder, Manifest.read(folder))
+    table = read_table(folder, RecordedCampaign.read(folder))
     for place, field in enumerate(table.schema):
         if pa.types.is_string(field.type):
             words = [plain_cell(printable(each)) for each in table[field.name].to_pylist()]

@@ -8,7 +8,8 @@ from pathlib import Path
 
 from ddct_bringup.api.shell.pages import REPORT_FILE, write_report
 from ddct_bringup.bag.recording import Recording
-from ddct_bringup.digests.writing import write_run_digests
+from ddct_bringup.manifest.manifest import finish_manifest
+from ddct_bringup.manifest.runs import begin_runs
 from ddct_bringup.report.evidence import FREQUENCY_FILE
 from ddct_bringup.report.run_labels import in_order
 from ddct_bringup.run.description import custom_data
@@ -63,6 +64,8 @@ def compare_into(
     unusable: list[DdctError] = []
     with locked_folders(out), StagedFolder(out, overwrite=overwrite) as folder:
         chosen = [plan.controller for plan in plans]
+        named = {plan.name: plan for plan in plans}
+        begin_runs(folder.path, named, limits, floors=floors, compared=True)
         evidence = frequency_evidence(chosen, plans[0].settings, unusable.append)
         runs = [
             _run(plan, folder.path, f'{index} of {len(plans)}, ', limits, comparer)
@@ -78,7 +81,7 @@ def compare_into(
             raise NoValidRunError(f'no run is valid ({names}): {folder.left}')
         write_json(str(folder.path / FREQUENCY_FILE), evidence)
         write_report(in_order(runs), str(folder.path / REPORT_FILE), limits)
-        write_run_digests(folder.path, {plan.name: plan for plan in plans})
+        finish_manifest(folder.path)
         folder.commit()
     return scored, unusable
 

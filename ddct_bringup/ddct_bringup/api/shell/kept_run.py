@@ -8,6 +8,8 @@ from pathlib import Path
 
 from ddct_bringup.bag.recording import Recording
 from ddct_bringup.bag.writer import bag_file
+from ddct_bringup.manifest.manifest import finish_manifest
+from ddct_bringup.manifest.runs import begin_run
 from ddct_bringup.run.output_folder import run_folder
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.scores.scored_recording import ScoredRecording, run_and_score
@@ -28,7 +30,9 @@ def keep_run(
     Raise the errors of `execute`, and DdctError for a folder that cannot be used.
     """
     with run_folder(out, plan.name, overwrite=overwrite) as folder:
+        begin_run(folder.path, plan, limits)
         kept = run_and_score(plan, folder.path, limits, execute)
+        finish_manifest(folder.path)
         if not kept.scores.valid or kept.recording is None:
             return kept
         folder.commit()

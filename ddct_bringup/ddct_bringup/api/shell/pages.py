@@ -10,7 +10,7 @@ from pathlib import Path
 from rich.console import Console
 
 from ddct_bringup.api import shell
-from ddct_bringup.digests.writing import keep_digests
+from ddct_bringup.manifest.manifest import keep_digests
 from ddct_bringup.report.evidence import evidence_of
 from ddct_bringup.report.page_parts import MARKER
 from ddct_bringup.report.run_labels import in_order, require_one_scenario

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from ddct_bringup.bag.measured_run import read_recording
 from ddct_bringup.bag.recording import Recording
-from ddct_bringup.digests.writing import keep_digests
+from ddct_bringup.manifest.manifest import keep_digests
 from ddct_bringup.run.output_folder import is_ours, locked_folders
 from ddct_bringup.scores.bags import bag_name, bags_in
 from ddct_bringup.scores.csv_text import scores_csv

@@ -38,4 +38,4 @@ def tune_into(
         given = read_tuning_spec(spec, known)
     tuning = tuning_of(controller, given, packaged_limits())
     trials = carry_out_tuning(tuning, out, workers=workers, resume=resume, stopped=stopped)
-    return write_tuning(tuning, out, trials, workers=workers, stopped=stopped)
+    return write_tuning(out, trials, workers=workers, stopped=stopped)

@@ -7,14 +7,13 @@ from pathlib import Path
 
 from ddct_bringup.benchmark.conduct import JudgedRows, read_judged_rows
 from ddct_bringup.benchmark.file_names import PAGE, RESULT
-from ddct_bringup.benchmark.manifest import BenchmarkManifest
+from ddct_bringup.benchmark.plan import RecordedBenchmark
 from ddct_bringup.benchmark.release import release_rows
 from ddct_bringup.benchmark.report.page import benchmark_page
 from ddct_bringup.benchmark.result import result_of
 from ddct_bringup.benchmark.result_types import Result, ResultWithTimes
 from ddct_bringup.benchmark.update_times import read_update_times
-from ddct_bringup.digests.digest_file import BENCHMARK
-from ddct_bringup.digests.writing import write_folder_digests
+from ddct_bringup.manifest.manifest import finish_manifest
 from ddct_bringup.run.output_folder import locked_folders
 from ddct_plant.files.json_records import write_json
 from ddct_plant.files.output_file import write_text
@@ -28,13 +27,13 @@ def result_in(out: Path, failed: Mapping[str, str] = _NOTHING) -> Result:
 
     `failed` has the reasons of the controllers without rows.
     """
-    manifest = BenchmarkManifest.read(out)
+    recorded = RecordedBenchmark.read(out)
     rows: dict[str, JudgedRows] = {
         each.name: read_judged_rows(out / each.name)
-        for each in manifest.controllers
+        for each in recorded.plan.controllers
         if each.name not in failed
     }
-    return result_of(manifest, release_rows(out).of(manifest.run_cases), rows, failed)
+    return result_of(recorded, release_rows(out).of(recorded.plan.run_cases), rows, failed)
 
 
 def write_result(out: Path, failed: Mapping[str, str]) -> Result:
@@ -42,8 +41,8 @@ def write_result(out: Path, failed: Mapping[str, str]) -> Result:
     result = result_in(out, failed)
     with locked_folders(out):
         write_json(str(out / RESULT), result)
-        write_text(str(out / PAGE), benchmark_page(result, read_update_times(out), out))
-        write_folder_digests(out, BENCHMARK)
+        write_text(str(out / PAGE), benchmark_page(result, read_update_times(out)))
+        finish_manifest(out)
     return result
 
 

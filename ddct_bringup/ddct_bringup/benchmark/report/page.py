@@ -3,7 +3,6 @@
 """The page of a benchmark."""
 
 import shlex
-from pathlib import Path
 
 from markupsafe import Markup
 
@@ -34,11 +33,11 @@ _OVER_LEAST = (OVER_LEAST, 'friction_work_over_least')
 """Quantities over the least."""
 
 
-def benchmark_page(result: Result, update_times: UpdateTimesFile, folder: Path) -> str:
+def benchmark_page(result: Result, update_times: UpdateTimesFile) -> str:
     """
-    Return the HTML page of a benchmark in a folder, which its commands name.
+    Return the HTML page of a benchmark, whose commands are for the folder that it is in.
 
-    Besides those, only the cells of the class `wall` depend on the wall clock.
+    Only the cells of the class `wall` depend on the wall clock.
     """
     return page_template(_ROOM, 'benchmark.html.j2').render(
         marker=Markup(MARKER),
@@ -51,7 +50,6 @@ def benchmark_page(result: Result, update_times: UpdateTimesFile, folder: Path) 
         notes=list(texts.notes_of(result)),
         warnings=list(texts.warnings_of(result)),
         texts=texts,
-        folder=folder,
         shell_line=_shell_line,
         campaign_texts=campaign_texts,
         quantities=EVALUATED,

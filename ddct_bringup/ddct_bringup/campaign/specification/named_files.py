@@ -11,9 +11,14 @@ from ddct_bringup.campaign.keys import FILE_KEY, HANDOVER, SCENARIO
 from ddct_bringup.campaign.spec import CampaignSpec
 from ddct_bringup.campaign.specification.distributions import VALUES
 from ddct_bringup.campaign.specification.parts import GRID, RANDOM, VARY
-from ddct_controllers.from_file.digests import controller_digests, handover_digests
+from ddct_controllers.from_file.controller_file import YAML_SUFFIXES
+from ddct_controllers.from_file.digests import (
+    controller_digests,
+    handover_digests,
+    handover_files,
+)
 from ddct_plant.base.errors import DdctError
-from ddct_plant.scenario.file import is_packaged
+from ddct_plant.scenario.file import ScenarioFile, is_packaged
 from ddct_plant.scenario.settings import is_handover_file
 
 _CSV = 'csv'
@@ -58,6 +63,19 @@ def with_places(content: Mapping[str, Any], place: Callable[[str], str]) -> dict
     return found
 
 
+def files_of(path: Path) -> list[Path]:
+    """
+    Return a file that a specification names for its cases, then those that it is made of.
+
+    A scenario has profiles, a handover modules. Raise DdctError for one that cannot be read.
+    """
+    if is_handover_file(str(path)):
+        return handover_files(str(path))
+    if path.suffix not in YAML_SUFFIXES:
+        return [path]
+    return [path, *_profiles(ScenarioFile.read(str(path)))]
+
+
 def digest_of(spec: CampaignSpec) -> str:
     """
     Return a hash of a specification and of the files that it names.
@@ -92,9 +110,14 @@ def _of_scenarios(spec: CampaignSpec) -> Iterator[Path]:
         if not is_packaged(name):
             file = spec.scenario_file(name)
             yield Path(file.name)
-            for section in file.content.values():
-                if isinstance(section, Mapping) and _CSV in section:
-                    yield Path(file.name).parent / section[_CSV]
+            yield from _profiles(file)
+
+
+def _profiles(file: ScenarioFile) -> Iterator[Path]:
+    """Yield the profiles that the scenario in a file names."""
+    for section in file.content.values():
+        if isinstance(section, Mapping) and isinstance(section.get(_CSV), str):
+            yield Path(file.name).parent / section[_CSV]
 
 
 def _of_varied_keys(spec: CampaignSpec) -> Iterator[Path]:

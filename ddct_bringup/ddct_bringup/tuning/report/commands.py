@@ -3,12 +3,15 @@
 """The commands that the page of a tuning names, each as a line for a shell."""
 
 import json
+import os
 import shlex
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from ddct_bringup.campaign.keys import SCENARIO, run_options
+from ddct_bringup.campaign.specification.named_files import placed
 from ddct_bringup.tuning.tuned_names import BEST
 from ddct_bringup.tuning.tuning import Tuning
 from ddct_plant.scenario.file import is_packaged
@@ -16,7 +19,7 @@ from ddct_plant.scenario.file import is_packaged
 
 @dataclass(frozen=True)
 class PageCommands:
-    """Commands of a tuning in a folder."""
+    """Commands of a tuning, for a shell in its folder."""
 
     compare: str
     """Command that runs the best controller, beside that of before where that was tried."""
@@ -29,8 +32,7 @@ class PageCommands:
     def of(cls, tuning: Tuning, out: Path) -> 'PageCommands':
         """Return the commands of a tuning in the folder `out`."""
         scenarios = dict.fromkeys(str(_values(tuning, case)[SCENARIO]) for case in tuning.cases)
-        verify = shlex.join(['ddct', 'verify', str(out)])
-        return cls(_compare(tuning, out), list(scenarios)[1:], verify)
+        return cls(_compare(tuning, out), list(scenarios)[1:], 'ddct verify .')
 
 
 def _compare(tuning: Tuning, out: Path) -> str:
@@ -42,15 +44,26 @@ def _compare(tuning: Tuning, out: Path) -> str:
     spec = tuning.campaign.spec
     given = dict(_values(tuning, tuning.cases[0]))
     scenario = str(given.pop(SCENARIO))
-    controllers = [str(out / BEST)]
+    controllers = [BEST]
     if tuning.present:  # else it may lack a value, and the page has no figures of it
-        controllers.insert(0, tuning.judged.path)
+        controllers.insert(0, _in_folder(tuning.judged.path, out))
     words = ['ddct', 'compare', '--controllers', ','.join(controllers), '--scenario']
-    words.append(scenario if is_packaged(scenario) else str(spec.folder / scenario))
+    words.append(
+        scenario if is_packaged(scenario) else _in_folder(str(spec.folder / scenario), out)
+    )
     for key, value in given.items():
         if key not in spec.vary or type(value) not in (int, float):
-            words += _option(key, tuning.campaign.placed(key, value))
-    return shlex.join([*words, '--headless', '--out', 'runs/tuned'])
+            words += _option(key, placed(key, value, partial(_of_spec, spec.folder, out)))
+    return shlex.join([*words, '--headless', '--out', '../tuned'])
+
+
+def _in_folder(chosen: str, out: Path) -> str:
+    """Return a name, or the path of a file relative to the folder of the page."""
+    return os.path.relpath(chosen, out) if os.sep in chosen else chosen
+
+
+def _of_spec(folder: Path, out: Path, name: str) -> str:
+    return os.path.relpath(folder / name, out)
 
 
 def _values(tuning: Tuning, case: int) -> Mapping[str, object]:

@@ -5,8 +5,8 @@
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from ddct_bringup.digests.code import code_digest
-from ddct_bringup.digests.writing import finish_campaign_digests
+from ddct_bringup.manifest.code import code_digest
+from ddct_bringup.manifest.manifest import finish_manifest
 from ddct_bringup.run.output_folder import locked_folders
 from ddct_bringup.tuning.front import best_of, front_of, why_no_front
 from ddct_bringup.tuning.held_out import (
@@ -15,6 +15,7 @@ from ddct_bringup.tuning.held_out import (
     held_out_trials,
     judged_trials,
 )
+from ddct_bringup.tuning.plan import RecordedTuning
 from ddct_bringup.tuning.record import RUNS, TRIALS, rows_bytes
 from ddct_bringup.tuning.report.commands import PageCommands
 from ddct_bringup.tuning.report.page import tuning_page
@@ -31,30 +32,34 @@ from ddct_plant.program.command_line import package_version
 
 
 def write_tuning(
-    tuning: Tuning,
     out: Path,
     trials: Sequence[Trial],
     *,
+    release: str = '',
     workers: int | None = None,
     stopped: Callable[[], bool] = lambda: False,
 ) -> TuningResult:
     """
     Write the record, the controller files, the held-out runs, the result and the page.
 
-    Raise DdctError where no trial keeps all constraints; the record is written all the same.
+    `release` is the digest of the code by which the held-out cases are drawn, that of this process
+    unless given. Raise DdctError where no trial keeps all constraints; the record is written all
+    the same.
     """
+    recorded = RecordedTuning.read(out)
+    tuning = recorded.tuning(out)
     spec = tuning.spec
     with locked_folders(out, shared=True):
         write_json(str(out / TRIALS), [each.entry(spec) for each in trials])
         write_bytes(str(out / RUNS), rows_bytes(trials, tuning.campaign.spec))
         front = front_of(trials, spec)
         if not front:
-            finish_campaign_digests(out)
+            finish_manifest(out)
             raise DdctError(why_no_front(trials, spec))
         judged = judged_trials(front, best_of(front, spec), trials)
         write_tuned_files(tuning, out, judged, best_of(front, spec))
-        campaign = held_out_campaign(tuning, out, judged, code_digest())
-        compute_held_out(tuning, campaign, out, workers, stopped)
+        campaign = held_out_campaign(tuning, out, judged, release or code_digest())
+        compute_held_out(tuning, campaign, recorded.plan.limits, out, workers, stopped)
         result = result_of(
             tuning, trials, held_out_trials(tuning, out, judged), campaign.spec.root
         )
@@ -62,7 +67,7 @@ def write_tuning(
         entries = [each.entry(spec) for each in trials]
         commands = PageCommands.of(tuning, out)
         write_text(str(out / PAGE), tuning_page(result, entries, _facts(tuning), commands))
-        finish_campaign_digests(out)
+        finish_manifest(out)
     return result
 
 

@@ -4,7 +4,7 @@
 
 from dataclasses import dataclass
 
-from ddct_bringup.digests.code import code_digest
+from ddct_bringup.manifest.code import code_digest
 from ddct_bringup.run.description import short_commit, source_commit
 from ddct_plant.program.command_line import package_version
 

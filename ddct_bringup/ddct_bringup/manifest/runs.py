@@ -1,0 +1,119 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Plan of a result that is one run or several: settings, controller and layout of each."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from ddct_bringup.manifest.inputs import INPUTS, Inputs
+from ddct_bringup.manifest.limits import NamedLimits
+from ddct_bringup.manifest.manifest import ITSELF, RUNS, begin_manifest
+from ddct_bringup.run.plan import RunPlan
+from ddct_bringup.verdict.limits import Limits
+from ddct_controllers.from_file.controller_file import is_controller_file
+from ddct_controllers.from_file.digests import controller_files, handover_files
+from ddct_plant.base.errors import DdctError
+from ddct_plant.base.options import options_of
+from ddct_plant.scenario.content import scenario_content, scenario_from_mapping
+from ddct_plant.scenario.settings import RunSettings, is_handover_file
+
+
+@dataclass(frozen=True)
+class PlannedRun:
+    """Inputs of one run, from which it can be repeated."""
+
+    controller: str | None
+    """
+    Name of the controller, or the place of its file in the inputs; None where it was an object of
+    a Python program.
+    """
+    layout: str
+    """Process layout, as in `RunPlan`."""
+    settings: Mapping[str, str | float]
+    """Values of `RunSettings` by name; a handover's file by its place in the inputs."""
+    scenario: Mapping[str, Any]
+    """Content of the true scenario, with the points of its profiles."""
+    known_scenario: Mapping[str, Any] | None
+    """Content of the scenario that controllers know, where it differs."""
+
+    @classmethod
+    def of(cls, plan: RunPlan, inputs: Inputs) -> 'PlannedRun':
+        """Return the inputs of a run, and take the files of the user into `inputs`."""
+        settings = plan.settings
+        chosen = plan.controller if isinstance(plan.controller, str) else None
+        if chosen is not None and is_controller_file(chosen):
+            chosen = inputs.add(controller_files(chosen))
+        values = {name: getattr(settings, name) for name in options_of(RunSettings)}
+        if is_handover_file(settings.handover):
+            values['handover'] = inputs.add(handover_files(settings.handover))
+        known = settings.known_scenario
+        return cls(
+            chosen,
+            plan.layout,
+            values,
+            scenario_content(settings.scenario),
+            scenario_content(known) if known else None,
+        )
+
+    def run_settings(self, result: Path) -> RunSettings:
+        """Return the settings; raise DdctError where this version cannot build them."""
+        values: dict[str, Any] = dict(self.settings)
+        if is_handover_file(str(values['handover'])):
+            values['handover'] = str(result / INPUTS / values['handover'])
+        known = self.known_scenario
+        return RunSettings(
+            scenario_from_mapping(self.scenario),
+            **values,
+            known_scenario=scenario_from_mapping(known) if known else None,
+        )
+
+    def headless_plan(self, result: Path) -> RunPlan:
+        """Return the plan of the repetition; raise DdctError where it cannot be made."""
+        chosen = self.controller
+        if chosen is None:
+            raise DdctError(
+                'its controller was an object of a Python program, and cannot be made again: '
+                'record it with a controller file'
+            )
+        if is_controller_file(chosen):
+            chosen = str(result / INPUTS / chosen)
+        return RunPlan(self.run_settings(result), chosen, 'headless')
+
+
+@dataclass(frozen=True)
+class RunsPlan:
+    """Plan of a result of the kind RUNS."""
+
+    runs: Mapping[str, PlannedRun]
+    """Inputs of each run by the folder of its bag in the result."""
+    limits: NamedLimits
+    floors: bool
+    """Whether the scores have the peak jerk over the least."""
+    compared: bool
+    """Whether the result has the scores, loop analyses and page of a comparison."""
+
+
+def begin_runs(
+    result: Path,
+    plans: Mapping[str, RunPlan],
+    limits: Limits,
+    *,
+    floors: bool = False,
+    compared: bool = False,
+) -> None:
+    """
+    Begin a result of runs, by the folders of their bags in it, with its inputs and manifest.
+
+    Raise DdctError when a file cannot be read or written.
+    """
+    inputs = Inputs()
+    runs = {name: PlannedRun.of(plan, inputs) for name, plan in plans.items()}
+    plan = RunsPlan(runs, NamedLimits.of(limits, inputs), floors, compared)
+    begin_manifest(result, RUNS, plan, inputs)
+
+
+def begin_run(result: Path, plan: RunPlan, limits: Limits) -> None:
+    """Begin a result that is the bag of one run."""
+    begin_runs(result, {ITSELF: plan}, limits)
