@@ -18,7 +18,7 @@ import threading
 import time
 import types
 from collections.abc import Callable, Iterator, Sequence
-from multiprocessing import forkserver
+from multiprocessing import forkserver, resource_tracker
 from multiprocessing.context import ForkServerProcess
 from pathlib import Path
 
@@ -40,8 +40,10 @@ def start_server() -> None:
     atexit.unregister(_stop_with)
     atexit.register(_stop_with, os.getpid())
     # -P as a variable: a file of the current folder must not hide a module of the same name.
-    given = {MARK: 'yes', 'PYTHONSAFEPATH': '1'}
+    given = {MARK: str(os.getpid()), 'PYTHONSAFEPATH': '1'}
     with deferred_signals(), _own_modules_alone(), _environment(given):
+        # The library starts this one first, and lets signals through afterwards.
+        resource_tracker.ensure_running()
         # Until the server has its own group: Ctrl-C in a terminal is not for it.
         before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
         try:

@@ -16,6 +16,7 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 
 from ddct_bringup.processes.fork_server import CONTEXT, server_pid
+from ddct_bringup.processes.preloaded import remove_socket
 from ddct_plant.program.supervision import Patience, end_after, supervise
 
 _ENDED_BY = (signal.SIGINT, signal.SIGTERM, signal.SIGKILL, signal.SIGALRM)
@@ -154,4 +155,5 @@ def _end_with_program() -> None:
     program.join()
     # The others too: one that is paused cannot do it itself.
     os.kill(0, signal.SIGCONT)
+    remove_socket()  # the fork server may have been killed too
     end_after(ORPHANED_S)

@@ -22,7 +22,10 @@ from ddct_bringup.processes.graph_nodes import NODE_PROGRAMS
 from ddct_bringup.processes.shared_memory import remove_dead_segments
 
 MARK = 'DDCT_FORK_SERVER'
-"""Environment variable of the fork server alone; where it is missing, this module does nothing."""
+"""
+Environment variable of the fork server alone, with the process id of its program; where it is
+missing, this module does nothing.
+"""
 _LATER = (
     'daqp',
     'ddct_controllers.mpc.qp.solvers',
@@ -46,8 +49,8 @@ _GENERATOR = 'rosidl_generator_py'
 """Package that loads the libraries of messages, and that also imports what generates them."""
 
 
-def serve() -> None:
-    """Prepare this process, the fork server, before it forks."""
+def serve(program: int) -> None:
+    """Prepare this process, the fork server of `program`, before it forks."""
     # A group of its own, which its nodes share: Ctrl-C in a terminal reaches the program alone.
     os.setpgrp()
     signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
@@ -57,7 +60,7 @@ def serve() -> None:
     with Path(os.devnull).open('wb') as nothing:
         for stream in (1, 2):  # a reader of the program's output shall not wait for the server
             os.dup2(nothing.fileno(), stream)
-    atexit.register(_tidy, os.getpid(), os.getppid())
+    atexit.register(_tidy, os.getpid(), program)
     # Imported objects stay: garbage collection takes a fifth of the time of the imports, and in a
     # node it would write to every page that it shares.
     gc.disable()
@@ -75,6 +78,11 @@ def _tidy(server: int, program: int) -> None:
     if os.getpid() != server or os.getppid() == program:
         return
     remove_dead_segments()
+    remove_socket()
+
+
+def remove_socket() -> None:
+    """Remove the socket of the fork server of a killed program, and its folder."""
     address = getattr(forkserver._forkserver, '_forkserver_address', None)
     with contextlib.suppress(OSError):
         if address:
@@ -141,5 +149,5 @@ def _load_messages() -> None:
         check_for_type_support(each)
 
 
-if os.environ.pop(MARK, ''):
-    serve()
+if _program := os.environ.pop(MARK, ''):
+    serve(int(_program))

@@ -28,7 +28,7 @@ from ddct_controllers.from_file.fmu.unpacked import remove_left_folders
 from ddct_controllers.registry import Chosen, make_controller
 from ddct_plant.base.errors import DdctError
 from ddct_plant.graph.domain import own_domain, sole_graph
-from ddct_plant.program.supervision import stop_signals
+from ddct_plant.program.supervision import interrupted_by, stop_signals
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.signals.gain_changes import GainChange
 
@@ -54,6 +54,8 @@ def run_with_progress(
     scenario = plan.settings.scenario
     what = f'{label}{plan.name}: {scenario.duration_s:g} s of {scenario.name}'
     started = time.perf_counter()
+    if interrupted_by():  # a module has dropped the interruption of its import
+        raise KeyboardInterrupt
     with stop_signals() as stops, Console(file=sys.stderr).status(f'{what}, {plan.layout}'):
         recording = execute(plan, folder, lambda: bool(stops), live)
     if stops:

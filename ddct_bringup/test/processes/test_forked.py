@@ -322,6 +322,68 @@ def test_a_folder_for_temporary_files_with_a_long_name_is_reported(
     assert done.stderr.splitlines()[-1].endswith('set TMPDIR to a folder with a shorter name')
 
 
+def test_ctrl_c_in_a_terminal_does_not_reach_the_server_while_it_starts() -> None:
+    text = (
+        'import signal\n'
+        'from multiprocessing import util\n'
+        'from ddct_bringup.processes.fork_server import start_server\n'
+        'started = util.spawnv_passfds\n'
+        'def spawn(path, arguments, fds):\n'
+        '    blocked = signal.pthread_sigmask(signal.SIG_BLOCK, ())\n'
+        '    print("forkserver" in str(arguments), signal.SIGINT in blocked)\n'
+        '    return started(path, arguments, fds)\n'
+        'util.spawnv_passfds = spawn\n'
+        'start_server()\n'
+        'print(signal.SIGINT in signal.pthread_sigmask(signal.SIG_BLOCK, ()))\n'
+    )
+    done = subprocess.run([sys.executable, '-c', text], capture_output=True, text=True, check=True)
+    *_, server, afterwards = done.stdout.splitlines()
+    assert (server, afterwards) == ('True True', 'False')
+
+
+def _temporary(tmp_path: Path) -> dict[str, str]:
+    """Return the environment of a program with an empty folder `t` for temporary files."""
+    folder = Path(tempfile.mkdtemp(prefix='ddct-'))
+    (tmp_path / 't').symlink_to(folder)
+    return {**os.environ, 'TMPDIR': str(folder)}
+
+
+def _nothing_left(tmp_path: Path) -> bool:
+    return not [*(tmp_path / 't').iterdir()]
+
+
+def test_a_program_that_is_killed_while_its_server_imports_leaves_nothing(tmp_path: Path) -> None:
+    text = (
+        'import os\nfrom ddct_bringup.processes.fork_server import start_server\n'
+        'start_server()\nos.kill(os.getpid(), 9)\n'
+    )
+    subprocess.run([sys.executable, '-c', text], env=_temporary(tmp_path), check=False)
+    wait_until(lambda: _nothing_left(tmp_path))
+
+
+def test_a_program_that_is_killed_after_its_server_leaves_nothing(
+    module: Callable[[str], str], tmp_path: Path
+) -> None:
+    program = subprocess.Popen(
+        [
+            sys.executable,
+            '-c',
+            PROGRAM,
+            str(tmp_path / 'path'),
+            module(FINISHING.format(whole='/dev/null')),
+        ],
+        stdout=subprocess.PIPE,
+        env=_temporary(tmp_path),
+        start_new_session=True,
+    )
+    assert program.stdout
+    server, node = map(int, program.stdout.readline().split())
+    os.kill(server, signal.SIGKILL)
+    program.kill()
+    program.communicate()
+    wait_until(lambda: gone(node) and _nothing_left(tmp_path))
+
+
 PROGRAM = """
 import os, sys, time
 from pathlib import Path
@@ -367,11 +429,10 @@ def test_after_a_killed_program_every_node_ends_even_a_paused_one(
         module(FINISHING.format(whole=str(whole))),
         module(FINISHING.format(whole='/dev/null')),
     ]
-    temporary = Path(tempfile.mkdtemp(prefix='ddct-'))
     program = subprocess.Popen(
         [sys.executable, '-c', PROGRAM, str(tmp_path / 'path'), *names],
         stdout=subprocess.PIPE,
-        env={**os.environ, 'TMPDIR': str(temporary)},
+        env=_temporary(tmp_path),
         start_new_session=True,
     )
     assert program.stdout
@@ -382,7 +443,7 @@ def test_after_a_killed_program_every_node_ends_even_a_paused_one(
     program.communicate()
     wait_until(lambda: all(map(gone, [server, *nodes])))
     assert whole.exists(), 'the recorder could not finish'
-    temporary.rmdir()  # it is empty
+    assert _nothing_left(tmp_path)
 
 
 def test_a_node_that_ignores_the_end_of_its_program_is_ended(
