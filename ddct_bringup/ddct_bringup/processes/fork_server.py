@@ -76,6 +76,16 @@ def server_pid() -> int:
     return pid if pid and state_of(pid) not in ('', 'Z') else 0
 
 
+def server_ends(within_s: float) -> bool:
+    """Wait for the end of the fork server, at most `within_s` in s; return whether none runs."""
+    deadline = time.monotonic() + within_s
+    while server_pid():
+        if time.monotonic() > deadline:
+            return False
+        time.sleep(_SLICE_S)
+    return True
+
+
 def state_of(pid: int) -> str:
     """Return the letter of a process's state: Z after its end, T of a paused one, '' for none."""
     with contextlib.suppress(OSError):

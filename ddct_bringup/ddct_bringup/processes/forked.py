@@ -15,7 +15,7 @@ from collections.abc import Mapping, Sequence
 from multiprocessing.connection import Connection
 from pathlib import Path
 
-from ddct_bringup.processes.fork_server import CONTEXT, server_pid
+from ddct_bringup.processes.fork_server import CONTEXT, server_ends
 from ddct_bringup.processes.preloaded import remove_socket
 from ddct_plant.program.supervision import Patience, end_after, supervise
 
@@ -27,6 +27,8 @@ _CODE_S = 2.0
 """Timeout in s for the exit code of a process that has ended, of the fork server."""
 ORPHANED_S = 10.0
 """Wall time in s for a process to end by itself after the end of its program."""
+_DEATH_S = 0.2
+"""Time in s by which a fork server that is killed may end later than its pipes."""
 
 
 class Forked:
@@ -81,7 +83,7 @@ class Forked:
         if self._code is None and not self.running:
             self.process.join(_CODE_S)
             code = self.process.exitcode
-            known = code is not None and (code != _UNKNOWN or bool(server_pid()))
+            known = code is not None and (code != _UNKNOWN or not server_ends(_DEATH_S))
             self._code = code if known else None
             if not known or (code is not None and -code in _ENDED_BY):
                 with contextlib.suppress(EOFError, OSError):
