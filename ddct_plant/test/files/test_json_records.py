@@ -274,3 +274,31 @@ def test_a_file_that_is_none_is_refused_with_its_name(content, complaint, tmp_pa
     with pytest.raises(DdctError) as caught:
         read_json(Range, path)
     assert str(caught.value).startswith(f'{path}: {complaint}')
+
+
+@pytest.mark.parametrize(('content', 'key'), [(None, ''), ('[', ''), ('{"low": "a"}', 'low')])
+def test_the_advice_of_a_reader_ends_each_error_of_its_file(content, key, tmp_path):
+    path = tmp_path / 'x.json'
+    if content is not None:
+        path.write_text(content)
+    with pytest.raises(DdctError) as plain:
+        read_json(Range, path)
+    with pytest.raises(DdctError) as advised:
+        read_json(Range, path, advice='make it anew')
+    assert str(advised.value) == f'{plain.value}: make it anew'
+    assert advised.value.place == plain.value.place == str(path)
+    assert advised.value.key == plain.value.key == key
+
+
+@dataclass(frozen=True)
+class Optional:
+    """Values that may be missing altogether."""
+
+    values: Mapping[str, float] | None
+
+
+@pytest.mark.parametrize('values', [None, {}, {'a': 1.0}])
+def test_a_mapping_may_be_null(values):
+    assert from_json(Optional, {'values': values}, 'x.json') == Optional(values)
+    with pytest.raises(DdctError, match=r"^x\.json: values\.a is 'b': give a number$"):
+        from_json(Optional, {'values': {'a': 'b'}}, 'x.json')
