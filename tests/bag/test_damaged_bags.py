@@ -133,6 +133,21 @@ def test_a_message_under_another_stamp_is_an_error(bags, trajectory):
         read_bag(bag)
 
 
+@pytest.mark.parametrize('topic', ['/clutch/slip', '/controller/status'])
+def test_messages_in_the_places_of_one_another_are_an_error(bags, trajectory, topic):
+    def swap(messages):
+        first, second = (messages.index(each) for each in messages if each[:2] in places)
+        (_, early, one), (_, late, other) = messages[first], messages[second]
+        messages[first], messages[second] = (topic, early, other), (topic, late, one)
+        return messages
+
+    places = [(topic, stamp_of_step(step)) for step in (20, 30)]
+    bag = bags.rewrite(bags.write(trajectory), 'swapped', swap)
+    with refused(DdctError, topic, place='swapped_0.mcap') as caught:
+        read_bag(bag)
+    assert f'carries the stamp {stamp_of_step(30)} ns' in str(caught.value)
+
+
 def test_real_time_bags_hold_the_last_reply(bags, trajectory):
     def thin_out(messages):
         for step in (0, 20, 21, 60):
