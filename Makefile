@@ -28,7 +28,7 @@ BUILD_INPUTS := $(wildcard ddct_*/package.xml ddct_*/setup.* ddct_*/bin ddct_*/c
 
 PYTHONS := $(or $(PYTHON),python3.13 python3.12 python3.11 python3)
 SUITABLE := import ensurepip, sys, venv; sys.exit(not (3, 11) <= sys.version_info < (3, 14))
-NEEDED_AT_RUN := bokeh, control, daqp, jinja2, matplotlib, osqp, scipy.signal, yaml, rich, rosbags.typesys, rclpy, \
+NEEDED_AT_RUN := bokeh, control, daqp, jinja2, matplotlib, osqp, scipy.signal, threadpoolctl, yaml, rich, rosbags.typesys, rclpy, \
     diagnostic_msgs.msg, geometry_msgs.msg, rosgraph_msgs.msg, sensor_msgs.msg, trajectory_msgs.msg
 
 help:
