@@ -35,7 +35,8 @@ def test_neither_zens_kernel_nor_fewer_features_change_a_bit(
     usual: Hashes, variables: dict[str, str]
 ) -> None:
     found = hashes_with(own_controller_names(), **variables)
-    assert found.arithmetic.kernel == variables.get(KERNEL, HASWELL)
+    # Wheels of numpy without a kernel for Zen use that of Haswell for it.
+    assert found.arithmetic.kernel in (HASWELL, variables.get(KERNEL))
     assert found.trajectories == usual.trajectories
 
 
