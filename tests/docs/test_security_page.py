@@ -20,7 +20,7 @@ from ddct_bringup.campaign.keys import FILE_KEY, SCENARIO, run_options, sections
 from ddct_bringup.campaign.spec import _KEYS as CAMPAIGN_KEYS
 from ddct_bringup.campaign.spec import spec_of
 from ddct_bringup.campaign.specification.named_files import digest_of
-from ddct_bringup.manifest.inputs import INPUTS, Inputs
+from ddct_bringup.manifest.inputs import INPUTS, InputFiles
 from ddct_bringup.manifest.runs import PlannedRun
 from ddct_bringup.run.plan import RunPlan
 from ddct_controllers.from_file.kinds import KINDS
@@ -174,7 +174,7 @@ def test_those_of_a_controller_file_are_listed(place: Path) -> None:
 
 def test_those_of_the_plan_of_a_run_are_listed(place: Path) -> None:
     shutil.copytree(place, place / INPUTS)
-    known = PlannedRun.of(RunPlan(SHIFT, 'pi', 'headless'), Inputs())
+    known = PlannedRun.of(RunPlan(SHIFT, 'pi', 'headless'), InputFiles())
     found = set()
     for file in FILES:
         changed = {

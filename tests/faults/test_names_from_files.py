@@ -14,7 +14,7 @@ from support.processes import Programs
 
 from ddct_bringup.bag.run_facts import RunConditions
 from ddct_bringup.benchmark.plan import JudgedEntry
-from ddct_bringup.manifest.inputs import Inputs
+from ddct_bringup.manifest.inputs import InputFiles
 from ddct_bringup.manifest.manifest import RUNS, begin_manifest, read_manifest
 from ddct_bringup.programs import bringup, compare
 from ddct_bringup.tuning.plan import TunedEntry
@@ -115,6 +115,6 @@ def test_a_tuning_names_no_controller_file_elsewhere(key: str, value: str) -> No
 
 @pytest.mark.parametrize('path', ['../outside', '/etc/hostname', 'a/../../b'])
 def test_a_manifest_names_no_file_outside_of_its_result(path: str, tmp_path: Path) -> None:
-    begin_manifest(tmp_path, RUNS, {}, Inputs()).with_files({path: 64 * '0'}).write(tmp_path)
+    begin_manifest(tmp_path, RUNS, {}, InputFiles()).with_files({path: 64 * '0'}).write(tmp_path)
     with pytest.raises(DdctError, match='outside of the result'):
         read_manifest(tmp_path)

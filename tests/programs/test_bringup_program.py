@@ -19,8 +19,8 @@ def test_a_run_leaves_one_bag_with_its_timing_and_nothing_else(
     assert bringup.main(arguments) == 0
     left = sorted(path.relative_to(out).as_posix() for path in out.rglob('*') if path.is_file())
     assert [name for name in left if '.ddct-output' not in name] == [
-        'ls8/digests.json',
         'ls8/ls8_0.mcap',
+        'ls8/manifest.json',
         'ls8/metadata.yaml',
         'ls8/timing.json',
     ]

@@ -141,7 +141,7 @@ def test_a_command_that_cannot_be_used_ends_the_run_with_one_line(
 ) -> None:
     out = tmp_path / 'runs'
     assert bringup.main(['--controller', name, layout, '--out', str(out)]) == 1
-    place = f'{SUPPORT}/support/broken_controllers.py line '
+    place = 'broken_controllers.py line '
     assert_one_line(
         capfd.readouterr().err, 'ddct bringup', f'controller {name!r}: it', words, place
     )

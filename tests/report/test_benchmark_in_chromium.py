@@ -15,7 +15,7 @@ from ddct_bringup.benchmark.release import release_rows
 from ddct_bringup.benchmark.report.page import benchmark_page
 from ddct_bringup.benchmark.result import result_of
 from ddct_bringup.benchmark.update_times import UpdateTime, UpdateTimesFile
-from ddct_bringup.manifest.inputs import Inputs
+from ddct_bringup.manifest.inputs import InputFiles
 from ddct_bringup.manifest.origin import CodeOrigin
 
 pytestmark = [
@@ -39,7 +39,7 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return the page of a packaged controller whose held-out cases are those of development."""
     cases = Cases.packaged(quick=True)
     release = release_rows(packaged_folder()).of(cases)
-    plan = BenchmarkPlan.of([Judged.of('ls8')], cases, 3, Inputs())
+    plan = BenchmarkPlan.of([Judged.of('ls8')], cases, 3, InputFiles())
     rows = release.rows.only(['ls8', 'pi', 'hinf_sampled', 'mpc_wear'])
     judged = {'ls8': JudgedRows(None, rows)}
     result = result_of(RecordedBenchmark(plan, CodeOrigin.here()), release, judged, {})

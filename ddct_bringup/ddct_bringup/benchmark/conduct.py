@@ -18,7 +18,7 @@ from ddct_bringup.campaign.conduct import RESUME, carry_out_part
 from ddct_bringup.campaign.plan import CampaignPlan, RecordedCampaign
 from ddct_bringup.campaign_report.reading import read_table
 from ddct_bringup.manifest.file_states import require_unaltered
-from ddct_bringup.manifest.inputs import INPUTS, Inputs
+from ddct_bringup.manifest.inputs import INPUTS, InputFiles
 from ddct_bringup.manifest.limits import NamedLimits
 from ddct_bringup.manifest.manifest import (
     BENCHMARK,
@@ -80,7 +80,7 @@ def carry_out_benchmark(
     complete. Raise DdctError for a folder that holds something else, KeyboardInterrupt when it is
     stopped: what is done stays, and another call goes on with it.
     """
-    inputs = Inputs()
+    inputs = InputFiles()
     plan = BenchmarkPlan.of(judged, cases, judge_seed, inputs, options.release)
     rows = options.rows or packaged_folder()
     ours = [each.name for each in judged if each.is_packaged]
@@ -98,7 +98,7 @@ def carry_out_benchmark(
     return failed
 
 
-def _begin(plan: BenchmarkPlan, inputs: Inputs, rows: Traversable, out: Path) -> None:
+def _begin(plan: BenchmarkPlan, inputs: InputFiles, rows: Traversable, out: Path) -> None:
     """Write the manifest, or require the same one in the folder."""
     require_ours_or_empty(out)
     if (out / MANIFEST).exists():

@@ -9,7 +9,7 @@ from typing import Any
 
 from ddct_bringup.benchmark.cases import Cases
 from ddct_bringup.benchmark.judged import Judged, require_no_path
-from ddct_bringup.manifest.inputs import INPUTS, Inputs
+from ddct_bringup.manifest.inputs import INPUTS, InputFiles
 from ddct_bringup.manifest.manifest import BENCHMARK, Manifest, read_manifest
 from ddct_bringup.manifest.origin import CodeOrigin
 from ddct_bringup.verdict.limits import packaged_limits
@@ -50,7 +50,7 @@ class JudgedEntry:
 
 @dataclass(frozen=True)
 class BenchmarkPlan:
-    """Inputs of a benchmark."""
+    """InputFiles of a benchmark."""
 
     limits: Mapping[str, Any]
     """Name, digest and schema version of the limits by which runs are judged."""
@@ -67,7 +67,7 @@ class BenchmarkPlan:
         judged: Sequence[Judged],
         cases: Cases,
         judge_seed: int | None,
-        inputs: Inputs,
+        inputs: InputFiles,
         release: str = '',
     ) -> 'BenchmarkPlan':
         """
@@ -124,11 +124,11 @@ class RecordedBenchmark:
                 )
 
 
-def _folder(judged: Judged, inputs: Inputs) -> str:
+def _folder(judged: Judged, inputs: InputFiles) -> str:
     """Return the folder in the result for the file of a controller; take it as an input."""
     if not is_controller_file(judged.chosen):
         return '.'
-    own = Inputs(folder=f'{INPUTS}/{judged.name}')
+    own = InputFiles(folder=f'{INPUTS}/{judged.name}')
     place = own.add(controller_files(judged.path))
     inputs.files.update(own.files)
     return Path(own.folder, place).parent.as_posix()

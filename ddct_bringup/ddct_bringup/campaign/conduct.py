@@ -21,7 +21,7 @@ from ddct_bringup.campaign.shards import (
 )
 from ddct_bringup.campaign.spec import spec_of
 from ddct_bringup.manifest.file_states import altered_files, require_unaltered
-from ddct_bringup.manifest.inputs import INPUTS, Inputs, full_path
+from ddct_bringup.manifest.inputs import INPUTS, InputFiles, full_path
 from ddct_bringup.manifest.limits import NamedLimits
 from ddct_bringup.manifest.manifest import (
     CAMPAIGN,
@@ -161,7 +161,7 @@ def _begin(
 ) -> tuple[RecordedCampaign, Manifest]:
     """Return campaign and manifest of the result; write it first unless it is resumed."""
     require_ours_or_empty(out)
-    inputs = Inputs(campaign.spec.folder)
+    inputs = InputFiles(campaign.spec.folder)
     content = carried(campaign.spec, inputs)
     named = NamedLimits.of(limits, inputs)
     if (out / MANIFEST).exists():

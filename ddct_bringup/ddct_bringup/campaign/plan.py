@@ -15,7 +15,7 @@ from ddct_bringup.campaign.shard_size import shard_size_of
 from ddct_bringup.campaign.spec import CampaignSpec, spec_of
 from ddct_bringup.campaign.specification.named_files import digest_of, files_of, with_places
 from ddct_bringup.manifest.code import code_digest
-from ddct_bringup.manifest.inputs import Inputs, full_path
+from ddct_bringup.manifest.inputs import InputFiles, full_path
 from ddct_bringup.manifest.limits import NamedLimits
 from ddct_bringup.manifest.manifest import read_manifest, result_around
 from ddct_bringup.manifest.origin import CodeOrigin
@@ -37,7 +37,7 @@ _NUMBERS = (
 
 @dataclass(frozen=True)
 class CampaignPlan:
-    """Inputs of a campaign: seed, specification and limits."""
+    """InputFiles of a campaign: seed, specification and limits."""
 
     root_seed: int
     spec_digest: str
@@ -163,7 +163,7 @@ class RecordedCampaign:
                 raise _contradiction(key, ours[key], theirs[key], self.result)
 
 
-def carried(spec: CampaignSpec, inputs: Inputs) -> dict[str, Any]:
+def carried(spec: CampaignSpec, inputs: InputFiles) -> dict[str, Any]:
     """
     Return the content of a specification with the copies of its files, taken as `inputs`.
 

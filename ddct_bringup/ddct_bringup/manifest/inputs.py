@@ -16,7 +16,7 @@ _OUTSIDE = 'outside_'
 """Name, before a number, of the folder for files from outside of the base."""
 
 
-class Inputs:
+class InputFiles:
     """
     Content of the files by their place in a result, each placed as it is to the others.
 

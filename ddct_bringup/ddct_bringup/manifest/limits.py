@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from ddct_bringup.manifest.inputs import INPUTS, Inputs
+from ddct_bringup.manifest.inputs import INPUTS, InputFiles
 from ddct_bringup.verdict.limits import Limits, load_limits
 
 _FOLDER = 'limits'
@@ -22,7 +22,7 @@ class NamedLimits:
     """Place of a file of the user in the inputs; None for the packaged limits."""
 
     @classmethod
-    def of(cls, limits: Limits, inputs: Inputs) -> 'NamedLimits':
+    def of(cls, limits: Limits, inputs: InputFiles) -> 'NamedLimits':
         """Return the limits of a result, and take a file of the user into its `inputs`."""
         place = f'{_FOLDER}/{limits.origin["name"]}'
         return cls(

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal
 
-from ddct_bringup.manifest.inputs import Inputs, full_path
+from ddct_bringup.manifest.inputs import InputFiles, full_path
 from ddct_bringup.manifest.origin import CodeOrigin
 from ddct_bringup.run.output_folder import SUFFIX, is_ours
 from ddct_plant.base.errors import DdctError, ParameterError
@@ -95,7 +95,7 @@ def begin_manifest(
     result: Path,
     kind: Kind,
     plan: object,
-    inputs: Inputs,
+    inputs: InputFiles,
     campaigns: Mapping[str, object] | None = None,
 ) -> Manifest:
     """
@@ -118,7 +118,7 @@ def begin_manifest(
     return found
 
 
-def require_same_inputs(result: Path, known: Manifest, inputs: Inputs) -> None:
+def require_same_inputs(result: Path, known: Manifest, inputs: InputFiles) -> None:
     """Raise DdctError where a result was begun with other files than these inputs."""
     ours = {name: known.files[name] for name in known.files if name.startswith(inputs.folder)}
     for name, digest in {**ours, **inputs.digests()}.items():

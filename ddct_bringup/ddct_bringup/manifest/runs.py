@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ddct_bringup.manifest.inputs import INPUTS, Inputs
+from ddct_bringup.manifest.inputs import INPUTS, InputFiles
 from ddct_bringup.manifest.limits import NamedLimits
 from ddct_bringup.manifest.manifest import ITSELF, RUNS, begin_manifest
 from ddct_bringup.run.plan import RunPlan
@@ -22,7 +22,7 @@ from ddct_plant.scenario.settings import RunSettings, is_handover_file
 
 @dataclass(frozen=True)
 class PlannedRun:
-    """Inputs of one run, from which it can be repeated."""
+    """InputFiles of one run, from which it can be repeated."""
 
     controller: str | None
     """
@@ -39,7 +39,7 @@ class PlannedRun:
     """Content of the scenario that controllers know, where it differs."""
 
     @classmethod
-    def of(cls, plan: RunPlan, inputs: Inputs) -> 'PlannedRun':
+    def of(cls, plan: RunPlan, inputs: InputFiles) -> 'PlannedRun':
         """Return the inputs of a run, and take the files of the user into `inputs`."""
         settings = plan.settings
         chosen = plan.controller if isinstance(plan.controller, str) else None
@@ -87,7 +87,7 @@ class RunsPlan:
     """Plan of a result of the kind RUNS."""
 
     runs: Mapping[str, PlannedRun]
-    """Inputs of each run by the folder of its bag in the result."""
+    """InputFiles of each run by the folder of its bag in the result."""
     limits: NamedLimits
     floors: bool
     """Whether the scores have the peak jerk over the least."""
@@ -108,7 +108,7 @@ def begin_runs(
 
     Raise DdctError when a file cannot be read or written.
     """
-    inputs = Inputs()
+    inputs = InputFiles()
     runs = {name: PlannedRun.of(plan, inputs) for name, plan in plans.items()}
     plan = RunsPlan(runs, NamedLimits.of(limits, inputs), floors, compared)
     begin_manifest(result, RUNS, plan, inputs)

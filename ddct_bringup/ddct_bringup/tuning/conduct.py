@@ -8,7 +8,7 @@ from pathlib import Path
 
 from ddct_bringup.campaign.conduct import RESUME, SHARDS, require_going_on
 from ddct_bringup.manifest.file_states import altered_files, require_unaltered
-from ddct_bringup.manifest.inputs import INPUTS, Inputs
+from ddct_bringup.manifest.inputs import INPUTS, InputFiles
 from ddct_bringup.manifest.manifest import (
     MANIFEST,
     TUNING,
@@ -75,7 +75,7 @@ def _begin(tuning: Tuning, out: Path, *, resume: bool) -> tuple[Tuning, Manifest
 
     Return the tuning, with the files that are in the folder, and the manifest.
     """
-    inputs = Inputs(tuning.spec.folder)
+    inputs = InputFiles(tuning.spec.folder)
     plan = TuningPlan.of(tuning, require_optuna(), inputs)
     require_ours_or_empty(out)
     if (out / MANIFEST).exists():

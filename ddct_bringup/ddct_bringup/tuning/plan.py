@@ -9,7 +9,7 @@ from typing import Any
 
 from ddct_bringup.benchmark.judged import Judged, require_no_path
 from ddct_bringup.campaign.specification.named_files import files_of, with_places
-from ddct_bringup.manifest.inputs import INPUTS, Inputs, full_path
+from ddct_bringup.manifest.inputs import INPUTS, InputFiles, full_path
 from ddct_bringup.manifest.limits import NamedLimits
 from ddct_bringup.manifest.manifest import TUNING, Manifest, read_manifest
 from ddct_bringup.manifest.origin import CodeOrigin
@@ -42,7 +42,7 @@ class TunedEntry:
 
 @dataclass(frozen=True)
 class TuningPlan:
-    """Inputs of a tuning."""
+    """InputFiles of a tuning."""
 
     optuna: str
     """Version of Optuna, which the search depends on."""
@@ -52,7 +52,7 @@ class TuningPlan:
     """Specification, whose files are relative to the inputs of the result."""
 
     @classmethod
-    def of(cls, tuning: Tuning, optuna: str, inputs: Inputs) -> 'TuningPlan':
+    def of(cls, tuning: Tuning, optuna: str, inputs: InputFiles) -> 'TuningPlan':
         """Return the plan of a tuning, and take its files as `inputs`."""
         judged, spec = tuning.judged, tuning.spec
         folder, content = '.', dict(spec.content)

@@ -17,7 +17,7 @@ from ddct_bringup.benchmark.judged import Judged
 from ddct_bringup.benchmark.plan import BenchmarkPlan, RecordedBenchmark
 from ddct_bringup.benchmark.release import ROWS, ReleaseRows
 from ddct_bringup.benchmark.update_times import read_update_times
-from ddct_bringup.manifest.inputs import Inputs
+from ddct_bringup.manifest.inputs import InputFiles
 from ddct_bringup.manifest.manifest import BENCHMARK, begin_manifest
 from ddct_bringup.manifest.origin import CodeOrigin
 from ddct_bringup.run.timing_and_failure import TIMING_FILE
@@ -46,7 +46,7 @@ TIMES = {**RATIO, 'update_time_median_us': 10.0, 'pi_update_time_median_us': 5.0
     ],
 )
 def test_a_manifest_with_a_value_of_another_type_is_refused(tmp_path: Path, edit: Edit) -> None:
-    inputs = Inputs()
+    inputs = InputFiles()
     plan = BenchmarkPlan.of([Judged.of('pi')], Cases.packaged(), None, inputs)
     begin_manifest(tmp_path, BENCHMARK, plan, inputs)
     assert RecordedBenchmark.read(tmp_path).plan.controllers[0].name == 'pi'

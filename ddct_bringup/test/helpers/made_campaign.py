@@ -15,7 +15,7 @@ from ddct_bringup.campaign.plan import CampaignPlan
 from ddct_bringup.campaign.rows import METRIC_COLUMNS
 from ddct_bringup.campaign.run_set import PlannedRow
 from ddct_bringup.campaign.spec import spec_of
-from ddct_bringup.manifest.inputs import Inputs
+from ddct_bringup.manifest.inputs import InputFiles
 from ddct_bringup.manifest.limits import NamedLimits
 from ddct_bringup.manifest.manifest import CAMPAIGN, ITSELF, begin_manifest, finish_manifest
 from ddct_bringup.run.output_folder import mark_folder
@@ -58,7 +58,7 @@ def make_campaign(
     folder.mkdir(parents=True, exist_ok=True)
     if not any(folder.iterdir()):
         mark_folder(folder)
-    inputs = Inputs(folder)
+    inputs = InputFiles(folder)
     plan = CampaignPlan.of(campaign, NamedLimits.of(packaged_limits(), inputs), folder)
     begin_manifest(folder, CAMPAIGN, {}, inputs, {ITSELF: plan})
     (folder / RESULTS).write_bytes(shard_bytes(schema, rows))

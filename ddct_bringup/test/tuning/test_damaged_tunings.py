@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from verified import edit_manifest
 
-from ddct_bringup.manifest.inputs import Inputs
+from ddct_bringup.manifest.inputs import InputFiles
 from ddct_bringup.manifest.manifest import TUNING, begin_manifest
 from ddct_bringup.tuning.plan import RecordedTuning
 from ddct_bringup.tuning.record import TRIALS, read_entries
@@ -42,7 +42,7 @@ ENTRY: dict[str, Any] = {
 def test_a_manifest_with_a_value_of_another_type_is_refused(
     tmp_path: Path, changes: dict[str, Any]
 ) -> None:
-    begin_manifest(tmp_path, TUNING, CONTENT, Inputs())
+    begin_manifest(tmp_path, TUNING, CONTENT, InputFiles())
     assert RecordedTuning.read(tmp_path).plan.controller.digests == {'ddct': 'a'}
     edit_manifest(tmp_path, lambda content: content['plan'].update(changes))
     with pytest.raises(DdctError, match=f'{tmp_path}, plan: '):

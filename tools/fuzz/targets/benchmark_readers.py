@@ -14,7 +14,7 @@ from ddct_bringup.benchmark.update_times import (
     UpdateTimesFile,
     read_update_times,
 )
-from ddct_bringup.manifest.inputs import Inputs
+from ddct_bringup.manifest.inputs import InputFiles
 from ddct_bringup.run.timing_and_failure import TIMING_FILE
 from ddct_plant.files.json_records import json_text, read_json
 from fuzz.reader import Reader
@@ -32,7 +32,7 @@ _UPDATE_TIMES = UpdateTimesFile(
 def benchmark_readers(folder: Path) -> list[Reader]:
     """Return the readers of a benchmark's files."""
     judged = [Judged.of(name) for name in ('pi', 'ls8')]
-    plan = BenchmarkPlan.of(judged, Cases.packaged(quick=True), None, Inputs())
+    plan = BenchmarkPlan.of(judged, Cases.packaged(quick=True), None, InputFiles())
     rows = (packaged_folder() / ROWS).read_bytes()
     times = json_text(_UPDATE_TIMES).encode()
     return [

@@ -10,7 +10,7 @@ from pathlib import Path
 from unittest.mock import patch
 
 from ddct_bringup.api.shell.comparison import SCORES_FILE
-from ddct_bringup.manifest.inputs import Inputs
+from ddct_bringup.manifest.inputs import InputFiles
 from ddct_bringup.manifest.limits import NamedLimits
 from ddct_bringup.manifest.manifest import ITSELF, MANIFEST, RUNS, begin_manifest, read_manifest
 from ddct_bringup.manifest.runs import PlannedRun, RunsPlan
@@ -93,13 +93,13 @@ def _note(custom_data: Mapping[str, str], folder: Path) -> bytes:
 
 
 def _plan(settings: RunSettings) -> RunsPlan:
-    inputs = Inputs()
+    inputs = InputFiles()
     run = PlannedRun.of(RunPlan(settings, 'pi', 'headless'), inputs)
     return RunsPlan({ITSELF: run}, NamedLimits.of(packaged_limits(), inputs), False, False)
 
 
 def _manifest(plan: RunsPlan, folder: Path) -> bytes:
-    begin_manifest(folder, RUNS, plan, Inputs())
+    begin_manifest(folder, RUNS, plan, InputFiles())
     return (folder / MANIFEST).read_bytes()
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from ddct_bringup.benchmark.judged import Judged
 from ddct_bringup.campaign.columns import schema_of
-from ddct_bringup.manifest.inputs import Inputs
+from ddct_bringup.manifest.inputs import InputFiles
 from ddct_bringup.manifest.origin import CodeOrigin
 from ddct_bringup.tuning.plan import RecordedTuning, TuningPlan
 from ddct_bringup.tuning.record import RUNS, TRIALS, read_entries, rows_bytes, trials_of
@@ -77,7 +77,7 @@ def _row(tuning: Tuning, number: int) -> dict[str, object]:
 
 def _plan(tuning: Tuning) -> bytes:
     """Return a plan with a made-up version of Optuna, which need not be there to read it."""
-    return json_text(TuningPlan.of(tuning, '4.0', Inputs())).encode()
+    return json_text(TuningPlan.of(tuning, '4.0', InputFiles())).encode()
 
 
 def _tuning(file: Path) -> object:
