@@ -25,7 +25,7 @@ FILES = {
     'ddct_bringup/manifest/manifest.py': 'manifest.json',
     'ddct_bringup/manifest/runs.py': 'manifest.json',
     'ddct_bringup/api/shell/campaigns.py': 'a row of results.parquet',
-    'ddct_bringup/programs/verify.py': 'verify --json',
+    'ddct_bringup/verification/verified.py': 'verify --json',
     'ddct_bringup/reproduction/numbers/number_files.py': 'claims of the thesis, YAML',
     'ddct_bringup/sweep/sweep.py': 'sweep --json',
     'ddct_bringup/tuning/specification/development.py': 'specification of a tuning, YAML',

@@ -17,19 +17,11 @@ import numpy as np
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.metrics.catalogue import JERK_OVER_LEAST
 from ddct_bringup.verification.deviation import deviation_of, deviations_of
+from ddct_bringup.verification.states import BOUND, DIFFERENT, SAME_BITS, SAME_WITHIN
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.files.input_file import read_text_file
 from ddct_plant.files.json_records import json_text, parse_json
 
-SAME_BITS, SAME_WITHIN, DIFFERENT = 'same_bits', 'same_within', 'different'
-"""States of a comparison."""
-BOUND = 1e-9
-"""
-Largest difference of two numbers that are the same, relative to the largest magnitude.
-
-That is the larger magnitude of a single number, and the largest in the run of a signal; 1 in its
-unit where it is smaller.
-"""
 OF_PROGRAM = (JERK_OVER_LEAST.key, 1e-6)
 """Figure that a convex program gives, and its own bound: solvers end at about 1e-9."""
 _MOST_BYTES = 100_000_000

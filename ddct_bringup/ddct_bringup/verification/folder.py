@@ -13,16 +13,10 @@ from ddct_bringup.manifest.file_states import SAME, UNLISTED, FileState, file_st
 from ddct_bringup.manifest.manifest import MANIFEST, Manifest, read_manifest, result_around
 from ddct_bringup.manifest.origin import CodeOrigin
 from ddct_bringup.run.output_folder import PARTIAL
-from ddct_bringup.verification.comparison import BOUND
 from ddct_bringup.verification.files import FileComparison
 from ddct_bringup.verification.repetition import repeat
-from ddct_bringup.verification.result import (
-    DIFFERENT,
-    NOT_REPEATED,
-    SAME_BITS,
-    SAME_WITHIN,
-    RepetitionResult,
-)
+from ddct_bringup.verification.result import RepetitionResult
+from ddct_bringup.verification.states import BOUND, DIFFERENT, NOT_REPEATED, SAME_BITS, SAME_WITHIN
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.json_records import to_json
 from ddct_plant.program.arithmetic import arithmetic

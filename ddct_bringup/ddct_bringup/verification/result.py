@@ -7,11 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from ddct_bringup.verification.comparison import DIFFERENT, SAME_BITS, SAME_WITHIN, Comparison
-
-__all__ = ['DIFFERENT', 'NOT_REPEATED', 'SAME_BITS', 'SAME_WITHIN', 'RepetitionResult']
-NOT_REPEATED = 'not_repeated'
-"""State of what was not made again, or made and not compared."""
+from ddct_bringup.verification.comparison import Comparison
+from ddct_bringup.verification.states import DIFFERENT, NOT_REPEATED
 
 
 @dataclass(frozen=True)

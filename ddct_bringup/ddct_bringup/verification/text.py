@@ -5,15 +5,9 @@
 from collections.abc import Iterator
 
 from ddct_bringup.manifest.file_states import SAME
-from ddct_bringup.verification.comparison import BOUND
 from ddct_bringup.verification.folder import Verification
-from ddct_bringup.verification.result import (
-    DIFFERENT,
-    NOT_REPEATED,
-    SAME_BITS,
-    SAME_WITHIN,
-    RepetitionResult,
-)
+from ddct_bringup.verification.result import RepetitionResult
+from ddct_bringup.verification.states import BOUND, DIFFERENT, NOT_REPEATED, SAME_BITS, SAME_WITHIN
 from ddct_plant.base.errors import printable
 from ddct_plant.program.printed_table import print_note, print_table
 from ddct_plant.program.table import Table

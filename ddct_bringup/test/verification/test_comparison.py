@@ -10,14 +10,8 @@ import numpy as np
 import pytest
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.verification.comparison import (
-    BOUND,
-    DIFFERENT,
-    SAME_BITS,
-    SAME_WITHIN,
-    Comparison,
-    recorded_json,
-)
+from ddct_bringup.verification.comparison import Comparison, recorded_json
+from ddct_bringup.verification.states import BOUND, DIFFERENT, SAME_BITS, SAME_WITHIN
 from ddct_plant.base.errors import DdctError
 
 STATUS = tuple((('iterations', '3'), ('cost', '1.5')) for _ in range(4))
