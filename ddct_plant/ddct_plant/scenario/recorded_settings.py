@@ -260,7 +260,7 @@ def _patch(known: Mapping[str, Any], true: Mapping[str, Any]) -> dict[str, Any]:
         if isinstance(before, Mapping) and isinstance(value, Mapping):
             if changed := _patch(before, value):
                 patch[key] = changed
-        elif key not in known or before != value:
+        elif before != value:
             patch[key] = value
     return patch
 
