@@ -99,6 +99,26 @@ def test_the_reason_says_when_no_step_or_no_call_was_reached() -> None:
         in_own_process(called('reset', -1, os.abort))
 
 
+def test_the_reason_has_step_0_too() -> None:
+    with pytest.raises(ProcessEndedError, match='when update was called at step 0$'):
+        in_own_process(called('update', 0, os.abort))
+
+
+def test_exit_in_c_prints_and_leaves_out_what_libraries_do_at_the_end() -> None:
+    program = (
+        'import ctypes, os; from ddct_plant.program.own_process import in_own_process\n'
+        'libc = ctypes.CDLL(None)\n'
+        'libc.__cxa_atexit(libc.abort, None, None)\n'
+        'try:\n'
+        "    in_own_process(lambda: (libc.puts(b'printed'), libc.exit(3)))\n"
+        'except Exception as error:\n'
+        '    os.write(2, str(error).encode())\n'
+        'os._exit(0)\n'
+    )
+    done = subprocess.run([sys.executable, '-c', program], capture_output=True, timeout=30)
+    assert done.stderr == b'printed\nit ended with exit code 3 when it was loaded'
+
+
 def test_work_that_goes_on_calling_may_take_longer_than_the_limit(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
