@@ -4,6 +4,7 @@
 
 import json
 import os
+import shutil
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,7 @@ from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.scored import are_linear
 from ddct_bringup.campaign.spec import spec_of
 from ddct_bringup.programs.compare import main as compare
+from ddct_bringup.programs.verify import main as verify
 from ddct_bringup.run import headless
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.run.plan import RunPlan
@@ -123,7 +125,7 @@ def test_what_ends_a_run_of_a_campaign_is_the_reason_in_its_row(harm: str, tmp_p
     found = api.campaign(spec, tmp_path / 'out', workers=2).table
     mine = found[found.controller == 'harmful']
     assert found.valid.tolist() == 5 * [True] + [True] + 4 * [False]
-    place = f'controller file {harm}: line 2: c_library.file: '
+    place = 'controller file harmful.yaml: line 2: c_library.file: '
     for fault, reason in zip(faults, mine.reason, strict=True):
         if fault:
             assert reason.startswith(place)
@@ -212,3 +214,14 @@ def test_all_nodes_in_one_process_are_refused(harm: str) -> None:
     with refused(ParameterError, '--single-process') as raised:
         RunPlan(SETTINGS, harm, 'single-process')
     assert 'drop --single-process, or take --headless' in str(raised.value)
+
+
+def test_a_result_carries_the_library_and_comes_out_again(tmp_path: Path) -> None:
+    place, out = tmp_path / 'place', tmp_path / 'runs'
+    place.mkdir()
+    file = Path(counting(place))
+    given = ['--controllers', f'{file},pi', '--duration', '0.7', '--headless', '--out', str(out)]
+    assert compare(given) == 0
+    shutil.rmtree(place)
+    moved = out.rename(tmp_path / 'moved')
+    assert verify([str(moved)]) == 0

@@ -9,7 +9,13 @@ from pathlib import Path
 
 from ddct_bringup.bag.realtime_facts import RealtimeCounts
 from ddct_bringup.bag.run_facts import RunFacts, described_run
-from ddct_plant.base.errors import DdctError, ParameterError, printable, require_number
+from ddct_plant.base.errors import (
+    DdctError,
+    ParameterError,
+    printable,
+    require_number,
+    without_folders,
+)
 from ddct_plant.files.json_records import read_json, to_json, write_json
 from ddct_plant.files.output_file import write_text
 from ddct_plant.ticks.durations import checked
@@ -86,7 +92,9 @@ def note_failure(folder: Path, reason: str, custom_data: Mapping[str, str]) -> N
 
     Raise DdctError when that fails.
     """
-    write_json(str(folder / NOTE_FILE), _FailureNote(reason, custom_data), _ADVICE)
+    write_json(
+        str(folder / NOTE_FILE), _FailureNote(without_folders(reason), custom_data), _ADVICE
+    )
 
 
 def failed_run(folder: Path) -> RunFailure | None:

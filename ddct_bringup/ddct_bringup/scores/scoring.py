@@ -21,7 +21,7 @@ from ddct_bringup.scores.validity import engine_end, incomplete, safe_state, why
 from ddct_bringup.verdict.limits import Limits
 from ddct_bringup.verdict.state import INVALID, State, state_of
 from ddct_plant.bag_file.records import readable_custom_data
-from ddct_plant.base.errors import DdctError
+from ddct_plant.base.errors import DdctError, without_folders
 from ddct_plant.base.timebase import steps_in
 from ddct_plant.files.input_file import mcap_of
 from ddct_plant.scenario.differences import changed_values
@@ -99,6 +99,7 @@ def run_without_score(bag: str, facts: RunFacts | None, reason: str) -> ScoredRu
     """Return a failed run: invalid, with the facts that are available."""
     metrics = dict.fromkeys(METRICS)
     nulls = dict.fromkeys(METRICS, 'the run has no scores')
+    reason = without_folders(reason)
     return ScoredRun(bag, facts, False, reason, metrics, INVALID, null_reasons=nulls)
 
 

@@ -94,7 +94,8 @@ class FileComparison:
                 self.wall_clock.add(PurePosixPath(path).name)
                 continue
             if not (self.scratch / path).exists() and not run:
-                return RepetitionResult.not_repeated(name, _LATER)
+                why = 'a run failed' if self.repeated.failed else _LATER
+                return RepetitionResult.not_repeated(name, why)
             if path.endswith('.html') and not self.same_environment and self._differs(path):
                 return RepetitionResult.not_repeated(name, _PAGE)
             compared = True

@@ -13,7 +13,7 @@ from typing import Any
 from ddct_controllers.interface import CompiledCode
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import close_name
-from ddct_plant.files.input_file import located, read_file, user_text
+from ddct_plant.files.input_file import located, named_in, read_file, user_text
 from ddct_plant.files.yaml_text import parse_yaml_with_lines
 
 MOST_BINARY_BYTES = 1 << 30
@@ -86,7 +86,7 @@ class ControllerFile:
             raise ParameterError(
                 f'{kind}.file is {value!r}: give the path of {what}', key=f'{kind}.file'
             )
-        path = self.path.parent / value
+        path = named_in(self.path, value)
         try:
             data = read_file(path, MOST_BINARY_BYTES)
         except OSError as error:

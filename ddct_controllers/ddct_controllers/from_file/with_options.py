@@ -17,6 +17,7 @@ from ddct_controllers.from_file.controller_file import (
 from ddct_controllers.interface import Controller, ControllerSpec
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import require_known
+from ddct_plant.files.input_file import named_in
 from ddct_plant.files.yaml_text import dump_yaml
 
 KIND = 'with_options'
@@ -75,13 +76,13 @@ def _chosen(file: Path, chosen: object) -> str:
         raise ParameterError(f'{key} is {chosen!r}: give a name or a controller file', key=key)
     if not is_controller_file(chosen):
         return chosen
-    seen, path = {file.resolve()}, file.parent / chosen
+    seen, path = {file.resolve()}, named_in(file, chosen)
     while (following := _following(path)) is not None:
         if path.resolve() in seen:
             raise ParameterError(f'{key}: {path} is made of itself: name another one', key=key)
         seen.add(path.resolve())
         path = following
-    return str(file.parent / chosen)
+    return str(named_in(file, chosen))
 
 
 def _following(path: Path) -> Path | None:

@@ -52,6 +52,15 @@ class ParameterError(DdctError, ValueError):
     """A parameter, option or scenario key has a value that cannot be used."""
 
 
+_ABSOLUTE = re.compile(r"""(?<![\w.])/(?:[^\s/:'"()]+/)+""")
+"""Folders of an absolute path in a text."""
+
+
+def without_folders(text: str) -> str:
+    """Return the reason of a run, as a result keeps it, with files named without their folders."""
+    return _ABSOLUTE.sub('', text)
+
+
 FOREIGN_FAILURES = (Exception, SystemExit)
 """Exceptions to catch from a third party's code: sys.exit would end the program silently."""
 

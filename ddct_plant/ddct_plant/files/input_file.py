@@ -133,6 +133,21 @@ def require_schema_version(content: Mapping[str, Any], newest: int) -> None:
         )
 
 
+def named_in(file: Path, name: str) -> Path:
+    """
+    Return the path of a file that another file names; a relative one starts at its folder.
+
+    In the folder `inputs` of a result an absolute one is that of the copy, where there is one.
+    """
+    inputs = next((each for each in file.absolute().parents if each.name == 'inputs'), None)
+    if Path(name).is_absolute() and inputs and (inputs.parent / 'manifest.json').is_file():
+        parts = Path(name).parts
+        for first in range(1, len(parts)):
+            for copy in inputs.rglob('/'.join(parts[first:])):
+                return copy
+    return file.parent / name
+
+
 def mcap_of(path: Path) -> Path:
     """Return the MCAP file of a bag folder, or the file itself; raise DdctError without one."""
     if path.is_dir():
