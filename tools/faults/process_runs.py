@@ -17,6 +17,7 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 from rosgraph_msgs.msg import Clock
+from support.waiting import wait_until
 
 from ddct_bringup.processes import supervisor
 from ddct_bringup.processes.graph_nodes import NodeSpec
@@ -103,6 +104,8 @@ def run_with_fault(case: Case, folder: Path, harm: Callable[[int], None]) -> Obs
             pids.update({node.name: node.pid for node in self._nodes})
 
     def act(step: int) -> None:
+        # The nodes may have begun before the supervisor goes on.
+        wait_until(lambda: case.target in pids, 'the start of all nodes')
         seen.fault_step = step
         for pid in pids.values():
             leftovers.note(pid)
