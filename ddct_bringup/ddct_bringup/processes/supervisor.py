@@ -118,8 +118,9 @@ class Supervisor:
         self.stop(lambda name: True)
         for node in self._nodes:
             node.write_log()
-        # A killed node leaves its shared memory, and one that ended with an error may leave it.
-        if any(node.code() != 0 for node in self._nodes):
+        # A killed node leaves its shared memory, also one that hung after its announced end, and
+        # one that ended with an error may leave it.
+        if any(node.code() != 0 or node.process.exitcode != 0 for node in self._nodes):
             remove_dead_segments()
         for node in self._nodes:
             node.close()

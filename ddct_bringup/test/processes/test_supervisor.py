@@ -221,6 +221,21 @@ def test_the_shared_memory_of_a_node_that_is_killed_or_fails_is_removed_and_no_l
     nodes._nodes.clear()
 
 
+def test_the_shared_memory_of_a_node_that_hung_while_it_left_is_removed(
+    processes: Make, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(shared_memory, 'SHARED_MEMORY', tmp_path)
+    monkeypatch.setattr(supervisor, 'PATIENCE', Patience(leave_s=0.1))
+    lock = tmp_path / 'fastrtps_1_el'
+    nodes = processes(driveline=(f'open({str(lock)!r}, "w")', 'announce_exit(0); time.sleep(60)'))
+    nodes.wait_for('driveline')
+    nodes.require_clean_end()
+    assert lock.exists()
+    nodes.__exit__()
+    assert not lock.exists()
+    nodes._nodes.clear()
+
+
 def test_a_segment_that_has_just_been_made_has_time_to_be_locked(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
