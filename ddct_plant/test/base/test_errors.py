@@ -14,6 +14,7 @@ from ddct_plant.base.errors import (
     require_number,
     require_rising,
     require_signal,
+    without_folders,
 )
 from ddct_plant.base.timebase import steps_in
 from ddct_plant.files.input_file import located
@@ -72,3 +73,9 @@ def test_each_check_of_a_value_gives_its_name_as_the_key(refuse) -> None:
     with pytest.raises(DdctError) as caught:
         refuse()
     assert caught.value.key == 'gain'
+
+
+def test_the_reason_of_a_run_names_files_without_folders():
+    text = 'controller file /home/me/mine.yaml: line 2: a/b is 1/2, in /tmp/x/y.py line 3'
+    expected = 'controller file mine.yaml: line 2: a/b is 1/2, in y.py line 3'
+    assert without_folders(text) == expected

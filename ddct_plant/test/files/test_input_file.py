@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from ddct_plant.base.errors import DdctError
-from ddct_plant.files.input_file import read_file, read_text_file
+from ddct_plant.files.input_file import named_in, read_file, read_text_file
 from ddct_plant.scenario.file import load_scenario
 
 
@@ -62,3 +62,15 @@ def test_bytes_that_are_no_text_are_an_error_of_the_file(tmp_path):
 def test_a_folder_in_place_of_a_scenario_gives_one_line(tmp_path):
     with pytest.raises(DdctError, match=r'cannot be read \(Is a directory\)$'):
         load_scenario(str(tmp_path))
+
+
+def test_an_absolute_name_in_the_inputs_of_a_result_is_that_of_the_copy(tmp_path: Path) -> None:
+    file = tmp_path / 'result' / 'inputs' / 'mine.yaml'
+    copy = file.parent / 'lib' / 'c.so'
+    copy.parent.mkdir(parents=True)
+    copy.touch()
+    assert named_in(file, '/gone/lib/c.so') == Path('/gone/lib/c.so'), 'it is no result'
+    (tmp_path / 'result' / 'manifest.json').touch()
+    assert named_in(file, '/gone/lib/c.so') == copy
+    assert named_in(file, '/gone/lib/other.so') == Path('/gone/lib/other.so')
+    assert named_in(file, 'lib/c.so') == copy
