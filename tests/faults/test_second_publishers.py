@@ -34,7 +34,7 @@ ECHOED = [
     *(ENGINE_REQUEST, SENSED_SLIP, OFF_GOING_CLUTCH_TORQUE),
 ]
 """A tick, replies with and without a recorder, and a topic of each other kind of run."""
-COPIED = ['driveline', 'controller', 'off_going/actuator']
+COPIED = ['controller', 'off_going/actuator']
 
 
 def _clutch_torque(graph: InProcessGraph) -> float:

@@ -2,12 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """A second graph with the clock of another is refused; one on nodes that have run says so."""
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
 from support.complaints import assert_one_line
-from support.nodes_by_hand import MODULES, start_nodes
-from support.processes import Programs
+from support.nodes_by_hand import MODULES, RUN, finish_nodes, start_nodes
+from support.processes import Program, Programs, ros_arguments
 from support.runs import expected, plan
 from support.waiting import wait_until
 
@@ -79,3 +80,21 @@ def test_domains_and_clocks_are_kept_apart() -> None:
             pass
     with sole_graph(7, '/car/clock'):
         pass
+
+
+def test_two_graphs_in_one_domain_run_with_a_namespace_and_a_clock_each(
+    programs: Programs, tmp_path: Path
+) -> None:
+    def start(car: str) -> dict[str, Program]:
+        own = ['-r', f'__ns:=/{car}', '-r', f'/clock:=/{car}/clock']
+
+        def start_node(module: str, parameters: Mapping[str, object]) -> Program:
+            return programs.fork(module, *ros_arguments(parameters), *own)
+
+        return start_nodes(start_node, list(MODULES), tmp_path / car)
+
+    both = [start(car) for car in ('first', 'second')]
+    for nodes in both:
+        finish_nodes(nodes)
+    hashes = {read_bag(tmp_path / car).trajectory.sha256() for car in ('first', 'second')}
+    assert hashes == {expected(RUN).sha256()}

@@ -140,15 +140,17 @@ def test_a_damaged_bag_is_marked_and_the_others_stay(
     runs = tmp_path / 'demo'
     shutil.copytree(demo, runs)
     file = mcap_of(runs / 'ls8')
-    file.write_bytes(file.read_bytes()[:-10])
+    content = bytearray(file.read_bytes())
+    content[len(content) // 2] ^= 1
+    file.write_bytes(content)
     out = tmp_path / 'report.html'
     assert main([str(runs), *NO_FLOORS, '--out', str(out)]) == 1
     error = capsys.readouterr().err
     assert error.startswith('ddct report: ls8: ')
-    assert 'unfinished' in error
+    assert 'the recording is damaged' in error
     reader = read(out)
     assert '1 of 3 runs is invalid' in reader.text
-    assert 'the recording is unfinished' in reader.text
+    assert 'the recording is damaged' in reader.text
     engagement = [value for name, value, _ in reader.metrics if name == 'engagement_time_s']
     assert [value is None for value in engagement] == [False, True, False]
 

@@ -5,7 +5,6 @@
 import dataclasses
 import re
 from pathlib import Path
-from typing import Any
 
 import pytest
 from made_run import made_facts, made_run, times
@@ -18,7 +17,15 @@ from ddct_bringup.report.run_tables import TICKS, time_place, update_times
 from ddct_bringup.report.score_tables import comparable_rows, metric_cells
 from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_bringup.scores.scored_recording import ScoredRecording
-from ddct_controllers.design.analysis.loop_quantities import LOOP_QUANTITIES
+from ddct_controllers.design.analysis.margins import LoopMargins
+from ddct_controllers.workflows.evidence_types import (
+    CornersEntry,
+    EntryWithoutEvidence,
+    LinearEntry,
+    PointEntry,
+    WearInterval,
+    WorstCornerEntry,
+)
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
@@ -106,16 +113,13 @@ def test_a_run_without_update_times_has_none():
 
 
 def test_evidence_is_shown_at_the_wear_gain_of_the_run():
-    figures = {column.key: 1.0 for column in LOOP_QUANTITIES}
-    entry: Any = {
-        'linear': True,
-        'wear': [
-            {'wear_gain': 0.7, 'stable': True, **figures},
-            {'wear_gain': 1.0, 'stable': False, **dict.fromkeys(figures)},
-        ],
-        'stable_wear_gain': {'lowest': 0.0, 'highest': 0.9},
-        'corners': {'sensitivity_peak': None, 'unstable': 3},
-    }
+    ones = LoopMargins(True, *[1.0] * 9)
+    points = [
+        PointEntry(0.7, ones, None, None, None),
+        PointEntry(1.0, LoopMargins(False), None, None, None),
+    ]
+    corners = CornersEntry(3, None, None, WorstCornerEntry({}, points[1]))
+    entry = LinearEntry('pi', True, points[1], WearInterval(0.0, 0.9), points, corners)
     worn, new = loop_rows([LoopEvidence('pi', 0.7, entry), LoopEvidence('pi', 1.0, entry)])
     assert (worn.stable, worn.cells[0]) == (True, (1.0, '1.0'))
     assert (new.stable, new.cells[0]) == (False, (None, '–'))
@@ -123,7 +127,7 @@ def test_evidence_is_shown_at_the_wear_gain_of_the_run():
 
 
 def test_controllers_without_evidence_are_named_with_the_reason():
-    not_linear: Any = {'linear': False, 'wear': None}
+    not_linear = EntryWithoutEvidence('mpc3', False, None, None, None, None)
     evidence = [
         LoopEvidence('mpc3', 0.7, not_linear),
         LoopEvidence('mpc3', 1.0, not_linear),

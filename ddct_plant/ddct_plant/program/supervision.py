@@ -66,7 +66,7 @@ def interruptible(*, ends_process: bool = False) -> Iterator[Callable[[Callable[
 
 
 def interrupted_by() -> int:
-    """Return the first signal that was received since `interruptible` began, 0 for none."""
+    """Return the first signal since the outermost `interruptible` began, 0 for none."""
     return next(iter(_interruptions), 0)
 
 
@@ -121,7 +121,8 @@ def stop_signals() -> Iterator[list[int]]:
 
     def note(caught: int, _frame: object) -> None:
         received.append(caught)
-        _interruptions.append(caught)
+        if _depth:
+            _interruptions.append(caught)
 
     with _handled(note):
         yield received
