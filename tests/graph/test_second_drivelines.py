@@ -15,6 +15,7 @@ from support.waiting import wait_until
 from ddct_bringup.bag.reader import read_bag
 from ddct_plant.base.errors import DdctError
 from ddct_plant.graph.domain import own_domain, sole_graph
+from ddct_plant.signals.topics import CLOCK
 
 FOLLOWERS = [name for name in MODULES if name not in ('driveline', 'recorder')]
 DRIVELINE = MODULES['driveline']
@@ -39,7 +40,7 @@ def test_a_driveline_beside_another_is_refused_and_disturbs_nothing(programs: Pr
 
     def kept() -> bool:
         try:
-            with own_domain() as domain, sole_graph(domain):
+            with own_domain() as domain, sole_graph(domain, CLOCK.resolved_name):
                 return False
         except DdctError:
             return True
@@ -74,7 +75,13 @@ def test_a_bringup_beside_another_in_one_domain_is_refused_and_the_first_goes_on
 
 def test_domains_and_clocks_are_kept_apart() -> None:
     long = f'/{"a" * 300}/clock'
-    with sole_graph(7), sole_graph(8), sole_graph(7, '/car/clock'), sole_graph(7, long):
+    clock = CLOCK.resolved_name
+    with (
+        sole_graph(7, clock),
+        sole_graph(8, clock),
+        sole_graph(7, '/car/clock'),
+        sole_graph(7, long),
+    ):
         again = pytest.raises(DdctError, match='with /car/clock in ROS domain 7: wait for')
         with again, sole_graph(7, '/car/clock'):
             pass

@@ -120,9 +120,6 @@ _TIMES = (
 _ORIGIN = (
     Definition('lockstep, realtime', 'each step waits for all replies; or it follows the clock.'),
     Definition('measured', 'a log of a car, of which no scenario is known.'),
-    Definition(
-        'computed from', 'whether the controller is as the thesis prints it, or uses the scenario.'
-    ),
 )
 
 

@@ -31,6 +31,7 @@ from ddct_plant.graph.domain import own_domain, sole_graph
 from ddct_plant.program.supervision import interrupted_by, stop_signals
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.signals.gain_changes import GainChange
+from ddct_plant.signals.topics import CLOCK
 
 WORK_FOLDER = 'work'
 """
@@ -93,7 +94,7 @@ def execute(
     work = folder / WORK_FOLDER
     try:
         work.mkdir()
-        with own_domain() as domain, sole_graph(domain):
+        with own_domain() as domain, sole_graph(domain, CLOCK.resolved_name):
             if plan.layout == 'processes':
                 _execute_processes(plan, folder, work, stopped, live)
             else:

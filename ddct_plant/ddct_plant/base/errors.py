@@ -52,7 +52,7 @@ class ParameterError(DdctError, ValueError):
     """A parameter, option or scenario key has a value that cannot be used."""
 
 
-_ABSOLUTE = re.compile(r"""(?<![\w.])/(?:[^\s/:'"()]+/)+""")
+_ABSOLUTE = re.compile(r"""(?<![\w.])/(?:[^\s/:'"()<>]+/)+""")
 """Folders of an absolute path in a text."""
 
 

@@ -11,7 +11,6 @@ from hashlib import sha256
 
 from ddct_plant.base.errors import DdctError
 from ddct_plant.graph.security import require_security_if_asked
-from ddct_plant.signals.topics import CLOCK
 
 LAST_DOMAIN = 232
 """Highest ROS_DOMAIN_ID: beyond it DDS has no ports, and ends the process without a message."""
@@ -78,7 +77,7 @@ def own_domain() -> Iterator[int]:
 
 
 @contextmanager
-def sole_graph(domain: int, clock: str = CLOCK.resolved_name) -> Iterator[None]:
+def sole_graph(domain: int, clock: str) -> Iterator[None]:
     """
     Keep the topic of simulated time in a domain for one graph of this machine, within.
 
