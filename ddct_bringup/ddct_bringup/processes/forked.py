@@ -78,18 +78,27 @@ class Forked:
         Return the exit code, -n after signal n; None while it runs, or where nobody knows it.
 
         Of a process that hung after it had announced its exit code, return that one. The fork
-        server knows the others.
+        server knows the others, or this process where the server was killed and `adopt_orphans`
+        applied.
         """
         if self._code is None and not self.running:
             self.process.join(_CODE_S)
             code = self.process.exitcode
-            known = code is not None and (code != _UNKNOWN or not server_ends(_DEATH_S))
-            self._code = code if known else None
-            if not known or (code is not None and -code in _ENDED_BY):
+            if code == _UNKNOWN and server_ends(_DEATH_S):
+                code = self._code_of_orphan()
+            self._code = code
+            if code is None or -code in _ENDED_BY:
                 with contextlib.suppress(EOFError, OSError):
                     if self._announced.poll():
                         self._code = int(self._announced.recv_bytes())
         return self._code
+
+    def _code_of_orphan(self) -> int | None:
+        """Return the exit code if the process has ended as a child of this one."""
+        with contextlib.suppress(ChildProcessError):
+            pid, status = os.waitpid(self.pid, os.WNOHANG)
+            return os.waitstatus_to_exitcode(status) if pid else None
+        return None
 
     def send(self, number: signal.Signals) -> None:
         """Send a signal to the process unless it has ended."""

@@ -19,7 +19,7 @@ from ddct_bringup.processes.forked import Forked
 from ddct_bringup.processes.graph_nodes import DRIVELINE, NodeSpec
 from ddct_bringup.processes.shared_memory import remove_dead_segments
 from ddct_plant.base.errors import DdctError
-from ddct_plant.program.supervision import Patience
+from ddct_plant.program.supervision import Patience, adopt_orphans
 
 STOP_LADDER = ((signal.SIGINT, 10.0), (signal.SIGTERM, 5.0), (signal.SIGKILL, 2.0))
 """Signals that stop a node, and the wait after each, s, long enough for a busy machine."""
@@ -112,6 +112,7 @@ class Supervisor:
         self._nodes: list[Node] = []
 
     def __enter__(self) -> 'Supervisor':
+        adopt_orphans(adopt=True)  # for the exit codes of nodes whose fork server was killed
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -124,6 +125,7 @@ class Supervisor:
             remove_dead_segments()
         for node in self._nodes:
             node.close()
+        adopt_orphans(adopt=False)
 
     def start(self, specs: Sequence[NodeSpec]) -> None:
         """Start one process per node; raise the errors of `start_processes`."""

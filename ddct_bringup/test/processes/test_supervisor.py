@@ -2,8 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """The supervisor of a graph's processes, on small programs in place of the nodes."""
 
+import contextlib
 import os
 import signal
+import subprocess
+import sys
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -13,7 +16,8 @@ from typing import Any
 import pytest
 from stub_programs import WITHIN_S, wait_until
 
-from ddct_bringup.processes import shared_memory, supervisor
+from ddct_bringup.processes import forked, shared_memory, supervisor
+from ddct_bringup.processes.fork_server import server_pid, stop_server
 from ddct_bringup.processes.graph_nodes import NodeSpec
 from ddct_bringup.processes.supervisor import STOP_LADDER, Node, Supervisor
 from ddct_plant.base.errors import DdctError
@@ -183,12 +187,48 @@ def test_a_node_that_ends_before_the_driveline_ends_the_run(processes: Make) -> 
     )
 
 
-def test_the_end_of_a_node_whose_code_nobody_knows_is_reported(processes: Make) -> None:
-    nodes = processes(driveline=OBEDIENT, clutch=OBEDIENT)
-    supervisor_of_forks = os.getpgid(nodes._nodes[0].pid)
-    os.kill(supervisor_of_forks, signal.SIGKILL)
+def test_how_a_node_ended_is_known_without_the_fork_server_too(processes: Make) -> None:
+    nodes = processes(driveline=OBEDIENT, clutch=OBEDIENT, load=FAILING)
+    stop_server()
+    node_named(nodes, 'load').send(signal.SIGINT)
+    assert node_named(nodes, 'load').wait(WITHIN_S)
+    assert node_named(nodes, 'load').code() == 1
     node_named(nodes, 'clutch').send(signal.SIGKILL)
-    assert reason(nodes).startswith('node clutch has ended, and the fork server, which knows why')
+    assert node_named(nodes, 'clutch').wait(WITHIN_S)
+    assert ' was killed by SIGKILL; its log is ' in node_named(nodes, 'clutch').summary()
+    nodes.stop(lambda name: True)
+    assert node_named(nodes, 'driveline').code() == 0
+    assert not Path(f'/proc/{node_named(nodes, "driveline").pid}').exists(), 'nobody waited for it'
+
+
+def test_orphans_are_adopted_during_a_run_alone(processes: Make) -> None:
+    processes()
+    assert parent_of_an_orphan() == os.getpid()
+    processes().__exit__()
+    assert parent_of_an_orphan() != os.getpid()
+
+
+def parent_of_an_orphan() -> int:
+    """Return the process id of the parent that a process gets when its own has ended."""
+    text = 'import os, time\nwhile os.getppid() == {}: time.sleep(0.01)\nprint(os.getppid())'
+    command = f'{sys.executable} -c "{text.format("$$")}" &'
+    found = subprocess.run(['sh', '-c', command], stdout=subprocess.PIPE, check=True, text=True)
+    with contextlib.suppress(ChildProcessError):
+        os.waitpid(-1, os.WNOHANG)
+    return int(found.stdout)
+
+
+def test_the_end_of_a_node_whose_code_nobody_knows_is_reported(
+    processes: Make, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(forked, '_CODE_S', 0.1)
+    nodes = processes(driveline=OBEDIENT, clutch=OBEDIENT)
+    os.kill(server_pid(), signal.SIGSTOP)
+    try:
+        node_named(nodes, 'clutch').send(signal.SIGKILL)
+        assert reason(nodes).startswith('node clutch has ended, and the fork server, which knows')
+    finally:
+        os.kill(server_pid(), signal.SIGCONT)
 
 
 @pytest.mark.parametrize('number', [signal.SIGKILL, signal.SIGINT])
@@ -277,8 +317,9 @@ def test_a_paused_node_ends_the_run_before_its_watch_ends_it_and_both_before_the
 ):
     from ddct_bringup.processes.graph_nodes import ANSWER_TIMEOUT_S
 
-    assert supervisor.PATIENCE.silent_s > supervisor.PAUSED_S + 2.0
-    assert supervisor.PATIENCE.silent_s + 1.5 < ANSWER_TIMEOUT_S
+    for patience_s in (supervisor.PATIENCE.start_s, supervisor.PATIENCE.silent_s):
+        assert patience_s > supervisor.PAUSED_S + 2.0
+        assert patience_s + 1.5 < ANSWER_TIMEOUT_S
 
 
 def test_ctrl_c_while_nodes_start_leaves_none(

@@ -22,6 +22,7 @@ from typing import Any
 
 _CAUGHT = (signal.SIGINT, signal.SIGTERM)
 _SET_PARENT_DEATH_SIGNAL = 1
+_SET_CHILD_SUBREAPER = 36
 
 
 _interruptions: list[int] = []
@@ -159,6 +160,11 @@ def end_with_parent(parent: int, by: signal.Signals = signal.SIGTERM) -> None:
         os.kill(os.getpid(), by)
 
 
+def adopt_orphans(*, adopt: bool) -> None:
+    """Become the parent of each descendant whose own parent ends from now on, or not (Linux)."""
+    ctypes.CDLL(None).prctl(_SET_CHILD_SUBREAPER, int(adopt))
+
+
 @contextmanager
 def _handled(
     by: Callable[[int, Any], Any] | signal.Handlers, numbers: Iterable[signal.Signals] = _CAUGHT
@@ -176,12 +182,16 @@ def _handled(
 
 @dataclass(frozen=True)
 class Patience:
-    """Wall times in s after which a supervised node ends itself."""
+    """
+    Wall times in s after which a supervised node ends itself.
 
-    start_s: float = 60.0
+    The first two are less than the driveline waits for an answer, so that the node is named.
+    """
+
+    start_s: float = 18.0
     """Without a beat since its start."""
     silent_s: float = 18.0
-    """Since its last beat: less than the driveline waits for an answer, so that it is named."""
+    """Since its last beat."""
     leave_s: float = 2.0
     """While it leaves the graph, where Fast DDS may hang."""
 
