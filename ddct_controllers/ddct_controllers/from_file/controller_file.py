@@ -86,7 +86,7 @@ class ControllerFile:
             raise ParameterError(
                 f'{kind}.file is {value!r}: give the path of {what}', key=f'{kind}.file'
             )
-        path = named_in(self.path, value)
+        path = named_in(self.path.parent, value)
         try:
             data = read_file(path, MOST_BINARY_BYTES)
         except OSError as error:

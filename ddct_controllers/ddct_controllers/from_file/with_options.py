@@ -76,13 +76,13 @@ def _chosen(file: Path, chosen: object) -> str:
         raise ParameterError(f'{key} is {chosen!r}: give a name or a controller file', key=key)
     if not is_controller_file(chosen):
         return chosen
-    seen, path = {file.resolve()}, named_in(file, chosen)
+    seen, path = {file.resolve()}, named_in(file.parent, chosen)
     while (following := _following(path)) is not None:
         if path.resolve() in seen:
             raise ParameterError(f'{key}: {path} is made of itself: name another one', key=key)
         seen.add(path.resolve())
         path = following
-    return str(named_in(file, chosen))
+    return str(named_in(file.parent, chosen))
 
 
 def _following(path: Path) -> Path | None:

@@ -12,6 +12,7 @@ import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from functools import partial
+from glob import escape
 from io import BufferedReader
 from itertools import islice
 from pathlib import Path
@@ -133,19 +134,25 @@ def require_schema_version(content: Mapping[str, Any], newest: int) -> None:
         )
 
 
-def named_in(file: Path, name: str) -> Path:
+def named_in(folder: Path, name: str) -> Path:
     """
-    Return the path of a file that another file names; a relative one starts at its folder.
+    Return the path of a file that another one in a folder names; a relative one starts there.
 
     In the folder `inputs` of a result an absolute one is that of the copy, where there is one.
     """
-    inputs = next((each for each in file.absolute().parents if each.name == 'inputs'), None)
-    if Path(name).is_absolute() and inputs and (inputs.parent / 'manifest.json').is_file():
+    around = (folder.absolute(), *folder.absolute().parents)
+    inputs = next((each for each in around if each.name == 'inputs'), None)
+    if Path(name).is_absolute() and inputs and _is_result(inputs.parent):
         parts = Path(name).parts
         for first in range(1, len(parts)):
-            for copy in inputs.rglob('/'.join(parts[first:])):
+            for copy in inputs.rglob(escape('/'.join(parts[first:]))):
                 return copy
-    return file.parent / name
+    return folder / name
+
+
+def _is_result(folder: Path) -> bool:
+    """Return whether a folder is that of a result, perhaps one that is being made."""
+    return any((folder / name).is_file() for name in ('manifest.json', '.ddct-output'))
 
 
 def mcap_of(path: Path) -> Path:

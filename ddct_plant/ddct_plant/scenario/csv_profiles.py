@@ -19,7 +19,7 @@ from ddct_plant.base.options import (
 from ddct_plant.base.profile import TIME, value_name
 from ddct_plant.base.units import si_values
 from ddct_plant.files.csv_table import CsvTable, read_csv
-from ddct_plant.files.input_file import MOST_TEXT_BYTES, located
+from ddct_plant.files.input_file import MOST_TEXT_BYTES, located, named_in
 from ddct_plant.models.engine import TorqueProfile
 from ddct_plant.models.load import BrakeProfile, SlopeProfile
 from ddct_plant.scenario.control import EngineSpeedReference, SlipProfile
@@ -119,7 +119,8 @@ def _points(section: Mapping[str, Any], group: type[OptionGroup], base: Path) ->
 def _read(spec: Mapping[str, Any], group: type[OptionGroup], base: Path) -> dict[str, Any]:
     """Return the checked points of the file that `spec` describes."""
     names, value = [spec['time'], spec['value']], value_name(group)
-    table = read_csv(base / spec[_FILE], names, most_bytes=MOST_TEXT_BYTES, most_rows=MOST_ROWS)
+    file = named_in(base, spec[_FILE])
+    table = read_csv(file, names, most_bytes=MOST_TEXT_BYTES, most_rows=MOST_ROWS)
     times, values = (table.columns[name] for name in names)
     times = si_values(times, spec['time_unit'], 's') - spec['start_s']
     values = si_values(values, spec['unit'], options_of(group)[value].unit)

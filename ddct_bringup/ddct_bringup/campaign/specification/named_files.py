@@ -18,6 +18,7 @@ from ddct_controllers.from_file.digests import (
     handover_files,
 )
 from ddct_plant.base.errors import DdctError
+from ddct_plant.files.input_file import named_in
 from ddct_plant.scenario.file import ScenarioFile, is_packaged
 from ddct_plant.scenario.settings import is_handover_file
 
@@ -117,7 +118,7 @@ def _profiles(file: ScenarioFile) -> Iterator[Path]:
     """Yield the profiles that the scenario in a file names."""
     for section in file.content.values():
         if isinstance(section, Mapping) and isinstance(section.get(_CSV), str):
-            yield Path(file.name).parent / section[_CSV]
+            yield named_in(Path(file.name).parent, section[_CSV])
 
 
 def _of_varied_keys(spec: CampaignSpec) -> Iterator[Path]:
