@@ -13,7 +13,7 @@ from ddct_bringup.programs import bringup, verify
 @pytest.mark.parametrize(
     ('mode', 'state', 'exit_code', 'words'),
     [
-        ('lockstep', 'same_bits', 0, 'everything was made again, with equal bits.'),
+        ('lockstep', 'same_bits', 0, 'everything else was made again, with equal bits.'),
         ('realtime', 'not_repeated', 3, '(real time).'),
     ],
 )

@@ -10,11 +10,12 @@ from typing import Any
 from ddct_bringup.manifest.inputs import INPUTS, InputFiles
 from ddct_bringup.manifest.limits import NamedLimits
 from ddct_bringup.manifest.manifest import ITSELF, RUNS, begin_manifest
-from ddct_bringup.run.plan import RunPlan
+from ddct_bringup.run.plan import LAYOUTS, RunPlan
 from ddct_bringup.verdict.limits import Limits
 from ddct_controllers.from_file.controller_file import is_controller_file
 from ddct_controllers.from_file.digests import controller_files, handover_files
-from ddct_plant.base.errors import DdctError
+from ddct_controllers.registry import controller_label
+from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.base.options import options_of
 from ddct_plant.scenario.content import scenario_content, scenario_from_mapping
 from ddct_plant.scenario.settings import RunSettings, is_handover_file
@@ -22,7 +23,7 @@ from ddct_plant.scenario.settings import RunSettings, is_handover_file
 
 @dataclass(frozen=True)
 class PlannedRun:
-    """InputFiles of one run, from which it can be repeated."""
+    """Inputs of one run, from which it can be repeated."""
 
     controller: str | None
     """
@@ -37,6 +38,13 @@ class PlannedRun:
     """Content of the true scenario, with the points of its profiles."""
     known_scenario: Mapping[str, Any] | None
     """Content of the scenario that controllers know, where it differs."""
+
+    def __post_init__(self) -> None:
+        """Raise ParameterError for an unknown layout."""
+        if self.layout not in LAYOUTS:
+            raise ParameterError(
+                f'unknown layout {self.layout!r}: choose from {", ".join(LAYOUTS)}', key='layout'
+            )
 
     @classmethod
     def of(cls, plan: RunPlan, inputs: InputFiles) -> 'PlannedRun':
@@ -71,15 +79,30 @@ class PlannedRun:
 
     def headless_plan(self, result: Path) -> RunPlan:
         """Return the plan of the repetition; raise DdctError where it cannot be made."""
-        chosen = self.controller
-        if chosen is None:
+        if self.controller is None:
             raise DdctError(
                 'its controller was an object of a Python program, and cannot be made again: '
                 'record it with a controller file'
             )
-        if is_controller_file(chosen):
-            chosen = str(result / INPUTS / chosen)
-        return RunPlan(self.run_settings(result), chosen, 'headless')
+        return RunPlan(self.run_settings(result), self._chosen(result), 'headless')
+
+    def label(self, result: Path) -> str:
+        """Return the name of the controller in its bag; '' where it was an object."""
+        return controller_label(self._chosen(result)) if self.controller else ''
+
+    def _chosen(self, result: Path) -> str:
+        """Return the name of the controller, or the path of its file in the inputs."""
+        chosen = self.controller or ''
+        return str(result / INPUTS / chosen) if is_controller_file(chosen) else chosen
+
+
+@dataclass(frozen=True)
+class ComparisonPlan:
+    """What the scores and the page of a comparison depend on besides its runs."""
+
+    limits: NamedLimits
+    floors: bool
+    """Whether the scores have the peak jerk over the least."""
 
 
 @dataclass(frozen=True)
@@ -87,33 +110,27 @@ class RunsPlan:
     """Plan of a result of the kind RUNS."""
 
     runs: Mapping[str, PlannedRun]
-    """InputFiles of each run by the folder of its bag in the result."""
-    limits: NamedLimits
-    floors: bool
-    """Whether the scores have the peak jerk over the least."""
-    compared: bool
-    """Whether the result has the scores, loop analyses and page of a comparison."""
+    """Inputs of each run by the folder of its bag in the result."""
+    comparison: ComparisonPlan | None
+    """None where the result has no scores, loop analyses and page."""
 
 
-def begin_runs(
-    result: Path,
-    plans: Mapping[str, RunPlan],
-    limits: Limits,
-    *,
-    floors: bool = False,
-    compared: bool = False,
+def begin_comparison(
+    result: Path, plans: Mapping[str, RunPlan], limits: Limits, *, floors: bool
 ) -> None:
     """
-    Begin a result of runs, by the folders of their bags in it, with its inputs and manifest.
+    Begin a result of compared runs, by the folders of their bags, with its inputs and manifest.
 
     Raise DdctError when a file cannot be read or written.
     """
     inputs = InputFiles()
     runs = {name: PlannedRun.of(plan, inputs) for name, plan in plans.items()}
-    plan = RunsPlan(runs, NamedLimits.of(limits, inputs), floors, compared)
-    begin_manifest(result, RUNS, plan, inputs)
+    comparison = ComparisonPlan(NamedLimits.of(limits, inputs), floors)
+    begin_manifest(result, RUNS, RunsPlan(runs, comparison), inputs)
 
 
-def begin_run(result: Path, plan: RunPlan, limits: Limits) -> None:
-    """Begin a result that is the bag of one run."""
-    begin_runs(result, {ITSELF: plan}, limits)
+def begin_run(result: Path, plan: RunPlan) -> None:
+    """Begin a result that is the bag of one run; raise DdctError as `begin_comparison`."""
+    inputs = InputFiles()
+    runs = {ITSELF: PlannedRun.of(plan, inputs)}
+    begin_manifest(result, RUNS, RunsPlan(runs, None), inputs)

@@ -23,6 +23,9 @@ from ddct_plant.scenario.recorded_settings import RecordedSettings
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.shift.roles import OFF_GOING
 
+LAYOUTS = ('processes', 'single-process', 'headless')
+"""Process layouts: one process per node, one for all, and without ROS."""
+
 
 @dataclass(frozen=True)
 class RunPlan:
@@ -32,7 +35,7 @@ class RunPlan:
     controller: Chosen
     """Controller to run; in a graph a name of the registry or the path of a controller file."""
     layout: str = 'processes'
-    """Process layout: 'processes', one per node; 'single-process'; or 'headless', without ROS."""
+    """Process layout, one of LAYOUTS."""
     scheduling: Scheduling = field(default_factory=Scheduling)
     """How the kernel treats the nodes of a real-time run."""
 

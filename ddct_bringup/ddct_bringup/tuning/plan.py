@@ -3,7 +3,7 @@
 """Plan of a tuning in the manifest of its result, used to go on with it and to repeat it."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -96,6 +96,7 @@ class RecordedTuning:
         result, entry = full_path(out), self.plan.controller
         judged = Judged(entry.name, entry.chosen, result / entry.folder, entry.digests)
         known = controller_spec(judged.path)
+        judged = replace(judged, name=known.name)
         spec = tuning_spec_of(self.plan.spec, result / INPUTS, known)
         return Tuning(judged, spec, self.plan.limits.load(out))
 

@@ -78,12 +78,10 @@ class Comparison:
             for name in (*recorded, *(name for name in repeated if name not in recorded)):
                 path = f'{key}.{name}' if key else name
                 self.add_nested(path, recorded.get(name), repeated.get(name), bound)
-        elif (
-            isinstance(recorded, list)
-            and isinstance(repeated, list)
-            and len(recorded) == len(repeated)
-        ):
-            for number, (ours, theirs) in enumerate(zip(recorded, repeated, strict=True)):
+        elif isinstance(recorded, list) and isinstance(repeated, list):
+            place = {'key': f'{key or "all"}, number of entries'}
+            self.add(place, len(recorded), len(repeated), 0.0)
+            for number, (ours, theirs) in enumerate(zip(recorded, repeated, strict=False)):
                 self.add_nested(f'{key}[{number}]', ours, theirs, bound)
         else:
             self.add({'key': key}, recorded, repeated, bound)

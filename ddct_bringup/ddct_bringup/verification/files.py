@@ -13,6 +13,7 @@ from typing import Any
 import pyarrow as pa
 
 from ddct_bringup.bag.reader import read_bag
+from ddct_bringup.bag.recording import Recording
 from ddct_bringup.campaign.arrow_columns import read_parquet
 from ddct_bringup.campaign.columns import INDEX
 from ddct_bringup.campaign.conduct import SHARDS
@@ -25,8 +26,11 @@ from ddct_bringup.verification.comparison import Comparison, plain_json, recorde
 from ddct_bringup.verification.repetition import Repeated
 from ddct_bringup.verification.result import RepetitionResult
 from ddct_plant.base.errors import DdctError
+from ddct_plant.files.json_records import parse_json
+from ddct_plant.scenario.recorded_settings import SETTINGS
 from ddct_plant.signals.topics import RUN_INFO
 
+BAG_SUFFIX = '.mcap'
 WALL_CLOCK = frozenset({TIMING_FILE, WORK_FOLDER})
 """Names of files and folders with times on the wall clock, or with logs."""
 OF_CODE = frozenset({'version', 'commit', 'code', 'code_digest', 'spec_digest', 'shard_size'})
@@ -89,7 +93,8 @@ class FileComparison:
         if any(path.endswith(NOTE_FILE) for path in paths):  # the bag has what came before
             paths = [path for path in paths if path.endswith(NOTE_FILE)]
         comparison, compared = Comparison(), False
-        for path in paths:
+        # Signals first: the settings are in a bag and in its metadata.
+        for path in sorted(paths, key=lambda path: not path.endswith(BAG_SUFFIX)):
             if WALL_CLOCK & {*PurePosixPath(path).parts}:
                 self.wall_clock.add(PurePosixPath(path).name)
                 continue
@@ -151,14 +156,8 @@ class FileComparison:
         """Compare the signals at each step, then what the bag has about its run."""
         ours, theirs = read_bag(self.result / path), read_bag(self.scratch / path)
         comparison.add_trajectories(ours.trajectory, theirs.trajectory)
-        comparison.add_nested(
-            'facts', plain_json(asdict(ours.facts)), plain_json(asdict(theirs.facts))
-        )
-        if self.same_code:
-            comparison.add_nested('custom_data', ours.custom_data, theirs.custom_data)
-            comparison.add_nested(
-                RUN_INFO.name, plain_json(ours.run_info), plain_json(theirs.run_info)
-            )
+        about = _about if self.same_code else _facts
+        comparison.add_nested('', about(ours), about(theirs))
 
     def _compare_json(self, comparison: Comparison, path: str) -> None:
         ours, theirs = (
@@ -210,10 +209,22 @@ def _compare_texts(found: FileComparison, comparison: Comparison, path: str) -> 
 
 
 _BY_SUFFIX = {
-    '.mcap': FileComparison._compare_bags,
+    BAG_SUFFIX: FileComparison._compare_bags,
     '.json': FileComparison._compare_json,
     '.parquet': FileComparison._compare_tables,
 }
+
+
+def _about(recorded: Recording) -> Mapping[str, Any]:
+    """Return all that a bag has about its run, as JSON."""
+    settings = parse_json(recorded.custom_data[SETTINGS])
+    run_info = plain_json(recorded.run_info)
+    return {**recorded.custom_data, SETTINGS: settings, RUN_INFO.name: run_info}
+
+
+def _facts(recorded: Recording) -> Mapping[str, Any]:
+    """Return the facts of a run, which bags of all versions have, as JSON."""
+    return {'facts': plain_json(asdict(recorded.facts))}
 
 
 def _table(path: Path) -> pa.Table:

@@ -11,6 +11,7 @@ from pathlib import Path
 from ddct_bringup.api.shell.comparison import SCORES_FILE
 from ddct_bringup.api.shell.pages import REPORT_FILE, write_report
 from ddct_bringup.bag.reader import read_bag
+from ddct_bringup.bag.recording import Recording
 from ddct_bringup.bag.trajectory_bag import write_trajectory
 from ddct_bringup.benchmark.cases import Cases
 from ddct_bringup.benchmark.conduct import Options, carry_out_benchmark
@@ -23,7 +24,7 @@ from ddct_bringup.campaign.plan import RecordedCampaign
 from ddct_bringup.campaign_report.folder import PAGE, write_campaign_page
 from ddct_bringup.manifest.manifest import BENCHMARK, CAMPAIGN, RUNS, TUNING, Manifest
 from ddct_bringup.manifest.origin import CodeOrigin
-from ddct_bringup.manifest.runs import PlannedRun, RunsPlan
+from ddct_bringup.manifest.runs import ComparisonPlan, PlannedRun, RunsPlan
 from ddct_bringup.report.evidence import FREQUENCY_FILE
 from ddct_bringup.report.run_labels import in_order
 from ddct_bringup.run.description import as_of_commit, custom_data
@@ -40,9 +41,12 @@ from ddct_bringup.tuning.plan import RecordedTuning
 from ddct_bringup.tuning.record import TRIALS, read_entries
 from ddct_bringup.tuning.report.folder import write_tuning
 from ddct_bringup.tuning.specification.goals import UPDATE_TIME
+from ddct_bringup.verification.comparison import Comparison
 from ddct_controllers.workflows.evidence import frequency_evidence
 from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError
-from ddct_plant.files.json_records import from_json, write_json
+from ddct_plant.files.json_records import from_json, to_json, write_json
+from ddct_plant.scenario.recorded_settings import RecordedSettings
+from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.signals.gain_changes import changes_note
 
 REAL_TIME = 'real time'
@@ -76,7 +80,6 @@ def repeat(result: Path, manifest: Manifest, scratch: Path, workers: int | None)
 
 def _repeat_runs(result: Path, manifest: Manifest, scratch: Path, workers: int | None) -> Repeated:
     plan = from_json(RunsPlan, manifest.plan, f'{result}, plan')
-    limits = plan.limits.load(result)
     found = Repeated()
     mark_folder(scratch)
     for name, planned in plan.runs.items():
@@ -85,18 +88,31 @@ def _repeat_runs(result: Path, manifest: Manifest, scratch: Path, workers: int |
             _repeat_run(result, scratch, name, planned, found)
         except DdctError as error:
             found.failed[name] = str(error)
-    if plan.compared and not found.failed:
-        runs = [score_any_bag(scratch / name, scratch, limits) for name in plan.runs]
-        if plan.floors:
-            runs = with_floors(runs, limits)
-        document = scores_document([run.scores for run in runs], limits)
-        write_json(str(scratch / SCORES_FILE), document)
-        plans = [each.headless_plan(result) for each in plan.runs.values()]
-        chosen, settings = [each.controller for each in plans], plans[0].settings
-        evidence = frequency_evidence(chosen, settings, report=lambda error: None)
-        write_json(str(scratch / FREQUENCY_FILE), evidence)
-        write_report(in_order(runs), str(scratch / REPORT_FILE), limits)
+    if plan.comparison and not found.failed:
+        _repeat_comparison(result, scratch, plan.runs, plan.comparison)
     return found
+
+
+def _repeat_comparison(
+    result: Path, scratch: Path, planned: Mapping[str, PlannedRun], plan: ComparisonPlan
+) -> None:
+    """Make scores, loop analyses and page of repeated runs again."""
+    limits = plan.limits.load(result)
+    if limits.origin != plan.limits.origin:
+        raise DdctError(
+            f'its limits are {plan.limits.origin}, but here they are {limits.origin}',
+            key='plan.comparison.limits.origin',
+        )
+    runs = [score_any_bag(scratch / name, scratch, limits) for name in planned]
+    if plan.floors:
+        runs = with_floors(runs, limits)
+    document = scores_document([run.scores for run in runs], limits)
+    write_json(str(scratch / SCORES_FILE), document)
+    plans = [each.headless_plan(result) for each in planned.values()]
+    chosen, settings = [each.controller for each in plans], plans[0].settings
+    evidence = frequency_evidence(chosen, settings, report=lambda error: None)
+    write_json(str(scratch / FREQUENCY_FILE), evidence)
+    write_report(in_order(runs), str(scratch / REPORT_FILE), limits)
 
 
 def _repeat_run(
@@ -110,6 +126,8 @@ def _repeat_run(
     lockstep = settings.lockstep
     if not lockstep or planned.controller is None:
         found.left_out[name] = _OBJECT if lockstep else REAL_TIME
+        if failed_run(ours) is None:
+            _require_settings(read_bag(ours), planned.label(result), settings)
         for file in ours.iterdir():
             if file.is_file():
                 shutil.copy(file, again)
@@ -133,6 +151,21 @@ def _repeat_run(
     write_trajectory(
         recording.trajectory, again, plan.name, recording.custom_data, recording.run_info
     )
+
+
+def _require_settings(recorded: Recording, label: str, settings: RunSettings) -> None:
+    """Raise DdctError where a bag that is not repeated has other settings than the plan."""
+    if recorded.settings is None:
+        raise DdctError('its bag has no settings')
+    name, comparison = recorded.facts.controller, Comparison()
+    ours, planned = (
+        to_json(RecordedSettings.of(each, controller, each.scenario.duration_s))
+        for each, controller in ((recorded.settings, name), (settings, label or name))
+    )
+    comparison.add_nested('settings', ours, planned)
+    if first := comparison.bits:
+        key, there, given = first.place['key'], first.recorded, first.repeated
+        raise DdctError(f'{key}: its bag has {there!r}, its plan {given!r}', key=key)
 
 
 def _note(plan: RunPlan, folder: Path, reason: str) -> None:

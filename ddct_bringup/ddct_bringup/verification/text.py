@@ -9,7 +9,7 @@ from ddct_bringup.verification.folder import Verification
 from ddct_bringup.verification.result import RepetitionResult
 from ddct_bringup.verification.states import BOUND, DIFFERENT, NOT_REPEATED, SAME_BITS, SAME_WITHIN
 from ddct_plant.base.errors import printable
-from ddct_plant.program.printed_table import print_note, print_table
+from ddct_plant.program.printed_table import print_table
 from ddct_plant.program.table import Table
 
 _WORDS = {
@@ -28,8 +28,6 @@ def print_verification(found: Verification) -> None:
     if found.runs:
         rows = [(run.run, _WORDS[run.state], _detail(run)) for run in found.runs]
         print_table(Table(f'{folder}, made again', ('what', 'state', 'detail'), rows))
-    if found.by_digest:
-        print_note(f'On the wall clock, by their digests alone: {", ".join(found.by_digest)}.')
     if found.same:
         # One line, however wide the terminal is, for those who read the last one.
         print(f'{folder}: {len(found.files)} files are as their digests; {_summary(found)}.')
@@ -37,19 +35,23 @@ def print_verification(found: Verification) -> None:
 
 def _summary(found: Verification) -> str:
     """Return what a comparison without a difference showed."""
+    within = [run.run for run in found.runs if run.state == SAME_WITHIN]
     left = [f'{run.run} ({run.note})' for run in found.runs if run.state == NOT_REPEATED]
     parts = []
-    if any(run.state == SAME_BITS for run in found.runs):
-        whole = all(run.state == SAME_BITS for run in found.runs)
-        parts.append('everything was made again, with equal bits' if whole else 'equal bits')
-    if within := [run.run for run in found.runs if run.state == SAME_WITHIN]:
-        cause = '; '.join(found.environment_differences)
-        parts.append(f'{", ".join(within)} within {BOUND:g} of each peak, because of {cause}')
+    if found.by_digest:
+        parts.append(f'times on the wall clock ({", ".join(found.by_digest)}) by digest alone')
+    if found.runs and not within and not left:
+        what = 'everything else' if found.by_digest else 'everything'
+        parts.append(f'{what} was made again, with equal bits')
+    elif any(run.state == SAME_BITS for run in found.runs):
+        parts.append('equal bits')
+    if within:
+        parts.append(f'{", ".join(within)} within {BOUND:g} of each peak')
     if left:
         parts.append(f'not repeated: {", ".join(left)}')
-    if not parts:
-        parts.append('nothing was repeated')
-    return printable('; '.join(parts))
+    if cause := '; '.join(found.environment_differences):
+        parts.append(f'made with {cause}')
+    return printable('; '.join(parts or ['nothing was repeated']))
 
 
 def complaints(found: Verification) -> Iterator[str]:

@@ -135,7 +135,7 @@ def _one_run_less(scores: Any) -> None:
         (_raise_slip, 'runs[0].metrics.slip_final_rpm'),
         (_other_seed, 'runs[1].seed'),
         (_other_state, 'runs[1].state'),
-        (_one_run_less, 'runs'),
+        (_one_run_less, 'runs, number of entries'),
     ],
 )
 def test_a_metric_seed_or_row_of_the_scores_edited_with_its_digest_is_found(
@@ -246,9 +246,10 @@ def test_a_setting_of_a_bag_edited_with_its_digest_is_found(
 ) -> None:
     folder = copied(bag, tmp_path / 'pi')
     _rewrite_bag(folder, wear_gain=1.1)
-    code, document, _ = verified(folder, capfd)
+    code, document, errors = verified(folder, capfd)
     (run,) = document['runs']
     assert (code, run['state']) == (1, 'different')
+    assert 'key settings.case.wear_gain: recorded 1.1, repeated 1.0' in errors
 
 
 def test_metadata_edited_with_its_digest_is_found(
@@ -390,6 +391,7 @@ def test_a_result_carries_its_limits(tmp_path: Path, capfd: pytest.CaptureFixtur
         ('controller', 3, 'runs...controller is 3'),
         ('settings', 'fast', 'runs...settings is '),
         ('scenario', {}, 'key name is missing'),
+        ('layout', 'fast', "unknown layout 'fast': choose from processes, single-process"),
     ],
 )
 def test_a_plan_with_another_type_is_one_line(
@@ -473,7 +475,7 @@ def test_a_signal_of_another_release_may_differ_within_the_bound(
     printed = capfd.readouterr()
     if code == 3:
         last = printed.out.splitlines()[-1]
-        assert 'pi within 1e-09 of each peak, because of code ffffffffff, here ' in last
+        assert 'pi within 1e-09 of each peak; made with code ffffffffff, here ' in last
     else:
         assert 'signal slip_speed, step 60' in printed.err
 
@@ -515,6 +517,59 @@ def test_a_headless_bag_relabelled_as_real_time_is_different(
     assert verify.main([str(folder)]) == 1, 'no headless run is in real time'
 
 
+def test_a_run_that_is_not_repeated_needs_the_settings_of_its_plan(
+    bag: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    folder = copied(bag, tmp_path / 'pi')
+
+    def of_object(content: Any) -> None:
+        content['plan']['runs']['.']['controller'] = None
+
+    def other_mass(content: Any) -> None:
+        content['plan']['runs']['.']['scenario']['vehicle']['mass_kg'] += 1.0
+
+    edit_manifest(folder, of_object)
+    assert verified(folder, capfd)[0] == 3
+    edit_manifest(folder, other_mass)
+    code, document, errors = verified(folder, capfd)
+    assert (code, states(document)) == (1, {'pi': 'different'})
+    assert 'settings.known.scenario.vehicle.mass_kg: its bag has 1500.0, its plan 1501.0' in errors
+
+
+def test_real_time_in_the_plan_alone_is_different(
+    bag: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    def relabel(content: Any) -> None:
+        _of_graph(content)
+        content['plan']['runs']['.']['settings']['mode'] = 'realtime'
+
+    folder = copied(bag, tmp_path / 'pi')
+    edit_manifest(folder, relabel)
+    code, _, errors = verified(folder, capfd)
+    assert code == 1
+    assert "settings.known.mode: its bag has 'lockstep', its plan 'realtime'" in errors
+
+
+@pytest.mark.parametrize(
+    ('key', 'value', 'found'),
+    [
+        ('name', 'strict', "its limits are {'name': 'strict', "),
+        ('digest', '0' * 16, "'digest': '0000000000000000'"),
+    ],
+)
+def test_other_limits_in_the_plan_of_a_comparison_are_found(
+    runs: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str], key: str, value: str, found: str
+) -> None:
+    def edit(content: Any) -> None:
+        content['plan']['comparison']['limits']['origin'][key] = value
+
+    folder = copied(runs, tmp_path / 'runs')
+    edit_manifest(folder, edit)
+    code, _, errors = verified(folder, capfd)
+    assert (code, errors.count('\n')) == (1, 1)
+    assert found in errors
+
+
 def test_nothing_is_called_compared_before_it_was_repeated(
     runs: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
@@ -528,6 +583,6 @@ def test_the_table_names_what_was_compared(runs: Path, capfd: pytest.CaptureFixt
     assert verify.main([str(runs)]) == 0
     printed = capfd.readouterr().out
     assert re.search(r'mpc3 +same bits', printed)
-    assert 'On the wall clock, by their digests alone: timing.json.' in printed
-    last = 'files are as their digests; everything was made again, with equal bits.'
+    times = 'times on the wall clock (timing.json) by digest alone'
+    last = f'as their digests; {times}; everything else was made again, with equal bits.'
     assert printed.splitlines()[-1].endswith(last)

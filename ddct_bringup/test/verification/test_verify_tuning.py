@@ -84,6 +84,15 @@ def test_an_edited_search_seed_is_found(finished: Path, tmp_path: Path) -> None:
     assert found['shards'] == found['trials.json'] == 'different'
 
 
+def test_an_edited_name_of_the_controller_is_found(finished: Path, tmp_path: Path) -> None:
+    def other_name(content: dict[str, Any]) -> None:
+        content['plan']['controller']['name'] = 'mine'
+
+    folder = copied(finished, tmp_path / 'copy')
+    edit_manifest(folder, other_name)
+    assert states(folder, tmp_path / 'found.json')['manifest.json'] == 'different'
+
+
 def test_a_tuning_carries_its_controller(tmp_path: Path) -> None:
     work = tmp_path / 'work'
     work.mkdir()

@@ -13,7 +13,7 @@ from ddct_bringup.api.shell.comparison import SCORES_FILE
 from ddct_bringup.manifest.inputs import InputFiles
 from ddct_bringup.manifest.limits import NamedLimits
 from ddct_bringup.manifest.manifest import ITSELF, MANIFEST, RUNS, begin_manifest, read_manifest
-from ddct_bringup.manifest.runs import PlannedRun, RunsPlan
+from ddct_bringup.manifest.runs import ComparisonPlan, PlannedRun, RunsPlan
 from ddct_bringup.programs.score import main as score
 from ddct_bringup.report import evidence
 from ddct_bringup.report.evidence import FREQUENCY_FILE, evidence_of, loop_rows, without_evidence
@@ -95,7 +95,8 @@ def _note(custom_data: Mapping[str, str], folder: Path) -> bytes:
 def _plan(settings: RunSettings) -> RunsPlan:
     inputs = InputFiles()
     run = PlannedRun.of(RunPlan(settings, 'pi', 'headless'), inputs)
-    return RunsPlan({ITSELF: run}, NamedLimits.of(packaged_limits(), inputs), False, False)
+    limits = NamedLimits.of(packaged_limits(), inputs)
+    return RunsPlan({ITSELF: run}, ComparisonPlan(limits, floors=False))
 
 
 def _manifest(plan: RunsPlan, folder: Path) -> bytes:

@@ -9,7 +9,7 @@ from pathlib import Path
 from ddct_bringup.api.shell.pages import REPORT_FILE, write_report
 from ddct_bringup.bag.recording import Recording
 from ddct_bringup.manifest.manifest import finish_manifest
-from ddct_bringup.manifest.runs import begin_runs
+from ddct_bringup.manifest.runs import begin_comparison
 from ddct_bringup.report.evidence import FREQUENCY_FILE
 from ddct_bringup.report.run_labels import in_order
 from ddct_bringup.run.description import custom_data
@@ -65,7 +65,7 @@ def compare_into(
     with locked_folders(out), StagedFolder(out, overwrite=overwrite) as folder:
         chosen = [plan.controller for plan in plans]
         named = {plan.name: plan for plan in plans}
-        begin_runs(folder.path, named, limits, floors=floors, compared=True)
+        begin_comparison(folder.path, named, limits, floors=floors)
         evidence = frequency_evidence(chosen, plans[0].settings, unusable.append)
         runs = [
             _run(plan, folder.path, f'{index} of {len(plans)}, ', limits, comparer)

@@ -30,7 +30,7 @@ def keep_run(
     Raise the errors of `execute`, and DdctError for a folder that cannot be used.
     """
     with run_folder(out, plan.name, overwrite=overwrite) as folder:
-        begin_run(folder.path, plan, limits)
+        begin_run(folder.path, plan)
         kept = run_and_score(plan, folder.path, limits, execute)
         finish_manifest(folder.path)
         if not kept.scores.valid or kept.recording is None:
