@@ -23,12 +23,13 @@ from ddct_bringup.programs.verify import main as verify
 from ddct_bringup.run import headless
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.run.plan import RunPlan
+from ddct_bringup.run.timing_and_failure import RunTiming
+from ddct_controllers.check import subject
 from ddct_controllers.check.checks import FAIL, PASS, check_controller
 from ddct_controllers.interface import Controller
 from ddct_controllers.registry import controller_spec
 from ddct_controllers.workflows.evidence import frequency_evidence
 from ddct_controllers.workflows.loop_summary import loop_summary
-from ddct_plant.base.errors import ParameterError
 from ddct_plant.program import own_process
 from ddct_plant.program.own_process import ProcessEndedError
 from ddct_plant.scenario.settings import RunSettings
@@ -83,6 +84,13 @@ def test_a_loop_is_built_here_first_so_that_not_every_process_does_its_imports(
     monkeypatch.setattr(headless, 'closed_loop', noted)
     run_headless(SETTINGS, counter)
     assert built == [os.getpid()]
+
+
+def test_the_update_times_of_a_run_come_out_of_its_process(counter: str) -> None:
+    timing = RunTiming()
+    run_headless(SETTINGS, counter, timing)
+    assert (timing.steps, len(timing.update_times_us)) == (SETTINGS.scenario.steps, 71)
+    assert min(timing.update_times_us) > 0.0
 
 
 def test_two_of_a_comparison_count_from_one(counter: str, folder: Path, tmp_path: Path) -> None:
@@ -179,6 +187,21 @@ def test_a_crash_fails_the_checks_in_which_it_happens(harm: str, counter: str) -
     assert f'{ENDS[3]} when update was called at step 65: mend it' in found['answers'].detail
 
 
+def test_checks_share_the_trials_that_each_of_them_needs(
+    counter: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made, trial = tmp_path / 'trials', subject.closed_trial
+
+    def noted(settings: RunSettings, controller: Controller) -> subject.ClosedLoopLog:
+        with made.open('a', encoding='utf-8') as file:
+            file.write(f'{type(controller).__name__}\n')
+        return trial(settings, controller)
+
+    monkeypatch.setattr(subject, 'closed_trial', noted)
+    check_controller(counter, run_settings())
+    assert sorted(made.read_text().split()) == ['CLibraryController', 'PiController']
+
+
 def test_static_variables_are_no_shared_state_but_must_be_reset(counter: str) -> None:
     found = {each.name: each for each in check_controller(counter, run_settings())}
     assert [found[name].state for name in ('state', 'determinism')] == 2 * [PASS]
@@ -208,12 +231,6 @@ def test_another_controller_with_its_options_is_compiled_code_too(
     with refused(ProcessEndedError, 'c_library.file', place=f'{harm}: line 2') as raised:
         run_headless(SETTINGS, str(file))
     assert f'{ENDS[3]} when update was called at step 65' in str(raised.value)
-
-
-def test_all_nodes_in_one_process_are_refused(harm: str) -> None:
-    with refused(ParameterError, '--single-process') as raised:
-        RunPlan(SETTINGS, harm, 'single-process')
-    assert 'drop --single-process, or take --headless' in str(raised.value)
 
 
 def test_a_result_carries_the_library_and_comes_out_again(tmp_path: Path) -> None:

@@ -77,7 +77,6 @@ CALLERS = {
     'ddct_bringup/api/tuning.py': 'arguments of Python programs',
     'ddct_bringup/programs/options/of_runs.py': 'arguments of argparse',
     'ddct_bringup/bag/trajectory.py': 'signals: arrays of numbers, or tuples of texts and events',
-    'ddct_bringup/processes/single_process.py': 'parameters of ROS nodes',
 }
 """Modules at the other edges, with what passes there."""
 EDGES = {*FILES, *VALUES_BY_KEY, *CALLERS}

@@ -54,6 +54,13 @@ def harmful(folder: Path, name: str = 'harmful') -> str:
     return _file(folder, name, source, ', parameters: {fault: 0.0}')
 
 
+def failing(folder: Path, name: str = 'failing') -> str:
+    """Return the file of a controller whose update returns -3 at step 65."""
+    return _file(
+        folder, name, with_update('if (m->step == 65) return -3; command->clutch_torque = 0.0;')
+    )
+
+
 def harmed_on_a_hill(folder: Path, name: str = 'harmed') -> str:
     """Return the file of a PI controller that crashes where the road load is that of a hill."""
     body = '    const double slip ='

@@ -5,6 +5,7 @@
 import atexit
 import contextlib
 import importlib
+import mmap
 import multiprocessing
 import os
 import select
@@ -17,6 +18,7 @@ from pathlib import Path
 
 from ddct_bringup.processes.fork_server import CONTEXT, server_ends
 from ddct_bringup.processes.preloaded import remove_socket
+from ddct_plant.program.own_process import NOTE_BYTES, note_calls
 from ddct_plant.program.supervision import Patience, end_after, supervise
 
 _ENDED_BY = (signal.SIGINT, signal.SIGTERM, signal.SIGKILL, signal.SIGALRM)
@@ -46,10 +48,14 @@ class Forked:
         # In memory: the reason of a failure must survive a full disk.
         self._printed = Connection(os.memfd_create(module), readable=False)
         self._announced, self._theirs = CONTEXT.Pipe(duplex=False)
+        self._calls = Connection(os.memfd_create('calls'))
+        os.ftruncate(self._calls.fileno(), NOTE_BYTES)
         self._code: int | None = None
+        self._announced_code: int | None = None
         self.ended: int | None = None
         """Descriptor of the started process, which becomes readable at its end."""
-        job = module, arguments, dict(os.environ), self._printed, self._theirs, patience
+        pipes = self._printed, self._theirs, self._calls
+        job = module, arguments, dict(os.environ), *pipes, patience
         self.process = CONTEXT.Process(target=_run, args=job, name=name or module)
 
     def begin(self) -> None:
@@ -88,9 +94,8 @@ class Forked:
                 code = self._code_of_orphan()
             self._code = code
             if code is None or -code in _ENDED_BY:
-                with contextlib.suppress(EOFError, OSError):
-                    if self._announced.poll():
-                        self._code = int(self._announced.recv_bytes())
+                announced = self.announced_code()
+                self._code = self._code if announced is None else announced
         return self._code
 
     def _code_of_orphan(self) -> int | None:
@@ -99,6 +104,14 @@ class Forked:
             pid, status = os.waitpid(self.pid, os.WNOHANG)
             return os.waitstatus_to_exitcode(status) if pid else None
         return None
+
+    def announced_code(self) -> int | None:
+        """Return the exit code that a node has announced after its work; None before."""
+        if self._announced_code is None:
+            with contextlib.suppress(EOFError, OSError):
+                if self._announced.poll():
+                    self._announced_code = int(self._announced.recv_bytes())
+        return self._announced_code
 
     def send(self, number: signal.Signals) -> None:
         """Send a signal to the process unless it has ended."""
@@ -112,6 +125,10 @@ class Forked:
         descriptor = self._printed.fileno()
         return os.pread(descriptor, os.fstat(descriptor).st_size, 0)
 
+    def calls(self) -> bytes:
+        """Return the note of its calls of foreign code."""
+        return os.pread(self._calls.fileno(), NOTE_BYTES, 0)
+
     def printed_text(self) -> str:
         """Return the output of the process so far, as text."""
         return self.printed().decode(errors='replace')
@@ -122,7 +139,7 @@ class Forked:
 
     def close(self) -> None:
         """Close what belongs to the process here, after its end or where it was not started."""
-        for each in (self._printed, self._announced, self._theirs):
+        for each in (self._printed, self._announced, self._theirs, self._calls):
             each.close()
         if self.ended is not None:
             os.close(self.ended)
@@ -135,12 +152,14 @@ def _run(
     environment: Mapping[str, str],
     printed: Connection,
     announced: Connection,
+    calls: Connection,
     patience: Patience | None,
 ) -> None:
     """Run `main` of a module in this process, which the fork server has forked."""
     for stream in (1, 2):
         os.dup2(printed.fileno(), stream)
     printed.close()
+    note_calls(mmap.mmap(calls.fileno(), NOTE_BYTES))
     os.environ.clear()
     os.environ.update(environment)
     sys.argv = [module, *arguments]

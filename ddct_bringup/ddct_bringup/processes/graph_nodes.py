@@ -1,9 +1,10 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Nodes of the graph: their modules, namespaces, start order and timeout."""
+"""Nodes of the graph: their modules, namespaces, arguments, start order and timeout."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 from ddct_plant.shift.roles import OFF_GOING
 
@@ -18,6 +19,14 @@ class NodeSpec:
     """Module whose `main` runs the node."""
     namespace: str = ''
     """Namespace within that of the graph; empty for the graph's own."""
+
+    arguments: Sequence[str] = ()
+    """Arguments of its program before those of ROS."""
+
+    @property
+    def title(self) -> str:
+        """Subject of a sentence about its process."""
+        return 'the process of all nodes' if self.name == ALL_NODES else f'node {self.path}'
 
     @property
     def path(self) -> str:
@@ -63,6 +72,11 @@ SHIFT_NODES: Sequence[NodeSpec] = (
 NODE_PROGRAMS: Sequence[NodeSpec] = (*GRAPH_NODES, HANDOVER)
 """Nodes with a program of their own, which the off-going side shares."""
 
+ALL_NODES = 'all_nodes'
+"""Name of the one process that runs all nodes of a run."""
+_OF_A_SHIFT = '--shift'
+"""Argument of that process for the nodes of a gear shift."""
+
 ANSWER_TIMEOUT_S = 20.0
 """Wall time within which a node of a supervised graph must answer, s."""
 
@@ -71,3 +85,19 @@ def nodes_of(*, shift: bool) -> list[NodeSpec]:
     """Return the nodes of a run in start order; those of a gear shift only with `shift`."""
     others = [node for node in GRAPH_NODES if node is not DRIVELINE]
     return [*others, *(SHIFT_NODES if shift else ()), DRIVELINE]
+
+
+def all_nodes(*, shift: bool) -> NodeSpec:
+    """Return the one process that runs all nodes of a run, as if it were a node."""
+    arguments = (_OF_A_SHIFT,) if shift else ()
+    return NodeSpec(ALL_NODES, 'ddct_bringup.processes.single_process', arguments=arguments)
+
+
+def nodes_of_process(arguments: Sequence[str]) -> list[NodeSpec]:
+    """Return the nodes that the process of all nodes runs with these arguments, in order."""
+    return nodes_of(shift=_OF_A_SHIFT in arguments)
+
+
+def ros_arguments(parameter_file: Path) -> list[str]:
+    """Return the arguments by which nodes read their parameters from a file."""
+    return ['--ros-args', '--params-file', str(parameter_file)]

@@ -1,41 +1,62 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Run all nodes of the graph in this process, on one executor."""
+"""
+Run all nodes of the graph in this process, on one executor.
+
+This is the process of the program; or one of its own, where compiled code of a third party may end
+it: then the program supervises it as if it were a node.
+"""
 
 import gc
 import importlib
-from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from collections.abc import Callable, Sequence
 
 from rclpy.context import Context
-from rclpy.parameter import Parameter
 
-from ddct_bringup.processes.graph_nodes import NodeSpec
+from ddct_bringup.processes.graph_nodes import ALL_NODES, NodeSpec, nodes_of_process
 from ddct_plant.base.errors import DdctError
 from ddct_plant.graph.arguments import init_ros
 from ddct_plant.graph.node import GraphNode
-from ddct_plant.graph.spin import end_of, finish_node, make_executor, spin_until
+from ddct_plant.graph.spin import end_of, finish_node, make_executor, spin_until, watched_stops
+from ddct_plant.program.command_line import run_program
 from ddct_plant.program.scheduling import scheduling_restored
+from ddct_plant.program.supervision import announce_exit
+
+
+def main() -> int:
+    """Run all nodes in this process, which a supervisor has started; return its exit code."""
+
+    def program(arguments: list[str]) -> int:
+        with watched_stops() as stopped:
+            run_single_process(nodes_of_process(arguments), arguments, stopped)
+        return 0
+
+    code = 1
+    try:
+        code = run_program(ALL_NODES, program, None)
+    finally:
+        announce_exit(code)
+    return code
 
 
 def run_single_process(
-    specs: Sequence[NodeSpec],
-    parameters: Mapping[str, Mapping[str, Any]],
-    stopped: Callable[[], bool],
+    specs: Sequence[NodeSpec], arguments: Sequence[str], stopped: Callable[[], bool]
 ) -> None:
     """
     Run the node classes of the separate processes until the driveline has ended the run.
 
-    `specs` are the nodes of the run; `parameters` are by node path, those of '*' for all. Raise
+    `specs` are the nodes of the run; `arguments` of ROS name the file with their parameters. Raise
     DdctError when a node fails and KeyboardInterrupt when `stopped()` becomes true.
     """
     context = Context()
-    init_ros([], context)
+    init_ros(arguments, context)
     nodes: list[GraphNode] = []
     try:
         with scheduling_restored():
             for spec in specs:
-                nodes.append(_build(spec, parameters, context))
+                if stopped():  # it beats too
+                    raise KeyboardInterrupt
+                nodes.append(_build(spec, context))
             _spin(nodes, context, stopped)
     finally:
         while nodes:
@@ -45,18 +66,13 @@ def run_single_process(
         gc.collect()
 
 
-def _build(
-    spec: NodeSpec, parameters: Mapping[str, Mapping[str, Any]], context: Context
-) -> GraphNode:
+def _build(spec: NodeSpec, context: Context) -> GraphNode:
     node_class = getattr(importlib.import_module(spec.module), spec.class_name)
-    values = {**parameters['*'], **parameters.get(spec.path, {})}
-    overrides = [Parameter(name, value=value) for name, value in values.items()]
     try:
-        return node_class(
-            context=context, parameter_overrides=overrides, namespace=spec.namespace or None
-        )
+        node: GraphNode = node_class(context=context, namespace=spec.namespace or None)
     except DdctError as error:
-        raise DdctError(f'node {spec.path}: {error}') from error
+        raise DdctError(f'{spec.title}: {error}') from error
+    return node
 
 
 def _spin(nodes: list[GraphNode], context: Context, stopped: Callable[[], bool]) -> None:

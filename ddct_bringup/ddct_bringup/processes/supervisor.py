@@ -16,9 +16,10 @@ from pathlib import Path
 
 from ddct_bringup.processes.fork_server import start_processes, state_of
 from ddct_bringup.processes.forked import Forked
-from ddct_bringup.processes.graph_nodes import DRIVELINE, NodeSpec
+from ddct_bringup.processes.graph_nodes import DRIVELINE, NodeSpec, ros_arguments
 from ddct_bringup.processes.shared_memory import remove_dead_segments
 from ddct_plant.base.errors import DdctError
+from ddct_plant.program.own_process import last_call
 from ddct_plant.program.supervision import Patience, adopt_orphans
 
 STOP_LADDER = ((signal.SIGINT, 10.0), (signal.SIGTERM, 5.0), (signal.SIGKILL, 2.0))
@@ -43,14 +44,15 @@ class Node(Forked):
     def __init__(self, spec: NodeSpec, parameter_file: Path, log: Path) -> None:
         """Prepare the node with its parameter file; `write_log` writes its output into `log`."""
         self.name = spec.path
+        self._title = spec.title
         self.log = log
         self.killed = False
         """Whether it had to be killed because it did not end after the other signals."""
         self._paused_s = 0.0
-        parameters = ['--ros-args', '--params-file', str(parameter_file)]
+        arguments = [*spec.arguments, *ros_arguments(parameter_file)]
         if spec.namespace:
-            parameters += ['-r', f'__ns:=/{spec.namespace}']
-        super().__init__(spec.module, *parameters, name=spec.path, patience=PATIENCE)
+            arguments += ['-r', f'__ns:=/{spec.namespace}']
+        super().__init__(spec.module, *arguments, name=spec.path, patience=PATIENCE)
 
     def check(self, elapsed_s: float) -> None:
         """Raise DdctError where somebody has paused it for long, `elapsed_s` after the last."""
@@ -58,7 +60,7 @@ class Node(Forked):
         self._paused_s = self._paused_s + min(elapsed_s, _MOST_ELAPSED_S) if paused else 0.0
         if self._paused_s > PAUSED_S:
             raise DdctError(
-                f'node {self.name} has been paused (SIGSTOP) for {PAUSED_S:g} s; its log is '
+                f'{self._title} has been paused (SIGSTOP) for {PAUSED_S:g} s; its log is '
                 f'{self.log}'
             )
 
@@ -74,24 +76,29 @@ class Node(Forked):
         with contextlib.suppress(OSError):
             self.log.write_bytes(self.printed())
 
+    def ended_well(self) -> bool:
+        """Return whether it has ended with code 0, by itself: exit(0) in C announces nothing."""
+        return self.code() == 0 and self.announced_code() == 0
+
     def summary(self) -> str:
         """Return one line on how the node ended, with its log."""
-        return f'node {self.name} {self._end()}; its log is {self.log}'
+        return f'{self._title} {self._end()}; its log is {self.log}'
 
     def _end(self) -> str:
         code, lines = self.code(), self.lines()
+        call = last_call(self.calls()) if self.announced_code() is None else ''
         if self.killed:
-            return 'did not stop on signals and was killed'
+            return f'did not stop on signals{call} and was killed'
         if code is None:
             return 'has ended, and the fork server, which knows why, was killed or is paused'
         if code < 0:
-            return f'was killed by {signal.Signals(-code).name}'
+            return f'was killed by {signal.Signals(-code).name}{call}'
         # What the standard library's watch prints before it ends the process.
         if code and any(line.startswith('Timeout (') and line.endswith(')!') for line in lines):
-            return 'hung and ended itself, its stacks are in its log'
+            return f'hung{call} and ended itself, its stacks are in its log'
         program = self.name.rpartition('/')[2]
         words = lines[-1].strip().removeprefix(f'{program}: ') if lines else ''
-        return f'ended with code {code}{f": {words}" if words else ""}'
+        return f'ended with code {code}{call}{f": {words}" if words else ""}'
 
 
 class Supervisor:
@@ -121,7 +128,7 @@ class Supervisor:
             node.write_log()
         # A killed node leaves its shared memory, also one that hung after its announced end, and
         # one that ended with an error may leave it.
-        if any(node.code() != 0 or node.process.exitcode != 0 for node in self._nodes):
+        if any(not node.ended_well() or node.process.exitcode != 0 for node in self._nodes):
             remove_dead_segments()
         for node in self._nodes:
             node.close()
@@ -142,7 +149,7 @@ class Supervisor:
 
     def wait_for(self, name: str) -> None:
         """
-        Wait until node `name` has ended with code 0.
+        Wait until node `name` has ended well.
 
         Raise DdctError when any node fails, hangs, or is paused for long.
         """
@@ -167,7 +174,7 @@ class Supervisor:
         while True:
             done = over()
             ended = [node for node in self._nodes if not node.running]
-            if any(node.name != may_end or node.code() != 0 for node in ended):
+            if any(node.name != may_end or not node.ended_well() for node in ended):
                 # The cause is a node that was killed or failed; others may have ended after it.
                 raise DdctError(min(ended, key=_consequence).summary())
             if done:
@@ -193,9 +200,9 @@ class Supervisor:
                 nodes = [node for node in nodes if node.running]
 
     def require_clean_end(self) -> None:
-        """Raise DdctError unless every node has ended with code 0."""
+        """Raise DdctError unless every node has ended well."""
         for node in self._nodes:
-            if node.code() != 0:
+            if not node.ended_well():
                 raise DdctError(node.summary())
 
 
@@ -206,4 +213,4 @@ def _any_ends(nodes: Sequence[Node], within_s: float) -> None:
 
 def _consequence(node: Node) -> tuple[bool, bool]:
     """Return a key that is larger for an ended node whose end others have caused."""
-    return node.code() == 0, node.name == DRIVELINE.path
+    return node.ended_well(), node.name == DRIVELINE.path

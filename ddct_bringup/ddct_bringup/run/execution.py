@@ -17,7 +17,14 @@ from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.bag.run_info import RunInfoOfNodes
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.bag.trajectory_bag import write_trajectory
-from ddct_bringup.processes.graph_nodes import DRIVELINE, RECORDER, nodes_of
+from ddct_bringup.processes.graph_nodes import (
+    ALL_NODES,
+    DRIVELINE,
+    RECORDER,
+    all_nodes,
+    nodes_of,
+    ros_arguments,
+)
 from ddct_bringup.run.description import custom_data, run_info_of
 from ddct_bringup.run.headless import run_headless, separate_run
 from ddct_bringup.run.plan import RunPlan
@@ -25,7 +32,7 @@ from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_controllers import workflows
 from ddct_controllers.from_file.controller_file import is_controller_file
 from ddct_controllers.from_file.fmu.unpacked import remove_left_folders
-from ddct_controllers.registry import Chosen, make_controller
+from ddct_controllers.registry import Chosen, compiled_code, make_controller
 from ddct_plant.base.errors import DdctError
 from ddct_plant.graph.domain import own_domain, sole_graph
 from ddct_plant.program.supervision import interrupted_by, stop_signals
@@ -98,8 +105,7 @@ def execute(
             if plan.layout == 'processes':
                 _execute_processes(plan, folder, work, stopped, live)
             else:
-                nodes = nodes_of(shift=plan.settings.shift)
-                processes.run_single_process(nodes, plan.node_parameters(folder, work), stopped)
+                _execute_single_process(plan, folder, work, stopped)
         _keep_warnings(work)
     except OSError as error:
         raise DdctError(f'{error.filename or folder}: {error.strerror or error}') from error
@@ -158,6 +164,20 @@ def _execute_processes(
             supervisor.stop(lambda name: name != RECORDER.path)
             supervisor.stop(lambda name: name == RECORDER.path)
         supervisor.require_clean_end()
+
+
+def _execute_single_process(
+    plan: RunPlan, folder: Path, work: Path, stopped: Callable[[], bool]
+) -> None:
+    """Run all nodes in this process, or in one of their own where the controller may end it."""
+    parameter_file, shift = plan.write_parameter_file(folder, work), plan.settings.shift
+    if not compiled_code(plan.controller):
+        arguments = ros_arguments(parameter_file)
+        processes.run_single_process(nodes_of(shift=shift), arguments, stopped)
+        return
+    with processes.Supervisor(work, parameter_file, stopped) as supervisor:
+        supervisor.start([all_nodes(shift=shift)])
+        supervisor.wait_for(ALL_NODES)
 
 
 def simulate(plan: RunPlan, changes: Sequence[GainChange] = ()) -> tuple[Recording, RunTiming]:

@@ -9,7 +9,7 @@ from pathlib import Path
 from ddct_bringup.processes.graph_nodes import ANSWER_TIMEOUT_S, nodes_of
 from ddct_controllers.architecture import loop_needs
 from ddct_controllers.handover.laws import make_handover
-from ddct_controllers.registry import Chosen, compiled_code, controller_label
+from ddct_controllers.registry import Chosen, controller_label
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import time_of_step
 from ddct_plant.files.json_records import write_json
@@ -51,7 +51,6 @@ class RunPlan:
         if self.layout == 'headless':
             require_headless(self.settings)
         else:
-            self._require_process_for_compiled_code()
             if not isinstance(self.controller, str):
                 raise ParameterError(
                     f'controller {self.name!r} is known to this process alone: run it headless, '
@@ -60,15 +59,6 @@ class RunPlan:
                 )
             require_ros()
             require_domain()
-
-    def _require_process_for_compiled_code(self) -> None:
-        """Raise ParameterError where compiled code would share its process with other nodes."""
-        if self.layout == 'single-process' and compiled_code(self.controller):
-            raise ParameterError(
-                f'controller {self.name!r} is compiled code, a crash of which would end all nodes '
-                'of one process: drop --single-process, or take --headless',
-                key='--single-process',
-            )
 
     @property
     def name(self) -> str:

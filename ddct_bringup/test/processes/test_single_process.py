@@ -11,7 +11,7 @@ pytest.importorskip('rclpy')
 from rclpy.task import Future  # noqa: E402
 
 from ddct_bringup.processes import single_process  # noqa: E402
-from ddct_bringup.processes.graph_nodes import GRAPH_NODES  # noqa: E402
+from ddct_bringup.processes.graph_nodes import GRAPH_NODES, all_nodes, nodes_of, nodes_of_process  # noqa: E402
 from ddct_plant.base.errors import DdctError  # noqa: E402
 
 NAMES = [spec.name for spec in GRAPH_NODES]
@@ -30,6 +30,9 @@ class FakeNode:
     def finish(self, error: Exception | None = None) -> None:
         if not self.done.done():
             self.done.set_result(error)
+
+    def destroy_node(self) -> None:
+        self.close()
 
     def close(self) -> None:
         self._closed.append(self._name)
@@ -75,3 +78,19 @@ def test_after_a_failure_they_are_closed_in_that_order_too(spin, closed):
     with pytest.raises(DdctError, match='node clutch: no capacity'):
         spin('clutch', DdctError('no capacity'))
     assert closed == NAMES[::-1]
+
+
+@pytest.mark.parametrize('shift', [False, True])
+def test_the_process_of_all_nodes_runs_those_of_the_run(shift):
+    spec = all_nodes(shift=shift)
+    assert nodes_of_process([*spec.arguments, '--ros-args']) == nodes_of(shift=shift)
+    assert spec.title == 'the process of all nodes'
+
+
+def test_an_interruption_ends_the_run_before_the_next_node_is_built(monkeypatch, closed):
+    monkeypatch.setattr(single_process, 'init_ros', lambda *_: None)
+    monkeypatch.setattr(single_process, '_build', lambda spec, _: FakeNode(spec.name, closed))
+    stops = iter([False, False, True])
+    with pytest.raises(KeyboardInterrupt):
+        single_process.run_single_process(GRAPH_NODES, [], lambda: next(stops))
+    assert closed == NAMES[:2]

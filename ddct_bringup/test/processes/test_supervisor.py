@@ -27,7 +27,11 @@ pytestmark = pytest.mark.process
 
 LIVE = """
 import os, signal, sys, time
+from ddct_plant.program.own_process import calling
 from ddct_plant.program.supervision import announce_exit, beat
+def leave(*_):
+    announce_exit(0)
+    sys.exit(0)
 def main():
     {first}
     beat()
@@ -37,13 +41,14 @@ def main():
         beat()
         time.sleep(0.01)
 """
-OBEDIENT = 'signal.signal(signal.SIGINT, lambda *_: sys.exit(0))', 'pass'
+OBEDIENT = 'signal.signal(signal.SIGINT, leave)', 'pass'
 FAILING = 'signal.signal(signal.SIGINT, lambda *_: sys.exit(1))', 'pass'
 DEAF = (
     '[signal.signal(each, signal.SIG_IGN) for each in (signal.SIGINT, signal.SIGTERM)]',
     'pass',
 )
-ENDED, FAILED = ('pass', 'return 0'), ('pass', "print('driveline: no more disk'); return 1")
+ENDED, FAILED = ('pass', 'leave()'), ('pass', "print('driveline: no more disk'); return 1")
+CALL = "calling('update', 65)"
 HANGING = 'pass', 'time.sleep(600)'
 Make = Callable[..., Supervisor]
 
@@ -187,6 +192,40 @@ def test_a_node_that_ends_before_the_driveline_ends_the_run(processes: Make) -> 
     )
 
 
+def test_code_0_alone_is_no_good_end_of_a_node(processes: Make) -> None:
+    """As C has it that calls exit(0): nothing is announced."""
+    nodes = processes(driveline=(CALL, 'os._exit(0)'))
+    expected = 'node driveline ended with code 0 when update was called at step 65: ready; its log'
+    assert reason(nodes).startswith(expected)
+    with pytest.raises(DdctError, match=expected):
+        nodes.require_clean_end()
+
+
+@pytest.mark.parametrize(
+    ('then', 'expected'),
+    [
+        ('os.abort()', 'was killed by SIGABRT when update was called at step 65; '),
+        (HANGING[1], 'hung when update was called at step 65 and ended itself, '),
+        ('announce_exit(1); return 1', 'ended with code 1: ready; '),
+    ],
+)
+def test_the_last_call_of_foreign_code_is_in_the_reason_unless_the_node_ended_in_order(
+    processes: Make, monkeypatch: pytest.MonkeyPatch, then: str, expected: str
+) -> None:
+    monkeypatch.setattr(supervisor, 'PATIENCE', Patience(silent_s=0.3))
+    nodes = processes(clutch=(CALL, then), driveline=OBEDIENT)
+    assert reason(nodes).startswith(f'node clutch {expected}')
+
+
+def test_a_node_killed_at_the_end_of_the_ladder_has_its_last_call_in_the_reason(
+    processes: Make,
+) -> None:
+    nodes = processes(load=(f'{DEAF[0]}; {CALL}', DEAF[1]))
+    nodes.stop(lambda name: True)
+    with pytest.raises(DdctError, match='signals when update was called at step 65 and was kill'):
+        nodes.require_clean_end()
+
+
 def test_how_a_node_ended_is_known_without_the_fork_server_too(processes: Make) -> None:
     nodes = processes(driveline=OBEDIENT, clutch=OBEDIENT, load=FAILING)
     stop_server()
@@ -270,6 +309,19 @@ def test_the_shared_memory_of_a_node_that_hung_while_it_left_is_removed(
     nodes = processes(driveline=(f'open({str(lock)!r}, "w")', 'announce_exit(0); time.sleep(60)'))
     nodes.wait_for('driveline')
     nodes.require_clean_end()
+    assert lock.exists()
+    nodes.__exit__()
+    assert not lock.exists()
+    nodes._nodes.clear()
+
+
+def test_the_shared_memory_of_a_node_that_ended_without_leaving_is_removed(
+    processes: Make, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(shared_memory, 'SHARED_MEMORY', tmp_path)
+    lock = tmp_path / 'fastrtps_1_el'
+    nodes = processes(driveline=(f'open({str(lock)!r}, "w")', 'os._exit(0)'))
+    assert nodes._nodes[0].wait(WITHIN_S)
     assert lock.exists()
     nodes.__exit__()
     assert not lock.exists()

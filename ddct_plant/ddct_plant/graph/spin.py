@@ -125,6 +125,18 @@ def finish_node(executor: Executor, node: GraphNode) -> None:
     node.close()
 
 
+@contextmanager
+def watched_stops() -> Iterator[Callable[[], bool]]:
+    """Yield a function for `end_of`: it beats, and returns whether SIGINT or SIGTERM has come."""
+    with stop_signals() as stops:
+
+        def stopped() -> bool:
+            beat()
+            return bool(stops)
+
+        yield stopped
+
+
 def run_node(
     name: str, factory: Callable[[], GraphNode], arguments: Sequence[str] | None = None
 ) -> int:
@@ -144,12 +156,7 @@ def run_node(
                 print(node_help(name, factory, sys.argv))
                 return 0
             require_ros_arguments(argv)
-        with stop_signals() as stops:
-
-            def stopped() -> bool:
-                beat()
-                return bool(stops)
-
+        with watched_stops() as stopped:
             error = _run(factory, arguments, stopped, built)
         if isinstance(error, ForeignError):
             traceback.print_exception(error)

@@ -31,11 +31,15 @@ _POLL_S = 0.25
 the other be."""
 _CALL = struct.Struct('q16sq')
 """Struct of the last call of foreign code: its number, its name, and the step or -1."""
-_DONE = _CALL.size
+NOTE_BYTES = _CALL.size
+"""Size of a note of calls, bytes."""
+_DONE = NOTE_BYTES
 """Offset of the byte that is 1 once the result is complete."""
 _numbers = itertools.count(1)
-_shared: mmap.mmap | None = None
-"""Memory that this process shares with the one that waits for it; None in any other process."""
+_note: mmap.mmap | None = None
+"""Memory with the last call of foreign code, which another process has too; None without one."""
+_own = False
+"""Whether this is a process that `in_own_process` has made."""
 _kept: list[tuple[object, Callable[[], object]]] = []
 """Objects that stay until the result is complete, each with the function that ends it then."""
 Result = TypeVar('Result')
@@ -45,15 +49,28 @@ class ProcessEndedError(DdctError):
     """The process ended without a result: the text says how, and in which call."""
 
 
+def note_calls(memory: mmap.mmap) -> None:
+    """Note each call of foreign code in `memory`, of `NOTE_BYTES` or more, from now on."""
+    global _note
+    _note = memory
+
+
 def calling(name: str, step: int = -1) -> None:
     """Note the call of a function of foreign code, for the reason if its process ends in it."""
-    if _shared is not None:
-        _CALL.pack_into(_shared, 0, next(_numbers), name.encode(), step)
+    if _note is not None:
+        _CALL.pack_into(_note, 0, next(_numbers), name.encode(), step)
+
+
+def last_call(note: bytes) -> str:
+    """Return ' when update was called at step 7' of a note of calls; '' without a call."""
+    number, name, step = _CALL.unpack_from(note)
+    at_step = f' at step {step}' if step >= 0 else ''
+    return f' when {name.rstrip(bytes(1)).decode()} was called{at_step}' if number else ''
 
 
 def keep(resource: object, end: Callable[[], object]) -> None:
     """In a process of its own, keep an object until the result is complete; `end` may crash."""
-    if _shared is not None:
+    if _own:
         _kept.append((resource, end))
 
 
@@ -77,7 +94,7 @@ def in_own_process(work: Callable[[], Result]) -> Result:
     Raise the exception of `work`, or ProcessEndedError when the process crashes, ends itself, or
     makes no call within `MOST_SECONDS` after the last one. Result and exception are pickled.
     """
-    if _shared is not None:
+    if _own:
         return work()  # this is such a process
     result = os.memfd_create('result')
     try:
@@ -129,7 +146,6 @@ def _kill(process: int) -> None:
 
 def _reason(code: int | None, shared: mmap.mmap) -> str:
     """Return how the process has ended, and in which call."""
-    number, name, step = _CALL.unpack_from(shared)
     if code is None:
         how = f'it gave no answer within {MOST_SECONDS:g} s'
     elif code < 0:
@@ -137,15 +153,12 @@ def _reason(code: int | None, shared: mmap.mmap) -> str:
         how = f'it crashed ({names.get(-code, f"signal {-code}")})'
     else:
         how = f'it ended with exit code {code}'
-    if not number:
-        return f'{how} when it was loaded'
-    at_step = f' at step {step}' if step >= 0 else ''
-    return f'{how} when {name.rstrip(bytes(1)).decode()} was called{at_step}'
+    return f'{how}{last_call(shared[:]) or " when it was loaded"}'
 
 
 def _compute(work: Callable[[], object], shared: mmap.mmap, result: int, parent: int) -> NoReturn:
     """Be the new process: write the result of `work`, or its exception, and end."""
-    global _shared
+    global _own
     code = 1
     try:
         signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the program
@@ -157,7 +170,8 @@ def _compute(work: Callable[[], object], shared: mmap.mmap, result: int, parent:
             os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
         end_at_exit()
         gc.freeze()  # collecting what the program has made would copy it
-        _shared = shared
+        _own = True
+        note_calls(shared)
         with os.fdopen(result, 'wb') as file:
             file.write(_outcome(work))
         shared[_DONE] = 1

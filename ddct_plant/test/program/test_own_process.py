@@ -21,6 +21,9 @@ from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.program import own_process
 from ddct_plant.program.own_process import ProcessEndedError, calling, in_own_process, keep
 
+FULLY_BUFFERED = 0
+"""Mode of C's setvbuf in which what is printed stays in the buffer until that is full."""
+
 
 def test_the_result_comes_from_another_process_without_its_changes() -> None:
     changed: list[int] = []
@@ -159,13 +162,29 @@ def test_what_was_kept_is_ended_also_after_an_error(tmp_path: Path, *, fails: bo
 def test_nothing_is_kept_outside_of_such_a_process() -> None:
     keep(object(), os.abort)
     calling('update', 1)
-    assert (own_process._kept, own_process._shared) == ([], None)
+    assert (own_process._kept, own_process._note) == ([], None)
 
 
 def test_what_it_prints_goes_to_standard_error(capfd: pytest.CaptureFixture[str]) -> None:
     in_own_process(lambda: ctypes.CDLL(None).puts(b'hello') and 0)
     printed = capfd.readouterr()
     assert (printed.out, printed.err) == ('', 'hello\n')
+
+
+def test_what_it_prints_before_it_ends_itself_is_not_lost(
+    capfd: pytest.CaptureFixture[str],
+) -> None:
+    libc, buffer = ctypes.CDLL(None), ctypes.create_string_buffer(4096)
+
+    def work() -> None:
+        # Python has switched the buffer off where PYTHONUNBUFFERED is set.
+        libc.setvbuf(ctypes.c_void_p.in_dll(libc, 'stdout'), buffer, FULLY_BUFFERED, 4096)
+        libc.printf(b'out of oil')
+        libc.exit(0)
+
+    with pytest.raises(ProcessEndedError):
+        in_own_process(work)
+    assert capfd.readouterr().err == 'out of oil'
 
 
 def test_what_c_printed_before_is_not_printed_again(capfd: pytest.CaptureFixture[str]) -> None:

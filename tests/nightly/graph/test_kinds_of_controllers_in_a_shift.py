@@ -23,9 +23,7 @@ def test_a_controller_of_any_kind_and_a_handover_in_a_file_shift_in_the_graph_as
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, kind: str
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    compiled = kind in ('C library', 'FMU')  # refused in one process
-    layout = 'processes' if compiled else 'single-process'
-    require_shift_from_files(_file_of(kind), layout, tmp_path / 'run')
+    require_shift_from_files(_file_of(kind), 'single-process', tmp_path / 'run')
 
 
 def _file_of(kind: str) -> str:
