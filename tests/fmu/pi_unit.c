@@ -19,7 +19,7 @@
 enum { OK, WARNING, DISCARD, ERROR, FATAL };
 enum { ERROR_RPM, DEMAND, CLUTCH, ENGINE, KP, KI, FAULT_TIME, AHEAD, REALS };
 enum { FIRST_INTEGER = 20, FAULT = 0, ORDER, INTEGERS };
-enum { NO_FAULT, FAIL, DIE, NOT_A_NUMBER, STOP, LEAVE, ABORT, CRASH, LOOP };
+enum { NO_FAULT, FAIL, DIE, NOT_A_NUMBER, STOP, LEAVE, ABORT, CRASH, LOOP, WARN };
 enum { EULER = 1, TRAPEZOIDAL = 2 };
 
 static double reals[REALS] = {0, 0, 0, 0, 0.1, 0.1, 0, 0};
@@ -28,6 +28,7 @@ static bool inverted;
 static char remark[80];
 static double integral;
 static long steps;
+static bool warned;
 static enum { INSTANTIATED, INITIALISING, STEPPING } phase;
 
 static void note(const char *event) {
@@ -56,7 +57,7 @@ static void instantiated(void) {
 static int set_reals(const uint32_t *refs, size_t count, const double *values) {
     for (size_t i = 0; i < count; i++) {
         bool input = refs[i] == ERROR_RPM || refs[i] == DEMAND || refs[i] == AHEAD;
-        if (refs[i] >= REALS || (!input && phase != INSTANTIATED)) return ERROR;
+        if (refs[i] >= REALS || warned || (!input && phase != INSTANTIATED)) return ERROR;
         reals[refs[i]] = values[i];
     }
     return OK;
@@ -89,6 +90,7 @@ static int step(double time, double size, bool *stop) {
         if (integers[FAULT] == DIE) return FATAL;
         if (integers[FAULT] == STOP) *stop = true;
         harm((int)integers[FAULT]);
+        warned = integers[FAULT] == WARN;  /* the next input is refused without a word */
     }
     if (integers[ORDER] == TRAPEZOIDAL) integral += 0.01 * reals[ERROR_RPM];
     double torque = -(reals[KP] * reals[ERROR_RPM] + reals[KI] * integral);
@@ -97,7 +99,7 @@ static int step(double time, double size, bool *stop) {
     if (integers[FAULT] == NOT_A_NUMBER && time >= reals[FAULT_TIME]) reals[CLUTCH] = NAN;
     reals[ENGINE] = reals[DEMAND];
     steps++;
-    return OK;
+    return warned ? WARNING : OK;
 }
 
 static int enter(void) {

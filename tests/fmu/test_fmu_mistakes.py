@@ -122,6 +122,15 @@ def test_an_fmu_that_fails_in_a_run_ends_it(version: int, fault: int, words: str
     del raised  # the error refers to the controller, which has processes
 
 
+@pytest.mark.parametrize('version', [2, 3])
+def test_a_message_of_an_earlier_step_is_not_the_reason_of_a_failure(version: int) -> None:
+    faulty = 'fault: 9, fault_time: 0.1, remark: out of oil, pid.Kp'
+    with pytest.raises(DdctError) as raised:
+        run_headless(SETTINGS, controller_file(version, ('pid.Kp', faulty)))
+    assert re.search(r'pi.fmu failed at its own time 0.11 s \(.*status 3', str(raised.value))
+    assert 'out of oil' not in str(raised.value)
+
+
 def test_an_fmu_that_cannot_be_unpacked_is_refused_and_leaves_nothing(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

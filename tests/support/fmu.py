@@ -79,7 +79,7 @@ _VARIABLES = (
     _Variable('pid.Kp', 4, _REAL, 'parameter', '0.1', more='min="0"'),
     _Variable('pid.Ki', 5, _REAL, 'parameter', '0.1'),
     _Variable('fault_time', 6, _REAL, 'parameter', '0', 's'),
-    _Variable('fault', 20, _INT, 'parameter', '0', more='min="0" max="8"'),
+    _Variable('fault', 20, _INT, 'parameter', '0', more='min="0" max="9"'),
     _Variable('order', 21, _ENUM, 'parameter', '1', more='declaredType="Order"'),
     _Variable('inverted', 30, ('Boolean', 'Boolean'), 'parameter', 'false'),
     _Variable('remark', 31, ('String', 'String'), 'parameter', 'nothing'),
