@@ -4,6 +4,7 @@
 
 import json
 import re
+import subprocess
 import sys
 from pathlib import Path
 
@@ -11,6 +12,9 @@ import pytest
 from refusals import refused
 
 from ddct_plant.bag_file.message_definitions import (
+    all_types,
+    decode,
+    definition_in,
     encode,
     load_definition,
     message_class,
@@ -74,6 +78,34 @@ def test_a_message_made_without_ros_is_serialised_as_one_of_ros(type_name):
     clean = CdrNormaliser(load_definition(type_name)).normalise
     theirs = clean(serialization.serialize_message(ros_class(type_name)()))
     assert encode(message_class(type_name)()) == theirs
+
+
+@pytest.mark.parametrize('type_name', sorted({topic.type for topic in TOPICS}))
+def test_the_definition_in_our_file_is_that_of_rosbags(type_name):
+    """`python -m definitions` in tools/ writes the file again."""
+    assert load_definition(type_name) == definition_in(all_types(), type_name)
+    ours = type(message_class(type_name)())
+    assert ours is not all_types().types[type_name], 'it was not taken from the file'
+
+
+def test_a_message_of_a_type_that_no_topic_has_is_serialised_and_read_too():
+    message = message_class('std_msgs/msg/Float64')(data=2.5)
+    assert decode(encode(message), 'std_msgs/msg/Float64').data == 2.5
+    assert same_definition('std_msgs/msg/Float64', '# a number\nfloat64 data\n')
+
+
+def test_a_bag_of_our_topics_is_read_without_the_other_types_of_rosbags():
+    code = (
+        'import sys\n'
+        'from ddct_plant.bag_file.message_definitions import *\n'
+        f'for name in {sorted({topic.type for topic in TOPICS})}:\n'
+        '    load_definition(name)\n'
+        "assert not [name for name in sys.modules if name.startswith('rosbags')]\n"
+        "decode(encode(message_class('rosgraph_msgs/msg/Clock')()), 'rosgraph_msgs/msg/Clock')\n"
+        "print([name for name in sys.modules if 'stores.ros2' in name])\n"
+    )
+    found = subprocess.run([sys.executable, '-c', code], capture_output=True, text=True)
+    assert (found.stdout, found.stderr) == ('[]\n', '')
 
 
 def test_a_type_that_ros_does_not_have_is_named():

@@ -3,18 +3,24 @@
 """
 The message types of ROS 2 Jazzy without ROS: definitions, hashes, messages and their bytes.
 
-rosbags has them all; nothing else in the project knows how a message type is defined.
+rosbags has them all; nothing else in the project knows how a message type is defined. Those of our
+topics are in a file too: to load all those of rosbags takes 40 ms of processor time in each
+process that does it, which is 2 % of a run of the graph.
 """
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ddct_plant.base.errors import DdctError
+from ddct_plant.files.json_records import read_json
 
+KEPT = Path(__file__).with_name('message_definitions.json')
+"""Definitions of the types of our topics, by type; `python -m definitions` in tools/ writes it."""
 STRING = 'string'
 PRIMITIVES = {
     **{'bool': (1, '?'), 'byte': (1, 'B'), 'char': (1, 'b')},
@@ -53,17 +59,39 @@ class MessageDefinition:
 
 
 @cache
-def _store() -> Any:
-    # Here, as it takes 0.1 s: not every program that knows of bags handles one.
+def all_types() -> Any:
+    """Return the type store of rosbags with all types of ROS 2 Jazzy."""
     from rosbags.typesys import Stores, get_typestore
 
     return get_typestore(Stores.ROS2_JAZZY)
 
 
 @cache
+def _our_types() -> Any:
+    """Return a type store of rosbags with the types of our topics alone."""
+    from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+
+    store = get_typestore(Stores.EMPTY)
+    parsed = [get_types_from_msg(each.schema_text, name) for name, each in _kept().items()]
+    store.register({name: fields for types in parsed for name, fields in types.items()})
+    return store
+
+
+def _store_with(type_name: str) -> Any:
+    return _our_types() if type_name in _our_types().fielddefs else all_types()
+
+
+@cache
+def _kept() -> Mapping[str, MessageDefinition]:
+    kind: Any = Mapping[str, MessageDefinition]
+    kept: Mapping[str, MessageDefinition] = read_json(kind, KEPT)
+    return kept
+
+
+@cache
 def load_definition(type_name: str) -> MessageDefinition:
     """Return the definition of a type; raise DdctError for one that ROS 2 Jazzy does not have."""
-    return definition_in(_store(), type_name)
+    return _kept().get(type_name) or definition_in(_store_with(type_name), type_name)
 
 
 def definition_in(store: Any, type_name: str) -> MessageDefinition:
@@ -101,7 +129,8 @@ def same_definition(type_name: str, schema_text: str) -> bool:
     except TypesysError as error:
         what = ' '.join(str(error).split())
         raise DdctError(f'unusable message definition ({what})') from error
-    return all(found[name][1] == _store().fielddefs.get(name, ((), ()))[1] for name in found)
+    ours = _store_with(type_name).fielddefs
+    return all(found[name][1] == ours.get(name, ((), ()))[1] for name in found)
 
 
 @cache
@@ -111,8 +140,9 @@ def message_class(type_name: str) -> Callable[..., Any]:
 
     Its lists of numbers are arrays.
     """
-    made = _store().types[type_name]
-    constants, fields = _store().fielddefs[type_name]
+    store = _store_with(type_name)
+    made = store.types[type_name]
+    constants, fields = store.fielddefs[type_name]
     kinds = [_field(*each) for each in fields]
 
     def new(**values: Any) -> Any:
@@ -133,12 +163,12 @@ def message_class(type_name: str) -> Callable[..., Any]:
 def encode(message: Any) -> bytes:
     """Return a message of a `message_class` as CDR, in which bytes for alignment are zero."""
     _make_arrays(message)
-    return bytes(_store().serialize_cdr(message, message.__msgtype__))
+    return bytes(_store_with(message.__msgtype__).serialize_cdr(message, message.__msgtype__))
 
 
 def decode(cdr: bytes, type_name: str) -> Any:
-    """Return the message in CDR, with arrays of numbers; raise an error of rosbags for another."""
-    return _store().deserialize_cdr(cdr, type_name)
+    """Return the message in CDR, with arrays of numbers; raise an error of rosbags for others."""
+    return _store_with(type_name).deserialize_cdr(cdr, type_name)
 
 
 def _default(field: Field) -> Any:
