@@ -3,7 +3,7 @@
 """Compare the files of a result with those of its repetition, each by its kind."""
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import asdict, dataclass, field
 from itertools import zip_longest
 from os.path import commonprefix
@@ -31,8 +31,6 @@ from ddct_plant.scenario.recorded_settings import SETTINGS
 from ddct_plant.signals.topics import RUN_INFO
 
 BAG_SUFFIX = '.mcap'
-WALL_CLOCK = frozenset({TIMING_FILE, WORK_FOLDER})
-"""Names of files and folders with times on the wall clock, or with logs."""
 OF_CODE = frozenset({'version', 'commit', 'code', 'code_digest', 'spec_digest', 'shard_size'})
 """Keys, at whatever place in a file, that another code writes otherwise."""
 _FOLDERS = re.compile(r'[^\s(]*/')
@@ -61,7 +59,8 @@ class FileComparison:
         """Yield the result of each run, table, document and page, in the order of their paths."""
         entries: dict[str, list[str]] = {}
         for path in sorted({*self.manifest.files, *files_in(self.scratch)}):
-            if PurePosixPath(path).parts[0] != INPUTS and not path.endswith(MARKER):
+            is_input = path.startswith(f'{INPUTS}/') and INPUTS not in self._runs
+            if not is_input and not path.endswith(MARKER):
                 entries.setdefault(self._entry(path), []).append(path)
         if self.manifest.kind != RUNS:
             yield self._plans()
@@ -69,11 +68,16 @@ class FileComparison:
             if result := self._result(name, entries.get(name, [])):
                 yield result
 
+    @property
+    def _runs(self) -> Collection[str]:
+        """Folders of the bags of a result of the kind RUNS."""
+        return self.manifest.plan.get('runs', ())
+
     def _entry(self, path: str) -> str:
         """Return the name of what a file is a part of: the run of a bag, the shards, itself."""
         folders = [each.as_posix() for each in PurePosixPath(path).parents]
         if self.manifest.kind == RUNS:
-            run = next((each for each in folders if each in self.manifest.plan['runs']), None)
+            run = next((each for each in folders if each in self._runs), None)
             return self._shown(run) if run else path
         return folders[0] if PurePosixPath(folders[0]).name == SHARDS else path
 
@@ -83,7 +87,7 @@ class FileComparison:
 
     def _result(self, name: str, paths: list[str]) -> RepetitionResult | None:
         """Return the result of an entry; None for one that has files of the wall clock only."""
-        of_run = {self._shown(run): run for run in self.manifest.plan.get('runs', ())}
+        of_run = {self._shown(run): run for run in self._runs}
         run = of_run.get(name, '')
         note = self.repeated.notes.get(run or name, '')
         if run in self.repeated.failed:
@@ -95,8 +99,9 @@ class FileComparison:
         comparison, compared = Comparison(), False
         # Signals first: the settings are in a bag and in its metadata.
         for path in sorted(paths, key=lambda path: not path.endswith(BAG_SUFFIX)):
-            if WALL_CLOCK & {*PurePosixPath(path).parts}:
-                self.wall_clock.add(PurePosixPath(path).name)
+            inner = PurePosixPath(path).relative_to(run)
+            if inner.name == TIMING_FILE or inner.parts[0] == WORK_FOLDER:
+                self.wall_clock.add(inner.name)
                 continue
             if not (self.scratch / path).exists() and not run:
                 why = 'a run failed' if self.repeated.failed else _LATER
@@ -163,8 +168,6 @@ class FileComparison:
         ours, theirs = (
             self._of_code(recorded_json(folder / path)) for folder in (self.result, self.scratch)
         )
-        if path.endswith(NOTE_FILE):
-            ours, theirs = _same_reason(ours, theirs)
         comparison.add_nested('', _without_folders(ours), _without_folders(theirs))
 
     def _compare_tables(self, comparison: Comparison, path: str) -> None:
@@ -232,15 +235,6 @@ def _table(path: Path) -> pa.Table:
         return read_parquet(path)
     except (OSError, pa.ArrowException) as error:
         raise DdctError(f'cannot be read ({error})', place=path) from error
-
-
-def _same_reason(ours: Any, theirs: Any) -> tuple[Any, Any]:
-    """Return two notes; in a graph the node's name and its log stand around the same reason."""
-    try:
-        recorded, repeated = _without_folders(ours['reason']), _without_folders(theirs['reason'])
-        return {**ours, 'reason': repeated if repeated in recorded else recorded}, theirs
-    except (LookupError, TypeError):
-        return ours, theirs
 
 
 def _without_folders(content: Any) -> Any:

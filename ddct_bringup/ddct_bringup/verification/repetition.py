@@ -43,7 +43,7 @@ from ddct_bringup.tuning.report.folder import write_tuning
 from ddct_bringup.tuning.specification.goals import UPDATE_TIME
 from ddct_bringup.verification.comparison import Comparison
 from ddct_controllers.workflows.evidence import frequency_evidence
-from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError
+from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError, without_folders
 from ddct_plant.files.json_records import from_json, to_json, write_json
 from ddct_plant.scenario.recorded_settings import RecordedSettings
 from ddct_plant.scenario.settings import RunSettings
@@ -52,6 +52,8 @@ from ddct_plant.signals.gain_changes import changes_note
 REAL_TIME = 'real time'
 """Reason why a run is not repeated."""
 _OBJECT = 'a controller that was an object of a Python program'
+
+_FAILED = 'it fails again for the same reason; its bag until then is not made again'
 
 
 @dataclass
@@ -128,9 +130,7 @@ def _repeat_run(
         found.left_out[name] = _OBJECT if lockstep else REAL_TIME
         if failed_run(ours) is None:
             _require_settings(read_bag(ours), planned.label(result), settings)
-        for file in ours.iterdir():
-            if file.is_file():
-                shutil.copy(file, again)
+        _copy(ours, again)
         return
     if (ours / TIMING_FILE).exists():
         shutil.copy(ours / TIMING_FILE, again)
@@ -143,7 +143,12 @@ def _repeat_run(
     except FOREIGN_FAILURES as error:
         if failure is None:
             raise DdctError(f'its repetition fails: {error}') from error
-        _note(plan, again, str(error))
+        if planned.layout != 'headless' and without_folders(str(error)) in failure.reason:
+            # There the node's name and its log are around the same reason.
+            found.left_out[name] = _FAILED
+            _copy(ours, again)
+        else:
+            _note(plan, again, str(error))
         return
     if failure is not None:
         _note(plan, again, 'its repetition does not fail')
@@ -166,6 +171,13 @@ def _require_settings(recorded: Recording, label: str, settings: RunSettings) ->
     if first := comparison.bits:
         key, there, given = first.place['key'], first.recorded, first.repeated
         raise DdctError(f'{key}: its bag has {there!r}, its plan {given!r}', key=key)
+
+
+def _copy(ours: Path, again: Path) -> None:
+    """Copy the files of a run that is not repeated, from which scores and page are made."""
+    for file in ours.iterdir():
+        if file.is_file():
+            shutil.copy(file, again)
 
 
 def _note(plan: RunPlan, folder: Path, reason: str) -> None:

@@ -179,13 +179,13 @@ def _rewrite_bag(folder: Path, timeout_s: str = '', **settings: object) -> None:
     _write_anew(folder, replace(recording, custom_data=data, run_info=nodes))
 
 
-def _write_anew(folder: Path, recording: Recording) -> None:
-    """Write a recording with its digest in place of the bag in a folder."""
+def _write_anew(folder: Path, recording: Recording, result: Path | None = None) -> None:
+    """Write a recording with its digest in place of the bag in a folder, of a `result` if any."""
     recording.path.unlink()
     (folder / 'metadata.yaml').unlink()
     data, nodes = recording.custom_data, recording.run_info
     write_trajectory(recording.trajectory, folder, folder.name, data, nodes)
-    finish_manifest(folder)
+    finish_manifest(result or folder)
 
 
 def test_a_signal_of_a_bag_edited_with_its_digest_is_found(
@@ -343,6 +343,25 @@ def test_a_run_that_failed_fails_again_with_the_same_reason(
     edit_json_with_digest(tmp_path / 'runs', 'Mine/failed_run.json', edit)
     code, document, _ = verified(tmp_path / 'runs', capfd)
     assert (code, states(document)['Mine']) == (1, 'different')
+
+
+@pytest.mark.parametrize('name', ['work', 'inputs'])
+def test_a_bag_with_the_name_of_a_folder_of_results_is_compared(
+    bag: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str], name: str
+) -> None:
+    def in_folder(content: Any) -> None:
+        content['plan']['runs'] = {name: content['plan']['runs']['.']}
+
+    folder = tmp_path / 'runs'
+    copied(bag, folder / name)
+    (folder / name / MANIFEST).rename(folder / MANIFEST)
+    edit_manifest(folder, in_folder)
+    recording = read_bag(folder / name)
+    recording.trajectory.slip_speed[60] += 1e-6
+    _write_anew(folder / name, recording, result=folder)
+    code, _, errors = verified(folder, capfd)
+    assert code == 1
+    assert f'{folder}: {name}: ' in errors
 
 
 @pytest.mark.parametrize('content', [b'{', b'\xff', b'[]', b'{"reason": "it stalled"}'])
