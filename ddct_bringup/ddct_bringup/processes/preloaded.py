@@ -53,6 +53,8 @@ def serve(program: int) -> None:
     """Prepare this process, the fork server of `program`, before it forks."""
     # A group of its own, which its nodes share: Ctrl-C in a terminal reaches the program alone.
     os.setpgrp()
+    # One that came before this group, and waits until it is let through, is not for the server.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
     # When the program is killed while a node is paused, the kernel sends this to the whole group
     # before it resumes that node, which shall then end as the others do.

@@ -324,21 +324,28 @@ def test_a_folder_for_temporary_files_with_a_long_name_is_reported(
 
 def test_ctrl_c_in_a_terminal_does_not_reach_the_server_while_it_starts() -> None:
     text = (
-        'import signal\n'
+        'import os, signal\n'
         'from multiprocessing import util\n'
-        'from ddct_bringup.processes.fork_server import start_server\n'
+        'from ddct_bringup.processes.fork_server import CONTEXT, start_server\n'
         'started = util.spawnv_passfds\n'
         'def spawn(path, arguments, fds):\n'
         '    blocked = signal.pthread_sigmask(signal.SIG_BLOCK, ())\n'
         '    print("forkserver" in str(arguments), signal.SIGINT in blocked)\n'
-        '    return started(path, arguments, fds)\n'
+        '    pid = started(path, arguments, fds)\n'
+        '    os.kill(pid, signal.SIGINT)\n'
+        '    return pid\n'
         'util.spawnv_passfds = spawn\n'
         'start_server()\n'
         'print(signal.SIGINT in signal.pthread_sigmask(signal.SIG_BLOCK, ()))\n'
+        'forked = CONTEXT.Process(target=int)\n'
+        'forked.start()\n'
+        'forked.join()\n'
+        'print(forked.exitcode)\n'
     )
-    done = subprocess.run([sys.executable, '-c', text], capture_output=True, text=True, check=True)
-    *_, server, afterwards = done.stdout.splitlines()
-    assert (server, afterwards) == ('True True', 'False')
+    done = subprocess.run([sys.executable, '-c', text], capture_output=True, text=True)
+    assert done.stderr == ''
+    *_, server, afterwards, code = done.stdout.splitlines()
+    assert (server, afterwards, code) == ('True True', 'False', '0')
 
 
 def _temporary(tmp_path: Path) -> dict[str, str]:
