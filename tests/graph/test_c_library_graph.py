@@ -44,6 +44,15 @@ def test_all_nodes_in_one_process_give_the_bytes_of_headless(tmp_path: Path) -> 
 
 
 @pytest.mark.compiler
+def test_an_error_of_a_node_in_the_process_of_all_nodes_is_its_reason(tmp_path: Path) -> None:
+    run = plan(failing(tmp_path), 'single-process', duration_s=0.7)
+    words = 'the process of all nodes ended with code 1: node controller: .*'
+    failure = 'it returned -3 when update was called at step 65: mend the C; its log is '
+    with pytest.raises(DdctError, match=f'^{words}{failure}'):
+        record(run, tmp_path / 'run')
+
+
+@pytest.mark.compiler
 def test_exit_with_code_0_in_the_process_of_all_nodes_fails_the_run_with_its_reason(
     tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
@@ -90,15 +99,6 @@ def test_an_interruption_ends_the_process_of_all_nodes_and_what_it_has_recorded_
         execute(run, folder, lambda: any(folder.glob('*.mcap')))
     assert (folder / 'metadata.yaml').exists()
     assert not processes_left()
-
-
-@pytest.mark.compiler
-def test_an_error_of_a_node_in_the_process_of_all_nodes_is_its_reason(tmp_path: Path) -> None:
-    run = plan(failing(tmp_path), 'single-process', duration_s=0.7)
-    words = 'the process of all nodes ended with code 1: node controller: .*'
-    failure = 'it returned -3 when update was called at step 65: mend the C; its log is '
-    with pytest.raises(DdctError, match=f'^{words}{failure}'):
-        record(run, tmp_path / 'run')
 
 
 @pytest.mark.compiler

@@ -201,6 +201,15 @@ def test_code_0_alone_is_no_good_end_of_a_node(processes: Make) -> None:
         nodes.require_clean_end()
 
 
+def test_a_node_with_code_0_alone_is_the_cause_where_the_driveline_failed_after_it(
+    processes: Make,
+) -> None:
+    nodes = processes(driveline=FAILED, clutch=('pass', 'os._exit(0)'))
+    for node in nodes._nodes:
+        assert node.wait(WITHIN_S)
+    assert reason(nodes).startswith('node clutch ended with code 0: ready; its log')
+
+
 @pytest.mark.parametrize(
     ('then', 'expected'),
     [
@@ -322,6 +331,7 @@ def test_the_shared_memory_of_a_node_that_ended_without_leaving_is_removed(
     lock = tmp_path / 'fastrtps_1_el'
     nodes = processes(driveline=(f'open({str(lock)!r}, "w")', 'os._exit(0)'))
     assert nodes._nodes[0].wait(WITHIN_S)
+    assert nodes._nodes[0].code() == 0
     assert lock.exists()
     nodes.__exit__()
     assert not lock.exists()
