@@ -25,8 +25,10 @@ from ddct_bringup.run.timing_and_failure import NOTE_FILE, TIMING_FILE
 from ddct_bringup.verification.comparison import Comparison, plain_json, recorded_json
 from ddct_bringup.verification.repetition import Repeated
 from ddct_bringup.verification.result import RepetitionResult
+from ddct_plant.bag_file.metadata import METADATA_FILE, ROOT_KEY
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.json_records import parse_json
+from ddct_plant.files.yaml_text import parse_yaml
 from ddct_plant.scenario.recorded_settings import SETTINGS
 from ddct_plant.signals.topics import RUN_INFO
 
@@ -196,6 +198,14 @@ class FileComparison:
                     _without_folders(again[place]),
                 )
 
+    def _compare_yaml(self, comparison: Comparison, path: str) -> None:
+        """Compare two texts; metadata of a bag by another code without what is in the bag."""
+        if self.same_code or PurePosixPath(path).name != METADATA_FILE:
+            _compare_texts(self, comparison, path)
+            return
+        ours, theirs = (_metadata(folder / path) for folder in (self.result, self.scratch))
+        comparison.add_nested('', ours, theirs)
+
 
 def _compare_texts(found: FileComparison, comparison: Comparison, path: str) -> None:
     """Compare two texts line by line."""
@@ -213,9 +223,19 @@ def _compare_texts(found: FileComparison, comparison: Comparison, path: str) -> 
 
 _BY_SUFFIX = {
     BAG_SUFFIX: FileComparison._compare_bags,
+    '.yaml': FileComparison._compare_yaml,
     '.json': FileComparison._compare_json,
     '.parquet': FileComparison._compare_tables,
 }
+
+
+def _metadata(path: Path) -> Any:
+    """Return rosbag2's metadata of a bag without the custom data, which the bag has too."""
+    content = parse_yaml(path.read_text(encoding='utf-8', errors='replace'))
+    information = content.get(ROOT_KEY) if isinstance(content, dict) else None
+    if isinstance(information, dict):
+        information.pop('custom_data', None)
+    return content
 
 
 def _about(recorded: Recording) -> Mapping[str, Any]:

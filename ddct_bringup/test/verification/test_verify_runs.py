@@ -499,6 +499,23 @@ def test_a_signal_of_another_release_may_differ_within_the_bound(
         assert 'signal slip_speed, step 60' in printed.err
 
 
+def test_a_bag_of_another_commit_and_code_is_compared_by_its_content(
+    bag: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    folder = copied(bag, tmp_path / 'pi')
+    recording = read_bag(folder)
+    data = {**recording.custom_data, 'commit': 'f' * 40, 'version': '0.9.0'}
+    _write_anew(folder, replace(recording, custom_data=data))
+    of_another_release(folder)
+    code, document, errors = verified(folder, capfd)
+    assert (code, states(document), errors) == (0, {'pi': 'same_bits'}, '')
+    text = (folder / 'metadata.yaml').read_text(encoding='utf-8')
+    changed = text.replace('message_count: 81', 'message_count: 82', 1)
+    edit_with_digest(folder, 'metadata.yaml', changed.encode())
+    code, document, _ = verified(folder, capfd)
+    assert (code, states(document)) == (1, {'pi': 'different'})
+
+
 def test_an_edited_page_is_different(
     runs: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
