@@ -22,4 +22,4 @@ def test_a_result_with_an_fmu_is_verified_without_the_file_it_was_made_from(
     moved = (folder / 'runs').rename(folder / 'moved')
     capfd.readouterr()
     assert verify([str(moved)]) == 0
-    assert capfd.readouterr().out.endswith('everything was made again, with equal bits.\n')
+    assert capfd.readouterr().out.endswith(' was made again, with equal bits.\n')
