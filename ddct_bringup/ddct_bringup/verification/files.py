@@ -238,14 +238,14 @@ def _metadata(path: Path) -> Any:
     return content
 
 
-def _about(recorded: Recording) -> Mapping[str, Any]:
+def _about(recorded: Recording) -> Mapping[str, object]:
     """Return all that a bag has about its run, as JSON."""
     settings = parse_json(recorded.custom_data[SETTINGS])
     run_info = plain_json(recorded.run_info)
     return {**recorded.custom_data, SETTINGS: settings, RUN_INFO.name: run_info}
 
 
-def _facts(recorded: Recording) -> Mapping[str, Any]:
+def _facts(recorded: Recording) -> Mapping[str, object]:
     """Return the facts of a run, which bags of all versions have, as JSON."""
     return {'facts': plain_json(asdict(recorded.facts))}
 
