@@ -33,7 +33,9 @@ from ddct_plant.scenario.recorded_settings import SETTINGS
 from ddct_plant.signals.topics import RUN_INFO
 
 BAG_SUFFIX = '.mcap'
-OF_CODE = frozenset({'version', 'commit', 'code', 'code_digest', 'spec_digest', 'shard_size'})
+OF_CODE = frozenset(
+    {'version', 'commit', 'code', 'code_digest', 'spec_digest', 'shard_size', 'other_code'}
+)
 """Keys, at whatever place in a file, that another code writes otherwise."""
 _FOLDERS = re.compile(r'[^\s(]*/')
 """Folders of a path in a text, which are others in a scratch folder."""
