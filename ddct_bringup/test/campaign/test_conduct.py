@@ -290,6 +290,7 @@ def test_a_damaged_manifest_is_reported(tmp_path: Path) -> None:
         {'runs': True},
         {'shard_size': 0},
         {'root_seed': None},
+        {'root_seed': 2**31},
         {'limits': {'origin': {}}},
         {'limits': []},
         {'spec': 'text'},

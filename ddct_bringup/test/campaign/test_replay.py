@@ -105,6 +105,8 @@ def test_every_row_of_a_campaign_replays_to_the_last_bit(
         assert replay(folder, '--index', index, '--overwrite', '--json', '-') == 0
         told = capfd.readouterr()
         assert f'run {index}: its {len(COMPARED)} figures and words are those of' in told.err
+        how = 'bit for bit' if '"path": "serial"' in told.out else 'to 1e-09'
+        assert f'are those of the row, {how}' in told.err
         assert '"differences": []' in told.out
     assert (folder.parent / 'again' / 'ls8' / 'ls8_0.mcap').is_file()
 

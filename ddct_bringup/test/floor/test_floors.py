@@ -264,3 +264,6 @@ def test_the_least_lock_time_under_a_cap_is_attained_and_earlier_ones_are_exclud
     found = least_lock_time(floors, 'peak_jerk', 6.9)
     assert found.lock_time_s == found.excluded_before_s == 0.9
     assert least_lock_time(floors, 'peak_jerk', 1.0).lock_time_s is None
+    proven, attained = floors[2].least, floors[2].attained
+    assert least_lock_time(floors, 'peak_jerk', proven).excluded_before_s == 0.9
+    assert least_lock_time(floors, 'peak_jerk', attained).lock_time_s == 0.9
