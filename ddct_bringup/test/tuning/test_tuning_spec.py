@@ -86,6 +86,11 @@ def test_a_mistake_names_its_key(key: str, value: object, named: str) -> None:
         tuning_spec_of({**GOOD, key: value}, Path.cwd(), controller_spec('pi'))
 
 
+def test_the_largest_seed_of_a_search_is_that_of_a_campaign() -> None:
+    spec = tuning_spec_of({**GOOD, 'seed': 2**31 - 1}, Path.cwd(), controller_spec('pi'))
+    assert spec.seed == 2**31 - 1
+
+
 def test_a_mistake_in_a_file_names_its_line(tmp_path: Path) -> None:
     path = tmp_path / 'spec.yaml'
     path.write_text('trials: 5\nparameters:\n  gain: {low: 0, high: 1}\n')
