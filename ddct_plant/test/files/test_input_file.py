@@ -69,8 +69,8 @@ def test_an_absolute_name_in_the_inputs_of_a_result_is_that_of_the_copy(tmp_path
     copy = file.parent / 'lib' / 'c.so'
     copy.parent.mkdir(parents=True)
     copy.touch()
-    assert named_in(file, '/gone/lib/c.so') == Path('/gone/lib/c.so'), 'it is no result'
+    assert named_in(file.parent, '/gone/lib/c.so') == Path('/gone/lib/c.so'), 'it is no result'
     (tmp_path / 'result' / 'manifest.json').touch()
-    assert named_in(file, '/gone/lib/c.so') == copy
-    assert named_in(file, '/gone/lib/other.so') == Path('/gone/lib/other.so')
-    assert named_in(file, 'lib/c.so') == copy
+    assert named_in(file.parent, '/gone/lib/c.so') == copy
+    assert named_in(file.parent, '/gone/lib/other.so') == Path('/gone/lib/other.so')
+    assert named_in(file.parent, 'lib/c.so') == copy
