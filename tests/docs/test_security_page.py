@@ -178,7 +178,11 @@ def test_those_of_the_plan_of_a_run_are_listed(place: Path) -> None:
     found = set()
     for file in FILES:
         changed = {
-            **{each.name: _with(known, each.name, file) for each in fields(PlannedRun)},
+            **{
+                each.name: _with(known, each.name, file)
+                for each in fields(PlannedRun)
+                if each.name != 'layout'  # one of three words
+            },
             **{
                 f'settings.{name}': replace(known, settings={**known.settings, name: file})
                 for name in known.settings
