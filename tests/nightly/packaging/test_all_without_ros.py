@@ -88,7 +88,6 @@ def test_only_nodes_and_what_they_share_need_ros(outcome: Outcome) -> None:
     ]
     assert sorted(others) == [
         'ddct_bringup.processes.single_process',
-        'ddct_bringup.programs.live',
         'ddct_bringup.record.parameters',
         'ddct_bringup.record.recorded_bag',
         'ddct_plant.nodes.tick_plan',
