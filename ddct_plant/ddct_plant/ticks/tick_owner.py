@@ -118,7 +118,7 @@ class TickOwner:
             self._finish(
                 DdctError(
                     f'no {" and no ".join(missing)} for stamp {stamp_of_step(self.step)} ns '
-                    f'(step {self.step}) within {waited_s:.3g} s: ' + self._advice(missing)
+                    f'(step {self.step}) within {round(waited_s, 1):g} s: ' + self._advice(missing)
                 )
             )
         elif now - self._sent_at > RESEND_AFTER_S:
