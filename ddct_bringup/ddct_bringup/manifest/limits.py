@@ -8,6 +8,7 @@ from pathlib import Path
 
 from ddct_bringup.manifest.inputs import INPUTS, InputFiles
 from ddct_bringup.verdict.limits import Limits, load_limits
+from ddct_plant.base.errors import DdctError
 
 _FOLDER = 'limits'
 
@@ -30,5 +31,13 @@ class NamedLimits:
         )
 
     def load(self, result: Path) -> Limits:
-        """Return the limits; raise DdctError for a file that this version cannot read."""
-        return load_limits(result / INPUTS / self.file if self.file else None)
+        """Return the limits; raise DdctError where this version reads others, or none."""
+        limits = load_limits(result / INPUTS / self.file if self.file else None)
+        if limits.origin != self.origin:
+            raise DdctError(
+                f'its limits are {self.origin}, but here they are {limits.origin}: take the '
+                'version that computed it',
+                key='limits.origin',
+                place=result,
+            )
+        return limits

@@ -100,11 +100,6 @@ def _repeat_comparison(
 ) -> None:
     """Make scores, loop analyses and page of repeated runs again."""
     limits = plan.limits.load(result)
-    if limits.origin != plan.limits.origin:
-        raise DdctError(
-            f'its limits are {plan.limits.origin}, but here they are {limits.origin}',
-            key='plan.comparison.limits.origin',
-        )
     runs = [score_any_bag(scratch / name, scratch, limits) for name in planned]
     if plan.floors:
         runs = with_floors(runs, limits)
