@@ -10,13 +10,13 @@ from typing import Any
 from ddct_bringup.benchmark.cases import Cases
 from ddct_bringup.benchmark.judged import Judged, require_no_path
 from ddct_bringup.manifest.inputs import INPUTS, InputFiles
-from ddct_bringup.manifest.manifest import BENCHMARK, Manifest, read_manifest
+from ddct_bringup.manifest.manifest import BENCHMARK, Manifest, read_manifest, require_same_plan
 from ddct_bringup.manifest.origin import CodeOrigin
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_controllers.from_file.controller_file import is_controller_file
 from ddct_controllers.from_file.digests import controller_files
 from ddct_plant.base.errors import DdctError
-from ddct_plant.files.json_records import from_json, to_json
+from ddct_plant.files.json_records import from_json
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ class JudgedEntry:
 
 @dataclass(frozen=True)
 class BenchmarkPlan:
-    """InputFiles of a benchmark."""
+    """Inputs of a benchmark."""
 
     limits: Mapping[str, Any]
     """Name, digest and schema version of the limits by which runs are judged."""
@@ -112,16 +112,7 @@ class RecordedBenchmark:
 
     def require_same(self, other: BenchmarkPlan, out: Path) -> None:
         """Raise DdctError with the first difference of another benchmark from this one, in out."""
-        ours = {**to_json(self.plan), **to_json(self.origin)}
-        theirs = {**to_json(other), **to_json(CodeOrigin.here())}
-        for key, difference in _DIFFERENCES.items():
-            if ours[key] != theirs[key]:
-                raise DdctError(
-                    f'it holds a benchmark {difference}: finish it as it was started, or choose '
-                    'another --out',
-                    key=key,
-                    place=out,
-                )
+        require_same_plan('benchmark', (self.plan, self.origin), other, _DIFFERENCES, out)
 
 
 def _folder(judged: Judged, inputs: InputFiles) -> str:

@@ -118,6 +118,31 @@ def begin_manifest(
     return found
 
 
+def require_same_plan(
+    what: str,
+    begun: tuple[object, CodeOrigin],
+    plan: object,
+    differences: Mapping[str, str],
+    result: Path,
+) -> None:
+    """
+    Raise DdctError with the first difference of a plan, by this code, from one that was begun.
+
+    `begun` is the plan and the origin in the manifest of the result, `what` its kind in words.
+    `differences` has the meaning of another value of each key, in the order of the checks.
+    """
+    ours = {key: value for each in begun for key, value in to_json(each).items()}
+    theirs = {**to_json(plan), **to_json(CodeOrigin.here())}
+    for key, difference in differences.items():
+        if ours[key] != theirs[key]:
+            raise DdctError(
+                f'it holds a {what} {difference}: finish it as it was started, or choose '
+                'another --out',
+                key=key,
+                place=result,
+            )
+
+
 def require_same_inputs(result: Path, known: Manifest, inputs: InputFiles) -> None:
     """Raise DdctError where a result was begun with other files than these inputs."""
     ours = {name: known.files[name] for name in known.files if name.startswith(inputs.folder)}

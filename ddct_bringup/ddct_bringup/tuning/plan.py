@@ -11,7 +11,7 @@ from ddct_bringup.benchmark.judged import Judged, require_no_path
 from ddct_bringup.campaign.specification.named_files import files_of, with_places
 from ddct_bringup.manifest.inputs import INPUTS, InputFiles, full_path
 from ddct_bringup.manifest.limits import NamedLimits
-from ddct_bringup.manifest.manifest import TUNING, Manifest, read_manifest
+from ddct_bringup.manifest.manifest import TUNING, Manifest, read_manifest, require_same_plan
 from ddct_bringup.manifest.origin import CodeOrigin
 from ddct_bringup.tuning.specification.development import BENCHMARK, CAMPAIGN
 from ddct_bringup.tuning.specification.spec import tuning_spec_of
@@ -20,7 +20,7 @@ from ddct_controllers.from_file.controller_file import is_controller_file
 from ddct_controllers.from_file.digests import controller_files
 from ddct_controllers.registry import controller_spec
 from ddct_plant.base.errors import DdctError
-from ddct_plant.files.json_records import from_json, to_json
+from ddct_plant.files.json_records import from_json
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ class TunedEntry:
 
 @dataclass(frozen=True)
 class TuningPlan:
-    """InputFiles of a tuning."""
+    """Inputs of a tuning."""
 
     optuna: str
     """Version of Optuna, which the search depends on."""
@@ -102,16 +102,7 @@ class RecordedTuning:
 
     def require_same(self, other: TuningPlan, out: Path) -> None:
         """Raise DdctError with the first difference of another tuning from this one, in `out`."""
-        ours = {**to_json(self.plan), **to_json(self.origin)}
-        theirs = {**to_json(other), **to_json(CodeOrigin.here())}
-        for key, difference in _DIFFERENCES.items():
-            if ours[key] != theirs[key]:
-                raise DdctError(
-                    f'it holds a tuning {difference}: finish it as it was started, or choose '
-                    'another --out',
-                    key=key,
-                    place=out,
-                )
+        require_same_plan('tuning', (self.plan, self.origin), other, _DIFFERENCES, out)
 
 
 _DIFFERENCES = {

@@ -20,8 +20,8 @@ def tune_into(
     spec: str | Mapping[str, Any],
     out: Path,
     *,
-    workers: int | None = None,
-    resume: bool = False,
+    workers: int | None,
+    resume: bool,
     stopped: Callable[[], bool] = lambda: False,
 ) -> TuningResult:
     """
