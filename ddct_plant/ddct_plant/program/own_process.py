@@ -190,7 +190,9 @@ def _outcome(work: Callable[[], object]) -> bytes:
     try:
         outcome = True, work()
     except FOREIGN_FAILURES as error:
-        outcome = False, error
+        # Where Dask is loaded, tblib pickles these too, and they may refer to foreign code.
+        error.__cause__ = error.__context__ = None
+        outcome = False, error.with_traceback(None)
     try:
         pickled = pickle.dumps(outcome)
         if not outcome[0]:

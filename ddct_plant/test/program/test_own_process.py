@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Work in a process of its own returns its result, or how the process ended."""
 
+import copyreg
 import ctypes
 import faulthandler
 import os
@@ -16,6 +17,7 @@ from pathlib import Path
 
 import pytest
 from refusals import refused
+from tblib.pickling_support import pickle_exception
 
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.program import own_process
@@ -46,6 +48,23 @@ def test_an_error_of_the_work_comes_back_with_key_and_place() -> None:
 
     with refused(ParameterError, 'gain', place='mine.yaml: line 2'):
         in_own_process(work)
+
+
+def test_an_error_comes_back_whole_where_a_library_pickles_causes_too(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """As `distributed` does for each class of which it has sent an error."""
+    monkeypatch.setitem(copyreg.dispatch_table, ParameterError, pickle_exception)
+
+    def work() -> None:
+        try:
+            raise UnusualError(1, 2)
+        except UnusualError as error:
+            raise ParameterError('gain is nan', key='gain', place='mine.yaml: line 2') from error
+
+    with refused(ParameterError, 'gain', place='mine.yaml: line 2') as raised:
+        in_own_process(work)
+    assert str(raised.value) == 'mine.yaml: line 2: gain is nan'
 
 
 class UnusualError(Exception):
