@@ -53,7 +53,7 @@ class Plants:
         self._wear = np.array([run.wear_gain for run in runs])
         self._loads, self._known_loads = Loads(runs, steps), Loads(known, steps)
         times = np.arange(steps + 1) / STEPS_PER_S
-        engines = [scenario.engine for scenario in scenarios]
+        engines = [scenario.demand for scenario in scenarios]
         first, places = distinct(engines)
         profiles = [engines[index].over(times) for index in first]
         self.engine_torque = np.stack([profiles[place] for place in places], axis=-1)

@@ -17,7 +17,11 @@ TIME = 'time_s'
 
 @dataclass(frozen=True)
 class Profile(OptionGroup):
-    """Points over scenario time; a subclass adds the field of values. The ends hold outside."""
+    """
+    Points over scenario time; a subclass adds the field of values. The ends hold outside.
+
+    A subclass may have values in several quantities, of which an instance gives one.
+    """
 
     time_s: tuple[float, ...] = option(
         (), 'scenario times of the points', 's', many=True, rising=True
@@ -26,7 +30,13 @@ class Profile(OptionGroup):
     def __post_init__(self) -> None:
         """Check the points; raise ParameterError that names the first bad one."""
         super().__post_init__()
-        self.require_pairs(TIME, value_name(type(self)))
+        self.require_pairs(TIME, self.quantity)
+
+    @property
+    def quantity(self) -> str:
+        """Name of the option with the values that are given, the first one if none are."""
+        names = value_names(type(self))
+        return next((name for name in names if getattr(self, name)), names[0])
 
     @property
     def given(self) -> bool:
@@ -58,7 +68,7 @@ class Profile(OptionGroup):
     @cached_property
     def _values(self) -> tuple[float, ...]:
         # `at` needs them at every step, and for every step of a preview.
-        values: tuple[float, ...] = getattr(self, value_name(type(self)))
+        values: tuple[float, ...] = getattr(self, self.quantity)
         return values
 
 
@@ -67,7 +77,6 @@ def _between(time: Any, start: Any, end: Any, first: Any, last: Any) -> Any:
     return first + (time - start) / (end - start) * (last - first)
 
 
-def value_name(group: type) -> str:
-    """Return the name of the option with the values of a profile."""
-    (name,) = (name for name in options_of(group) if name != TIME)
-    return name
+def value_names(group: type) -> tuple[str, ...]:
+    """Return the names of the options with the values of a profile, of which one is given."""
+    return tuple(name for name in options_of(group) if name != TIME)

@@ -3,7 +3,7 @@
 """All conversions between SI units and those of users."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TypeVar
 
 import numpy as np
@@ -22,6 +22,7 @@ _IN_SI: Mapping[str, Mapping[str, float]] = {
     'N m': {'N m': 1.0, 'Nm': 1.0, 'kN m': 1e3},
     'm/s': {'m/s': 1.0, 'km/h': 1.0 / 3.6},
     'm/s^2': {'m/s^2': 1.0, 'g': 9.80665},
+    '': {'1': 1.0},
 }
 """Accepted units of a user's file and their size in the SI unit, by SI unit."""
 
@@ -39,9 +40,16 @@ def rad_s_from_rpm(speed_rpm: Speed) -> Speed:
     return speed_rpm * RAD_S_PER_RPM
 
 
+def si_unit_of(unit: object, si_units: Sequence[str]) -> str:
+    """Return the first of `si_units` that a user's unit is one of, else raise ParameterError."""
+    for si_unit in si_units:
+        if isinstance(unit, str) and unit in _IN_SI[si_unit]:
+            return si_unit
+    units = (name for si_unit in si_units for name in _IN_SI[si_unit])
+    raise ParameterError(f'unit {unit!r}: choose from {", ".join(units)}')
+
+
 def si_values(values: np.ndarray, unit: object, si_unit: str) -> np.ndarray:
     """Convert values of a user's file to `si_unit`; raise ParameterError for an unknown unit."""
-    units = _IN_SI[si_unit]
-    if not isinstance(unit, str) or unit not in units:
-        raise ParameterError(f'unit {unit!r}: choose from {", ".join(units)}')
-    return np.arctan(values / 100.0) if unit == _GRADE else values * units[unit]
+    size = _IN_SI[si_unit_of(unit, (si_unit,))][str(unit)]
+    return np.arctan(values / 100.0) if unit == _GRADE else values * size

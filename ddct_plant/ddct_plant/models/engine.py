@@ -3,7 +3,7 @@
 """Engine: a torque that follows the driver's demand or, within limits, a controller's request."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import REQUIRED, OptionGroup, option
@@ -17,27 +17,61 @@ MOST_AUTHORITY = 1e6
 
 @dataclass(frozen=True)
 class TorqueProfile(Profile, prefix='engine.'):
-    """Engine torque over scenario time, linear between its points and constant outside them."""
+    """
+    The driver's demand over scenario time, linear between its points and constant outside them.
+
+    It is given in N m, or as a share of the largest torque of the engine at full load, so that
+    one profile fits engines of any size.
+    """
 
     time_s: tuple[float, ...] = option(
         REQUIRED, 'scenario times of the points', 's', many=True, rising=True
     )
     torque_n_m: tuple[float, ...] = option(
-        REQUIRED,
+        (),
         'engine torque C_m at those times, linear between them',
         'N m',
+        otherwise='one of the two',
         many=True,
         at_least=0.0,
         at_most=1e4,
+        left_out=True,
+    )
+    torque_share: tuple[float, ...] = option(
+        (),
+        'engine torque then as a share of the largest of `engine_limits.full_load_n_m`, in place '
+        'of `engine.torque_n_m`, so that a drive fits other engines',
+        otherwise='one of the two',
+        many=True,
+        at_least=0.0,
+        at_most=1.0,
+        left_out=True,
     )
 
     def __post_init__(self) -> None:
         """Check the points; raise ParameterError that names the first bad one."""
+        if self.torque_n_m and self.torque_share:
+            raise ParameterError(
+                'engine has torque_n_m and torque_share: give one of them', key='engine'
+            )
         super().__post_init__()
         if not self.time_s:
             raise ParameterError(
                 'engine.time_s is empty: give at least one point', key='engine.time_s'
             )
+
+    def in_n_m(self, limits: EngineLimits | None) -> 'TorqueProfile':
+        """Return the profile in N m; raise ParameterError for a share of an unknown engine."""
+        if not self.torque_share:
+            return self
+        if limits is None:
+            raise ParameterError(
+                'engine.torque_share needs an engine with a full-load torque: give engine_limits, '
+                'or engine.torque_n_m in place of it',
+                key='engine.torque_share',
+            )
+        torques = tuple(share * limits.most_torque for share in self.torque_share)
+        return replace(self, torque_n_m=torques, torque_share=())
 
 
 @dataclass(frozen=True)

@@ -83,6 +83,11 @@ class EngineLimits(OptionGroup, prefix='engine_limits.'):
                 key='engine_limits.speed_rad_s',
             )
 
+    @property
+    def most_torque(self) -> float:
+        """Largest torque in N m at full load, at any speed."""
+        return max(self.full_load_n_m)
+
     def end_cause(self, speed: float) -> str | None:
         """Return the cause of an end of the run at the engine speed in rad/s, None without one."""
         if speed <= self.stall_rad_s:

@@ -16,8 +16,8 @@ from ddct_plant.base.options import (
     options_of,
     require_known,
 )
-from ddct_plant.base.profile import TIME, value_name
-from ddct_plant.base.units import si_values
+from ddct_plant.base.profile import TIME, value_names
+from ddct_plant.base.units import si_unit_of, si_values
 from ddct_plant.files.csv_table import CsvTable, read_csv
 from ddct_plant.files.input_file import MOST_TEXT_BYTES, located, named_in
 from ddct_plant.models.engine import TorqueProfile
@@ -57,7 +57,8 @@ def with_points(
     A section may be `{csv: FILE, time: COLUMN, value: COLUMN, unit: UNIT}`, with `time_unit` and
     `start_s`, the file's time in s at scenario time 0. The file is relative to `folder`, that of
     the scenario; a file from `--set`, whose keys are `set_keys`, is relative to the working
-    directory. The values of a section with `factor` are multiplied by it.
+    directory. The values of a section with `factor` are multiplied by it. What `--set` gives, a
+    file or points in one quantity, takes the place of what the file has in another way.
     Raise ParameterError that names file, line and column.
     """
     content, given = dict(content), set(set_keys)
@@ -66,31 +67,44 @@ def with_points(
         section = content.get(name)
         if not isinstance(section, Mapping):
             continue
-        if not {_FILE, FACTOR} & section.keys():
+        values = value_names(group)
+        if not {_FILE, FACTOR, *values[1:]} & section.keys():
             continue
-        section, value = dict(section), value_name(group)
+        section = dict(section)
         factor = FACTOR_OPTION.checked(
             f'{name}.{FACTOR}', section.pop(FACTOR, FACTOR_OPTION.default)
         )
-        section = _as_set(section, name, value, given)
+        section = _as_set(section, name, values, given)
         if _FILE in section:
             base = Path() if f'{name}.{_FILE}' in given else folder
             section = _points(section, group, base)
-        content[name] = section if factor == 1.0 else _scaled(section, value, factor)
+        content[name] = section if factor == 1.0 else _scaled(section, values, factor)
     return content
 
 
-def _scaled(section: dict[str, Any], value: str, factor: float) -> dict[str, Any]:
+def _scaled(section: dict[str, Any], values: Iterable[str], factor: float) -> dict[str, Any]:
     """Return a section with its values multiplied; values that are no numbers stay unchanged."""
-    points = section.get(value)
-    if not isinstance(points, Sequence) or not all(type(each) in (int, float) for each in points):
-        return section
-    return section | {value: [factor * each for each in points]}
+    scaled = dict(section)
+    for value in values:
+        points = section.get(value)
+        if isinstance(points, Sequence) and all(type(each) in (int, float) for each in points):
+            scaled[value] = [factor * each for each in points]
+    return scaled
 
 
-def _as_set(section: dict[str, Any], name: str, value: str, given: set[str]) -> dict[str, Any]:
-    """Return a section without its points where --set gives a file, and the other way round."""
-    points = {TIME, value}
+def _as_set(
+    section: dict[str, Any], name: str, values: Sequence[str], given: set[str]
+) -> dict[str, Any]:
+    """
+    Return a section without what --set replaces.
+
+    A file from there replaces points, points replace a file, and values replace values in another
+    quantity.
+    """
+    points = {TIME, *values}
+    if set_values := [value for value in values if f'{name}.{value}' in given]:
+        other = set(values).difference(set_values)
+        section = {key: item for key, item in section.items() if key not in other}
     if _FILE not in section or not points & set(section):
         return section
     if f'{name}.{_FILE}' in given:
@@ -118,13 +132,15 @@ def _points(section: Mapping[str, Any], group: type[OptionGroup], base: Path) ->
 
 def _read(spec: Mapping[str, Any], group: type[OptionGroup], base: Path) -> dict[str, Any]:
     """Return the checked points of the file that `spec` describes."""
-    names, value = [spec['time'], spec['value']], value_name(group)
+    names, options = [spec['time'], spec['value']], options_of(group)
+    units = {options[name].unit: name for name in value_names(group)}
+    unit = si_unit_of(spec['unit'], tuple(units))
     file = named_in(base, spec[_FILE])
     table = read_csv(file, names, most_bytes=MOST_TEXT_BYTES, most_rows=MOST_ROWS)
     times, values = (table.columns[name] for name in names)
     times = si_values(times, spec['time_unit'], 's') - spec['start_s']
-    values = si_values(values, spec['unit'], options_of(group)[value].unit)
-    points = {TIME: times.tolist(), value: values.tolist()}
+    values = si_values(values, spec['unit'], unit)
+    points = {TIME: times.tolist(), units[unit]: values.tolist()}
     _check(table, dict(zip(points, names, strict=True)), points, group)
     return points
 
@@ -136,7 +152,8 @@ def _check(
     group: type[OptionGroup],
 ) -> None:
     """Refuse values out of range, times that do not rise, and a late start; name their place."""
-    for name, described in options_of(group).items():
+    for name in points:
+        described = options_of(group)[name]
         one = replace(described, many=False, default=REQUIRED)
         for row, number in enumerate(points[name]):
             with located(table.place(row, columns[name])):

@@ -39,7 +39,7 @@ def make_driveline(settings: RunSettings, initial: InitialState) -> Driveline | 
 def make_engine(settings: RunSettings) -> Engine:
     """Return the engine of the scenario, with its authority and limits."""
     scenario = settings.scenario
-    return Engine(scenario.engine, scenario.engine_authority, scenario.engine_limits)
+    return Engine(scenario.demand, scenario.engine_authority, scenario.engine_limits)
 
 
 def make_actuator(settings: RunSettings, initial: InitialState) -> Actuator:

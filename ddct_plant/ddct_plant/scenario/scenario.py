@@ -135,11 +135,17 @@ class Scenario(OptionGroup):
             raise ParameterError(
                 f'score_window_s ends at {last:g} s, before {first:g} s', key='score_window_s'
             )
+        self.engine.in_n_m(self.engine_limits)
         if self.slope.given and self.load.slope_rad:
             raise ParameterError(
                 f'slope has points, and load.slope_rad is {self.load.slope_rad:g} rad: give one',
                 key='slope',
             )
+
+    @cached_property
+    def demand(self) -> TorqueProfile:
+        """The driver's torque demand in N m over scenario time."""
+        return self.engine.in_n_m(self.engine_limits)
 
     @cached_property
     def driveline(self) -> DrivelineParameters:
