@@ -20,7 +20,7 @@ SUPPORTED_KEYS = frozenset(
     {
         *('name', 'description', 'duration_s', 'control_start_s', 'score_window_s', 'equilibrium'),
         *('engine', 'initial', 'reference', 'slip_reference', 'slope', 'load', 'vehicle'),
-        *('driveline', 'actuator', 'controllers', 'gear', 'adjusted'),
+        *('driveline', 'actuator', 'controllers', 'gear', 'gearbox', 'adjusted'),
         *('engine_authority', 'engine_speed_reference', 'pedal_position'),
     }
 )

@@ -27,7 +27,7 @@ from ddct_bringup.metrics.metric import Metrics
 from ddct_bringup.metrics.plant import JudgedPlant
 from ddct_bringup.metrics.values import metrics_of
 from ddct_plant.models.clutch import Capacity
-from ddct_plant.models.gearbox import C635
+from ddct_plant.models.gearbox import Gearbox
 from ddct_plant.models.parameters import DrivelineParameters, VehicleParameters
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.rules.shift import gears_of
@@ -180,7 +180,7 @@ def row_of(driveline: ShiftDriveline, share: float) -> dict[str, Any]:
 def test_an_ideal_torque_phase_dips_by_33_8_percent_without_flare_or_tie_up():
     """1 - T_1/T_0 with T = J_v a + C_load; the off-going clutch sticks throughout."""
     car = replace(DrivelineParameters(), shaft_damping=0.0)
-    gears = GearPair(car, C635.gear(1))
+    gears = GearPair(car, Gearbox().gear(1))
     start = driving_start(gears, 10.0, (100.0, 60.0, 0.0))
     driveline = ShiftDriveline(gears, VehicleParameters(), start)
     rows = [row_of(driveline, 0.0)]
@@ -211,14 +211,14 @@ def test_the_friction_work_of_an_inertia_phase_is_that_of_engine_and_kinetic_ene
     """W = C_m dw t/2 + J_m dw^2/2 at constant car speed: 5.12 kJ for 150 N m in 0.3 s."""
     car = replace(DrivelineParameters(), vehicle_inertia=1e9)
     engine, torque, time_s = 100.0 * math.pi, 150.0, 0.3
-    first, second = C635.gear(1).total_ratio, car.gear.total_ratio
+    first, second = Gearbox().gear(1).total_ratio, car.gear.total_ratio
     wheel = engine / first
     slip = engine - second * wheel
     transmitted = torque + car.engine_inertia * slip / time_s
     damping = car.shaft_damping * (first**2 + second**2) * wheel
     twist = (second * transmitted - damping) / car.halfshaft_stiffness
     start = ShiftStart(engine, second * wheel, engine, wheel, twist, 0.0, 0.0, 0.0, 0.0)
-    driveline = ShiftDriveline(GearPair(car, C635.gear(1)), VehicleParameters(), start)
+    driveline = ShiftDriveline(GearPair(car, Gearbox().gear(1)), VehicleParameters(), start)
     rows = [row_of(driveline, 1.0)]
     for _ in range(35):
         on_coming, off_going = capacity(transmitted), capacity(0.0)

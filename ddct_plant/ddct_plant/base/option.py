@@ -163,4 +163,6 @@ def option_rows(options: Options, prefix: str = '') -> list[tuple[str, ...]]:
 
 
 def _text(value: Any) -> str:
+    if isinstance(value, tuple):
+        return f'[{", ".join(map(_text, value))}]'
     return f'{value:.6g}' if isinstance(value, float) else str(value)

@@ -15,7 +15,7 @@ from ddct_plant.hybrid.polynomials import (
     on_interval,
 )
 
-LONGEST = 2.0
+LONGEST = 4.0
 """Longest piece, in units of 1 / (the balanced norm of a)."""
 ROUNDING = 2.0**-53
 """Term of a series that counts as zero, over the sum."""

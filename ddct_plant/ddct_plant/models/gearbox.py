@@ -11,7 +11,8 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from ddct_plant.base.errors import require_number
+from ddct_plant.base.errors import ParameterError, require_number
+from ddct_plant.base.options import OptionGroup, option
 
 RATIO_KEY = 'driveline.total_ratio'
 """Key of the total ratio in a scenario, for errors."""
@@ -72,30 +73,89 @@ class EngagedGear:
 
 
 @dataclass(frozen=True)
-class Gearbox:
+class Gearbox(OptionGroup, prefix='gearbox.'):
     """
     Forward gears, each with the final drive of the output shaft that it sits on.
 
-    `identified` is the gear whose total ratio was identified from measurements, which is used
-    instead of the product of the published ratios.
+    A gear whose total ratio is measured has the measured one in place of the product of the
+    published ratios. The defaults are those of the C635. Gears 1, 3, 6 and 2, 4, 5 sit on two
+    output shafts. Only the final drive 4.118 is published: with 2.269 it gives the identified
+    total ratio to 0.03 %. That the other shaft has the same is assumed.
     """
 
-    ratios: tuple[float, ...]
-    """Ratio of each gear without unit, from the first gear on."""
-    final_drives: tuple[float, ...]
-    """Ratio of the final drive of each gear without unit."""
-    identified: int
-    """Number of the gear whose total ratio is IDENTIFIED_RATIO."""
+    ratios: tuple[float, ...] = option(
+        (3.9, 2.269, 1.435, 0.978, 0.755, 0.622),
+        'ratio of each gear, from the first gear on',
+        source='published, C635',
+        many=True,
+        above=0.0,
+    )
+    final_drives: tuple[float, ...] = option(
+        (4.118,) * 6,
+        'ratio of the final drive of each gear',
+        source='published for one output shaft of the C635, assumed for the other',
+        many=True,
+        above=0.0,
+    )
+    measured_gears: tuple[int, ...] = option(
+        (2,),
+        'gears whose total ratio is measured',
+        source='`identify`',
+        kind=int,
+        many=True,
+        at_least=1,
+    )
+    measured_ratios: tuple[float, ...] = option(
+        (IDENTIFIED_RATIO,),
+        'total ratio of each of `measured_gears`, in place of the product of its two ratios',
+        source='`identify`',
+        many=True,
+        above=0.0,
+    )
+
+    def __post_init__(self) -> None:
+        """Check every value; raise ParameterError that names a bad one."""
+        super().__post_init__()
+        if not self.ratios:
+            raise ParameterError(
+                'gearbox.ratios is empty: give the ratio of each gear', key='gearbox.ratios'
+            )
+        self.require_pairs('ratios', 'final_drives')
+        self.require_pairs('measured_gears', 'measured_ratios')
+        for at, number in enumerate(self.measured_gears):
+            self.require_gear(f'gearbox.measured_gears[{at}]', number)
+            if number in self.measured_gears[:at]:
+                raise ParameterError(
+                    f'gearbox.measured_gears has gear {number} twice: give each gear once',
+                    key='gearbox.measured_gears',
+                )
 
     @property
     def gears(self) -> int:
         """Number of forward gears."""
         return len(self.ratios)
 
+    def require_gear(self, key: str, number: int) -> None:
+        """Raise ParameterError for the value of `key` unless the car has a gear of this number."""
+        if not 1 <= number <= self.gears:
+            raise ParameterError(
+                f'{key} is {number}, but the car has {self.gears} gear'
+                f'{"s" if self.gears > 1 else ""}: give one that it has, or a car with that gear',
+                key=key,
+            )
+
     def gear(self, number: int | None) -> EngagedGear:
-        """Return a gear by its number from 1 on; None is the identified gear."""
-        if number is None or number == self.identified:
-            return EngagedGear()
+        """Return a gear by its number from 1 on; None is the first one that is measured."""
+        if number is None:
+            if not self.measured_ratios:
+                raise ParameterError(
+                    f'gear is missing, and gearbox.measured_gears is empty: give gear, from 1 to '
+                    f'{self.gears}',
+                    key='gear',
+                )
+            return EngagedGear(self.measured_ratios[0])
+        if number in self.measured_gears:
+            return EngagedGear(self.measured_ratios[self.measured_gears.index(number)])
         return EngagedGear(self._published(number))
 
     def numbers(self, gear: EngagedGear) -> list[int]:
@@ -108,12 +168,3 @@ class Gearbox:
 
     def _published(self, number: int) -> float:
         return self.ratios[number - 1] * self.final_drives[number - 1]
-
-
-C635 = Gearbox((3.9, 2.269, 1.435, 0.978, 0.755, 0.622), (4.118,) * 6, identified=2)
-"""
-The C635 with its published ratios.
-
-Gears 1, 3, 6 and 2, 4, 5 sit on two output shafts. Only the final drive 4.118 is published: with
-2.269 it gives the identified total ratio to 0.03 %. That the other shaft has the same is assumed.
-"""

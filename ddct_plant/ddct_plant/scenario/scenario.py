@@ -17,7 +17,7 @@ from ddct_plant.models.clutch import FrictionParameters
 from ddct_plant.models.clutch_heat import HeatParameters
 from ddct_plant.models.engine import EngineAuthority, TorqueProfile
 from ddct_plant.models.engine_limits import EngineLimits
-from ddct_plant.models.gearbox import C635
+from ddct_plant.models.gearbox import Gearbox
 from ddct_plant.models.load import BrakeProfile, LoadParameters, SlopeProfile
 from ddct_plant.models.parameters import DrivelineParameters, DrivelineSection, VehicleParameters
 from ddct_plant.models.static_torque import EQUILIBRIA
@@ -95,6 +95,7 @@ class Scenario(OptionGroup):
     vehicle: VehicleParameters = VehicleParameters()
     given_driveline: DrivelineSection = section(DrivelineSection(), key='driveline')
     """Section `driveline` of the file; models take `driveline`, which is complete."""
+    gearbox: Gearbox = section(Gearbox(), left_out=True)
     actuator: ActuatorParameters = section(ActuatorParameters(), left_out=True)
     friction: FrictionParameters = section(FrictionParameters(), left_out=True, stick_slip=True)
     heat: HeatParameters = section(HeatParameters(), left_out=True, stick_slip=True)
@@ -107,11 +108,10 @@ class Scenario(OptionGroup):
     """Options by controller name; each controller checks its own."""
     gear: int | None = option(
         None,
-        'gear of the C635, whose total ratio `driveline.total_ratio` then is; its final drive of '
-        'second gear is assumed for all',
+        'engaged gear, one of `gearbox`; in a shift the on-coming one',
+        otherwise='the first of `gearbox.measured_gears`',
         kind=int,
         at_least=1,
-        at_most=C635.gears,
     )
     adjusted: tuple[str, ...] = option(
         (),
@@ -136,6 +136,10 @@ class Scenario(OptionGroup):
                 f'score_window_s ends at {last:g} s, before {first:g} s', key='score_window_s'
             )
         self.engine.in_n_m(self.engine_limits)
+        if self.gear is not None:
+            self.gearbox.require_gear('gear', self.gear)
+        if self.shift is not None:
+            self.gearbox.require_gear('shift.off_going_gear', self.shift.off_going_gear)
         if self.slope.given and self.load.slope_rad:
             raise ParameterError(
                 f'slope has points, and load.slope_rad is {self.load.slope_rad:g} rad: give one',
@@ -150,14 +154,18 @@ class Scenario(OptionGroup):
     @cached_property
     def driveline(self) -> DrivelineParameters:
         """Driveline in the engaged gear, for models; raise ParameterError for a bad value."""
-        return self.given_driveline.engaged(C635.gear(self.gear), self.vehicle.inertia)
+        return self.given_driveline.engaged(self.gearbox.gear(self.gear), self.vehicle.inertia)
 
     @cached_property
     def controlled_driveline(self) -> DrivelineParameters:
         """Driveline behind the controlled clutch; in a shift it turns the off-going shaft too."""
         if self.shift is None:
             return self.driveline
-        return GearPair(self.driveline, C635.gear(self.shift.off_going_gear)).both_engaged
+        return self.gears_of(self.shift).both_engaged
+
+    def gears_of(self, shift: ShiftParameters) -> GearPair:
+        """Return both gears of a shift of this car."""
+        return GearPair(self.driveline, self.gearbox.gear(shift.off_going_gear))
 
     @property
     def steps(self) -> int:

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import ASSUMED, REQUIRED, OptionGroup, option
 from ddct_plant.base.timebase import LONGEST_S
-from ddct_plant.models.gearbox import C635
 
 
 @dataclass(frozen=True)
@@ -21,10 +20,9 @@ class ShiftParameters(OptionGroup, prefix='shift.'):
 
     off_going_gear: int = option(
         REQUIRED,
-        'gear in which the car drives before the shift, of the C635',
+        'gear in which the car drives before the shift, one of `gearbox`',
         kind=int,
         at_least=1,
-        at_most=C635.gears,
     )
     preselection_s: float = option(
         0.0,

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from ddct_plant.base.timebase import PERIOD_S
-from ddct_plant.models.gearbox import C635
+from ddct_plant.models.gearbox import Gearbox
 from ddct_plant.models.static_torque import StaticTorque
 from ddct_plant.scenario.file import ScenarioFile, load_scenario
 from ddct_plant.scenario.settings import RunSettings
@@ -21,7 +21,7 @@ _RPM = 9.549296585513721
 def content(gears: tuple[int, int], kmh: float, torque: float, **other: Any) -> dict[str, Any]:
     """Return a scenario that drives at a speed in km/h, with an engine torque in N m."""
     wheel_speed = kmh / 3.6 / 0.3211345
-    engine, shaft = (C635.gear(gear).shaft_speed(wheel_speed) for gear in gears)
+    engine, shaft = (Gearbox().gear(gear).shaft_speed(wheel_speed) for gear in gears)
     return {
         'name': 'shift',
         'duration_s': 2.0,

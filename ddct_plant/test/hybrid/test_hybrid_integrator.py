@@ -400,7 +400,7 @@ def test_impossible_capacities_are_refused(kinetic, static, message):
 def test_a_piece_must_be_longer_than_zero_and_short_enough_for_the_rates():
     with refused(ParameterError, key='piece_s'):
         HybridIntegrator(block(), 0.0, PIECES)
-    with pytest.raises(ParameterError, match='take pieces of at most 0.0002 s'):
+    with pytest.raises(ParameterError, match='take pieces of at most 0.0004 s'):
         HybridIntegrator(block(a=-1e4), PIECE_S, PIECES)
 
 

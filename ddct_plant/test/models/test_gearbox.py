@@ -10,11 +10,12 @@ from refusals import refused
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.models.driveline_model import clutch_to_slip, driveline_matrices
-from ddct_plant.models.gearbox import C635, EngagedGear, Gearbox
+from ddct_plant.models.gearbox import EngagedGear, Gearbox
 from ddct_plant.models.parameters import DrivelineParameters, DrivelineSection
 from ddct_plant.models.static_torque import constant_slip_torque
 from ddct_plant.scenario.content import scenario_content, scenario_from_mapping
 from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.rules.shift import gears_of
 
 GEAR = EngagedGear(8.0)
 THESIS = load_scenario('thesis')
@@ -37,18 +38,82 @@ def test_a_torque_over_the_inertia_across_the_gear_accelerates_it() -> None:
 
 
 def test_the_identified_gear_has_the_identified_ratio_and_others_the_published_ones() -> None:
-    assert C635.gear(2) == C635.gear(None) == EngagedGear() == DrivelineParameters().gear
-    assert C635.gear(1) == EngagedGear(3.9 * 4.118)
-    assert [C635.numbers(C635.gear(number)) for number in range(1, 7)] == [
+    assert Gearbox().gear(2) == Gearbox().gear(None) == EngagedGear() == DrivelineParameters().gear
+    assert Gearbox().gear(1) == EngagedGear(3.9 * 4.118)
+    assert [Gearbox().numbers(Gearbox().gear(number)) for number in range(1, 7)] == [
         [number] for number in range(1, 7)
     ]
-    assert C635.numbers(EngagedGear(12.0)) == []
+    assert Gearbox().numbers(EngagedGear(12.0)) == []
 
 
 def test_each_gear_has_the_final_drive_of_its_output_shaft() -> None:
-    box = Gearbox((4.0, 2.0, 1.5), (4.0, 5.0, 4.0), identified=2)
-    assert box.gear(1) == EngagedGear(16.0)
-    assert box.gear(3) == EngagedGear(6.0)
+    box = Gearbox((4.0, 2.0, 1.5), (4.0, 5.0, 4.0), (2,), (10.01,))
+    assert [box.gear(number) for number in (1, 2, 3)] == [
+        EngagedGear(16.0),
+        EngagedGear(10.01),
+        EngagedGear(6.0),
+    ]
+
+
+@pytest.mark.parametrize(
+    ('values', 'key'),
+    [
+        ({'ratios': ()}, 'gearbox.ratios'),
+        ({'ratios': (3.9, 2.269)}, 'gearbox.final_drives'),
+        ({'ratios': (3.9, 2.269, 1.435, 0.978, 0.755, 0.0)}, 'gearbox.ratios[5]'),
+        ({'measured_gears': ()}, 'gearbox.measured_ratios'),
+        ({'measured_gears': (7,)}, 'gearbox.measured_gears[0]'),
+        ({'measured_gears': (2.5,)}, 'gearbox.measured_gears[0]'),
+        ({'measured_gears': (2, 2), 'measured_ratios': (9.3, 9.4)}, 'gearbox.measured_gears'),
+    ],
+)
+def test_a_gearbox_that_cannot_be_is_refused(
+    values: dict[str, tuple[float, ...]], key: str
+) -> None:
+    with refused(ParameterError, key):
+        Gearbox(**values)  # type: ignore[arg-type]
+
+
+OTHER = {
+    'gearbox': {
+        'ratios': [3.7, 2.2, 1.5],
+        'final_drives': [4.4, 4.4, 3.2],
+        'measured_gears': [],
+        'measured_ratios': [],
+    }
+}
+
+
+def test_a_scenario_takes_the_gears_of_its_gearbox() -> None:
+    third = load_scenario('thesis', {**OTHER, 'gear': 3})
+    assert third.driveline.gear == EngagedGear(1.5 * 3.2)
+    assert scenario_from_mapping(scenario_content(third)) == third
+    gears = {'gear': 3, 'shift.off_going_gear': 2, 'initial.engine_speed_rad_s': 2.2 * 4.4 * 40}
+    shift = load_scenario(
+        'upshift', {**OTHER, **gears, 'initial.shaft_speed_rad_s': 1.5 * 3.2 * 40}
+    )
+    assert gears_of(shift).ratio == EngagedGear(2.2 * 4.4).shaft_ratio(EngagedGear(1.5 * 3.2))
+
+
+@pytest.mark.parametrize(
+    ('scenario', 'gears', 'key'),
+    [
+        ('thesis', {'gear': 4}, 'gear'),
+        ('thesis', {}, 'gear'),
+        ('upshift', {'gear': 4, 'shift.off_going_gear': 3}, 'gear'),
+        ('upshift', {'gear': 3, 'shift.off_going_gear': 4}, 'shift.off_going_gear'),
+    ],
+)
+def test_a_car_without_a_gear_that_a_scenario_needs_is_refused(
+    scenario: str, gears: dict[str, int], key: str
+) -> None:
+    with refused(ParameterError, key):
+        load_scenario(scenario, {**OTHER, **gears})
+
+
+def test_the_refusal_of_a_gear_says_how_many_the_car_has() -> None:
+    with pytest.raises(ParameterError, match='gear is 9, but the car has 6 gears'):
+        load_scenario('thesis', {'gear': 9})
 
 
 @pytest.mark.parametrize('ratio', [0.0, -3.0, float('nan'), float('inf'), 'second'])
@@ -58,7 +123,7 @@ def test_a_gear_without_a_positive_ratio_is_refused(ratio: float) -> None:
 
 
 def test_the_model_of_another_gear_is_that_of_a_driveline_with_its_ratio() -> None:
-    first = DrivelineParameters().in_gear(C635.gear(1))
+    first = DrivelineParameters().in_gear(Gearbox().gear(1))
     given = DrivelineParameters().with_values(total_ratio=3.9 * 4.118)
     assert first == given
     assert driveline_matrices(first).a.tolist() == driveline_matrices(given).a.tolist()
@@ -78,7 +143,7 @@ def test_values_by_key_make_the_same_driveline_again() -> None:
 def test_ratio_and_vehicle_inertia_follow_where_they_are_used() -> None:
     heavy = replace(THESIS, vehicle=replace(THESIS.vehicle, mass_kg=3000.0), gear=1)
     assert heavy.driveline.vehicle_inertia == 2.0 * THESIS.driveline.vehicle_inertia
-    assert heavy.driveline.gear == C635.gear(1)
+    assert heavy.driveline.gear == Gearbox().gear(1)
     assert heavy.driveline.engine_inertia == THESIS.driveline.engine_inertia
 
 

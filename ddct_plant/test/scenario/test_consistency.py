@@ -5,7 +5,7 @@
 import pytest
 
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.models.gearbox import C635
+from ddct_plant.models.gearbox import Gearbox
 from ddct_plant.scenario.file import load_scenario, scenario_digest, scenario_to_yaml
 
 THESIS = load_scenario('thesis')
@@ -36,7 +36,7 @@ def the_line(scenario):
 def test_the_defaults_agree_without_a_remark():
     assert THESIS.adjusted == ()
     assert THESIS.gear is None
-    assert C635.ratios[1] * C635.final_drives[1] == pytest.approx(
+    assert Gearbox().ratios[1] * Gearbox().final_drives[1] == pytest.approx(
         THESIS.driveline.gear.total_ratio, rel=3e-4
     )
 
@@ -86,7 +86,7 @@ def test_the_mass_follows_the_inertia_and_the_radius_stays(more):
 def test_gear_and_total_ratio_follow_each_other():
     by_gear, by_total = changed('gear=1'), changed('driveline.total_ratio=16.06')
     assert by_gear.driveline.gear.total_ratio == 3.9 * 4.118
-    assert 'driveline.total_ratio moved from 9.3416 to 16.0602: gear 1' in the_line(by_gear)
+    assert by_gear.adjusted == ()
     assert by_total.gear == 1
     assert the_line(by_total) == 'gear is now 1, as driveline.total_ratio is 16.06'
 
@@ -94,7 +94,7 @@ def test_gear_and_total_ratio_follow_each_other():
 def test_a_total_ratio_that_no_gear_has_gets_a_remark(tmp_path):
     unnamed = changed('driveline.total_ratio=15')
     assert (
-        the_line(unnamed) == 'gear stays none, as no gear of the C635 has driveline.total_ratio 15'
+        the_line(unnamed) == 'gear stays none, as no gear of the car has driveline.total_ratio 15'
     )
     named = from_file(tmp_path, 'gear: 1', 'driveline.total_ratio=15')
     assert 'gear is now none, as driveline.total_ratio is 15' in named.adjusted

@@ -63,8 +63,8 @@ def test_what_thesis_lacks_stays_out_of_its_file_and_digest():
 
 
 def test_rates_too_fast_for_a_clutch_that_sticks_are_refused_with_key_and_line(scenario_file):
-    path = scenario_file(BASE + 'driveline:\n  shaft_inertia: 0.0005')
-    assert load_scenario(path).driveline.shaft_inertia == 0.0005
+    path = scenario_file(BASE + 'driveline:\n  shaft_inertia: 0.0002')
+    assert load_scenario(path).driveline.shaft_inertia == 0.0002
     with refused(ParameterError, 'driveline.shaft_inertia', 'mine.yaml: line 6'):
         load_scenario(path, clutch='stick_slip')
 

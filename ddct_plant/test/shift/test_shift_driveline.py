@@ -12,7 +12,7 @@ from refusals import refused
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.models.clutch import Capacity
 from ddct_plant.models.driveline import PHASES
-from ddct_plant.models.gearbox import C635
+from ddct_plant.models.gearbox import Gearbox
 from ddct_plant.models.initial_state import InitialState
 from ddct_plant.models.parameters import DrivelineParameters, VehicleParameters
 from ddct_plant.models.stick_slip_driveline import StickSlipDriveline
@@ -24,7 +24,7 @@ from ddct_plant.shift.start import ShiftStart, driving_start
 pytestmark = pytest.mark.slow
 
 PARAMETERS, VEHICLE = DrivelineParameters(), VehicleParameters()
-FIRST = C635.gear(1)
+FIRST = Gearbox().gear(1)
 GEARS = GearPair(PARAMETERS, FIRST)
 TAU_I, TAU_J = FIRST.total_ratio, PARAMETERS.gear.total_ratio
 WHEEL_SPEED = 17.3

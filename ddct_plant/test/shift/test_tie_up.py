@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from ddct_plant.base.timebase import PERIOD_S, SUBSTEP_S
-from ddct_plant.models.gearbox import C635
+from ddct_plant.models.gearbox import Gearbox
 from ddct_plant.models.parameters import DrivelineParameters, VehicleParameters
 from ddct_plant.shift.driveline import ShiftDriveline
 from ddct_plant.shift.engagements import OFF_GOING, ON_COMING
@@ -16,7 +16,7 @@ from ddct_plant.shift.gear_pair import GearPair
 from ddct_plant.shift.start import ShiftStart
 
 PARAMETERS = DrivelineParameters()
-FIRST = C635.gear(1)
+FIRST = Gearbox().gear(1)
 TAU_I, TAU_J = FIRST.total_ratio, PARAMETERS.gear.total_ratio
 WHEEL_SPEED = 17.3
 DIFFERENCE = (TAU_I - TAU_J) * WHEEL_SPEED

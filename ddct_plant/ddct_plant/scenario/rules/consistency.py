@@ -19,7 +19,7 @@ from dataclasses import replace
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import steps_in, time_of_step
-from ddct_plant.models.gearbox import AGREE, C635, RATIO_KEY, EngagedGear
+from ddct_plant.models.gearbox import AGREE, RATIO_KEY, EngagedGear
 from ddct_plant.models.parameters import IDENTIFIED_VEHICLE_INERTIA
 from ddct_plant.scenario.scenario import Scenario
 
@@ -114,26 +114,24 @@ def _with_gear(scenario: Scenario, origins: Origins) -> Scenario:
     A scenario that gives no ratio has that of its gear. A file with another car's ratio and no
     gear gets no line in `adjusted`.
     """
-    number, given = scenario.gear, scenario.given_driveline.gear
-    of_number = C635.gear(number)
-    if of_number == (given or EngagedGear()):
+    number, given, box = scenario.gear, scenario.given_driveline.gear, scenario.gearbox
+    if given is None or box.gear(number) == given:
         return scenario
-    about = f'{RATIO_KEY} moved from {given or EngagedGear()} to {of_number}: gear {number} of the'
-    if given is None:
-        return _with_line(scenario, f'{about} C635')
-    fits = C635.numbers(given)
+    of_number = box.gear(number)
+    fits = box.numbers(given)
     if number in fits:
         return scenario
     of_gear, of_total = _origin(origins, 'gear'), _origin(origins, RATIO_KEY)
     if number is not None and of_gear > of_total:
-        return _with_line(_without_ratio(scenario), f'{about} C635')
+        about = f'{RATIO_KEY} moved from {given} to {of_number}: gear {number}'
+        return _with_line(_without_ratio(scenario), about)
     if number is not None and of_gear == of_total:
         raise ParameterError(
             f'gear is {number} and {RATIO_KEY} is {given}, but that gear has {of_number}: '
             f'give {RATIO_KEY} {of_number}, or one of them only'
         )
     if number is None and not fits:
-        about = f'gear stays none, as no gear of the C635 has {RATIO_KEY} {given}'
+        about = f'gear stays none, as no gear of the car has {RATIO_KEY} {given}'
         return _with_line(scenario, about) if of_total == SET else scenario
     name = fits[0] if fits else None
     return _with_line(replace(scenario, gear=name), gear_line(name, given))
@@ -148,7 +146,7 @@ def _with_locked_off_going_clutch(scenario: Scenario, origins: Origins) -> Scena
     shift, initial = scenario.shift, scenario.initial
     if shift is None:
         return scenario
-    off_going = C635.gear(shift.off_going_gear)
+    off_going = scenario.gearbox.gear(shift.off_going_gear)
     speed = off_going.shaft_ratio(scenario.driveline.gear) * initial.shaft_speed_rad_s
     moving = (SHAFT_SPEED, 'shift.off_going_gear', 'gear', RATIO_KEY)
     highest = max(_origin(origins, key) for key in moving)
@@ -169,7 +167,11 @@ def without_derived(scenario: Scenario) -> Scenario:
     section = scenario.given_driveline
     if section.vehicle_inertia == scenario.vehicle.inertia:
         scenario = _without_inertia(scenario)
-    return _without_ratio(scenario) if section.gear == C635.gear(scenario.gear) else scenario
+    return (
+        _without_ratio(scenario)
+        if section.gear == scenario.gearbox.gear(scenario.gear)
+        else scenario
+    )
 
 
 def gear_line(number: int | None, gear: EngagedGear) -> str:

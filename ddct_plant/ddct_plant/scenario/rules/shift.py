@@ -6,7 +6,7 @@ import math
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.models.driveline import OPEN
-from ddct_plant.models.gearbox import AGREE, C635
+from ddct_plant.models.gearbox import AGREE
 from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.shift.gear_pair import GearPair
 from ddct_plant.shift.parameters import ShiftParameters
@@ -24,7 +24,7 @@ def shift_of(scenario: Scenario) -> ShiftParameters:
 
 def gears_of(scenario: Scenario) -> GearPair:
     """Return both gears of the shift; raise ParameterError for a scenario without one."""
-    return GearPair(scenario.driveline, C635.gear(shift_of(scenario).off_going_gear))
+    return scenario.gears_of(shift_of(scenario))
 
 
 def require_shift(scenario: Scenario) -> None:
