@@ -1,0 +1,36 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""The counter of classes and functions that a run enters."""
+
+import pytest
+
+from ddct_bringup import api
+from ddct_controllers.architecture import make_architecture
+from ddct_controllers.registry import make_controller
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import RunSettings
+from entered.counter import Entered, Noun
+
+pytestmark = pytest.mark.slow
+
+LINEAR = ('ddct_plant.models.linear_driveline', 'Driveline')
+
+
+def test_the_way_leads_from_the_call_to_the_equations_and_not_into_the_scores() -> None:
+    entered = Entered()
+    entered.call(lambda: api.run('pi', scenario='thesis', duration=2.0))
+    scored = Noun('ddct_bringup.scores.scoring', 'score_run')
+    assert entered.way >= {
+        Noun('ddct_bringup.api.run_and_load', 'run'),
+        Noun('ddct_controllers.architecture', 'Architecture'),
+        Noun(*LINEAR),
+    }
+    assert scored in entered.nouns - entered.way
+
+
+def test_what_no_step_follows_is_not_on_the_way() -> None:
+    entered = Entered()
+    settings = RunSettings(load_scenario('thesis'))
+    entered.call(lambda: make_architecture(settings, make_controller('pi', settings)))
+    assert Noun('ddct_controllers.architecture', 'Architecture') in entered.nouns
+    assert entered.way == set()
