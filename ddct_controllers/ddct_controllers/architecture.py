@@ -210,12 +210,15 @@ def make_architecture(settings: RunSettings, controller: Controller) -> Architec
     settings = settings.known
     scenario = settings.scenario
     static = StaticTorque(scenario.controlled_driveline, scenario.equilibrium)
+    closing = scenario.closing
     return Architecture(
         _make_open_loop(settings, static),
         RoadLoad(scenario.load, scenario.vehicle, scenario.slope),
         controller,
         scenario.control_start_step if settings.detailed and not settings.shift else 0,
-        ClosingStage(scenario.closing, static) if scenario.closing else None,
+        ClosingStage(closing, static, closing.most_request(scenario.friction))
+        if closing
+        else None,
         TorquePhase(settings) if settings.shift else None,
     )
 

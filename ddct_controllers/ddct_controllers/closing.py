@@ -24,9 +24,11 @@ class ClosingStage:
       how much. The stage opens, and what it added fades along the ramp while feedback acts.
     """
 
-    def __init__(self, parameters: ClosingParameters, static_torque: StaticTorque) -> None:
-        """Start open."""
-        self._parameters = parameters
+    def __init__(
+        self, parameters: ClosingParameters, static_torque: StaticTorque, most_request: float
+    ) -> None:
+        """Start open; `most_request` in N m is the highest request of the stage."""
+        self._parameters, self._most = parameters, most_request
         self._static_torque = static_torque
         self._dwell_steps = steps_in('closing.dwell_s', parameters.dwell_s)
         self._fade_steps = steps_in('closing.engine_fade_s', parameters.engine_fade_s)
@@ -52,7 +54,7 @@ class ClosingStage:
         the architecture has started feedback.
         """
         # Feedback that requests more than the stage may is not at the limit of slip: it stays on.
-        in_reach = self.closed or last_request <= self._parameters.most_n_m
+        in_reach = self.closed or last_request <= self._most
         within = feedback_on and in_reach and self._within_band(measurement)
         self._samples_within = self._samples_within + 1 if within else 0
         was_closed, self.closed = self.closed, self._samples_within > self._dwell_steps
@@ -98,7 +100,7 @@ class ClosingStage:
         """Return the target margin over |C_fOL| in N m within the clutch's capacity."""
         p = self._parameters
         target = max((p.margin - 1.0) * carried + p.reserve_n_m, self._least_margin)
-        return max(min(target, p.most_n_m - carried), 0.0)
+        return max(min(target, self._most - carried), 0.0)
 
     def _along_ramp(self, torque: float, target: float) -> float:
         """Return the torque in N m a period later, on its ramp to the target."""

@@ -20,6 +20,7 @@ from ddct_plant.scenario.settings import RunSettings
 SETTINGS = RunSettings(load_scenario('thesis', ['closing={}']), clutch='stick_slip')
 START = SETTINGS.scenario.control_start_step
 P = ClosingParameters()
+MOST = P.most_request(SETTINGS.scenario.friction)
 DWELL = 10
 """Number of periods of the default dwell time."""
 ALIKE = Measurement(
@@ -140,7 +141,7 @@ def test_it_requests_no_more_than_the_clutch_has_unless_c_fol_does(engine_torque
     loaded = replace(ALIKE, engine_torque=engine_torque)
     level = carried(loaded)
     found = answers([ALIKE] * 30 + [loaded] * 90)[-1].torque
-    assert found == pytest.approx(max(level, P.most_n_m))
+    assert found == pytest.approx(max(level, MOST))
 
 
 @pytest.mark.parametrize('engine_torque', [400.0, 900.0])
@@ -149,7 +150,7 @@ def test_it_stays_closed_where_c_fol_is_more_than_the_stage_may_request(engine_t
     loaded = replace(ALIKE, engine_torque=engine_torque)
     controller = ConstantCommand(-40.0)
     found = answers([ALIKE] * 30 + [loaded] * 90, controller)
-    assert (found[-1].torque > P.most_n_m) == (engine_torque == 900.0)
+    assert (found[-1].torque > MOST) == (engine_torque == 900.0)
     assert set(states(found)[DWELL:]) <= {'closing', 'closed'}
     assert {dict(each.status)['feedback'] for each in found[DWELL:]} == {'held off'}
     assert len(controller.open_loop_torques) == 120 - DWELL
@@ -162,7 +163,7 @@ def test_it_never_falls_below_the_torque_with_which_feedback_had_locked_a_worn_c
 
 
 def test_feedback_that_requests_more_than_the_stage_may_stays_on():
-    controller = ConstantCommand(P.most_n_m)
+    controller = ConstantCommand(MOST)
     assert set(states(answers([ALIKE] * 60, controller))) == {'open'}
     assert controller.open_loop_torques == []
 
@@ -208,6 +209,6 @@ def test_without_the_section_no_torque_and_no_status_is_added():
 
 
 def test_a_dwell_and_a_fade_of_zero_act_at_once():
-    stage = ClosingStage(ClosingParameters(dwell_s=0.0, engine_fade_s=0.0), STATIC)
+    stage = ClosingStage(ClosingParameters(dwell_s=0.0, engine_fade_s=0.0), STATIC, MOST)
     stage.update(ALIKE, 0.0, 90.0, 90.0, feedback_on=True)
     assert (stage.closed, stage.engine_share) == (True, 0.0)

@@ -16,8 +16,8 @@ LATE_SHARE = 0.05
 """Share of updates that may take longer than their period, without unit."""
 AGAIN = 2
 """Number of further runs of a controller that seems slow."""
-MOST_RATE_N_M_S = 3500.0
-"""Largest mean rate of the request in N m/s: ten full strokes of 350 N m per second."""
+MOST_STROKES_PER_S = 10.0
+"""Largest mean rate of the request, in full strokes of the clutch's capacity per second."""
 HALF = 0.5
 """Least share of a reference step followed within 1 s; with less an engagement takes too long."""
 WELL = 0.8
@@ -59,16 +59,18 @@ def _slowest(times_s: np.ndarray) -> float:
 
 def rate(subject: Subject) -> str:
     """Check that the request does not chatter."""
-    start = subject.settings.scenario.control_start_step
+    scenario = subject.settings.scenario
+    start = scenario.control_start_step
+    most = MOST_STROKES_PER_S * scenario.friction.most_n_m
     changes = np.abs(np.diff(subject.closed_loop.request[start:]))
     per_second = float(changes.mean()) / PERIOD_S
     found = (
         f'the request moves by {changes.max():.4g} N m per period at most, {per_second:.4g} N m '
         'per second'
     )
-    if per_second > MOST_RATE_N_M_S:
+    if per_second > most:
         raise CheckFailedError(
-            f'{found}, more than {MOST_RATE_N_M_S:g}: the actuator does not follow that, and the '
+            f'{found}, more than {most:g}: the actuator does not follow that, and the '
             f'driveline rings; smooth it in {place_of_method(subject.sample, "update")}'
         )
     return found

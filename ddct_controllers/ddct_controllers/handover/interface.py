@@ -19,11 +19,10 @@ MARGIN = 1.7
 """
 Request of the off-going clutch over the torque that it carries, in `model` and `adaptive`.
 
-The driveshaft unwinds as the wheel torque falls, and its oscillation at 18 rad/s needs up to
-20 N m more of the clutch than the rigid driveline; a worn clutch carries less than requested. Both
-matter most near the end, where the balance is small: with this margin the engine of a packaged
-shift runs ahead by less than 5 rad/s. Tie-up hardly grows with it, since it vanishes with the
-balance.
+The driveshaft unwinds as the wheel torque falls, and its oscillation needs more of the clutch than
+the rigid driveline; a worn clutch carries less than requested. Both matter most near the end,
+where the balance is small: with this margin the engine of a packaged shift runs ahead by less than
+5 rad/s. Tie-up hardly grows with it, since it vanishes with the balance.
 """
 CUT_RISE_S = 0.1
 """

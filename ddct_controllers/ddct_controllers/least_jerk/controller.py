@@ -12,7 +12,7 @@ from ddct_controllers.interface import (
 from ddct_controllers.least_jerk.actuator_model import AHEAD, ActuatorTorque
 from ddct_controllers.least_jerk.demand_trend import DemandTrend
 from ddct_controllers.least_jerk.design import LeastJerkDesign
-from ddct_controllers.least_jerk.lock import CLOSED, SLIPPING, LockPhases
+from ddct_controllers.least_jerk.lock import CLOSED, SLIPPING
 from ddct_controllers.least_jerk.options import LeastJerkOptions
 from ddct_controllers.least_jerk.plan import time_left
 from ddct_controllers.least_jerk.shaped_demand import ShapedDemand
@@ -54,7 +54,7 @@ class LeastJerk(Controller):
         self._actuator = ActuatorTorque()
         self._clutch, self._slip, self._guard = design.clutch(), design.slip(), design.guard()
         self._plan = TorquePlan(design.limits)
-        self._demand, self._lock = DemandTrend(), LockPhases()
+        self._demand, self._lock = DemandTrend(), design.lock()
         self._engine = ShapedDemand(design.shaping_steps, design.authority)
         self.commands_engine = design.shaping_steps > 0
         self.reset()

@@ -2,10 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Numbers of `least_jerk` that its scenario and options give, constant over a run."""
 
+import math
 from dataclasses import dataclass
 
 from ddct_controllers.interface import ControllerContext
 from ddct_controllers.least_jerk.engine_guard import EngineGuard, SpeedRange
+from ddct_controllers.least_jerk.lock import LockPhases
 from ddct_controllers.least_jerk.options import LeastJerkOptions
 from ddct_controllers.least_jerk.plan import PlanLimits
 from ddct_controllers.least_jerk.shaped_demand import shaping_steps, starts_locked
@@ -18,10 +20,14 @@ from ddct_controllers.least_jerk.torque_estimate import (
 )
 from ddct_plant.base.clutch_kinds import LINEAR
 from ddct_plant.base.options import with_values
+from ddct_plant.models.clutch import FrictionParameters
 from ddct_plant.models.engine import EngineAuthority
 from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.models.static_torque import StaticTorque
 from ddct_plant.scenario.initial_state import initial_request
+
+MOST_SHARE = 0.97
+"""Highest torque of plates that slip over what the clutch carries, before it is rounded up."""
 
 
 @dataclass(frozen=True)
@@ -34,6 +40,10 @@ class LeastJerkDesign:
     """Torque of constant slip."""
     limits: PlanLimits
     speeds: SpeedRange
+    most_torque: float
+    """Highest torque in N m of plates that slip."""
+    most_request: float
+    """Highest request in N m of closed plates, that of a closing stage."""
     sticks: bool
     """Whether the plates can lock."""
     shifts: bool
@@ -71,6 +81,8 @@ class LeastJerkDesign:
             static=StaticTorque(driveline, scenario.equilibrium),
             limits=limits,
             speeds=SpeedRange.of(options.least_speed_rad_s, scenario.engine_limits),
+            most_torque=most_slipping_torque(options.most_torque_n_m, scenario.friction),
+            most_request=scenario.friction.worn_request,
             sticks=sticks,
             shifts=bool(settings.shift),
             initial_request=initial_request(settings),
@@ -101,5 +113,13 @@ class LeastJerkDesign:
 
     def guard(self) -> EngineGuard:
         """Return the guard of the engine speed."""
-        options = self.options
-        return EngineGuard(self.driveline, self.speeds, options.guard_s, options.most_torque_n_m)
+        return EngineGuard(self.driveline, self.speeds, self.options.guard_s, self.most_torque)
+
+    def lock(self) -> LockPhases:
+        """Return the phases of the lock."""
+        return LockPhases(self.most_request)
+
+
+def most_slipping_torque(given: float | None, friction: FrictionParameters) -> float:
+    """Return the highest torque of plates that slip in N m: `MOST_SHARE` if none is given."""
+    return math.ceil(MOST_SHARE * friction.most_n_m) if given is None else given

@@ -14,6 +14,8 @@ MOST_DIP_RAD_S = 10.0
 """Highest fall of the engine speed below that of the lock which is counted in."""
 LEAST_RATE_N_M_S = 1.0
 """Rate of a plan below which that fall is not computed."""
+LEAST_SHARE = 0.85
+"""Speed that the clutch does not pull the engine below, over that of idle control."""
 BELOW_CUT_RAD_S = 10.0
 """Speed below that at which the rev limiter cuts the fuel to which the engine may rise."""
 
@@ -30,11 +32,16 @@ class SpeedRange:
     """Speed at which the fuel is cut, infinite without a limiter."""
 
     @classmethod
-    def of(cls, least: float, limits: EngineLimits | None) -> 'SpeedRange':
-        """Return the range of an engine with or without limits."""
+    def of(cls, least: float | None, limits: EngineLimits | None) -> 'SpeedRange':
+        """
+        Return the range of an engine with or without limits.
+
+        Without `least` in rad/s it is `LEAST_SHARE` of the idle speed, in whole rad/s.
+        """
         if limits is None:
-            return cls(least, 0.0, math.inf)
-        return cls(least, limits.idle_rad_s, limits.cut_rad_s)
+            return cls(least or 0.0, 0.0, math.inf)
+        usual = float(round(LEAST_SHARE * limits.idle_rad_s))
+        return cls(usual if least is None else least, limits.idle_rad_s, limits.cut_rad_s)
 
 
 class EngineGuard:

@@ -23,10 +23,8 @@ DWELL_STEPS = 2
 """Number of samples within `LOCKED_RAD_S` after which the request begins to rise."""
 CONFIRMING_STEPS = 10
 """Number of further periods in which it rises no faster than the plan."""
-CLOSING_RATE_N_M_S = 2000.0
-"""Rate at which the torque then rises."""
-MOST_REQUEST_N_M = 500.0
-"""Highest request of closed plates, that of the closing stage."""
+CLOSING_S = 0.25
+"""Time in s in which the torque then rises by the highest request of closed plates."""
 SLIPPING, CONFIRMING, CLOSED = 'slipping', 'confirming', 'closed'
 """Phases of the lock."""
 
@@ -39,8 +37,9 @@ class LockPhases:
     after all, that costs no more jerk than the plan itself.
     """
 
-    def __init__(self) -> None:
-        """Start slipping."""
+    def __init__(self, most_request: float) -> None:
+        """Start slipping; the highest request of closed plates is in N m."""
+        self._most, self._rate = most_request, most_request / CLOSING_S
         self.reset()
 
     def reset(self) -> None:
@@ -76,8 +75,8 @@ class LockPhases:
         Return the torque in N m that locked plates shall be able to carry.
 
         `before` is that of the last period in N m, `rate` that of the plan in N m/s; the highest
-        one is that of `MOST_REQUEST_N_M` at the wear gain.
+        one is the highest request at the wear gain.
         """
         if self.phase == CONFIRMING:
             return before + PERIOD_S * rate
-        return min(before + PERIOD_S * CLOSING_RATE_N_M_S, MOST_REQUEST_N_M * gain)
+        return min(before + PERIOD_S * self._rate, self._most * gain)

@@ -84,17 +84,19 @@ class LeastJerkOptions(OptionGroup):
         at_least=0.0,
         at_most=20.0,
     )
-    most_torque_n_m: float = option(
-        340.0,
-        'highest torque of plates that slip, below the 350 N m that the clutch carries',
+    most_torque_n_m: float | None = option(
+        None,
+        'highest torque of plates that slip, below what the clutch carries',
         'N m',
+        otherwise='0.97 `friction.most_n_m`, in whole N m',
         above=0.0,
         at_most=1e5,
     )
-    least_speed_rad_s: float = option(
-        80.0,
-        'engine speed that the clutch does not pull the engine below',
+    least_speed_rad_s: float | None = option(
+        None,
+        'engine speed that the clutch does not pull the engine below; none without engine limits',
         'rad/s',
+        otherwise='0.85 `engine_limits.idle_rad_s`, in whole rad/s',
         at_least=0.0,
         at_most=500.0,
     )

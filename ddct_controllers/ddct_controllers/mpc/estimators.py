@@ -6,9 +6,10 @@ import math
 from dataclasses import dataclass, replace
 
 from ddct_controllers.mpc.estimate.observer import (
-    CLUTCH_DRIFT_N_M,
-    LOAD_DRIFT_N_M,
+    OF_CLUTCH,
+    OF_LOAD,
     AtRest,
+    Drifts,
     NoiseLevels,
     Observer,
     kalman_gain,
@@ -99,16 +100,27 @@ FULL = ObserverInputs('speeds', load_known=True, delay_in_model=True)
 class DisturbanceObserver(OptionGroup):
     """Filter that estimates constant errors of C_f and C_load too."""
 
-    clutch_drift_n_m: float = option(
-        CLUTCH_DRIFT_N_M, 'drift of the error of C_f, per period', 'N m', above=0.0, at_most=MOST
+    clutch_drift_n_m: float | None = option(
+        None,
+        'drift of the error of C_f, per period',
+        'N m',
+        otherwise=OF_CLUTCH,
+        above=0.0,
+        at_most=MOST,
     )
-    load_drift_n_m: float = option(
-        LOAD_DRIFT_N_M, 'drift of the error of C_load, per period', 'N m', above=0.0, at_most=MOST
+    load_drift_n_m: float | None = option(
+        None,
+        'drift of the error of C_load, per period',
+        'N m',
+        otherwise=OF_LOAD,
+        above=0.0,
+        at_most=MOST,
     )
 
     def parts(self, run: RunSettings) -> tuple[TransmissionModel, Observer]:
         """Return the model with both errors as its states, and its filter."""
-        noise = NoiseLevels(drift=(self.clutch_drift_n_m, self.load_drift_n_m))
+        drift = Drifts.of(run.scenario, self.clutch_drift_n_m, self.load_drift_n_m)
+        noise = NoiseLevels(drift=drift)
         model = offset_free_model(run.scenario.controlled_driveline)
         return model, make_observer(run, model, noise)
 
@@ -120,4 +132,5 @@ class WearEstimate(WearNoise):
     def parts(self, run: RunSettings) -> tuple[TransmissionModel, WearObserver]:
         """Return the model with the errors of C_f and C_load, and its filter."""
         model = offset_free_model(run.scenario.controlled_driveline)
-        return model, WearObserver(model, NoiseLevels(), self, run_start(run))
+        drifts = Drifts.of(run.scenario, self.clutch_drift_n_m, self.load_drift_n_m)
+        return model, WearObserver(model, NoiseLevels(), self, drifts, run_start(run))

@@ -15,6 +15,7 @@ from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.base.units import RAD_S_PER_RPM
 from ddct_plant.linear.lti import StateSpace
 from ddct_plant.linear.sampling import discretise_zoh
+from ddct_plant.models.clutch import FrictionParameters
 from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.models.printed import ACTUATOR
 
@@ -30,13 +31,21 @@ OPTIONS = {
     ),
 }
 """Options of the controller; tested to be stable at wear gains from 0.7 to 1.3."""
-NOISE = NoiseLevels(engine_torque_n_m=30.0, clutch_torque_n_m=30.0)
-"""
-Noise levels of the filter: both torques to a tenth of 300 N m; with less the loop is fragile.
-"""
 
 
-def lqi_model(driveline: DrivelineParameters, natural_frequency_rad_s: float) -> StateSpace:
+def noise_levels(friction: FrictionParameters) -> NoiseLevels:
+    """
+    Return the noise levels of the filter: both torques to a tenth of the clutch's working torque.
+
+    With less the loop is fragile.
+    """
+    tenth = friction.working_torque / 10.0
+    return NoiseLevels(engine_torque_n_m=tenth, clutch_torque_n_m=tenth)
+
+
+def lqi_model(
+    driveline: DrivelineParameters, noise: NoiseLevels, natural_frequency_rad_s: float
+) -> StateSpace:
     """
     Return the controller from slip error in rpm to torque in N m, sampled.
 
@@ -53,7 +62,7 @@ def lqi_model(driveline: DrivelineParameters, natural_frequency_rad_s: float) ->
     """
     plant = _plant(driveline)
     gain = _feedback_gain(plant, driveline, natural_frequency_rad_s)
-    filter_gain = _filter_gain(plant, driveline)
+    filter_gain = _filter_gain(plant, driveline, noise)
     states = len(plant.a)
     integral, request = states, states + 1
     a, b = np.zeros((states + 2, states + 2)), np.zeros((states + 2, 1))
@@ -129,26 +138,28 @@ def _feedback_gain(
     return np.linalg.solve(1.0 + b.T @ cost @ b, b.T @ cost @ a)[0]
 
 
-def _filter_gain(plant: StateSpace, driveline: DrivelineParameters) -> np.ndarray:
+def _filter_gain(
+    plant: StateSpace, driveline: DrivelineParameters, noise: NoiseLevels
+) -> np.ndarray:
     """
-    Return the stationary Kalman gain l (7, 1) for the levels NOISE.
+    Return the stationary Kalman gain l (7, 1) for the levels of noise.
 
     Torque noise is held over a period; two measured speeds make the slip.
     """
     torques = discretise_zoh(slip_model(driveline), PERIOD_S).b
-    levels = NOISE.engine_torque_n_m, NOISE.clutch_torque_n_m, NOISE.load_torque_n_m
+    levels = noise.engine_torque_n_m, noise.clutch_torque_n_m, noise.load_torque_n_m
     driven = np.zeros((len(plant.a), 3))
     driven[: len(torques)] = torques * levels
-    error = (math.sqrt(2.0) * NOISE.speed_rad_s) ** 2
+    error = (math.sqrt(2.0) * noise.speed_rad_s) ** 2
     covariance = riccati(plant.a.T, plant.c.T, driven @ driven.T, np.array([[error]]), NO_GAIN)
     innovation = plant.c @ covariance @ plant.c.T + error
     return covariance @ plant.c.T / innovation
 
 
 def _make(context: ControllerContext) -> LinearController:
-    return LinearController(
-        lqi_model(context.settings.scenario.controlled_driveline, **context.gains)
-    )
+    scenario = context.settings.scenario
+    noise = noise_levels(scenario.friction)
+    return LinearController(lqi_model(scenario.controlled_driveline, noise, **context.gains))
 
 
 SPEC = ControllerSpec(NAME, _make, OPTIONS)

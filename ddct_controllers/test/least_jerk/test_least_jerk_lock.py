@@ -9,22 +9,24 @@ from ddct_controllers.least_jerk.lock import (
     CONFIRMING,
     CONFIRMING_STEPS,
     DWELL_STEPS,
-    MOST_REQUEST_N_M,
     PARTED_STEPS,
     SLIPPING,
     LockPhases,
 )
 
+MOST_REQUEST = 500.0
+"""Highest request of closed plates in N m."""
+
 
 def locked():
-    lock = LockPhases()
+    lock = LockPhases(MOST_REQUEST)
     for _ in range(DWELL_STEPS + CONFIRMING_STEPS + 1):
         lock.update(0.1)
     return lock
 
 
 def test_it_closes_after_a_dwell_and_a_confirmation():
-    lock = LockPhases()
+    lock = LockPhases(MOST_REQUEST)
     phases = []
     for _ in range(DWELL_STEPS + CONFIRMING_STEPS + 1):
         lock.update(-0.3)
@@ -35,7 +37,7 @@ def test_it_closes_after_a_dwell_and_a_confirmation():
 
 
 def test_a_slip_that_runs_through_zero_does_not_count():
-    lock = LockPhases()
+    lock = LockPhases(MOST_REQUEST)
     for slip in (3.0, 0.5, 1.5, 0.4, -1.4, 0.2):
         lock.update(slip)
     assert lock.phase == SLIPPING
@@ -58,7 +60,7 @@ def test_two_lost_samples_of_a_speed_do_not_open_it():
 
 @pytest.mark.parametrize(('slip', 'phase'), [(0.5, CLOSED), (1.5, SLIPPING)])
 def test_feedback_starts_with_plates_that_are_locked_or_slip(slip, phase):
-    lock = LockPhases()
+    lock = LockPhases(MOST_REQUEST)
     lock.start(slip)
     assert lock.phase == phase
 
@@ -68,7 +70,7 @@ def test_the_torque_rises_with_the_plan_until_confirmed_and_then_to_the_most():
     torque = 100.0
     for _ in range(100):
         torque = lock.torque(torque, 50.0, 0.8)
-    assert torque == pytest.approx(0.8 * MOST_REQUEST_N_M)
+    assert torque == pytest.approx(0.8 * MOST_REQUEST)
     lock.reset()
     lock.update(0.0)
     lock.update(0.0)

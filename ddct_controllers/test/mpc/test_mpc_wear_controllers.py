@@ -135,7 +135,7 @@ def test_nan_is_refused():
     [
         ({'gain_drift': -0.1}, 'gain_drift'),
         ({'gain_drift': 1e160}, 'gain_drift'),
-        ({'load_drift_n_m': None}, 'load_drift_n_m'),
+        ({'load_drift_n_m': 'much'}, 'load_drift_n_m'),
         ({'load_drift_n_m': 1e160}, 'load_drift_n_m'),
         ({'clutch_drift_n_m': 1e160}, 'clutch_drift_n_m'),
         ({'torsion_weight': 1.0}, 'torsion_weight'),

@@ -15,6 +15,7 @@ from ddct_controllers.state_of_art import lqi
 from ddct_controllers.state_of_art.parts.rigid_transmission import RigidTransmission
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.models.clutch import FrictionParameters
 from ddct_plant.models.driveline_model import driveline_matrices
 from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.scenario.file import load_scenario
@@ -22,7 +23,8 @@ from ddct_plant.scenario.settings import RunSettings
 
 SETTINGS = RunSettings(load_scenario('thesis'))
 DRIVELINE = DrivelineParameters()
-MODEL = lqi.lqi_model(DRIVELINE, lqi.OPTIONS['natural_frequency_rad_s'].default)
+NOISE = lqi.noise_levels(FrictionParameters())
+MODEL = lqi.lqi_model(DRIVELINE, NOISE, lqi.OPTIONS['natural_frequency_rad_s'].default)
 
 
 def response(model, omega, column):
@@ -70,7 +72,7 @@ def test_no_corner_of_the_driveline_is_unstable():
 @pytest.mark.parametrize('option', ['at_least', 'at_most'])
 def test_every_frequency_that_it_takes_is_stable(option, wear_gain):
     frequency = getattr(lqi.OPTIONS['natural_frequency_rad_s'], option)
-    loop = sampled_loop(lqi.lqi_model(DRIVELINE, frequency), wear_gain=wear_gain)
+    loop = sampled_loop(lqi.lqi_model(DRIVELINE, NOISE, frequency), wear_gain=wear_gain)
     assert loop_margins(loop).sensitivity_peak < 2.0
 
 

@@ -65,6 +65,11 @@ class Option:
         if self.default is not REQUIRED and self.default is not None and not self.many:
             object.__setattr__(self, 'kind', type(self.default))
 
+    def with_default(self, default: Any) -> 'Option':
+        """Return the option with another default, whose text is then that of the value."""
+        otherwise = self.otherwise if default == self.default else ''
+        return dataclasses.replace(self, default=default, otherwise=otherwise)
+
     def checked(self, name: str, value: Any) -> Any:
         """Return the checked `value` of the option `name`; raise ParameterError for a bad one."""
         if value is None:

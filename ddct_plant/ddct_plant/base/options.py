@@ -117,7 +117,7 @@ class OptionGroup:
     def options(self) -> Options:
         """Options of the group by name, with the values of this instance as defaults."""
         return {
-            name: dataclasses.replace(described, default=getattr(self, name))
+            name: described.with_default(getattr(self, name))
             for name, described in options_of(type(self)).items()
         }
 

@@ -110,6 +110,20 @@ class FrictionParameters(OptionGroup, prefix='friction.'):
         self.require_pairs('temperature_c', 'temperature_share')
         self.require_pairs('slip_rad_s', 'slip_share')
 
+    @property
+    def worn_request(self) -> float:
+        """Request in N m with which a clutch worn to a wear gain of 0.7 carries `most_n_m`."""
+        return 10.0 * self.most_n_m / 7.0
+
+    @property
+    def working_torque(self) -> float:
+        """
+        Torque in N m that a hard engagement takes of the clutch, 6/7 of `most_n_m`.
+
+        A clutch is made for a sixth more than it has to carry.
+        """
+        return 6.0 * self.most_n_m / 7.0
+
 
 class Capacity(NamedTuple):
     """Torque capacities of the clutch at 0, 1, ..., 10 ms of a period, and its temperature."""

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from ddct_plant.base.options import ASSUMED, OptionGroup, option
 from ddct_plant.base.profile import Profile
 from ddct_plant.base.timebase import LONGEST_S
+from ddct_plant.models.clutch import FrictionParameters
 
 REFERENCE_SHAPES = ('ramp', 'tanh', 'polynomial')
 """Shapes of a slip reference that runs to zero from control start, as a function of time."""
@@ -122,12 +123,13 @@ class ClosingParameters(OptionGroup, prefix='closing.'):
         at_least=0.0,
         at_most=1000.0,
     )
-    most_n_m: float = option(
-        500.0,
-        'highest request of the stage, unless C_fOL itself is higher: with it a clutch worn to a '
-        'wear gain of 0.7 carries the 350 N m of `friction.most_n_m`',
+    most_n_m: float | None = option(
+        None,
+        'highest request of the stage, unless C_fOL itself is higher; with the default a clutch '
+        'worn to a wear gain of 0.7 carries `friction.most_n_m`',
         'N m',
-        source='published capacity of the C635; wear assumed',
+        otherwise='`friction.most_n_m`/0.7',
+        source=ASSUMED,
         above=0.0,
         at_most=10000.0,
     )
@@ -149,3 +151,7 @@ class ClosingParameters(OptionGroup, prefix='closing.'):
         at_most=10.0,
         whole_periods=True,
     )
+
+    def most_request(self, friction: FrictionParameters) -> float:
+        """Return the highest request of the stage in N m, `most_n_m` or that of the clutch."""
+        return friction.worn_request if self.most_n_m is None else self.most_n_m

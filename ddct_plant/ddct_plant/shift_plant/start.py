@@ -35,5 +35,5 @@ def shift_start(settings: RunSettings) -> ShiftStart:
 def locked_request(scenario: Scenario, carried: float) -> float:
     """Return the request in N m that keeps a clutch locked that carries a torque in N m."""
     closing = scenario.closing or ClosingParameters()
-    carried = abs(carried)
-    return max(min(closing.margin * carried + closing.reserve_n_m, closing.most_n_m), carried)
+    carried, most = abs(carried), closing.most_request(scenario.friction)
+    return max(min(closing.margin * carried + closing.reserve_n_m, most), carried)

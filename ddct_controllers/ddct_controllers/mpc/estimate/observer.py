@@ -2,7 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Observer of the states that are not measured, with a constant gain; design of that gain."""
 
+import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -16,21 +18,59 @@ from ddct_controllers.mpc.model.transmission_model import (
     TransmissionModel,
 )
 from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.base.units import rpm_from_rad_s
+from ddct_plant.models.clutch import FrictionParameters
+from ddct_plant.models.parameters import VehicleParameters
+from ddct_plant.scenario.scenario import Scenario
 
-CLUTCH_DRIFT_N_M = 13.0
-"""
-Drift of the error of C_f in N m per period.
+OF_CLUTCH = '0.3 times 6/7 `friction.most_n_m`, over the root of 50, in whole N m'
+OF_LOAD = 'a tenth of the load of a 10 % slope, in whole N m'
+"""Defaults of both drifts on pages."""
+WORN, RISE_S = 0.3, 0.5
+"""Wear of a clutch, and time in s in which C_f rises to `working_torque` in an engagement."""
+GRADE, UPHILL_S = 0.1, 1.0
+"""Slope of a road as a grade, and time in s in which a car gets onto it."""
 
-A random walk reaches it times the root of the number of periods: a clutch worn by 0.3 is wrong by
-90 N m when C_f has risen to 300 N m, half a second after the start.
-"""
-LOAD_DRIFT_N_M = 47.0
-"""
-Drift of the error of C_load in N m per period.
 
-In a second it reaches the load of a 10 % slope, 470 N m for 1500 kg.
-"""
+def clutch_drift(friction: FrictionParameters) -> float:
+    """
+    Return the drift of the error of C_f per period, in whole N m.
+
+    A random walk reaches it times the root of the number of periods: that of a clutch worn by 0.3
+    is wrong by 0.3 of its working torque when C_f has risen to that, after half a second.
+    """
+    return float(round(WORN * friction.working_torque / math.sqrt(RISE_S / PERIOD_S)))
+
+
+def load_drift(vehicle: VehicleParameters) -> float:
+    """
+    Return the drift of the error of C_load per period, in whole N m.
+
+    In a second it reaches m g r_w sin(alpha), the load of a slope of 10 %.
+    """
+    weight = vehicle.mass_kg * vehicle.gravity_m_s2
+    load = weight * vehicle.wheel_radius_m * math.sin(math.atan(GRADE))
+    return float(round(load / math.sqrt(UPHILL_S / PERIOD_S)))
+
+
+class Drifts(NamedTuple):
+    """Drifts of both errors in N m per period."""
+
+    clutch: float
+    """That of C_f."""
+    load: float
+    """That of C_load."""
+
+    @classmethod
+    def of(
+        cls, scenario: Scenario, clutch: float | None = None, load: float | None = None
+    ) -> 'Drifts':
+        """Return given drifts in N m, and where there are none those of the scenario's car."""
+        return cls(
+            clutch_drift(scenario.friction) if clutch is None else clutch,
+            load_drift(scenario.vehicle) if load is None else load,
+        )
 
 
 @dataclass(frozen=True)

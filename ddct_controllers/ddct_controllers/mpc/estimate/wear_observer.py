@@ -8,9 +8,10 @@ import numpy as np
 
 from ddct_controllers.interface import Status
 from ddct_controllers.mpc.estimate.observer import (
-    CLUTCH_DRIFT_N_M,
-    LOAD_DRIFT_N_M,
+    OF_CLUTCH,
+    OF_LOAD,
     AtRest,
+    Drifts,
     NoiseLevels,
     torque_noise,
 )
@@ -60,18 +61,20 @@ class WearNoise(OptionGroup):
         at_least=0.0,
         at_most=1.0,
     )
-    clutch_drift_n_m: float = option(
-        CLUTCH_DRIFT_N_M,
+    clutch_drift_n_m: float | None = option(
+        None,
         'drift of the error of C_f per period while a bound holds K_usura; 0 leaves a slip '
         'error there',
         'N m',
+        otherwise=OF_CLUTCH,
         at_least=0.0,
         at_most=MOST,
     )
-    load_drift_n_m: float = option(
-        LOAD_DRIFT_N_M,
+    load_drift_n_m: float | None = option(
+        None,
         'drift of the error of C_load per period',
         'N m',
+        otherwise=OF_LOAD,
         at_least=0.0,
         at_most=MOST,
     )
@@ -94,12 +97,13 @@ class WearObserver:
         model: TransmissionModel,
         noise: NoiseLevels,
         wear: WearNoise,
+        drifts: Drifts,
         start: AtRest,
     ) -> None:
         """Take the `offset_free_model` of a new clutch, and the start of the estimate."""
         driveline, actuator = DRIVELINE, slice(DRIVELINE.stop, STATES)
         self._model = model
-        self._wear = wear
+        self._wear, self._drifts = wear, drifts
         self._initial_request = start.initial_request
         self._twist_per_torque = 1.0 / start.halfshaft_stiffness
         self._transition = np.eye(SIZE)
@@ -111,7 +115,7 @@ class WearObserver:
         self._actuator_b = model.b[actuator, REQUEST]
         self._process = np.zeros((SIZE, SIZE))
         self._process[driveline, driveline] = torque_noise(model, noise)[driveline, driveline]
-        self._process[LOAD_ERROR, LOAD_ERROR] = wear.load_drift_n_m**2
+        self._process[LOAD_ERROR, LOAD_ERROR] = drifts.load**2
         self._measurement_noise = noise.speed_rad_s**2 * np.eye(MEASURED)
         self.reset()
 
@@ -179,7 +183,7 @@ class WearObserver:
         if effect[_ENGINE_SPEED] / self._model.clutch[_ENGINE_SPEED] > LEAST_TORQUE_N_M:
             self._covariance[GAIN, GAIN] += self._wear.gain_drift**2
         if self.wear_gain_at_bound:
-            self._covariance[CLUTCH_ERROR, CLUTCH_ERROR] += self._wear.clutch_drift_n_m**2
+            self._covariance[CLUTCH_ERROR, CLUTCH_ERROR] += self._drifts.clutch**2
         self._actuator = self._actuator_a @ self._actuator + self._actuator_b * request
 
     def _start(self, speeds: tuple[float, float, float], load_torque: float) -> None:
@@ -190,7 +194,7 @@ class WearObserver:
         # A second's drift of the load, which has twisted the half-shaft by as much.
         load = np.zeros(SIZE)
         load[FILTER_STATES.places('twist', 'load_error')] = self._twist_per_torque, 1.0
-        load *= 10.0 * self._wear.load_drift_n_m
+        load *= 10.0 * self._drifts.load
         self._covariance += np.outer(load, load)
         self._covariance[:MEASURED, :MEASURED] = self._measurement_noise
         self._started = True

@@ -10,9 +10,8 @@ from refusals import refused
 
 from ddct_controllers.interface import ControllerContext
 from ddct_controllers.mpc.estimate.observer import (
-    CLUTCH_DRIFT_N_M,
-    LOAD_DRIFT_N_M,
     AtRest,
+    Drifts,
     NoiseLevels,
     Observer,
     kalman_gain,
@@ -91,7 +90,7 @@ def estimate(errors_n_m, drift=(), model=PLANT, periods=400, driveline=DRIVELINE
     return innovation, corrected
 
 
-OFFSET_FREE_NOISE = NoiseLevels(drift=(CLUTCH_DRIFT_N_M, LOAD_DRIFT_N_M))
+OFFSET_FREE_NOISE = NoiseLevels(drift=Drifts.of(load_scenario('thesis')))
 OFFSET_FREE = {'drift': OFFSET_FREE_NOISE.drift, 'model': offset_free_model(DRIVELINE)}
 
 

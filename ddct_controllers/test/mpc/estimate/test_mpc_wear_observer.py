@@ -5,7 +5,7 @@
 import numpy as np
 import pytest
 
-from ddct_controllers.mpc.estimate.observer import AtRest, NoiseLevels
+from ddct_controllers.mpc.estimate.observer import AtRest, Drifts, NoiseLevels
 from ddct_controllers.mpc.estimate.wear_observer import (
     LEAST_TORQUE_N_M,
     MOST_TORQUE_N_M,
@@ -34,6 +34,7 @@ from ddct_plant.scenario.settings import RunSettings
 SETTINGS = RunSettings(load_scenario('thesis'))
 DRIVELINE = SETTINGS.scenario.driveline
 NOISE = NoiseLevels()
+DRIFTS = Drifts.of(SETTINGS.scenario)
 LOAD_N_M = 60.0
 
 
@@ -42,6 +43,7 @@ def make_observer(**noise):
         offset_free_model(DRIVELINE),
         NOISE,
         WearNoise(**noise),
+        DRIFTS,
         AtRest(DRIVELINE.halfshaft_stiffness, initial_request=0.0),
     )
 
@@ -166,7 +168,7 @@ def conditioned(requests, engine_n_m, loads_n_m, measured, wear):
     actuator = plant.at_rest((0.0, 0.0, 0.0), 0.0, 0.0)[4:]
     start = np.array([*measured[0], loads_n_m[0] * twist_per_torque, 1.0, 0.0, 0.0])
     # The start: speeds as measured, gain 1 +- 0.2, and a second's drift of an unknown load.
-    drift = 10.0 * wear.load_drift_n_m
+    drift = 10.0 * DRIFTS.load
     start_factor = np.zeros((7, 5))
     start_factor[[0, 1, 2], [0, 1, 2]] = NOISE.speed_rad_s
     start_factor[4, 3] = wear.initial_gain
@@ -182,7 +184,7 @@ def conditioned(requests, engine_n_m, loads_n_m, measured, wear):
         noise[:4, 0] = NOISE.engine_torque_n_m * plant.b[:4, ENGINE_TORQUE]
         noise[:4, 1] = NOISE.load_torque_n_m * plant.b[:4, LOAD_TORQUE]
         noise[:4, 2] = NOISE.clutch_torque_n_m * plant.clutch[:4]
-        noise[6, 3] = wear.load_drift_n_m
+        noise[6, 3] = DRIFTS.load
         flowing = effect[0] / plant.clutch[0] > LEAST_TORQUE_N_M
         noise[4, 4] = wear.gain_drift if flowing else 0.0
         known = plant.b[:4, [ENGINE_TORQUE, LOAD_TORQUE]] @ [engine_n_m[k], loads_n_m[k]]
