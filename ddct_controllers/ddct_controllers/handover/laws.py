@@ -16,19 +16,18 @@ from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.scenario.rules.shift import shift_of
 from ddct_plant.scenario.settings import RunSettings
 
-PROPORTIONAL, INTEGRAL = 0.3, 6.0
+PROPORTIONAL, INTEGRAL = 1.2, 24.0
 """
-Gains of the handover `slip` in N m s/rad and N m/rad.
+Gains of the handover `slip` in 1/s and 1/s^2, over the inertia of the engine.
 
-A torque of 1 N m changes the slip of an engine of 0.25 kg m^2 by 4 rad/s^2. The torque of a
-slipping clutch does not damp the driveshaft: more proportional gain amplifies its oscillation.
+A torque C changes the slip of the engine at C/J_m. The torque of a slipping clutch does not damp
+the driveshaft: more proportional gain amplifies its oscillation.
 """
 SEARCH_FROM, SEARCH_RATE = 0.1, 1.5
 """
 Start of the search for slip above the balance, and its rate per second, as shares of the balance.
 
-In the lag of the actuator the request falls by 6 %, of which the slip grows by 20 rad/s^2 in an
-upshift with 100 N m.
+In the lag of the actuator the request falls by 6 %.
 """
 FOUND = 0.2
 """Slip from which the clutch counts as slipping, as a share of `shift.handover_slip_rad_s`."""
@@ -110,6 +109,9 @@ class SlipHandover(Handover):
         super().__init__(settings)
         self._model = HandoverModel(settings)
         self._target = shift_of(settings.scenario).handover_slip_rad_s
+        engine_inertia = settings.scenario.driveline.engine_inertia
+        self._proportional = PROPORTIONAL * engine_inertia
+        self._integral_per_step = INTEGRAL * engine_inertia * PERIOD_S
         self._difference: float | None = None
         """Request less the balance in N m that the slip needs; None until the clutch slips."""
         self._rise_steps = 0
@@ -141,8 +143,8 @@ class SlipHandover(Handover):
         assert self._difference is not None
         carried = self._model.off_going(now, share * self._model.on_coming(now))
         error = now.off_going_slip - self._target
-        self._difference += INTEGRAL * PERIOD_S * error
-        return carried + self._difference + PROPORTIONAL * error
+        self._difference += self._integral_per_step * error
+        return carried + self._difference + self._proportional * error
 
 
 HANDOVERS: Mapping[str, Callable[[RunSettings], Handover]] = {
