@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.units import rpm_from_rad_s
-from ddct_plant.scenario.whole_plant import Observation
+from ddct_plant.plant import Observation
 
 MOST = 1e9
 """Largest size of a signal, in its SI unit; far beyond any vehicle."""
@@ -61,15 +61,14 @@ class Measurement:
     @classmethod
     def of_plant(
         cls,
-        step: int,
         observation: Observation,
         slip_reference: Sequence[float],
         slip_reference_rate: Sequence[float],
     ) -> 'Measurement':
-        """Return the measured signals of a plant at step k, with the reference of that step."""
-        measured = observation.measured
+        """Return the measured signals of a plant, with the reference of that step."""
+        measured = observation.tick.measured
         return cls(
-            step=step,
+            step=observation.tick.step,
             engine_speed=measured.engine_speed,
             shaft_speed=measured.shaft_speed,
             wheel_speed=measured.wheel_speed,

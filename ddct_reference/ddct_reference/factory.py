@@ -9,10 +9,10 @@ from ddct_plant.base.timebase import PERIOD_S, steps_in, time_of_step
 from ddct_plant.models.actuator import ActuatorParameters
 from ddct_plant.models.load import RoadLoad
 from ddct_plant.models.static_torque import StaticTorque
+from ddct_plant.plant import Plant
 from ddct_plant.scenario.control import ENGINE_SPEED_TARGET, PROFILE
 from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
-from ddct_plant.scenario.whole_plant import WholePlant
 from ddct_reference.descent import CrfRamp, Descent, ProfileDescent, TimedDescent
 from ddct_reference.engine_speed_target import EngineSpeedTarget
 from ddct_reference.slip_reference import NEVER, DescendingReference, SlipReference
@@ -65,16 +65,17 @@ def nominal_slip(scenario: Scenario) -> list[float]:
     nominal = replace(scenario, actuator=ActuatorParameters())
     clutch = STICK_SLIP if scenario.of_stick_slip else LINEAR
     settings = RunSettings(nominal, architecture='detailed', clutch=clutch)
-    plant = WholePlant(settings, two_input=False)
+    plant = Plant(settings)
     static = StaticTorque(scenario.driveline, scenario.equilibrium)
     load = RoadLoad(scenario.load, scenario.vehicle, scenario.slope)
     slips = []
     for step in range(scenario.control_start_step + 1):
-        observation = plant.observe(step)
-        slips.append(observation.true.slip_speed)
-        load_torque = load.torque(observation.true.vehicle_speed, time_of_step(step))
+        tick = plant.tick(step)
+        observation, true = plant.observe(tick), tick.true
+        slips.append(true.slip_speed)
+        load_torque = load.torque(true.vehicle_speed, time_of_step(step))
         assert observation.delivered is not None
-        speeds = observation.true.engine_speed, observation.true.shaft_speed
+        speeds = true.engine_speed, true.shaft_speed
         request = static.torque(observation.delivered, load_torque, *speeds)
-        plant.advance(plant.reply(step, observation, request, None))
+        plant.advance(plant.reply(observation, request))
     return slips

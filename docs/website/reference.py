@@ -14,8 +14,7 @@ PAGES = {
     ),
     'Scenarios and plants of a run': (
         *('ddct_plant.scenario.scenario', 'ddct_plant.scenario.settings'),
-        *('ddct_plant.scenario.file', 'ddct_plant.scenario.whole_plant'),
-        'ddct_plant.shift_plant.plant',
+        *('ddct_plant.scenario.file', 'ddct_plant.plant'),
     ),
     'Friction that sticks': ('ddct_plant.hybrid.integrator',),
     'Errors and options': ('ddct_plant.base.errors', 'ddct_plant.base.options'),

@@ -19,7 +19,7 @@ from ddct_bringup.scores.csv_text import signals_csv
 from ddct_controllers.registry import make_controller
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import step_of_stamp
-from ddct_plant.scenario.whole_plant import PlantReply
+from ddct_plant.plant import PlantReply
 from ddct_plant.signals import topics
 from ddct_plant.signals.message_kind import Scalar, stamp_ns
 from ddct_plant.signals.signal import RunKind, Signal

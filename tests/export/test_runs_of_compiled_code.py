@@ -6,7 +6,6 @@ import json
 import os
 import shutil
 from pathlib import Path
-from typing import Any
 
 import pytest
 from refusals import refused
@@ -77,7 +76,7 @@ def test_a_loop_is_built_here_first_so_that_not_every_process_does_its_imports(
     built: list[int] = []
     build = headless.closed_loop
 
-    def noted(settings: RunSettings, controller: Controller) -> headless.Loop[Any]:
+    def noted(settings: RunSettings, controller: Controller) -> headless.Loop:
         built.append(os.getpid())
         return build(settings, controller)
 

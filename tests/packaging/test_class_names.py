@@ -24,5 +24,5 @@ def test_no_class_name_occurs_twice() -> None:
     for package in PACKAGES:
         for name, file in classes(package):
             found.setdefault(name, []).append(file)
-    assert {'WholePlant', 'ScenarioFile'} <= found.keys()
+    assert {'Plant', 'ScenarioFile'} <= found.keys()
     assert {name: files for name, files in found.items() if len(files) > 1} == {}

@@ -42,11 +42,10 @@ class PythonControlLoop:
         self._load, self._radius = make_load(settings), scenario.vehicle.wheel_radius_m
         gains = make_controller('pi', settings).gains()
         self._proportional, self._integral = gains.values()
-        request = max(initial.torque_request, 0.0)
+        request = max(initial.sides[0].torque_request, 0.0)
         # States: driveline with angles (7), actuator with the delayed request (5), integral.
-        speeds = initial.engine_speed, initial.shaft_speed, initial.wheel_speed
         rest = at_rest(model, request)
-        self._start = [*speeds, initial.twist, 0.0, 0.0, 0.0, *rest, request, 0.0]
+        self._start = [*initial.values, *rest, request, 0.0]
         on = (np.arange(run.steps + 1) >= scenario.control_start_step).astype(float)
         self._inputs = np.array([run.engine_torque, run.slip_reference[:, 0], on])
         self._times = np.arange(run.steps + 1) * PERIOD_S

@@ -33,7 +33,7 @@ _EARLIER, _LATER = 4, 5
 
 class Plants:
     """
-    Plants of R runs as columns, the counterpart of `WholePlant`, and C_fOL of the known cars.
+    Plants of R runs as columns, the counterpart of `Plant`, and C_fOL of the known cars.
 
     All runs have one equilibrium, and their known settings one; a linear clutch and an engine
     without limits. Angles are left out: no score depends on them.
@@ -58,12 +58,12 @@ class Plants:
         profiles = [engines[index].over(times) for index in first]
         self.engine_torque = np.stack([profiles[place] for place in places], axis=-1)
         """Engine torque C_m in N m at every step, (N+1, R), as `Engine.demand` returns it."""
-        self._actuators = Actuators(actuators, start.torque_request, steps + 1)
+        self._actuators = Actuators(actuators, start.sides[0].torque_request, steps + 1)
         nodes = self._actuators.nodes * self._wear[:, np.newaxis, np.newaxis]
         self._step = _step_matrices([each.driveline for each in scenarios], nodes)
         self._values = np.zeros((_ACTUATOR.stop, len(runs)))
         self._values[_STATES] = start.states
-        self._torques: Any = (start.engine_torque, start.clutch_torque, start.load_torque)
+        self._torques: Any = (start.engine_torque, start.sides[0].torque, start.load_torque)
 
     def outputs(self) -> Any:
         """Return `DrivelineOutputs` at the current step, each value (R,); the angles are NaN."""

@@ -15,14 +15,23 @@ def stacked(members: Sequence[Any]) -> Any:
     """
     Return one dataclass with the fields of R as arrays, (R,), also in nested dataclasses.
 
+    A tuple of dataclasses becomes one of such dataclasses.
+
     Its class is theirs, so that equations may call its methods; it is not checked.
     """
     stack = object.__new__(type(members[0]))
     for field in fields(members[0]):
         values = [getattr(each, field.name) for each in members]
-        column = stacked(values) if is_dataclass(values[0]) else np.array(values)
-        object.__setattr__(stack, field.name, column)
+        object.__setattr__(stack, field.name, _column(values))
     return stack
+
+
+def _column(values: Sequence[Any]) -> Any:
+    if is_dataclass(values[0]):
+        return stacked(values)
+    if isinstance(values[0], tuple) and all(map(is_dataclass, values[0])):
+        return tuple(stacked(each) for each in zip(*values, strict=True))
+    return np.array(values)
 
 
 def distinct(keys: Iterable[Hashable]) -> tuple[list[int], np.ndarray]:

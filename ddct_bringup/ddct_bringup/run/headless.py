@@ -11,7 +11,7 @@ The result equals that of the graph, in any process layout, to the last bit.
 
 import time
 from collections.abc import Callable, Sequence
-from typing import Any, Protocol, TypeVar
+from typing import Protocol, TypeVar
 
 import numpy as np
 
@@ -22,9 +22,8 @@ from ddct_controllers.architecture import Architecture, make_architecture
 from ddct_controllers.interface import Controller, Measurement
 from ddct_controllers.linear import PiController
 from ddct_controllers.registry import Chosen, compiled_code, make_controller, separately
+from ddct_plant.plant import Plant, PlantReply
 from ddct_plant.scenario.settings import RunSettings
-from ddct_plant.scenario.whole_plant import PlantReply, WholePlant
-from ddct_plant.shift_plant.plant import ShiftPlant, ShiftReply
 from ddct_plant.signals.gain_changes import GainChange
 from ddct_plant.signals.signal import RunKind
 from ddct_reference.factory import make_reference
@@ -37,7 +36,7 @@ class ClosedLoop:
         """Start in the run's initial state."""
         self.kind = settings.kind(two_input=controller.commands_engine)
         """Kind of the run, which decides which signals it has."""
-        self.plant = WholePlant(settings, two_input=controller.commands_engine)
+        self.plant = Plant(settings, two_input=controller.commands_engine)
         self._reference = make_reference(settings, controller.preview_steps)
         self.architecture = make_architecture(settings, controller)
         self.update_time_us = 0.0
@@ -45,14 +44,14 @@ class ClosedLoop:
 
     def reply(self, step: int) -> PlantReply:
         """Return torques and every signal of step k; advance all but the plant."""
-        observation = self.plant.observe(step)
-        measured = observation.measured
+        tick = self.plant.tick(step)
+        observation, measured = self.plant.observe(tick), tick.measured
         speeds, rates = self._reference.update(step, measured.slip_speed, measured.shaft_speed)
-        measurement = Measurement.of_plant(step, observation, speeds, rates)
+        measurement = Measurement.of_plant(observation, speeds, rates)
         started = time.perf_counter()
         request = self.architecture.update(measurement)
         self.update_time_us = 1e6 * (time.perf_counter() - started)
-        reply = self.plant.reply(step, observation, request.torque, request.engine_torque)
+        reply = self.plant.reply(observation, request.torque, request.engine_torque)
         reply.signals.update(
             slip_reference=speeds,
             slip_reference_rate=rates,
@@ -66,11 +65,10 @@ class ClosedLoop:
         self.plant.advance(reply)
 
 
-Reply = TypeVar('Reply', PlantReply, ShiftReply)
 Result = TypeVar('Result')
 
 
-class Loop(Protocol[Reply]):
+class Loop(Protocol):
     """A closed loop that `run_loop` steps: that of one clutch, or of a shift."""
 
     kind: RunKind
@@ -78,13 +76,13 @@ class Loop(Protocol[Reply]):
     update_time_us: float
 
     @property
-    def plant(self) -> WholePlant | ShiftPlant:
+    def plant(self) -> Plant:
         """Plant of the run, which can end it by its engine."""
 
-    def reply(self, step: int) -> Reply:
+    def reply(self, step: int) -> PlantReply:
         """Return torques and every signal of step k; advance all but the plant."""
 
-    def advance(self, reply: Reply) -> None:
+    def advance(self, reply: PlantReply) -> None:
         """Integrate the driveline over the period that `reply` answered."""
 
 
@@ -126,7 +124,7 @@ def separate_run(
     return separately(chosen, work)
 
 
-def closed_loop(settings: RunSettings, controller: Controller) -> Loop[Any]:
+def closed_loop(settings: RunSettings, controller: Controller) -> Loop:
     """Return the loop of a run: that of one clutch, or of a shift."""
     return ShiftLoop(settings, controller) if settings.shift else ClosedLoop(settings, controller)
 
@@ -134,7 +132,7 @@ def closed_loop(settings: RunSettings, controller: Controller) -> Loop[Any]:
 # What is not finite ends the run with a reason, so that numpy need not warn of it as well.
 @np.errstate(over='ignore', invalid='ignore')
 def run_loop(
-    loop: Loop[Reply],
+    loop: Loop,
     steps: int,
     timing: RunTiming | None = None,
     changes: Sequence[GainChange] = (),
@@ -150,7 +148,7 @@ def run_loop(
     for change in changes:
         by_step.setdefault(change.step, {})[change.gain] = change.after
 
-    def reply_at(step: int) -> Reply:
+    def reply_at(step: int) -> PlantReply:
         if step in by_step:
             loop.architecture.change_gains(by_step[step])
         return loop.reply(step)

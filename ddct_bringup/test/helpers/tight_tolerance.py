@@ -33,10 +33,10 @@ def tight_tolerance_run(settings: RunSettings, name: str) -> dict[str, np.ndarra
     controller = make_controller(name, settings)
     reference = make_reference(settings, controller.preview_steps)
     architecture = make_architecture(settings, controller)
-    delayed = initial.torque_request
+    delayed = initial.sides[0].torque_request
     state = np.concatenate(
         [
-            [initial.engine_speed, initial.shaft_speed, initial.wheel_speed, initial.twist],
+            initial.states,
             np.linalg.solve(filter_.a, -filter_.b[:, 0] * delayed),
         ]
     )

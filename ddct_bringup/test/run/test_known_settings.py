@@ -36,7 +36,6 @@ from ddct_plant.scenario.file import ScenarioFile, load_scenario
 from ddct_plant.scenario.initial_state import initial_request, initial_state
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.shift.roles import OFF_GOING
-from ddct_plant.shift_plant.sides import first_request
 
 NOISE = 'sensors.engine_speed.noise_rad_s'
 NOISY = {'engine_speed': {'noise_rad_s': 0.1}}
@@ -106,10 +105,14 @@ def test_runs_that_differ_in_an_unknown_key_give_equal_contexts(
 def test_the_first_request_is_that_of_the_known_car_and_the_state_that_of_the_true_one() -> None:
     varied = {'load.slope_rad': 0.08, 'wear_gain': 0.8}
     hill, plain = settings_with(varied, 'tip_in'), settings_with({}, 'tip_in')
-    assert initial_request(hill) == initial_request(plain) == initial_state(hill).torque_request
+    assert (
+        initial_request(hill)
+        == initial_request(plain)
+        == initial_state(hill).sides[0].torque_request
+    )
     assert initial_state(hill).load_torque > initial_state(plain).load_torque
     shift, usual = settings_with(varied, 'upshift'), settings_with({}, 'upshift')
-    assert first_request(shift, OFF_GOING) == first_request(usual, OFF_GOING)
+    assert initial_request(shift, OFF_GOING) == initial_request(usual, OFF_GOING)
 
 
 @pytest.mark.parametrize('architecture', ['detailed', 'feedforward', 'feedforward_tanh', 'base'])

@@ -21,7 +21,7 @@ from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.models.linear_driveline import Driveline
 from ddct_plant.scenario.choices.settings import ARCHITECTURES
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.initial_state import initial_state
+from ddct_plant.scenario.initial_state import initial_request
 from ddct_plant.scenario.settings import RunSettings
 
 pytestmark = pytest.mark.slow
@@ -153,7 +153,7 @@ class ExactLoop(ClosedLoop):
 
     def __init__(self, run, controller):
         super().__init__(run, controller)
-        start, request = self.plant.driveline.outputs(), initial_state(run).torque_request
+        start, request = self.plant.driveline.outputs(), initial_request(run)
         self._exact = transmission_model(run.scenario.driveline)
         engine, shaft, wheel, _ = start.joint_speed
         twist = start.joint_position[3]

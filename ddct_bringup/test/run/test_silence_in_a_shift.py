@@ -16,13 +16,19 @@ from ddct_controllers.registry import make_controller
 from ddct_plant.base.timebase import stamp_of_step, time_of_step
 from ddct_plant.fail_safe.guarded import GuardedActuator, GuardedEngine
 from ddct_plant.fail_safe.request_watch import REQUEST_TIMEOUT_S, FailSafeSettings
-from ddct_plant.models.driveline import OPEN, PHASES
+from ddct_plant.models.driveline import OPEN, PHASES, DrivelineOutputs
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.plant import holding_torque, make_engine, make_load
+from ddct_plant.scenario.initial_state import initial_request, initial_state
+from ddct_plant.scenario.plant import (
+    friction_clutch,
+    holding_torque,
+    make_actuator,
+    make_driveline,
+    make_engine,
+    make_load,
+)
 from ddct_plant.scenario.settings import RunSettings
-from ddct_plant.shift.driveline import ShiftOutputs
 from ddct_plant.shift.roles import OFF_GOING, ON_COMING
-from ddct_plant.shift_plant.sides import first_request, shift_driveline, side_actuator, side_clutch
 from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import (
     CLUTCH_TORQUE,
@@ -49,17 +55,17 @@ SETTINGS = RunSettings(
     load_scenario('upshift', {'shift.handover_s': 1.0}), clutch='stick_slip', handover='timed'
 )
 STEPS = SETTINGS.scenario.steps
-TORQUES = (ENGINE_TORQUE, LOAD_TORQUE, CLUTCH_TORQUE, HOLDING_TORQUE, OFF_GOING_CLUTCH_TORQUE)
+TORQUES = (ENGINE_TORQUE, LOAD_TORQUE, HOLDING_TORQUE, CLUTCH_TORQUE, OFF_GOING_CLUTCH_TORQUE)
 
 
 class Side:
     """Actuator with its fail-safe, and clutch, of one side."""
 
     def __init__(self, role: str) -> None:
-        self.actuator = GuardedActuator(
-            side_actuator(SETTINGS, role), first_request(SETTINGS, role), FailSafeSettings()
-        )
-        self._clutch = side_clutch(SETTINGS, role)
+        first = initial_request(SETTINGS, role)
+        actuator = make_actuator(SETTINGS, first)
+        self.actuator = GuardedActuator(actuator, first, FailSafeSettings())
+        self._clutch = friction_clutch(SETTINGS, role)
 
     def capacities(
         self, step: int, request: float | None, slip: float, work: float
@@ -78,7 +84,7 @@ class RealTimeShift:
         """`missing` are the topics without a message from `SILENT_FROM` on."""
         self._missing = missing
         self._now = 0.0
-        self.outputs: list[ShiftOutputs] = []
+        self.outputs: list[DrivelineOutputs] = []
         self.sides = {role: Side(role) for role in (ON_COMING, OFF_GOING)}
         self.engine = GuardedEngine(make_engine(SETTINGS), REQUEST_TIMEOUT_S)
         self._demand = make_engine(SETTINGS).demand
@@ -87,7 +93,7 @@ class RealTimeShift:
         controller = make_controller('pi', SETTINGS)
         self._reference = make_reference(SETTINGS, controller.preview_steps)
         self._architecture = make_architecture(SETTINGS, controller)
-        self._driveline = shift_driveline(SETTINGS)
+        self._driveline = make_driveline(SETTINGS, initial_state(SETTINGS))
         clutches = CLUTCH_TORQUE.name, OFF_GOING_CLUTCH_TORQUE.name
         self.owner = RealtimeOwner(
             self._driveline.step,
@@ -111,17 +117,18 @@ class RealTimeShift:
         """Answer a tick as the nodes do, each with what has come."""
         outputs = self._driveline.outputs()
         self.outputs.append(outputs)
-        true, other = outputs.driveline, outputs.off_going
+        other = outputs.off_going
+        assert other is not None
         command = self._command(step, outputs)
         torque = self._engine_torque(step, outputs, command)
         request = self._request(step, outputs, command, torque)
         comes = self._comes(OFF_GOING_TORQUE_REQUEST, step)
-        assert true.friction_work is not None
+        assert outputs.friction_work is not None
         replies: dict[Topic, Reply] = {
             ENGINE_TORQUE: torque,
-            LOAD_TORQUE: self._load.torque(true.vehicle_speed, time_of_step(step)),
+            LOAD_TORQUE: self._load.torque(outputs.vehicle_speed, time_of_step(step)),
             CLUTCH_TORQUE: self.sides[ON_COMING].capacities(
-                step, request, true.slip_speed, true.friction_work
+                step, request, outputs.slip_speed, outputs.friction_work
             ),
             HOLDING_TORQUE: self._holding.capacity(time_of_step(step)),
             OFF_GOING_CLUTCH_TORQUE: self.sides[OFF_GOING].capacities(
@@ -135,28 +142,28 @@ class RealTimeShift:
             if reply is not None and self._comes(topic, step):
                 self.owner.offer(topic.name, stamp_of_step(step), reply)
 
-    def _command(self, step: int, outputs: ShiftOutputs) -> HandoverCommand | None:
+    def _command(self, step: int, outputs: DrivelineOutputs) -> HandoverCommand | None:
         """Return what the handover answers, None while it waits for the demand."""
         if not self._comes(TORQUE_DEMAND, step):
             return None
-        true = outputs.driveline
+        assert outputs.off_going is not None
         return self._handover.update(
             HandoverMeasurement(
                 step,
                 self._demand(step),
-                true.engine_speed,
-                true.slip_speed,
+                outputs.engine_speed,
+                outputs.slip_speed,
                 outputs.off_going.slip_speed,
-                true.vehicle_speed,
+                outputs.vehicle_speed,
             )
         )
 
     def _engine_torque(
-        self, step: int, outputs: ShiftOutputs, command: HandoverCommand | None
+        self, step: int, outputs: DrivelineOutputs, command: HandoverCommand | None
     ) -> float | None:
         if not self._comes(ENGINE_TORQUE, step):
             return None
-        self.engine.speed = outputs.driveline.engine_speed
+        self.engine.speed = outputs.engine_speed
         torque = self.engine.tick(step)
         if torque is None and command and self._comes(TORQUE_CUT, step):
             torque = self.engine.request(step, self._demand(step) - command.torque_cut)
@@ -165,22 +172,21 @@ class RealTimeShift:
     def _request(
         self,
         step: int,
-        outputs: ShiftOutputs,
+        outputs: DrivelineOutputs,
         command: HandoverCommand | None,
         torque: float | None,
     ) -> float | None:
         if command is None or torque is None or not self._comes(HANDOVER_SHARE, step):
             return None
-        now = outputs.driveline
         speeds, rates = self._reference.update(
-            step, now.slip_speed, now.shaft_speed, command.share
+            step, outputs.slip_speed, outputs.shaft_speed, command.share
         )
         measurement = Measurement(
             step=step,
-            engine_speed=now.engine_speed,
-            shaft_speed=now.shaft_speed,
-            wheel_speed=now.wheel_speed,
-            vehicle_speed=now.vehicle_speed,
+            engine_speed=outputs.engine_speed,
+            shaft_speed=outputs.shaft_speed,
+            wheel_speed=outputs.wheel_speed,
+            vehicle_speed=outputs.vehicle_speed,
             engine_torque=torque,
             slip_reference=speeds,
             slip_reference_rate=rates,
@@ -194,7 +200,8 @@ def test_with_every_message_it_is_the_run_in_lock_step() -> None:
     run.go_to(STEPS)
     assert len(run.outputs) == expected.steps + 1
     for step, outputs in enumerate(run.outputs):
-        assert outputs.driveline.slip_speed == expected.slip_speed[step]
+        assert outputs.off_going is not None
+        assert outputs.slip_speed == expected.slip_speed[step]
         assert outputs.off_going.slip_speed == expected.off_going_slip_speed[step]
 
 
@@ -242,10 +249,11 @@ def test_the_clutch_that_follows_what_is_missing_opens_in_time_and_stays_open(ro
         assert carrying(outputs) == {ON_COMING, OFF_GOING} - row.opens
 
 
-def carrying(outputs: ShiftOutputs) -> set[str]:
+def carrying(outputs: DrivelineOutputs) -> set[str]:
     """Return the sides whose clutch is not open."""
+    assert outputs.off_going is not None
     phases = {
-        ON_COMING: outputs.driveline.clutch_phase,
+        ON_COMING: outputs.clutch_phase,
         OFF_GOING: outputs.off_going.clutch_phase,
     }
     return {side for side, phase in phases.items() if PHASES[int(phase or 0.0)] != OPEN}

@@ -128,7 +128,7 @@ def test_the_load_loses_its_rolling_resistance_to_the_holding_torque():
 def test_plates_of_one_speed_start_locked_and_carry_what_keeps_them_so():
     start = initial_state(settings())
     linear = initial_state(RunSettings(load_scenario('thesis')))
-    assert start.clutch_torque == pytest.approx(linear.clutch_torque)
+    assert start.sides[0].torque == pytest.approx(linear.sides[0].torque)
     assert start.twist == pytest.approx(linear.twist)
     assert start.load_torque + start.wheel_torque == pytest.approx(linear.load_torque)
     assert run().clutch_phase[0] == 2.0
@@ -137,16 +137,16 @@ def test_plates_of_one_speed_start_locked_and_carry_what_keeps_them_so():
 @pytest.mark.parametrize(('engine', 'sign'), [(180.0, 1.0), (140.0, -1.0)])
 def test_plates_of_two_speeds_start_slipping_and_carry_the_kinetic_capacity(engine, sign):
     changes = (f'initial.engine_speed_rad_s={engine}',)
-    start = initial_state(settings(*changes, wear_gain=0.7))
-    assert start.clutch_torque == pytest.approx(sign * 0.7 * start.torque_request)
+    (side,) = initial_state(settings(*changes, wear_gain=0.7)).sides
+    assert side.torque == pytest.approx(sign * 0.7 * side.torque_request)
     assert run(*changes).clutch_phase[0] == 1.0
 
 
 @pytest.mark.parametrize('engine', [160.0, 180.0])
 def test_a_clutch_in_the_phase_open_starts_without_torque(engine):
     changes = ('initial.clutch_phase=open', f'initial.engine_speed_rad_s={engine}')
-    start = initial_state(settings(*changes))
-    assert (start.torque_request, start.clutch_torque) == (0.0, 0.0)
+    (side,) = initial_state(settings(*changes)).sides
+    assert (side.torque_request, side.torque) == (0.0, 0.0)
     assert run(*changes).clutch_phase[0] == 0.0
 
 

@@ -26,14 +26,16 @@ from ddct_bringup.metrics.engagement import Engagement
 from ddct_bringup.metrics.metric import Metrics
 from ddct_bringup.metrics.plant import JudgedPlant
 from ddct_bringup.metrics.values import metrics_of
+from ddct_plant.friction.driveline import FrictionDriveline
+from ddct_plant.friction.engagements import both_engaged
 from ddct_plant.models.clutch import Capacity
 from ddct_plant.models.gearbox import Gearbox
+from ddct_plant.models.initial_state import InitialSide, InitialState
 from ddct_plant.models.parameters import DrivelineParameters, VehicleParameters
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.rules.shift import gears_of
-from ddct_plant.shift.driveline import ShiftDriveline
 from ddct_plant.shift.gear_pair import GearPair
-from ddct_plant.shift.start import ShiftStart, driving_start
+from ddct_plant.shift.start import driving_start
 
 OF_SHIFT = [each for each in METRICS.values() if each.of_shift]
 
@@ -156,16 +158,10 @@ def capacity(start: float, end: float | None = None) -> Capacity:
     return Capacity(kinetic, kinetic, 20.0)
 
 
-def row_of(driveline: ShiftDriveline, share: float) -> dict[str, Any]:
+def row_of(driveline: FrictionDriveline, share: float) -> dict[str, Any]:
     """Return the signals of a tick that the metrics read."""
-    outputs = driveline.outputs()
-    now, other = outputs.driveline, outputs.off_going
     return {
-        'tie_up_work': outputs.tie_up_work,
-        **{name: getattr(now, name) for name in ('joint_speed', 'joint_effort', 'slip_speed')},
-        **{name: getattr(now, name) for name in ('vehicle_accel', 'friction_work')},
-        **{name: getattr(now, name) for name in ('clutch_phase', 'phase_events')},
-        **{f'off_going_{name}': value for name, value in other._asdict().items()},
+        **driveline.outputs().signals,
         'handover_share': share,
         'slip_reference': (0.0,),
         'torque_request': 0.0,
@@ -182,7 +178,7 @@ def test_an_ideal_torque_phase_dips_by_33_8_percent_without_flare_or_tie_up():
     car = replace(DrivelineParameters(), shaft_damping=0.0)
     gears = GearPair(car, Gearbox().gear(1))
     start = driving_start(gears, 10.0, (100.0, 60.0, 0.0))
-    driveline = ShiftDriveline(gears, VehicleParameters(), start)
+    driveline = FrictionDriveline(both_engaged(gears), VehicleParameters(), start)
     rows = [row_of(driveline, 0.0)]
     while rows[-1]['off_going_transmitted_torque'] > 0.05:
         step = len(rows) - 1
@@ -190,11 +186,9 @@ def test_an_ideal_torque_phase_dips_by_33_8_percent_without_flare_or_tie_up():
         driveline.step(
             100.0,
             60.0,
-            on_coming.kinetic,
-            on_coming.static,
             0.0,
-            off_going.kinetic,
-            off_going.static,
+            *on_coming[:2],
+            *off_going[:2],
         )
         rows.append(row_of(driveline, 0.5))
     rows[-1]['handover_share'] = 1.0
@@ -217,19 +211,20 @@ def test_the_friction_work_of_an_inertia_phase_is_that_of_engine_and_kinetic_ene
     transmitted = torque + car.engine_inertia * slip / time_s
     damping = car.shaft_damping * (first**2 + second**2) * wheel
     twist = (second * transmitted - damping) / car.halfshaft_stiffness
-    start = ShiftStart(engine, second * wheel, engine, wheel, twist, 0.0, 0.0, 0.0, 0.0)
-    driveline = ShiftDriveline(GearPair(car, Gearbox().gear(1)), VehicleParameters(), start)
+    sides = InitialSide(second * wheel, open=True), InitialSide(engine)
+    start = InitialState(engine, wheel, twist, 0.0, 0.0, sides)
+    driveline = FrictionDriveline(
+        both_engaged(GearPair(car, Gearbox().gear(1))), VehicleParameters(), start
+    )
     rows = [row_of(driveline, 1.0)]
     for _ in range(35):
         on_coming, off_going = capacity(transmitted), capacity(0.0)
         driveline.step(
             torque,
             0.0,
-            on_coming.kinetic,
-            on_coming.static,
             0.0,
-            off_going.kinetic,
-            off_going.static,
+            *on_coming[:2],
+            *off_going[:2],
         )
         rows.append(row_of(driveline, 1.0))
     run = Trajectory.of_columns({name: [row[name] for row in rows] for name in rows[0]})

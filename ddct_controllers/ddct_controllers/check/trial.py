@@ -15,8 +15,8 @@ from ddct_controllers.interface import Command, Controller, Measurement
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.base.units import rad_s_from_rpm
+from ddct_plant.plant import Plant
 from ddct_plant.scenario.settings import RunSettings
-from ddct_plant.scenario.whole_plant import WholePlant
 
 RAMP_S = 0.8
 """Duration in s of the reference's descent from the slip speed at control start to zero."""
@@ -105,28 +105,29 @@ def closed_trial(
     """
     log = ClosedLoopLog()
     exact = replace(settings, scenario=replace(settings.scenario, sensors=None))
-    plant = WholePlant(exact, two_input=controller.commands_engine)
+    plant = Plant(exact, two_input=controller.commands_engine)
     _log_calls(controller, log, scale)
     architecture = make_architecture(settings, controller)
     start, probe = settings.scenario.control_start_step, probe_step(settings)
     from_speed = 0.0
     for step in range(probe + round(AFTER_S / PERIOD_S) + 1):
-        observation = plant.observe(step)
+        tick = plant.tick(step)
+        observation = plant.observe(tick)
         if step <= start:
-            from_speed = observation.true.slip_speed
+            from_speed = tick.true.slip_speed
         ahead = np.arange(step, step + controller.preview_steps + 1)
         left = 1.0 - np.maximum(ahead - start, 0) * PERIOD_S / RAMP_S
         speeds = from_speed * np.maximum(left, 0.0)
         if reference_step:
             speeds -= PROBE_RAD_S * (ahead >= probe)
         rates = np.where((left > 0.0) & (ahead >= start), -from_speed / RAMP_S, 0.0)
-        measurement = Measurement.of_plant(step, observation, speeds.tolist(), rates.tolist())
+        measurement = Measurement.of_plant(observation, speeds.tolist(), rates.tolist())
         request = architecture.update(measurement)
-        log.slip.append(observation.true.slip_speed)
+        log.slip.append(tick.true.slip_speed)
         log.request.append(request.torque)
         if log.too_slow:
             break
-        plant.advance(plant.reply(step, observation, request.torque, request.engine_torque))
+        plant.advance(plant.reply(observation, request.torque, request.engine_torque))
     return log
 
 

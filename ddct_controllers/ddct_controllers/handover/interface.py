@@ -8,11 +8,11 @@ from typing import NamedTuple, Self
 from ddct_plant.base.timebase import PERIOD_S, steps_in, time_of_step
 from ddct_plant.models.load import RoadLoad
 from ddct_plant.models.static_torque import StaticTorque
+from ddct_plant.plant import Tick
+from ddct_plant.scenario.initial_state import locked_request
 from ddct_plant.scenario.rules.shift import gears_of, shift_of
 from ddct_plant.scenario.settings import RunSettings
-from ddct_plant.sensors.sensed import MeasuredSpeeds
 from ddct_plant.shift.balance import off_going_torque
-from ddct_plant.shift_plant.start import locked_request
 from ddct_plant.signals.handover_share import OnComingShare
 
 MARGIN = 1.7
@@ -52,16 +52,16 @@ class HandoverMeasurement(NamedTuple):
     """Vehicle speed V_x in m/s."""
 
     @classmethod
-    def of_speeds(
-        cls, step: int, demand: float, speeds: MeasuredSpeeds, off_going_slip: float
-    ) -> Self:
-        """Return the signals at a step: demand in N m, speeds, off-going slip in rad/s."""
+    def of_tick(cls, tick: Tick) -> Self:
+        """Return the signals of a tick of a shift."""
+        speeds = tick.measured
+        assert tick.off_going_slip is not None
         return cls(
-            step,
-            demand,
+            tick.step,
+            tick.demand,
             speeds.engine_speed,
             speeds.slip_speed,
-            off_going_slip,
+            tick.off_going_slip,
             speeds.vehicle_speed,
         )
 

@@ -18,7 +18,8 @@ from ddct_controllers.handover.laws import HANDOVERS, make_handover
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.models.driveline import LOCKED, PHASES
-from ddct_plant.shift_plant.plant import ShiftPlant
+from ddct_plant.scenario.initial_state import initial_request
+from ddct_plant.shift.roles import OFF_GOING
 
 START, STEPS = 30, round(HANDOVER_S / PERIOD_S)
 COLD = ['upshift', 'upshift_light', 'upshift_full', 'upshift_2_3']
@@ -33,7 +34,7 @@ def test_before_the_shift_the_off_going_clutch_stays_locked(name):
         carried = tick.outputs.off_going.transmitted_torque
         assert tick.command.off_going_request > 1.4 * carried + 19.0
     assert ticks[0].command.off_going_request == pytest.approx(
-        ShiftPlant(shift_settings('upshift')).first_request, rel=1e-9
+        initial_request(shift_settings('upshift'), OFF_GOING), rel=1e-9
     )
 
 
@@ -99,13 +100,13 @@ def test_the_torque_cut_rises_in_the_inertia_phase_and_fades_to_the_lock():
     periods = 0
     for tick in ticks:
         periods += tick.command.share == 1.0
-        share_of_cut = min(max(tick.outputs.driveline.slip_speed, 0.0) / 30.0, periods / 10, 1.0)
+        share_of_cut = min(max(tick.outputs.slip_speed, 0.0) / 30.0, periods / 10, 1.0)
         assert tick.command.torque_cut == pytest.approx(40.0 * share_of_cut)
     cuts = [tick.command.torque_cut for tick in ticks]
     assert max(cuts) == 40.0
     assert any(0.0 < cut < 39.0 for cut in cuts)
     assert cuts[-1] == pytest.approx(0.0, abs=1e-6)
-    after = ticks[cuts.index(40.0) + 1].outputs.driveline
+    after = ticks[cuts.index(40.0) + 1].outputs
     assert after.joint_effort.engine == 60.0
 
 
@@ -113,11 +114,8 @@ def test_a_handover_expects_what_the_locked_clutch_carries():
     settings = shift_settings('upshift')
     ticks = shift(settings, 'timed')
     now = ticks[START].outputs
-    speeds = now.driveline
     expected = HandoverModel(settings).off_going(
-        HandoverMeasurement(
-            START, 100.0, speeds.engine_speed, speeds.slip_speed, 0.0, speeds.vehicle_speed
-        )
+        HandoverMeasurement(START, 100.0, now.engine_speed, now.slip_speed, 0.0, now.vehicle_speed)
     )
     assert now.off_going.transmitted_torque == pytest.approx(expected, abs=0.05)
 

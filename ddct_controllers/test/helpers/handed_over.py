@@ -8,16 +8,16 @@ from typing import NamedTuple
 from ddct_controllers.handover.interface import Handover, HandoverCommand, HandoverMeasurement
 from ddct_controllers.handover.laws import make_handover
 from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.models.driveline import DrivelineOutputs
 from ddct_plant.models.static_torque import StaticTorque
+from ddct_plant.plant import Plant
 from ddct_plant.scenario.settings import RunSettings
-from ddct_plant.shift.driveline import ShiftOutputs
-from ddct_plant.shift_plant.plant import ShiftPlant
 
 
 class Tick(NamedTuple):
     """Outputs of a step, and the command in it."""
 
-    outputs: ShiftOutputs
+    outputs: DrivelineOutputs
     command: HandoverCommand
 
 
@@ -28,23 +28,24 @@ def shift(
     law: Handover | None = None,
 ) -> list[Tick]:
     """Run a shift whose on-coming clutch is asked for C_fOL, times a factor at the end."""
-    plant = ShiftPlant(settings)
+    plant = Plant(settings)
     law = law or make_handover(replace(settings, handover=name))
     static = StaticTorque(settings.scenario.controlled_driveline, 'full')
     found = []
     for step in range(130):
-        outputs = plant.outputs()
-        now = outputs.driveline
-        measured = plant.measured(step, outputs)
-        command = law.update(HandoverMeasurement.of_speeds(step, plant.demand(step), *measured))
-        observation = plant.observe(step, outputs, measured[0], command.torque_cut)
+        tick = plant.tick(step)
+        now = tick.true
+        command = law.update(HandoverMeasurement.of_tick(tick))
+        observation = plant.observe(tick, command.torque_cut)
         torque = static.torque(
             observation.engine_torque, now.joint_effort.wheel, now.engine_speed, now.shaft_speed
         )
         torque *= command.share if command.share < 1.0 else in_inertia_phase
         request = command.on_coming.request(torque)
-        found.append(Tick(outputs, command))
-        plant.advance(plant.reply(step, outputs, observation, request, command.off_going_request))
+        found.append(Tick(now, command))
+        plant.advance(
+            plant.reply(observation, request, off_going_request=command.off_going_request)
+        )
     return found
 
 

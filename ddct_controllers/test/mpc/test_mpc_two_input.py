@@ -54,9 +54,10 @@ class Vehicle:
         self.demand_at = Engine(scenario.engine).demand
         self.engine = EngineResponse(authority)
         start = initial_state(RUN)
-        speeds = start.engine_speed, start.shaft_speed, start.wheel_speed
+        (side,) = start.sides
+        speeds = start.engine_speed, side.shaft_speed, start.wheel_speed
         self.step, self.load = 0, start.load_torque
-        self.state = MODEL.at_rest(speeds, start.twist, start.torque_request)
+        self.state = MODEL.at_rest(speeds, start.twist, side.torque_request)
         self.start_slip = 0.0
 
     def measure(self, rate=-110.0, length=8):

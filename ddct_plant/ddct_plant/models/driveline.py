@@ -3,7 +3,7 @@
 """Signals of a driveline at a tick: its joints, slip, vehicle, and the events of its clutch."""
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from ddct_plant.models.parameters import DrivelineParameters
 
@@ -46,8 +46,28 @@ class SensedJoints(NamedTuple):
     wheel: float
 
 
+class OffGoingOutputs(NamedTuple):
+    """Signals of the off-going clutch and its shaft at a tick of a shift."""
+
+    shaft_angle: float
+    """Angle of the off-going primary shaft in rad, from 0."""
+    shaft_speed: float
+    """Speed w_p1 of the off-going primary shaft in rad/s."""
+    transmitted_torque: float
+    """Transmitted torque C_1 in N m, left limit; negative where it takes torque from the
+    wheels."""
+    slip_speed: float
+    """Slip speed w_m - w_p1 in rad/s."""
+    clutch_phase: float
+    """Index of the phase in `PHASES`."""
+    friction_work: float
+    """Exact friction work in J of the last period."""
+    phase_events: tuple[PhaseEvent, ...]
+    """Events at slip zero in the last period, in the order of time."""
+
+
 class DrivelineOutputs(NamedTuple):
-    """The signals of a tick."""
+    """The signals of a tick; in a shift shaft, slip and clutch are those of the on-coming side."""
 
     joint_position: JointValues
     """Angles in rad: theta_sr of the driveshaft, the others integrated from 0."""
@@ -67,6 +87,18 @@ class DrivelineOutputs(NamedTuple):
     """Exact friction work in J of the last period."""
     phase_events: tuple[PhaseEvent, ...] | None = None
     """Events at slip zero in the last period, in the order of time."""
+    off_going: OffGoingOutputs | None = None
+    """Signals of the off-going side of a shift; None without a shift, as is the next field."""
+    tie_up_work: float | None = None
+    """Exact work in J of the clutches against each other in the last period, see `TieUp`."""
+
+    @property
+    def signals(self) -> dict[str, Any]:
+        """Signals of the tick by name; those of the off-going side have a prefix."""
+        named = self._asdict()
+        if off_going := named.pop('off_going'):
+            named.update(zip(_OFF_GOING_SIGNALS, off_going, strict=True))
+        return named
 
     @property
     def engine_speed(self) -> float:
@@ -89,6 +121,9 @@ class DrivelineOutputs(NamedTuple):
         return self.joint_position.driveshaft
 
 
+_OFF_GOING_SIGNALS = tuple(f'off_going_{name}' for name in OffGoingOutputs._fields)
+
+
 def driveline_outputs(
     parameters: DrivelineParameters,
     wheel_radius: float,
@@ -100,14 +135,16 @@ def driveline_outputs(
     friction_work: float | None = None,
     phase_events: tuple[PhaseEvent, ...] | None = None,
     gear_speed: float | None = None,
+    off_going: OffGoingOutputs | None = None,
+    tie_up_work: float | None = None,
 ) -> DrivelineOutputs:
     """
     Return the outputs in a state (7,), with the left limits of C_m, C_f and C_load in N m.
 
     `clutch_phase`, `friction_work` and `phase_events` are the fields of `DrivelineOutputs` for a
-    stick-slip clutch. The slip is exactly 0 while the clutch sticks, and the acceleration while
-    the wheels stick. `gear_speed` is that of the driveshaft's inner end in rad/s; by default the
-    primary shaft turns it.
+    stick-slip clutch, `off_going` and `tie_up_work` those for a shift. The slip is exactly 0 while
+    the clutch sticks, and the acceleration while the wheels stick. `gear_speed` is that of the
+    driveshaft's inner end in rad/s; by default the primary shaft turns it.
     """
     engine, shaft, wheel, twist, engine_angle, shaft_angle, wheel_angle = state
     p = parameters
@@ -127,4 +164,6 @@ def driveline_outputs(
         clutch_phase=clutch_phase,
         friction_work=friction_work,
         phase_events=phase_events,
+        off_going=off_going,
+        tie_up_work=tie_up_work,
     )

@@ -45,7 +45,7 @@ class Driveline:
         self._step_matrix = step_matrix(parameters)
         self._state_and_inputs = np.zeros(self._step_matrix.shape[1])
         self._state_and_inputs[: len(STATES)] = initial.states
-        self._torques = (initial.engine_torque, initial.clutch_torque, initial.load_torque)
+        self._torques = (initial.engine_torque, initial.sides[0].torque, initial.load_torque)
 
     @property
     def engine_speed(self) -> float:

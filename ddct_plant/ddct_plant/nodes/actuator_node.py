@@ -12,7 +12,8 @@ from ddct_plant.graph.node_reports import actuator_info, role_info
 from ddct_plant.graph.output import Output, SafeStateReport
 from ddct_plant.graph.settings import declare_fail_safe, declare_role
 from ddct_plant.graph.spin import run_node
-from ddct_plant.shift_plant.sides import first_request, side_actuator
+from ddct_plant.scenario.initial_state import initial_request
+from ddct_plant.scenario.plant import make_actuator
 from ddct_plant.signals.topics import ACTUATOR_TORQUE, CLOCK, TORQUE_REQUEST
 
 REQUEST = TORQUE_REQUEST.name
@@ -42,9 +43,8 @@ class ActuatorNode(FollowerNode):
             REQUEST_TIMEOUT_S,
             'Real time: when requests stop for longer, the clutch opens',
         )
-        self._actuator = GuardedActuator(
-            side_actuator(self.settings, role), first_request(self.settings, role), fail_safe
-        )
+        first = initial_request(self.settings, role)
+        self._actuator = GuardedActuator(make_actuator(self.settings, first), first, fail_safe)
         self._torque = Output(self, ACTUATOR_TORQUE)
         self._request = self.shown(REQUEST)
         self._requests_without_clock = 0

@@ -9,8 +9,7 @@ from ddct_plant.graph.node_reports import role_info
 from ddct_plant.graph.output import Output
 from ddct_plant.graph.settings import declare_role
 from ddct_plant.graph.spin import run_node
-from ddct_plant.scenario.plant import linear_clutch
-from ddct_plant.shift_plant.sides import side_clutch
+from ddct_plant.scenario.plant import friction_clutch, linear_clutch
 from ddct_plant.signals.topics import (
     ACTUATOR_TORQUE,
     CLUTCH_PHASE,
@@ -37,7 +36,7 @@ class ClutchNode(FollowerNode):
         self._torque = Output(self, CLUTCH_TORQUE)
         self.publish_run_info(role_info(self.settings, role))
         if self.settings.stick_slip:
-            self._friction = side_clutch(self.settings, role)
+            self._friction = friction_clutch(self.settings, role)
             self._temperature = Output(self, CLUTCH_TEMPERATURE)
             self.follow(ACTUATOR_TORQUE, SLIP, CLUTCH_PHASE)
         else:

@@ -20,8 +20,6 @@ from ddct_plant.nodes.tick_plan import declare_tick_plan
 from ddct_plant.program.supervision import is_supervised
 from ddct_plant.scenario.initial_state import initial_state
 from ddct_plant.scenario.plant import driveline_sensors, make_driveline
-from ddct_plant.shift.driveline import ShiftOutputs
-from ddct_plant.shift_plant.sides import shift_driveline, shift_signals
 from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import (
     CLOCK,
@@ -48,7 +46,7 @@ from ddct_plant.ticks.tick_owner import TickOwner
 
 CLUTCHES = (CLUTCH_TORQUE, OFF_GOING_CLUTCH_TORQUE)
 """Topics of the torques of the clutches, the off-going one in a gear shift only."""
-TORQUES = (ENGINE_TORQUE, LOAD_TORQUE, CLUTCH_TORQUE, HOLDING_TORQUE, OFF_GOING_CLUTCH_TORQUE)
+TORQUES = (ENGINE_TORQUE, LOAD_TORQUE, HOLDING_TORQUE, *CLUTCHES)
 """Topics of the torques that the driveline integrates, in the order of its `step`."""
 SENSED = sorted(
     (topic for topic in SENSED_TOPICS if topic.is_tick), key=lambda topic: topic is not SENSED_SLIP
@@ -90,11 +88,7 @@ class DrivelineNode(GraphNode):
         self._torques = [topic for topic in TORQUES if topic.in_run(self._run)]
         self._clutches = [topic for topic in CLUTCHES if topic.in_run(self._run)]
         self.plan = declare_tick_plan(self, self._torques, self._clutches)
-        self.driveline = (
-            shift_driveline(self.settings)
-            if self.settings.shift
-            else make_driveline(self.settings, initial_state(self.settings))
-        )
+        self.driveline = make_driveline(self.settings, initial_state(self.settings))
         self._sensors = driveline_sensors(self.settings)
         self._sole_publishers = SolePublishers(self, lambda: self._publish_tick(self.owner.step))
         self.owner = self._make_owner()
@@ -157,12 +151,9 @@ class DrivelineNode(GraphNode):
     def _publish_tick(self, step: int) -> None:
         stamp = stamp_of_step(step)
         outputs = self.driveline.outputs()
-        if isinstance(outputs, ShiftOutputs):
-            true, values = outputs.driveline, shift_signals(outputs)
-        else:
-            true, values = outputs, outputs._asdict()
+        values = outputs.signals
         if self._sensors:
-            values |= self._sensors.measure(step, true).signals
+            values |= self._sensors.measure(step, outputs).signals
         for output, names in self._outputs:
             output.fill(stamp, *[values[name] for name in names]).publish()
         if isinstance(self.owner, RealtimeOwner) and (missing := self.owner.safe_clutches):

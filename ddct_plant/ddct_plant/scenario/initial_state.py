@@ -1,28 +1,87 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""The state of a run at t_0 by its settings, and the request before it."""
+"""The state of a run at t_0 by its settings, and the request of each clutch before it."""
 
 from dataclasses import replace
 from typing import NamedTuple
 
 from ddct_plant.models.clutch import LinearClutch
 from ddct_plant.models.driveline import OPEN
-from ddct_plant.models.initial_state import InitialState
+from ddct_plant.models.initial_state import InitialSide, InitialState
 from ddct_plant.models.load import RoadLoad
 from ddct_plant.models.static_torque import StaticTorque
-from ddct_plant.scenario.plant import holding_torque, make_engine, make_load, stick_slip_clutch
+from ddct_plant.scenario.control import ClosingParameters
+from ddct_plant.scenario.plant import friction_clutch, holding_torque, make_engine, make_load
+from ddct_plant.scenario.rules.shift import gears_of, shift_of
+from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.shift.roles import ON_COMING, ROLES
+from ddct_plant.shift.start import driving_start
 
 
-def initial_request(settings: RunSettings) -> float:
+def initial_request(settings: RunSettings, role: str = ON_COMING) -> float:
     """
-    Return the request in N m of the clutch before the run; in a shift that of the on-coming one.
+    Return the request before t_0 in N m of the clutch with a role, for the known car.
 
     It is C_fOL in `detailed`, and where the scenario starts with a clutch that is locked or
-    slipping, of the car that a controller knows. It is zero for an open clutch, as is the
-    on-coming one of a shift.
+    slipping. It is zero for an open clutch, as is the on-coming one of a shift; that of the
+    off-going one keeps it locked.
     """
-    return 0.0 if settings.shift else _before(settings.known).torque_request
+    known = settings.known
+    if not settings.shift:
+        return _before(known).torque_request
+    if role == ON_COMING:
+        return 0.0
+    return locked_request(known.scenario, _driving(known).sides[1].torque)
+
+
+def locked_request(scenario: Scenario, carried: float) -> float:
+    """Return the request in N m that keeps a clutch locked that carries a torque in N m."""
+    closing = scenario.closing or ClosingParameters()
+    carried, most = abs(carried), closing.most_request(scenario.friction)
+    return max(min(closing.margin * carried + closing.reserve_n_m, most), carried)
+
+
+def initial_state(settings: RunSettings) -> InitialState:
+    """
+    Return the state at t_0 of a run with these settings.
+
+    The car is the true one; its actuators are at rest at the requests of the known settings. Raise
+    ParameterError for a shift of a car that does not move forward.
+    """
+    if settings.shift:
+        return _with_requests(settings, _driving(settings))
+    linear = _linear(settings)
+    return _with_friction(settings, linear) if settings.stick_slip else linear
+
+
+def _with_requests(settings: RunSettings, driving: InitialState) -> InitialState:
+    requests = (initial_request(settings, role) for role in ROLES)
+    sides = zip(driving.sides, requests, strict=True)
+    return replace(
+        driving, sides=tuple(replace(side, torque_request=request) for side, request in sides)
+    )
+
+
+def _driving(settings: RunSettings) -> InitialState:
+    """
+    Return the drive in the off-going gear before a shift, without the requests.
+
+    `initial.shaft_speed_rad_s` is that of the on-coming shaft in its gear, so it gives the speed
+    of the car also if the gear is engaged later.
+    """
+    scenario = settings.scenario
+    shift, gears = shift_of(scenario), gears_of(scenario)
+    wheel_speed = scenario.driveline.gear.wheel_speed(scenario.initial.shaft_speed_rad_s)
+    vehicle_speed = wheel_speed * scenario.vehicle.wheel_radius_m
+    engine_speed = gears.ratio * scenario.initial.shaft_speed_rad_s
+    torques = (
+        make_engine(settings).torque(0, speed=engine_speed),
+        make_load(settings).torque(vehicle_speed),
+        holding_torque(settings).capacity(0.0),
+    )
+    free = shift.free_shaft_rad_s if shift.preselection_s else None
+    return driving_start(gears, wheel_speed, torques, free)
 
 
 class _Before(NamedTuple):
@@ -52,54 +111,47 @@ def _before(settings: RunSettings) -> _Before:
     return _Before(static, wheel_speed, load_torque, engine_torque, request)
 
 
-def initial_state(settings: RunSettings) -> InitialState:
-    """
-    Return the state at t_0 of a run with these settings that is no shift.
-
-    The car is the true one; its actuator is at rest at the request of the known settings.
-    """
+def _linear(settings: RunSettings) -> InitialState:
+    """Return the state before a launch, with the linear clutch."""
     initial_speeds = settings.scenario.initial
     before, torque_request = _before(settings), initial_request(settings)
     shaft_speed = initial_speeds.shaft_speed_rad_s
     clutch_torque = LinearClutch(settings.wear_gain).transmit([torque_request])[0]
-    initial = InitialState(
+    return InitialState(
         engine_speed=initial_speeds.engine_speed_rad_s,
-        shaft_speed=shaft_speed,
         wheel_speed=before.wheel_speed,
         twist=before.static.twist(clutch_torque, before.load_torque, shaft_speed),
         engine_torque=before.engine_torque,
         load_torque=before.load_torque,
-        torque_request=torque_request,
-        clutch_torque=clutch_torque,
+        sides=(InitialSide(shaft_speed, torque_request, clutch_torque),),
     )
-    return _with_friction(settings, initial) if settings.stick_slip else initial
 
 
 def _with_friction(settings: RunSettings, linear: InitialState) -> InitialState:
     """
-    Return the initial state of a stick-slip run, from that of the linear clutch.
+    Return the state before a launch of a stick-slip run, from that of the linear clutch.
 
     Plates that slip transmit the kinetic capacity of the first request against their slip. Plates
     of one speed are locked, and carry the torque that keeps them so, at most the static capacity.
     Wheels at rest stay so in the same way, and the shaft between them and the clutch rests too.
     """
-    scenario = settings.scenario
+    scenario, (side,) = settings.scenario, linear.sides
     static = StaticTorque(scenario.driveline, scenario.equilibrium)
     load_torque = make_load(settings).torque(linear.wheel_speed * scenario.vehicle.wheel_radius_m)
     holding = holding_torque(settings).capacity(0.0)
     resisting = load_torque + holding
-    slip = linear.engine_speed - linear.shaft_speed
-    capacity = stick_slip_clutch(settings).reply(0, [linear.torque_request], slip, 0.0)
+    slip = linear.engine_speed - side.shaft_speed
+    capacity = friction_clutch(settings).reply(0, [side.torque_request], slip, 0.0)
     (kinetic,), (static_capacity,) = capacity.kinetic, capacity.static
     if slip:
         clutch_torque = kinetic if slip > 0.0 else -kinetic
     else:
         carried = static.torque(
-            linear.engine_torque, resisting, linear.engine_speed, linear.shaft_speed
+            linear.engine_torque, resisting, linear.engine_speed, side.shaft_speed
         )
         clutch_torque = _within(carried, static_capacity)
     wheel_torque = holding
-    twist = static.twist(clutch_torque, resisting, linear.shaft_speed)
+    twist = static.twist(clutch_torque, resisting, side.shaft_speed)
     if linear.wheel_speed == 0.0:
         shaft_torque = scenario.driveline.gear.wheel_torque(clutch_torque)
         wheel_torque = _within(shaft_torque - load_torque, holding)
@@ -108,9 +160,8 @@ def _with_friction(settings: RunSettings, linear: InitialState) -> InitialState:
         linear,
         twist=twist,
         load_torque=load_torque,
-        clutch_torque=clutch_torque,
+        sides=(replace(side, torque=clutch_torque, open=not static_capacity),),
         wheel_torque=wheel_torque,
-        clutch_open=not static_capacity,
     )
 
 

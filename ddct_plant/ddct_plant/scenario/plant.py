@@ -3,30 +3,44 @@
 """The models of a run by its settings; nodes and the headless loop make them here."""
 
 from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.timebase import steps_in
+from ddct_plant.friction.driveline import FrictionDriveline
+from ddct_plant.friction.engagements import (
+    EngagedGears,
+    both_engaged,
+    off_going_engaged,
+    on_coming_engaged,
+    one_clutch,
+)
 from ddct_plant.models.actuator import Actuator
 from ddct_plant.models.clutch import FrictionClutch, LinearClutch
 from ddct_plant.models.engine import Engine
 from ddct_plant.models.initial_state import InitialState
 from ddct_plant.models.linear_driveline import Driveline
 from ddct_plant.models.load import HoldingTorque, RoadLoad, air_and_slope
-from ddct_plant.models.stick_slip_driveline import (
-    StickSlipDriveline,
-)
 from ddct_plant.scenario.rules.driveline import least_usual
+from ddct_plant.scenario.rules.shift import gears_of
+from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.sensors.sensed import DrivelineSensors, TorqueEstimate
+from ddct_plant.shift.roles import ON_COMING
+
+OPEN_BELOW = 0.01
+"""Torque in N m of the actuator up to which a clutch of a shift is open."""
 
 
-def make_driveline(settings: RunSettings, initial: InitialState) -> Driveline | StickSlipDriveline:
+def make_driveline(settings: RunSettings, initial: InitialState) -> Driveline | FrictionDriveline:
     """
     Return the driveline of the run's clutch model in its initial state.
 
     Raise ParameterError for parameters that cannot be integrated, such as a shaft without weight.
     """
     scenario = settings.scenario
-    model = StickSlipDriveline if settings.stick_slip else Driveline
     try:
-        return model(scenario.driveline, scenario.vehicle, initial)
+        if settings.stick_slip:
+            engaged, changes = engagements(scenario)
+            return FrictionDriveline(engaged, scenario.vehicle, initial, changes)
+        return Driveline(scenario.driveline, scenario.vehicle, initial)
     except ParameterError as error:
         raise ParameterError(
             f'{least_usual(scenario.driveline)}: the driveline cannot be integrated with the '
@@ -36,15 +50,29 @@ def make_driveline(settings: RunSettings, initial: InitialState) -> Driveline | 
         ) from error
 
 
+def engagements(scenario: Scenario) -> tuple[EngagedGears, dict[int, EngagedGears]]:
+    """Return the gears that are engaged at t_0, and those that are from a step on."""
+    if scenario.shift is None:
+        return one_clutch(scenario.driveline), {}
+    shift, gears, changes = scenario.shift, gears_of(scenario), {}
+    first = both = both_engaged(gears)
+    if preselection := steps_in('shift.preselection_s', shift.preselection_s):
+        first, changes[preselection] = off_going_engaged(gears), both
+    if shift.disengagement_s is not None:
+        disengagement = steps_in('shift.disengagement_s', shift.disengagement_s)
+        changes[disengagement] = on_coming_engaged(gears)
+    return first, changes
+
+
 def make_engine(settings: RunSettings) -> Engine:
     """Return the engine of the scenario, with its authority and limits."""
     scenario = settings.scenario
     return Engine(scenario.demand, scenario.engine_authority, scenario.engine_limits)
 
 
-def make_actuator(settings: RunSettings, initial: InitialState) -> Actuator:
-    """Return the actuator of the plant, in its steady state for the run's first request."""
-    return Actuator(initial.torque_request, settings.scenario.actuator)
+def make_actuator(settings: RunSettings, initial_request: float) -> Actuator:
+    """Return the actuator of a clutch, in its steady state for the request before t_0 in N m."""
+    return Actuator(initial_request, settings.scenario.actuator)
 
 
 def linear_clutch(settings: RunSettings) -> LinearClutch:
@@ -52,10 +80,12 @@ def linear_clutch(settings: RunSettings) -> LinearClutch:
     return LinearClutch(settings.wear_gain)
 
 
-def stick_slip_clutch(settings: RunSettings) -> FrictionClutch:
-    """Return the stick-slip clutch at its initial temperatures."""
+def friction_clutch(settings: RunSettings, role: str = ON_COMING) -> FrictionClutch:
+    """Return the stick-slip clutch of a role, with its wear, at its initial temperatures."""
     scenario = settings.scenario
-    return FrictionClutch(scenario.friction, settings.wear_gain, scenario.heat)
+    wear_gain = settings.wear_gain if role == ON_COMING else settings.off_going_wear_gain
+    open_below = OPEN_BELOW if settings.shift else 0.0
+    return FrictionClutch(scenario.friction, wear_gain, scenario.heat, open_below)
 
 
 def make_load(settings: RunSettings) -> RoadLoad:

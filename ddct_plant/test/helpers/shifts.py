@@ -8,10 +8,11 @@ from typing import Any, NamedTuple
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.models.gearbox import Gearbox
 from ddct_plant.models.static_torque import StaticTorque
+from ddct_plant.plant import Plant
 from ddct_plant.scenario.file import ScenarioFile, load_scenario
+from ddct_plant.scenario.initial_state import initial_request, locked_request
 from ddct_plant.scenario.settings import RunSettings
-from ddct_plant.shift_plant.plant import ShiftPlant
-from ddct_plant.shift_plant.start import locked_request
+from ddct_plant.shift.roles import OFF_GOING
 
 HANDOVER_S, SLOPE = 0.2, 290.0
 """Length of the ramps in s, and slope of the slip reference in rad/s^2."""
@@ -108,15 +109,14 @@ class Law:
         return share * open_loop + feedback, (1.0 - share) * self._first
 
 
-def run(settings: RunSettings, tick: Callable[[int, ShiftPlant, Any, Any], None]) -> ShiftPlant:
+def run(settings: RunSettings, tick: Callable[[int, Plant, Any, Any], None]) -> Plant:
     """Run a shift and call `tick` with the step, the plant, its outputs and its reply."""
-    plant = ShiftPlant(settings)
-    law = Law(settings, plant.first_request)
+    plant = Plant(settings)
+    law = Law(settings, initial_request(settings, OFF_GOING))
     reply = None
     for step in range(settings.scenario.steps + 1):
-        outputs = plant.outputs()
-        true = outputs.driveline
-        observation = plant.observe(step, outputs, outputs.driveline)
+        observation = plant.observe(plant.tick(step), torque_cut=0.0)
+        true = observation.tick.true
         load = true.joint_effort.wheel
         sample = Sample(
             true.slip_speed,
@@ -125,8 +125,9 @@ def run(settings: RunSettings, tick: Callable[[int, ShiftPlant, Any, Any], None]
             observation.engine_torque,
             load,
         )
-        reply = plant.reply(step, outputs, observation, *law.requests(step, sample))
-        tick(step, plant, outputs, reply)
+        on_coming, off_going = law.requests(step, sample)
+        reply = plant.reply(observation, on_coming, off_going_request=off_going)
+        tick(step, plant, true, reply)
         if plant.over:
             break
         plant.advance(reply)

@@ -43,7 +43,12 @@ def test_a_step_equals_a_tight_tolerance_integration():
     """Each state within 1e-10 of its size after 20 periods of rough torques."""
     random = np.random.default_rng(1)
     driveline = make_driveline()
-    start = [INITIAL.engine_speed, INITIAL.shaft_speed, INITIAL.wheel_speed, INITIAL.twist]
+    start = [
+        INITIAL.engine_speed,
+        INITIAL.sides[0].shaft_speed,
+        INITIAL.wheel_speed,
+        INITIAL.twist,
+    ]
     state = np.array([*start, 0.0, 0.0, 0.0])
     for _ in range(20):
         engine, load = random.uniform(0.0, 300.0), random.uniform(0.0, 100.0)

@@ -151,7 +151,7 @@ def test_a_run_downhill_starts_with_no_request_where_the_static_torque_is_negati
     start = initial_state(settings)
     driveline = settings.scenario.driveline
     assert constant_slip_torque(driveline, start.engine_torque, start.load_torque) < -1.0
-    assert (start.torque_request, start.clutch_torque) == (0.0, 0.0)
+    assert (start.sides[0].torque_request, start.sides[0].torque) == (0.0, 0.0)
 
 
 def test_actuator_torque_is_continuous_from_period_to_period():

@@ -27,8 +27,8 @@ def slopes_at_start(scenario: Scenario, architecture: str, wear_gain: float = 1.
     """Return d/dt of w_m, w_p, w_r and theta_sr at t = 0."""
     start = initial_state(RunSettings(scenario, architecture, wear_gain=wear_gain))
     model = driveline_matrices(scenario.driveline)
-    state = [start.engine_speed, start.shaft_speed, start.wheel_speed, start.twist]
-    torques = [start.engine_torque, start.clutch_torque, start.load_torque]
+    state = start.states
+    torques = [start.engine_torque, start.sides[0].torque, start.load_torque]
     return model.a @ np.array(state) + model.b @ np.array(torques)
 
 

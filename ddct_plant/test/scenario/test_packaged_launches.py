@@ -65,8 +65,8 @@ def test_a_launch_starts_at_rest_with_an_open_clutch_and_a_balanced_shaft(name):
     settings = RunSettings(load_scenario(name), clutch='stick_slip')
     start = initial_state(settings)
     assert start.engine_speed == pytest.approx(104.72)
-    assert (start.shaft_speed, start.wheel_speed) == (0.0, 0.0)
-    assert (start.torque_request, start.clutch_torque, start.twist) == (0.0, 0.0, 0.0)
+    assert (start.sides[0].shaft_speed, start.wheel_speed) == (0.0, 0.0)
+    assert (start.sides[0].torque_request, start.sides[0].torque, start.twist) == (0.0, 0.0, 0.0)
     assert start.wheel_torque == pytest.approx(-start.load_torque), 'the brake holds the slope'
 
 
@@ -79,5 +79,5 @@ def test_launches_and_shifts_close_the_clutch_after_lock_up_and_nothing_else_doe
 
 def test_the_tip_in_starts_locked():
     start = initial_state(RunSettings(load_scenario('tip_in'), clutch='stick_slip'))
-    assert start.engine_speed == start.shaft_speed
-    assert start.torque_request > 0.0
+    assert start.engine_speed == start.sides[0].shaft_speed
+    assert start.sides[0].torque_request > 0.0

@@ -44,12 +44,12 @@ def test_the_shape_of_the_scenario_is_taken_or_refused(architecture):
 def test_the_clutch_starts_open_but_for_the_detailed_architecture():
     scenario = load_scenario('thesis', ['engine.torque_n_m=[25.0, 308.0]'])
     for architecture in ARCHITECTURES:
-        initial = initial_state(RunSettings(scenario, architecture, wear_gain=0.7))
+        (side,) = initial_state(RunSettings(scenario, architecture, wear_gain=0.7)).sides
         if architecture == 'detailed':
-            assert initial.torque_request > 20.0
-            assert initial.clutch_torque == 0.7 * initial.torque_request
+            assert side.torque_request > 20.0
+            assert side.torque == 0.7 * side.torque_request
         else:
-            assert (initial.torque_request, initial.clutch_torque) == (0.0, 0.0)
+            assert (side.torque_request, side.torque) == (0.0, 0.0)
 
 
 def test_a_driveline_that_sticks_and_cannot_be_integrated_is_named():

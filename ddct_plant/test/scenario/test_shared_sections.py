@@ -47,7 +47,7 @@ def test_a_bad_value_is_refused_after_good_ones_with_its_key() -> None:
 
 def test_a_driveline_of_usual_magnitudes_needs_no_matrices(monkeypatch) -> None:
     built: list[object] = []
-    monkeypatch.setattr(driveline, 'friction_system', built.append)
+    monkeypatch.setattr(driveline, 'one_clutch_system', built.append)
     require_driveline(parameters.DrivelineParameters(), 'linear')
     assert built == []
     require_driveline(parameters.DrivelineParameters(vehicle_inertia=1e-15), 'linear')

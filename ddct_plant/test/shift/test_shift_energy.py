@@ -9,11 +9,12 @@ import pytest
 from shifts import SHIFTS, run, shift_settings
 
 from ddct_plant.base.timebase import SUBSTEP_S, SUBSTEPS
+from ddct_plant.friction.driveline import FrictionDriveline
 from ddct_plant.hybrid.friction_system import Forcing, IntervalLayout
 from ddct_plant.hybrid.interval_map import Event, Interval
+from ddct_plant.models.driveline import DrivelineOutputs
 from ddct_plant.models.parameters import DrivelineParameters
-from ddct_plant.shift.driveline import ShiftDriveline, ShiftOutputs
-from ddct_plant.shift_plant.plant import ShiftPlant, ShiftReply
+from ddct_plant.plant import Plant, PlantReply
 
 LAYOUT = IntervalLayout(2, 3, SUBSTEPS, (0, 1, 4))
 
@@ -49,14 +50,14 @@ class Ledger:
         self.engine = self.load = self.dampers = 0.0
         self.friction = np.zeros(3)
 
-    def stored(self, outputs: ShiftOutputs) -> float:
+    def stored(self, outputs: DrivelineOutputs) -> float:
         """Return kinetic and elastic energy."""
-        p, driveline = self._parameters, outputs.driveline
+        p = self._parameters
         inertias = np.array(
             [p.engine_inertia, p.shaft_inertia, p.vehicle_inertia, p.shaft_inertia]
         )
-        speeds = np.array([*driveline.joint_speed[:3], outputs.off_going.shaft_speed])
-        elastic = p.halfshaft_stiffness * driveline.twist**2
+        speeds = np.array([*outputs.joint_speed[:3], outputs.off_going.shaft_speed])
+        elastic = p.halfshaft_stiffness * outputs.twist**2
         return float(inertias @ speeds**2 + elastic) / 2.0
 
     def add(
@@ -64,17 +65,18 @@ class Ledger:
         driveline: Any,
         before: Interval,
         engaged: Any,
-        reply: ShiftReply,
+        reply: PlantReply,
         angles: np.ndarray,
     ) -> None:
         """Add the period that `reply` drove, from the state `before` it."""
         after = driveline.now
         self.engine += reply.engine_torque * angles[0]
         self.load += reply.load_torque * angles[1]
+        holding, kinetic, static, other_kinetic, other_static = reply.friction_torques
         self.friction += after.work
         capacities = [
-            [*reply.on_coming.kinetic, *reply.off_going.kinetic, reply.holding_torque],
-            [*reply.on_coming.static, *reply.off_going.static, reply.holding_torque],
+            [*kinetic, *other_kinetic, holding],
+            [*static, *other_static, holding],
         ]
         forcing = Forcing(LAYOUT, [reply.engine_torque, reply.load_torque], *capacities)
         self.dampers += self._dissipated(engaged, before, forcing, after)
@@ -85,8 +87,8 @@ class Ledger:
         """Return the damper work of a period, from the polynomials between its events."""
         p, flows = self._parameters, engaged.integrator.flows
         size = len(before.state)
-        shift = np.array([engaged.to_shift(row) for row in np.eye(size)]).T
-        gear = np.array([engaged.gear_speed(engaged.to_shift(row)) for row in np.eye(size)])
+        shift = np.array([engaged.to_values(row) for row in np.eye(size)]).T
+        gear = np.array([engaged.gear_speed(engaged.to_values(row)) for row in np.eye(size)])
         rows = np.array([shift[0], shift[1], shift[7], gear - shift[2]])
         dampers = [p.engine_damping, p.shaft_damping, p.shaft_damping, p.halfshaft_damping]
         state, signs, total = np.array(before.state), before.signs, 0.0
@@ -112,8 +114,8 @@ def test_the_engine_work_is_stored_or_lost_in_friction_dampers_and_load(name, ke
     stored: list[float] = []
     last: list[Any] = []
 
-    def tick(step: int, plant: ShiftPlant, outputs: ShiftOutputs, reply: ShiftReply) -> None:
-        angles = np.array(outputs.driveline.joint_position)[[0, 2]]
+    def tick(step: int, plant: Plant, outputs: DrivelineOutputs, reply: PlantReply) -> None:
+        angles = np.array(outputs.joint_position)[[0, 2]]
         driveline: Any = plant.driveline
         if last:
             before, engaged, earlier, start = last
@@ -129,4 +131,4 @@ def test_the_engine_work_is_stored_or_lost_in_friction_dampers_and_load(name, ke
     assert ledger.friction[0] > 1000.0
     assert ledger.dampers > 1.0
     assert ledger.engine - gained - sum(lost) == pytest.approx(0.0, abs=1e-9 * max(terms))
-    assert isinstance(plant.driveline, ShiftDriveline)
+    assert isinstance(plant.driveline, FrictionDriveline)

@@ -12,13 +12,14 @@ from shifts import Law, Sample, run, shift_settings
 
 from ddct_plant.base.timebase import PERIOD_S, SUBSTEP_S, SUBSTEPS
 from ddct_plant.models.actuator import Actuator
+from ddct_plant.models.driveline import DrivelineOutputs
 from ddct_plant.models.load import HoldingTorque, RoadLoad, air_and_slope
+from ddct_plant.plant import Plant, PlantReply
+from ddct_plant.scenario.initial_state import initial_request, initial_state
+from ddct_plant.scenario.plant import OPEN_BELOW
 from ddct_plant.scenario.rules.shift import gears_of
 from ddct_plant.scenario.settings import RunSettings
-from ddct_plant.shift.driveline import ShiftOutputs
-from ddct_plant.shift_plant.plant import ShiftPlant, ShiftReply
-from ddct_plant.shift_plant.sides import OPEN_BELOW
-from ddct_plant.shift_plant.start import shift_start
+from ddct_plant.shift.roles import OFF_GOING
 
 TOLERANCE = 1e-12
 State = Sequence[float] | np.ndarray
@@ -40,7 +41,7 @@ class Independent:
 
     def __init__(self, settings: RunSettings) -> None:
         scenario = settings.scenario
-        start = shift_start(settings)
+        start = initial_state(settings)
         self.parameters = scenario.driveline
         gears = scenario.driveline.gear, gears_of(scenario).off_going
         self.ratios = [gear.total_ratio for gear in gears]
@@ -157,7 +158,7 @@ def shift_by_the_other_method(settings: RunSettings) -> tuple[np.ndarray, np.nda
     """
     scenario = settings.scenario
     other = Independent(settings)
-    first = ShiftPlant(settings).first_request
+    first = initial_request(settings, OFF_GOING)
     law = Law(settings, first)
     actuators = Actuator(0.0), Actuator(first)
     road = air_and_slope(scenario.load, scenario.vehicle)
@@ -188,12 +189,12 @@ def test_a_whole_shift_and_its_tie_up_are_within_1e_9_of_another_integration(nam
     works: list[float] = []
     kinds: list[str] = []
 
-    def tick(step: int, plant: ShiftPlant, outputs: ShiftOutputs, reply: ShiftReply) -> None:
-        speeds = outputs.driveline.joint_speed
+    def tick(step: int, plant: Plant, outputs: DrivelineOutputs, reply: PlantReply) -> None:
+        speeds = outputs.joint_speed
         gear = gears_of(settings.scenario).off_going.wheel_speed(outputs.off_going.shaft_speed)
         found.append([speeds.engine, gear, speeds.wheel])
         works.append(outputs.tie_up_work)
-        kinds.extend(event.kind for event in outputs.driveline.phase_events)
+        kinds.extend(event.kind for event in outputs.phase_events)
         kinds.extend(f'off {event.kind}' for event in outputs.off_going.phase_events)
 
     run(settings, tick)

@@ -12,18 +12,17 @@ from refusals import refused
 from shifts import SHIFTS, content, run, settings_of, shift_settings
 
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.models.driveline import PHASES
+from ddct_plant.models.driveline import PHASES, DrivelineOutputs
+from ddct_plant.plant import Plant, PlantReply
+from ddct_plant.scenario.initial_state import initial_state
 from ddct_plant.scenario.settings import RunSettings
-from ddct_plant.shift.driveline import ShiftOutputs
-from ddct_plant.shift_plant.plant import ShiftPlant, ShiftReply
-from ddct_plant.shift_plant.start import shift_start
 
 
 def rows(settings: RunSettings) -> list[dict[str, Any]]:
     """Return the signals of every step of a shift."""
     found: list[dict[str, Any]] = []
 
-    def tick(step: int, plant: ShiftPlant, outputs: ShiftOutputs, reply: ShiftReply) -> None:
+    def tick(step: int, plant: Plant, outputs: DrivelineOutputs, reply: PlantReply) -> None:
         found.append(reply.signals)
 
     run(settings, tick)
@@ -74,12 +73,11 @@ def test_two_runs_with_the_same_requests_have_the_same_bits():
 
 def test_a_tie_up_stalls_an_engine_with_limits():
     scenario = content((1, 2), 10.0, 20.0, friction={'most_n_m': 2000.0})
-    plant = ShiftPlant(settings_of(scenario, {'off_going_gear': 1}))
+    plant = Plant(settings_of(scenario, {'off_going_gear': 1}))
     steps = 0
     while not plant.over:
-        outputs = plant.outputs()
-        observation = plant.observe(steps, outputs, outputs.driveline)
-        reply = plant.reply(steps, outputs, observation, 2000.0, 2000.0)
+        observation = plant.observe(plant.tick(steps), 0.0)
+        reply = plant.reply(observation, 2000.0, off_going_request=2000.0)
         plant.advance(reply)
         steps += 1
         assert steps < 100
@@ -87,43 +85,39 @@ def test_a_tie_up_stalls_an_engine_with_limits():
 
 
 def test_a_torque_cut_is_taken_off_the_demand():
-    plant = ShiftPlant(shift_settings('upshift'))
-    outputs = plant.outputs()
-    observation = plant.observe(0, outputs, outputs.driveline, torque_cut=30.0)
-    assert (observation.demand, observation.delivered, observation.engine_torque) == (70.0,) * 3
-    reply = plant.reply(0, outputs, observation, 0.0, plant.first_request)
+    plant = Plant(shift_settings('upshift'))
+    observation = plant.observe(plant.tick(0), torque_cut=30.0)
+    assert (observation.requested, observation.delivered, observation.engine_torque) == (70.0,) * 3
+    reply = plant.reply(observation, 0.0)
     assert (reply.engine_torque, reply.signals['torque_demand']) == (70.0, 100.0)
 
 
 def test_a_controller_that_commands_the_engine_gets_what_it_requests():
-    plant = ShiftPlant(shift_settings('upshift'), two_input=True)
-    outputs = plant.outputs()
-    observation = plant.observe(0, outputs, outputs.driveline, torque_cut=30.0)
+    plant = Plant(shift_settings('upshift'), two_input=True)
+    observation = plant.observe(plant.tick(0), torque_cut=30.0)
     assert (observation.delivered, observation.engine_torque) == (None, 70.0)
-    reply = plant.reply(0, outputs, observation, 0.0, plant.first_request, 82.0)
+    reply = plant.reply(observation, 0.0, 82.0)
     assert reply.engine_torque == pytest.approx(82.0, rel=1e-15)
 
 
 def test_an_engine_with_a_rate_gets_one_request_a_step():
     slow = content((1, 2), 20.0, 100.0, engine_authority={'slew_n_m_s': 500.0})
-    plant = ShiftPlant(settings_of(slow, {'off_going_gear': 1}), two_input=True)
-    outputs = plant.outputs()
-    observation = plant.observe(0, outputs, outputs.driveline)
-    reply = plant.reply(0, outputs, observation, 0.0, plant.first_request, 60.0)
+    plant = Plant(settings_of(slow, {'off_going_gear': 1}), two_input=True)
+    observation = plant.observe(plant.tick(0), torque_cut=0.0)
+    reply = plant.reply(observation, 0.0, 60.0)
     assert reply.engine_torque == 95.0
 
 
 def test_a_controller_reads_the_sensors_where_the_scenario_has_some():
     sensors = {'engine_speed': {'noise_rad_s': 0.5}}
-    plant = ShiftPlant(
+    plant = Plant(
         settings_of(content((1, 2), 20.0, 100.0, sensors=sensors), {'off_going_gear': 1})
     )
-    outputs = plant.outputs()
-    measured, _ = plant.measured(0, outputs)
-    observation = plant.observe(0, outputs, measured)
-    assert observation.true == outputs.driveline
-    assert observation.measured.engine_speed != outputs.driveline.engine_speed
-    reply = plant.reply(0, outputs, observation, 0.0, plant.first_request)
+    outputs = plant.driveline.outputs()
+    observation = plant.observe(plant.tick(0), torque_cut=0.0)
+    assert observation.tick.true == outputs
+    assert observation.tick.measured.engine_speed != outputs.engine_speed
+    reply = plant.reply(observation, 0.0)
     assert 'sensed_slip_speed' in reply.signals
 
 
@@ -139,8 +133,8 @@ def test_the_example_of_the_page_shifts():
     lines = text.partition('In Python:\n')[2].splitlines()
     names: dict[str, Any] = {}
     exec(dedent('\n'.join(line for line in lines if not line or line[0] == ' ')), names)
-    outputs = names['plant'].outputs()
-    assert PHASES[int(outputs.driveline.clutch_phase)] == 'locked'
+    outputs = names['plant'].driveline.outputs()
+    assert PHASES[int(outputs.clutch_phase)] == 'locked'
     assert PHASES[int(outputs.off_going.clutch_phase)] == 'open'
 
 
@@ -168,7 +162,7 @@ def test_settings_that_do_not_fit_are_refused(key, scenario, shift):
     if bad['gear'] is None:
         del bad['gear']
     with refused(ParameterError, key):
-        shift_start(settings_of(bad, {'off_going_gear': 1, **shift}))
+        initial_state(settings_of(bad, {'off_going_gear': 1, **shift}))
 
 
 def test_the_linear_clutch_and_impossible_wear_are_refused():

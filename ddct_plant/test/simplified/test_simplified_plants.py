@@ -10,7 +10,7 @@ from scipy.linalg import expm
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.models.driveline_model import driveline_matrices
-from ddct_plant.models.initial_state import InitialState
+from ddct_plant.models.initial_state import InitialSide, InitialState
 from ddct_plant.models.linear_driveline import Driveline
 from ddct_plant.models.parameters import DrivelineParameters, VehicleParameters
 from ddct_plant.simplified.elementary import BlockDiagram, elementary_slip
@@ -46,8 +46,10 @@ START = np.array(
 @pytest.fixture(scope='module')
 def detailed() -> np.ndarray:
     """Return w_d of the detailed plant over the slip phase, (111,)."""
-    start = [*START, ENGINE[0], LOAD_N_M, CLUTCH[0, 0], CLUTCH[0, 0]]
-    driveline = Driveline(PARAMETERS, VehicleParameters(), InitialState(*start))
+    engine, shaft, wheel, twist = START
+    side = InitialSide(shaft, CLUTCH[0, 0], CLUTCH[0, 0])
+    start = InitialState(engine, wheel, twist, ENGINE[0], LOAD_N_M, (side,))
+    driveline = Driveline(PARAMETERS, VehicleParameters(), start)
     slip_speed = [driveline.outputs().slip_speed]
     for engine, points, load in zip(ENGINE, CLUTCH, LOAD, strict=True):
         driveline.step(engine, load, points.tolist())

@@ -14,9 +14,9 @@ from ddct_bringup.metrics.signals.integrals import integral
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import PERIOD_S, SUBSTEP_S
 from ddct_plant.models.clutch import FrictionClutch
+from ddct_plant.scenario.plant import OPEN_BELOW
 from ddct_plant.scenario.rules.shift import gears_of, shift_of
 from ddct_plant.scenario.settings import RunSettings
-from ddct_plant.shift_plant.sides import OPEN_BELOW
 
 
 @dataclass(frozen=True, eq=False)

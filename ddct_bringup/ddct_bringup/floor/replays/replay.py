@@ -8,14 +8,12 @@ import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.floor.case import Case
-from ddct_bringup.run.shift_loop import handover_tick
-from ddct_controllers.handover.interface import Handover
+from ddct_controllers.handover.interface import HandoverMeasurement
 from ddct_controllers.handover.laws import make_handover
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.models.static_torque import StaticTorque
+from ddct_plant.plant import Plant
 from ddct_plant.scenario.settings import RunSettings
-from ddct_plant.scenario.whole_plant import WholePlant
-from ddct_plant.shift_plant.plant import ShiftPlant, ShiftReply
 from ddct_plant.signals.signal import SignalValue
 
 CLOSING_SHARE = 1.1
@@ -75,30 +73,21 @@ def replayed(case: Case, requests: np.ndarray) -> Trajectory:
 
 def run_requests(settings: RunSettings, requests: np.ndarray) -> Trajectory:
     """Return the run of the simulated plant with the torque requests (n,) in N m of each step."""
-    plant = ShiftPlant(settings) if settings.shift else WholePlant(settings, two_input=False)
+    plant = Plant(settings)
     handover = make_handover(settings) if settings.shift else None
     rows: list[dict[str, SignalValue]] = []
     for step in range(settings.scenario.steps + 1):
-        request = float(requests[step])
-        reply: Any
-        if isinstance(plant, ShiftPlant):
-            assert handover is not None
-            reply = _reply_of_shift(plant, handover, step, request)
+        request, tick = float(requests[step]), plant.tick(step)
+        if handover is None:
+            reply = plant.reply(plant.observe(tick), request)
         else:
-            reply = plant.reply(step, plant.observe(step), request, None)
+            command = handover.update(HandoverMeasurement.of_tick(tick))
+            observation = plant.observe(tick, command.torque_cut)
+            reply = plant.reply(observation, request, off_going_request=command.off_going_request)
+            reply.signals.update(command.signals)
         rows.append(reply.signals)
         if plant.over or step == settings.scenario.steps:
             break
         plant.advance(reply)
     names = [name for name, first in rows[0].items() if first is not None]
     return Trajectory.of_columns({name: [row[name] for row in rows] for name in names})
-
-
-def _reply_of_shift(
-    plant: ShiftPlant, handover: Handover, step: int, request: float
-) -> ShiftReply:
-    """Return the reply of a shift's plant, whose handover is that of every run."""
-    outputs, command, observation = handover_tick(plant, handover, step)
-    reply = plant.reply(step, outputs, observation, request, command.off_going_request)
-    reply.signals.update(command.signals)
-    return reply

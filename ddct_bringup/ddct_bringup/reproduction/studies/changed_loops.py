@@ -98,7 +98,7 @@ class LoopWithoutActuator(ClosedLoop):
     def __init__(self, settings: RunSettings, controller: Controller) -> None:
         """Start in the run's initial state."""
         super().__init__(settings, controller)
-        self.plant.actuator = _Direct()
+        self.plant.sides[0].actuator = _Direct()
 
 
 class _Direct:

@@ -20,8 +20,8 @@ SETTINGS = RunSettings(load_scenario('thesis'))
 def test_page_states_the_acceleration_and_the_slip_that_the_start_makes():
     start = initial_state(SETTINGS)
     model = driveline_matrices(SETTINGS.scenario.driveline)
-    state = [start.engine_speed, start.shaft_speed, start.wheel_speed, start.twist]
-    torques = [start.engine_torque, start.clutch_torque, start.load_torque]
+    state = start.states
+    torques = [start.engine_torque, start.sides[0].torque, start.load_torque]
     shaft = (model.a @ np.array(state) + model.b @ np.array(torques))[1]
     run = run_headless(SETTINGS, 'pi')
     slip = rpm_from_rad_s(run.slip_speed[1])

@@ -24,7 +24,7 @@ from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
 from ddct_plant.linear.sampling import discretise_zoh
 from ddct_plant.models.actuator import Actuator, ActuatorParameters
 from ddct_plant.models.clutch import LinearClutch
-from ddct_plant.models.initial_state import InitialState
+from ddct_plant.models.initial_state import InitialSide, InitialState
 from ddct_plant.models.linear_driveline import Driveline
 from ddct_plant.models.parameters import VehicleParameters
 
@@ -45,13 +45,11 @@ def slip_rpm_as_run(
     def slip(extra: np.ndarray) -> np.ndarray:
         start = InitialState(
             engine_speed=160.0,
-            shaft_speed=160.0,
             wheel_speed=IDENTIFIED_DRIVELINE.gear.wheel_speed(160.0),
             twist=0.0,
             engine_torque=0.0,
             load_torque=0.0,
-            torque_request=BASE_TORQUE,
-            clutch_torque=wear_gain * BASE_TORQUE,
+            sides=(InitialSide(160.0, BASE_TORQUE, wear_gain * BASE_TORQUE),),
         )
         driveline = Driveline(IDENTIFIED_DRIVELINE, VehicleParameters(), start)
         actuator, clutch = Actuator(BASE_TORQUE, parameters), LinearClutch(wear_gain)

@@ -29,14 +29,15 @@ from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.models.actuator import Actuator
 from ddct_plant.models.clutch import LinearClutch
 from ddct_plant.models.driveline_model import driveline_matrices
-from ddct_plant.models.initial_state import InitialState
+from ddct_plant.models.initial_state import InitialSide, InitialState
 from ddct_plant.models.linear_driveline import Driveline
 from ddct_plant.models.parameters import DrivelineParameters, VehicleParameters
 from ddct_plant.models.printed import ACTUATOR
 
 DRIVELINE = DrivelineParameters()
 MODEL = transmission_model(DRIVELINE)
-START = InitialState(180.0, 150.0, DRIVELINE.gear.wheel_speed(150.0), 0.01, 40.0, 60.0, 35.0, 35.0)
+SIDE = InitialSide(150.0, 35.0, 35.0)
+START = InitialState(180.0, DRIVELINE.gear.wheel_speed(150.0), 0.01, 40.0, 60.0, (SIDE,))
 
 
 def inputs(steps):
@@ -49,7 +50,7 @@ def inputs(steps):
 def plant_run(rows, wear_gain=1.0):
     """Return w_m, w_p, w_r, w_sr (steps, 4) of the plant's own classes."""
     driveline = Driveline(DRIVELINE, VehicleParameters(), START)
-    actuator, clutch = Actuator(START.torque_request), LinearClutch(wear_gain)
+    actuator, clutch = Actuator(SIDE.torque_request), LinearClutch(wear_gain)
     speeds = []
     for request, engine, load in rows:
         speeds.append(driveline.outputs().joint_speed)
@@ -58,8 +59,8 @@ def plant_run(rows, wear_gain=1.0):
 
 
 def rest(model):
-    speeds = (START.engine_speed, START.shaft_speed, START.wheel_speed)
-    return model.at_rest(speeds, START.twist, START.torque_request)
+    speeds = (START.engine_speed, SIDE.shaft_speed, START.wheel_speed)
+    return model.at_rest(speeds, START.twist, SIDE.torque_request)
 
 
 def model_run(model, rows):

@@ -6,8 +6,8 @@ import math
 
 from ddct_plant.base.clutch_kinds import STICK_SLIP
 from ddct_plant.base.errors import ParameterError
+from ddct_plant.friction.engagements import one_clutch, one_clutch_system
 from ddct_plant.models.parameters import DrivelineParameters
-from ddct_plant.models.stick_slip_driveline import friction_integrator, friction_system
 
 _SMALLEST, _LARGEST = 1e-12, 1e12
 """Magnitudes in SI units far beyond those of any driveline, between which nothing overflows."""
@@ -22,9 +22,9 @@ def require_driveline(parameters: DrivelineParameters, clutch: str) -> None:
     """
     try:
         if clutch == STICK_SLIP:
-            friction_integrator(parameters)
+            one_clutch(parameters)
         elif not _usual(parameters):
-            friction_system(parameters)
+            one_clutch_system(parameters)
     except (ParameterError, ArithmeticError) as error:
         raise ParameterError(
             f'{least_usual(parameters)}: give inertias, damping and stiffness of a car ({error})',

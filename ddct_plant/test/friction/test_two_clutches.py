@@ -10,16 +10,23 @@ import pytest
 from refusals import refused
 
 from ddct_plant.base.errors import ParameterError
+from ddct_plant.friction.driveline import FrictionDriveline
+from ddct_plant.friction.engagements import (
+    OFF_GOING,
+    ON_COMING,
+    WHEEL,
+    both_engaged,
+    off_going_engaged,
+    on_coming_engaged,
+    one_clutch,
+)
 from ddct_plant.models.clutch import Capacity
-from ddct_plant.models.driveline import PHASES
+from ddct_plant.models.driveline import PHASES, DrivelineOutputs, OffGoingOutputs
 from ddct_plant.models.gearbox import Gearbox
-from ddct_plant.models.initial_state import InitialState
+from ddct_plant.models.initial_state import InitialSide, InitialState
 from ddct_plant.models.parameters import DrivelineParameters, VehicleParameters
-from ddct_plant.models.stick_slip_driveline import StickSlipDriveline
-from ddct_plant.shift.driveline import ShiftDriveline, ShiftOutputs
-from ddct_plant.shift.engagements import OFF_GOING, ON_COMING, WHEEL, both_engaged
 from ddct_plant.shift.gear_pair import GearPair
-from ddct_plant.shift.start import ShiftStart, driving_start
+from ddct_plant.shift.start import driving_start
 
 pytestmark = pytest.mark.slow
 
@@ -41,7 +48,7 @@ OPEN = capacity(0.0)
 
 
 def step(
-    driveline: ShiftDriveline,
+    driveline: FrictionDriveline,
     engine: float,
     load: float,
     on_coming: Capacity,
@@ -49,19 +56,26 @@ def step(
     holding: float,
 ) -> None:
     """Advance by one period with torques in N m and the capacities of both clutches."""
-    driveline.step(engine, load, *on_coming[:2], holding, *off_going[:2])
+    driveline.step(engine, load, holding, *on_coming[:2], *off_going[:2])
 
 
-def at(engine: float, wheel: float, twist: float = 0.0) -> ShiftStart:
+def at(engine: float, wheel: float, twist: float = 0.0) -> InitialState:
     """Return a start with both gears engaged, at an engine and a wheel speed in rad/s."""
-    return ShiftStart(engine, TAU_J * wheel, TAU_I * wheel, wheel, twist, 0.0, 0.0, 0.0, 0.0)
+    sides = InitialSide(TAU_J * wheel, open=True), InitialSide(TAU_I * wheel)
+    return InitialState(engine, wheel, twist, 0.0, 0.0, sides)
 
 
-def phases(outputs: ShiftOutputs) -> tuple[str, str]:
+def off_going_of(outputs: DrivelineOutputs) -> OffGoingOutputs:
+    """Return the signals of the off-going side."""
+    assert outputs.off_going is not None
+    return outputs.off_going
+
+
+def phases(outputs: DrivelineOutputs) -> tuple[str, str]:
     """Return the phases of the on-coming and the off-going clutch."""
-    on_coming = outputs.driveline.clutch_phase
+    on_coming = outputs.clutch_phase
     assert on_coming is not None
-    return PHASES[int(on_coming)], PHASES[int(outputs.off_going.clutch_phase)]
+    return PHASES[int(on_coming)], PHASES[int(off_going_of(outputs).clutch_phase)]
 
 
 def test_the_equations_are_those_at_the_gear_output():
@@ -101,15 +115,17 @@ def test_in_an_ideal_torque_phase_the_wheel_torque_falls_by_a_third():
         p.vehicle_inertia + shafts + p.engine_inertia * TAU_I * TAU_J
     )
     torques = [p.vehicle_inertia * a + load for a in (before, after)]
-    driveline = ShiftDriveline(gears, VEHICLE, driving_start(gears, 10.0, (engine, load, 0.0)))
-    found = [driveline.outputs().driveline.joint_effort.driveshaft]
+    driveline = FrictionDriveline(
+        both_engaged(gears), VEHICLE, driving_start(gears, 10.0, (engine, load, 0.0))
+    )
+    found = [driveline.outputs().joint_effort.driveshaft]
     off_going = []
     for period in range(1000):
         on_coming = capacity(0.1 * period, 0.1 * (period + 1))
         step(driveline, engine, load, on_coming, capacity(200.0), 0.0)
         now = driveline.outputs()
-        off_going.append(now.off_going.transmitted_torque)
-        found.append(now.driveline.joint_effort.driveshaft)
+        off_going.append(off_going_of(now).transmitted_torque)
+        found.append(now.joint_effort.driveshaft)
         assert phases(now) == ('slipping', 'locked')
         if off_going[-1] < 0.0:
             break
@@ -132,11 +148,13 @@ def test_the_work_of_an_inertia_phase_is_that_of_the_engine_and_of_its_kinetic_e
     transmitted = torque + p.engine_inertia * slip / time_s
     damping = p.shaft_damping * (TAU_I**2 + TAU_J**2) * wheel
     twist = (TAU_J * transmitted - damping) / p.halfshaft_stiffness
-    driveline = ShiftDriveline(GearPair(p, FIRST), VEHICLE, at(engine_speed, wheel, twist))
+    driveline = FrictionDriveline(
+        both_engaged(GearPair(p, FIRST)), VEHICLE, at(engine_speed, wheel, twist)
+    )
     work = 0.0
     for _ in range(32):
         step(driveline, torque, 0.0, capacity(transmitted, ratio=2.0), OPEN, 0.0)
-        now = driveline.outputs().driveline
+        now = driveline.outputs()
         work += now.friction_work
         for event in now.phase_events:
             assert event.kind == 'lock'
@@ -160,32 +178,32 @@ def test_the_work_of_an_inertia_phase_is_that_of_the_engine_and_of_its_kinetic_e
 def test_a_tie_up_brings_car_and_engine_to_rest_and_keeps_them_there(torques, ratio, rolling):
     """An engine without limits, at 20 km/h in first gear; without friction the wheels swing on."""
     start = driving_start(GEARS, WHEEL_SPEED, (100.0, 10.0, rolling))
-    driveline = ShiftDriveline(GEARS, VEHICLE, start)
+    driveline = FrictionDriveline(both_engaged(GEARS), VEHICLE, start)
     on_coming, off_going = (capacity(torque, ratio=ratio) for torque in torques)
     at_rest = []
     for period in range(1000):
         step(driveline, 100.0, 0.0, on_coming, off_going, rolling)
         now = driveline.outputs()
-        assert np.isfinite([*now.driveline.joint_speed, *now.driveline.joint_effort]).all()
+        assert np.isfinite([*now.joint_speed, *now.joint_effort]).all()
         if phases(now) == ('locked', 'locked'):
             at_rest.append(period)
-            assert now.driveline.engine_speed == pytest.approx(0.0, abs=1e-12)
-            assert now.off_going.shaft_speed == pytest.approx(0.0, abs=1e-12)
-            assert (now.driveline.slip_speed, now.off_going.slip_speed) == (0.0, 0.0)
-            carried = now.driveline.joint_effort.primary_shaft + now.off_going.transmitted_torque
+            assert now.engine_speed == pytest.approx(0.0, abs=1e-12)
+            assert off_going_of(now).shaft_speed == pytest.approx(0.0, abs=1e-12)
+            assert (now.slip_speed, off_going_of(now).slip_speed) == (0.0, 0.0)
+            carried = now.joint_effort.primary_shaft + off_going_of(now).transmitted_torque
             assert carried == pytest.approx(100.0, abs=1e-9)
     assert at_rest[0] < 100
     assert at_rest[-1] == 999
     if rolling:
-        assert now.driveline.vehicle_accel == now.driveline.joint_speed.wheel == 0.0
+        assert now.vehicle_accel == now.joint_speed.wheel == 0.0
     else:
-        assert abs(now.driveline.joint_speed.wheel) < 1.0
+        assert abs(now.joint_speed.wheel) < 1.0
 
 
 def test_a_tie_up_at_the_capacity_of_the_c635_brakes_the_car_by_the_difference_of_the_ratios():
     """T = tau_i C_m - (tau_i - tau_j) C_2 at the wheels: it takes seconds to stop the engine."""
     start = driving_start(GEARS, WHEEL_SPEED, (100.0, 10.0, 60.0))
-    driveline = ShiftDriveline(GEARS, VEHICLE, start)
+    driveline = FrictionDriveline(both_engaged(GEARS), VEHICLE, start)
     inertia = PARAMETERS.vehicle_inertia + TAU_I**2 * PARAMETERS.engine_inertia
     inertia += PARAMETERS.shaft_inertia * (TAU_I**2 + TAU_J**2)
     torque = 100.0 * TAU_I - 350.0 * (TAU_I - TAU_J) - 70.0
@@ -193,79 +211,71 @@ def test_a_tie_up_at_the_capacity_of_the_c635_brakes_the_car_by_the_difference_o
         step(driveline, 100.0, 10.0, capacity(350.0), capacity(350.0), 60.0)
     now = driveline.outputs()
     assert phases(now) == ('slipping', 'locked')
-    assert now.driveline.wheel_speed == pytest.approx(
-        WHEEL_SPEED + 2.0 * torque / inertia, abs=1.0
-    )
-    assert now.off_going.transmitted_torque == pytest.approx(-230.0, abs=40.0)
+    assert now.wheel_speed == pytest.approx(WHEEL_SPEED + 2.0 * torque / inertia, abs=1.0)
+    assert off_going_of(now).transmitted_torque == pytest.approx(-230.0, abs=40.0)
 
 
 def test_with_one_gear_engaged_it_is_the_driveline_with_one_clutch():
     """Before preselection that in the off-going gear, after disengagement in the on-coming one."""
     start = driving_start(GEARS, WHEEL_SPEED, (100.0, 10.0, 60.0), free_shaft_speed=40.0)
-    shift = ShiftDriveline(GEARS, VEHICLE, start, 20, 30)
-    one = StickSlipDriveline(
-        GEARS.in_off_going_gear,
+    shift = FrictionDriveline(
+        off_going_engaged(GEARS),
         VEHICLE,
-        InitialState(
-            start.engine_speed,
-            start.off_going_speed,
-            WHEEL_SPEED,
-            start.twist,
-            100.0,
-            10.0,
-            0.0,
-            start.off_going_torque,
-            start.wheel_torque,
-        ),
+        start,
+        {20: both_engaged(GEARS), 30: on_coming_engaged(GEARS)},
+    )
+    one = FrictionDriveline(
+        one_clutch(GEARS.in_off_going_gear), VEHICLE, replace(start, sides=start.sides[1:])
     )
     for period in range(20):
         clutch = capacity(120.0 - 5.0 * period, 115.0 - 5.0 * period, ratio=1.1)
         step(shift, 100.0, 10.0, OPEN, clutch, 60.0)
-        one.step(100.0, 10.0, clutch.kinetic, clutch.static, 60.0)
+        one.step(100.0, 10.0, 60.0, clutch.kinetic, clutch.static)
         if period < 19:
             both, alone = shift.outputs(), one.outputs()
-            assert both.off_going.shaft_speed == pytest.approx(alone.shaft_speed, rel=1e-12)
-            assert both.driveline.wheel_speed == pytest.approx(alone.wheel_speed, rel=1e-12)
-            assert both.driveline.twist == pytest.approx(alone.twist, rel=1e-10)
-            assert both.driveline.vehicle_accel == pytest.approx(alone.vehicle_accel, rel=1e-9)
-            assert both.off_going.clutch_phase == alone.clutch_phase
-            assert len(both.off_going.phase_events) == len(alone.phase_events)
+            assert off_going_of(both).shaft_speed == pytest.approx(alone.shaft_speed, rel=1e-12)
+            assert both.wheel_speed == pytest.approx(alone.wheel_speed, rel=1e-12)
+            assert both.twist == pytest.approx(alone.twist, rel=1e-10)
+            assert both.vehicle_accel == pytest.approx(alone.vehicle_accel, rel=1e-9)
+            assert off_going_of(both).clutch_phase == alone.clutch_phase
+            assert len(off_going_of(both).phase_events) == len(alone.phase_events)
             for found, expected in zip(
-                both.off_going.phase_events, alone.phase_events, strict=True
+                off_going_of(both).phase_events, alone.phase_events, strict=True
             ):
                 assert found.kind == expected.kind
                 assert found.time_s == pytest.approx(expected.time_s, abs=1e-12)
     for _ in range(10):
         step(shift, 100.0, 10.0, OPEN, OPEN, 60.0)
     now = shift.outputs()
-    engine, shaft, wheel, twist = *now.driveline.joint_speed[:3], now.driveline.twist
-    one = StickSlipDriveline(
-        PARAMETERS, VEHICLE, InitialState(engine, shaft, wheel, twist, 100.0, 10.0, 0.0, 0.0)
-    )
+    engine, shaft, wheel, twist = *now.joint_speed[:3], now.twist
+    start = InitialState(engine, wheel, twist, 100.0, 10.0, (InitialSide(shaft),))
+    one = FrictionDriveline(one_clutch(PARAMETERS), VEHICLE, start)
     for period in range(40):
         clutch = capacity(6.0 * period, 6.0 * (period + 1))
         step(shift, 100.0, 10.0, clutch, OPEN, 60.0)
-        one.step(100.0, 10.0, clutch.kinetic, clutch.static, 60.0)
+        one.step(100.0, 10.0, 60.0, clutch.kinetic, clutch.static)
     both, alone = shift.outputs(), one.outputs()
-    assert both.driveline.joint_speed == pytest.approx(alone.joint_speed, rel=1e-11, abs=1e-9)
-    assert both.driveline.friction_work == pytest.approx(alone.friction_work, rel=1e-10)
-    assert both.driveline.clutch_phase == alone.clutch_phase
+    assert both.joint_speed == pytest.approx(alone.joint_speed, rel=1e-11, abs=1e-9)
+    assert both.friction_work == pytest.approx(alone.friction_work, rel=1e-10)
+    assert both.clutch_phase == alone.clutch_phase
     decay = math.exp(-0.4 * PARAMETERS.shaft_damping / PARAMETERS.shaft_inertia)
-    assert both.off_going.shaft_speed == pytest.approx(
-        now.off_going.shaft_speed * decay, rel=1e-12
+    assert off_going_of(both).shaft_speed == pytest.approx(
+        off_going_of(now).shaft_speed * decay, rel=1e-12
     )
 
 
 def test_preselection_gives_the_free_shaft_the_speed_of_its_gear():
     start = driving_start(GEARS, WHEEL_SPEED, (100.0, 10.0, 60.0), free_shaft_speed=40.0)
-    driveline = ShiftDriveline(GEARS, VEHICLE, start, preselection_step=5)
+    driveline = FrictionDriveline(
+        off_going_engaged(GEARS), VEHICLE, start, {5: both_engaged(GEARS)}
+    )
     free, shafts = [], []
     for _ in range(6):
         now = driveline.outputs()
-        free.append(now.driveline.shaft_speed)
-        shafts.append(now.off_going.shaft_speed)
+        free.append(now.shaft_speed)
+        shafts.append(off_going_of(now).shaft_speed)
         assert phases(now) == ('open', 'locked')
-        assert now.driveline.slip_speed == now.driveline.engine_speed - now.driveline.shaft_speed
+        assert now.slip_speed == now.engine_speed - now.shaft_speed
         step(driveline, 100.0, 10.0, OPEN, capacity(150.0), 60.0)
     decay = math.exp(-0.01 * PARAMETERS.shaft_damping / PARAMETERS.shaft_inertia)
     assert free[:5] == pytest.approx([40.0 * decay**k for k in range(5)], rel=1e-12)
@@ -276,10 +286,12 @@ def test_preselection_gives_the_free_shaft_the_speed_of_its_gear():
 
 
 def test_a_steady_drive_before_the_shift_has_no_oscillation():
-    driveline = ShiftDriveline(GEARS, VEHICLE, driving_start(GEARS, WHEEL_SPEED, (100.0, 10, 60)))
+    driveline = FrictionDriveline(
+        both_engaged(GEARS), VEHICLE, driving_start(GEARS, WHEEL_SPEED, (100.0, 10, 60))
+    )
     accels = []
     for _ in range(50):
-        accels.append(driveline.outputs().driveline.vehicle_accel)
+        accels.append(driveline.outputs().vehicle_accel)
         step(driveline, 100.0, 10.0, OPEN, capacity(150.0), 60.0)
     assert np.ptp(accels) < 0.03
     assert accels[0] > accels[-1] > 2.0  # the shafts' damping grows with speed

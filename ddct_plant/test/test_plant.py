@@ -5,10 +5,10 @@
 import pytest
 
 from ddct_plant.base.timebase import time_of_step
+from ddct_plant.plant import Plant
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.plant import make_engine, make_load
 from ddct_plant.scenario.settings import RunSettings
-from ddct_plant.scenario.whole_plant import WholePlant
 
 SLOPE = 'slope={time_s: [0.0, 1.0], slope_rad: [0.0, 0.2]}'
 
@@ -16,12 +16,12 @@ SLOPE = 'slope={time_s: [0.0, 1.0], slope_rad: [0.0, 0.2]}'
 @pytest.mark.parametrize('clutch', ['linear', 'stick_slip'])
 def test_the_load_is_that_of_the_slope_at_the_time_of_each_step(clutch):
     settings = RunSettings(load_scenario('thesis', [SLOPE]), clutch=clutch)
-    plant, load = WholePlant(settings, two_input=False), make_load(settings)
+    plant, load = Plant(settings), make_load(settings)
     found = []
     for step in range(60):
-        observation = plant.observe(step)
-        reply = plant.reply(step, observation, 0.0, None)
-        assert reply.load_torque == load.torque(observation.true.vehicle_speed, time_of_step(step))
+        tick = plant.tick(step)
+        reply = plant.reply(plant.observe(tick), 0.0)
+        assert reply.load_torque == load.torque(tick.true.vehicle_speed, time_of_step(step))
         found.append(reply.load_torque)
         plant.advance(reply)
     assert found[-1] > found[0] + 400.0, 'at 0.118 rad'
@@ -30,11 +30,11 @@ def test_the_load_is_that_of_the_slope_at_the_time_of_each_step(clutch):
 def test_a_commanded_engine_delivers_what_its_limits_allow_at_the_speed_of_the_engine():
     """At rest in gear: the shaft has no speed, at which the engine would deliver nothing."""
     settings = RunSettings(load_scenario('launch'), clutch='stick_slip')
-    plant, engine = WholePlant(settings, two_input=True), make_engine(settings)
-    observation = plant.observe(0)
-    engine_speed, shaft_speed = observation.true.joint_speed[:2]
+    plant, engine = Plant(settings, two_input=True), make_engine(settings)
+    observation = plant.observe(plant.tick(0))
+    engine_speed, shaft_speed = observation.tick.true.joint_speed[:2]
     assert engine_speed == pytest.approx(104.72)
     assert shaft_speed == 0.0
-    found = plant.reply(0, observation, 0.0, 80.0).engine_torque
+    found = plant.reply(observation, 0.0, 80.0).engine_torque
     assert found == engine.torque(0, 80.0, engine_speed)
     assert found != make_engine(settings).torque(0, 80.0, shaft_speed)

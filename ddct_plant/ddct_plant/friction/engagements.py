@@ -1,10 +1,9 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""The linear systems of a shift, with three friction elements: one gear engaged, or both."""
+"""The linear systems of the driveline with friction, by the gears that are engaged."""
 
 from collections.abc import Sequence
 from functools import lru_cache
-from typing import Protocol
 
 import numpy as np
 
@@ -17,16 +16,18 @@ from ddct_plant.models.gearbox import EngagedGear
 from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.shift.gear_pair import GearPair
 
-ON_COMING, OFF_GOING, WHEEL = 0, 1, 2
-"""Indices of the friction elements: the two clutches, and rolling resistance with the brake."""
+ON_COMING, OFF_GOING, WHEEL = 0, 1, -1
+"""
+Indices of the friction elements: the clutches, and rolling resistance with the brake.
+
+A launch has the first clutch alone; the wheels are the last element.
+"""
 OTHER_SHAFT = Names(('off_going_speed', 'off_going_angle'))
 SHIFT_STATES = STATES_AND_ANGLES + OTHER_SHAFT
 """
 States of a shift: those of the driveline, whose primary shaft is the on-coming one, then speed in
 rad/s and angle in rad of the off-going primary shaft.
 """
-_HELD = (0, 1, 4)
-"""Indices of the entries held over a period: C_m, C_load and the holding torque."""
 _DRIVEN = len(STATES_AND_ANGLES)
 _ENGINE, _SHAFT, _ANGLE = STATES_AND_ANGLES.places('engine_speed', 'shaft_speed', 'shaft_angle')
 _ALONE, _ALONE_ANGLE = OTHER_SHAFT.places('off_going_speed', 'off_going_angle')
@@ -36,23 +37,47 @@ _SWAPPED[_DRIVEN + _ALONE], _SWAPPED[_DRIVEN + _ALONE_ANGLE] = _SHAFT, _ANGLE
 """Places of SHIFT_STATES with the two primary shafts exchanged."""
 
 
-class EngagedGears(Protocol):
-    """Engaged gears: integrator of their system, its states from and to SHIFT_STATES."""
+class EngagedGears:
+    """
+    Engaged gears: their system with the friction elements of each clutch and of the wheels.
 
-    integrator: HybridIntegrator
-    """Integrator of the system with the friction elements of both clutches and the wheels."""
+    `values` are those of STATES_AND_ANGLES with one clutch, of SHIFT_STATES with two. The system
+    may have other states.
+    """
 
-    def of_shift(self, values: Sequence[float]) -> list[float]:
-        """Return the state of the system for the values (9,) of SHIFT_STATES."""
+    def __init__(
+        self, driveline: DrivelineParameters, gear: EngagedGear, system: FrictionSystem
+    ) -> None:
+        """
+        Prepare the integrator of a system in which `gear` turns the wheels.
 
-    def to_shift(self, state: Sequence[float]) -> list[float]:
-        """Return the values (9,) of SHIFT_STATES for a state of the system."""
+        `driveline` is that in the on-coming gear. Raise ParameterError where the rates are too
+        fast for pieces of 1 ms.
+        """
+        self.driveline = driveline
+        """Driveline in the on-coming gear, in a launch in its one gear."""
+        self.clutches = system.elements - 1
+        """Number of clutches, 1 or 2."""
+        inputs = system.b.shape[1]
+        held = (*range(inputs), inputs + self.clutches)  # C_m, C_load and the holding torque
+        self.integrator = HybridIntegrator(system, SUBSTEP_S, SUBSTEPS, held)
+        """Integrator of the system, whose elements are the clutches and then the wheels."""
+        self._gear = gear
+
+    def of_values(self, values: Sequence[float]) -> list[float]:
+        """Return the state of the system for the values."""
+        return list(values)
+
+    def to_values(self, state: list[float]) -> list[float]:
+        """Return the values for a state of the system."""
+        return state
 
     def gear_speed(self, values: Sequence[float]) -> float:
-        """Return the speed w_g in rad/s of the driveshaft's inner end, for SHIFT_STATES (9,)."""
+        """Return the speed w_g in rad/s of the driveshaft's inner end."""
+        return self._gear.wheel_speed(values[_SHAFT])
 
 
-class BothEngaged:
+class BothEngaged(EngagedGears):
     """
     Both gears engaged: the primary shafts turn together, w_p1 = r w_p2 with r = tau_i/tau_j.
 
@@ -65,85 +90,92 @@ class BothEngaged:
     def __init__(self, gears: GearPair) -> None:
         """Prepare the integrator."""
         self._ratio = ratio = gears.ratio
-        self._gear = gears.on_coming.gear
         a, engine, clutch, load = _with_states(gears.both_engaged, 1)
         a[_DRIVEN, _SHAFT] = ratio
         off_going = clutch.copy()
         off_going[_SHAFT] *= ratio
-        on_coming_slip, off_going_slip = _slip(_SHAFT, len(a)), _slip(_SHAFT, len(a), ratio)
-        self.integrator = _integrator(
-            a, engine, load, (clutch, off_going), (on_coming_slip, off_going_slip)
-        )
+        slips = _slip(_SHAFT, len(a)), _slip(_SHAFT, len(a), ratio)
+        system = _system(a, engine, load, (clutch, off_going), slips)
+        super().__init__(gears.on_coming, gears.on_coming.gear, system)
 
-    def of_shift(self, values: Sequence[float]) -> list[float]:
+    def of_values(self, values: Sequence[float]) -> list[float]:
         """Return the state; the gears give the on-coming shaft the speed of the off-going one."""
         state = [*values[:_DRIVEN], values[_DRIVEN + _ALONE_ANGLE]]
         state[_SHAFT] = values[_DRIVEN + _ALONE] / self._ratio
         return state
 
-    def to_shift(self, state: Sequence[float]) -> list[float]:
+    def to_values(self, state: list[float]) -> list[float]:
         """Return the values of SHIFT_STATES."""
         return [*state[:_DRIVEN], self._ratio * state[_SHAFT], state[_DRIVEN]]
 
-    def gear_speed(self, values: Sequence[float]) -> float:
-        """Return w_g in rad/s."""
-        return self._gear.wheel_speed(values[_SHAFT])
 
-
-class OneEngaged:
+class OneOfTwoEngaged(EngagedGears):
     """
-    One gear engaged: the driveline in that gear, and the other primary shaft free of the wheels.
+    One gear of a shift engaged, and the other primary shaft free of the wheels.
 
     The free shaft turns by its own inertia: J_p dw/dt = C - c_prim w with the torque C of its
     clutch. With that clutch open the rest is the driveline with one clutch.
     """
 
-    def __init__(self, parameters: DrivelineParameters, places: Sequence[int]) -> None:
-        """Prepare the integrator; `places` are those of its states in SHIFT_STATES."""
-        self._gear: EngagedGear = parameters.gear
-        self._places = list(places)
-        self._turning = self._places[_SHAFT]
-        a, engine, engaged, load = _with_states(parameters, 2)
+    def __init__(self, gears: GearPair, *, off_going: bool) -> None:
+        """Prepare the integrator, with the off-going gear engaged or the on-coming one."""
+        engaged = gears.in_off_going_gear if off_going else gears.on_coming
+        # Exchanging the shafts twice changes nothing, so these are the places either way.
+        self._places = _SWAPPED if off_going else range(len(SHIFT_STATES))
+        a, engine, turning, load = _with_states(engaged, 2)
         alone, angle = _DRIVEN + _ALONE, _DRIVEN + _ALONE_ANGLE
-        a[alone, alone] = -parameters.shaft_damping / parameters.shaft_inertia
+        a[alone, alone] = -engaged.shaft_damping / engaged.shaft_inertia
         a[angle, alone] = 1.0
         free = -engine
-        free[alone] = 1.0 / parameters.shaft_inertia
-        clutches = engaged, free
+        free[alone] = 1.0 / engaged.shaft_inertia
+        clutches = turning, free
         slips = _slip(_SHAFT, len(a)), _slip(alone, len(a))
-        if self._turning != _SHAFT:
+        if off_going:
             clutches, slips = clutches[::-1], slips[::-1]
-        self.integrator = _integrator(a, engine, load, clutches, slips)
+        system = _system(a, engine, load, clutches, slips)
+        super().__init__(gears.on_coming, engaged.gear, system)
 
-    def of_shift(self, values: Sequence[float]) -> list[float]:
+    def of_values(self, values: Sequence[float]) -> list[float]:
         """Return the state: the values in another order."""
         return [values[place] for place in self._places]
 
-    def to_shift(self, state: Sequence[float]) -> list[float]:
-        """Return the values of SHIFT_STATES; exchanging the shafts twice changes nothing."""
-        return self.of_shift(state)
+    def to_values(self, state: list[float]) -> list[float]:
+        """Return the values of SHIFT_STATES."""
+        return self.of_values(state)
 
     def gear_speed(self, values: Sequence[float]) -> float:
-        """Return w_g in rad/s."""
-        return self._gear.wheel_speed(values[self._turning])
+        """Return w_g in rad/s, which the shaft of the engaged gear gives."""
+        return self._gear.wheel_speed(values[self._places[_SHAFT]])
+
+
+def one_clutch_system(parameters: DrivelineParameters) -> FrictionSystem:
+    """Return the driveline with one clutch as a linear system with two friction elements."""
+    a, engine, clutch, load = _with_states(parameters, 0)
+    return _system(a, engine, load, (clutch,), (_slip(_SHAFT, len(a)),))
 
 
 @lru_cache
-def off_going_engaged(gears: GearPair) -> OneEngaged:
+def one_clutch(parameters: DrivelineParameters) -> EngagedGears:
+    """Return the engagement of a launch: one clutch, and the gear behind it."""
+    return EngagedGears(parameters, parameters.gear, one_clutch_system(parameters))
+
+
+@lru_cache
+def off_going_engaged(gears: GearPair) -> EngagedGears:
     """Return the engagement before preselection: the on-coming shaft is free."""
-    return OneEngaged(gears.in_off_going_gear, _SWAPPED)
+    return OneOfTwoEngaged(gears, off_going=True)
 
 
 @lru_cache
-def both_engaged(gears: GearPair) -> BothEngaged:
+def both_engaged(gears: GearPair) -> EngagedGears:
     """Return the engagement during the shift."""
     return BothEngaged(gears)
 
 
 @lru_cache
-def on_coming_engaged(gears: GearPair) -> OneEngaged:
+def on_coming_engaged(gears: GearPair) -> EngagedGears:
     """Return the engagement once the off-going gear is disengaged: its shaft is free."""
-    return OneEngaged(gears.on_coming, range(len(SHIFT_STATES)))
+    return OneOfTwoEngaged(gears, off_going=False)
 
 
 def _with_states(parameters: DrivelineParameters, added: int) -> tuple[np.ndarray, ...]:
@@ -161,17 +193,16 @@ def _slip(shaft: int, size: int, ratio: float = 1.0) -> np.ndarray:
     return row
 
 
-def _integrator(
+def _system(
     a: np.ndarray,
     engine: np.ndarray,
     load: np.ndarray,
     clutches: Sequence[np.ndarray],
     slips: Sequence[np.ndarray],
-) -> HybridIntegrator:
-    """Return the integrator of a system; the wheels are its last friction element."""
+) -> FrictionSystem:
+    """Return a system with these clutches, whose last element is the wheels."""
     wheels = np.zeros(len(a))
     wheels[STATES_AND_ANGLES['wheel_speed']] = 1.0
-    system = FrictionSystem(
+    return FrictionSystem(
         a, np.hstack([engine, load]), np.hstack([*clutches, load]), np.array([*slips, wheels])
     )
-    return HybridIntegrator(system, SUBSTEP_S, SUBSTEPS, _HELD)

@@ -9,10 +9,10 @@ from operator import add
 import numpy as np
 
 from ddct_plant.base.timebase import SUBSTEP_S, SUBSTEPS
+from ddct_plant.friction.engagements import OFF_GOING, ON_COMING, SHIFT_STATES, EngagedGears
 from ddct_plant.hybrid.interval_map import Interval
 from ddct_plant.hybrid.mode_flow import Course
 from ddct_plant.hybrid.polynomials import roots, value_at
-from ddct_plant.shift.engagements import OFF_GOING, ON_COMING, SHIFT_STATES, EngagedGears
 
 _SHAFT, _OTHER = SHIFT_STATES.places('shaft_speed', 'off_going_speed')
 _CLUTCHES = slice(ON_COMING, OFF_GOING + 1)
@@ -36,7 +36,7 @@ class TieUp:
         """Prepare for these engaged gears."""
         self._integrator = engaged.integrator
         units = np.eye(len(engaged.integrator.system.a))
-        values = np.array([engaged.to_shift(unit.tolist()) for unit in units])
+        values = np.array([engaged.to_values(unit.tolist()) for unit in units])
         self._difference = values[:, _OTHER] - values[:, _SHAFT]
         """Row (n,) from the state to w_p1 - w_p2."""
 
