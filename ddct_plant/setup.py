@@ -27,7 +27,7 @@ setup(
     name=PACKAGE,
     version=VERSION,
     packages=find_packages(exclude=['test']),
-    package_data={PACKAGE: ['py.typed', 'bag_file/*.json', 'scenario/packaged/*.yaml']},
+    package_data={PACKAGE: ['py.typed', 'bag_file/*.json', 'scenario/packaged/*/*.yaml']},
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{PACKAGE}']),
         (f'share/{PACKAGE}', ['package.xml']),

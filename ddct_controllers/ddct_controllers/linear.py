@@ -15,7 +15,7 @@ from ddct_controllers.interface import (
     Measurement,
 )
 from ddct_plant.base.errors import ParameterError, require_choice
-from ddct_plant.base.options import REQUIRED, Option
+from ddct_plant.base.options import Option
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.bilinear import from_w_plane
 from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
@@ -31,12 +31,19 @@ LinearSystem = FactoredTransferFunction | StateSpace
 """A linear system in the form in which its author wrote it."""
 PI_OPTIONS = {
     'proportional_gain': Option(
-        REQUIRED, 'K_p: torque per slip error', 'N m/rpm', at_least=0.0, at_most=1e3, live=True
+        0.103,
+        'K_p: torque per slip error',
+        'N m/rpm',
+        source='fitted to the PI row of Table 5.1',
+        at_least=0.0,
+        at_most=1e3,
+        live=True,
     ),
     'integral_gain': Option(
-        REQUIRED,
+        0.0223,
         'K_i: torque per slip error and second',
         'N m/(rpm s)',
+        source='fitted to the PI row of Table 5.1',
         at_least=0.0,
         at_most=1e3,
         live=True,

@@ -152,7 +152,7 @@ def test_those_of_a_scenario_are_listed(place: Path) -> None:
             name = 'csv' if value is PROFILE else key
             section, _, rest = key.partition('.')
             content = {section: {rest: value} if rest else value}
-            file = ScenarioFile(str(place / 'own.yaml'), content, {})
+            file = ScenarioFile(str(place / 'own.yaml'), content)
             if opens(file.scenario):
                 found.add(name)
     assert found == listed('a scenario')

@@ -64,11 +64,12 @@ def test_a_contradiction_is_one_line_and_leaves_nothing(
 WHOLE = scenario_to_yaml(load_scenario('thesis', ['vehicle.mass_kg=1800']))
 """Scenario as `bringup` writes it for its nodes."""
 HALF = """\
-duration_s: 1.0
-control_start_s: 0.6
-score_window_s: [0.6, 1.0]
-engine: {time_s: [0.0], torque_n_m: [100.0]}
-vehicle: {mass_kg: 1800.0}
+car: {vehicle: {mass_kg: 1800.0}}
+drive:
+  duration_s: 1.0
+  control_start_s: 0.6
+  score_window_s: [0.6, 1.0]
+  engine: {time_s: [0.0], torque_n_m: [100.0]}
 """
 
 

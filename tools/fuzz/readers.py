@@ -34,6 +34,7 @@ from fuzz.targets.tuning_readers import tuning_readers
 
 ROOT = Path(__file__).resolve().parents[2]
 _PROFILE = b't,torque\n0.0,0.0\n0.5,120.5\n1.5e0,240\n'
+_PACKAGED = 'ddct_plant/ddct_plant/scenario/packaged'
 _VERDICT = 'ddct_bringup/ddct_bringup/verdict'
 
 
@@ -42,7 +43,7 @@ def readers(folder: Path) -> dict[str, Reader]:
     run = plan('pi', 'headless', duration_s=0.8, changes=('score_window_s=[0.6, 0.8]',))
     bag = made_bag(folder, run)
     scenario = scenario_to_yaml(load_scenario('thesis')).encode()
-    packaged = _texts('ddct_plant/ddct_plant/scenario/packaged/*.yaml')
+    packaged = _texts(f'{_PACKAGED}/scenarios/*.yaml')
     found = [
         *bag_readers(bag, folder),
         *controller_readers(),
@@ -52,6 +53,8 @@ def readers(folder: Path) -> dict[str, Reader]:
         floor_reader(folder),
         *tuning_readers(folder),
         Reader('scenario', 'mine.yaml', _scenario, (scenario, *packaged)),
+        Reader('car', 'car.yaml', _car, _texts(f'{_PACKAGED}/cars/*.yaml')),
+        Reader('drive', 'drive.yaml', _drive, _texts(f'{_PACKAGED}/drives/*.yaml')),
         Reader('profile', 'pedal.csv', _profile, (_PROFILE, _PROFILE.replace(b',', b'; '))),
         Reader('limits', 'limits.yaml', load_limits, _texts(f'{_VERDICT}/limits.yaml')),
         Reader('columns', 'map.yaml', _columns, _texts('docs/use/own_car_columns.yaml')),
@@ -67,6 +70,14 @@ def _columns(file: Path) -> object:
 
 def _scenario(file: Path) -> object:
     return ScenarioFile.read(str(file)).scenario()
+
+
+def _car(file: Path) -> object:
+    return load_scenario('launch', car=str(file))
+
+
+def _drive(file: Path) -> object:
+    return load_scenario(drive=str(file))
 
 
 def _profile(file: Path) -> object:

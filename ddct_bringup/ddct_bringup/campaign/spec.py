@@ -30,7 +30,8 @@ from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import Option
 from ddct_plant.files.input_file import SCHEMA_KEY, located, require_schema_version, user_text
 from ddct_plant.files.yaml_text import parse_yaml_with_lines
-from ddct_plant.scenario.file import ScenarioFile, is_packaged
+from ddct_plant.scenario.choices.scenarios import is_packaged
+from ddct_plant.scenario.file import ScenarioFile
 
 SCHEMA_VERSION = 1
 """Schema version of a specification."""

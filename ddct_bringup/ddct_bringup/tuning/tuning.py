@@ -59,17 +59,20 @@ class Tuning:
 
         Raise ParameterError where they differ between scenarios: one file could not contain them.
         """
-        found: dict[str, float] = {}
+        name, options = self.controller.name, self.controller.options or {}
+        given = [each.scenario.controllers.get(name, {}) for each in self.settings]
+        defaults = {key: option.default for key, option in options.items()}
         tuned = {each.name for each in self.spec.parameters}
-        for settings in self.settings:
-            given = settings.scenario.controllers.get(self.controller.name, {})
-            for name, value in given.items():
-                if name not in tuned and found.setdefault(name, value) != value:
-                    raise ParameterError(
-                        f'parameters.{name} is missing: the scenarios have different values of '
-                        'it, and the result can have one only',
-                        key=f'parameters.{name}',
-                    )
+        found: dict[str, float] = {}
+        for key in {key: None for each in given for key in each if key not in tuned}:
+            values = [each.get(key, defaults.get(key)) for each in given]
+            if any(value != values[0] for value in values):
+                raise ParameterError(
+                    f'parameters.{key} is missing: the scenarios have different values of it, '
+                    'and the result can have one only',
+                    key=f'parameters.{key}',
+                )
+            found[key] = values[0]
         return found
 
     @cached_property

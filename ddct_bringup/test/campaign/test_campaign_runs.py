@@ -98,8 +98,8 @@ def test_a_whole_profile_varies_by_its_points_or_by_files_beside_the_specificati
 def test_a_file_of_a_profile_varies_where_the_scenario_takes_one(tmp_path: Path) -> None:
     scenario = tmp_path / 'own.yaml'
     scenario.write_text(
-        'duration_s: 0.2\ncontrol_start_s: 0.1\nscore_window_s: [0.1, 0.2]\n'
-        'engine: {csv: a.csv, time: t, value: c, unit: N m}\n',
+        'car: c635_thesis\ndrive: {duration_s: 0.2, control_start_s: 0.1, '
+        'score_window_s: [0.1, 0.2], engine: {csv: a.csv, time: t, value: c, unit: N m}}\n',
         encoding='utf-8',
     )
     for name, torque in (('a.csv', 10), ('b.csv', 20)):

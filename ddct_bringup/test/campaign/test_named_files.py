@@ -26,7 +26,9 @@ SHIFT: dict[str, Any] = {
     'grid': {'handover': ['timed', 'own.py'], 'duration_s': [1.0]},
 }
 FILES = {
-    'own.yaml': 'name: own\nengine: {csv: a.csv, time: t, value: c, unit: N m}\n',
+    'own.yaml': 'name: own\ncar: {base: car.yaml}\ndrive: drive.yaml\n',
+    'car.yaml': 'base: c635_thesis\n',
+    'drive.yaml': 'base: thesis\nengine: {csv: a.csv, time: t, value: c, unit: N m}\n',
     'a.csv': 't,c\n0,97\n',
     'b.csv': 't,c\n0,98\n',
     'tuned.yaml': 'name: tuned\nwith_options: {controller: line.yaml, options: {}}\n',
@@ -54,11 +56,13 @@ def campaign(folder: Path, **changes: Any) -> Campaign:
 
 
 def test_the_digest_is_that_of_earlier_campaigns(tmp_path: Path) -> None:
-    expected = 'a1609dd39847ae615c2e7859cd3c690bd53c35d59c575d9948abf43f75984778'
+    expected = 'e1693366159757d6dbd6fdca3c36b143704bb22c7bd336b48824c20cf0ba1af3'
     assert campaign(tmp_path).digest() == expected
 
 
-@pytest.mark.parametrize('file', ['own.yaml', 'a.csv', 'b.csv', 'tuned.yaml', 'line.yaml'])
+@pytest.mark.parametrize(
+    'file', ['own.yaml', 'car.yaml', 'drive.yaml', 'a.csv', 'b.csv', 'tuned.yaml', 'line.yaml']
+)
 def test_any_changed_file_changes_it(tmp_path: Path, file: str) -> None:
     made = campaign(tmp_path)
     before = made.digest()

@@ -213,7 +213,7 @@ def test_a_driveline_too_fast_for_a_clutch_that_sticks_is_refused_before_the_run
     path = tmp_path / 'fast.yaml'
     text = scenario_to_yaml(load_scenario('thesis', ['driveline.shaft_inertia=0.0002']))
     path.write_text(text, encoding='utf-8')
-    line = text.splitlines().index('  shaft_inertia: 0.0002') + 1
+    line = text.splitlines().index('    shaft_inertia: 0.0002') + 1
     place = f'fast.yaml: line {line}'
     parser = argparse.ArgumentParser()
     add_run_options(parser)

@@ -9,6 +9,7 @@ from labelled_runs import Spoiled
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.metrics.engagement import Engagement
+from ddct_bringup.reproduction.calibration.parameters import FROZEN_GAINS
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_bringup.verdict.state import state_of
@@ -36,7 +37,7 @@ class WrongSign(Controller):
 
 def run(controller='pi', gain=1.0, duration_s=3.0, **settings):
     """Return a run of the thesis's scenario with the gains of the PI multiplied by `gain`."""
-    gains = {key: gain * value for key, value in THESIS.controllers['pi'].items()}
+    gains = {key: gain * value for key, value in FROZEN_GAINS.items()}
     scenario = dataclasses.replace(THESIS, controllers={'pi': gains}, duration_s=duration_s)
     return run_headless(RunSettings(scenario, **settings), controller)
 

@@ -24,8 +24,7 @@ from verified import (
 from ddct_bringup.campaign.conduct import RESULTS, SHARDS
 from ddct_bringup.manifest.manifest import MANIFEST, read_manifest
 from ddct_bringup.programs import campaign
-from ddct_plant.files.yaml_text import dump_yaml, parse_yaml
-from ddct_plant.scenario.file import load_scenario, scenario_to_yaml
+from ddct_plant.files.yaml_text import dump_yaml
 
 pytestmark = pytest.mark.slow
 ROWS = RESULTS
@@ -149,11 +148,22 @@ def test_a_campaign_carries_the_files_that_it_names(
     work = tmp_path / 'work'
     (work / 'specs').mkdir(parents=True)
     (work / 'mine.py').write_text(CONTROLLER, encoding='utf-8')
-    content = parse_yaml(scenario_to_yaml(load_scenario('thesis')))
-    profile = {**PROFILE, 'csv': str(work / 'specs' / 'a.csv')} if absolute else PROFILE
-    text = dump_yaml({**content, 'engine': profile})
-    (work / 'specs' / 'own.yaml').write_text(text, encoding='utf-8')
-    (work / 'specs' / 'a.csv').write_text('t,c\n0,97\n', encoding='utf-8')
+    folder = work / 'specs'
+    profile = {**PROFILE, 'csv': str(folder / 'a.csv')} if absolute else PROFILE
+    files = {
+        'own.yaml': {'car': 'car.yaml', 'drive': 'drives/mine.yaml'},
+        'car.yaml': {'base': '../base_car.yaml'},
+        '../base_car.yaml': {'base': 'c635_thesis', 'vehicle': {'mass_kg': 1500.0}},
+        'drives/mine.yaml': {'base': 'base.yaml'},
+        'drives/base.yaml': {
+            'base': 'thesis',
+            'engine': profile if absolute else {**profile, 'csv': '../a.csv'},
+        },
+    }
+    (folder / 'drives').mkdir()
+    for name, content in files.items():
+        (folder / name).write_text(dump_yaml(content), encoding='utf-8')
+    (folder / 'a.csv').write_text('t,c\n0,97\n', encoding='utf-8')
     spec = work / 'specs' / 'spec.yaml'
     spec.write_text(NAMES_FILES.format(mine=work / 'mine.py'), encoding='utf-8')
     out = tmp_path / 'out'
@@ -161,12 +171,12 @@ def test_a_campaign_carries_the_files_that_it_names(
     shutil.rmtree(work)
     moved = out.rename(tmp_path / 'moved')
     assert {path.name for path in (moved / 'inputs').rglob('*') if path.is_file()} == {
-        *('mine.py', 'own.yaml', 'a.csv')
+        *('mine.py', 'own.yaml', 'a.csv', 'car.yaml', 'base_car.yaml', 'mine.yaml', 'base.yaml')
     }
     code, document, errors = verified(moved, capfd, '--workers', '1')
     assert (code, document['state'], 'ddct verify' in errors) == (0, 'same_bits', False)
     for file in moved.rglob('*'):
-        own = absolute and file.name == 'own.yaml'
+        own = absolute and file.name == 'base.yaml'
         assert not file.is_file() or own or str(tmp_path).encode() not in file.read_bytes(), file
 
 

@@ -16,7 +16,7 @@ from glob import escape
 from io import BufferedReader
 from itertools import islice
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from ddct_plant.base.errors import DdctError, ParameterError
 
@@ -103,17 +103,25 @@ def located(name: str, lines: Mapping[str, int] | None = None) -> Iterator[None]
 
 
 def line_of(text: str, lines: Mapping[str, int]) -> int:
-    """
-    Return the line of the first key in an error text, or else of the section of that key.
+    """Return the line of the first key in an error text as `entry_of`, 0 where no key has one."""
+    return entry_of(text, lines) or 0
 
-    An error text names the key to change first. The line is 0 where no key has one.
+
+Entry = TypeVar('Entry')
+
+
+def entry_of(text: str, entries: Mapping[str, Entry]) -> Entry | None:
+    """
+    Return the entry of the first key in an error text, or else of the section of that key.
+
+    An error text names the key to change first. The result is None where no key has one.
     """
     for word in _PATH.findall(text):
-        while word and word not in lines:
+        while word and word not in entries:
             word = _PARENT.sub('', word) if _PARENT.search(word) else ''
         if word:
-            return lines[word]
-    return 0
+            return entries[word]
+    return None
 
 
 def require_schema_version(content: Mapping[str, Any], newest: int) -> None:

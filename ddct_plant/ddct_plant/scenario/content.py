@@ -8,25 +8,19 @@ from typing import Any
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import Group, OptionGroup, group_of, key_of
-from ddct_plant.files.input_file import SCHEMA_KEY, require_schema_version
 from ddct_plant.scenario.key_names import scenario_key_hint
 from ddct_plant.scenario.rules.consistency import without_derived
 from ddct_plant.scenario.scenario import Scenario
 
-SCHEMA_VERSION = 1
-"""Version of the keys of a scenario file; a file without a version has this one."""
-
 
 def scenario_from_mapping(content: Mapping[str, Any]) -> Scenario:
-    """Return the scenario of nested mappings, the content that `scenario_to_yaml` has written."""
+    """Return the scenario of nested mappings, as `scenario_content` returns them."""
     return without_derived(scenario_of(content))
 
 
 def scenario_of(content: Mapping[str, Any]) -> Scenario:
     """Return the scenario of nested mappings, with given values as they are."""
     content = {'description': '', **content}
-    require_schema_version(content, SCHEMA_VERSION)
-    content.pop(SCHEMA_KEY, None)
     content['controllers'] = _gains(content.get('controllers') or {})
     return _build(Scenario, content)
 
@@ -86,7 +80,7 @@ def _gains(content: Any) -> dict[str, dict[str, Any]]:
 
 def scenario_content(scenario: Scenario) -> dict[str, Any]:
     """
-    Return the content of a file for the scenario, without optional keys at their defaults.
+    Return the content of the scenario, without optional keys at their defaults.
 
     The section `driveline` has every value that models take, given or derived.
     """

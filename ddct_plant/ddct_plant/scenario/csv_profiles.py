@@ -33,7 +33,11 @@ _PROFILES: tuple[type[OptionGroup], ...] = (
     SlopeProfile,
     SlipProfile,
 )
+SECTIONS = {group.prefix.rstrip('.'): group for group in _PROFILES}
+"""Sections with a profile, by their key."""
 _FILE = 'csv'
+FILE_KEY = f'.{_FILE}'
+"""End of the key of a file with a profile."""
 FACTOR = 'factor'
 """Key of the factor of a profile; a loaded scenario does not have it."""
 FACTOR_OPTION = Option(1.0, 'by which the values of a profile are multiplied')
@@ -48,22 +52,42 @@ _SOURCE: Options = {
 """Options of a section that describe its CSV file."""
 
 
-def with_points(
-    content: Mapping[str, Any], folder: Path, set_keys: Iterable[str]
-) -> dict[str, Any]:
+def with_file_in(folder: Path, section: Any) -> Any:
+    """Return a section whose CSV file, relative to `folder`, is named from anywhere."""
+    if isinstance(section, Mapping) and isinstance(section.get(_FILE), str):
+        return {**section, _FILE: str(named_in(folder, section[_FILE]))}
+    return section
+
+
+def file_of(section: Any) -> Path | None:
+    """Return the CSV file of a section, None without one."""
+    named = isinstance(section, Mapping) and isinstance(section.get(_FILE), str)
+    return Path(section[_FILE]) if named else None
+
+
+def replaced(name: str, base: Mapping[str, Any], own: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what a profile of a base keeps beside the values of another one of this section."""
+    if _FILE in own:
+        return {}
+    values = value_names(SECTIONS[name])
+    if not {TIME, *values} & own.keys():
+        return dict(base)
+    gone = {*_SOURCE, FACTOR, *(values if set(values) & own.keys() else ())}
+    return {key: value for key, value in base.items() if key not in gone}
+
+
+def with_points(content: Mapping[str, Any], set_keys: Iterable[str]) -> dict[str, Any]:
     """
     Return the content of a scenario with the points of its CSV files in place of their names.
 
     A section may be `{csv: FILE, time: COLUMN, value: COLUMN, unit: UNIT}`, with `time_unit` and
-    `start_s`, the file's time in s at scenario time 0. The file is relative to `folder`, that of
-    the scenario; a file from `--set`, whose keys are `set_keys`, is relative to the working
-    directory. The values of a section with `factor` are multiplied by it. What `--set` gives, a
-    file or points in one quantity, takes the place of what the file has in another way.
+    `start_s`, the file's time in s at scenario time 0. The values of a section with `factor` are
+    multiplied by it. What `--set` gives by its keys `set_keys`, a file or points in one quantity,
+    takes the place of what the file has in another way.
     Raise ParameterError that names file, line and column.
     """
     content, given = dict(content), set(set_keys)
-    for group in _PROFILES:
-        name = group.prefix.rstrip('.')
+    for name, group in SECTIONS.items():
         section = content.get(name)
         if not isinstance(section, Mapping):
             continue
@@ -76,8 +100,7 @@ def with_points(
         )
         section = _as_set(section, name, values, given)
         if _FILE in section:
-            base = Path() if f'{name}.{_FILE}' in given else folder
-            section = _points(section, group, base)
+            section = _points(section, group)
         content[name] = section if factor == 1.0 else _scaled(section, values, factor)
     return content
 
@@ -114,7 +137,7 @@ def _as_set(
     raise ParameterError(f'{name} has points and {name}.{_FILE}: give one of them', key=name)
 
 
-def _points(section: Mapping[str, Any], group: type[OptionGroup], base: Path) -> dict[str, Any]:
+def _points(section: Mapping[str, Any], group: type[OptionGroup]) -> dict[str, Any]:
     prefix = group.prefix
     require_known(section, _SOURCE, prefix=prefix)
     spec = {key: section.get(key, described.default) for key, described in _SOURCE.items()}
@@ -127,15 +150,15 @@ def _points(section: Mapping[str, Any], group: type[OptionGroup], base: Path) ->
     for key, described in _SOURCE.items():
         described.checked(f'{prefix}{key}', spec[key])
     with located(f'{prefix}{_FILE}'):
-        return _read(spec, group, base)
+        return _read(spec, group)
 
 
-def _read(spec: Mapping[str, Any], group: type[OptionGroup], base: Path) -> dict[str, Any]:
+def _read(spec: Mapping[str, Any], group: type[OptionGroup]) -> dict[str, Any]:
     """Return the checked points of the file that `spec` describes."""
     names, options = [spec['time'], spec['value']], options_of(group)
     units = {options[name].unit: name for name in value_names(group)}
     unit = si_unit_of(spec['unit'], tuple(units))
-    file = named_in(base, spec[_FILE])
+    file = named_in(Path(), spec[_FILE])
     table = read_csv(file, names, most_bytes=MOST_TEXT_BYTES, most_rows=MOST_ROWS)
     times, values = (table.columns[name] for name in names)
     times = si_values(times, spec['time_unit'], 's') - spec['start_s']

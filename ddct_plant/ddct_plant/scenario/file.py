@@ -12,15 +12,13 @@ from pathlib import Path
 from typing import Any
 
 from ddct_plant.base.clutch_kinds import LINEAR
-from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.files.input_file import SCHEMA_KEY, located, user_text
-from ddct_plant.files.yaml_text import dump_yaml, parse_yaml_with_lines
-from ddct_plant.scenario.choices.scenarios import packaged_scenarios, scenario_names
-from ddct_plant.scenario.content import SCHEMA_VERSION, flat, scenario_content, scenario_of
+from ddct_plant.files.yaml_text import dump_yaml
+from ddct_plant.scenario.content import flat, scenario_content, scenario_of
 from ddct_plant.scenario.csv_profiles import with_points
+from ddct_plant.scenario.nouns.composed import composed, file_content
+from ddct_plant.scenario.nouns.places import Places
 from ddct_plant.scenario.overrides import (
     is_number_of,
-    lines_in_file,
     parsed_override,
     put,
     time_or_none,
@@ -34,29 +32,31 @@ from ddct_plant.scenario.scenario import Scenario
 
 @dataclass(frozen=True)
 class ScenarioFile:
-    """Content of a scenario file, from which scenarios with overrides are made."""
+    """A car, a drive and changed keys, from which scenarios with overrides are made."""
 
     name: str
-    """Name or path of the scenario, as requested."""
+    """Name or path of the scenario, car and drive, as requested, for errors and labels."""
     content: Mapping[str, Any]
-    """Values of the file by key, nested."""
-    lines: Mapping[str, int]
-    """Line numbers of the keys and items, by path."""
+    """Values of the scenario by key, nested, before `set`."""
+    set: Mapping[str, Any] = dataclasses.field(default_factory=dict)
+    """Values by dotted key in place of those of car and drive, as `--set` gives them."""
+    places: Places = Places('scenario')
+    """Files and lines of the keys."""
+    files: tuple[Path, ...] = ()
+    """Files of the user that it is made of."""
     _starts: dict[tuple[str, ...], '_Start'] = dataclasses.field(
         default_factory=dict, init=False, repr=False, compare=False
     )
     """Scenarios with numbers that were set before, by the dotted keys of these numbers."""
 
     @classmethod
-    def read(cls, name_or_file: str) -> 'ScenarioFile':
-        """Read a scenario; raise the errors of `load_scenario`."""
-        text, default_name = _read(name_or_file)
-        with located(f'scenario {name_or_file}'):
-            content, lines = parse_yaml_with_lines(text)
-            if not isinstance(content, dict):
-                raise DdctError('the file must be a mapping of keys to values')
-        content.setdefault('name', default_name)
-        return cls(name_or_file, content, lines)
+    def read(
+        cls, scenario: str | None = None, car: str | None = None, drive: str | None = None
+    ) -> 'ScenarioFile':
+        """Read a scenario, a car, a drive, or what they replace; errors of `load_scenario`."""
+        made = composed(scenario, car, drive)
+        name = scenario or made.content['name']
+        return cls(name, made.content, made.set, made.places, made.files)
 
     def scenario(
         self, overrides: Iterable[str] | Mapping[str, Any] = (), clutch: str = LINEAR
@@ -77,7 +77,7 @@ class ScenarioFile:
             if numbers and all(is_number_of(start.scenario, key) for key in keys):
                 self._starts[keys] = start
             scenario = start.scenario
-        with located(f'scenario {self.name}', start.lines):
+        with start.places.located():
             if start is self._starts.get(keys):
                 scenario = with_numbers(start.scenario, pairs)
             scenario = with_remarks(consistent(scenario, start.origins, self._control_start))
@@ -85,15 +85,16 @@ class ScenarioFile:
             return scenario
 
     def _start(self, pairs: Sequence[tuple[str, Any]]) -> '_Start':
-        """Return the scenario with values by dotted key, from the content of the file."""
+        """Return the scenario with values by dotted key, from the content of the files."""
         content = dict(self.content)
+        of_file = [leaf for key, value in self.set.items() for leaf in put(content, key, value)]
         set_keys = [leaf for key, value in pairs for leaf in put(content, key, value)]
-        lines = lines_in_file(self.lines, set_keys)
-        with located(f'scenario {self.name}', lines):
-            content = with_points(content, Path(self.name).parent, set_keys)
+        places = self.places.with_set(set_keys)
+        with places.located():
+            content = with_points(content, [*of_file, *set_keys])
             scenario = scenario_of(content)
-        origins = dict.fromkeys(flat(content), FILE) | dict.fromkeys(set_keys, SET)
-        return _Start(scenario, origins, lines)
+        origins = dict.fromkeys(flat(content), FILE) | dict.fromkeys([*of_file, *set_keys], SET)
+        return _Start(scenario, origins, places)
 
     @cached_property
     def _control_start(self) -> float | None:
@@ -108,37 +109,36 @@ class _Start:
     scenario: Scenario
     origins: Mapping[str, int]
     """Origin of each given value by dotted key."""
-    lines: Mapping[str, int]
-    """Line numbers of the keys that are in the file, by path."""
+    places: Places
+    """Files and lines of the keys."""
 
 
 def load_scenario(
-    name_or_file: str,
+    scenario: str | None = None,
     overrides: Iterable[str] | Mapping[str, Any] = (),
     clutch: str = LINEAR,
+    *,
+    car: str | None = None,
+    drive: str | None = None,
 ) -> Scenario:
     """
-    Return the scenario that a name or a YAML file describes, with overrides.
+    Return the scenario of a name or a YAML file, with another car or drive, and overrides.
 
-    Overrides are texts `KEY=VALUE`, or values by dotted key. `clutch` is the clutch model of the
-    run: not every driveline can be integrated with a stick-slip clutch.
+    Without a scenario, a drive is driven by the car `c635` unless `car` is given; else the
+    scenario is `thesis`. Overrides are texts `KEY=VALUE`, or values by dotted key. `clutch` is
+    the clutch model of the run: not every driveline can be integrated with a stick-slip clutch.
 
     Dependent values are kept consistent (see `consistency`), and values that no car has get a
     line in `adjusted` (see `plausible`).
-    Raise ParameterError for an unknown scenario or key or a bad value, DdctError for a file that
+    Raise ParameterError for an unknown name or key or a bad value, DdctError for a file that
     cannot be read.
     """
-    return ScenarioFile.read(name_or_file).scenario(overrides, clutch)
-
-
-def is_packaged(name_or_file: str) -> bool:
-    """Return whether it is the name of a packaged scenario rather than a file."""
-    return '/' not in name_or_file and not name_or_file.endswith(('.yaml', '.yml'))
+    return ScenarioFile.read(scenario, car, drive).scenario(overrides, clutch)
 
 
 def scenario_to_yaml(scenario: Scenario) -> str:
-    """Return the YAML text that `load_scenario` reads back to an equal scenario."""
-    return dump_yaml({SCHEMA_KEY: SCHEMA_VERSION, **scenario_content(scenario)})
+    """Return the YAML text, with car and drive in it, that `load_scenario` reads back as equal."""
+    return dump_yaml(file_content(scenario_content(scenario)))
 
 
 def scenario_digest(scenario: Scenario) -> str:
@@ -150,20 +150,3 @@ def scenario_digest(scenario: Scenario) -> str:
     """
     text = json.dumps(scenario_content(scenario), sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()[:16]
-
-
-def _read(name_or_file: str) -> tuple[str, str]:
-    if not name_or_file:
-        raise ParameterError('scenario is empty: give a name or a YAML file', key='scenario')
-    if is_packaged(name_or_file):
-        if name_or_file not in scenario_names():
-            raise ParameterError(
-                f'unknown scenario {name_or_file!r}: choose from {", ".join(scenario_names())}, '
-                'or give the path of a YAML file',
-                key=name_or_file,
-            )
-        resource = packaged_scenarios() / f'{name_or_file}.yaml'
-        return resource.read_text(encoding='utf-8'), name_or_file
-    path = Path(name_or_file)
-    with located(f'scenario {path}'):
-        return user_text(path), path.stem

@@ -3,7 +3,7 @@
 """Overrides of a scenario: texts `KEY=VALUE`, their place in a file's content, changed numbers."""
 
 import dataclasses
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from typing import Any
 
 from ddct_plant.base.errors import ParameterError
@@ -75,11 +75,3 @@ def time_or_none(value: Any) -> float | None:
         return time_of_step(steps_in('', value))
     except (ParameterError, TypeError, ValueError, OverflowError):
         return None
-
-
-def lines_in_file(lines: Mapping[str, int], set_keys: Iterable[str]) -> dict[str, int]:
-    """Return the lines, with 0 for the keys of `--set`, which are in no line of the file."""
-    given = tuple(set_keys)
-    within = tuple(f'{key}{mark}' for key in given for mark in '.[')
-    kept = {key: line for key, line in lines.items() if not key.startswith(within)}
-    return kept | dict.fromkeys(given, 0)

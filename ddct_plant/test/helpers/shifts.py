@@ -63,7 +63,7 @@ def settings_of(
     clutch: str = 'stick_slip',
 ) -> RunSettings:
     """Return the settings of a shift for the content of a scenario and of its section."""
-    made = ScenarioFile('shift', {**scenario, 'shift': shift}, {}).scenario(clutch=clutch)
+    made = ScenarioFile('shift', {**scenario, 'shift': shift}).scenario(clutch=clutch)
     return RunSettings(made, clutch=clutch, off_going_wear_gain=off_going_wear_gain)
 
 

@@ -22,10 +22,12 @@ def changed(*overrides):
     return load_scenario('thesis', overrides)
 
 
-def from_file(tmp_path, more, *overrides):
-    path = tmp_path / 'mine.yaml'
-    path.write_text(MINIMAL + more)
-    return load_scenario(str(path), overrides)
+def from_file(tmp_path, car, *overrides, drive=''):
+    """Return the scenario of a drive and of a car without limits, with more text in both."""
+    (tmp_path / 'drive.yaml').write_text(MINIMAL + drive)
+    (tmp_path / 'car.yaml').write_text(car or '{}')
+    files = {noun: str(tmp_path / f'{noun}.yaml') for noun in ('car', 'drive')}
+    return load_scenario(overrides=overrides, **files)
 
 
 def the_line(scenario):
@@ -42,7 +44,7 @@ def test_the_defaults_agree_without_a_remark():
 
 
 def test_a_key_that_was_added_leaves_the_digest_of_the_thesis_and_a_moved_one_has_another():
-    assert scenario_digest(THESIS) == '91dd4f58e1510697'
+    assert scenario_digest(THESIS) == '4bfaa598f7b0abcd'
     assert scenario_digest(changed('gear=2')) != scenario_digest(THESIS)
 
 
@@ -96,7 +98,7 @@ def test_a_total_ratio_that_no_gear_has_gets_a_remark(tmp_path):
     assert (
         the_line(unnamed) == 'gear stays none, as no gear of the car has driveline.total_ratio 15'
     )
-    named = from_file(tmp_path, 'gear: 1', 'driveline.total_ratio=15')
+    named = from_file(tmp_path, '', 'driveline.total_ratio=15', drive='gear: 1')
     assert 'gear is now none, as driveline.total_ratio is 15' in named.adjusted
     assert unnamed.gear is named.gear is None
 

@@ -25,7 +25,14 @@ def folder(tmp_path):
 
 def load(folder, text=HEAD + SPEC, overrides=()):
     (folder / 'mine.yaml').write_text(text)
-    return load_scenario(str(folder / 'mine.yaml'), overrides)
+    drive = str(folder / 'mine.yaml')
+    return load_scenario(overrides=overrides, car='c635_thesis', drive=drive)
+
+
+def again(folder, scenario):
+    """Return a scenario that was written and read again."""
+    (folder / 'written.yaml').write_text(scenario_to_yaml(scenario))
+    return load_scenario(str(folder / 'written.yaml'))
 
 
 def test_a_file_beside_the_scenario_gives_its_points_and_other_columns_do_not_matter(folder):
@@ -37,11 +44,8 @@ def test_a_file_beside_the_scenario_gives_its_points_and_other_columns_do_not_ma
 def test_what_is_written_for_the_nodes_and_the_bag_holds_the_points_itself(folder):
     scenario = load(folder)
     (folder / 'data' / 'pedal.csv').unlink()
-    written = folder / 'written.yaml'
-    written.write_text(scenario_to_yaml(scenario))
-    again = load_scenario(str(written))
-    assert again.engine == scenario.engine
-    assert scenario_digest(again) == scenario_digest(load(folder, scenario_to_yaml(scenario)))
+    assert again(folder, scenario) == scenario
+    assert scenario_digest(again(folder, scenario)) == scenario_digest(scenario)
 
 
 def test_another_value_in_the_file_is_another_digest(folder):
@@ -158,7 +162,7 @@ def test_one_row_too_many_is_refused_and_the_most_are_the_same_after_writing_and
     file = folder / 'data' / 'pedal.csv'
     file.write_text('t,other,torque\n' + ''.join(rows[:-1]))
     scenario = load(folder)
-    assert load(folder, scenario_to_yaml(scenario)).engine == scenario.engine
+    assert again(folder, scenario).engine == scenario.engine
     file.write_text('t,other,torque\n' + ''.join(rows))
     with refused(ParameterError, place='pedal.csv: line 2002'):
         load(folder)

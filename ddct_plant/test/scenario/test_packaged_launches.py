@@ -1,15 +1,12 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Launches and tip-in: every value has its source, and they are for the clutch that sticks."""
-
-import importlib.resources
+"""Every value of a packaged file has its source; launches and tip-in are for a sticking clutch."""
 
 import pytest
 from refusals import refused
-from shifts import SHIFTS
 
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.scenario.choices.scenarios import scenario_names
+from ddct_plant.scenario.choices.scenarios import packaged_names, packaged_text, scenario_names
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.initial_state import initial_state
 from ddct_plant.scenario.settings import RunSettings
@@ -23,12 +20,14 @@ def test_they_are_packaged_and_consistent():
         assert load_scenario(name).adjusted == ()
 
 
-@pytest.mark.parametrize('name', [*NAMES, *SHIFTS])
-def test_each_value_or_the_section_it_is_in_has_a_comment(name):
-    packaged = importlib.resources.files('ddct_plant.scenario') / 'packaged'
+@pytest.mark.parametrize(
+    ('noun', 'name'),
+    [(noun, name) for noun in ('car', 'drive', 'scenario') for name in packaged_names(noun)],
+)
+def test_each_value_or_the_section_it_is_in_has_a_comment(noun, name):
     explained: dict[int, bool] = {}
-    for line in (packaged / f'{name}.yaml').read_text(encoding='utf-8').splitlines():
-        if line.startswith(('#', 'description:')):
+    for line in packaged_text(noun, name).splitlines():
+        if line.startswith(('#', 'description:', 'base:', 'car:', 'drive:')):
             continue
         depth = len(line) - len(line.lstrip())
         explained = {at: text for at, text in explained.items() if at < depth}

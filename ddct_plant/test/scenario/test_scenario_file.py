@@ -14,11 +14,17 @@ from ddct_plant.scenario.file import ScenarioFile, load_scenario, scenario_diges
 from ddct_plant.scenario.settings import RunSettings
 
 MINIMAL = """\
-duration_s: 1.0
-control_start_s: 0.6
-score_window_s: [0.6, 1.0]
-engine: {time_s: [0.0], torque_n_m: [100.0]}
+car: c635_thesis
+drive:
+  duration_s: 1.0
+  control_start_s: 0.6
+  score_window_s: [0.6, 1.0]
+  engine: {time_s: [0.0], torque_n_m: [100.0]}
 """
+
+
+DRIVE = MINIMAL.partition('\n')[2]
+CAR = 'car: {base: c635_thesis, '
 
 
 @pytest.fixture
@@ -46,14 +52,14 @@ def test_a_scenario_is_the_same_to_the_last_bit_after_writing_and_reading(scenar
 
 def test_a_scenario_may_have_a_schema_version_and_a_written_one_does(scenario_file):
     without = load_scenario(scenario_file(MINIMAL))
-    assert load_scenario(scenario_file(f'schema_version: 1\n{MINIMAL}')) == without
-    assert scenario_to_yaml(without).startswith('schema_version: 1\n')
+    assert load_scenario(scenario_file(f'schema_version: 2\n{MINIMAL}')) == without
+    assert scenario_to_yaml(without).startswith('schema_version: 2\n')
 
 
 @pytest.mark.parametrize(
     ('version', 'advice'),
     [
-        ('2', 'update the project'),
+        ('3', 'update the project'),
         ('0', 'a whole number'),
         ('1.0', 'a whole number'),
         ('true', 'a whole number'),
@@ -79,31 +85,35 @@ def test_an_override_changes_one_key_and_the_digest(scenario_file):
 @pytest.mark.parametrize(
     ('text', 'key', 'place'),
     [
-        (MINIMAL + 'lod: {}', 'lod', 'line 5'),
-        (MINIMAL + 'load: {slope_deg: 1.0}', 'load.slope_deg', 'line 5'),
-        (MINIMAL + 'load: {slope_rad: .nan}', 'load.slope_rad', 'line 5'),
-        (MINIMAL + 'load: {slope_rad: steep}', 'load.slope_rad', 'line 5'),
-        (MINIMAL + 'load: 3', 'load', 'line 5'),
-        (MINIMAL + 'reference: {slope_rad_s2: -1.0}', 'reference.slope_rad_s2', 'line 5'),
-        (MINIMAL + 'reference: {shape: step}', 'reference.shape', 'line 5'),
-        (MINIMAL + 'reference: {shape: 1}', 'reference.shape', 'line 5'),
-        (MINIMAL + 'reference: {reference_end_s: 0.905}', 'reference.reference_end_s', 'line 5'),
-        (MINIMAL + 'driveline: {vehicle_inertia: 0.0}', 'driveline.vehicle_inertia', 'line 5'),
-        (MINIMAL + 'controllers: [pi]', 'controllers', 'line 5'),
-        (MINIMAL.replace('1.0\ncontrol', '0.005\ncontrol'), 'duration_s', 'line 1'),
-        (MINIMAL.replace('[0.6, 1.0]', '[1.0, 0.6]'), 'score_window_s', 'line 3'),
-        (MINIMAL.replace('[0.6, 1.0]', '0.6'), 'score_window_s', 'line 3'),
-        (MINIMAL.replace('[0.0]', '0.0'), 'engine.time_s', 'line 4'),
-        (MINIMAL.replace('duration_s: 1.0\n', ''), 'duration_s', ''),
+        (MINIMAL + 'lod: {}', 'lod', 'line 7'),
+        (MINIMAL + '  load: {slope_deg: 1.0}', 'load.slope_deg', 'line 7'),
+        (MINIMAL + '  load: {slope_rad: .nan}', 'load.slope_rad', 'line 7'),
+        (MINIMAL + '  load: {slope_rad: steep}', 'load.slope_rad', 'line 7'),
+        (MINIMAL + '  load: 3', 'load', 'line 7'),
+        (MINIMAL + '  reference: {slope_rad_s2: -1.0}', 'reference.slope_rad_s2', 'line 7'),
+        (MINIMAL + '  reference: {shape: step}', 'reference.shape', 'line 7'),
+        (MINIMAL + '  reference: {shape: 1}', 'reference.shape', 'line 7'),
+        (MINIMAL + '  reference: {reference_end_s: 0.905}', 'reference.reference_end_s', 'line 7'),
+        (
+            f'{CAR}driveline: {{vehicle_inertia: 0.0}}}}\n{DRIVE}',
+            'driveline.vehicle_inertia',
+            'line 1',
+        ),
+        (MINIMAL + 'controllers: [pi]', 'controllers', 'line 7'),
+        (MINIMAL.replace('duration_s: 1.0', 'duration_s: 0.005'), 'duration_s', 'line 3'),
+        (MINIMAL.replace('[0.6, 1.0]', '[1.0, 0.6]'), 'score_window_s', 'line 5'),
+        (MINIMAL.replace('[0.6, 1.0]', '0.6'), 'score_window_s', 'line 5'),
+        (MINIMAL.replace('[0.0]', '0.0'), 'engine.time_s', 'line 6'),
+        (MINIMAL.replace('  duration_s: 1.0\n', ''), 'duration_s', 'mine.yaml'),
         ('- 1', '', ''),
         ('a: [', '', 'line 2'),
         (
-            MINIMAL + 'duration_s: 2.0',
+            MINIMAL + '  duration_s: 2.0',
             '',
-            'line 5',
+            'line 7',
         ),
-        (MINIMAL + 'description: !!python/object/apply:os.getcwd []', '', 'line 5'),
-        (MINIMAL + 'load: &a {x: *a}', '', 'line 5'),
+        (MINIMAL + 'description: !!python/object/apply:os.getcwd []', '', 'line 7'),
+        (MINIMAL + '  load: &a {x: *a}', '', 'line 7'),
     ],
 )
 def test_a_bad_scenario_is_refused_with_the_key(scenario_file, text, key, place):
@@ -121,7 +131,7 @@ def test_a_bad_scenario_is_refused_with_the_key(scenario_file, text, key, place)
 )
 def test_a_name_that_could_be_part_of_a_path_is_refused(scenario_file, name):
     path = scenario_file(MINIMAL + f'name: {json.dumps(name)}')
-    with refused(ParameterError, key='name', place='mine.yaml: line 5'):
+    with refused(ParameterError, key='name', place='mine.yaml: line 7'):
         load_scenario(path)
     with refused(ParameterError, key='name'):
         load_scenario('thesis', [f'name={json.dumps(name)}'])
@@ -144,7 +154,7 @@ def test_a_file_whose_name_is_no_plain_one_needs_a_name_inside(tmp_path):
 def test_no_object_is_built_from_a_file(scenario_file, tmp_path):
     made = tmp_path / 'made'
     evil = f'description: !!python/object/apply:os.mkdir ["{made}"]'
-    with refused(DdctError, place='mine.yaml: line 5'):
+    with refused(DdctError, place='mine.yaml: line 7'):
         load_scenario(scenario_file(MINIMAL + evil))
     assert not made.exists()
 

@@ -14,42 +14,57 @@ control_start_s: 0.6
 score_window_s: [0.6, 1.0]
 engine: {time_s: [0.0], torque_n_m: [100.0]}
 """
-SECTIONS = """\
-initial: {engine_speed_rad_s: 100.0, shaft_speed_rad_s: 100.0, clutch_phase: locked}
-friction: {static_over_kinetic: 1.1, slip_rad_s: [0.0, 50.0], slip_share: [1.0, 0.9]}
-heat: {plate_c: 200.0, facing_c: 200.0}
-brake: {time_s: [0.0, 1.0], torque_n_m: [800.0, 0.0]}
-engine_limits: {stall_rad_s: 60.0}
-closing: {margin: 1.3}
-"""
-DIGEST_OF_THESIS = '91dd4f58e1510697'
+CAR = 'base: c635_thesis\n'
+FILES = {'car': CAR, 'drive': BASE}
+"""Text of a car and of a drive."""
+SECTIONS = (
+    (
+        'drive',
+        'initial: {engine_speed_rad_s: 100.0, shaft_speed_rad_s: 100.0, clutch_phase: locked}\n',
+    ),
+    (
+        'car',
+        'friction: {static_over_kinetic: 1.1, slip_rad_s: [0.0, 50.0], slip_share: [1.0, 0.9]}\n',
+    ),
+    ('drive', 'heat: {plate_c: 200.0, facing_c: 200.0}\n'),
+    ('drive', 'brake: {time_s: [0.0, 1.0], torque_n_m: [800.0, 0.0]}\n'),
+    ('car', 'engine_limits: {stall_rad_s: 60.0}\n'),
+    ('drive', 'closing: {margin: 1.3}\n'),
+)
+DIGEST_OF_THESIS = '4bfaa598f7b0abcd'
 """Digest of `thesis` from before scenarios had sections; the kept predictions contain it."""
 
 
 @pytest.fixture
-def scenario_file(tmp_path):
-    def write(text):
-        path = tmp_path / 'mine.yaml'
-        path.write_text(text, encoding='utf-8')
-        return str(path)
+def files(tmp_path):
+    """Return a car and a drive with more text in each, as keywords of `load_scenario`."""
+
+    def write(**more):
+        found = {}
+        for noun, text in FILES.items():
+            path = tmp_path / f'{noun}.yaml'
+            path.write_text(text + more.get(noun, ''), encoding='utf-8')
+            found[noun] = str(path)
+        return found
 
     return write
 
 
-def test_sections_are_the_same_after_writing_and_reading_and_change_the_digest(scenario_file):
-    scenario = load_scenario(scenario_file(BASE + SECTIONS))
+def test_sections_are_the_same_after_writing_and_reading_and_change_the_digest(files, tmp_path):
+    more = {noun: ''.join(text for of, text in SECTIONS if of == noun) for noun in FILES}
+    scenario = load_scenario(**files(**more))
     assert scenario.friction.slip_share == (1.0, 0.9)
     assert (scenario.heat.facing_c, scenario.heat.housing_c) == (200.0, 20.0)
     assert scenario.brake.at(0.5) == 400.0
     assert scenario.engine_limits.stall_rad_s == 60.0
     assert (scenario.closing.margin, scenario.closing.dwell_s) == (1.3, 0.1)
     assert scenario.initial.clutch_phase == 'locked'
-    again = load_scenario(scenario_file(scenario_to_yaml(scenario)))
-    assert again == scenario
-    bare = load_scenario(scenario_file(BASE))
+    (tmp_path / 'again.yaml').write_text(scenario_to_yaml(scenario), encoding='utf-8')
+    assert load_scenario(str(tmp_path / 'again.yaml')) == scenario
+    bare = load_scenario(**files())
     digests = {scenario_digest(scenario), scenario_digest(bare)}
-    for section in SECTIONS.splitlines()[1:]:
-        digests.add(scenario_digest(load_scenario(scenario_file(f'{BASE}{section}\n'))))
+    for noun, section in SECTIONS[1:]:
+        digests.add(scenario_digest(load_scenario(**files(**{noun: section}))))
     assert len(digests) == 7, 'each section counts'
 
 
@@ -62,87 +77,97 @@ def test_what_thesis_lacks_stays_out_of_its_file_and_digest():
         assert f'{name}:' not in text
 
 
-def test_rates_too_fast_for_a_clutch_that_sticks_are_refused_with_key_and_line(scenario_file):
-    path = scenario_file(BASE + 'driveline:\n  shaft_inertia: 0.0002')
-    assert load_scenario(path).driveline.shaft_inertia == 0.0002
-    with refused(ParameterError, 'driveline.shaft_inertia', 'mine.yaml: line 6'):
-        load_scenario(path, clutch='stick_slip')
+def test_rates_too_fast_for_a_clutch_that_sticks_are_refused_with_key_and_line(files):
+    given = files(car='driveline:\n  shaft_inertia: 0.0002')
+    assert load_scenario(**given).driveline.shaft_inertia == 0.0002
+    with refused(ParameterError, 'driveline.shaft_inertia', 'car.yaml: line 3'):
+        load_scenario(**given, clutch='stick_slip')
 
 
-def test_an_empty_section_of_limits_takes_the_default_engine(scenario_file):
-    path = scenario_file(BASE + 'engine_limits: {}')
-    assert load_scenario(path).engine_limits.idle_rad_s == 94.25
-    assert load_scenario(path, ['engine_limits=null']).engine_limits is None
+def test_an_empty_section_of_limits_takes_the_default_engine(files):
+    given = files(car='engine_limits: {}')
+    assert load_scenario(**given).engine_limits.idle_rad_s == 94.25
+    assert load_scenario(overrides=['engine_limits=null'], **given).engine_limits is None
 
 
 @pytest.mark.parametrize(
-    ('text', 'key', 'place'),
+    ('noun', 'text', 'key', 'line'),
     [
-        ('friction: {static_over_kinetic: 0.9}', 'friction.static_over_kinetic', 'line 5'),
-        ('friction:\n  slip_rad_s: [0]\n', 'friction.slip_share', 'line 5'),
-        ('friction: {most_n_m: 0}', 'friction.most_n_m', 'line 5'),
+        ('car', 'friction: {static_over_kinetic: 0.9}', 'friction.static_over_kinetic', 2),
+        ('car', 'friction:\n  slip_rad_s: [0]\n', 'friction.slip_share', 2),
+        ('car', 'friction: {most_n_m: 0}', 'friction.most_n_m', 2),
         (
+            'car',
+            'vehicle: {mass_kg: 1e20, wheel_radius_m: 1}\n'
             'driveline:\n  engine_inertia: 1e308\n  shaft_inertia: 1e308\n  vehicle_inertia: 1e20',
             'driveline.shaft_inertia',
-            'line 7',
+            5,
         ),
-        ('driveline: {total_ratio: 1e-200}', 'driveline.total_ratio', 'line 5'),
-        ('heat:\n  plate_c: 20.0\n  facing_j_k: -163.0', 'heat.facing_j_k', 'line 7'),
-        ('closing: {margin: 0.9}', 'closing.margin', 'line 5'),
-        ('closing:\n  dwell_s: 0.015', 'closing.dwell_s', 'line 6'),
+        ('car', 'driveline: {total_ratio: 1e-200}', 'driveline.total_ratio', 2),
+        ('car', 'heat:\n  facing_j_k: -163.0', 'heat.facing_j_k', 3),
+        ('drive', 'closing: {margin: 0.9}', 'closing.margin', 5),
+        ('drive', 'closing:\n  dwell_s: 0.015', 'closing.dwell_s', 6),
         (
+            'drive',
             'brake:\n  torque_n_m: [1.0, 0.0]\n  time_s: [1.0, 1.0]',
             'brake.time_s',
-            'line 7',
+            7,
         ),
         (
+            'drive',
             'brake:\n  time_s: [0.0, 1.0]\n  torque_n_m:\n  - 5.0\n  - -5.0',
             'brake.torque_n_m[1]',
-            'line 9',
+            9,
         ),
         (
+            'car',
             'engine_limits:\n  full_load_n_m: [9.0, 9.0]\n  friction_n_m: [9.0, 9.0]\n'
             '  speed_rad_s: [0.0, 600.0]',
             'engine_limits.speed_rad_s',
-            'line 8',
+            5,
         ),
         (
+            'drive',
             'initial:\n  engine_speed_rad_s: 100.0\n  clutch_phase: locked',
             'initial.clutch_phase',
-            'line 7',
+            7,
         ),
         (
+            'drive',
             'initial:\n  clutch_phase: slipping',
             'initial.clutch_phase',
-            'line 6',
+            6,
         ),
-        ('initial: {clutch_phase: wet}', 'initial.clutch_phase', 'line 5'),
-        ('load:\n  slope_deg: 1.0', 'load.slope_deg', 'line 6'),
-        ('load:\n  slope_rad: .nan', 'load.slope_rad', 'line 6'),
+        ('drive', 'initial: {clutch_phase: wet}', 'initial.clutch_phase', 5),
+        ('drive', 'load:\n  slope_deg: 1.0', 'load.slope_deg', 6),
+        ('drive', 'load:\n  slope_rad: .nan', 'load.slope_rad', 6),
         (
+            'car',
             'engine_authority:\n  minimum_torque_n_m: 2000.0',
             'engine_authority.minimum_torque_n_m',
-            'line 6',
+            3,
         ),
-        ('reference: 3', 'reference', 'line 5'),
+        ('drive', 'reference: 3', 'reference', 5),
     ],
 )
-def test_a_bad_value_is_refused_with_its_line(scenario_file, text, key, place):
-    path = scenario_file(BASE + text)
-    with refused(ParameterError, key=key, place=place):
-        load_scenario(path)
+def test_a_bad_value_is_refused_with_its_line(files, noun, text, key, line):
+    given = files(**{noun: text})
+    with refused(ParameterError, key=key, place=f'{noun} {given[noun]}: line {line}'):
+        load_scenario(**given)
 
 
 @pytest.mark.parametrize(
     'override', ['engine.torque_n_m=[-1.0]', 'engine={time_s: [0.0], torque_n_m: [-1.0]}']
 )
-def test_a_bad_value_that_was_set_has_no_line_of_the_file(scenario_file, override):
-    path = scenario_file(BASE)
-    with refused(ParameterError, key='engine.torque_n_m[0]', place=f'scenario {path}'):
-        load_scenario(path, [override])
+def test_a_bad_value_that_was_set_has_no_line_of_the_file(files, override):
+    given = files()
+    place = f'drive {given["drive"]} with car {given["car"]}'
+    with refused(ParameterError, key='engine.torque_n_m[0]', place=place):
+        load_scenario(overrides=[override], **given)
 
 
-def test_a_missing_key_of_a_section_has_the_line_of_the_section(scenario_file):
-    path = scenario_file(BASE.replace('{time_s: [0.0], torque_n_m: [100.0]}', '{time_s: [0.0]}'))
-    with refused(ParameterError, key='engine.torque_n_m', place='mine.yaml: line 4'):
-        load_scenario(path)
+def test_a_missing_key_of_a_section_has_the_line_of_the_section(tmp_path):
+    path = tmp_path / 'mine.yaml'
+    path.write_text(BASE.replace('{time_s: [0.0], torque_n_m: [100.0]}', '{time_s: [0.0]}'))
+    with refused(ParameterError, key='engine.torque_n_m', place=f'drive {path}: line 4'):
+        load_scenario(drive=str(path))

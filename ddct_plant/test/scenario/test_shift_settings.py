@@ -7,8 +7,8 @@ from refusals import refused
 from shifts import SHIFTS
 
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.files.yaml_text import parse_yaml
-from ddct_plant.scenario.content import scenario_from_mapping
+from ddct_plant.files.yaml_text import dump_yaml, parse_yaml
+from ddct_plant.scenario.content import scenario_content, scenario_from_mapping
 from ddct_plant.scenario.file import load_scenario, scenario_digest, scenario_to_yaml
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.signals.signal import RunKind
@@ -31,7 +31,7 @@ def test_keys_of_the_shift_are_set_like_others_and_survive_their_file():
     scenario = settings('shift.torque_cut_n_m=40', 'shift.handover_s=0.1').scenario
     assert scenario.shift is not None
     assert (scenario.shift.torque_cut_n_m, scenario.shift.handover_s) == (40.0, 0.1)
-    again = scenario_from_mapping(parse_yaml(scenario_to_yaml(scenario)))
+    again = scenario_from_mapping(parse_yaml(dump_yaml(scenario_content(scenario))))
     assert again == scenario
     assert scenario_digest(again) != scenario_digest(load_scenario('upshift'))
     assert 'shift' not in scenario_to_yaml(load_scenario('launch'))

@@ -18,8 +18,8 @@ from ddct_controllers.from_file.digests import (
     handover_files,
 )
 from ddct_plant.base.errors import DdctError
-from ddct_plant.files.input_file import named_in
-from ddct_plant.scenario.file import ScenarioFile, is_packaged
+from ddct_plant.scenario.choices.scenarios import is_packaged
+from ddct_plant.scenario.file import ScenarioFile
 from ddct_plant.scenario.settings import is_handover_file
 
 _CSV = 'csv'
@@ -68,13 +68,14 @@ def files_of(path: Path) -> list[Path]:
     """
     Return a file that a specification names for its cases, then those that it is made of.
 
-    A scenario has profiles, a handover modules. Raise DdctError for one that cannot be read.
+    A scenario has a car, a drive and profiles, a handover modules. Raise DdctError for one that
+    cannot be read.
     """
     if is_handover_file(str(path)):
         return handover_files(str(path))
     if path.suffix not in YAML_SUFFIXES:
         return [path]
-    return [path, *_profiles(ScenarioFile.read(str(path)))]
+    return list(ScenarioFile.read(str(path)).files)
 
 
 def digest_of(spec: CampaignSpec) -> str:
@@ -106,19 +107,10 @@ def _digests_text(digests: Mapping[str, str]) -> bytes:
 
 
 def _of_scenarios(spec: CampaignSpec) -> Iterator[Path]:
-    """Yield the scenarios that are files of the user, and the profiles that they name."""
+    """Yield the scenarios that are files of the user, and the files that they are made of."""
     for name in spec.scenarios:
         if not is_packaged(name):
-            file = spec.scenario_file(name)
-            yield Path(file.name)
-            yield from _profiles(file)
-
-
-def _profiles(file: ScenarioFile) -> Iterator[Path]:
-    """Yield the profiles that the scenario in a file names."""
-    for section in file.content.values():
-        if isinstance(section, Mapping) and isinstance(section.get(_CSV), str):
-            yield named_in(Path(file.name).parent, section[_CSV])
+            yield from spec.scenario_file(name).files
 
 
 def _of_varied_keys(spec: CampaignSpec) -> Iterator[Path]:

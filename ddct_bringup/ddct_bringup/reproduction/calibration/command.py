@@ -16,7 +16,7 @@ from ddct_bringup.reproduction.calibration.record import (
     RETURN_TOLERANCE,
     calibrate,
     check_frozen,
-    scenario_text,
+    drive_text,
 )
 from ddct_bringup.reproduction.calibration.record_tables import all_tables, check_tables
 from ddct_bringup.reproduction.calibration.record_types import (
@@ -42,7 +42,7 @@ examples:
   ddct reproduce calibration                          all of it, about a minute and a half
   ddct reproduce calibration --quick                  only check that the scenario is the optimum
   ddct reproduce calibration --json -                 the result as JSON on standard output, alone
-  ddct reproduce calibration --write my_thesis.yaml   write the calibrated scenario
+  ddct reproduce calibration --write my_thesis.yaml   write the calibrated drive
   ddct reproduce calibration --ensemble DIR           search the admissible scenarios, two minutes
   ddct reproduce calibration --predict DIR            only predict in those of DIR, half a minute
 
@@ -62,7 +62,7 @@ def add_parser(subparsers: Any) -> None:
     )
     parser.add_argument('--quick', action='store_true', help='check the frozen scenario only')
     parser.add_argument('--json', metavar='FILE', help="write the result as JSON; '-' is stdout")
-    parser.add_argument('--write', metavar='FILE', help="write the scenario; '-' is stdout")
+    parser.add_argument('--write', metavar='FILE', help="write the drive; '-' is stdout")
     ensemble = parser.add_mutually_exclusive_group()
     ensemble.add_argument(
         '--ensemble',
@@ -101,7 +101,7 @@ def run(options: argparse.Namespace) -> int:
     _show_and_write(options, record, all_tables(record).values())
     _require_within_tolerance(record.residuals)
     if options.write:
-        write_text(options.write, scenario_text(record))
+        write_text(options.write, drive_text(record))
     return 0
 
 

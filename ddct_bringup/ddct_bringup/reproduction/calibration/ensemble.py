@@ -35,7 +35,7 @@ from ddct_bringup.reproduction.calibration.parameters import (
     values_of,
 )
 from ddct_bringup.reproduction.calibration.problem import Problem
-from ddct_bringup.reproduction.calibration.record import annotated_yaml
+from ddct_bringup.reproduction.calibration.record import member_text
 from ddct_bringup.reproduction.calibration.record_types import ResidualEntry
 from ddct_bringup.reproduction.calibration.search import WINDOW_ENDS_S, Progress, centre, rim
 from ddct_bringup.reproduction.study_run import study_run
@@ -136,7 +136,7 @@ def write_members(scenarios: list[Scenario], folder: Path) -> None:
             '# Written by `ddct reproduce calibration --ensemble DIR`;'
             ' docs/thesis/predictions.md tells how.',
         )
-        write_text(str(folder / f'{scenario.name}.yaml'), annotated_yaml(scenario, head))
+        write_text(str(folder / f'{scenario.name}.yaml'), member_text(scenario, head))
 
 
 def _search(frozen: Scenario, progress: Progress) -> Iterator[Scenario]:

@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""The whole calibration: its record, and the scenario file made from it."""
+"""The whole calibration: its record, and the drive and scenario files made from it."""
 
 from collections.abc import Sequence
 
@@ -36,13 +36,14 @@ from ddct_bringup.reproduction.calibration.record_types import (
 )
 from ddct_bringup.reproduction.calibration.search import Progress, lowest_stable, search
 from ddct_bringup.thesis.table_5_1 import TOLERANCES
+from ddct_plant.models.load import LoadParameters
 from ddct_plant.scenario.scenario import Scenario
 
 RETURN_TOLERANCE = 0.01
 """Largest change of a parameter in a refit of the frozen scenario, as a share of its range."""
 MOVES = ('torque_rise_n_m', *NAMES[2:])
 """Quantities in which a refit is compared; C_m end minus C_m start, as both are not determined."""
-_SCENARIO_HEAD = (
+_DRIVE_HEAD = (
     '# The slip phase behind Table 5.1 of the thesis, which does not print it.',
     '# Written by `ddct reproduce calibration --write FILE`: docs/thesis/calibration.md.',
     '# fitted: to the LS8, Hinf1 and PI rows of Table 5.1; what they show is a fit residual.',
@@ -167,18 +168,37 @@ def _optimum(one: Fit) -> OptimumEntry:
     )
 
 
-def scenario_text(record: CalibrationRecord) -> str:
-    """Return the calibrated scenario as YAML, with comments on the source of each value."""
+def drive_text(record: CalibrationRecord) -> str:
+    """Return the calibrated drive as YAML, with comments on the source of each value."""
     values = [entry.frozen for entry in record.parameters]
-    return annotated_yaml(Problem(record.score_window_s[1]).scenario(values), _SCENARIO_HEAD)
+    scenario = Problem(record.score_window_s[1]).scenario(values)
+    lines = [(f'description: {scenario.description}', ''), *_drive_lines(scenario)]
+    return _commented(_DRIVE_HEAD, lines)
 
 
-def annotated_yaml(scenario: Scenario, head: Sequence[str]) -> str:
+def member_text(scenario: Scenario, head: Sequence[str]) -> str:
     """Return a scenario of the calibrated kind as YAML below its head of comments."""
-    first, last = scenario.score_window_s
-    time, torque = (list(part) for part in (scenario.engine.time_s, scenario.engine.torque_n_m))
+    load, usual = vars(scenario.load), vars(LoadParameters())
+    changed = [name for name in load if load[name] != usual[name]]
     lines = [
         (f'description: {scenario.description}', ''),
+        ('car: c635_thesis', ''),
+        ('drive:', ''),
+        *((f'  {text}', comment) for text, comment in _drive_lines(scenario)),
+        *([('set:', '')] if changed else []),
+        *((f'  load.{name}: {load[name]}', '') for name in changed),
+        ('controllers:', ''),
+        ('  pi:', 'fitted, to the PI row only'),
+        *((f'    {name}: {gain}', '') for name, gain in scenario.controllers['pi'].items()),
+    ]
+    return _commented(head, lines)
+
+
+def _drive_lines(scenario: Scenario) -> list[tuple[str, str]]:
+    """Return the lines of the drive of a scenario, each with its comment."""
+    first, last = scenario.score_window_s
+    time, torque = (list(part) for part in (scenario.engine.time_s, scenario.engine.torque_n_m))
+    return [
         (f'duration_s: {scenario.duration_s}', 'assumed'),
         (f'control_start_s: {scenario.control_start_s}', 'thesis, Section 1.4.1'),
         (f'score_window_s: [{first}, {last}]', 'from control start; the end is fitted'),
@@ -191,13 +211,12 @@ def annotated_yaml(scenario: Scenario, head: Sequence[str]) -> str:
             for name, value in vars(scenario.initial).items()
             if value is not None
         ),
-        ('load:', 'assumed: a level road; an ordinary car has 0.32 and 0.0125'),
-        *((f'  {name}: {value}', '') for name, value in vars(scenario.load).items()),
         ('reference:', ''),
         (f'  slope_rad_s2: {scenario.reference.slope_rad_s2}', 'fitted'),
-        ('controllers:', ''),
-        ('  pi:', 'fitted, to the PI row only'),
-        *((f'    {name}: {gain}', '') for name, gain in scenario.controllers['pi'].items()),
     ]
+
+
+def _commented(head: Sequence[str], lines: Sequence[tuple[str, str]]) -> str:
+    """Return the text of a file: its head, then lines with their comments."""
     body = [f'{text:<37} # {comment}' if comment else text for text, comment in lines]
     return '\n'.join([*head, *body, ''])

@@ -14,7 +14,7 @@ from ddct_bringup.campaign.keys import SCENARIO, run_options
 from ddct_bringup.campaign.specification.named_files import placed
 from ddct_bringup.tuning.tuned_names import BEST
 from ddct_bringup.tuning.tuning import Tuning
-from ddct_plant.scenario.file import is_packaged
+from ddct_plant.scenario.choices.scenarios import is_packaged
 
 
 @dataclass(frozen=True)

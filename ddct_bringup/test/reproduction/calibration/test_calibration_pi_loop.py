@@ -9,7 +9,7 @@ import pytest
 from refusals import refused
 
 from ddct_bringup.reproduction.calibration import record
-from ddct_bringup.reproduction.calibration.parameters import pi_growth_rate
+from ddct_bringup.reproduction.calibration.parameters import FROZEN_GAINS, pi_growth_rate
 from ddct_bringup.reproduction.calibration.problem import Fit, Problem
 from ddct_bringup.reproduction.calibration.search import lowest_stable
 from ddct_bringup.run.headless import run_headless
@@ -47,9 +47,8 @@ def test_integral_alone_grows_at_the_rate_of_the_linear_loop():
 
 def test_frozen_pi_is_stable_and_its_slip_dies_out():
     scenario = load_scenario('thesis')
-    gains = scenario.controllers['pi']
-    assert pi_growth_rate(scenario.driveline, **gains) < 0.0
-    slip = run_headless(RunSettings(long_run(**gains)), 'pi').slip_speed
+    assert pi_growth_rate(scenario.driveline, **FROZEN_GAINS) < 0.0
+    slip = run_headless(RunSettings(long_run(**FROZEN_GAINS)), 'pi').slip_speed
     assert peak_slip(slip, 15.0, 20.0) < 0.02 * peak_slip(slip, 0.6, 2.0)
 
 

@@ -10,6 +10,7 @@ import pytest
 
 from ddct_bringup.programs import reproduce
 from ddct_bringup.reproduction.calibration import command
+from ddct_bringup.reproduction.calibration.parameters import FROZEN_GAINS
 from ddct_bringup.reproduction.calibration.record import MOVES
 from ddct_bringup.reproduction.calibration.record_types import (
     CalibrationRecord,
@@ -22,6 +23,7 @@ from ddct_plant.scenario.file import load_scenario
 pytestmark = pytest.mark.slow
 
 DOCS = Path(__file__).resolve().parents[4] / 'docs'
+SCENARIO = load_scenario('thesis')
 RECORD = read_json(CalibrationRecord, DOCS / 'thesis' / 'calibration.json')
 
 
@@ -72,10 +74,10 @@ def test_json_on_standard_output_has_no_other_text(calibrated, capsys):
     assert json.loads(capsys.readouterr().out) == to_json(RECORD)
 
 
-def test_the_scenario_that_it_writes_is_the_kept_one(calibrated, capsys, tmp_path):
-    scenario = tmp_path / 'thesis.yaml'
-    assert reproduce.main(['calibration', '--write', str(scenario)]) == 0
-    assert load_scenario(str(scenario)) == load_scenario('thesis')
+def test_the_drive_that_it_writes_is_the_kept_one(calibrated, capsys, tmp_path):
+    drive = tmp_path / 'thesis.yaml'
+    assert reproduce.main(['calibration', '--write', str(drive)]) == 0
+    assert load_scenario('thesis', drive=str(drive), overrides=['name=thesis']) == SCENARIO
     assert 'One row left out' in capsys.readouterr().out
 
 
@@ -84,11 +86,13 @@ def test_ensemble_is_written_with_what_it_predicts_and_with_progress(
 ):
     def search(frozen, progress):
         progress('centre: score window to 1.7 s')
-        return [dataclasses.replace(frozen, name='member', description='Centre of the region')]
+        gains = {'controllers': {'pi': FROZEN_GAINS}}
+        what = 'Centre of the region'
+        return [dataclasses.replace(frozen, name='member', description=what, **gains)]
 
     monkeypatch.setattr(command, 'find_members', search)
     assert reproduce.main(['calibration', '--ensemble', str(tmp_path)]) == 0
-    assert load_scenario(str(tmp_path / 'member.yaml')).engine == load_scenario('thesis').engine
+    assert load_scenario(str(tmp_path / 'member.yaml')).engine == SCENARIO.engine
     record = json.loads((tmp_path / 'predictions.json').read_text())
     for name, one in record['predictions'].items():
         assert one['members'] == {'member': one['frozen']}, name

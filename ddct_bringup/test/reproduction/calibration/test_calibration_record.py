@@ -10,6 +10,7 @@ import pytest
 from generator.pages import as_markdown, shown_tables
 
 from ddct_bringup.reproduction.calibration.parameters import (
+    FROZEN_GAINS,
     NAMES,
     outside_tolerance,
     pi_growth_rate,
@@ -17,7 +18,7 @@ from ddct_bringup.reproduction.calibration.parameters import (
     rounded,
 )
 from ddct_bringup.reproduction.calibration.problem import Problem, row_values
-from ddct_bringup.reproduction.calibration.record import scenario_text
+from ddct_bringup.reproduction.calibration.record import drive_text
 from ddct_bringup.reproduction.calibration.record_tables import all_tables
 from ddct_bringup.reproduction.calibration.record_types import CalibrationRecord, FitEntry
 from ddct_plant.files.json_records import json_text, read_json
@@ -48,11 +49,12 @@ def test_residual_outside_its_tolerance_is_named():
     assert outside_tolerance([beyond, *others]) == ['ls8 engagement_time_s -5.1 %']
 
 
-def test_scenario_file_is_what_the_record_writes():
-    kept = importlib.resources.files('ddct_plant.scenario') / 'packaged' / 'thesis.yaml'
-    assert kept.read_text(encoding='utf-8') == scenario_text(RECORD)
+def test_the_drive_and_the_gains_are_those_of_the_record():
+    kept = importlib.resources.files('ddct_plant.scenario') / 'packaged' / 'drives' / 'thesis.yaml'
+    assert kept.read_text(encoding='utf-8') == drive_text(RECORD)
     optimum = [entry.value for entry in RECORD.parameters]
-    assert Problem(RECORD.score_window_s[1]).scenario(rounded(optimum)) == SCENARIO
+    scenario = Problem(RECORD.score_window_s[1]).scenario(rounded(optimum))
+    assert scenario == replace(SCENARIO, controllers={'pi': FROZEN_GAINS})
 
 
 def test_the_record_is_read_and_written_to_the_last_bit():

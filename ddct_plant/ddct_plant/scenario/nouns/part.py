@@ -1,0 +1,154 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""A car or a drive: a YAML file, a packaged name, or a section of a scenario file."""
+
+import difflib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Self
+
+from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.files.input_file import (
+    SCHEMA_KEY,
+    located,
+    named_in,
+    require_schema_version,
+    user_text,
+)
+from ddct_plant.files.yaml_text import parse_yaml_with_lines
+from ddct_plant.scenario.choices.scenarios import is_packaged, packaged_names, packaged_text
+from ddct_plant.scenario.csv_profiles import SECTIONS as PROFILES
+from ddct_plant.scenario.csv_profiles import file_of, with_file_in
+from ddct_plant.scenario.nouns.keys import require_keys_of
+from ddct_plant.scenario.nouns.layers import layered
+from ddct_plant.scenario.nouns.places import Places, places_of
+
+SCHEMA_VERSION = 1
+"""Version of the keys of a car or drive file; a file without a version has this one."""
+BASE, DESCRIPTION = 'base', 'description'
+
+
+@dataclass(frozen=True)
+class Text:
+    """Text of a YAML file that a user or the package has, by its name or path."""
+
+    noun: str
+    """What the file describes: a car, a drive or a scenario."""
+    name: str
+    """Packaged name, or path, as it was requested and relative to the working directory."""
+
+    @property
+    def label(self) -> str:
+        """Return what errors call the file."""
+        return f'{self.noun} {self.name}'
+
+    @property
+    def path(self) -> Path | None:
+        """Return the path of a user's file, None for a packaged name."""
+        return None if is_packaged(self.name) else Path(self.name)
+
+    @property
+    def stem(self) -> str:
+        """Return the name of the file, without folder and ending."""
+        return self.path.stem if self.path else self.name
+
+    @property
+    def folder(self) -> Path:
+        """Return the folder that the files which it names are relative to."""
+        return self.path.parent if self.path else Path()
+
+    def beside(self, noun: str, name: object) -> 'Text':
+        """Return a file that this one names, of a noun; raise ParameterError for no name."""
+        if not isinstance(name, str) or not name:
+            raise ParameterError(f'{noun} is {name!r}: give a name or a YAML file', key=noun)
+        return Text(noun, name if is_packaged(name) else str(named_in(self.folder, name)))
+
+    def content(self) -> tuple[dict[str, Any], dict[str, int]]:
+        """Return keys and values, and the lines of the keys; raise DdctError that names it."""
+        text = self._text()
+        with located(self.label):
+            content, lines = parse_yaml_with_lines(text)
+            if not isinstance(content, dict):
+                raise DdctError('the file must be a mapping of keys to values')
+        return content, lines
+
+    def _text(self) -> str:
+        if not self.name:
+            raise ParameterError(
+                f'{self.noun} is empty: give a name or a YAML file', key=self.noun
+            )
+        if self.path:
+            with located(self.label):
+                return user_text(self.path)
+        names = packaged_names(self.noun)
+        if self.name not in names:
+            close = difflib.get_close_matches(self.name, names, n=1)
+            meant = f'did you mean {close[0]}? Else ' if close else ''
+            raise ParameterError(
+                f'unknown {self.noun} {self.name!r}: {meant}choose from {", ".join(names)}, or '
+                'give the path of a YAML file',
+                key=self.name,
+            )
+        return packaged_text(self.noun, self.name)
+
+
+@dataclass(frozen=True)
+class Part:
+    """A car or a drive with the values of its bases."""
+
+    label: str
+    """What errors call it."""
+    content: Mapping[str, Any]
+    """Values by key, nested, each of the noun."""
+    description: str
+    places: Mapping[str, str]
+    """Files and lines of the keys, by path."""
+    files: tuple[Path, ...]
+    """Files of the user that it is made of: its own, its bases and their profiles."""
+
+    @classmethod
+    def read(cls, text: Text, above: tuple[str, ...] = ()) -> Self:
+        """
+        Return the car or drive in a file, with the values of its bases below its own.
+
+        `above` are the files that have it as a base. Raise DdctError that names file and line.
+        """
+        if text.name in above:
+            circle = ' -> '.join((*above, text.name))
+            raise ParameterError(f'{BASE} goes in a circle: {circle}', key=BASE)
+        content, lines = text.content()
+        places = places_of(text.label, lines)
+        files = (text.path,) if text.path else ()
+        return cls.of(text, content, places, (*above, text.name), files)
+
+    @classmethod
+    def of(
+        cls,
+        text: Text,
+        content: Mapping[str, Any],
+        places: Places,
+        above: tuple[str, ...] = (),
+        files: tuple[Path, ...] = (),
+    ) -> Self:
+        """Return the car or drive of a content; the files that it names are relative to `text`."""
+        own = {
+            key: with_file_in(text.folder, value) if key in PROFILES else value
+            for key, value in content.items()
+            if key not in (BASE, DESCRIPTION, SCHEMA_KEY)
+        }
+        with places.located():
+            require_schema_version(content, SCHEMA_VERSION)
+            require_keys_of(text.noun, own)
+        base = cls('', {}, '', {}, ())
+        if content.get(BASE) is not None:
+            with located(places.of_keys[BASE]):
+                base = cls.read(text.beside(text.noun, content[BASE]), above)
+        profiles = (file_of(own.get(name)) for name in PROFILES)
+        return cls(
+            places.otherwise,
+            layered(base.content, own),
+            content.get(DESCRIPTION) or base.description,
+            {**base.places, **places.of_keys},
+            (*files, *(each for each in profiles if each), *base.files),
+        )
