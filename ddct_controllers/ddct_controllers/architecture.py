@@ -251,5 +251,5 @@ def _make_open_loop(settings: RunSettings, static: StaticTorque) -> OpenLoop:
     # Only here: the other architectures need not wait for the imports of the design.
     from ddct_controllers.feedforward import Feedforward
 
-    feedforward = Feedforward(scenario.driveline)
+    feedforward = Feedforward(scenario.driveline, scenario.actuator)
     return lambda m, load: feedforward.update(m.engine_torque, load)

@@ -4,6 +4,7 @@
 
 from ddct_controllers.design.feedforward import design_feedforward, state_at_rest
 from ddct_controllers.linear import DiscreteFilter
+from ddct_plant.models.actuator import ActuatorParameters
 from ddct_plant.models.parameters import DrivelineParameters
 
 
@@ -15,9 +16,9 @@ class Feedforward:
     compensates the lag of the actuator.
     """
 
-    def __init__(self, driveline: DrivelineParameters) -> None:
-        """Design the filter for a driveline."""
-        self._model = design_feedforward(driveline)
+    def __init__(self, driveline: DrivelineParameters, actuator: ActuatorParameters) -> None:
+        """Design the filter for a driveline and an actuator."""
+        self._model = design_feedforward(driveline, actuator)
         self._filter = DiscreteFilter(self._model)
         self._started = False
 

@@ -33,7 +33,9 @@ Result = TypeVar('Result')
 
 
 def _synthesised(name: str, context: ControllerContext) -> Controller:
-    return LinearController(synthesised_design(name, context.settings.scenario.driveline).sampled)
+    scenario = context.settings.scenario
+    design = synthesised_design(name, scenario.driveline, scenario.actuator)
+    return LinearController(design.sampled)
 
 
 _OWN: Mapping[str, ControllerSpec[Controller]] = {

@@ -108,7 +108,7 @@ def test_base_is_feedback_alone():
 @pytest.mark.parametrize('name', FEEDFORWARD)
 def test_feedforward_adds_the_filters_torque_for_both_inputs(name):
     architecture = make_architecture(replace(SETTINGS, architecture=name), Recording())
-    filter_ = Feedforward(SETTINGS.scenario.driveline)
+    filter_ = Feedforward(SETTINGS.scenario.driveline, SETTINGS.scenario.actuator)
     for step in range(3):
         request = architecture.update(replace(BEFORE, step=step))
         expected = filter_.update(250.0, load_torque())
@@ -117,7 +117,7 @@ def test_feedforward_adds_the_filters_torque_for_both_inputs(name):
 
 
 def test_feedforward_leads_a_rising_torque_and_tends_to_the_static_one():
-    filter_ = Feedforward(SETTINGS.scenario.driveline)
+    filter_ = Feedforward(SETTINGS.scenario.driveline, SETTINGS.scenario.actuator)
     rising = [filter_.update(2.5 * step, load_torque()) for step in range(101)]
     assert rising[-1] > static_torque() + 5.0
     held = [filter_.update(250.0, load_torque()) for _ in range(300)]

@@ -2,11 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The slip reference of a run, from its scenario and architecture."""
 
-from dataclasses import replace
-
 from ddct_plant.base.clutch_kinds import LINEAR, STICK_SLIP
 from ddct_plant.base.timebase import PERIOD_S, steps_in, time_of_step
-from ddct_plant.models.actuator import ActuatorParameters
 from ddct_plant.models.load import RoadLoad
 from ddct_plant.models.static_torque import StaticTorque
 from ddct_plant.plant import Plant
@@ -57,14 +54,13 @@ def nominal_slip(scenario: Scenario) -> list[float]:
     """
     Return w_d in rad/s at steps 0, 1, ..., up to and with the first controlled one.
 
-    It is that of the nominal detailed run: a clutch without wear, the actuator as printed. The
-    clutch is the linear one, or the one that sticks where the linear one cannot run the scenario.
-    Until control starts feedback is off and only the static controller C_fOL acts. So no
-    controller enters: the values are those of any controller's run, to the last bit.
+    It is that of the nominal detailed run: the known car with a clutch without wear. The clutch is
+    the linear one, or the one that sticks where the linear one cannot run the scenario. Until
+    control starts feedback is off and only the static controller C_fOL acts. So no controller
+    enters: the values are those of any controller's run, to the last bit.
     """
-    nominal = replace(scenario, actuator=ActuatorParameters())
     clutch = STICK_SLIP if scenario.of_stick_slip else LINEAR
-    settings = RunSettings(nominal, architecture='detailed', clutch=clutch)
+    settings = RunSettings(scenario, architecture='detailed', clutch=clutch)
     plant = Plant(settings)
     static = StaticTorque(scenario.driveline, scenario.equilibrium)
     load = RoadLoad(scenario.load, scenario.vehicle, scenario.slope)

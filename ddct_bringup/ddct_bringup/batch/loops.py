@@ -14,7 +14,6 @@ from ddct_bringup.batch.stacks import Filters, distinct
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.linear.lti import StateSpace
-from ddct_plant.models.actuator import ActuatorParameters
 from ddct_plant.scenario.control import PROFILE
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.signals.topics import all_signals
@@ -35,11 +34,12 @@ def simulate_batch(runs: Sequence[RunSettings], feedback: Sequence[StateSpace]) 
     Return the signals of `run_headless` that scores need, with the runs as their first axis.
 
     `feedback` is the `linear_model` of each controller. All runs have one length, architecture,
-    equilibrium, control start and kind of reference; all models have one order.
+    equilibrium, control start and kind of reference, and their controllers know one delay of the
+    actuator; all models have one order.
     """
     known = [run.known for run in runs]
     steps, start = runs[0].scenario.steps, known[0].scenario.control_start_step
-    plants = Plants(runs, [run.scenario.actuator for run in runs], steps)
+    plants = Plants(runs, steps)
     references = References(known, steps)
     open_loop, filters = _open_loops(known, plants), Filters(feedback)
     feedback_start = start if runs[0].detailed else 0
@@ -72,7 +72,8 @@ def _open_loops(runs: Sequence[RunSettings], plants: Plants) -> OpenLoops:
     from ddct_controllers.design.feedforward import design_feedforward, state_at_rest
 
     designed = cache(design_feedforward)
-    models = [designed(run.scenario.driveline) for run in runs]
+    scenarios = [run.scenario for run in runs]
+    models = [designed(each.driveline, each.actuator) for each in scenarios]
     torques = plants.engine_torque
     at_rest = [state_at_rest(*each) for each in zip(models, torques[0], strict=True)]
     filters = Filters(models, np.stack(at_rest, axis=-1))
@@ -158,7 +159,7 @@ def _timed(runs: Sequence[RunSettings], periods: np.ndarray) -> np.ndarray:
 def _nominal_slips(runs: Sequence[RunSettings], control_start: int) -> np.ndarray:
     """Return the nominal slip of each run as `nominal_slip` does, (control_start + 1, R)."""
     nominal = [RunSettings(run.scenario, architecture='detailed') for run in runs]
-    plants = Plants(nominal, [ActuatorParameters()] * len(runs), control_start)
+    plants = Plants(nominal, control_start)
     slips = [plants.outputs().slip_speed]
     for step in range(control_start):
         load_torque = plants.load_torque(step)

@@ -39,9 +39,7 @@ class Plants:
     without limits. Angles are left out: no score depends on them.
     """
 
-    def __init__(
-        self, runs: Sequence[RunSettings], actuators: Sequence[ActuatorParameters], steps: int
-    ) -> None:
+    def __init__(self, runs: Sequence[RunSettings], steps: int) -> None:
         """Start in the initial states; profiles of engine and road extend to step `steps`."""
         scenarios = [run.scenario for run in runs]
         self._driveline = stacked([scenario.driveline for scenario in scenarios])
@@ -58,6 +56,7 @@ class Plants:
         profiles = [engines[index].over(times) for index in first]
         self.engine_torque = np.stack([profiles[place] for place in places], axis=-1)
         """Engine torque C_m in N m at every step, (N+1, R), as `Engine.demand` returns it."""
+        actuators = [scenario.actuator for scenario in scenarios]
         self._actuators = Actuators(actuators, start.sides[0].torque_request, steps + 1)
         nodes = self._actuators.nodes * self._wear[:, np.newaxis, np.newaxis]
         self._step = _step_matrices([each.driveline for each in scenarios], nodes)

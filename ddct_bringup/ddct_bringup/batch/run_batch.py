@@ -65,7 +65,7 @@ def trajectories(runs: Sequence[Run]) -> Trajectory:
 
     They are those that scores need: joint speeds and efforts, slip, A_x, C_load, reference,
     request and demand. All runs have one length, control start, architecture, equilibrium, kind of
-    reference and order of the controller.
+    reference, known delay of the actuator, and order of the controller.
     """
     return _stack(_linear(runs))
 
@@ -95,6 +95,7 @@ def _alike(settings: RunSettings, model: StateSpace) -> Hashable:
         (scenario.equilibrium, known.scenario.equilibrium),
         settings.architecture,
         reference_kind(known),
+        known.scenario.actuator.delay_substeps,  # it gives the order of the feedforward
         len(model.a),
     )
 

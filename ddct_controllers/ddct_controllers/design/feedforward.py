@@ -8,12 +8,13 @@ import numpy as np
 
 from ddct_controllers.design.state_space import series
 from ddct_plant.base.errors import DdctError
-from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.base.timebase import PERIOD_S, SUBSTEPS
+from ddct_plant.linear.delayed_input import acting_inputs, with_waiting_inputs
 from ddct_plant.linear.lti import StateSpace
 from ddct_plant.linear.sampling import discretise_zoh
+from ddct_plant.models.actuator import ActuatorParameters
 from ddct_plant.models.driveline_model import TORQUES, driveline_matrices
 from ddct_plant.models.parameters import DrivelineParameters
-from ddct_plant.models.printed import ACTUATOR
 from ddct_plant.models.static_torque import constant_slip_torque
 
 TORQUE_RATE_WEIGHT = 0.03
@@ -27,7 +28,10 @@ _ENGINE, _CLUTCH, _LOAD = TORQUES.places('engine_torque', 'clutch_torque', 'load
 
 
 def design_feedforward(
-    driveline: DrivelineParameters, torque_rate_weight: float = TORQUE_RATE_WEIGHT
+    driveline: DrivelineParameters,
+    actuator: ActuatorParameters,
+    *,
+    torque_rate_weight: float = TORQUE_RATE_WEIGHT,
 ) -> StateSpace:
     """
     Return the filter from [C_m, C_load] to the torque request, all N m, sampled at 10 ms.
@@ -36,11 +40,11 @@ def design_feedforward(
     the right half-plane, and C_1 is not proper. Here the request u minimises, over all stable
     causal filters, the sum over all periods of
     w_d^2 + rho^2 [d/dt (u - C_fOL)]^2 for a C_m that becomes a ramp and a C_load that becomes a
-    step, in the sampled plant with hold and actuator delay. w_d is the slip left over,
+    step, in the sampled plant with hold and actuator. w_d is the slip left over,
     P_1 C_m + P_3 C_load + P_2 G_a u; C_fOL the torque of the static controller. Raise DdctError
     when the driveline has no such filter.
     """
-    problem = _problem(driveline, torque_rate_weight)
+    problem = _problem(driveline, actuator, torque_rate_weight)
     state_gain, disturbance_gain = _optimal_gains(problem)
     engine, engine_step, load = disturbance_gain
     c = -np.append(state_gain, -engine_step)[np.newaxis]
@@ -85,26 +89,30 @@ class _Problem:
     f: np.ndarray
 
 
-def _problem(driveline: DrivelineParameters, torque_rate_weight: float) -> _Problem:
-    plant = discretise_zoh(series(_actuator_stage(), _relative_driveline(driveline)), PERIOD_S)
+def _problem(
+    driveline: DrivelineParameters, actuator: ActuatorParameters, torque_rate_weight: float
+) -> _Problem:
+    periods, late = divmod(actuator.delay_substeps, SUBSTEPS)
+    continuous = series(_actuator_stage(actuator.dynamics()), _relative_driveline(driveline))
+    plant = discretise_zoh(continuous, PERIOD_S)
     states = len(plant.a)
     # The last state is u of k - 1.
-    a = np.vstack([np.hstack([plant.a, plant.b[:, [_CLUTCH]]]), np.zeros(states + 1)])
-    b = np.eye(states + 1)[:, [states]]
-    g = np.zeros((states + 1, 3))
+    acting = acting_inputs(continuous, late, _CLUTCH)
+    a, b = with_waiting_inputs(plant.a, acting, periods, at_least=1)
+    size = len(a)
+    g = np.zeros((size, 3))
     g[:states, [0, 2]] = plant.b[:, [_ENGINE, _LOAD]]
-    c, d, f = np.zeros((2, states + 1)), np.zeros((2, 1)), np.zeros((2, 3))
+    c, d, f = np.zeros((2, size)), np.zeros((2, 1)), np.zeros((2, 3))
     c[0, :states] = plant.c[0]
     rate = torque_rate_weight / PERIOD_S
-    c[1, states], d[1, 0] = -rate, rate
+    c[1, size - 1], d[1, 0] = -rate, rate
     f[1, 1] = -rate * constant_slip_torque(driveline, 1.0, 0.0)
     ramp = np.array([[1.0, 1.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
     return _Problem(a, b, g, ramp, c, d, f)
 
 
-def _actuator_stage() -> StateSpace:
+def _actuator_stage(actuator: StateSpace) -> StateSpace:
     """Return G_a for the request, second of three inputs, with C_m and C_load passed through."""
-    actuator = ACTUATOR.to_state_space()
     states = len(actuator.a)
     b, c = np.zeros((states, 3)), np.zeros((3, states))
     b[:, [_CLUTCH]], c[_CLUTCH] = actuator.b, actuator.c[0]

@@ -51,7 +51,9 @@ class AdaptiveHandover(Handover):
         self._model = HandoverModel(settings)
         sensors = settings.scenario.sensors
         delays = [sensors.of(name).delay_s if sensors else 0.0 for name in _SPEEDS]
-        self._estimate = OnComingEstimate(gears_of(settings.scenario), *delays)
+        self._estimate = OnComingEstimate(
+            gears_of(settings.scenario), settings.scenario.actuator, *delays
+        )
         # Until then a late sensor has its first value.
         self._first_step = math.ceil(max(delays) / PERIOD_S)
         limits = settings.scenario.engine_limits

@@ -24,9 +24,9 @@ the rigid driveline; a worn clutch carries less than requested. Both matter most
 where the balance is small: with this margin the engine of a packaged shift runs ahead by less than
 5 rad/s. Tie-up hardly grows with it, since it vanishes with the balance.
 """
-CUT_RISE_S = 0.1
+CUT_RISE_S, CUT_RISE_LAGS = 0.1, 2.0
 """
-Time in s in which a torque cut rises to its value, about twice the lag of the actuator.
+Least time in s in which a torque cut rises to its value, and the least in lags of the actuator.
 
 An engine that gives up its torque at once is ahead of the clutch, whose torque follows C_fOL with
 a lag: the wheels jerk, and feedback opens the clutch.
@@ -118,6 +118,7 @@ class HandoverModel:
         self._static = StaticTorque(scenario.controlled_driveline, scenario.equilibrium)
         self._road = RoadLoad(scenario.load, scenario.vehicle, scenario.slope)
         self._cut, self._rise = shift.torque_cut_n_m, 0.0
+        self._cut_rise_s = max(CUT_RISE_S, CUT_RISE_LAGS * scenario.actuator.lag_s)
         self.start_step = scenario.control_start_step
         """Step at which the shift starts."""
         self.steps = steps_in('shift.handover_s', shift.handover_s)
@@ -148,6 +149,6 @@ class HandoverModel:
 
     def inertia_phase(self, now: HandoverMeasurement) -> HandoverCommand:
         """Return the command after the handover; a torque cut rises, and fades to the lock."""
-        self._rise = min(self._rise + PERIOD_S / CUT_RISE_S, 1.0)
+        self._rise = min(self._rise + PERIOD_S / self._cut_rise_s, 1.0)
         fade = min(max(now.on_coming_slip, 0.0) / CUT_FADE_RAD_S, self._rise)
         return HandoverCommand(1.0, 0.0, fade * self._cut)

@@ -16,9 +16,11 @@ from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.scenario.rules.shift import shift_of
 from ddct_plant.scenario.settings import RunSettings
 
+GAINS_LAG_S = 0.043
+"""Lag in s of the actuator that the gains and the search of the handover `slip` are given for."""
 PROPORTIONAL, INTEGRAL = 1.2, 24.0
 """
-Gains of the handover `slip` in 1/s and 1/s^2, over the inertia of the engine.
+Gains of the handover `slip` in 1/s and 1/s^2, over the inertia of the engine, at that lag.
 
 A torque C changes the slip of the engine at C/J_m. The torque of a slipping clutch does not damp
 the driveshaft: more proportional gain amplifies its oscillation.
@@ -27,14 +29,12 @@ SEARCH_FROM, SEARCH_RATE = 0.1, 1.5
 """
 Start of the search for slip above the balance, and its rate per second, as shares of the balance.
 
-In the lag of the actuator the request falls by 6 %.
+The rate is that at the lag `GAINS_LAG_S`, in which the request falls by 6 %.
 """
 FOUND = 0.2
 """Slip from which the clutch counts as slipping, as a share of `shift.handover_slip_rad_s`."""
-LAG_S = 0.043
-"""Time in s from a request to its torque: the delay and -d ln G_a/ds at s = 0 (Section 1.4.2)."""
-SEARCH_STEPS = 40
-"""Longest search in periods: a clutch that does not slip by then hands over all the same."""
+LEAST_SHARE = -0.5
+"""Share at which the search ends: a clutch that does not slip by then hands over all the same."""
 
 
 class TimedHandover(Handover):
@@ -102,6 +102,10 @@ class SlipHandover(Handover):
     gone, and the clutch opens. This follows Goetz (Integrated Powertrain Control for Twin Clutch
     Transmissions, University of Leeds, 2005), who transfers the torque under control of clutch
     slip: a clutch that slips forward cannot brake the car. Law and gains are our own.
+
+    With a lag L of the actuator, in whole ms, the search is slower in proportion to L, the
+    proportional gain lower by as much, and the integral gain by its square. So the lag costs the
+    loop, an integrator, the same phase.
     """
 
     def __init__(self, settings: RunSettings) -> None:
@@ -109,9 +113,15 @@ class SlipHandover(Handover):
         super().__init__(settings)
         self._model = HandoverModel(settings)
         self._target = shift_of(settings.scenario).handover_slip_rad_s
-        engine_inertia = settings.scenario.driveline.engine_inertia
-        self._proportional = PROPORTIONAL * engine_inertia
-        self._integral_per_step = INTEGRAL * engine_inertia * PERIOD_S
+        engine_inertia, actuator = (
+            settings.scenario.driveline.engine_inertia,
+            settings.scenario.actuator,
+        )
+        self._lag_s = round(actuator.lag_s, 3)
+        pace = GAINS_LAG_S / self._lag_s
+        self._proportional = PROPORTIONAL * pace * engine_inertia
+        self._integral_per_step = INTEGRAL * pace**2 * engine_inertia * PERIOD_S
+        self._search_rate = SEARCH_RATE * pace
         self._difference: float | None = None
         """Request less the balance in N m that the slip needs; None until the clutch slips."""
         self._rise_steps = 0
@@ -124,12 +134,12 @@ class SlipHandover(Handover):
             return self._model.locked(measurement)
         if self._difference is None:
             carried = self._model.off_going(measurement)
-            share = SEARCH_FROM - SEARCH_RATE * PERIOD_S * elapsed
+            share = SEARCH_FROM - self._search_rate * PERIOD_S * elapsed
             slips = measurement.off_going_slip >= FOUND * self._target
-            if not slips and elapsed <= SEARCH_STEPS:
+            if not slips and share >= LEAST_SHARE:
                 return HandoverCommand(0.0, max((1.0 + share) * carried, 0.0), 0.0)
             # It slips by the torque of what was requested a lag before.
-            self._difference = (share + SEARCH_RATE * LAG_S) * carried
+            self._difference = (share + self._search_rate * self._lag_s) * carried
         self._rise_steps += 1
         share = min(self._rise_steps / self._model.steps, 1.0)
         request = 0.0 if self._open else self._request(measurement, share)

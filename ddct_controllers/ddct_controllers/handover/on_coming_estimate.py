@@ -6,7 +6,7 @@ import numpy as np
 
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.sampling import hold_inputs
-from ddct_plant.models.actuator import Actuator
+from ddct_plant.models.actuator import Actuator, ActuatorParameters
 from ddct_plant.shift.gear_pair import GearPair
 
 SPEED_NOISE_RAD_S = 0.1
@@ -48,7 +48,13 @@ class OnComingEstimate:
     w_m. Where V_x is late by T more, it is compared with w_r - T dw_r/dt.
     """
 
-    def __init__(self, gears: GearPair, delay_s: float, vehicle_delay_s: float) -> None:
+    def __init__(
+        self,
+        gears: GearPair,
+        actuator: ActuatorParameters,
+        delay_s: float,
+        vehicle_delay_s: float,
+    ) -> None:
         """Sample the model of the gears; w_m and V_x are measured with these delays in s."""
         self._delay_s = delay_s
         p, off_going, on_coming = gears.on_coming, gears.off_going, gears.on_coming.gear
@@ -78,7 +84,7 @@ class OnComingEstimate:
         self._noise = np.diag(
             [off_going.wheel_speed(SPEED_NOISE_RAD_S) ** 2, WHEEL_NOISE_RAD_S**2]
         )
-        self._actuator, self._torque, self._load = Actuator(0.0), 0.0, 0.0
+        self._actuator, self._torque, self._load = Actuator(0.0, actuator), 0.0, 0.0
         self._states, self._spread = np.zeros(7), np.zeros((7, 7))
 
     @property

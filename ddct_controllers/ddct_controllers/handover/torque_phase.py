@@ -16,14 +16,14 @@ class TorquePhase:
     A controller's model has the on-coming clutch alone. The torque C_1 of the other one takes as
     much from the engine and gives tau_i C_1 to the wheels. So the model explains the speeds with
     C_m - C_1 and C_load - tau_i C_1, and its observer does not take C_1 for wear or another error.
-    C_1 is that of the rigid driveline with a locked off-going clutch, and C_2 in it that of an
-    actuator as printed.
+    C_1 is that of the rigid driveline with a locked off-going clutch, and C_2 in it that of the
+    known actuator.
     """
 
     def __init__(self, settings: RunSettings) -> None:
         """Start with the on-coming actuator at rest on a request of zero."""
         self._gears = gears_of(settings.scenario)
-        self._actuator = Actuator(0.0)
+        self._actuator = Actuator(0.0, settings.scenario.actuator)
 
     def measured(self, measurement: Measurement) -> Measurement:
         """Return the measurement of a period; called once in each period of the torque phase."""

@@ -9,7 +9,7 @@ from ddct_controllers.interface import (
     ControllerSpec,
     Measurement,
 )
-from ddct_controllers.least_jerk.actuator_model import AHEAD, ActuatorTorque
+from ddct_controllers.least_jerk.actuator_model import ActuatorTorque
 from ddct_controllers.least_jerk.demand_trend import DemandTrend
 from ddct_controllers.least_jerk.design import LeastJerkDesign
 from ddct_controllers.least_jerk.lock import CLOSED, SLIPPING
@@ -21,8 +21,6 @@ from ddct_controllers.measurement import measured_speeds
 from ddct_plant.base.timebase import PERIOD_S
 
 NAME = 'least_jerk'
-LAG_S = AHEAD * PERIOD_S
-"""Time in s after which a request acts."""
 SLIPPING_RAD_S = 1.0
 """Slip from which the engine's torque balance has the whole torque that the clutch can carry."""
 STANDING_RAD_S = 1.0
@@ -51,7 +49,9 @@ class LeastJerk(Controller):
         self._damping = design.driveline.engine_damping
         self._sticks, self._shifts = design.sticks, design.shifts
         self._static = design.static
-        self._actuator = ActuatorTorque()
+        self._actuator = ActuatorTorque(design.actuator)
+        self._lag_s = self._actuator.ahead * PERIOD_S
+        """Time in s after which a request acts."""
         self._clutch, self._slip, self._guard = design.clutch(), design.slip(), design.guard()
         self._plan = TorquePlan(design.limits)
         self._demand, self._lock = DemandTrend(), design.lock()
@@ -161,7 +161,7 @@ class LeastJerk(Controller):
 
     def _advance(self, measurement: Measurement, request: float) -> None:
         """Store what acts in the coming period."""
-        self._torque_before, self._torque = self._torque, self._actuator.mean_torque()
+        self._torque_before, self._torque = self._torque, self._actuator.mean_torque(request)
         self._engine_torque = measurement.engine_torque
         self._actuator.advance(request)
 
@@ -176,13 +176,15 @@ class LeastJerk(Controller):
         options, plan, demand = self.design.options, self._plan, self._demand
         needed = self._constant_slip(measurement, demand.level)
         rise = self._rise(measurement)
-        ahead_s = LAG_S + options.smoothing_s
+        ahead_s = self._lag_s + options.smoothing_s
         # Momentum of the slip when a new request acts, from the torque of those so far.
         error = self._slip.surplus_error
         passed = self._clutch.gain * self._actuator.torque_ahead()
-        passed += AHEAD * (self._clutch.offset + error - needed - 0.5 * rise * LAG_S)
+        passed += self._actuator.ahead * (
+            self._clutch.offset + error - needed - 0.5 * rise * self._lag_s
+        )
         momentum = self._slip.inertia * self._slip.slip - PERIOD_S * passed
-        momentum -= options.smoothing_s * (plan.smoothed + error - needed - rise * LAG_S)
+        momentum -= options.smoothing_s * (plan.smoothed + error - needed - rise * self._lag_s)
         left_s = time_left(measurement.slip_reference[0], measurement.slip_reference_rate[0])
         if self._sticks:
             speeds = measurement.engine_speed, measurement.shaft_speed

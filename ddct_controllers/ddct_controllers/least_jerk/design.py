@@ -20,6 +20,7 @@ from ddct_controllers.least_jerk.torque_estimate import (
 )
 from ddct_plant.base.clutch_kinds import LINEAR
 from ddct_plant.base.options import with_values
+from ddct_plant.models.actuator import ActuatorParameters
 from ddct_plant.models.clutch import FrictionParameters
 from ddct_plant.models.engine import EngineAuthority
 from ddct_plant.models.parameters import DrivelineParameters
@@ -48,6 +49,8 @@ class LeastJerkDesign:
     """Whether the plates can lock."""
     shifts: bool
     """Whether the run is a gear shift."""
+    actuator: ActuatorParameters
+    """Known actuator, whose lag the plan compensates."""
     initial_request: float
     """Request in N m before the first measurement."""
     authority: EngineAuthority
@@ -85,6 +88,7 @@ class LeastJerkDesign:
             most_request=scenario.friction.worn_request,
             sticks=sticks,
             shifts=bool(settings.shift),
+            actuator=scenario.actuator,
             initial_request=initial_request(settings),
             authority=scenario.engine_authority,
             shaping_steps=shaping_steps(driveline, options.demand_periods)

@@ -20,8 +20,12 @@ from ddct_controllers.mpc.model.disturbances import offset_free_model
 from ddct_controllers.mpc.model.transmission_model import TransmissionModel, transmission_model
 from ddct_controllers.mpc.program.settings import MOST
 from ddct_plant.base.options import REQUIRED, OptionGroup, option
+from ddct_plant.models.actuator import PRINTED_ACTUATOR
 from ddct_plant.scenario.initial_state import initial_request
 from ddct_plant.scenario.settings import RunSettings
+
+PRINTED, KNOWN = 'printed', 'known'
+"""Actuators that a model may have: that of the thesis, and that of the known settings."""
 
 
 def run_start(settings: RunSettings) -> AtRest:
@@ -69,7 +73,13 @@ class ObserverInputs(OptionGroup):
         kind=bool,
     )
     delay_in_model: bool = option(
-        REQUIRED, 'whether the model has the delay of 10 ms, beside G_a(s)', kind=bool
+        REQUIRED, 'whether the model has the delay of the actuator, beside G_a(s)', kind=bool
+    )
+    actuator_in_model: str = option(
+        REQUIRED,
+        "`printed` is the thesis's actuator, `known` that of the scenario",
+        kind=str,
+        choices=(PRINTED, KNOWN),
     )
 
     def parts(
@@ -82,17 +92,22 @@ class ObserverInputs(OptionGroup):
         where it is the only measured signal.
         """
         if model is None:
-            driveline = run.scenario.controlled_driveline
-            model = transmission_model(driveline, delay=self.delay_in_model)
+            scenario = run.scenario
+            actuator = scenario.actuator if self.actuator_in_model == KNOWN else PRINTED_ACTUATOR
+            if not self.delay_in_model:
+                actuator = replace(actuator, delay_s=0.0)
+            model = transmission_model(scenario.controlled_driveline, actuator=actuator)
         known = model if self.load_known else model.without_load()
         if self.measured == 'slip':
             return known, Observer(known, unit_noise_gain(known, noise_rpm), start=None)
         return known, make_observer(run, model, load_known=self.load_known)
 
 
-AS_DRAWN = ObserverInputs('slip', load_known=False, delay_in_model=False)
+AS_DRAWN = ObserverInputs(
+    'slip', load_known=False, delay_in_model=False, actuator_in_model=PRINTED
+)
 """Inputs of Figure 4.2: mo is w_d, md is C_m; the plant of Section 3.2.1.3 is P_2 G_a."""
-FULL = ObserverInputs('speeds', load_known=True, delay_in_model=True)
+FULL = ObserverInputs('speeds', load_known=True, delay_in_model=True, actuator_in_model=KNOWN)
 """All signals that are measured in a car, and the complete model of the plant."""
 
 
@@ -121,7 +136,7 @@ class DisturbanceObserver(OptionGroup):
         """Return the model with both errors as its states, and its filter."""
         drift = Drifts.of(run.scenario, self.clutch_drift_n_m, self.load_drift_n_m)
         noise = NoiseLevels(drift=drift)
-        model = offset_free_model(run.scenario.controlled_driveline)
+        model = offset_free_model(run.scenario.controlled_driveline, run.scenario.actuator)
         return model, make_observer(run, model, noise)
 
 
@@ -131,6 +146,6 @@ class WearEstimate(WearNoise):
 
     def parts(self, run: RunSettings) -> tuple[TransmissionModel, WearObserver]:
         """Return the model with the errors of C_f and C_load, and its filter."""
-        model = offset_free_model(run.scenario.controlled_driveline)
+        model = offset_free_model(run.scenario.controlled_driveline, run.scenario.actuator)
         drifts = Drifts.of(run.scenario, self.clutch_drift_n_m, self.load_drift_n_m)
         return model, WearObserver(model, NoiseLevels(), self, drifts, run_start(run))

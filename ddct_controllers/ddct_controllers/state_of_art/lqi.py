@@ -11,13 +11,14 @@ from ddct_controllers.linear import LinearController
 from ddct_controllers.mpc.estimate.observer import NoiseLevels, riccati
 from ddct_controllers.state_of_art.parts.rigid_transmission import RigidTransmission
 from ddct_plant.base.options import Option
-from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.base.timebase import PERIOD_S, SUBSTEPS
 from ddct_plant.base.units import RAD_S_PER_RPM
+from ddct_plant.linear.delayed_input import acting_inputs, with_waiting_inputs
 from ddct_plant.linear.lti import StateSpace
 from ddct_plant.linear.sampling import discretise_zoh
+from ddct_plant.models.actuator import ActuatorParameters
 from ddct_plant.models.clutch import FrictionParameters
 from ddct_plant.models.parameters import DrivelineParameters
-from ddct_plant.models.printed import ACTUATOR
 
 NAME = 'lqi'
 NO_GAIN = f'{NAME}: no gain for this driveline (%s)'
@@ -44,36 +45,56 @@ def noise_levels(friction: FrictionParameters) -> NoiseLevels:
 
 
 def lqi_model(
-    driveline: DrivelineParameters, noise: NoiseLevels, natural_frequency_rad_s: float
+    driveline: DrivelineParameters,
+    actuator: ActuatorParameters,
+    noise: NoiseLevels,
+    natural_frequency_rad_s: float,
 ) -> StateSpace:
     """
     Return the controller from slip error in rpm to torque in N m, sampled.
 
-    States: the filter's prediction of x (7,), the integral of the error in rad, and the request
-    that is being delayed. With y = -e the deviation of the slip from its reference,
+    States: the filter's prediction of x (n,), the integral of the error in rad, and the d requests
+    that whole periods of delay keep back, the oldest first. With y = -e the deviation of the slip
+    from its reference, and d = 1,
 
         filtered: x_(k|k) = x_(k|k-1) + l (y_k - c x_(k|k-1)),
         predicted over the delay: x_(k+1|k) = a x_(k|k) + b u_(k-1), q_(k+1) = q_k + T e_k,
         fed back: u_k = -K [x_(k+1|k), q_(k+1)].
 
-    u_k reaches the actuator in period k + 1, whose state is known exactly but for noise. So K is
+    u_k reaches the actuator in period k + d, whose state is known exactly but for noise. So K is
     that of a plant without the delay: the Smith predictor in its state form, which the form with
-    two plant models is not fit for, as this plant integrates.
+    two plant models is not fit for, as this plant integrates. Over further periods of delay the
+    error is predicted too, as -c x; a part of a period is in the plant.
     """
-    plant = _plant(driveline)
+    delayed, late = divmod(actuator.delay_substeps, SUBSTEPS)
+    plant = _plant(driveline, actuator.dynamics(), late)
     gain = _feedback_gain(plant, driveline, natural_frequency_rad_s)
     filter_gain = _filter_gain(plant, driveline, noise)
     states = len(plant.a)
-    integral, request = states, states + 1
-    a, b = np.zeros((states + 2, states + 2)), np.zeros((states + 2, 1))
-    a[:states, :states] = plant.a @ (np.eye(states) - filter_gain @ plant.c)
-    a[:states, request] = plant.b[:, 0]
+    integral, first = states, states + 1
+    size = first + delayed
+    a, b = np.zeros((size, size)), np.zeros((size, 1))
+    filtered = np.eye(states) - filter_gain @ plant.c
+    a[:states, :states] = plant.a @ filtered
     b[:states] = -plant.a @ filter_gain * RAD_S_PER_RPM
     a[integral, integral] = 1.0
     b[integral] = PERIOD_S * RAD_S_PER_RPM
-    a[request] = -gain @ a[:request]
-    b[request] = -gain @ b[:request]
-    return StateSpace(a, b, a[request:], b[request:], PERIOD_S)
+    if not delayed:
+        c, d = -gain[:states] @ filtered, gain[:states] @ filter_gain * RAD_S_PER_RPM
+        c, d = np.append(c, -gain[integral])[None], d[None]
+        a[:states] += plant.b @ c
+        b[:states] += plant.b @ d
+        return StateSpace(a, b, c, d, PERIOD_S)
+    a[:states, first] = plant.b[:, 0]
+    ahead_a, ahead_b = a[:first], b[:first]
+    step, held = _with_integral(plant)
+    for request in range(first + 1, size):
+        ahead_a, ahead_b = step @ ahead_a, step @ ahead_b
+        ahead_a[:, request] += held[:, 0]
+    a[first:-1, first + 1 :] = np.eye(delayed - 1)
+    a[-1] = -gain @ ahead_a
+    b[-1] = -gain @ ahead_b
+    return StateSpace(a, b, a[-1:], b[-1:], PERIOD_S)
 
 
 def slip_model(parameters: DrivelineParameters) -> StateSpace:
@@ -102,32 +123,44 @@ def slip_model(parameters: DrivelineParameters) -> StateSpace:
     return StateSpace(np.array(a), np.array(b), np.eye(1, 3), np.zeros((1, 3)))
 
 
-def _plant(driveline: DrivelineParameters) -> StateSpace:
-    """Return G_a and the slip model, sampled, without the delay: torque in N m to w_d in rad/s."""
-    slip, actuator = slip_model(driveline), ACTUATOR.to_state_space()
+def _plant(driveline: DrivelineParameters, actuator: StateSpace, late: int) -> StateSpace:
+    """
+    Return G_a and the slip model behind a delay of `late` ms, sampled: N m to w_d in rad/s.
+
+    With such a delay the request before is its last state.
+    """
+    slip = slip_model(driveline)
     clutch = slip.b[:, 1:2]
     a = np.block(
         [[slip.a, clutch @ actuator.c], [np.zeros((len(actuator.a), len(slip.a))), actuator.a]]
     )
     b = np.vstack([np.zeros((len(slip.a), 1)), actuator.b])
-    c = np.eye(1, len(a))
-    return discretise_zoh(StateSpace(a, b, c, np.zeros((1, 1))), PERIOD_S)
+    continuous = StateSpace(a, b, np.eye(len(a)), np.zeros((len(a), 1)))
+    sampled = discretise_zoh(continuous, PERIOD_S)
+    a, b = with_waiting_inputs(sampled.a, acting_inputs(continuous, late), periods=0)
+    return StateSpace(a, b, np.eye(1, len(a)), np.zeros((1, 1)), PERIOD_S)
+
+
+def _with_integral(plant: StateSpace) -> tuple[np.ndarray, np.ndarray]:
+    """Return a (n + 1, n + 1) and b (n + 1, 1) of the plant and the integral of its error."""
+    states = len(plant.a)
+    a = np.zeros((states + 1, states + 1))
+    a[:states, :states], a[states, states] = plant.a, 1.0
+    a[states, :states] = -PERIOD_S * plant.c[0]
+    return a, np.append(plant.b[:, 0], 0.0)[:, None]
 
 
 def _feedback_gain(
     plant: StateSpace, driveline: DrivelineParameters, natural_frequency_rad_s: float
 ) -> np.ndarray:
     """
-    Return K (8,) that minimises the sum of u^2 + q_y w_d^2 + q_q q^2, q the error's integral.
+    Return K (n + 1,) that minimises the sum of u^2 + q_y w_d^2 + q_q q^2, q the error's integral.
 
     On the rigid driveline without lag, dw_d/dt = -g u, q_y = 2 (w/g)^2 and q_q = (w^2/g)^2 give
     the closed-loop polynomial (s + w)^2.
     """
     states = len(plant.a)
-    a = np.zeros((states + 1, states + 1))
-    a[:states, :states], a[states, states] = plant.a, 1.0
-    a[states, :states] = -PERIOD_S * plant.c[0]
-    b = np.append(plant.b[:, 0], 0.0)[:, None]
+    a, b = _with_integral(plant)
     slip_gain = RigidTransmission(driveline).slip_gain
     weights = np.zeros((states + 1, states + 1))
     weights[:states, :states] = (
@@ -142,7 +175,7 @@ def _filter_gain(
     plant: StateSpace, driveline: DrivelineParameters, noise: NoiseLevels
 ) -> np.ndarray:
     """
-    Return the stationary Kalman gain l (7, 1) for the levels of noise.
+    Return the stationary Kalman gain l (n, 1) for the levels of noise.
 
     Torque noise is held over a period; two measured speeds make the slip.
     """
@@ -159,7 +192,8 @@ def _filter_gain(
 def _make(context: ControllerContext) -> LinearController:
     scenario = context.settings.scenario
     noise = noise_levels(scenario.friction)
-    return LinearController(lqi_model(scenario.controlled_driveline, noise, **context.gains))
+    driveline, actuator = scenario.controlled_driveline, scenario.actuator
+    return LinearController(lqi_model(driveline, actuator, noise, **context.gains))
 
 
 SPEC = ControllerSpec(NAME, _make, OPTIONS)

@@ -24,7 +24,8 @@ class TwoSpeeds(Controller):
         """Tune both loops to these bandwidths."""
         self._clutch = SlowClutch(context, slow_rad_s)
         authority = context.settings.scenario.engine_authority
-        self._engine = EngineShare(self._clutch.transmission, authority, fast_rad_s)
+        lag_s = self._clutch.actuator.lag_s
+        self._engine = EngineShare(self._clutch.transmission, authority, fast_rad_s, lag_s)
 
     def reset(self) -> None:
         """Clear the plan, empty both integrals, put actuator and engine at rest."""

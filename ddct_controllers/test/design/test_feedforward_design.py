@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from other_actuators import ACTUATORS
 
 from ddct_controllers.design.analysis.loops import sampled_plant
 from ddct_controllers.design.feedforward import (
@@ -21,6 +22,7 @@ from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.base.units import RAD_S_PER_RPM
 from ddct_plant.linear.lti import StateSpace
 from ddct_plant.linear.sampling import discretise_zoh
+from ddct_plant.models.actuator import PRINTED_ACTUATOR, ActuatorParameters
 from ddct_plant.models.driveline_model import clutch_to_slip, engine_to_slip, load_to_slip
 from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.models.printed import ACTUATOR
@@ -28,8 +30,8 @@ from ddct_plant.models.static_torque import constant_slip_torque
 
 DRIVELINE = DrivelineParameters()
 WITHOUT_DRAGS = replace(DRIVELINE, shaft_damping=0.0)
-FILTER = design_feedforward(DRIVELINE)
-EXACT = design_feedforward(DRIVELINE, 1e-4)
+FILTER = design_feedforward(DRIVELINE, PRINTED_ACTUATOR)
+EXACT = design_feedforward(DRIVELINE, PRINTED_ACTUATOR, torque_rate_weight=1e-4)
 STATIC_GAINS = [constant_slip_torque(DRIVELINE, *unit) for unit in ((1.0, 0.0), (0.0, 1.0))]
 STATIC = StateSpace(
     np.zeros((0, 0)), np.zeros((0, 2)), np.zeros((1, 0)), np.array([STATIC_GAINS]), PERIOD_S
@@ -50,7 +52,14 @@ def response(model: StateSpace, inputs: np.ndarray, state: np.ndarray | float = 
     return np.array([running.update(*row) for row in inputs])
 
 
-def slip(model: StateSpace, inputs: np.ndarray) -> np.ndarray:
+def slip_of_requests(actuator: ActuatorParameters, requests: np.ndarray) -> np.ndarray:
+    """Return w_d (N,) in rad/s for the requests (N, 1) in N m alone, without drags."""
+    return RAD_S_PER_RPM * response(sampled_plant(WITHOUT_DRAGS, actuator=actuator), requests)
+
+
+def slip(
+    model: StateSpace, inputs: np.ndarray, actuator: ActuatorParameters = PRINTED_ACTUATOR
+) -> np.ndarray:
     """Return w_d in rad/s that remains with the filter for [C_m, C_load] (N, 2), without drags."""
     paths = (engine_to_slip(WITHOUT_DRAGS), load_to_slip(WITHOUT_DRAGS))
     disturbed = sum(
@@ -58,7 +67,7 @@ def slip(model: StateSpace, inputs: np.ndarray) -> np.ndarray:
         for column, path in enumerate(paths)
     )
     request = response(model, inputs)[:, np.newaxis]
-    return disturbed + RAD_S_PER_RPM * response(sampled_plant(WITHOUT_DRAGS), request)
+    return disturbed + slip_of_requests(actuator, request)
 
 
 def ramp_and_step() -> dict[str, np.ndarray]:
@@ -71,11 +80,11 @@ def ramp_and_step() -> dict[str, np.ndarray]:
     }
 
 
-def least_squares_request(inputs: np.ndarray) -> np.ndarray:
+def least_squares_request(inputs: np.ndarray, actuator: ActuatorParameters) -> np.ndarray:
     """Return the request (N,) that minimises the cost of the design, by linear least squares."""
     impulse = np.zeros((HORIZON_STEPS, 1))
     impulse[0] = 1.0
-    column = RAD_S_PER_RPM * response(sampled_plant(WITHOUT_DRAGS), impulse)
+    column = slip_of_requests(actuator, impulse)
     convolution = np.zeros((HORIZON_STEPS, HORIZON_STEPS))
     for k in range(HORIZON_STEPS):
         convolution[k:, k] = column[: HORIZON_STEPS - k]
@@ -85,15 +94,17 @@ def least_squares_request(inputs: np.ndarray) -> np.ndarray:
     wanted = difference @ inputs[:, 0] * STATIC_GAINS[0]
     return np.linalg.lstsq(
         np.vstack([convolution, difference]),
-        np.concatenate([-slip(nothing, inputs), wanted]),
+        np.concatenate([-slip(nothing, inputs, actuator), wanted]),
         rcond=None,
     )[0]
 
 
 @pytest.mark.parametrize('case', ['engine ramp', 'load step'])
-def test_it_gives_the_least_squares_request_without_future_values(case):
+@pytest.mark.parametrize('actuator', ACTUATORS.values(), ids=ACTUATORS)
+def test_it_gives_the_least_squares_request_without_future_values(actuator, case):
     inputs = ramp_and_step()[case]
-    request, best = response(FILTER, inputs), least_squares_request(inputs)
+    model = design_feedforward(DRIVELINE, actuator)
+    request, best = response(model, inputs), least_squares_request(inputs, actuator)
     scale = np.abs(best[:60]).max()
     # The horizon of the least squares ends after 2 s, so their last part differs.
     np.testing.assert_allclose(request[:60], best[:60], rtol=0.0, atol=1e-6 * scale)
@@ -125,7 +136,7 @@ def test_for_constant_torques_the_clutch_gets_the_static_torque():
 
 @pytest.mark.parametrize('driveline', [DRIVELINE, WITHOUT_DRAGS, *CORNERS])
 def test_it_is_stable_and_its_modes_decay_within_a_second(driveline):
-    poles = np.linalg.eigvals(design_feedforward(driveline).a)
+    poles = np.linalg.eigvals(design_feedforward(driveline, PRINTED_ACTUATOR).a)
     assert np.abs(poles).max() ** 100 < 0.01
 
 
@@ -153,7 +164,7 @@ def test_a_run_under_constant_torque_starts_as_if_the_torque_had_never_risen():
     A filter from zero would take the first torque for a step of 250 N m within a period and
     request more; the settled request is the static one in both cases.
     """
-    feedforward = Feedforward(DRIVELINE)
+    feedforward = Feedforward(DRIVELINE, PRINTED_ACTUATOR)
     requests = [feedforward.update(250.0, 60.0) for _ in range(400)]
     level = FILTER.d[0] + [FILTER.c[0, -1], 0.0]
     assert requests[0] == pytest.approx(level @ [250.0, 60.0], rel=1e-12)
@@ -165,4 +176,4 @@ def test_a_driveline_without_a_filter_is_refused():
     with pytest.raises(
         DdctError, match=r'no stable filter .*: check driveline\.\* in the scenario'
     ):
-        design_feedforward(replace(DRIVELINE, halfshaft_damping=1e20))
+        design_feedforward(replace(DRIVELINE, halfshaft_damping=1e20), PRINTED_ACTUATOR)

@@ -4,8 +4,9 @@
 
 import numpy as np
 import pytest
+from other_actuators import ACTUATORS
 
-from ddct_controllers.least_jerk.actuator_model import AHEAD, ActuatorTorque
+from ddct_controllers.least_jerk.actuator_model import ActuatorTorque
 from ddct_controllers.least_jerk.demand_trend import LONGEST, DemandTrend
 from ddct_controllers.least_jerk.slip_estimate import RigidSlip
 from ddct_controllers.least_jerk.torque_estimate import (
@@ -31,23 +32,26 @@ def requests(count):
     return 100.0 + 80.0 * np.sin(0.3 * np.arange(count))
 
 
-def test_the_mean_torque_is_that_of_the_plants_actuator():
-    model, plant = ActuatorTorque(), Actuator(60.0)
+@pytest.mark.parametrize('actuator', ACTUATORS.values(), ids=ACTUATORS)
+def test_the_mean_torque_is_that_of_the_plants_actuator(actuator):
+    model, plant = ActuatorTorque(actuator), Actuator(60.0, actuator)
     model.reset(60.0)
     for request in requests(60):
         nodes = plant.update(request)
         mean = (sum(nodes) - 0.5 * (nodes[0] + nodes[-1])) / (len(nodes) - 1)
-        assert model.mean_torque() == pytest.approx(mean, abs=0.02)
+        assert model.mean_torque(request) == pytest.approx(mean, abs=0.05)
         model.advance(request)
 
 
-def test_the_torque_ahead_is_the_sum_of_the_means_to_come():
-    model = ActuatorTorque()
+@pytest.mark.parametrize('actuator', ACTUATORS.values(), ids=ACTUATORS)
+def test_the_torque_ahead_is_the_sum_of_the_means_to_come_over_the_lag(actuator):
+    model = ActuatorTorque(actuator)
+    assert model.ahead == round(actuator.lag_s / PERIOD_S)
     for request in requests(20):
         model.advance(request)
     ahead, total = model.torque_ahead(), 0.0
-    for _ in range(AHEAD):
-        total += model.mean_torque()
+    for _ in range(model.ahead):
+        total += model.mean_torque(model.request)
         model.advance(model.request)
     assert ahead == pytest.approx(total, rel=1e-12)
 

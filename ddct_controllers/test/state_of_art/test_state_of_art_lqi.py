@@ -4,6 +4,7 @@
 
 import numpy as np
 import pytest
+from other_actuators import ACTUATORS, AT_ONCE, BETWEEN, FAST, LATE, SLOW
 from scipy.linalg import solve_discrete_are
 
 from ddct_controllers.design.analysis.loops import sampled_loop, sampled_plant
@@ -14,7 +15,9 @@ from ddct_controllers.registry import make_controller
 from ddct_controllers.state_of_art import lqi
 from ddct_controllers.state_of_art.parts.rigid_transmission import RigidTransmission
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.base.timebase import PERIOD_S, SUBSTEPS
+from ddct_plant.base.units import RAD_S_PER_RPM
+from ddct_plant.models.actuator import PRINTED_ACTUATOR
 from ddct_plant.models.clutch import FrictionParameters
 from ddct_plant.models.driveline_model import driveline_matrices
 from ddct_plant.models.parameters import DrivelineParameters
@@ -24,7 +27,8 @@ from ddct_plant.scenario.settings import RunSettings
 SETTINGS = RunSettings(load_scenario('thesis'))
 DRIVELINE = DrivelineParameters()
 NOISE = lqi.noise_levels(FrictionParameters())
-MODEL = lqi.lqi_model(DRIVELINE, NOISE, lqi.OPTIONS['natural_frequency_rad_s'].default)
+FREQUENCY = lqi.OPTIONS['natural_frequency_rad_s'].default
+MODEL = lqi.lqi_model(DRIVELINE, PRINTED_ACTUATOR, NOISE, FREQUENCY)
 
 
 def response(model, omega, column):
@@ -54,11 +58,25 @@ def test_it_is_linear_and_has_a_linear_model():
 
 
 @pytest.mark.parametrize('wear_gain', [0.7, 1.0, 1.3])
-def test_the_sampled_loop_keeps_its_margins_with_wear(wear_gain):
-    margins = loop_margins(sampled_loop(MODEL, wear_gain=wear_gain))
+@pytest.mark.parametrize(
+    ('actuator', 'most_sensitivity', 'least_phase'),
+    [
+        (PRINTED_ACTUATOR, 1.55, 50.0),
+        (SLOW, 1.65, 45.0),
+        (FAST, 1.55, 50.0),
+        (AT_ONCE, 1.55, 50.0),
+        (BETWEEN, 1.6, 50.0),
+        (LATE, 1.8, 40.0),
+    ],
+)
+def test_the_sampled_loop_keeps_its_margins_with_wear(
+    actuator, most_sensitivity, least_phase, wear_gain
+):
+    model = lqi.lqi_model(DRIVELINE, actuator, NOISE, FREQUENCY)
+    margins = loop_margins(sampled_loop(model, wear_gain=wear_gain, actuator=actuator))
     assert margins.stable
-    assert margins.sensitivity_peak < 1.55
-    assert margins.phase_margin_deg > 50.0
+    assert margins.sensitivity_peak < most_sensitivity
+    assert margins.phase_margin_deg > least_phase
     assert margins.gain_margin_db > 10.0
 
 
@@ -72,13 +90,14 @@ def test_no_corner_of_the_driveline_is_unstable():
 @pytest.mark.parametrize('option', ['at_least', 'at_most'])
 def test_every_frequency_that_it_takes_is_stable(option, wear_gain):
     frequency = getattr(lqi.OPTIONS['natural_frequency_rad_s'], option)
-    loop = sampled_loop(lqi.lqi_model(DRIVELINE, NOISE, frequency), wear_gain=wear_gain)
+    model = lqi.lqi_model(DRIVELINE, PRINTED_ACTUATOR, NOISE, frequency)
+    loop = sampled_loop(model, wear_gain=wear_gain)
     assert loop_margins(loop).sensitivity_peak < 2.0
 
 
 def test_the_predictor_is_exact():
     """The gain with prediction over the delay is that of LQ with the delay as a state."""
-    plant = lqi._plant(DRIVELINE)
+    plant = lqi._plant(DRIVELINE, PRINTED_ACTUATOR.dynamics(), 0)
     states = len(plant.a)
     gain = lqi._feedback_gain(plant, DRIVELINE, 5.0)
     # x, integral of the error, delayed request; the cost has x and the integral one step later.
@@ -95,6 +114,31 @@ def test_the_predictor_is_exact():
     with_delay = np.linalg.solve(1.0 + b.T @ cost @ b, b.T @ cost @ a)[0]
     predicted = gain @ np.hstack([a[:-1, :-1], a[:-1, -1:]])
     assert with_delay == pytest.approx(predicted, rel=1e-5, abs=1e-6)
+
+
+@pytest.mark.parametrize('actuator', ACTUATORS.values(), ids=ACTUATORS)
+def test_the_request_is_that_of_the_state_when_it_acts(actuator):
+    """A copy of the plant whose states are known has the request of K, predicted step by step."""
+    periods, late = divmod(actuator.delay_substeps, SUBSTEPS)
+    plant = lqi._plant(DRIVELINE, actuator.dynamics(), late)
+    gain = lqi._feedback_gain(plant, DRIVELINE, FREQUENCY)
+    correction = lqi._filter_gain(plant, DRIVELINE, NOISE)[:, 0]
+    model = lqi.lqi_model(DRIVELINE, actuator, NOISE, FREQUENCY)
+    states, integral, requests = np.zeros(len(plant.a)), 0.0, [0.0] * periods
+    own, random = np.zeros(len(model.a)), np.random.default_rng(7)
+    for error_rpm in random.normal(size=40):
+        error = RAD_S_PER_RPM * error_rpm
+        states = states + correction * (-error - plant.c[0] @ states)
+        ahead, of_error = states, integral
+        for period, acting in enumerate(requests):
+            of_error += PERIOD_S * (-plant.c[0] @ ahead if period else error)
+            ahead = plant.a @ ahead + plant.b[:, 0] * acting
+        request = -gain @ [*ahead, of_error]
+        assert (model.c @ own + model.d[:, 0] * error_rpm)[0] == pytest.approx(request, rel=1e-9)
+        own = model.a @ own + model.b[:, 0] * error_rpm
+        requests = [*requests, request]
+        states = plant.a @ states + plant.b[:, 0] * requests.pop(0)
+        integral += PERIOD_S * error
 
 
 def test_on_a_rigid_driveline_the_weights_give_the_double_pole(monkeypatch):

@@ -10,6 +10,7 @@ import numpy as np
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import OptionGroup, option
 from ddct_plant.base.timebase import SUBSTEP_S, SUBSTEPS
+from ddct_plant.linear.cascade import Factor
 from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
 from ddct_plant.linear.sampling import lift_zoh_dense
 from ddct_plant.models.printed import ACTUATOR
@@ -17,11 +18,16 @@ from ddct_plant.models.printed import ACTUATOR
 
 @dataclass(frozen=True)
 class ActuatorParameters(OptionGroup, prefix='actuator.'):
-    """Deviation of the plant's actuator from the printed one, which controllers assume."""
+    """
+    The actuator of a car: its delay, and its bandwidth over that of the one that is printed.
+
+    The controllers of the thesis assume the printed one, those with a model of their own the one
+    of the known settings.
+    """
 
     delay_s: float = option(
         0.01,
-        'delay of the request in front of G_a, a multiple of 1 ms; controllers assume 10 ms',
+        'delay of the request in front of G_a, a multiple of 1 ms; the thesis assumes 10 ms',
         's',
         source='Section 1.4.2',
         at_least=0.0,
@@ -29,7 +35,7 @@ class ActuatorParameters(OptionGroup, prefix='actuator.'):
     )
     bandwidth_factor: float = option(
         1.0,
-        'bandwidth of G_a(s) over that of the print: G_a(s / factor); controllers assume 1',
+        'bandwidth of G_a(s) over that of the print: G_a(s / factor); the thesis assumes 1',
         source='Section 1.4.2',
         at_least=0.05,
         at_most=10.0,
@@ -49,6 +55,14 @@ class ActuatorParameters(OptionGroup, prefix='actuator.'):
         """Delay of the request in steps of 1 ms."""
         return round(self.delay_s / SUBSTEP_S)
 
+    @property
+    def lag_s(self) -> float:
+        """Time in s from a request to its torque: the delay and -d ln G_a/ds at s = 0."""
+        factor = self.bandwidth_factor
+        poles = sum(_time_constant_s(each) for each in ACTUATOR.denominator)
+        zeros = sum(_time_constant_s(each) for each in ACTUATOR.numerator)
+        return self.delay_s + poles / factor - zeros / factor
+
     def transfer_function(self) -> FactoredTransferFunction:
         """Return G_a(s / factor) as the thesis prints it."""
         return ACTUATOR.faster(self.bandwidth_factor)
@@ -57,6 +71,15 @@ class ActuatorParameters(OptionGroup, prefix='actuator.'):
         """Return G_a(s / factor), one input, one output."""
         model, factor = ACTUATOR.to_state_space(), self.bandwidth_factor
         return StateSpace(factor * model.a, factor * model.b, model.c, model.d)
+
+
+PRINTED_ACTUATOR = ActuatorParameters()
+"""Actuator with 10 ms delay and G_a(s), for which the designs of the thesis are made."""
+
+
+def _time_constant_s(factor: Factor) -> float:
+    """Return the derivative of ln(s + a), or of ln(s^2 + b s + c), at s = 0."""
+    return factor[0] / factor[1] if isinstance(factor, tuple) else 1.0 / factor
 
 
 class Actuator:

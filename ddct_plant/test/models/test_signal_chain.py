@@ -4,6 +4,7 @@
 
 import numpy as np
 import pytest
+from other_actuators import ACTUATORS
 from refusals import refused
 from scipy.integrate import solve_ivp
 
@@ -119,6 +120,13 @@ def test_another_delay_and_bandwidth_are_exact_too(delay_s, factor):
     assert Actuator(80.0, ActuatorParameters(delay_s, factor)).update(0.0)[0] == pytest.approx(
         80.0, rel=2e-5
     )
+
+
+@pytest.mark.parametrize('actuator', ACTUATORS.values(), ids=ACTUATORS)
+def test_the_lag_is_that_of_delay_and_dynamics_at_low_frequency(actuator):
+    omega = 0.01
+    phase = np.angle(actuator.transfer_function().frequency_response(np.array([omega])))[0]
+    assert actuator.lag_s == pytest.approx(actuator.delay_s - phase / omega, rel=1e-4)
 
 
 def test_a_delay_between_milliseconds_is_refused():

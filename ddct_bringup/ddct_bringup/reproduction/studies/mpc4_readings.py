@@ -43,6 +43,7 @@ from ddct_controllers.mpc.estimators import make_observer
 from ddct_controllers.mpc.model.transmission_model import TransmissionModel, transmission_model
 from ddct_controllers.mpc.program.settings import MpcSettings
 from ddct_plant.base.units import rad_s_from_rpm
+from ddct_plant.models.actuator import PRINTED_ACTUATOR
 from ddct_plant.models.engine import EngineAuthority
 from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.scenario.settings import RunSettings
@@ -97,7 +98,7 @@ class Mpc4Reading:
 
 
 def _no_delay(driveline: DrivelineParameters, wear_gain: float) -> TransmissionModel:
-    return transmission_model(driveline, wear_gain, delay=False)
+    return transmission_model(driveline, wear_gain, replace(PRINTED_ACTUATOR, delay_s=0.0))
 
 
 _SETTINGS = TwoInputCost().settings()

@@ -27,8 +27,8 @@ class NoFeedback(Controller):
 
 def acceleration_std(weight: float) -> float:
     """Return the standard deviation of A_x in m/s^2 without feedback."""
-    model = design_feedforward(SCENARIO.driveline, weight)
-    with patch.object(feedforward, 'design_feedforward', lambda _: model):
+    model = design_feedforward(SCENARIO.driveline, SCENARIO.actuator, torque_rate_weight=weight)
+    with patch.object(feedforward, 'design_feedforward', lambda *_: model):
         trajectory = run_headless(RunSettings(SCENARIO, 'feedforward'), NoFeedback())
     found = compute_metrics(
         trajectory,

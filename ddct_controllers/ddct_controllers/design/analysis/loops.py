@@ -12,14 +12,12 @@ from ddct_plant.base.errors import ParameterError, require_number
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.base.units import RPM_PER_RAD_S
 from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
-from ddct_plant.models.actuator import ActuatorParameters
+from ddct_plant.models.actuator import PRINTED_ACTUATOR, ActuatorParameters
 from ddct_plant.models.driveline_model import clutch_to_slip, driveline_matrices
 from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.models.printed import ACTUATOR
 
 IDENTIFIED_DRIVELINE = DrivelineParameters()
-PRINTED_ACTUATOR = ActuatorParameters()
-"""Actuator with 10 ms delay and G_a(s): for designs of the thesis and ours, not for runs."""
 WEAR_RANGE = (0.7, 1.3)
 """Ends of the range of K_usura, without unit: inequality (3.2), Table 5.2."""
 

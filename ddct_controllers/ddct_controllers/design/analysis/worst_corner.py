@@ -16,7 +16,6 @@ from ddct_controllers.design.analysis.driveline_mode import (
 from ddct_controllers.design.analysis.loop_curve import LoopCurve
 from ddct_controllers.design.analysis.loops import (
     IDENTIFIED_DRIVELINE,
-    PRINTED_ACTUATOR,
     WEAR_RANGE,
     sampled_plant,
 )
@@ -29,7 +28,7 @@ from ddct_controllers.design.state_space import (
 )
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.lti import StateSpace
-from ddct_plant.models.actuator import ActuatorParameters
+from ddct_plant.models.actuator import PRINTED_ACTUATOR, ActuatorParameters
 from ddct_plant.models.parameters import DrivelineParameters
 
 PARAMETER_SPREAD = 0.2

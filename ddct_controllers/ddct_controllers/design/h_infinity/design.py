@@ -29,6 +29,7 @@ from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.bilinear import from_w_plane, to_w_plane
 from ddct_plant.linear.lti import FactoredTransferFunction, StateSpace
 from ddct_plant.linear.sampling import discretise_zoh
+from ddct_plant.models.actuator import PRINTED_ACTUATOR, ActuatorParameters
 from ddct_plant.models.parameters import DrivelineParameters
 
 METHODS = ('riccati', 'lmi')
@@ -59,20 +60,22 @@ def design_h_infinity(
     weights: HinfWeights,
     parameters: DrivelineParameters = IDENTIFIED_DRIVELINE,
     method: str = METHODS[0],
+    actuator: ActuatorParameters = PRINTED_ACTUATOR,
 ) -> HinfDesign:
     """
     Synthesise, clean, discretise and verify a controller.
 
-    Raise ParameterError when no controller meets both requirements, DdctError when no
-    controller verifies or the cleaned one does not keep the loop stable.
+    Only a sampled plant has the actuator: the others are as the thesis prints them. Raise
+    ParameterError when no controller meets both requirements, DdctError when no controller
+    verifies or the cleaned one does not keep the loop stable.
     """
     require_choice('method', method, METHODS)
-    problem = generalised_plant(weights, parameters)
+    problem = generalised_plant(weights, parameters, actuator)
     if method == 'lmi':
         synthesis = synthesise_by_lmi(problem)
     else:
         synthesis = synthesise(problem, weights.back_off)
-    _require_attainable(weights, synthesis, parameters)
+    _require_attainable(weights, synthesis, parameters, actuator)
     raw = factored_form(synthesis.controller)
     cleaned, steps = clean(raw, weights.sensitivity.offset_rad_s)
     realised = cleaned.to_state_space()
@@ -81,24 +84,29 @@ def design_h_infinity(
     else:
         sampled = discretise_zoh(realised, PERIOD_S)
         _require_stable('without hold and delay', continuous_loop(cleaned, parameters))
-    _require_stable('with hold and delay', sampled_loop(sampled, parameters))
+    _require_stable('with hold and delay', sampled_loop(sampled, parameters, actuator=actuator))
     return HinfDesign(weights, synthesis, raw, steps, cleaned, sampled)
 
 
 def generalised_plant(
-    weights: HinfWeights, parameters: DrivelineParameters = IDENTIFIED_DRIVELINE
+    weights: HinfWeights,
+    parameters: DrivelineParameters = IDENTIFIED_DRIVELINE,
+    actuator: ActuatorParameters = PRINTED_ACTUATOR,
 ) -> GeneralisedPlant:
-    """Return the generalised plant of a design."""
+    """Return the generalised plant of a design, with the actuator if it is sampled."""
     w_s, w_t = weights.sensitivity.shifted(), weights.complementary
     if not weights.sampled:
         return mixed_sensitivity(plant_in_rpm(parameters), w_s, w_t.transfer_function())
     effort = weights.effort.transfer_function() if weights.effort else None
-    plant = to_w_plane(sampled_plant(parameters))
+    plant = to_w_plane(sampled_plant(parameters, actuator=actuator))
     return sampled_sensitivity(plant, w_s, w_t.rolled_off(_ROLL_OFF), effort)
 
 
 def _require_attainable(
-    weights: HinfWeights, synthesis: Synthesis, parameters: DrivelineParameters
+    weights: HinfWeights,
+    synthesis: Synthesis,
+    parameters: DrivelineParameters,
+    actuator: ActuatorParameters,
 ) -> None:
     """
     Raise ParameterError when the bounds on S and T exclude each other.
@@ -108,7 +116,7 @@ def _require_attainable(
     bound = synthesis.lower_bound
     if weights.effort:
         alone = replace(weights, effort=None)
-        bound = synthesise(generalised_plant(alone, parameters)).lower_bound
+        bound = synthesise(generalised_plant(alone, parameters, actuator)).lower_bound
     if bound > math.sqrt(2.0):
         raise ParameterError(
             f'no controller meets the bounds on S and T: the least norm of their stack is '

@@ -14,7 +14,6 @@ from ddct_controllers.mpc.model.transmission_model import (
     LOAD_TORQUE,
     MEASURED,
     SLIP_SPEED,
-    STATES,
     TransmissionModel,
 )
 from ddct_plant.base.errors import ParameterError
@@ -115,7 +114,7 @@ def kalman_gain(model: TransmissionModel, noise: NoiseLevels) -> np.ndarray:
             key='drifts',
         )
     process = torque_noise(model, noise)
-    process[STATES:, STATES:] += np.diag(np.square(noise.drift))
+    process[model.transmission :, model.transmission :] += np.diag(np.square(noise.drift))
     measured = np.eye(MEASURED, len(model.a))
     error = noise.speed_rad_s**2 * np.eye(MEASURED)
     complaint = f'observer: no stationary Kalman gain for {noise} (%s): give positive levels'

@@ -31,7 +31,6 @@ from ddct_controllers.mpc.model.transmission_model import (
     LOAD_TORQUE,
     MEASURED,
     REQUEST,
-    STATES,
     TransmissionModel,
 )
 from ddct_controllers.mpc.program.settings import MOST
@@ -101,18 +100,19 @@ class WearObserver:
         start: AtRest,
     ) -> None:
         """Take the `offset_free_model` of a new clutch, and the start of the estimate."""
-        driveline, actuator = DRIVELINE, slice(DRIVELINE.stop, STATES)
+        driveline, actuator = DRIVELINE, slice(DRIVELINE.stop, model.transmission)
         self._model = model
         self._wear, self._drifts = wear, drifts
         self._initial_request = start.initial_request
         self._twist_per_torque = 1.0 / start.halfshaft_stiffness
         self._transition = np.eye(SIZE)
         self._transition[driveline, driveline] = model.a[driveline, driveline]
-        self._transition[driveline, CLUTCH_ERROR:] = model.a[driveline, STATES:]
+        self._transition[driveline, CLUTCH_ERROR:] = model.a[driveline, model.transmission :]
         self._known = model.b[driveline, [ENGINE_TORQUE, LOAD_TORQUE]]
         self._transmission = model.a[driveline, actuator]
         self._actuator_a = model.a[actuator, actuator]
         self._actuator_b = model.b[actuator, REQUEST]
+        self._at_once = model.b[driveline, REQUEST]
         self._process = np.zeros((SIZE, SIZE))
         self._process[driveline, driveline] = torque_noise(model, noise)[driveline, driveline]
         self._process[LOAD_ERROR, LOAD_ERROR] = drifts.load**2
@@ -124,7 +124,7 @@ class WearObserver:
         self._started = False
         self._state = np.zeros(SIZE)
         self._state[GAIN] = 1.0
-        self._actuator = np.zeros(STATES - DRIVELINE.stop)
+        self._actuator = np.zeros(self._model.transmission - DRIVELINE.stop)
         self._covariance = np.zeros((SIZE, SIZE))
         self._covariance[GAIN, GAIN] = self._wear.initial_gain**2
 
@@ -154,7 +154,7 @@ class WearObserver:
 
     def correct(self, speeds: tuple[float, float, float], load_torque: float) -> np.ndarray:
         """
-        Return x_(k|k) divided by K_usura, (11,), for w_m, w_p, w_r in rad/s and C_load in N m.
+        Return x_(k|k) divided by K_usura, (n,), for w_m, w_p, w_r in rad/s and C_load in N m.
 
         The last states are the errors of C_f and C_load. Divided by K_usura, the driveline's
         states and what drives them obey the equations of a new clutch with the actuator's states
@@ -174,7 +174,7 @@ class WearObserver:
         request, engine_torque, load_torque = inputs
         request = min(request, MOST_TORQUE_N_M)
         transition = self._transition
-        effect = self._transmission @ self._actuator
+        effect = self._transmission @ self._actuator + self._at_once * request
         transition[DRIVELINE, GAIN] = effect
         self._state = transition @ self._state
         self._state[DRIVELINE] += self._known @ (engine_torque, load_torque)
@@ -189,7 +189,7 @@ class WearObserver:
     def _start(self, speeds: tuple[float, float, float], load_torque: float) -> None:
         twist = load_torque * self._twist_per_torque
         start = self._model.at_rest(speeds, twist, self._initial_request)
-        self._actuator = start[DRIVELINE.stop : STATES]
+        self._actuator = start[DRIVELINE.stop : self._model.transmission]
         self._state[DRIVELINE] = start[DRIVELINE]
         # A second's drift of the load, which has twisted the half-shaft by as much.
         load = np.zeros(SIZE)

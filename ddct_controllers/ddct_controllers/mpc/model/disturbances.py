@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Models with constant disturbances as further states, which an observer estimates."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from ddct_controllers.mpc.model.transmission_model import (
@@ -12,6 +14,7 @@ from ddct_controllers.mpc.model.transmission_model import (
 )
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.linear.names import Names
+from ddct_plant.models.actuator import PRINTED_ACTUATOR, ActuatorParameters
 from ddct_plant.models.parameters import DrivelineParameters
 
 
@@ -19,17 +22,19 @@ def with_disturbances(model: TransmissionModel, columns: np.ndarray) -> Transmis
     """Append constant disturbances that drive the other states through `columns` (n, count)."""
     count = columns.shape[1]
     lower = np.zeros((count, len(model.a)))
-    return TransmissionModel(
-        np.block([[model.a, columns], [lower, np.eye(count)]]),
-        np.vstack([model.b, np.zeros((count, 3))]),
-        np.hstack([model.c, np.zeros((len(model.c), count))]),
-        model.d,
+    return replace(
+        model,
+        a=np.block([[model.a, columns], [lower, np.eye(count)]]),
+        b=np.vstack([model.b, np.zeros((count, 3))]),
+        c=np.hstack([model.c, np.zeros((len(model.c), count))]),
         clutch=np.concatenate([model.clutch, np.zeros(count)]),
         states=model.states + Names(tuple(f'disturbance_{i}' for i in range(1, count + 1))),
     )
 
 
-def offset_free_model(driveline: DrivelineParameters) -> TransmissionModel:
+def offset_free_model(
+    driveline: DrivelineParameters, actuator: ActuatorParameters = PRINTED_ACTUATOR
+) -> TransmissionModel:
     """
     Return the sampled model with errors of C_f and C_load, in N m, as its last states.
 
@@ -38,7 +43,7 @@ def offset_free_model(driveline: DrivelineParameters) -> TransmissionModel:
     torque that flows from the engine to the wheels without accelerating anything only twists the
     half-shafts. So an error of C_m, or of a friction torque, appears as a pair of these two.
     """
-    model = transmission_model(driveline)
+    model = transmission_model(driveline, actuator=actuator)
     columns = np.column_stack([model.clutch, model.b[:, LOAD_TORQUE]])
     augmented = with_disturbances(model, columns)
     require_detectable(augmented)

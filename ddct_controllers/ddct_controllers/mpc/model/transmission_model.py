@@ -10,24 +10,37 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.base.timebase import PERIOD_S, SUBSTEPS
+from ddct_plant.linear.delayed_input import acting_inputs, with_waiting_inputs
 from ddct_plant.linear.lti import StateSpace
 from ddct_plant.linear.names import Names
 from ddct_plant.linear.sampling import discretise_zoh
+from ddct_plant.models.actuator import PRINTED_ACTUATOR, ActuatorParameters, at_rest
 from ddct_plant.models.driveline_model import STATES as DRIVELINE_STATES
 from ddct_plant.models.driveline_model import driveline_matrices
 from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.models.printed import ACTUATOR
 
 _ACTUATOR_SIZE = len(ACTUATOR.poles)
-TRANSMISSION_STATES = (
-    DRIVELINE_STATES
-    + Names(tuple(f'actuator_{index}' for index in range(1, _ACTUATOR_SIZE + 1)))
-    + Names(('delayed_request',))
-)
-"""States of the driveline in rad/s and rad, those of G_a, the request of the period before."""
+_LAST_REQUEST = 'delayed_request'
+
+
+def transmission_states(waiting: int) -> Names:
+    """
+    Return the names of the states with so many requests that wait, 1 or more.
+
+    They are those of the driveline in rad/s and rad, those of G_a, and the requests of the
+    periods before in N m, that of the last period at the end.
+    """
+    actuator = tuple(f'actuator_{index}' for index in range(1, _ACTUATOR_SIZE + 1))
+    before = tuple(f'{_LAST_REQUEST}_{periods}' for periods in range(waiting, 1, -1))
+    return DRIVELINE_STATES + Names((*actuator, *before, _LAST_REQUEST))
+
+
+TRANSMISSION_STATES = transmission_states(1)
+"""States with the printed actuator, whose delay is one period."""
 STATES = len(TRANSMISSION_STATES)
-"""Number of states without disturbances."""
+"""Their number, without disturbances."""
 MEASURED = DRIVELINE_STATES['twist']
 """Number of measured states, which come first: w_m, w_p and w_r in rad/s."""
 REQUEST, ENGINE_TORQUE, LOAD_TORQUE = range(3)
@@ -40,8 +53,7 @@ Indices of the outputs at the start of a period: w_d in rad/s, dw_d/dt in rad/s^
 """
 DRIVELINE = slice(0, len(DRIVELINE_STATES))
 ACTUATOR_STATES = slice(DRIVELINE.stop, DRIVELINE.stop + _ACTUATOR_SIZE)
-DELAYED_REQUEST = TRANSMISSION_STATES['delayed_request']
-"""Places of the states of the driveline, of G_a and of the request in TRANSMISSION_STATES."""
+"""Places of the states of the driveline and of G_a."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,21 +72,27 @@ class TransmissionModel(StateSpace):
     """Effect of 1 N m of C_f, held over a period, beside the actuator's torque, (n,)."""
     states: Names = TRANSMISSION_STATES
     """Names of the states, (n,)."""
+    actuator: ActuatorParameters = PRINTED_ACTUATOR
+    """Actuator of the model."""
+
+    @property
+    def transmission(self) -> int:
+        """Number of the states of driveline, actuator and delay, which come first."""
+        return self.states[_LAST_REQUEST] + 1
 
     @property
     def disturbances(self) -> int:
         """Number of constant disturbances, which follow the other states."""
-        return len(self.a) - STATES
+        return len(self.a) - self.transmission
 
     def at_rest(
         self, speeds: tuple[float, float, float], twist: float, request: float
     ) -> np.ndarray:
         """Return x (n,) with `speeds` w_m, w_p, w_r, actuator at rest on `request` in N m."""
-        actuator = ACTUATOR.to_state_space()
         state = np.zeros(len(self.a))
         state[:MEASURED], state[self.states['twist']] = speeds, twist
-        state[ACTUATOR_STATES] = np.linalg.solve(actuator.a, -actuator.b[:, 0] * request)
-        state[DELAYED_REQUEST] = request
+        state[ACTUATOR_STATES] = at_rest(self.actuator.dynamics(), request)
+        state[ACTUATOR_STATES.stop : self.transmission] = request
         return state
 
     def without_load(self) -> 'TransmissionModel':
@@ -85,22 +103,25 @@ class TransmissionModel(StateSpace):
 
 
 def transmission_model(
-    driveline: DrivelineParameters, wear_gain: float = 1.0, *, delay: bool = True
+    driveline: DrivelineParameters,
+    wear_gain: float = 1.0,
+    actuator: ActuatorParameters = PRINTED_ACTUATOR,
 ) -> TransmissionModel:
     """
     Return the exact sampled model of driveline (Section 1.5), G_a(s) and delay (Section 1.4.2).
 
-    Its states are TRANSMISSION_STATES; the delay is one period. The clutch
-    transmits `wear_gain` times the actuator's torque. Without `delay` it is the plant of Section
-    3.2.1.3, P_2 G_a: the request acts at once, and the last state drives nothing.
+    Its states are `transmission_states`. The clutch transmits `wear_gain` times the actuator's
+    torque. Without a delay it is the plant of Section 3.2.1.3, P_2 G_a: the request acts at once,
+    and the last state drives nothing.
     """
-    plant, actuator = driveline_matrices(driveline), ACTUATOR.to_state_space()
-    torques, none = plant.torques, np.zeros((1, len(actuator.a)))
+    periods, late = divmod(actuator.delay_substeps, SUBSTEPS)
+    plant, lag = driveline_matrices(driveline), actuator.dynamics()
+    torques, none = plant.torques, np.zeros((1, len(lag.a)))
     clutch = wear_gain * plant.b[:, torques.column('clutch_torque')]
-    uncoupled = np.zeros((len(actuator.a), len(plant.a)))
-    a = np.block([[plant.a, clutch @ actuator.c], [uncoupled, actuator.a]])
+    uncoupled = np.zeros((len(lag.a), len(plant.a)))
+    a = np.block([[plant.a, clutch @ lag.c], [uncoupled, lag.a]])
     b = np.zeros((len(a), 3))
-    b[ACTUATOR_STATES, REQUEST] = actuator.b[:, 0]
+    b[ACTUATOR_STATES, REQUEST] = lag.b[:, 0]
     b[DRIVELINE, ENGINE_TORQUE] = plant.b[:, torques['engine_torque']]
     b[DRIVELINE, LOAD_TORQUE] = plant.b[:, torques['load_torque']]
     slip, torsion = (
@@ -109,25 +130,22 @@ def transmission_model(
     )
     outputs = np.vstack([slip, slip @ a, torsion])
     feedthrough = np.vstack([np.zeros((1, 3)), slip @ b, np.zeros((1, 3))])
-    sampled = discretise_zoh(StateSpace(a, b, outputs, feedthrough), PERIOD_S)
+    continuous = StateSpace(a, b, outputs, feedthrough)
+    sampled = discretise_zoh(continuous, PERIOD_S)
+    acting = acting_inputs(continuous, late, REQUEST)
+    of_states, by_request = with_waiting_inputs(sampled.a, acting, periods, at_least=1)
+    waiting = len(of_states) - len(a)
+    inputs = np.vstack([sampled.b, np.zeros((waiting, 3))])
+    inputs[:, REQUEST] = by_request[:, 0]
     held_clutch = discretise_zoh(plant, PERIOD_S).b[:, torques['clutch_torque']]
-    return _with_last_request(sampled, held_clutch, delay=delay)
-
-
-def _with_last_request(
-    sampled: StateSpace, clutch: np.ndarray, *, delay: bool
-) -> TransmissionModel:
-    """Append the request of the period before as a state, which acts in place of REQUEST."""
-    a, b, d = np.zeros((STATES, STATES)), sampled.b.copy(), sampled.d.copy()
-    before = slice(0, DELAYED_REQUEST)
-    a[before, before], through = sampled.a, np.zeros((len(sampled.c), 1))
-    if delay:
-        a[before, DELAYED_REQUEST], through[:, 0] = b[:, REQUEST], d[:, REQUEST]
-        b[:, REQUEST], d[:, REQUEST] = 0.0, 0.0
-    b = np.vstack([b, [1.0, 0.0, 0.0]])
-    c = np.hstack([sampled.c, through])
     return TransmissionModel(
-        a, b, c, d, clutch=np.concatenate([clutch, np.zeros(STATES - len(clutch))])
+        of_states,
+        inputs,
+        np.hstack([sampled.c, np.zeros((len(sampled.c), waiting))]),
+        sampled.d,
+        clutch=np.concatenate([held_clutch, np.zeros(len(of_states) - len(held_clutch))]),
+        states=transmission_states(waiting),
+        actuator=actuator,
     )
 
 
@@ -152,4 +170,4 @@ def with_engine(model: TransmissionModel, lag_share: float) -> TransmissionModel
     c = np.column_stack([model.c, through, kept * through])
     clutch = np.concatenate([model.clutch, np.zeros(2)])
     names = model.states + Names(('torque_demand', 'torque_deviation'))
-    return TransmissionModel(a, b, c, d, clutch=clutch, states=names)
+    return replace(model, a=a, b=b, c=c, d=d, clutch=clutch, states=names)

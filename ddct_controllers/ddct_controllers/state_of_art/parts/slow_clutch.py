@@ -9,25 +9,10 @@ from ddct_controllers.linear import DiscreteFilter
 from ddct_controllers.state_of_art.parts.rigid_transmission import RigidTransmission, SpeedPlan
 from ddct_controllers.state_of_art.parts.speed_loops import Pid
 from ddct_plant.base.timebase import PERIOD_S, SUBSTEPS
-from ddct_plant.linear.cascade import Factor
 from ddct_plant.linear.lti import StateSpace
 from ddct_plant.linear.sampling import discretise_zoh
 from ddct_plant.models.actuator import Actuator
-from ddct_plant.models.printed import ACTUATOR
 from ddct_plant.scenario.initial_state import initial_request
-
-
-def _time_constant_s(factor: Factor) -> float:
-    """Return the derivative of ln(s + a), or of ln(s^2 + b s + c), at s = 0."""
-    return factor[0] / factor[1] if isinstance(factor, tuple) else 1.0 / factor
-
-
-ACTUATION_LAG_S = (
-    PERIOD_S
-    + sum(_time_constant_s(factor) for factor in ACTUATOR.denominator)
-    - sum(_time_constant_s(factor) for factor in ACTUATOR.numerator)
-)
-"""Time in s from request to torque, 43 ms: the delay and -d ln G_a/ds at s = 0 (Section 1.4.2)."""
 
 
 class SlowClutch:
@@ -44,13 +29,15 @@ class SlowClutch:
         """Start as the run does, with the bandwidth of the loop of `pid` in rad/s."""
         self._initial_request = initial_request(context.settings)
         scenario = context.settings.scenario
+        self.actuator = scenario.actuator
+        """Known actuator, whose lag is behind each request."""
         transmission = self.transmission = RigidTransmission(scenario.controlled_driveline)
         """Rigid transmission that plan and request are computed for."""
         self.plan = SpeedPlan(transmission, scenario.engine_speed_reference)
         """Plan of the engine speed."""
         corner = 0.5 * transmission.rigid_below_rad_s
         # At low frequency the shaft's acceleration is so far behind the desired one.
-        lag_s = 2.0 / corner + ACTUATION_LAG_S
+        lag_s = 2.0 / corner + self.actuator.lag_s
         self.pid = Pid(bandwidth_rad_s, lag_s)
         """Controller from the error of the slow speed in rad/s to an acceleration in rad/s^2."""
         self._filter = DiscreteFilter(_low_pass(corner))
@@ -60,7 +47,7 @@ class SlowClutch:
         """Start afresh, with the actuator at rest on the initial request."""
         for part in (self.plan, self.pid, self._filter):
             part.reset()
-        self._actuator = Actuator(self._initial_request)
+        self._actuator = Actuator(self._initial_request, self.actuator)
 
     def torque(self, measurement: Measurement, acceleration: float) -> float:
         """Return C_f in N m for a desired shaft acceleration in rad/s^2."""
@@ -83,7 +70,7 @@ class SlowClutch:
         Return the torque in N m of a clutch without wear, and store the request in N m.
 
         It is the actuator's mean over the coming period, which moves the engine; the request acts
-        one period later.
+        after the actuator's delay.
         """
         nodes = self._actuator.update(request)
         return (sum(nodes) - 0.5 * (nodes[0] + nodes[-1])) / SUBSTEPS

@@ -10,9 +10,9 @@ from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.models.engine import EngineAuthority, EngineResponse
 
 TAKEOVER_BANDWIDTH_RAD_S = 5.0
-"""
-Crossover in rad/s of the slip loop through the clutch; its lag of 43 ms costs 12 degrees there.
-"""
+"""Highest crossover in rad/s of the slip loop through the clutch."""
+TAKEOVER_LAG_RAD = 0.22
+"""Most phase in rad that the actuator's lag may cost at the crossover, 13 degrees."""
 NEGLIGIBLE_RAD_S2 = 1e-6
 
 
@@ -65,19 +65,25 @@ class EngineShare:
     Beyond it the slip would diverge. Then `lacking`, the requested slip acceleration that the
     engine cannot supply, goes to the clutch through a PI: with the PID's anti-windup it is K_p
     times the slip error, and C_f = -(w/(g K_p)) (1 + w/(4 s)) lacking, g = 1/J_m + 1/J_eq, makes a
-    slip loop of crossover w. A lag of the engine is not counted as lacking.
+    slip loop of crossover w, which is the lower, the more the actuator lags. A lag of the engine
+    is not counted as lacking.
     """
 
     def __init__(
-        self, transmission: RigidTransmission, authority: EngineAuthority, bandwidth_rad_s: float
+        self,
+        transmission: RigidTransmission,
+        authority: EngineAuthority,
+        bandwidth_rad_s: float,
+        clutch_lag_s: float,
     ) -> None:
-        """Take the bandwidth in rad/s of the PID that acts on the slip; start on the demand."""
+        """Take the bandwidth in rad/s of the PID that acts on the slip, and the clutch's lag."""
         self._transmission = transmission
         self._authority = authority
         self._pid = pid = Pid(bandwidth_rad_s, authority.lag_s)
-        proportional = TAKEOVER_BANDWIDTH_RAD_S / (transmission.slip_gain * pid.proportional)
+        crossover = min(TAKEOVER_BANDWIDTH_RAD_S, TAKEOVER_LAG_RAD / clutch_lag_s)
+        proportional = crossover / (transmission.slip_gain * pid.proportional)
         self._proportional = proportional
-        self._integral_gain = proportional * TAKEOVER_BANDWIDTH_RAD_S / 4.0
+        self._integral_gain = proportional * crossover / 4.0
         self._share = PERIOD_S / (PERIOD_S + pid.derivative / pid.proportional)
         self.reset()
 

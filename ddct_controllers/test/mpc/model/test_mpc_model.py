@@ -4,6 +4,7 @@
 
 import numpy as np
 import pytest
+from other_actuators import ACTUATORS, AT_ONCE, FAST, LATE, SLOW
 
 from ddct_controllers.mpc.estimate.observer import (
     AtRest,
@@ -26,7 +27,7 @@ from ddct_controllers.mpc.model.transmission_model import (
 )
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.units import rpm_from_rad_s
-from ddct_plant.models.actuator import Actuator
+from ddct_plant.models.actuator import PRINTED_ACTUATOR, Actuator
 from ddct_plant.models.clutch import LinearClutch
 from ddct_plant.models.driveline_model import driveline_matrices
 from ddct_plant.models.initial_state import InitialSide, InitialState
@@ -47,10 +48,10 @@ def inputs(steps):
     return np.column_stack([np.maximum(request, 0.0), engine, np.full(steps, 60.0)])
 
 
-def plant_run(rows, wear_gain=1.0):
+def plant_run(rows, wear_gain=1.0, parameters=PRINTED_ACTUATOR):
     """Return w_m, w_p, w_r, w_sr (steps, 4) of the plant's own classes."""
     driveline = Driveline(DRIVELINE, VehicleParameters(), START)
-    actuator, clutch = Actuator(SIDE.torque_request), LinearClutch(wear_gain)
+    actuator, clutch = Actuator(SIDE.torque_request, parameters), LinearClutch(wear_gain)
     speeds = []
     for request, engine, load in rows:
         speeds.append(driveline.outputs().joint_speed)
@@ -71,14 +72,16 @@ def model_run(model, rows):
 
 
 @pytest.mark.parametrize('wear_gain', [0.7, 1.0, 1.3])
-def test_model_follows_the_plant(wear_gain):
+@pytest.mark.parametrize('actuator', ACTUATORS.values(), ids=ACTUATORS)
+def test_model_follows_the_plant(actuator, wear_gain):
     rows = inputs(300)
-    plant = plant_run(rows, wear_gain)
-    states = model_run(transmission_model(DRIVELINE, wear_gain), rows)
+    plant = plant_run(rows, wear_gain, actuator)
+    model = transmission_model(DRIVELINE, wear_gain, actuator)
+    states = model_run(model, rows)
     peak = np.abs(plant[:, 0] - plant[:, 1]).max()
     # The plant's actuator torque is linear between nodes 1 ms apart.
     assert np.abs(states[:, :3] - plant[:, :3]).max() < 2e-4 * peak
-    slip, torsion = (states @ MODEL.c.T)[:, [SLIP_SPEED, TORSION_SPEED]].T
+    slip, torsion = (states @ model.c.T)[:, [SLIP_SPEED, TORSION_SPEED]].T
     assert np.allclose(slip, states[:, 0] - states[:, 1])
     assert np.abs(torsion - plant[:, 3]).max() < 2e-4 * peak
 
@@ -134,7 +137,7 @@ def test_the_delay_is_one_period_and_nothing_else():
     rows = inputs(50)
     earlier = rows.copy()
     earlier[1:, 0], earlier[0, 0] = rows[:-1, 0], rest(MODEL)[8]
-    at_once = model_run(transmission_model(DRIVELINE, delay=False), earlier)
+    at_once = model_run(transmission_model(DRIVELINE, actuator=AT_ONCE), earlier)
     delayed = model_run(MODEL, rows)
     np.testing.assert_allclose(at_once[:, :8], delayed[:, :8], atol=1e-9)
 
@@ -149,7 +152,7 @@ def test_an_unknown_load_drives_nothing():
 @pytest.mark.parametrize('load_known', [True, False])
 def test_unit_noise_is_of_one_n_m_on_each_known_input_and_of_one_rpm_on_the_slip(load_known):
     """The reference is the filter by the doubling algorithm for Riccati's equation."""
-    model = transmission_model(DRIVELINE, delay=False)
+    model = transmission_model(DRIVELINE, actuator=AT_ONCE)
     model = model if load_known else model.without_load()
     output = rpm_from_rad_s(1.0) * np.array([1.0, -1.0, 0, 0, 0, 0, 0, 0, 0])
     known = model.b[:, : 2 + load_known]
@@ -234,6 +237,26 @@ def test_inputs_have_the_indices_of_their_names():
     pushed = MODEL.b[:, ENGINE_TORQUE]
     assert pushed[0] == pytest.approx(0.01 / DRIVELINE.engine_inertia, rel=1e-3)
     assert MODEL.b[2, LOAD_TORQUE] < 0.0 < MODEL.b[8, REQUEST]
+
+
+@pytest.mark.parametrize(
+    ('actuator', 'waiting'),
+    [
+        (AT_ONCE, ['delayed_request']),
+        (FAST, ['delayed_request']),
+        (SLOW, ['delayed_request_2', 'delayed_request']),
+        (LATE, [*(f'delayed_request_{periods}' for periods in (4, 3, 2)), 'delayed_request']),
+    ],
+)
+def test_requests_that_wait_have_names_and_rest_on_the_first_request(actuator, waiting):
+    model = offset_free_model(DRIVELINE, actuator)
+    assert list(model.states)[8:-2] == waiting
+    assert model.transmission == 8 + len(waiting)
+    assert model.disturbances == 2
+    rest = model.at_rest((170.0, 160.0, 17.0), 0.01, 40.0)
+    after = model.a @ rest + model.b @ [40.0, 0.0, 0.0]
+    np.testing.assert_allclose(after[4:], rest[4:], rtol=1e-12, atol=1e-12)
+    assert rest[model.states.places(*waiting)].tolist() == [40.0] * len(waiting)
 
 
 def test_every_state_of_a_model_and_of_its_variants_has_a_name():

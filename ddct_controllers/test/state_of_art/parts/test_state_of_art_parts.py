@@ -6,19 +6,27 @@ import math
 
 import numpy as np
 import pytest
+from other_actuators import ACTUATORS, FAST, SLOW, keys_of
 
 from ddct_controllers.interface import ControllerContext, Measurement
 from ddct_controllers.mpc.model.transmission_model import REQUEST, SLIP_SPEED, transmission_model
 from ddct_controllers.state_of_art.parts.engagement_program import MOVES, engagement_programs
 from ddct_controllers.state_of_art.parts.rigid_transmission import RigidTransmission, SpeedPlan
-from ddct_controllers.state_of_art.parts.slow_clutch import ACTUATION_LAG_S, SlowClutch
-from ddct_controllers.state_of_art.parts.speed_loops import ClutchTorqueEstimator, EngineShare, Pid
-from ddct_plant.base.timebase import PERIOD_S
+from ddct_controllers.state_of_art.parts.slow_clutch import SlowClutch
+from ddct_controllers.state_of_art.parts.speed_loops import (
+    TAKEOVER_BANDWIDTH_RAD_S,
+    TAKEOVER_LAG_RAD,
+    ClutchTorqueEstimator,
+    EngineShare,
+    Pid,
+)
+from ddct_plant.base.timebase import PERIOD_S, SUBSTEPS
+from ddct_plant.models.actuator import PRINTED_ACTUATOR, Actuator
 from ddct_plant.models.engine import EngineAuthority
-from ddct_plant.models.printed import ACTUATOR
 from ddct_plant.models.static_torque import constant_slip_torque
 from ddct_plant.scenario.control import EngineSpeedReference
 from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.initial_state import initial_request
 from ddct_plant.scenario.settings import RunSettings
 
 SETTINGS = RunSettings(load_scenario('thesis'))
@@ -30,12 +38,6 @@ NO_POINTS = EngineSpeedReference()
 def measurement(step=60, engine=240.0, shaft=190.0, demand=300.0, slip=50.0, rate=-100.0):
     wheel = shaft / DRIVELINE.gear.total_ratio
     return Measurement(step, engine, shaft, wheel, 6.5, demand, [slip], [rate], 60.0, 270.0)
-
-
-def test_the_lag_is_that_of_delay_and_actuator_at_low_frequency():
-    omega = 0.01
-    phase = np.angle(ACTUATOR.frequency_response(np.array([omega])))[0]
-    assert pytest.approx(PERIOD_S - phase / omega, rel=1e-4) == ACTUATION_LAG_S
 
 
 def test_the_rigid_transmission_agrees_with_the_static_controller():
@@ -116,8 +118,36 @@ def test_the_slow_clutch_passes_constant_slip_at_once_and_the_rest_as_a_low_pass
     assert passed == pytest.approx(1.0 - (1.0 + corner * 0.5) * math.exp(-corner * 0.5))
 
 
-def share(**authority):
-    return EngineShare(RIGID, EngineAuthority(**authority), 10.0)
+@pytest.mark.parametrize('actuator', ACTUATORS.values(), ids=ACTUATORS)
+def test_the_slow_clutch_knows_the_torque_and_the_lag_of_its_actuator(actuator):
+    settings = RunSettings(load_scenario('thesis', keys_of(actuator)))
+    clutch = SlowClutch(ControllerContext(settings, {}), 0.5)
+    corner = RIGID.rigid_below_rad_s / 2.0
+    assert clutch.pid.derivative == pytest.approx(2.0 * 0.5 * (2.0 / corner + actuator.lag_s))
+    first = initial_request(settings)
+    plant = Actuator(first, actuator)
+    for request in (first + 50.0, first, first + 20.0, first + 80.0):
+        nodes = plant.update(request)
+        assert clutch.nominal(request) == pytest.approx(np.trapezoid(nodes) / SUBSTEPS)
+
+
+def share(clutch_lag_s=PRINTED_ACTUATOR.lag_s, **authority):
+    return EngineShare(RIGID, EngineAuthority(**authority), 10.0, clutch_lag_s)
+
+
+def taken_over(clutch_lag_s):
+    """Return what the clutch takes over of an engine without authority in the first period."""
+    engine = share(clutch_lag_s, deviation_n_m=0.0)
+    engine.update(measurement(), 270.0, 5.0, 0.0)
+    return engine.clutch_torque
+
+
+def test_the_clutch_takes_over_more_slowly_the_more_it_lags_but_never_faster_than_as_printed():
+    usual = taken_over(PRINTED_ACTUATOR.lag_s)
+    assert taken_over(FAST.lag_s) == usual
+    slower = TAKEOVER_LAG_RAD / SLOW.lag_s / TAKEOVER_BANDWIDTH_RAD_S
+    assert slower < 0.6
+    assert taken_over(SLOW.lag_s) == pytest.approx(slower * usual, rel=0.01)
 
 
 def test_an_engine_with_authority_leaves_nothing_to_the_clutch():
