@@ -41,6 +41,7 @@ setup(
     ],
     install_requires=[
         f'ddct_plant=={VERSION}',
+        f'ddct_reference=={VERSION}',
         'setuptools',
         'cffi',
         'control',

@@ -249,7 +249,7 @@ def _make_open_loop(settings: RunSettings, static: StaticTorque) -> OpenLoop:
     if settings.architecture == 'base':
         return lambda m, load: 0.0
     # Only here: the other architectures need not wait for the imports of the design.
-    from ddct_controllers.feedforward import Feedforward
+    from ddct_controllers.design.feedforward import Feedforward
 
     feedforward = Feedforward(scenario.driveline, scenario.actuator)
     return lambda m, load: feedforward.update(m.engine_torque, load)

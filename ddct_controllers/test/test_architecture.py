@@ -13,7 +13,7 @@ import pytest
 from refusals import refused
 
 from ddct_controllers.architecture import make_architecture
-from ddct_controllers.feedforward import Feedforward
+from ddct_controllers.design.feedforward import Feedforward
 from ddct_controllers.interface import Command, Controller, Measurement
 from ddct_controllers.linear import PiController
 from ddct_plant.base.errors import DdctError, ForeignError, ParameterError

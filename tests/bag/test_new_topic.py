@@ -14,8 +14,9 @@ from support.runs import expected, plan
 
 from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.run.headless import ClosedLoop, run_headless, run_loop
+from ddct_bringup.run.headless import run_headless, run_loop
 from ddct_bringup.scores.csv_text import signals_csv
+from ddct_controllers.loop import ClosedLoop
 from ddct_controllers.registry import make_controller
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import step_of_stamp

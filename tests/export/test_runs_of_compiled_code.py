@@ -6,6 +6,7 @@ import json
 import os
 import shutil
 from pathlib import Path
+from typing import Any
 
 import pytest
 from refusals import refused
@@ -26,6 +27,7 @@ from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_controllers.check import subject
 from ddct_controllers.check.checks import FAIL, PASS, check_controller
 from ddct_controllers.interface import Controller
+from ddct_controllers.loop import ClosedLoop
 from ddct_controllers.registry import controller_spec
 from ddct_controllers.workflows.evidence import frequency_evidence
 from ddct_controllers.workflows.loop_summary import loop_summary
@@ -74,13 +76,13 @@ def test_a_loop_is_built_here_first_so_that_not_every_process_does_its_imports(
     counter: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     built: list[int] = []
-    build = headless.closed_loop
+    build = headless.ClosedLoop
 
-    def noted(settings: RunSettings, controller: Controller) -> headless.Loop:
+    def noted(*given: Any, **options: Any) -> ClosedLoop:
         built.append(os.getpid())
-        return build(settings, controller)
+        return build(*given, **options)
 
-    monkeypatch.setattr(headless, 'closed_loop', noted)
+    monkeypatch.setattr(headless, 'ClosedLoop', noted)
     run_headless(SETTINGS, counter)
     assert built == [os.getpid()]
 

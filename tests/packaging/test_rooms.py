@@ -19,7 +19,7 @@ ROOT = Path(__file__).resolve().parents[2]
 MAY_IMPORT = {
     'ddct_plant': set(),
     'ddct_reference': {'ddct_plant'},
-    'ddct_controllers': {'ddct_plant'},
+    'ddct_controllers': {'ddct_plant', 'ddct_reference'},
     'ddct_bringup': {'ddct_plant', 'ddct_reference', 'ddct_controllers'},
 }
 """By package the others of ours that it may import."""

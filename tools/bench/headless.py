@@ -6,7 +6,8 @@ import time
 from functools import partial
 
 from bench.ratios import Comparison, Cost, NotMeasured
-from ddct_bringup.run.headless import closed_loop, run_headless, run_loop
+from ddct_bringup.run.headless import run_headless, run_loop
+from ddct_controllers.loop import ClosedLoop
 from ddct_controllers.registry import make_controller
 from ddct_plant.base.clutch_kinds import LINEAR, STICK_SLIP
 from ddct_plant.scenario.file import load_scenario
@@ -25,7 +26,7 @@ def step_s(controller: str, scenario: str = 'thesis', clutch: str = LINEAR) -> f
     settings = RunSettings(load_scenario(scenario, clutch=clutch), clutch=clutch)
     elapsed, steps = 0.0, 0
     while elapsed < LEAST_S:
-        loop = closed_loop(settings, make_controller(controller, settings))
+        loop = ClosedLoop(settings, make_controller(controller, settings))
         started = time.thread_time()
         trajectory = run_loop(loop, settings.scenario.steps)
         elapsed += time.thread_time() - started

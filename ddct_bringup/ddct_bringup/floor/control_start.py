@@ -4,8 +4,9 @@
 
 from ddct_bringup.floor.dynamics.propagators import WHEEL
 from ddct_bringup.floor.dynamics.start import Start, start_of
-from ddct_bringup.run.headless import closed_loop, run_loop
+from ddct_bringup.run.headless import run_loop
 from ddct_controllers.interface import Controller
+from ddct_controllers.loop import ClosedLoop
 from ddct_controllers.registry import make_controller
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.scenario.settings import RunSettings
@@ -55,7 +56,7 @@ def _simulated(settings: RunSettings) -> Start:
     scenario = settings.scenario
     # When feedback starts in a shift, and when the off-going clutch is open, the run shows.
     steps = scenario.steps if settings.shift else scenario.control_start_step
-    start = start_of(settings, run_loop(closed_loop(settings, controller), steps))
+    start = start_of(settings, run_loop(ClosedLoop(settings, controller), steps))
     _kept.append((settings, start))
     del _kept[:-_MOST_KEPT]
     return start

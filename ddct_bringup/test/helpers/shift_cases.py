@@ -12,8 +12,9 @@ from ddct_bringup.floor.case import Case, case_of_run
 from ddct_bringup.floor.control_start import control_start
 from ddct_bringup.floor.dynamics.start import start_of
 from ddct_bringup.floor.lock import lock_of
-from ddct_bringup.run.headless import closed_loop, run_loop
+from ddct_bringup.run.headless import run_loop
 from ddct_bringup.verdict.limits import packaged_limits
+from ddct_controllers.loop import ClosedLoop
 from ddct_controllers.registry import make_controller, own_controller_names
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
@@ -34,7 +35,7 @@ def compared_starts(handover: str, names: Iterable[str]) -> int:
         controller = make_controller(name, settings)
         if controller.commands_engine:
             continue
-        run = run_loop(closed_loop(settings, controller), expected.step + 12)
+        run = run_loop(ClosedLoop(settings, controller), expected.step + 12)
         start = start_of(settings, run)
         assert start.step == expected.step, name
         for field in ('state', 'actuator', 'requests', 'accelerations', 'driving'):

@@ -20,7 +20,8 @@ from ddct_bringup.reproduction.studies.study import (
     deviation_range,
 )
 from ddct_bringup.reproduction.study_run import StaticControllerAlone, StudyRun, thesis_run
-from ddct_bringup.run.headless import ClosedLoop, run_headless, run_loop
+from ddct_bringup.run.headless import run_headless, run_loop
+from ddct_controllers.loop import ClosedLoop
 from ddct_controllers.mpc.controller import MpcController
 from ddct_controllers.mpc.costs import TwoInputCost
 from ddct_controllers.mpc.estimators import make_observer

@@ -12,7 +12,8 @@ from ddct_bringup.reproduction.studies.changed_loops import NoisySpeeds, slip_af
 from ddct_bringup.reproduction.studies.sweeps import torsion_weight
 from ddct_bringup.reproduction.studies.wear import LOAD_STEP_N_M, wear_estimate
 from ddct_bringup.reproduction.study_run import study_run
-from ddct_bringup.run.headless import ClosedLoop, run_headless, run_loop
+from ddct_bringup.run.headless import run_headless, run_loop
+from ddct_controllers.loop import ClosedLoop
 from ddct_controllers.mpc.estimate.observer import NoiseLevels
 from ddct_controllers.mpc.estimate.wear_state import HIGHEST_GAIN, LOWEST_GAIN
 from ddct_controllers.mpc.model.transmission_model import transmission_model

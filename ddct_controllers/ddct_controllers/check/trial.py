@@ -7,16 +7,17 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import wraps
+from typing import Any
 
 import numpy as np
 
-from ddct_controllers.architecture import make_architecture
 from ddct_controllers.interface import Command, Controller, Measurement
+from ddct_controllers.loop import ClosedLoop
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.base.units import rad_s_from_rpm
-from ddct_plant.plant import Plant
 from ddct_plant.scenario.settings import RunSettings
+from ddct_reference.slip_reference import NEVER, SlipReference
 
 RAMP_S = 0.8
 """Duration in s of the reference's descent from the slip speed at control start to zero."""
@@ -89,6 +90,30 @@ def probe_step(settings: RunSettings) -> int:
     return settings.scenario.control_start_step + round(PROBE_S / PERIOD_S)
 
 
+class TrialReference(SlipReference):
+    """Slip reference that falls to zero within RAMP_S, and is lower from a probe step on."""
+
+    def __init__(self, start_step: int, preview_steps: int, probe_step: int) -> None:
+        """Take the steps of the start and of the change by PROBE_RAD_S."""
+        super().__init__(start_step, preview_steps)
+        self._probe_step = probe_step
+        self._from_speed = 0.0
+
+    def _ahead(
+        self, step: int, slip_speed: float, shaft_speed: float
+    ) -> tuple[list[float], list[float]]:
+        """Return the reference and its rate at steps k, k + 1, ..., k + P."""
+        if step <= self.start_step:
+            self._from_speed = slip_speed
+        ahead = np.arange(step, step + self.preview_steps + 1)
+        left = 1.0 - np.maximum(ahead - self.start_step, 0) * PERIOD_S / RAMP_S
+        speeds = self._from_speed * np.maximum(left, 0.0)
+        speeds -= PROBE_RAD_S * (ahead >= self._probe_step)
+        falls = (left > 0.0) & (ahead >= self.start_step)
+        rates = np.where(falls, -self._from_speed / RAMP_S, 0.0)
+        return speeds.tolist(), rates.tolist()
+
+
 def closed_trial(
     settings: RunSettings,
     controller: Controller,
@@ -105,29 +130,18 @@ def closed_trial(
     """
     log = ClosedLoopLog()
     exact = replace(settings, scenario=replace(settings.scenario, sensors=None))
-    plant = Plant(exact, two_input=controller.commands_engine)
-    _log_calls(controller, log, scale)
-    architecture = make_architecture(settings, controller)
     start, probe = settings.scenario.control_start_step, probe_step(settings)
-    from_speed = 0.0
+    _log_calls(controller, log, scale)
+    reference = TrialReference(start, controller.preview_steps, probe if reference_step else NEVER)
+    loop = ClosedLoop(exact, controller, reference)
     for step in range(probe + round(AFTER_S / PERIOD_S) + 1):
-        tick = plant.tick(step)
-        observation = plant.observe(tick)
-        if step <= start:
-            from_speed = tick.true.slip_speed
-        ahead = np.arange(step, step + controller.preview_steps + 1)
-        left = 1.0 - np.maximum(ahead - start, 0) * PERIOD_S / RAMP_S
-        speeds = from_speed * np.maximum(left, 0.0)
-        if reference_step:
-            speeds -= PROBE_RAD_S * (ahead >= probe)
-        rates = np.where((left > 0.0) & (ahead >= start), -from_speed / RAMP_S, 0.0)
-        measurement = Measurement.of_plant(observation, speeds.tolist(), rates.tolist())
-        request = architecture.update(measurement)
-        log.slip.append(tick.true.slip_speed)
-        log.request.append(request.torque)
+        reply = loop.reply(step)
+        signals: Any = reply.signals
+        log.slip.append(signals['slip_speed'])
+        log.request.append(signals['torque_request'])
         if log.too_slow:
             break
-        plant.advance(plant.reply(observation, request.torque, request.engine_torque))
+        loop.advance(reply)
     return log
 
 

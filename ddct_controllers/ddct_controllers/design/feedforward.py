@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ddct_controllers.design.state_space import series
+from ddct_controllers.linear import DiscreteFilter
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import PERIOD_S, SUBSTEPS
 from ddct_plant.linear.delayed_input import acting_inputs, with_waiting_inputs
@@ -70,6 +71,28 @@ def state_at_rest(model: StateSpace, engine_torque: float) -> np.ndarray:
     state = np.zeros(len(model.a))
     state[-1] = engine_torque
     return state
+
+
+class Feedforward:
+    """
+    u = -C_1 C_m - C_2 C_load with proper, stable C_1 and C_2, as it runs.
+
+    C_1 and C_2 are negative, as P_2 is, so that the request is about 0.88 C_m, with a lead that
+    compensates the lag of the actuator.
+    """
+
+    def __init__(self, driveline: DrivelineParameters, actuator: ActuatorParameters) -> None:
+        """Design the filter for a driveline and an actuator."""
+        self._model = design_feedforward(driveline, actuator)
+        self._filter = DiscreteFilter(self._model)
+        self._started = False
+
+    def update(self, engine_torque: float, load_torque: float) -> float:
+        """Return the request in N m for C_m and C_load in N m of the coming period."""
+        if not self._started:
+            self._filter.reset(state_at_rest(self._model, engine_torque))
+            self._started = True
+        return self._filter.update(engine_torque, load_torque)
 
 
 @dataclass(frozen=True, eq=False)

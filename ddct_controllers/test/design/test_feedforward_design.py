@@ -11,11 +11,11 @@ from other_actuators import ACTUATORS
 from ddct_controllers.design.analysis.loops import sampled_plant
 from ddct_controllers.design.feedforward import (
     TORQUE_RATE_WEIGHT,
+    Feedforward,
     design_feedforward,
     state_at_rest,
 )
 from ddct_controllers.design.state_space import poles_rad_s
-from ddct_controllers.feedforward import Feedforward
 from ddct_controllers.linear import DiscreteFilter
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import PERIOD_S

@@ -13,8 +13,9 @@ from memory_key import SAMPLES, Key
 from replay import EVERY_S
 
 from ddct_bringup.benchmark.cases import Cases
-from ddct_bringup.run.headless import closed_loop, run_headless, run_loop
+from ddct_bringup.run.headless import run_headless, run_loop
 from ddct_controllers.interface import Command, Controller, Measurement
+from ddct_controllers.loop import ClosedLoop
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.scenario.choices.scenarios import scenario_names
 from ddct_plant.scenario.file import load_scenario
@@ -55,7 +56,7 @@ def memory() -> dict[int, float]:
     for index in range(cases.cases):
         settings = cases.run(index).settings
         listener = Listener()
-        run_loop(closed_loop(settings, listener), SAMPLES + 1)
+        run_loop(ClosedLoop(settings, listener), SAMPLES + 1)
         known[listener.key.value] = settings.wear_gain
     assert len(known) == cases.cases, 'two cases have one key'
     return known

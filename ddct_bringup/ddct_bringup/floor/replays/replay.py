@@ -8,13 +8,12 @@ import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.floor.case import Case
-from ddct_controllers.handover.interface import HandoverMeasurement
-from ddct_controllers.handover.laws import make_handover
+from ddct_controllers.handover.interface import HandoverCommand
+from ddct_controllers.loop import PlantLoop, Request
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.models.static_torque import StaticTorque
-from ddct_plant.plant import Plant
+from ddct_plant.plant import Observation
 from ddct_plant.scenario.settings import RunSettings
-from ddct_plant.signals.signal import SignalValue
 
 CLOSING_SHARE = 1.1
 """Request over C_fOL from the lock on."""
@@ -71,23 +70,22 @@ def replayed(case: Case, requests: np.ndarray) -> Trajectory:
     return run_requests(case.settings, np.concatenate([case.start.requests, every]))
 
 
+class ReplayedLoop(PlantLoop):
+    """The plant of a run that is asked for given torques; its handover is that of every run."""
+
+    def __init__(self, settings: RunSettings, requests: np.ndarray) -> None:
+        """Start in the run's initial state; the requests (n,) in N m are those of each step."""
+        super().__init__(settings)
+        self._requests = requests
+
+    def request(self, observation: Observation, command: HandoverCommand) -> Request:
+        """Return the given request of the step."""
+        return Request(float(self._requests[observation.tick.step]), None, {})
+
+
 def run_requests(settings: RunSettings, requests: np.ndarray) -> Trajectory:
     """Return the run of the simulated plant with the torque requests (n,) in N m of each step."""
-    plant = Plant(settings)
-    handover = make_handover(settings) if settings.shift else None
-    rows: list[dict[str, SignalValue]] = []
-    for step in range(settings.scenario.steps + 1):
-        request, tick = float(requests[step]), plant.tick(step)
-        if handover is None:
-            reply = plant.reply(plant.observe(tick), request)
-        else:
-            command = handover.update(HandoverMeasurement.of_tick(tick))
-            observation = plant.observe(tick, command.torque_cut)
-            reply = plant.reply(observation, request, off_going_request=command.off_going_request)
-            reply.signals.update(command.signals)
-        rows.append(reply.signals)
-        if plant.over or step == settings.scenario.steps:
-            break
-        plant.advance(reply)
+    loop = ReplayedLoop(settings, requests)
+    rows = [reply.signals for reply in loop.replies(settings.scenario.steps)]
     names = [name for name, first in rows[0].items() if first is not None]
     return Trajectory.of_columns({name: [row[name] for row in rows] for name in names})

@@ -12,8 +12,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from ddct_bringup.run.headless import ClosedLoop
 from ddct_controllers.interface import Command, Controller, Measurement
+from ddct_controllers.loop import ClosedLoop
 from ddct_controllers.mpc.controller import MpcController
 from ddct_controllers.mpc.estimate.observer import Observer
 from ddct_controllers.mpc.estimators import run_start

@@ -34,8 +34,9 @@ from ddct_bringup.reproduction.study_run import (
     study_run,
     thesis_run,
 )
-from ddct_bringup.run.headless import ClosedLoop, run_loop
+from ddct_bringup.run.headless import run_loop
 from ddct_bringup.thesis.table_5_1 import ROW_OF
+from ddct_controllers.loop import ClosedLoop
 from ddct_controllers.mpc.controller import MpcController
 from ddct_controllers.mpc.costs import TwoInputCost
 from ddct_controllers.mpc.estimate.observer import Observer

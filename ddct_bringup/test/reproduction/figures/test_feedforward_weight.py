@@ -8,7 +8,7 @@ import pytest
 
 from ddct_bringup.metrics.values import compute_metrics
 from ddct_bringup.run.headless import run_headless
-from ddct_controllers import feedforward
+from ddct_controllers.design import feedforward
 from ddct_controllers.design.feedforward import TORQUE_RATE_WEIGHT, design_feedforward
 from ddct_controllers.interface import Command, Controller, Measurement
 from ddct_plant.scenario.file import load_scenario
