@@ -17,7 +17,7 @@ from ddct_plant.scenario.control import ClosingParameters
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
-SETTINGS = RunSettings(load_scenario('thesis', ['closing={}']), clutch='stick_slip')
+SETTINGS = RunSettings(load_scenario('thesis_sticking', ['closing={}']))
 START = SETTINGS.scenario.control_start_step
 P = ClosingParameters()
 MOST = P.most_request(SETTINGS.scenario.friction)

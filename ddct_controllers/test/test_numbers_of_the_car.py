@@ -24,7 +24,7 @@ SMALL = (
 
 
 def design(scenario: str, *overrides: str, **gains: float) -> LeastJerkDesign:
-    settings = RunSettings(load_scenario(scenario, overrides), clutch='stick_slip')
+    settings = RunSettings(load_scenario(scenario, overrides))
     values = {name: each.default for name, each in LeastJerkOptions().options.items()}
     return LeastJerkDesign.of(ControllerContext(settings, values | gains))
 

@@ -13,9 +13,9 @@ from ddct_plant.scenario.settings import RunSettings
 SLOPE = 'slope={time_s: [0.0, 1.0], slope_rad: [0.0, 0.2]}'
 
 
-@pytest.mark.parametrize('clutch', ['linear', 'stick_slip'])
-def test_the_load_is_that_of_the_slope_at_the_time_of_each_step(clutch):
-    settings = RunSettings(load_scenario('thesis', [SLOPE]), clutch=clutch)
+@pytest.mark.parametrize('name', ['thesis', 'thesis_sticking'])
+def test_the_load_is_that_of_the_slope_at_the_time_of_each_step(name):
+    settings = RunSettings(load_scenario(name, [SLOPE]))
     plant, load = Plant(settings), make_load(settings)
     found = []
     for step in range(60):
@@ -29,7 +29,7 @@ def test_the_load_is_that_of_the_slope_at_the_time_of_each_step(clutch):
 
 def test_a_commanded_engine_delivers_what_its_limits_allow_at_the_speed_of_the_engine():
     """At rest in gear: the shaft has no speed, at which the engine would deliver nothing."""
-    settings = RunSettings(load_scenario('launch'), clutch='stick_slip')
+    settings = RunSettings(load_scenario('launch'))
     plant, engine = Plant(settings, two_input=True), make_engine(settings)
     observation = plant.observe(plant.tick(0))
     engine_speed, shaft_speed = observation.tick.true.joint_speed[:2]

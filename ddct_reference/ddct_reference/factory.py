@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The slip reference of a run, from its scenario and architecture."""
 
+from dataclasses import replace
+
 from ddct_plant.base.clutch_kinds import LINEAR, STICK_SLIP
 from ddct_plant.base.timebase import PERIOD_S, steps_in, time_of_step
 from ddct_plant.models.load import RoadLoad
@@ -60,7 +62,7 @@ def nominal_slip(scenario: Scenario) -> list[float]:
     enters: the values are those of any controller's run, to the last bit.
     """
     clutch = STICK_SLIP if scenario.of_stick_slip else LINEAR
-    settings = RunSettings(scenario, architecture='detailed', clutch=clutch)
+    settings = RunSettings(replace(scenario, clutch=clutch), architecture='detailed')
     plant = Plant(settings)
     static = StaticTorque(scenario.driveline, scenario.equilibrium)
     load = RoadLoad(scenario.load, scenario.vehicle, scenario.slope)

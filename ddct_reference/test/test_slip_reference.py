@@ -155,8 +155,8 @@ def test_in_a_shift_it_follows_the_slip_until_the_share_is_one_and_refuses_a_low
         'engine_speed_reference.time_s': [0.0],
         'engine_speed_reference.speed_rad_s': [100.0],
     }
-    scenario = load_scenario('upshift', changes, clutch='stick_slip')
-    reference = make_reference(RunSettings(scenario, clutch='stick_slip'), preview_steps)
+    scenario = load_scenario('upshift', changes)
+    reference = make_reference(RunSettings(scenario), preview_steps)
     for step, slip in enumerate([50.0, 51.0, 52.0]):
         speeds, rates = reference.update(step, slip, 150.0, 0.25 * step)
         assert speeds == [slip] * (preview_steps + 1)

@@ -19,7 +19,7 @@ from ddct_bringup.verdict.limits import packaged_limits
 def test_a_launch_with_half_or_nearly_twice_the_demand_is_not_engaged(
     name: str, state: str, figure: str, tmp_path: Path
 ) -> None:
-    made = run(gaming_file(name), scenario='launch', clutch='stick_slip', out=tmp_path)
+    made = run(gaming_file(name), scenario='launch', out=tmp_path)
     assert (made.valid, made.state) == (True, state)
     found = independent_figures(made.path)
     changed_s, delivered = found[figure], found['delivered_at_end']

@@ -18,11 +18,11 @@ from ddct_bringup.verdict.state import EngineCommand
 
 CASES: dict[str, tuple[str, dict[str, Any]]] = {
     'linear': ('pi', {'scenario': 'thesis'}),
-    'launch': ('ls8', {'scenario': 'launch', 'clutch': 'stick_slip', 'wear_gain': 0.8}),
-    'two inputs': ('torque_estimator', {'scenario': 'launch', 'clutch': 'stick_slip'}),
-    'parted': ('pi', {'scenario': 'tip_in', 'clutch': 'stick_slip', 'wear_gain': 0.7}),
-    'shift': ('mpc3', {'scenario': 'upshift', 'clutch': 'stick_slip', 'wear_gain': 1.2}),
-    'stalled': ('hinf1', {'scenario': 'launch_hill', 'clutch': 'stick_slip', 'wear_gain': 1.3}),
+    'launch': ('ls8', {'scenario': 'launch', 'wear_gain': 0.8}),
+    'two inputs': ('torque_estimator', {'scenario': 'launch'}),
+    'parted': ('pi', {'scenario': 'tip_in', 'wear_gain': 0.7}),
+    'shift': ('mpc3', {'scenario': 'upshift', 'wear_gain': 1.2}),
+    'stalled': ('hinf1', {'scenario': 'launch_hill', 'wear_gain': 1.3}),
 }
 
 

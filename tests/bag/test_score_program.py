@@ -26,7 +26,6 @@ ENTRY_KEYS = [
     'controller',
     'architecture',
     'scenario',
-    'clutch',
     'wear_gain',
     'mode',
     'seed',

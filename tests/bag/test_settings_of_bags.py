@@ -82,7 +82,6 @@ def test_a_bag_that_goes_on_after_its_planned_end_is_refused(bags, recorded: Pat
         ({'duration_s': 0.005}, 'known'),
         ({'duration_s': 1e9}, 'known'),
         ({'mode': 'measured'}, 'mode'),
-        ({'clutch': 'measured'}, 'clutch'),
         ({'handover': 'mine.py'}, 'known'),
         ({'handover': '../mine'}, 'known'),
         ({'nonsense': 1.0}, 'nonsense'),

@@ -60,7 +60,7 @@ def test_the_text_of_a_mat_file_leaves_the_eight_bytes_after_it_empty(bags, traj
 
 def test_every_signal_has_a_name_that_matlab_takes():
     scenario = load_scenario('launch', {'sensors.engine_speed.noise_rad_s': 0.1})
-    settings = RunSettings(scenario, 'detailed', 'stick_slip', 1.0, 'lockstep', 0)
+    settings = RunSettings(scenario, 'detailed', 1.0, 'lockstep', 0)
     columns = signal_columns(run_headless(settings, 'mpc4'))
     names = {*columns, *(signal.column for signal in all_signals())}
     assert len(columns) > 20

@@ -39,7 +39,6 @@ PROFILE = {'csv': FILES[2], 'time': 't', 'value': 'c', 'unit': 'N m'}
 CAMPAIGN: dict[str, Any] = {
     'controllers': ['pi'],
     'scenario': 'upshift',
-    'clutch': 'stick_slip',
     'grid': {'wear_gain': [1.0]},
 }
 CONTROLLERS = {
@@ -49,7 +48,7 @@ CONTROLLERS = {
     WITH_OPTIONS: {'controller': '-', 'options': {}},
 }
 """Keys of each kind of controller file; those of linear controllers are numbers."""
-SHIFT = RunSettings(load_scenario('upshift', clutch='stick_slip'), clutch='stick_slip')
+SHIFT = RunSettings(load_scenario('upshift'))
 
 
 @pytest.fixture

@@ -94,8 +94,8 @@ def test_the_exported_mpc_run_from_its_file_gives_the_torques_of_python(exported
 
 
 def test_in_a_shift_the_exported_mpc_starts_as_that_of_python_does(exported):
-    scenario = load_scenario('upshift', ['duration_s=1.6'], clutch='stick_slip')
-    shift = RunSettings(scenario, clutch='stick_slip')
+    scenario = load_scenario('upshift', ['duration_s=1.6'])
+    shift = RunSettings(scenario)
     expected = run_headless(shift, 'mpc_offset_free')
     found = run_headless(shift, exported('mpc_offset_free', shift))
     assert np.abs(found.torque_request - expected.torque_request).max() <= TOLERANCE_N_M

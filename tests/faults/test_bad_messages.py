@@ -64,7 +64,7 @@ def test_a_bad_stamp_ends_a_follower_with_its_topic(
 def test_a_node_of_the_off_going_side_names_its_topic_as_the_graph_does(
     graph_of: GraphOf, reader: str, topic: str, spoil: Spoil
 ) -> None:
-    graph = graph_of(plan('pi', scenario='upshift', clutch='stick_slip'))
+    graph = graph_of(plan('pi', scenario='upshift'))
     spoilt(graph, reader, f'off_going/{topic}', spoil)
     node, complaint = graph.first_failure()
     assert node == reader

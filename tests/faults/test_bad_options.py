@@ -15,7 +15,7 @@ BAD_OPTIONS = {
     'controller': (['--controller', 'pid'], ["'pid'", 'choose from', 'hinf1']),
     'controller typo': (['--controller', 'ls88'], ["'ls88'", 'choose from']),
     'architecture': (['--architecture', 'detail'], ["'detail'", 'detailed']),
-    'clutch': (['--clutch', 'dry'], ["'dry'", 'linear']),
+    'clutch': (['--set', 'clutch=dry'], ["'dry'", 'linear']),
     'mode': (['--mode', 'fast'], ["'fast'", 'lockstep', 'realtime']),
     'scenario': (['--scenario', 'theses'], ["'theses'", 'thesis', 'YAML file']),
     'scenario file': (['--scenario', 'no/such.yaml'], ['no/such.yaml', 'cannot be read']),

@@ -22,7 +22,7 @@ from ddct_bringup.processes.shared_memory import SHARED_MEMORY
 from ddct_bringup.programs import score
 from ddct_plant.graph.domain import own_domain
 
-SHIFT = {'scenario': 'upshift', 'clutch': 'stick_slip'}
+SHIFT = {'scenario': 'upshift'}
 ENDLESS = ('--controller', 'ls8', '--duration', '3600')
 
 

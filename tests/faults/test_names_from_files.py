@@ -45,11 +45,11 @@ def controller_named(name: str, folder: Path) -> None:
 
 
 def bag_of(name: str, _: Path) -> None:
-    RunConditions(name, 'base', 'thesis', 'linear', 1.0, 'lockstep', 0)
+    RunConditions(name, 'base', 'thesis', 1.0, 'lockstep', 0)
 
 
 def bag_with_scenario(name: str, _: Path) -> None:
-    RunConditions('pi', 'base', name, 'linear', 1.0, 'lockstep', 0)
+    RunConditions('pi', 'base', name, 1.0, 'lockstep', 0)
 
 
 def judged(name: str, _: Path) -> None:

@@ -113,7 +113,7 @@ def main() -> int:
     parser.add_argument('--lock-times', default='1.0')
     parser.add_argument('--controllers', default='pi,ls8,hinf_sampled')
     options = parser.parse_args()
-    settings = RunSettings(load_scenario('launch_hill'), clutch='stick_slip')
+    settings = RunSettings(load_scenario('launch_hill'))
     start = start_of(settings, run_headless(settings, 'pi'))
     for lock_s in map(float, options.lock_times.split(',')):
         any_friction = hill_case(settings, start, lock_s, None)

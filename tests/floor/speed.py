@@ -3,7 +3,7 @@
 """
 Time of a front of 15 lock times for peak jerk, and of 200 headless runs of mpc3, side by side.
 
-    python tests/floor/speed.py --scenario launch --clutch stick_slip
+    python tests/floor/speed.py --scenario launch
 
 Times are those of the processor, so that other programs hardly matter. Nothing comes from the
 cache. The exit code is 1 where the front takes longer.
@@ -27,10 +27,9 @@ def main() -> int:
     """Measure both in turns, print the times, and return the exit code."""
     parser = argparse.ArgumentParser(description='Time of a front and of 200 runs of mpc3.')
     parser.add_argument('--scenario', default='launch')
-    parser.add_argument('--clutch', default='stick_slip')
     options = parser.parse_args()
     os.environ['DDCT_CACHE'] = ''
-    settings = RunSettings(load_scenario(options.scenario), clutch=options.clutch)
+    settings = RunSettings(load_scenario(options.scenario))
     start = control_start(settings)
     times = usual_lock_times(settings, start)
     next(front(settings, ['peak_jerk'], times[-1:], start))  # imports
@@ -44,7 +43,7 @@ def main() -> int:
         spent['front'] += between - begun
         spent['runs'] += time.process_time() - between
     print(
-        f'{options.scenario}, {options.clutch}: front of {len(times)} lock times '
+        f'{options.scenario}: front of {len(times)} lock times '
         f'{spent["front"]:.2f} s, {RUNS} runs of mpc3 {spent["runs"]:.2f} s: '
         f'{spent["front"] / spent["runs"] * RUNS:.0f} runs'
     )

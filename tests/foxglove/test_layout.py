@@ -113,8 +113,8 @@ def _levels(flags: np.ndarray) -> np.ndarray:
 def _shift(*changes: str) -> RunPlan:
     """Return a headless gear shift of 0.7 s."""
     given = ['duration_s=0.7', 'score_window_s=[0.3,0.6]', *changes]
-    scenario = load_scenario('upshift', given, clutch='stick_slip')
-    return RunPlan(RunSettings(scenario, clutch='stick_slip'), 'pi', 'headless')
+    scenario = load_scenario('upshift', given)
+    return RunPlan(RunSettings(scenario), 'pi', 'headless')
 
 
 def _made_up_run() -> Trajectory:
@@ -171,7 +171,7 @@ def test_no_panel_is_empty_in_a_lock_step_bag(record: Record, controller: str) -
 
 
 def test_no_panel_is_empty_in_the_bag_of_a_clutch_that_sticks(record: Record) -> None:
-    bag = record(plan('pi', 'headless', clutch='stick_slip'))
+    bag = record(plan('pi', 'headless', scenario='thesis_sticking'))
     assert '/clutch/phase' in bag
     assert problems(read_layout(), bag) == []
 

@@ -21,7 +21,7 @@ from ddct_plant.scenario.file import scenario_to_yaml
 from ddct_plant.signals.tables.run import RUN_SETTINGS
 
 CLUTCH, RECORDER = 'ddct_plant.nodes.clutch_node', 'ddct_bringup.record.recorder_node'
-SHIFT = plan('pi', scenario='upshift', clutch='stick_slip', duration_s=1.0)
+SHIFT = plan('pi', scenario='upshift', duration_s=1.0)
 
 
 @pytest.mark.parametrize(
@@ -50,7 +50,7 @@ def test_values_that_agree_with_the_files_of_the_run_may_be_given_too(
 ) -> None:
     run = plan(wear_gain=0.8)
     graph = graph_of(run)
-    given = {'wear_gain': 0.8, 'clutch': 'linear', 'mode': 'lockstep', 'known_scenario': ''}
+    given = {'wear_gain': 0.8, 'mode': 'lockstep', 'known_scenario': ''}
     graph.add('clutch', {**given, 'scenario': scenario_file(tmp_path)})
     graph.add('controller', {'architecture': 'detailed'})
     graph.add_all()
@@ -112,9 +112,7 @@ def test_a_node_that_is_started_by_hand_with_another_value_ends(
 
 
 def test_a_node_of_the_off_going_side_compares_its_settings_too(graph_of: GraphOf) -> None:
-    graph = by_hand(
-        graph_of(SHIFT, wall_clock=True), {'scenario': 'upshift', 'clutch': 'stick_slip'}
-    )
+    graph = by_hand(graph_of(SHIFT, wall_clock=True), {'scenario': 'upshift'})
     graph.add('recorder')
     graph.add('off_going/clutch', {'off_going_wear_gain': 0.9})
     node, complaint = graph.first_failure()

@@ -40,5 +40,5 @@ def test_a_clutch_that_sticks_has_the_same_stored_reference_in_the_graph_and_hea
     tmp_path: Path, architecture: str, name: str
 ) -> None:
     scenario = load_scenario(name, ['duration_s=0.6', 'score_window_s=[0.3,0.6]'])
-    run = RunPlan(RunSettings(scenario, architecture, 'stick_slip'), 'hinf2', 'single-process')
+    run = RunPlan(RunSettings(scenario, architecture), 'hinf2', 'single-process')
     assert record(run, tmp_path / name).trajectory.sha256() == expected(run).sha256()

@@ -159,7 +159,7 @@ def test_requests_that_change_nothing_leave_the_bytes_of_the_bag_as_they_are(
 def test_a_gain_of_a_shift_changed_while_the_off_going_clutch_carries_torque_is_in_the_bag(
     graph_of: GraphOf,
 ) -> None:
-    run = plan('pi', scenario='upshift', duration_s=2.0, clutch='stick_slip')
+    run = plan('pi', scenario='upshift', duration_s=2.0)
     graph = graph_of(run)
     graph.add_all()
     node: Any = graph.nodes['controller']
@@ -177,7 +177,7 @@ def test_a_gain_of_a_shift_changed_while_the_off_going_clutch_carries_torque_is_
 def test_no_node_but_the_controller_has_a_parameter_that_can_be_changed_in_a_run(
     graph_of: GraphOf,
 ) -> None:
-    run = plan('pi', scenario='upshift', duration_s=2.0, clutch='stick_slip')
+    run = plan('pi', scenario='upshift', duration_s=2.0)
     graph = graph_of(run)
     graph.add_all()
     changeable = {

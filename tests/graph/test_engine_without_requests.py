@@ -53,10 +53,10 @@ class _Driver(Node):
 
 
 def _driven(
-    graph_of: GraphOf, change: str = LITTLE_SLEW, clutch: str = 'linear'
+    graph_of: GraphOf, change: str = LITTLE_SLEW, scenario: str = 'thesis'
 ) -> tuple[InProcessGraph, _Driver]:
     demand = ('engine.time_s=[0.0]', 'engine.torque_n_m=[308.0]')
-    graph = graph_of(plan('mpc4', mode='realtime', clutch=clutch, changes=(change, *demand)))
+    graph = graph_of(plan('mpc4', mode='realtime', scenario=scenario, changes=(change, *demand)))
     graph.add('engine')
     driver = _Driver(context=graph.context)
     graph.add_other(driver)
@@ -113,7 +113,7 @@ def test_in_real_time_an_engine_alone_has_the_limits_of_its_present_speed(
     graph_of: GraphOf,
 ) -> None:
     """Its full load is 250 N m at 261.8 rad/s and 170 N m at 157.08 rad/s."""
-    graph, driver = _driven(graph_of, 'engine_limits={}', 'stick_slip')
+    graph, driver = _driven(graph_of, 'engine_limits={}', 'thesis_sticking')
     driver.tick(0, 261.8)
     driver.request(0, 320.0)
     graph.spin_until(lambda: len(driver.answers) == 1, 'the answer to a request')

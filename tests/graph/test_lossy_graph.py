@@ -29,7 +29,7 @@ def _add_lossy(graph: InProcessGraph, run: RunPlan) -> list[Lossy]:
 
 @pytest.mark.parametrize(
     'run',
-    [plan(), plan('pi', scenario='upshift', duration_s=0.6, clutch='stick_slip')],
+    [plan(), plan('pi', scenario='upshift', duration_s=0.6)],
     ids=['thesis', 'upshift'],
 )
 def test_one_percent_lost_and_doubled_messages_change_no_bit(

@@ -38,7 +38,7 @@ def test_two_inputs_closing_stage_and_shaft_speed_go_by_the_sensors(graph_of: Gr
         'single-process',
         duration_s=DURATION_S,
         seed=3,
-        clutch='stick_slip',
+        scenario='thesis_sticking',
         changes=(
             ALL_ON,
             'closing={}',

@@ -25,7 +25,6 @@ def test_without_its_handover_a_shift_opens_both_clutches_and_no_tie_up_lasts(
         'pi',
         scenario='upshift',
         duration_s=1.6,
-        clutch='stick_slip',
         mode='realtime',
         handover='timed',
         changes=('shift.handover_s=1.0',),

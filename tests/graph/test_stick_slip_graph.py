@@ -45,7 +45,7 @@ def test_every_layout_leaves_the_same_bytes_and_the_headless_trajectory(
 ) -> None:
     bags = []
     for layout in layouts:
-        run = plan(controller, layout, duration_s=2.0, clutch='stick_slip', changes=changes)
+        run = plan(controller, layout, duration_s=2.0, scenario='thesis_sticking', changes=changes)
         recording = record(run, tmp_path / layout)
         trajectory = expected(run)
         assert recording.trajectory.sha256() == trajectory.sha256(), layout
@@ -61,7 +61,7 @@ def test_an_engine_that_over_revs_ends_every_layout_at_once_with_a_bag_that_coun
 ) -> None:
     bags = []
     for layout in LAYOUTS[1:]:
-        run = plan('pi', layout, clutch='stick_slip', wear_gain=0.7, changes=OVER_REVVED)
+        run = plan('pi', layout, scenario='thesis_sticking', wear_gain=0.7, changes=OVER_REVVED)
         recording = record(run, tmp_path / layout)
         speeds = recording.trajectory.joint_speed[:, 0]
         assert speeds[-1] >= 200.0 > speeds[:-1].max()
@@ -82,10 +82,10 @@ def test_an_engine_that_over_revs_ends_every_layout_at_once_with_a_bag_that_coun
 def test_a_node_with_another_clutch_ends_the_run_with_an_error(
     graph_of: GraphOf, node: str, complaint: str
 ) -> None:
-    graph = graph_of(plan('pi', 'single-process', clutch='stick_slip'))
-    by_hand(graph, {'clutch': 'stick_slip'})
+    graph = graph_of(plan('pi', 'single-process', scenario='thesis_sticking'))
+    by_hand(graph, {'scenario': 'thesis_sticking'})
     changes = {'driveline': {'require_recorder': False, 'answer_timeout_s': 1.0}}
-    graph.add(node, {'clutch': 'linear'})
+    graph.add(node, {'scenario': 'thesis'})
     graph.add('driveline', changes['driveline'])
     graph.add_all(without=('recorder',))
     failed, words = graph.first_failure()

@@ -66,7 +66,7 @@ def test_a_commanded_engine_with_limits_is_the_headless_one_while_the_shaft_stan
     tmp_path: Path,
 ) -> None:
     changes = ['duration_s=0.6', 'score_window_s=[0.3,0.6]']
-    settings = RunSettings(load_scenario('launch', changes), clutch='stick_slip')
+    settings = RunSettings(load_scenario('launch', changes))
     run = RunPlan(settings, 'mpc4', 'single-process')
     trajectory = record(run, tmp_path / 'run').trajectory
     assert trajectory.sha256() == expected(run).sha256()

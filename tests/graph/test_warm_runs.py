@@ -36,7 +36,7 @@ def test_runs_of_one_fork_server_leave_the_bytes_of_headless_ones_each_in_its_do
             {
                 'wear_gain': 0.7,
                 'seed': 3,
-                'clutch': 'stick_slip',
+                'scenario': 'thesis_sticking',
                 'changes': ('load.slope_rad=0.05',),
             },
         ),

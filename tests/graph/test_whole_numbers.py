@@ -18,7 +18,7 @@ from ddct_plant.base.option import Option
 from ddct_plant.graph.node import GraphNode
 from ddct_plant.graph.settings import declare
 
-SHIFT = plan('mpc3', scenario='upshift', duration_s=2.0, clutch='stick_slip')
+SHIFT = plan('mpc3', scenario='upshift', duration_s=2.0)
 """A run with every node; its controller has many options, some without a value."""
 
 
@@ -34,7 +34,7 @@ def test_whole_numbers_are_values_of_each_parameter_that_is_a_number(
 ) -> None:
     graph = graph_of(SHIFT)
     # By hand: a program gives files in place of true values.
-    by_hand(graph, {'scenario': 'upshift', 'clutch': 'stick_slip'})
+    by_hand(graph, {'scenario': 'upshift'})
     usual = numbers_of(graph.add(spec.path))
     wear = {'wear_gain', 'off_going_wear_gain'}
     # A node that controls does not know the wear.

@@ -35,7 +35,7 @@ NODES = {'off/actuator': 'off_going/actuator', 'off/clutch': 'off_going/clutch'}
 RUNS = {
     'one clutch': (plan(layout='single-process'), ONE_CLUTCH),
     'two clutches': (
-        plan('pi', 'single-process', scenario='upshift', clutch='stick_slip'),
+        plan('pi', 'single-process', scenario='upshift'),
         TWO_CLUTCHES,
     ),
 }

@@ -74,18 +74,18 @@ def test_the_scenario_of_a_noisy_bag_reproduces_another_run_of_the_same_car(
     assert 'Prediction of' in capsys.readouterr().out
 
 
-@pytest.mark.parametrize('clutch', ['linear', 'stick_slip'])
+@pytest.mark.parametrize('scenario', ['thesis', 'thesis_sticking'])
 def test_a_bag_needs_no_columns_and_gives_back_its_driveline(
-    tmp_path: Path, clutch: str, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, scenario: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    run = plan('pi', 'headless', duration_s=1.5, clutch=clutch)
+    run = plan('pi', 'headless', duration_s=1.5, scenario=scenario)
     record(run, tmp_path / 'pi')
     assert main(['--from', str(tmp_path / 'pi'), '--json', '-']) == 0
     content = json.loads(capsys.readouterr().out)
     true = run.settings.scenario.driveline.values()
     for row in content['parameters']:
         scale = max(true[row['name']], 0.01)
-        tight = 1e-3 if clutch == 'linear' else 0.1
+        tight = 1e-3 if scenario == 'thesis' else 0.1
         assert row['used'] == pytest.approx(true[row['name']], abs=tight * scale), row['name']
 
 

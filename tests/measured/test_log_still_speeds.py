@@ -31,7 +31,7 @@ STEP_RAD_S = 0.1
 def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return the CSV log of a run whose clutch is locked from 1.2 s on."""
     folder = tmp_path_factory.mktemp('locked')
-    run = plan('ls8', 'headless', duration_s=3.0, clutch='stick_slip')
+    run = plan('ls8', 'headless', duration_s=3.0, scenario='thesis_sticking')
     (folder / 'ls8.csv').write_text(signals_csv(record(run, folder / 'ls8')))
     return folder / 'ls8.csv'
 

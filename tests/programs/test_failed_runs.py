@@ -130,8 +130,8 @@ def test_report_and_score_print_the_reason_that_compare_printed_of_a_failed_run(
     assert _compare(out) == 1
     assert not list((out / 'ls8').glob('*.mcap'))
     _, bad = entries = _scores(out)
-    facts = ('scenario', 'architecture', 'clutch', 'wear_gain', 'mode', 'seed')
-    assert [bad[name] for name in facts] == ['thesis', 'detailed', 'linear', 1.0, 'lockstep', 0]
+    facts = ('scenario', 'architecture', 'wear_gain', 'mode', 'seed')
+    assert [bad[name] for name in facts] == ['thesis', 'detailed', 1.0, 'lockstep', 0]
     assert set(bad['metrics'].values()) == {None}
     capfd.readouterr()
     assert score.main([str(out), '--json', '-']) == 1

@@ -57,7 +57,7 @@ def test_help_names_the_parameters_and_where_to_give_them(node, help_of):
 
 
 def test_no_example_makes_a_node_disagree_with_the_others():
-    shared = {'scenario', 'architecture', 'clutch', 'wear_gain', 'mode', 'seed'}
+    shared = {'scenario', 'architecture', 'wear_gain', 'mode', 'seed'}
     for node in NODE_PROGRAMS:
         for example in node_class(node.name).EXAMPLES:
             assert not shared & set(re.findall(r'(\w+):=', example)), example

@@ -40,17 +40,8 @@ RESIDUAL = 1e-7
 """Largest residual of a run in a constraint, in rad/s or N m."""
 BELOW = 1e-6
 """How far a run may lie below its floor, as a share of the floor."""
-SCENARIOS = (
-    ('launch', 'stick_slip'),
-    ('launch_hot', 'stick_slip'),
-    ('launch_gentle', 'stick_slip'),
-    ('thesis', 'stick_slip'),
-    ('thesis', 'linear'),
-)
-SHIFTS = tuple(
-    (name, 'stick_slip')
-    for name in ('upshift', 'upshift_2_3', 'upshift_hot', 'upshift_light', 'upshift_full')
-)
+SCENARIOS = ('launch', 'launch_hot', 'launch_gentle', 'thesis_sticking', 'thesis')
+SHIFTS = ('upshift', 'upshift_2_3', 'upshift_hot', 'upshift_light', 'upshift_full')
 QUICK = ('peak_jerk', 'peak_acceleration', 'acceleration_std_m_s2')
 """Metrics whose bound takes about a tenth of a second; every tenth run has another one."""
 SLOW = tuple(name for name in OBJECTIVES if name not in QUICK)
@@ -84,7 +75,7 @@ def outcomes(runs: int, seed: int, first: int = 0, *, shifts: bool = False) -> I
 def outcome(random: np.random.Generator, index: int, *, shifts: bool = False) -> Outcome:
     """Return the comparison of one random run, or gear shift, with its floor."""
     scenarios = SHIFTS if shifts else SCENARIOS
-    scenario, clutch = scenarios[random.integers(len(scenarios))]
+    scenario = scenarios[random.integers(len(scenarios))]
     names = controller_names()
     name = names[random.integers(len(names))]
     changes = {
@@ -99,13 +90,12 @@ def outcome(random: np.random.Generator, index: int, *, shifts: bool = False) ->
         changes |= random_shift(random)
         of_shift['handover'] = list(HANDOVERS)[random.integers(len(HANDOVERS))]
         of_shift['off_going_wear_gain'] = float(random.uniform(0.7, 1.3))
-    text = f'{index}: {name} in {scenario} {clutch}, wear gain {wear:.3f}, {changes}, {of_shift}'
+    text = f'{index}: {name} in {scenario}, wear gain {wear:.3f}, {changes}, {of_shift}'
     file = ScenarioFile.read(scenario)
     try:
-        loaded = file.scenario(changes, clutch)
+        loaded = file.scenario(changes)
         settings = RunSettings(
             loaded,
-            clutch=clutch,
             wear_gain=wear,
             **of_shift,
         )

@@ -27,16 +27,13 @@ def plan(
     duration_s: float = SHORT_S,
     wear_gain: float = 1.0,
     mode: str = 'lockstep',
-    clutch: str = 'linear',
     seed: int = 0,
     changes: tuple[str, ...] = (),
     **of_shift: Any,
 ) -> RunPlan:
     """Return a short run of a packaged scenario; `of_shift` are settings of a gear shift."""
     content = load_scenario(scenario, [f'duration_s={duration_s}', *changes])
-    settings = RunSettings(
-        content, clutch=clutch, wear_gain=wear_gain, mode=mode, seed=seed, **of_shift
-    )
+    settings = RunSettings(content, wear_gain=wear_gain, mode=mode, seed=seed, **of_shift)
     return RunPlan(settings, controller, layout)
 
 

@@ -24,8 +24,9 @@ def require_named_echo(graph_of: GraphOf, topic: Topic) -> None:
     controller = 'ls8' if topic.in_run(RunKind(clutch=clutch, sensed=sensed)) else 'mpc4'
     changes = ('sensors={}',) if sensed else ()
     recorded = topic.name in ('recorder/ack', 'engine/torque')
-    scenario = 'upshift' if shift else 'thesis'
-    run = plan(controller, scenario=scenario, duration_s=0.3, clutch=clutch, changes=changes)
+    of_clutch = 'thesis' if clutch == 'linear' else 'thesis_sticking'
+    scenario = 'upshift' if shift else of_clutch
+    run = plan(controller, scenario=scenario, duration_s=0.3, changes=changes)
     graph = graph_of(run)
     add_altering(graph, topic.name, Repeating(REPEAT_S), name='echo')
     node, complaint = _complete(graph, recorded=recorded).first_failure()
@@ -38,7 +39,7 @@ def require_named_echo(graph_of: GraphOf, topic: Topic) -> None:
 def require_named_copy(graph_of: GraphOf, name: str, *, recorded: bool) -> None:
     """Require that a second copy of a node ends a run that has it, and that both are named."""
     shift = name not in NODE_NAMES
-    run = plan('pi', scenario='upshift', duration_s=0.3, clutch='stick_slip')
+    run = plan('pi', scenario='upshift', duration_s=0.3)
     graph = graph_of(run if shift else plan(duration_s=0.3))
     graph.add(name, key='second')
     _, complaint = _complete(graph, recorded=recorded).first_failure()

@@ -42,7 +42,6 @@ def shift(
         layout,
         scenario='upshift',
         duration_s=1.3,
-        clutch='stick_slip',
         changes=('score_window_s=[0.3, 1.3]', *changes),
         handover=handover,
         off_going_wear_gain=off_going_wear_gain,

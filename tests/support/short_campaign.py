@@ -11,7 +11,7 @@ from support.waiting import wait_until
 RUNS = 10
 SPEC = f"""\
 controllers: [ls8]
-clutch: stick_slip
+scenario: thesis_sticking
 grid: {{duration_s: [6]}}
 random:
   samples: {RUNS}

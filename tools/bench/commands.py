@@ -78,7 +78,7 @@ def beside(base: Path) -> list[Comparison]:
         return Comparison(name, 'the base commit', lambda: sides)
 
     demo = ('--controllers', 'pi,ls8,hinf1,mpc3,mpc4')
-    stick_slip = ('--clutch', 'stick_slip')
+    stick_slip = ('--scenario', 'thesis_sticking')
     sticking = ('--controller', 'mpc3', *stick_slip)
     return [
         compared('bag read', bag_s, READ),

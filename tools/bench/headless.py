@@ -9,7 +9,6 @@ from bench.ratios import Comparison, Cost, NotMeasured
 from ddct_bringup.run.headless import run_headless, run_loop
 from ddct_controllers.loop import ClosedLoop
 from ddct_controllers.registry import make_controller
-from ddct_plant.base.clutch_kinds import LINEAR, STICK_SLIP
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
@@ -17,13 +16,13 @@ LEAST_S = 0.05
 """Least duration of one measurement, s, so that the clock does not limit it."""
 
 
-def step_s(controller: str, scenario: str = 'thesis', clutch: str = LINEAR) -> float:
+def step_s(controller: str, scenario: str = 'thesis') -> float:
     """
     Return the processor time per step in s of headless runs, without their set-up.
 
     It is that of this thread alone, so that other programs count less. Short runs are repeated.
     """
-    settings = RunSettings(load_scenario(scenario, clutch=clutch), clutch=clutch)
+    settings = RunSettings(load_scenario(scenario))
     elapsed, steps = 0.0, 0
     while elapsed < LEAST_S:
         loop = ClosedLoop(settings, make_controller(controller, settings))
@@ -51,8 +50,8 @@ HEADLESS = [
         'headless step of a gear shift, pi',
         'a launch',
         lambda: (
-            partial(step_s, 'pi', 'upshift', STICK_SLIP),
-            partial(step_s, 'pi', 'launch', STICK_SLIP),
+            partial(step_s, 'pi', 'upshift'),
+            partial(step_s, 'pi', 'launch'),
         ),
     ),
 ]

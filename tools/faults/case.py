@@ -47,7 +47,6 @@ def run_of(mode: str, clutches: int, steps: int = SHORT, *, equipped: bool = Fal
         controller,
         scenario='upshift',
         duration_s=seconds,
-        clutch='stick_slip',
         mode=mode,
         changes=changes,
     )

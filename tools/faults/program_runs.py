@@ -45,7 +45,7 @@ class Slow(Controller):
 def options_of(case: Case, out: Path, controller: str = '') -> list[str]:
     """Return the options of `bringup` for the run of a case."""
     run = case.run
-    shift = ['--scenario', 'upshift', '--clutch', 'stick_slip'] if case.clutches == 2 else []
+    shift = ['--scenario', 'upshift'] if case.clutches == 2 else []
     return [
         *('--controller', controller or run.name, '--mode', case.mode, *shift),
         *('--duration', f'{time_of_step(case.steps):g}', '--out', str(out)),

@@ -23,7 +23,6 @@ PLANS = {
         'pi',
         scenario='upshift',
         duration_s=0.7,
-        clutch='stick_slip',
         changes=('score_window_s=[0.3, 0.7]',),
     ),
 }

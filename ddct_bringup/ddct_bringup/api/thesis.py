@@ -11,12 +11,11 @@ from ddct_bringup.reproduction.numbers.command import SOURCES, compute, require_
 from ddct_bringup.reproduction.numbers.gate import OUTCOMES, judge
 from ddct_bringup.reproduction.numbers.gate_tables import count_facts
 from ddct_bringup.reproduction.numbers.number_files import thesis_numbers as listed_numbers
-from ddct_bringup.reproduction.studies.table_5_2 import rated_rows
+from ddct_bringup.reproduction.studies.table_5_2 import SCENARIOS, rated_rows
 from ddct_bringup.reproduction.values.orders import WORN
 from ddct_bringup.thesis.predictions import predicted_range
 from ddct_bringup.thesis.table_5_1 import PREDICTED, is_thesis_run, thesis_row
 from ddct_bringup.thesis.table_metrics import TABLE_METRICS
-from ddct_plant.base.clutch_kinds import CLUTCHES
 from ddct_plant.base.options import require_known
 
 THESIS = 'thesis.'
@@ -73,15 +72,15 @@ def beside_thesis(runs: Run | Iterable[Run]) -> Any:
     return pandas_module().DataFrame([_row(each) for each in shown], index=_labels(shown))
 
 
-def table_5_2(clutch: str = 'linear') -> Any:
+def table_5_2(scenario: str = 'thesis') -> Any:
     """
-    Run Table 5.2 of the thesis with a clutch, `linear` or `stick_slip`; return a DataFrame.
+    Run Table 5.2 of the thesis in a scenario, `thesis` or `thesis_sticking`, as a DataFrame.
 
     A row per wear gain and controller has the values, the state, our ratings, the printed ones,
-    and whether our runs confirm these. Raise ParameterError for another clutch.
+    and whether our runs confirm these. Raise ParameterError for another scenario.
     """
-    require_known([clutch], CLUTCHES, 'clutch')
-    rows = [asdict(row) for gain in WORN for row in rated_rows(clutch, gain)]
+    require_known([scenario], SCENARIOS, 'scenario')
+    rows = [asdict(row) for gain in WORN for row in rated_rows(scenario, gain)]
     return pandas_module().DataFrame(rows).set_index(['wear_gain', 'controller'])
 
 

@@ -103,13 +103,13 @@ def _facts(run: MeasuredKeys, steps: int) -> RunFacts:
         controller=run.controller,
         architecture=MEASURED,
         scenario=run.scenario,
-        clutch=MEASURED,
         wear_gain=run.wear_gain,
         mode=MEASURED,
         seed=0,
         control_start_s=run.control_start_s,
         score_window_s=(first_s, last_s),
         duration_s=duration_s,
+        clutch=MEASURED,
     )
 
 

@@ -19,7 +19,7 @@ from ddct_plant.signals.topics import (
     TORQUE_PARTS,
 )
 
-_NAMES = ('controller', 'architecture', 'scenario', 'clutch', 'mode')
+_NAMES = ('controller', 'architecture', 'scenario', 'mode')
 """Facts that are plain names, used in tables, labels and file names."""
 MEASURED = 'measured'
 """Mode of the log of another tool, and the text for facts that such a log lacks."""
@@ -33,7 +33,6 @@ class RunConditions:
     architecture: str
     scenario: str
     """Name of the scenario."""
-    clutch: str
     wear_gain: float
     mode: str
     """Mode: 'lockstep', 'realtime', or MEASURED for the log of another tool."""
@@ -64,6 +63,8 @@ class RunFacts(RunConditions):
     """Scenario time of the first and last scored sample, s."""
     duration_s: float
     """Planned duration of the run, s."""
+    clutch: str
+    """Name of the clutch model, or MEASURED; it decides which topics the run has."""
     off_going_wear_gain: float | None = None
     """Wear gain of the off-going clutch of a shift; None in other runs."""
     handover: str | None = None
@@ -118,13 +119,13 @@ class RunFacts(RunConditions):
             controller=controller,
             architecture=settings.architecture,
             scenario=scenario.name,
-            clutch=settings.clutch,
             wear_gain=settings.wear_gain,
             mode=settings.mode,
             seed=settings.seed,
             control_start_s=scenario.control_start_s,
             score_window_s=scenario.score_window_s,
             duration_s=time_of_step(steps),
+            clutch=settings.clutch,
             off_going_wear_gain=settings.off_going_wear_gain if settings.shift else None,
             handover=settings.handover_name if settings.shift else None,
         )

@@ -19,6 +19,7 @@ from ddct_plant.scenario.settings import RunSettings
 SUPPORTED_KEYS = frozenset(
     {
         *('name', 'description', 'duration_s', 'control_start_s', 'score_window_s', 'equilibrium'),
+        *('clutch',),
         *('engine', 'initial', 'reference', 'slip_reference', 'slope', 'load', 'vehicle'),
         *('driveline', 'actuator', 'controllers', 'gear', 'gearbox', 'adjusted'),
         *('engine_authority', 'engine_speed_reference', 'pedal_position'),

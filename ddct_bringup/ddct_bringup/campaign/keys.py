@@ -14,7 +14,7 @@ from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
 
 SCENARIO, MODE, CONTROLLERS = 'scenario', 'mode', 'controllers'
-COMMON = (SCENARIO, 'architecture', 'clutch')
+COMMON = (SCENARIO, 'architecture')
 """Keys that are given for all runs, or varied."""
 _SCENARIO_OPTION = Option('thesis', 'name of a scenario, or its file')
 HANDOVER = 'handover'

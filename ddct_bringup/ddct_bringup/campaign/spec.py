@@ -32,6 +32,7 @@ from ddct_plant.files.input_file import SCHEMA_KEY, located, require_schema_vers
 from ddct_plant.files.yaml_text import parse_yaml_with_lines
 from ddct_plant.scenario.choices.scenarios import is_packaged
 from ddct_plant.scenario.file import ScenarioFile
+from ddct_plant.scenario.key_names import scenario_options
 
 SCHEMA_VERSION = 1
 """Schema version of a specification."""
@@ -49,7 +50,7 @@ class CampaignSpec:
     """Folder that files are relative to."""
     controllers: tuple[str, ...]
     common: Mapping[str, str]
-    """Values for all runs: `scenario`, and `architecture` and `clutch` where they are given."""
+    """Values for all runs: `scenario`, and `architecture` where it is given."""
     root: int
     grid: Mapping[str, tuple[Any, ...]]
     """Values on the grid by key."""
@@ -94,6 +95,17 @@ class CampaignSpec:
         return json.dumps(self.content)
 
 
+def _require_no_scenario_key(content: Any) -> None:
+    """Raise ParameterError for a key of a scenario among those of a specification."""
+    for key in content if isinstance(content, Mapping) else ():
+        if key in scenario_options() and key not in _KEYS:
+            raise ParameterError(
+                f'{key} is a key of the scenario: give a scenario with it, or list its values in '
+                f'{GRID}',
+                key=key,
+            )
+
+
 def read_spec(file: str | Path) -> CampaignSpec:
     """Read a specification; raise DdctError that names file, line and key."""
     path = Path(file)
@@ -109,6 +121,7 @@ def spec_of(content: Any, folder: Path) -> CampaignSpec:
 
     Raise ParameterError that names the key.
     """
+    _require_no_scenario_key(content)
     content = mapping_of('the specification', content, _KEYS)
     require_schema_version(content, SCHEMA_VERSION)
     grid = grid_of(content)

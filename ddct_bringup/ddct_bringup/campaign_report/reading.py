@@ -16,7 +16,6 @@ from ddct_bringup.campaign.rows import STATE
 from ddct_bringup.campaign.spec import CampaignSpec
 from ddct_bringup.campaign_report.results import OtherVersion, Results
 from ddct_bringup.manifest.file_states import require_unaltered
-from ddct_plant.base.clutch_kinds import LINEAR
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.files.input_file import SCHEMA_KEY, require_schema_version
 from ddct_plant.scenario.differences import values_by_key
@@ -116,7 +115,7 @@ def nominal_values(spec: CampaignSpec) -> dict[str, float]:
     first = {key: spec.values_of(key)[0] for key in COMMON if key in spec.keys}
     common = {**spec.common, **first}
     file = spec.scenario_file(common.pop(SCENARIO))
-    scenario = file.scenario(clutch=common.get('clutch', LINEAR))
+    scenario = file.scenario()
     given = {**vars(RunSettings(scenario, **common)), **values_by_key(scenario)}
     found: dict[str, float] = {}
     for key in spec.keys:

@@ -63,7 +63,6 @@ def digest_of(case: Case, metric: str, attain: bool) -> str:
         repr(attain),
         repr(settings.scenario),
         repr(settings.known_scenario),
-        settings.clutch,
         repr(settings.wear_gain),
         repr(settings.off_going_wear_gain),
         _handover(settings.handover),

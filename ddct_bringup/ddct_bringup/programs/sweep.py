@@ -33,7 +33,7 @@ _MOST_DRAWN = 2
 _EPILOG = """\
 examples:
   ddct sweep --over wear_gain=0.5:1.5:11 --controllers pi,ls8,mpc3 --figure wear.png
-  ddct sweep --over vehicle.mass_kg=1200:2400:7 --controllers ls8,mine --clutch stick_slip
+  ddct sweep --over vehicle.mass_kg=1200:2400:7 --controllers ls8,mine --scenario launch
   ddct sweep --over controllers.pi.proportional_gain=0.05,0.1,0.2 --controllers pi --json -
   ddct sweep --over wear_gain=0.5:1.5:11 --controllers pi --csv wear.csv
   ddct sweep --over wear_gain=0.6:1.4:9 --over load.slope_rad=0:0.1:5 --controllers pi,ls8

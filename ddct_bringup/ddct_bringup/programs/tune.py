@@ -20,8 +20,7 @@ examples:
   ddct tune --controller pi --spec pi_launches --out tuned/pi      a packaged specification
   ddct tune --controller mine.yaml --spec mine_tuning.yaml --out tuned/mine
   ddct tune --controller mine.yaml --spec mine_tuning.yaml --out tuned/mine --resume
-  ddct compare --controllers pi,tuned/pi/{BEST} --scenario launch --clutch stick_slip --headless \
-      --out runs/tuned
+  ddct compare --controllers pi,tuned/pi/{BEST} --scenario launch --headless --out runs/tuned
 
 SPEC has the options with their ranges, objectives, constraints and cases: docs/use/tune.md.
 DIR/{BEST} is the best as a controller file, DIR/front/ has the others of the front, DIR/{PAGE}

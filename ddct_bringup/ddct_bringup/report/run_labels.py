@@ -14,7 +14,6 @@ from ddct_plant.base.errors import DdctError
 
 _CONDITIONS: dict[str, Callable[[Any], str]] = {
     'architecture': str,
-    'clutch': lambda clutch: f'{clutch} clutch',
     'handover': lambda handover: f'handover {handover}',
     'wear_gain': lambda gain: f'wear {gain:g}',
     'off_going_wear_gain': lambda gain: f'off-going wear {gain:g}',

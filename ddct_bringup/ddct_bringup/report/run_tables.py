@@ -12,7 +12,7 @@ from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_bringup.scores.scored_recording import ScoredRecording
 from ddct_plant.base.timebase import PERIOD_S
 
-_CONDITIONS = ('controller', 'architecture', 'clutch', 'wear_gain', 'mode', 'seed')
+_CONDITIONS = ('controller', 'architecture', 'wear_gain', 'mode', 'seed')
 _REPEATED = ('version',)
 """Facts that every node publishes and that the page shows elsewhere."""
 _FIRST_US, _LAST_US = 1.0, 1e5

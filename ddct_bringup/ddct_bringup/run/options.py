@@ -9,7 +9,6 @@ from ddct_controllers.registry import (
     controller_names,
     controller_spec,
 )
-from ddct_plant.base.clutch_kinds import CLUTCHES
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.base.option import option_rows
 from ddct_plant.base.options import Option, require_known
@@ -58,7 +57,6 @@ def print_choices() -> None:
         ('controllers', controller_names()),
         ('architectures', ARCHITECTURES),
         ('scenarios', scenario_names()),
-        ('clutches', CLUTCHES),
         ('modes', MODES),
     )
     for title, names in rows:

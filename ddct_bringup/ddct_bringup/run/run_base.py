@@ -4,10 +4,10 @@
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any
 
 from ddct_controllers.registry import require_known_controllers
-from ddct_plant.base.clutch_kinds import LINEAR
 from ddct_plant.base.options import options_of
 from ddct_plant.scenario.file import ScenarioFile
 from ddct_plant.scenario.overrides import parsed_override
@@ -38,17 +38,18 @@ class RunBase:
     changes: Mapping[str, Any]
     """Values by dotted scenario key, as `--set` gives them."""
     settings: Mapping[str, Any]
-    """Values of `RunSettings` by name, such as `clutch`."""
+    """Values of `RunSettings` by name, such as `wear_gain`."""
     labels: Sequence[str]
     """Names of the controllers, since `changes` may contain options of theirs."""
-    _unchanged: dict[str, Scenario] = field(
-        default_factory=dict, init=False, repr=False, compare=False
-    )
-    """Scenario of the runs without changes, by clutch."""
     _last_known: dict[str, Scenario] = field(
         default_factory=dict, init=False, repr=False, compare=False
     )
-    """The known scenario of the last runs that had one, by its changes and clutch."""
+    """The known scenario of the last runs that had one, by its changes."""
+
+    @cached_property
+    def _unchanged(self) -> Scenario:
+        """Scenario of the runs without changes."""
+        return self._built(_NOTHING)
 
     def at(self, varied: Mapping[str, Any] = _NOTHING, drawn: Collection[str] = ()) -> RunSettings:
         """
@@ -59,13 +60,12 @@ class RunBase:
         values that cannot be used.
         """
         settings = {**self.settings, **{key: varied[key] for key in varied if key in _SETTINGS}}
-        clutch = settings.get('clutch', LINEAR)
         of_scenario = {key: varied[key] for key in varied if key not in _SETTINGS}
         known = {key: of_scenario[key] for key in of_scenario if _is_known(key, drawn)}
-        scenario = self._scenario(self._with(of_scenario), clutch)
+        scenario = self._scenario(self._with(of_scenario))
         if len(known) == len(of_scenario):
             return RunSettings(scenario, **settings)
-        known_scenario = self._known_scenario(self._with(known), clutch)
+        known_scenario = self._known_scenario(self._with(known))
         if scenario.sensors is not None and known_scenario.sensors is None:
             # That there are sensors is known, since other topics carry their measurements.
             known_scenario = replace(known_scenario, sensors=SensorParameters())
@@ -75,23 +75,21 @@ class RunBase:
         ours = {key: value for key, value in self.changes.items() if key not in varied}
         return {**ours, **varied}
 
-    def _known_scenario(self, changes: Mapping[str, Any], clutch: str) -> Scenario:
+    def _known_scenario(self, changes: Mapping[str, Any]) -> Scenario:
         """Return the scenario that controllers know, which most runs share, with some changes."""
-        key = repr((changes, clutch))
+        key = repr(changes)
         if key not in self._last_known:
             self._last_known.clear()
-            self._last_known[key] = self._scenario(changes, clutch)
+            self._last_known[key] = self._scenario(changes)
         return self._last_known[key]
 
-    def _scenario(self, changes: Mapping[str, Any], clutch: str) -> Scenario:
+    def _scenario(self, changes: Mapping[str, Any]) -> Scenario:
         """Return the scenario with changes by dotted key; without any it is built once."""
-        key = str(clutch)  # what is no name is refused with the settings
-        if not changes and key in self._unchanged:
-            return self._unchanged[key]
-        scenario = self.file.scenario(changes, clutch)
+        return self._built(changes) if changes else self._unchanged
+
+    def _built(self, changes: Mapping[str, Any]) -> Scenario:
+        scenario = self.file.scenario(changes)
         require_known_controllers(scenario, self.labels)
-        if not changes:
-            self._unchanged[key] = scenario
         return scenario
 
 

@@ -74,7 +74,6 @@ def _title(settings: RunSettings, overrides: Sequence[str]) -> str:
     changes = changed_values(settings.scenario) or overrides
     conditions = (
         settings.architecture,
-        f'{settings.clutch} clutch',
         f'wear gain {settings.wear_gain:g}',
         *shift_conditions(settings).values(),
         settings.mode,

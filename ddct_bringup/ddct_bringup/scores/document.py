@@ -30,7 +30,6 @@ class NoConditions:
     controller: None = None
     architecture: None = None
     scenario: None = None
-    clutch: None = None
     wear_gain: None = None
     mode: None = None
     seed: None = None

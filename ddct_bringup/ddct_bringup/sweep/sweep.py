@@ -83,7 +83,6 @@ class Sweep:
         swept = [axis.key for axis in self.axes]
         shared = {
             'architecture': settings.architecture,
-            'clutch': f'{settings.clutch} clutch',
             'wear_gain': f'wear gain {settings.wear_gain:g}',
             **shift_conditions(settings),
         }

@@ -84,11 +84,10 @@ def is_thesis_run(settings: RunSettings) -> bool:
     """
     Return whether a run has the conditions of the thesis.
 
-    They are its unchanged scenario, the detailed architecture, and a new linear clutch.
+    They are its unchanged scenario, the detailed architecture, and a new clutch.
     """
     return (
         settings.detailed
-        and settings.clutch == 'linear'
         and settings.wear_gain == 1.0
         and scenario_digest(settings.scenario) == scenario_digest(load_scenario('thesis'))
     )

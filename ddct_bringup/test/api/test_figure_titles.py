@@ -17,14 +17,14 @@ def title(*runs):
 
 
 def test_one_run_is_named_with_its_scenario_architecture_clutch_and_wear(new):
-    assert title(new) == 'pi\nthesis; detailed, linear clutch, wear 1, lockstep, seed 0'
+    assert title(new) == 'pi\nthesis; detailed, wear 1, lockstep, seed 0'
 
 
 def test_varied_conditions_are_named_beside_the_controllers(new):
     worn = api.run('ls8', wear_gain=0.7, architecture='base')
     first, second = title(new, worn).split('\n')
     assert first == 'pi, ls8 over architecture, wear gain'
-    assert second == 'thesis; linear clutch, lockstep, seed 0'
+    assert second == 'thesis; lockstep, seed 0'
 
 
 def test_other_scenarios_and_changed_values_are_named(new):

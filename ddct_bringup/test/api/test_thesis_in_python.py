@@ -66,12 +66,12 @@ def test_table_5_2_has_the_sixteen_words_and_whether_they_hold() -> None:
     assert list(found.index.unique('wear_gain')) == [0.7, 1.3]
     assert found.loc[(0.7, 'hinf2'), 'slip_printed'] == 'good'
     assert (found['slip_holds'].sum(), found['oscillations_hold'].sum()) == (5, 0)
-    assert table_5_2('stick_slip')['slip_holds'].sum() == 1
+    assert table_5_2('thesis_sticking')['slip_holds'].sum() == 1
 
 
-def test_table_5_2_with_an_unknown_clutch_is_refused() -> None:
-    with pytest.raises(ParameterError, match='wet'):
-        table_5_2('wet')
+def test_table_5_2_with_an_unknown_scenario_is_refused() -> None:
+    with pytest.raises(ParameterError, match='launch'):
+        table_5_2('launch')
 
 
 def test_a_claim_that_does_not_hold_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -13,11 +13,10 @@ from ddct_plant.base.errors import ParameterError
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
-NAMES = ('controller', 'architecture', 'scenario', 'clutch', 'mode')
+NAMES = ('controller', 'architecture', 'scenario', 'mode')
 LAUNCH = RunSettings(load_scenario('thesis'), wear_gain=math.nextafter(0.7, 1.0), seed=2**31 - 1)
 SHIFT = RunSettings(
-    load_scenario('upshift', clutch='stick_slip'),
-    clutch='stick_slip',
+    load_scenario('upshift'),
     off_going_wear_gain=0.9,
     handover='/home/somebody/mine.py',
 )

@@ -94,7 +94,7 @@ def test_a_controller_is_in_a_batch_if_it_is_linear_throughout(controller, reaso
 @pytest.mark.parametrize(
     ('changes', 'settings', 'reason'),
     [
-        ({}, {'clutch': 'stick_slip'}, 'the clutch is stick_slip'),
+        ({'clutch': 'stick_slip'}, {}, 'the clutch is stick_slip'),
         ({}, {'mode': 'realtime'}, 'the mode is realtime'),
         (
             {

@@ -22,7 +22,6 @@ PROFILE = {'csv': 'a.csv', 'time': 't', 'value': 'c', 'unit': 'N m'}
 SHIFT: dict[str, Any] = {
     'controllers': ['pi'],
     'scenario': 'upshift',
-    'clutch': 'stick_slip',
     'grid': {'handover': ['timed', 'own.py'], 'duration_s': [1.0]},
 }
 FILES = {

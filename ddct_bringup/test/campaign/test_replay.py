@@ -21,7 +21,7 @@ ROW = {
 }
 SPEC = """\
 controllers: [ls8]
-clutch: stick_slip
+scenario: thesis_sticking
 grid: {wear_gain: [0.8, 1.0]}
 random:
   samples: 1

@@ -20,8 +20,7 @@ from ddct_plant.base.errors import ParameterError
 from ddct_plant.scenario.file import ScenarioFile, load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
-THESIS = ScenarioFile.read('thesis')
-BASE = RunBase(THESIS, {'duration_s': 2.0}, {'clutch': 'stick_slip'}, labels=())
+BASE = RunBase(ScenarioFile.read('thesis_sticking'), {'duration_s': 2.0}, {}, labels=())
 
 
 class Diverging(api.Controller):
@@ -36,13 +35,9 @@ class Diverging(api.Controller):
 
 def test_varied_values_are_set_as_by_set_with_their_dependent_values():
     settings = BASE.at({'wear_gain': 0.8, 'vehicle.mass_kg': 1800.0})
-    scenario = load_scenario(
-        'thesis', ['duration_s=2.0', 'vehicle.mass_kg=1800.0'], clutch='stick_slip'
-    )
-    known = load_scenario('thesis', ['duration_s=2.0'], clutch='stick_slip')
-    assert settings == RunSettings(
-        scenario, clutch='stick_slip', wear_gain=0.8, known_scenario=known
-    )
+    scenario = load_scenario('thesis_sticking', ['duration_s=2.0', 'vehicle.mass_kg=1800.0'])
+    known = load_scenario('thesis_sticking', ['duration_s=2.0'])
+    assert settings == RunSettings(scenario, wear_gain=0.8, known_scenario=known)
     inertia = settings.scenario.driveline.vehicle_inertia
     assert inertia == pytest.approx(1800.0 * settings.scenario.vehicle.wheel_radius_m**2)
 
@@ -105,7 +100,7 @@ def test_floors_that_are_neither_true_nor_false_are_refused(floors):
 
 def test_a_run_has_the_metrics_and_the_state_of_the_same_run_alone():
     run = scored_headless(BASE.at({'wear_gain': 0.9}), 'ls8', packaged_limits())
-    alone = api.run('ls8', duration=2.0, clutch='stick_slip', wear_gain=0.9)
+    alone = api.run('ls8', duration=2.0, scenario='thesis_sticking', wear_gain=0.9)
     wall_clock = dict.fromkeys(('update_time_median_us', 'update_time_p99_us'))
     assert run.metrics == {**alone.metrics, **wall_clock}
     assert (run.state, run.why, run.limits) == (alone.state, alone.why, alone.limits)

@@ -67,7 +67,11 @@ def test_a_specification_has_defaults_for_all_but_what_varies(tmp_path: Path) ->
             PI + GRID + 'floor_samples: 2\n',
             'line 3: floor_samples is 2: it must be at most 1',
         ),
-        (PI + GRID + 'clutch: wet\n', "unknown clutch 'wet': choose from linear, stick_slip"),
+        (
+            PI + GRID + 'clutch: stick_slip\n',
+            'line 3: clutch is a key of the scenario: give a scenario with it, or list its values',
+        ),
+        (PI + 'grid: {clutch: [wet]}\n', "'wet': choose from linear, stick_slip"),
         (PI + GRID + 'scenario: 3\n', 'scenario is 3: give text'),
         (PI + 'grid: {scenario: [{csv: a.csv}]}\n', 'line 2: grid.scenario is {'),
         (PI + 'grid: {scenario: [{a: b}, launch]}\n', "grid.scenario is {'a': 'b'}: give text"),
@@ -106,8 +110,8 @@ def test_a_specification_has_defaults_for_all_but_what_varies(tmp_path: Path) ->
             'engine.torque_n_m varies beside engine',
         ),
         (
-            PI + 'clutch: linear\ngrid: {clutch: [linear, stick_slip]}\n',
-            'clutch is given for all runs and varied: give it once',
+            PI + 'architecture: base\ngrid: {architecture: [base, detailed]}\n',
+            'architecture is given for all runs and varied: give it once',
         ),
         (PI + 'grid: {wear_gain: [1\n', 'line 3: not valid YAML'),
     ],

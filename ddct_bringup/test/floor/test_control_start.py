@@ -55,7 +55,7 @@ def test_other_settings_have_a_start_of_their_own(simulated):
 
 
 def test_a_scenario_without_slip_is_simulated_once_too(simulated):
-    settings = RunSettings(load_scenario('tip_in'), clutch='stick_slip')
+    settings = RunSettings(load_scenario('tip_in'))
     for _ in range(2):
         with pytest.raises(ParameterError, match='do not slip at control start'):
             control_start(settings)

@@ -38,22 +38,22 @@ from ddct_plant.scenario.settings import RunSettings
 RULES = packaged_limits().rules
 pytestmark = pytest.mark.slow
 RUNS = (
-    ('launch', 'stick_slip', 'ls8'),
-    ('launch_hot', 'stick_slip', 'mpc3'),
-    ('launch_gentle', 'stick_slip', 'mpc3'),
-    ('thesis', 'stick_slip', 'hinf1'),
-    ('thesis', 'linear', 'mpc3'),
+    ('launch', 'ls8'),
+    ('launch_hot', 'mpc3'),
+    ('launch_gentle', 'mpc3'),
+    ('thesis_sticking', 'hinf1'),
+    ('thesis', 'mpc3'),
 )
 """Runs that stay away from all limits, whose engine is limited, and whose capacity is clipped."""
 
 
-def settings_of(scenario='launch', clutch='stick_slip', **further):
-    return RunSettings(load_scenario(scenario), clutch=clutch, **further)
+def settings_of(scenario='launch', **further):
+    return RunSettings(load_scenario(scenario), **further)
 
 
-@pytest.mark.parametrize(('scenario', 'clutch', 'controller'), RUNS)
-def test_a_run_is_a_point_of_the_program_that_bounds_it(scenario, clutch, controller):
-    settings = settings_of(scenario, clutch)
+@pytest.mark.parametrize(('scenario', 'controller'), RUNS)
+def test_a_run_is_a_point_of_the_program_that_bounds_it(scenario, controller):
+    settings = settings_of(scenario)
     run = run_headless(settings, controller)
     start = control_start(settings)
     case = case_of_run(settings, start, lock_of(run, start.step, RULES), run)
@@ -69,8 +69,8 @@ def test_a_run_is_a_point_of_the_program_that_bounds_it(scenario, clutch, contro
 
 def test_the_cases_of_the_sample_differ_in_what_is_variable():
     found = {}
-    for scenario, clutch, controller in RUNS[:3]:
-        settings = settings_of(scenario, clutch)
+    for scenario, controller in RUNS[:3]:
+        settings = settings_of(scenario)
         run = run_headless(settings, controller)
         start = control_start(settings)
         case = case_of_run(settings, start, lock_of(run, start.step, RULES), run)
@@ -82,12 +82,12 @@ def test_the_cases_of_the_sample_differ_in_what_is_variable():
     }
 
 
-@pytest.mark.parametrize(('scenario', 'clutch', 'controller'), [RUNS[0], RUNS[4]])
-def test_no_metric_of_a_run_is_below_its_floor(scenario, clutch, controller):
+@pytest.mark.parametrize(('scenario', 'controller'), [RUNS[0], RUNS[4]])
+def test_no_metric_of_a_run_is_below_its_floor(scenario, controller):
     """More runs, of which some are at the engine's limits, are in tests/nightly/floor."""
-    settings = settings_of(scenario, clutch)
+    settings = settings_of(scenario)
     run = run_headless(settings, controller)
-    metrics = [name for name in METRICS if clutch == 'stick_slip' or name != OF_STICK_SLIP]
+    metrics = [name for name in METRICS if settings.stick_slip or name != OF_STICK_SLIP]
     for metric, over in floors_of_run(settings, metrics, run).items():
         assert over.value >= over.floor.least, metric
 
@@ -103,20 +103,18 @@ def test_the_values_are_those_of_scores():
 
 
 @pytest.mark.parametrize(
-    ('scenario', 'clutch', 'time_s', 'gap'),
+    ('scenario', 'time_s', 'gap'),
     [
-        ('launch', 'stick_slip', 0.8, 2.0),
-        ('launch', 'stick_slip', 0.5, 25.0),
-        ('thesis', 'stick_slip', 0.8, 5.0),
-        ('thesis', 'linear', 0.5, 2.0),
-        ('thesis', 'linear', 0.48, 2.0),
+        ('launch', 0.8, 2.0),
+        ('launch', 0.5, 25.0),
+        ('thesis_sticking', 0.8, 5.0),
+        ('thesis', 0.5, 2.0),
+        ('thesis', 0.48, 2.0),
     ],
 )
-def test_the_least_peak_jerk_is_nearly_attained_by_a_run_that_locks_then(
-    scenario, clutch, time_s, gap
-):
+def test_the_least_peak_jerk_is_nearly_attained_by_a_run_that_locks_then(scenario, time_s, gap):
     """Where the engine is limited the intervals are wide, so the gap is wider."""
-    floor = floor_of(settings_of(scenario, clutch), 'peak_jerk', time_s)
+    floor = floor_of(settings_of(scenario), 'peak_jerk', time_s)
     assert floor.attained >= floor.least
     assert 0.0 <= floor.gap <= gap
     assert floor.replay_residual <= 0.03 * floor.attained
@@ -230,7 +228,7 @@ def test_a_run_that_slips_again_has_no_floor():
     [
         (settings_of('tip_in'), 'do not slip at control start'),
         (settings_of('launch_hill'), 'wheels do not turn'),
-        (settings_of('thesis', 'linear', architecture='base'), 'choose the architecture detailed'),
+        (settings_of('thesis', architecture='base'), 'choose the architecture detailed'),
     ],
 )
 def test_a_case_without_floors_is_refused(settings, words):
@@ -240,9 +238,9 @@ def test_a_case_without_floors_is_refused(settings, words):
 
 def test_friction_that_depends_on_the_slip_speed_is_refused():
     changes = {'friction.slip_rad_s': [0.0, 100.0], 'friction.slip_share': [1.0, 0.9]}
-    scenario = ScenarioFile.read('launch').scenario(changes, 'stick_slip')
+    scenario = ScenarioFile.read('launch').scenario(changes)
     with refused(ParameterError, 'friction.slip_rad_s'):
-        floor_of(RunSettings(scenario, clutch='stick_slip'), 'peak_jerk', 0.8)
+        floor_of(RunSettings(scenario), 'peak_jerk', 0.8)
 
 
 def test_the_least_friction_work_is_the_energy_of_the_slip_and_a_little_more():

@@ -71,7 +71,7 @@ class GivenTorques(Case):
 
 @pytest.fixture(scope='module')
 def settings():
-    return RunSettings(load_scenario('launch'), clutch='stick_slip')
+    return RunSettings(load_scenario('launch'))
 
 
 @pytest.fixture(scope='module')

@@ -33,5 +33,5 @@ def test_a_campaign_has_the_ratio_of_a_shift():
 
 
 def test_a_run_in_python_has_the_ratio_of_a_shift():
-    run = api.run('ls8', scenario='upshift', clutch='stick_slip', handover='slip', floors=True)
+    run = api.run('ls8', scenario='upshift', handover='slip', floors=True)
     assert run.figures['peak_jerk_over_least'] > 1.0

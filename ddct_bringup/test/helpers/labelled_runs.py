@@ -15,7 +15,6 @@ from ddct_bringup.verdict.limits import packaged_limits
 from ddct_bringup.verdict.state import LATE, NOT_ENGAGED, state_of
 from ddct_controllers.interface import Command, Controller, Measurement
 from ddct_controllers.registry import make_controller
-from ddct_plant.base.clutch_kinds import STICK_SLIP
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
@@ -56,7 +55,6 @@ class LabelledRun:
     """The other state where the eye hesitates."""
     controller: str
     scenario: str
-    clutch: str
     wear_gain: float
     gain: float
     delay_steps: int
@@ -64,9 +62,9 @@ class LabelledRun:
 
     def comes_together(self) -> bool:
         """Run it headless, and return whether the plates turn together at its end by the rules."""
-        unbound = UNBOUND if self.clutch == STICK_SLIP else ()
+        unbound = () if self.scenario == 'thesis' else UNBOUND
         scenario = load_scenario(self.scenario, [*unbound, *self.set])
-        settings = RunSettings(scenario, clutch=self.clutch, wear_gain=self.wear_gain)
+        settings = RunSettings(scenario, wear_gain=self.wear_gain)
         controller = make_controller(self.controller, settings)
         if self.gain != 1.0 or self.delay_steps:
             controller = Spoiled(controller, self.gain, self.delay_steps)

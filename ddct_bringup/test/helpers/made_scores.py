@@ -11,7 +11,7 @@ from ddct_bringup.metrics.catalogue import METRICS
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.verdict.limits import LimitResult
 
-FACTS = ('architecture', 'clutch', 'wear_gain', 'mode', 'seed', 'scenario')
+FACTS = ('architecture', 'wear_gain', 'mode', 'seed', 'scenario')
 NAMED = tuple(each.name for each in fields(ScoredRun) if each.name not in ('facts', 'metrics'))
 
 

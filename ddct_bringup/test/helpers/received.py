@@ -62,9 +62,8 @@ def settings_with(
 ) -> RunSettings:
     """Return the settings of a run whose plant alone has the values that vary."""
     changes = {'duration_s': settings.pop('duration_s', 1.2)}
-    of_run = {'clutch': 'stick_slip', **settings}
-    assert set(of_run) <= set(options_of(RunSettings))
-    return RunBase(ScenarioFile.read(scenario), changes, of_run, ['Keeper']).at(varied)
+    assert set(settings) <= set(options_of(RunSettings))
+    return RunBase(ScenarioFile.read(scenario), changes, settings, ['Keeper']).at(varied)
 
 
 def true_values(settings: RunSettings) -> list[float]:

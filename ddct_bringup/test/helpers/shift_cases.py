@@ -22,8 +22,8 @@ from ddct_plant.scenario.settings import RunSettings
 
 def settings_of(scenario='upshift', overrides=(), **further) -> RunSettings:
     """Return the settings of a shift with overrides KEY=VALUE."""
-    loaded = load_scenario(scenario, overrides, clutch='stick_slip')
-    return RunSettings(loaded, clutch='stick_slip', **further)
+    loaded = load_scenario(scenario, overrides)
+    return RunSettings(loaded, **further)
 
 
 def compared_starts(handover: str, names: Iterable[str]) -> int:

@@ -22,7 +22,6 @@ from ddct_plant.program.table import Table
 
 SPEC = """\
 controllers: [pi, ls8]
-clutch: stick_slip
 seed: 1
 grid:
   scenario: [launch, launch_hill]

@@ -29,7 +29,7 @@ from ddct_plant.files.json_records import from_json
 
 SPEC = """\
 controllers: [ls8]
-clutch: stick_slip
+scenario: thesis_sticking
 seed: 3
 grid: {wear_gain: [0.8, 1.0], duration_s: [0.7]}
 random:

@@ -27,7 +27,7 @@ LESS = 3e-4
 
 def runs_of(*controllers: str, floors: bool = True) -> list[ScoredRecording]:
     """Return runs in `launch` with their jerk over the least."""
-    settings = RunSettings(load_scenario('launch'), clutch='stick_slip')
+    settings = RunSettings(load_scenario('launch'))
     plans = [RunPlan(settings, each, 'headless') for each in controllers]
     scored = [simulate_and_score(plan, LIMITS) for plan in plans]
     return with_floors(scored, LIMITS) if floors else scored

@@ -13,7 +13,6 @@ def test_controllers_in_the_same_conditions_go_by_their_names():
     assert run_labels(runs) == ['pi', 'ls8']
     assert common_conditions(runs) == [
         'detailed',
-        'linear clutch',
         'wear 1',
         'lockstep',
         'seed 0',
@@ -31,18 +30,18 @@ def test_wear_gains_and_architectures_are_named_where_runs_differ_in_them():
         'pi, detailed, wear 1.3',
         'pi, feedforward, wear 1.3',
     ]
-    assert common_conditions(runs) == ['linear clutch', 'lockstep', 'seed 0']
+    assert common_conditions(runs) == ['lockstep', 'seed 0']
 
 
 def test_logs_are_called_measured_and_their_number_is_among_the_conditions():
-    log = made_scores('drive', architecture='measured', clutch='measured', mode='measured')
+    log = made_scores('drive', architecture='measured', mode='measured')
     assert run_labels([made_scores(), log]) == ['pi', 'drive, measured']
     assert run_labels([made_scores(), made_scores(wear_gain=0.7), log])[1:] == [
         'pi, wear 0.7',
         'drive, measured',
     ]
     assert common_conditions([made_scores(), log])[-1] == '1 log of a car'
-    assert common_conditions([made_scores(), log])[:2] == ['detailed', 'linear clutch']
+    assert common_conditions([made_scores(), log])[:2] == ['detailed', 'wear 1']
     assert common_conditions([log, log]) == ['2 logs of a car']
 
 

@@ -46,8 +46,8 @@ DIP, FLARE, TIE_UP = (
 
 def settings(handover: str) -> RunSettings:
     """Return an upshift with a torque cut."""
-    scenario = load_scenario('upshift', ['shift.torque_cut_n_m=20'], clutch='stick_slip')
-    return RunSettings(scenario, clutch='stick_slip', handover=handover)
+    scenario = load_scenario('upshift', ['shift.torque_cut_n_m=20'])
+    return RunSettings(scenario, handover=handover)
 
 
 @pytest.fixture(scope='module')
@@ -140,7 +140,7 @@ def test_the_terminal_has_columns_of_the_shift_and_the_title_names_the_handover(
     stream = io.StringIO()
     print_comparison([run.scores for run in runs[:1]], settings('timed'), [], stream)
     table = stream.getvalue()
-    conditions = 'stick_slip clutch, wear gain 1, handover timed, off-going wear gain 1, lockstep'
+    conditions = 'detailed, wear gain 1, handover timed, off-going wear gain 1, lockstep'
     assert conditions in ' '.join(table.split())
     row = next(line for line in table.splitlines() if line.split()[:1] == ['pi'])
     metrics = runs[0].scores.metrics
@@ -164,11 +164,11 @@ def test_a_table_of_recorded_shifts_has_their_handovers_and_off_going_wear(runs)
 
 
 def test_the_heading_of_a_sweep_has_handover_and_off_going_wear_unless_they_vary():
-    fixed = {'clutch': 'stick_slip', 'handover': 'timed', 'off_going_wear_gain': 0.8}
+    fixed = {'handover': 'timed', 'off_going_wear_gain': 0.8}
     base = RunBase(ScenarioFile.read('upshift'), {}, fixed, labels=())
     axes = [axis_of('wear_gain=0.9,1'), axis_of('handover=slip,model')]
     found = [Sweep(base, axes[:n], ['pi'], packaged_limits()).conditions for n in (1, 2)]
-    upshift = 'upshift; detailed, stick_slip clutch'
+    upshift = 'upshift; detailed'
     assert found == [
         f'{upshift}, handover timed, off-going wear gain 0.8',
         f'{upshift}, off-going wear gain 0.8',

@@ -17,9 +17,7 @@ ON, OFF = 'closing={}', 'closing=null'
 
 @lru_cache
 def run(scenario, controller, *changes, wear_gain=1.0):
-    settings = RunSettings(
-        load_scenario(scenario, changes), clutch='stick_slip', wear_gain=wear_gain
-    )
+    settings = RunSettings(load_scenario(scenario, changes), wear_gain=wear_gain)
     trajectory = run_headless(settings, controller)
     start, window_s = settings.scenario.control_start_step, settings.scenario.score_window_s
     return Engagement(trajectory, start, window_steps(window_s)), trajectory
@@ -28,9 +26,9 @@ def run(scenario, controller, *changes, wear_gain=1.0):
 @pytest.mark.parametrize(
     ('scenario', 'controller'),
     [
-        ('thesis', 'mpc3'),
-        ('thesis', 'mpc_preview'),
-        ('thesis', 'torque_estimator'),
+        ('thesis_sticking', 'mpc3'),
+        ('thesis_sticking', 'mpc_preview'),
+        ('thesis_sticking', 'torque_estimator'),
         ('launch', 'mpc3'),
         ('launch_hill', 'ls8'),
     ],
@@ -52,8 +50,8 @@ def test_a_tip_in_parts_only_the_plates_of_a_clutch_that_cannot_carry_the_swing(
 
 
 def test_it_changes_nothing_before_the_lock():
-    judged, closing = run('thesis', 'mpc3', ON)
-    _, without = run('thesis', 'mpc3', OFF)
+    judged, closing = run('thesis_sticking', 'mpc3', ON)
+    _, without = run('thesis_sticking', 'mpc3', OFF)
     before = slice(0, judged.lockup.together_from - 1)
     assert (closing.torque_request[before] == without.torque_request[before]).all()
     assert (closing.joint_speed[before] == without.joint_speed[before]).all()
@@ -61,7 +59,7 @@ def test_it_changes_nothing_before_the_lock():
 
 def test_a_worn_clutch_that_feedback_has_locked_stays_locked():
     for controller in ('ls8', 'mpc_offset_free'):
-        judged, trajectory = run('thesis', controller, ON, wear_gain=0.7)
+        judged, trajectory = run('thesis_sticking', controller, ON, wear_gain=0.7)
         assert (judged.lockup.releases, dict(trajectory.status[-1])['closing']) == (0, 'closed')
 
 

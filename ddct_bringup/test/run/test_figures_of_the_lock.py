@@ -16,7 +16,7 @@ LIMITS = packaged_limits()
 
 @lru_cache
 def scored(scenario, controller, wear_gain=1.0):
-    settings = RunSettings(load_scenario(scenario), clutch='stick_slip', wear_gain=wear_gain)
+    settings = RunSettings(load_scenario(scenario), wear_gain=wear_gain)
     return scored_headless(settings, controller, LIMITS).metrics
 
 
@@ -38,8 +38,8 @@ def test_engagement_time_is_the_exact_instant_of_the_first_lock(controller):
 
 
 def test_a_lock_after_the_score_window_counts_in_the_peak_jerk():
-    """The plates of `ls1` lock at 2.3 s, when the window of `thesis` is over."""
-    metrics = scored('thesis', 'ls1', 0.7)
+    """The plates of `ls1` lock at 2.3 s, when the window of `thesis_sticking` is over."""
+    metrics = scored('thesis_sticking', 'ls1', 0.7)
     assert metrics['time_to_final_lock_s'] > 1.1
     assert metrics['peak_jerk_m_s3'] == pytest.approx(13.0, abs=0.1)
 

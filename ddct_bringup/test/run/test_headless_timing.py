@@ -26,7 +26,7 @@ def test_of_a_run_that_ends_early_they_are_those_that_were_run():
         *('engine_limits.over_rev_rad_s=200', 'engine_limits.cut_rad_s=199'),
         *('engine_limits.resume_rad_s=190', 'engine_limits.idle_rad_s=100'),
     )
-    scenario = load_scenario('thesis', limits)
-    timing, steps = timing_of(RunSettings(scenario, clutch='stick_slip', wear_gain=0.7))
+    scenario = load_scenario('thesis_sticking', limits)
+    timing, steps = timing_of(RunSettings(scenario, wear_gain=0.7))
     assert timing.steps == steps < scenario.steps
     assert len(timing.update_times_us) == steps + 1

@@ -75,7 +75,7 @@ def test_a_controller_and_a_handover_find_no_true_value_in_a_headless_run(
 
 
 def test_load_and_open_loop_of_a_measurement_are_those_of_the_known_car(tmp_path: Path) -> None:
-    settings = settings_with({'vehicle.mass_kg': 1900.0}, 'thesis', clutch='linear')
+    settings = settings_with({'vehicle.mass_kg': 1900.0}, 'thesis')
     file, kept = keeper_file(tmp_path)
     run = run_headless(settings, file)
     known = settings.known.scenario
@@ -118,8 +118,7 @@ def test_the_first_request_is_that_of_the_known_car_and_the_state_that_of_the_tr
 @pytest.mark.parametrize('architecture', ['detailed', 'feedforward', 'feedforward_tanh', 'base'])
 def test_a_batch_and_a_run_step_by_step_know_the_same(architecture: str) -> None:
     varied = {**UNKNOWN, 'load.wind_speed_m_s': 7.0, 'vehicle.wheel_radius_m': 0.3}
-    of_run = {'architecture': architecture, 'clutch': 'linear'}
-    cases = [settings_with(each, 'thesis', **of_run) for each in ({}, varied)]
+    cases = [settings_with(each, 'thesis', architecture=architecture) for each in ({}, varied)]
     controller = make_controller('pi', cases[0])
     stack = trajectories([(settings, controller) for settings in cases])
     for place, settings in enumerate(cases):
@@ -138,7 +137,7 @@ def test_a_controller_of_a_batch_finds_no_true_value() -> None:
             super().__init__(0.1, 0.2)
             made.append(self)
 
-    settings = settings_with(UNKNOWN, 'thesis', clutch='linear')
+    settings = settings_with(UNKNOWN, 'thesis')
     controller = make_controller(chosen_from(Kept), settings)
     assert trajectories([(settings, controller)]).slip_speed.shape[0] == 1
     assert made
@@ -149,10 +148,9 @@ def test_a_controller_of_a_campaign_finds_no_true_value_of_its_row(tmp_path: Pat
     file, kept = keeper_file(tmp_path)
     content = {
         'controllers': [file],
-        'clutch': 'stick_slip',
         'seed': 4,
         'grid': {
-            'scenario': ['launch', 'thesis'],
+            'scenario': ['launch', 'thesis_sticking'],
             'duration_s': [0.9],
             'sensors': [NOISY],
             'wear_gain': [0.8125],
@@ -190,7 +188,7 @@ def test_options_handover_and_reference_of_a_row_are_known_and_drawn_sensors_are
         NOISE: 0.2,
         'control_start_s': 0.4,
     }
-    base = RunBase(ScenarioFile.read('upshift'), {}, {'clutch': 'stick_slip'}, ['pi'])
+    base = RunBase(ScenarioFile.read('upshift'), {}, {}, ['pi'])
     for drawn, noise in (((), 0.2), ((NOISE,), 0.0)):
         known = base.at(varied, drawn).known
         assert known.handover == 'slip'
@@ -204,7 +202,10 @@ def test_options_handover_and_reference_of_a_row_are_known_and_drawn_sensors_are
 def test_known_settings_of_another_kind_of_run_are_refused() -> None:
     upshift, launch = load_scenario('upshift'), load_scenario('launch')
     with refused(ParameterError, key='shift'):
-        RunSettings(upshift, clutch='stick_slip', known_scenario=launch)
+        RunSettings(upshift, known_scenario=launch)
     noisy = load_scenario('launch', {'sensors': NOISY})
     with refused(ParameterError, key='sensors'):
-        RunSettings(noisy, clutch='stick_slip', known_scenario=launch)
+        RunSettings(noisy, known_scenario=launch)
+    linear, sticking = load_scenario('thesis'), load_scenario('thesis_sticking')
+    with refused(ParameterError, key='clutch'):
+        RunSettings(linear, known_scenario=sticking)

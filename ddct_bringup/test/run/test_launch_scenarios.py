@@ -28,7 +28,7 @@ REST = 1e-9
 
 @lru_cache
 def run(scenario, controller='ls8', *changes):
-    settings = RunSettings(load_scenario(scenario, changes), clutch='stick_slip')
+    settings = RunSettings(load_scenario(scenario, changes))
     return settings.scenario, run_headless(settings, controller)
 
 

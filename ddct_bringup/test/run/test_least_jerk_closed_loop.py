@@ -25,10 +25,8 @@ LAUNCHES = ('launch', 'launch_hill', 'launch_hot', 'launch_gentle')
 
 
 @cache
-def run_of(scenario, wear_gain=1.0, *changes, clutch='stick_slip'):
-    settings = RunSettings(
-        load_scenario(scenario, changes, clutch), wear_gain=wear_gain, clutch=clutch
-    )
+def run_of(scenario, wear_gain=1.0, *changes):
+    settings = RunSettings(load_scenario(scenario, changes), wear_gain=wear_gain)
     return settings, run_headless(settings, SPEC)
 
 
@@ -37,7 +35,7 @@ def locked(run):
 
 
 @pytest.mark.parametrize('wear_gain', [0.7, 1.0, 1.3])
-@pytest.mark.parametrize('scenario', [*LAUNCHES, 'thesis', 'upshift', 'upshift_2_3'])
+@pytest.mark.parametrize('scenario', [*LAUNCHES, 'thesis_sticking', 'upshift', 'upshift_2_3'])
 def test_it_locks_and_stays_locked(scenario, wear_gain):
     """The hill with a wear gain of 1.3 stalls the engine under every other controller."""
     settings, run = run_of(scenario, wear_gain)
@@ -50,7 +48,7 @@ def test_it_locks_and_stays_locked(scenario, wear_gain):
 
 @pytest.mark.parametrize(
     ('scenario', 'ratio'),
-    [('launch', 1.35), ('launch_hot', 1.5), ('thesis', 1.5), ('upshift_light', 1.5)],
+    [('launch', 1.35), ('launch_hot', 1.5), ('thesis_sticking', 1.5), ('upshift_light', 1.5)],
 )
 def test_its_peak_jerk_is_near_the_least_of_its_own_lock_time(scenario, ratio):
     settings, run = run_of(scenario)
@@ -100,8 +98,7 @@ def test_sensor_noise_moves_the_torque_of_a_gentle_launch_little():
     (sensors,) = Cases.packaged().content['grid']['sensors']
     for seed in (11, 12, 13):
         settings = RunSettings(
-            load_scenario('launch_gentle', {'sensors': sensors}, 'stick_slip'),
-            clutch='stick_slip',
+            load_scenario('launch_gentle', {'sensors': sensors}),
             seed=seed,
         )
         run = run_headless(settings, SPEC)
@@ -123,8 +120,8 @@ def test_plates_that_slip_in_a_tip_in_are_locked_without_delay(wear_gain):
 def lock_s_of_case(scenario, wear_gain, seed, changes):
     """Return the time to the lock in s with the benchmark's sensors; no plates may part again."""
     (sensors,) = Cases.packaged().content['grid']['sensors']
-    made = load_scenario(scenario, {'sensors': sensors, **changes}, 'stick_slip')
-    settings = RunSettings(made, wear_gain=wear_gain, clutch='stick_slip', seed=seed)
+    made = load_scenario(scenario, {'sensors': sensors, **changes})
+    settings = RunSettings(made, wear_gain=wear_gain, seed=seed)
     after = locked(run_headless(settings, SPEC))[made.control_start_step :]
     first = int(np.argmax(after))
     assert after[first:].all()
@@ -175,7 +172,7 @@ def test_plates_that_are_locked_at_control_start_get_more_torque_at_once():
 
 def test_the_linear_clutch_ends_without_slip():
     for wear_gain in (0.7, 1.0, 1.3):
-        _, run = run_of('thesis', wear_gain, clutch='linear')
+        _, run = run_of('thesis', wear_gain)
         assert abs(run.slip_speed[-1]) < 0.3
 
 
@@ -191,14 +188,14 @@ class AllAtOnce(Controller):
 
 def test_no_request_with_feedback_on_undoes_the_flare_of_a_worn_clutch_at_full_torque():
     """The torque phase makes it: docs/controllers/least_jerk.md states it as a bound."""
-    settings = RunSettings(load_scenario('upshift_full'), clutch='stick_slip', wear_gain=0.75)
+    settings = RunSettings(load_scenario('upshift_full'), wear_gain=0.75)
     run = run_headless(settings, AllAtOnce())
     assert run.engine_speed.max() - run.engine_speed[30] > 10.5
 
 
 def test_plates_part_in_a_tip_in_whatever_is_requested():
     """The overshoot of the half-shafts exceeds the static capacity of 1.1 times 350 N m."""
-    settings = RunSettings(load_scenario('tip_in'), clutch='stick_slip')
+    settings = RunSettings(load_scenario('tip_in'))
     run = run_headless(settings, AllAtOnce())
     assert locked(run)[30:60].all()
     assert not locked(run)[60:90].all()

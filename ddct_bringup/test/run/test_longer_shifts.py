@@ -24,7 +24,7 @@ SHIFTS = {
 
 def hashes(scenario: str, **changes: float) -> tuple[int, dict[str, str]]:
     """Return the steps of a run, and by signal the hash of its rows of the first 2 s."""
-    settings = RunSettings(load_scenario(scenario, changes), clutch='stick_slip')
+    settings = RunSettings(load_scenario(scenario, changes))
     run = run_headless(settings, SHIFTS[scenario])
     digests = {}
     for name, values in run.signals.items():

@@ -185,8 +185,8 @@ def test_with_the_wear_estimated_it_is_as_smooth_at_every_wear(wear_gain):
 @pytest.mark.parametrize('wear_gain', [0.2, 0.33, 0.47, 0.5])
 def test_a_clutch_worn_beyond_its_bounds_runs_away_and_the_run_goes_on_to_its_end(wear_gain):
     """The capacity of a clutch that sticks is limited: the slip grows and the loop diverges."""
-    scenario = load_scenario('thesis', ['duration_s=6'], clutch='stick_slip')
-    settings = RunSettings(scenario, clutch='stick_slip', wear_gain=wear_gain)
+    scenario = load_scenario('thesis_sticking', ['duration_s=6'])
+    settings = RunSettings(scenario, wear_gain=wear_gain)
     trajectory = run_headless(settings, 'mpc4_wear')
     assert trajectory.steps == 600
     assert np.isfinite(trajectory.torque_request).all()

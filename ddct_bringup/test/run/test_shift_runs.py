@@ -29,8 +29,8 @@ pytestmark = pytest.mark.slow
 
 
 def settings(*overrides, **values):
-    scenario = load_scenario('upshift', overrides, clutch='stick_slip')
-    return RunSettings(scenario, clutch='stick_slip', **values)
+    scenario = load_scenario('upshift', overrides)
+    return RunSettings(scenario, **values)
 
 
 def feedback(run):

@@ -51,9 +51,7 @@ SILENT_FROM = 60
 OPEN_BY = SILENT_FROM + 45 + 10
 """Step by which the table promises an open clutch: 0.45 s, and the lag of the actuator."""
 HANDOVER = (HANDOVER_SHARE, OFF_GOING_TORQUE_REQUEST, TORQUE_CUT)
-SETTINGS = RunSettings(
-    load_scenario('upshift', {'shift.handover_s': 1.0}), clutch='stick_slip', handover='timed'
-)
+SETTINGS = RunSettings(load_scenario('upshift', {'shift.handover_s': 1.0}), handover='timed')
 STEPS = SETTINGS.scenario.steps
 TORQUES = (ENGINE_TORQUE, LOAD_TORQUE, HOLDING_TORQUE, CLUTCH_TORQUE, OFF_GOING_CLUTCH_TORQUE)
 

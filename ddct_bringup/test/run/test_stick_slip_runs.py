@@ -3,6 +3,7 @@
 """Headless runs with a clutch that sticks: energy, phases, heat, the start and the early end."""
 
 import argparse
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -25,8 +26,8 @@ LAUNCH = ('initial.shaft_speed_rad_s=0', 'initial.engine_speed_rad_s=104.7')
 
 
 def settings(*changes, wear_gain=1.0):
-    scenario = load_scenario('thesis', changes)
-    return RunSettings(scenario, clutch='stick_slip', wear_gain=wear_gain)
+    scenario = load_scenario('thesis_sticking', changes)
+    return RunSettings(scenario, wear_gain=wear_gain)
 
 
 def run(*changes, controller='pi', wear_gain=1.0):
@@ -119,7 +120,7 @@ def test_the_load_loses_its_rolling_resistance_to_the_holding_torque():
     scenario = settings().scenario
     vehicle, rolling = scenario.vehicle, scenario.load.rolling_coefficient
     resistance = vehicle.mass_kg * vehicle.gravity_m_s2 * rolling * vehicle.wheel_radius_m
-    found, linear = run(), run_headless(RunSettings(scenario), 'pi')
+    found, linear = run(), run_headless(RunSettings(load_scenario('thesis')), 'pi')
     assert found.holding_torque == pytest.approx(resistance)
     assert found.load_torque[0] + found.holding_torque[0] == pytest.approx(linear.load_torque[0])
     assert linear.holding_torque is None
@@ -180,21 +181,21 @@ STALL = (
     [(OVER_REV, 325.0), (STALL, 140.0)],
     ids=['over_revved', 'stalled'],
 )
-@pytest.mark.parametrize('clutch', ['linear', 'stick_slip'])
-def test_the_run_ends_with_the_first_state_at_or_beyond_a_limit(changes, reached, clutch):
-    scenario = load_scenario('thesis', changes)
-    found = run_headless(RunSettings(scenario, clutch=clutch, wear_gain=0.7), 'pi')
+@pytest.mark.parametrize('name', ['thesis', 'thesis_sticking'])
+def test_the_run_ends_with_the_first_state_at_or_beyond_a_limit(changes, reached, name):
+    scenario = load_scenario(name, changes)
+    found = run_headless(RunSettings(scenario, wear_gain=0.7), 'pi')
     speeds = found.joint_speed[:, 0] - reached
     assert 0 < found.steps < scenario.steps
     assert (np.sign(speeds[:-1]) == np.sign(speeds[0])).all()
     assert np.sign(speeds[-1]) != np.sign(speeds[0])
 
 
-@pytest.mark.parametrize('clutch', ['linear', 'stick_slip'])
-def test_the_static_controller_goes_by_what_a_limited_engine_delivers(clutch):
+@pytest.mark.parametrize('name', ['thesis', 'thesis_sticking'])
+def test_the_static_controller_goes_by_what_a_limited_engine_delivers(name):
     weak = f'engine_limits.full_load_n_m={[100.0] * 8}'
-    scenario = load_scenario('thesis', [weak, 'duration_s=1.0'])
-    found = run_headless(RunSettings(scenario, clutch=clutch), 'pi')
+    scenario = load_scenario(name, [weak, 'duration_s=1.0'])
+    found = run_headless(RunSettings(scenario), 'pi')
     assert found.engine_torque.max() == 100.0 < found.torque_demand.max()
     road = RoadLoad(scenario.load, scenario.vehicle)
     static = StaticTorque(scenario.driveline, scenario.equilibrium)
@@ -211,14 +212,17 @@ def test_the_static_controller_goes_by_what_a_limited_engine_delivers(clutch):
 def test_a_driveline_too_fast_for_a_clutch_that_sticks_is_refused_before_the_run(tmp_path):
     """Programs and the Python interface name key and line."""
     path = tmp_path / 'fast.yaml'
-    text = scenario_to_yaml(load_scenario('thesis', ['driveline.shaft_inertia=0.0002']))
+    made = replace(
+        load_scenario('thesis', ['driveline.shaft_inertia=0.0002']), clutch='stick_slip'
+    )
+    text = scenario_to_yaml(made)
     path.write_text(text, encoding='utf-8')
     line = text.splitlines().index('    shaft_inertia: 0.0002') + 1
     place = f'fast.yaml: line {line}'
     parser = argparse.ArgumentParser()
     add_run_options(parser)
-    options = parser.parse_args(['--scenario', str(path), '--clutch', 'stick_slip'])
+    options = parser.parse_args(['--scenario', str(path)])
     with refused(ParameterError, 'driveline.shaft_inertia', place):
         run_settings([], **settings_given(options))
     with refused(ParameterError, 'driveline.shaft_inertia', place):
-        api.run('pi', scenario=path, clutch='stick_slip')
+        api.run('pi', scenario=path)

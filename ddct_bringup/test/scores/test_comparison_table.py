@@ -97,8 +97,8 @@ def test_a_run_that_is_not_valid_neither_hits_nor_misses():
 @pytest.mark.parametrize(
     ('overrides', 'title'),
     [
-        ((), 'thesis; detailed, linear clutch, wear gain 1, lockstep'),
-        ((SLOPE,), f'thesis, 1 value changed: {SLOPE}; detailed, linear clutch'),
+        ((), 'thesis; detailed, wear gain 1, lockstep'),
+        ((SLOPE,), f'thesis, 1 value changed: {SLOPE}; detailed, wear gain 1'),
     ],
 )
 def test_the_title_lists_the_changes_of_the_packaged_scenario(overrides, title):

@@ -23,9 +23,9 @@ from ddct_plant.scenario.settings import RunSettings
 pytestmark = pytest.mark.slow
 
 
-def settings_of(scenario: str = 'thesis', clutch: str = 'linear', **further: Any) -> RunSettings:
+def settings_of(scenario: str = 'thesis', **further: Any) -> RunSettings:
     """Return settings of a packaged scenario."""
-    return RunSettings(load_scenario(scenario), clutch=clutch, **further)
+    return RunSettings(load_scenario(scenario), **further)
 
 
 def scored(controller: str, settings: RunSettings, limits: Limits | None = None) -> ScoredRun:
@@ -37,7 +37,7 @@ def scored(controller: str, settings: RunSettings, limits: Limits | None = None)
 
 @pytest.mark.parametrize('scenario', ['launch', 'upshift'])
 def test_the_ratio_is_that_to_the_least_at_the_final_lock(scenario: str) -> None:
-    settings = settings_of(scenario, 'stick_slip')
+    settings = settings_of(scenario)
     run = scored('ls8', settings)
     start = control_start(settings)
     lock_s = run.metrics['time_to_final_lock_s']
@@ -71,8 +71,8 @@ def test_a_linear_clutch_locks_where_its_slip_stays_within_the_band_of_the_rules
 @pytest.mark.parametrize(
     ('controller', 'settings'),
     [
-        ('pi', settings_of('launch', 'stick_slip')),
-        ('torque_estimator', settings_of('launch', 'stick_slip')),
+        ('pi', settings_of('launch')),
+        ('torque_estimator', settings_of('launch')),
         ('mpc4', settings_of()),
     ],
     ids=['slips again', 'commands the engine', 'commands the engine, linear'],
@@ -88,10 +88,10 @@ def test_for_a_run_that_does_more_than_lock_once_the_least_is_a_yardstick(
 @pytest.mark.parametrize(
     ('controller', 'settings', 'reason'),
     [
-        ('mpc3', settings_of(clutch='stick_slip'), 'no final lock'),
-        ('ls8', settings_of('launch_hill', 'stick_slip'), 'wheels do not turn'),
+        ('mpc3', settings_of('thesis_sticking'), 'no final lock'),
+        ('ls8', settings_of('launch_hill'), 'wheels do not turn'),
         ('pi', settings_of(architecture='feedforward'), 'choose the architecture detailed'),
-        ('ls8', settings_of('tip_in', 'stick_slip'), 'nothing to engage'),
+        ('ls8', settings_of('tip_in'), 'nothing to engage'),
         (
             'pi',
             RunSettings(load_scenario('thesis', {'duration_s': 6.0})),
@@ -109,7 +109,7 @@ def test_a_case_without_a_floor_has_no_ratio_and_the_reason_in_one_line(
 
 
 def test_the_ratio_depends_on_the_final_lock_and_not_on_what_else_the_run_did() -> None:
-    settings = settings_of('launch', 'stick_slip')
+    settings = settings_of('launch')
     start, run = control_start(settings), scored('pi', settings)
     assert run.metrics['releases'] == 1
     lock_s, peak = (run.metrics[name] for name in ('time_to_final_lock_s', 'peak_jerk_m_s3'))
@@ -120,7 +120,7 @@ def test_the_ratio_depends_on_the_final_lock_and_not_on_what_else_the_run_did() 
 
 
 def test_without_floors_nothing_is_computed() -> None:
-    plan = RunPlan(settings_of('launch', 'stick_slip'), 'ls8', 'headless')
+    plan = RunPlan(settings_of('launch'), 'ls8', 'headless')
     run = simulate_and_score(plan, packaged_limits())
     assert run.scores.metrics['peak_jerk_over_least'] is None
     assert run.scores.null_reasons['peak_jerk_over_least'] == 'the least was not computed'

@@ -17,12 +17,11 @@ from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
 LIMITS = packaged_limits()
-SHIFT = {'clutch': 'stick_slip', 'off_going_wear_gain': 0.9, 'seed': 3}
+SHIFT = {'off_going_wear_gain': 0.9, 'seed': 3}
 
 
 def plan_of(controller: str, scenario: str, overrides: list[str], **settings: Any) -> RunPlan:
-    clutch = settings.get('clutch', 'linear')
-    loaded = load_scenario(scenario, overrides, clutch)
+    loaded = load_scenario(scenario, overrides)
     return RunPlan(RunSettings(loaded, **settings), controller, 'headless')
 
 
@@ -34,10 +33,9 @@ def plan_of(controller: str, scenario: str, overrides: list[str], **settings: An
             'mpc3',
             'launch',
             ['duration_s=1.5', 'sensors.engine_speed.delay_s=0.02'],
-            clutch='stick_slip',
         ),
         plan_of('pi', 'upshift', ['duration_s=1.5'], **SHIFT),
-        plan_of('pi', 'launch_hill', [], clutch='stick_slip', wear_gain=1.3),
+        plan_of('pi', 'launch_hill', [], wear_gain=1.3),
     ],
     ids=['worn', 'sensors', 'shift', 'stalled'],
 )

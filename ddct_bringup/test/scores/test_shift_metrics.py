@@ -138,7 +138,7 @@ def test_a_run_that_ends_before_the_shift_starts_has_works_and_temperatures_alon
 
 
 def test_the_least_friction_work_of_a_shift_has_both_shafts_and_the_slip_when_feedback_starts():
-    scenario = load_scenario('upshift', clutch='stick_slip')
+    scenario = load_scenario('upshift')
     car, gears = scenario.driveline, gears_of(scenario)
     shafts = car.shaft_inertia * (1.0 + gears.ratio**2)
     rest = shafts + car.vehicle_inertia / car.gear.total_ratio**2

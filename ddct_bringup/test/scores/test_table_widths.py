@@ -49,7 +49,7 @@ PROGRAMS: dict[str, Callable[[], object]] = {
     'identify': lambda: identify.main([]),
     'identify --as-printed': lambda: identify.main(['--as-printed']),
     'limit': lambda: limit.main(
-        ['--scenario', 'launch', '--clutch', 'stick_slip', '--lock-times', '1.0']
+        ['--scenario', 'launch', '--lock-times', '1.0']
         + ['--metrics', 'friction_energy', '--controllers', 'pi']
     ),
     'reproduce numbers': lambda: reproduce.main(['numbers']),

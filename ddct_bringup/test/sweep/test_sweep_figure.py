@@ -93,9 +93,7 @@ def test_a_panel_has_symbol_and_unit_as_they_are_printed(panel):
 
 def test_the_title_has_controllers_axes_and_conditions():
     figure = drawn(['wear_gain=0.8,1.2'], ['pi', 'ls8'], [(ENGAGED, 1.0)] * 4)
-    assert figure.axes[0].get_title() == (
-        'pi, ls8 over wear_gain\nthesis; detailed, linear clutch'
-    )
+    assert figure.axes[0].get_title() == ('pi, ls8 over wear_gain\nthesis; detailed')
     over = ['load.slope_rad=0,0.05', 'clutch=linear,stick_slip']
     figure = drawn(over, ['pi'], [(ENGAGED, 1.0)] * 4)
     first, *others = figure.get_suptitle().split('\n')

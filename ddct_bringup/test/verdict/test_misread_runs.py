@@ -7,14 +7,13 @@ from functools import cache
 import pytest
 
 from ddct_bringup.reproduction.study_run import study_run
-from ddct_plant.base.clutch_kinds import STICK_SLIP
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
 
 @cache
-def scores(controller, scenario='thesis', wear_gain=1.0, clutch=STICK_SLIP, changes=()):
-    settings = RunSettings(load_scenario(scenario, changes), clutch=clutch, wear_gain=wear_gain)
+def scores(controller, scenario='thesis_sticking', wear_gain=1.0, changes=()):
+    settings = RunSettings(load_scenario(scenario, changes), wear_gain=wear_gain)
     return study_run(settings, controller).scores
 
 

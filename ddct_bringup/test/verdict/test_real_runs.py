@@ -35,10 +35,12 @@ class WrongSign(Controller):
         return Command(-self._right.update(measurement).clutch_torque)
 
 
-def run(controller='pi', gain=1.0, duration_s=3.0, **settings):
+def run(controller='pi', gain=1.0, duration_s=3.0, clutch='linear', **settings):
     """Return a run of the thesis's scenario with the gains of the PI multiplied by `gain`."""
     gains = {key: gain * value for key, value in FROZEN_GAINS.items()}
-    scenario = dataclasses.replace(THESIS, controllers={'pi': gains}, duration_s=duration_s)
+    scenario = dataclasses.replace(
+        THESIS, controllers={'pi': gains}, duration_s=duration_s, clutch=clutch
+    )
     return run_headless(RunSettings(scenario, **settings), controller)
 
 
@@ -95,13 +97,13 @@ def test_a_drive_whose_torque_steps_part_the_plates_for_a_while_ends_engaged(con
         'engine.time_s=[0,0.5,1.8,2.1,3,3.2,4.2,4.4,6]',
         'engine.torque_n_m=[5,260,260,100,100,220,220,60,60]',
     )
-    settings = RunSettings(load_scenario('thesis', changes), clutch='stick_slip')
+    settings = RunSettings(load_scenario('thesis_sticking', changes))
     assert state_degraded(controller, settings) == 'engaged'
 
 
 @pytest.mark.parametrize('end_s', [3.0, 3.2, 3.55, 3.63, 3.64, 3.65])
 def test_a_limit_cycle_of_1400_rpm_is_no_engagement_though_the_plates_lock_in_between(end_s):
     scenario = load_scenario('launch_hot', ['closing=null', 'duration_s=4'])
-    settings = RunSettings(scenario, clutch='stick_slip', wear_gain=0.6)
+    settings = RunSettings(scenario, wear_gain=0.6)
     ended = state_degraded('ls6', settings, end_s, gain=6.1, delay_steps=1)
     assert ended in ('not_engaged', 'late')

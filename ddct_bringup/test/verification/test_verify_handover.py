@@ -9,7 +9,7 @@ import pytest
 from verified import HANDOVER, make_bag, states, verified
 
 pytestmark = pytest.mark.slow
-SHIFT = ('--controller', 'pi', '--scenario', 'upshift', '--clutch', 'stick_slip')
+SHIFT = ('--controller', 'pi', '--scenario', 'upshift')
 
 
 @pytest.mark.parametrize('module', [False, True])

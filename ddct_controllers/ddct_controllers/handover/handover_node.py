@@ -7,7 +7,6 @@ from typing import Any, ClassVar
 
 from ddct_controllers.handover.interface import HandoverMeasurement
 from ddct_controllers.handover.laws import make_handover
-from ddct_plant.base.clutch_kinds import STICK_SLIP
 from ddct_plant.graph.follower import FollowerNode, Reply
 from ddct_plant.graph.node_reports import handover_info
 from ddct_plant.graph.output import Output
@@ -34,7 +33,7 @@ class HandoverNode(FollowerNode):
     """
 
     KNOWN_ONLY: ClassVar[bool] = True
-    DEFAULTS: ClassVar[Mapping[str, Any]] = {'scenario': 'upshift', 'clutch': STICK_SLIP}
+    DEFAULTS: ClassVar[Mapping[str, Any]] = {'scenario': 'upshift'}
 
     def __init__(self, **kwargs: Any) -> None:
         """Build the handover of the run; raise ParameterError for a run without a shift."""

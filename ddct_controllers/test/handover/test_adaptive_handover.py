@@ -52,7 +52,7 @@ def test_a_worn_clutch_carries_what_it_is_meant_to_without_flare_and_tie_up(scen
 @pytest.mark.parametrize('wear_gain', [0.85, 1.15])
 def test_an_engine_that_cannot_give_the_demand_is_not_taken_for_wear(wear_gain):
     beyond = {'engine.torque_n_m': [300.0]}
-    scenario = load_scenario('upshift_full', beyond, clutch='stick_slip')
+    scenario = load_scenario('upshift_full', beyond)
     settings = replace(worn('upshift_full', wear_gain), scenario=scenario)
     ticks = shift(settings, 'adaptive')
     assert carried_over_requested(ticks, settings) == pytest.approx(1.0, abs=0.05)
@@ -103,7 +103,7 @@ def test_a_longer_handover_finds_the_wear_better():
 @pytest.mark.parametrize('wear_gain', [0.75, 1.25])
 def test_a_mass_that_is_not_known_moves_the_torque_by_less_than_five_percent(mass_kg, wear_gain):
     settings = worn('upshift_full', wear_gain)
-    car = load_scenario('upshift_full', {'vehicle.mass_kg': mass_kg}, clutch='stick_slip')
+    car = load_scenario('upshift_full', {'vehicle.mass_kg': mass_kg})
     other = replace(settings, scenario=car)
     known, unknown = (
         carried_over_requested(shift(other, 'adaptive', law=AdaptiveHandover(each)), other)

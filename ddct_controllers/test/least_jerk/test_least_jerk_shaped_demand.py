@@ -103,6 +103,6 @@ def test_the_authority_over_the_engine_bounds_the_torque():
     ],
 )
 def test_only_a_run_that_starts_locked_has_its_engine_commanded(scenario, periods, commands):
-    settings = RunSettings(load_scenario(scenario, clutch='stick_slip'), clutch='stick_slip')
+    settings = RunSettings(load_scenario(scenario))
     controller = SPEC(ControllerContext(settings, {'demand_periods': periods}))
     assert controller.commands_engine is commands

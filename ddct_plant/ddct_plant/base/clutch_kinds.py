@@ -5,7 +5,7 @@
 from ddct_plant.base.options import Option
 
 LINEAR, STICK_SLIP = CLUTCHES = ('linear', 'stick_slip')
-"""Names of the clutch models, values of `--clutch`."""
+"""Names of the clutch models, values of the scenario key `clutch`."""
 WEAR_GAIN = Option(
     1.0, 'K_usura, wear gain of the clutch, 1 for a new one', above=0.0, at_most=3.0
 )

@@ -6,17 +6,14 @@ import argparse
 import sys
 from collections.abc import Sequence
 
-from ddct_plant.base.clutch_kinds import LINEAR
 from ddct_plant.base.errors import printable
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.scenario import Scenario
 
 
-def scenario_of(
-    options: argparse.Namespace, overrides: Sequence[str], clutch: str = LINEAR
-) -> Scenario:
+def scenario_of(options: argparse.Namespace, overrides: Sequence[str]) -> Scenario:
     """Return the scenario of --scenario with overrides; print `adjusted` on standard error."""
-    scenario = load_scenario(options.scenario, overrides, clutch)
+    scenario = load_scenario(options.scenario, overrides)
     print_adjusted(scenario)
     return scenario
 

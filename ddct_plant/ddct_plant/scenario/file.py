@@ -11,7 +11,6 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from ddct_plant.base.clutch_kinds import LINEAR
 from ddct_plant.files.yaml_text import dump_yaml
 from ddct_plant.scenario.content import flat, scenario_content, scenario_of
 from ddct_plant.scenario.csv_profiles import with_points
@@ -58,9 +57,7 @@ class ScenarioFile:
         name = scenario or made.content['name']
         return cls(name, made.content, made.set, made.places, made.files)
 
-    def scenario(
-        self, overrides: Iterable[str] | Mapping[str, Any] = (), clutch: str = LINEAR
-    ) -> Scenario:
+    def scenario(self, overrides: Iterable[str] | Mapping[str, Any] = ()) -> Scenario:
         """Return the scenario with overrides; arguments and errors as in `load_scenario`."""
         pairs = [
             *(
@@ -81,7 +78,7 @@ class ScenarioFile:
             if start is self._starts.get(keys):
                 scenario = with_numbers(start.scenario, pairs)
             scenario = with_remarks(consistent(scenario, start.origins, self._control_start))
-            require_driveline(scenario.driveline, clutch)
+            require_driveline(scenario.driveline, scenario.clutch)
             return scenario
 
     def _start(self, pairs: Sequence[tuple[str, Any]]) -> '_Start':
@@ -116,7 +113,6 @@ class _Start:
 def load_scenario(
     scenario: str | None = None,
     overrides: Iterable[str] | Mapping[str, Any] = (),
-    clutch: str = LINEAR,
     *,
     car: str | None = None,
     drive: str | None = None,
@@ -125,15 +121,14 @@ def load_scenario(
     Return the scenario of a name or a YAML file, with another car or drive, and overrides.
 
     Without a scenario, a drive is driven by the car `c635` unless `car` is given; else the
-    scenario is `thesis`. Overrides are texts `KEY=VALUE`, or values by dotted key. `clutch` is
-    the clutch model of the run: not every driveline can be integrated with a stick-slip clutch.
+    scenario is `thesis`. Overrides are texts `KEY=VALUE`, or values by dotted key.
 
     Dependent values are kept consistent (see `consistency`), and values that no car has get a
     line in `adjusted` (see `plausible`).
     Raise ParameterError for an unknown name or key or a bad value, DdctError for a file that
     cannot be read.
     """
-    return ScenarioFile.read(scenario, car, drive).scenario(overrides, clutch)
+    return ScenarioFile.read(scenario, car, drive).scenario(overrides)
 
 
 def scenario_to_yaml(scenario: Scenario) -> str:

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
+from ddct_plant.base.clutch_kinds import LINEAR
 from ddct_plant.base.errors import DdctError, ParameterError, require_name, require_number
 from ddct_plant.base.options import options_of
 from ddct_plant.base.timebase import LONGEST_S, PERIOD_S, steps_in
@@ -25,7 +26,7 @@ SETTINGS = 'settings'
 """Key of the JSON in the custom data of a bag."""
 SCHEMA = 1
 """Version of the keys of the JSON; those of the scenarios in it have the same."""
-_NAMES = ('controller', 'architecture', 'clutch', 'mode')
+_NAMES = ('controller', 'architecture', 'mode')
 _NOT_COMPARED = ('description', 'adjusted')
 """Keys of a scenario that change nothing in a run."""
 _ABSENT = 'left out'
@@ -40,7 +41,6 @@ class KnownSettings:
     duration_s: float
     """Planned duration of the run, s."""
     architecture: str
-    clutch: str
     mode: str
     handover: str | None
     """Name of the handover of a gear shift; None in other runs."""
@@ -61,6 +61,11 @@ class KnownSettings:
             raise ParameterError(
                 f'handover is {self.handover!r}, a file: give a name without .py', key='handover'
             )
+
+    @property
+    def clutch(self) -> str:
+        """Name of the clutch model."""
+        return str(self.scenario.get('clutch', LINEAR))
 
     @property
     def steps(self) -> int:
@@ -119,7 +124,6 @@ class RecordedSettings:
                 controller=controller,
                 duration_s=duration_s,
                 architecture=settings.architecture,
-                clutch=settings.clutch,
                 mode=settings.mode,
                 handover=settings.handover_name if shift else None,
                 scenario=scenario_content(known),
@@ -176,7 +180,6 @@ def run_settings(known: KnownSettings, case: CaseSettings | None = None) -> RunS
     known_scenario = _scenario(known.scenario)
     shared: dict[str, Any] = {
         'architecture': known.architecture,
-        'clutch': known.clutch,
         'mode': known.mode,
         **({} if known.handover is None else {'handover': known.handover}),
     }

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
+from ddct_plant.base.clutch_kinds import CLUTCHES, LINEAR, STICK_SLIP
 from ddct_plant.base.errors import ParameterError, require_name
 from ddct_plant.base.options import ASSUMED, REQUIRED, OptionGroup, option, section
 from ddct_plant.base.timebase import LONGEST_S, steps_in
@@ -97,6 +98,13 @@ class Scenario(OptionGroup):
     """Section `driveline` of the file; models take `driveline`, which is complete."""
     gearbox: Gearbox = section(Gearbox(), left_out=True)
     actuator: ActuatorParameters = section(ActuatorParameters(), left_out=True)
+    clutch: str = option(
+        LINEAR,
+        'model of the clutch: `linear` transmits what the actuator gives, as in the thesis; with '
+        '`stick_slip` the plates stick and slip, and friction and brake hold the wheels',
+        choices=CLUTCHES,
+        left_out=True,
+    )
     friction: FrictionParameters = section(FrictionParameters(), left_out=True, stick_slip=True)
     heat: HeatParameters = section(HeatParameters(), left_out=True, stick_slip=True)
     brake: BrakeProfile = section(BrakeProfile(), left_out=True, stick_slip=True)
@@ -140,10 +148,21 @@ class Scenario(OptionGroup):
             self.gearbox.require_gear('gear', self.gear)
         if self.shift is not None:
             self.gearbox.require_gear('shift.off_going_gear', self.shift.off_going_gear)
+        self._require_clutch()
         if self.slope.given and self.load.slope_rad:
             raise ParameterError(
                 f'slope has points, and load.slope_rad is {self.load.slope_rad:g} rad: give one',
                 key='slope',
+            )
+
+    def _require_clutch(self) -> None:
+        """Refuse keys that the linear clutch would ignore."""
+        given = self.of_stick_slip
+        if given and self.clutch != STICK_SLIP:
+            raise ParameterError(
+                f'the clutch {self.clutch} would ignore {", ".join(given)}: give the car clutch: '
+                f'{STICK_SLIP}, or leave that out',
+                key=given[0],
             )
 
     @cached_property

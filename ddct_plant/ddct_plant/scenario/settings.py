@@ -42,7 +42,6 @@ class RunSettings(OptionGroup):
 
     scenario: Scenario
     architecture: str = option_field(SETTINGS['architecture'])
-    clutch: str = option_field(SETTINGS['clutch'])
     wear_gain: float = option_field(SETTINGS['wear_gain'])
     mode: str = option_field(SETTINGS['mode'])
     seed: int = option_field(SETTINGS['seed'])
@@ -55,7 +54,6 @@ class RunSettings(OptionGroup):
         """Check every setting; raise ParameterError that names a bad one and the choices."""
         super().__post_init__()
         self._require_reference()
-        self._require_clutch()
         self._require_shift()
         self._require_known()
 
@@ -84,6 +82,11 @@ class RunSettings(OptionGroup):
         time.
         """
         return self.architecture == 'detailed'
+
+    @property
+    def clutch(self) -> str:
+        """Name of the clutch model, which is the scenario's."""
+        return self.scenario.clutch
 
     @property
     def stick_slip(self) -> bool:
@@ -120,16 +123,6 @@ class RunSettings(OptionGroup):
         """Return the kind of the run, which decides its topics; `two_input` if it commands C_m."""
         return RunKind(self.lockstep, two_input, self.clutch, self.sensed, self.shift)
 
-    def _require_clutch(self) -> None:
-        """Refuse a scenario with keys that the linear clutch would ignore."""
-        given = self.scenario.of_stick_slip
-        if given and not self.stick_slip:
-            raise ParameterError(
-                f'scenario {self.scenario.name} gives {", ".join(given)}, which the clutch '
-                f'{self.clutch} would ignore: choose the clutch {STICK_SLIP}, or leave that out',
-                key=given[0],
-            )
-
     def _require_shift(self) -> None:
         """Refuse a shift that cannot be, and settings of a shift in another run."""
         if not self.shift:
@@ -148,6 +141,12 @@ class RunSettings(OptionGroup):
         """Refuse known settings of another kind of run, whose topics would not fit together."""
         if self.known_scenario is None:
             return
+        if self.clutch != self.known_scenario.clutch:
+            raise ParameterError(
+                f'clutch is {self.clutch}, but what controllers know of scenario '
+                f'{self.scenario.name} has {self.known_scenario.clutch}: give both the same',
+                key='clutch',
+            )
         for section in ('sensors', 'shift'):
             ours, known = (
                 getattr(each, section) is not None for each in (self.scenario, self.known.scenario)

@@ -30,6 +30,7 @@ def content(gears: tuple[int, int], kmh: float, torque: float, **other: Any) -> 
         'score_window_s': [0.3, 2.0],
         'gear': gears[1],
         'equilibrium': 'full',
+        'clutch': 'stick_slip',
         'initial': {'engine_speed_rad_s': engine, 'shaft_speed_rad_s': shaft},
         'engine': {'time_s': [0.0], 'torque_n_m': [torque]},
         'engine_limits': {},
@@ -47,10 +48,9 @@ def shift_settings(
 ) -> RunSettings:
     """Return the settings of a packaged shift; `keys` are those of its section."""
     changes = {f'shift.{key}': value for key, value in keys.items()}
-    scenario = load_scenario(name, changes, clutch='stick_slip')
+    scenario = load_scenario(name, changes)
     return RunSettings(
         scenario,
-        clutch='stick_slip',
         off_going_wear_gain=off_going_wear_gain,
         handover=handover,
     )
@@ -60,11 +60,10 @@ def settings_of(
     scenario: dict[str, Any],
     shift: dict[str, Any],
     off_going_wear_gain: float = 1.0,
-    clutch: str = 'stick_slip',
 ) -> RunSettings:
     """Return the settings of a shift for the content of a scenario and of its section."""
-    made = ScenarioFile('shift', {**scenario, 'shift': shift}).scenario(clutch=clutch)
-    return RunSettings(made, clutch=clutch, off_going_wear_gain=off_going_wear_gain)
+    made = ScenarioFile('shift', {**scenario, 'shift': shift}).scenario()
+    return RunSettings(made, off_going_wear_gain=off_going_wear_gain)
 
 
 class Sample(NamedTuple):

@@ -26,7 +26,7 @@ def folder(tmp_path):
 def load(folder, text=HEAD + SPEC, overrides=()):
     (folder / 'mine.yaml').write_text(text)
     drive = str(folder / 'mine.yaml')
-    return load_scenario(overrides=overrides, car='c635_thesis', drive=drive)
+    return load_scenario(overrides=overrides, car='c635_no_limits', drive=drive)
 
 
 def again(folder, scenario):

@@ -30,7 +30,9 @@ def test_options_of_controllers_and_left_out_sections_count() -> None:
     assert changed_values(gain) == ('controllers.pi.proportional_gain=0.2',)
     launch = dataclasses.replace(load_scenario('launch'), closing=None)
     assert 'closing.dwell_s left out' in changed_values(launch)
-    assert 'closing.dwell_s=0.1' in changed_values(load_scenario('thesis', ['closing={}']))
+    assert 'closing.dwell_s=0.1' in changed_values(
+        load_scenario('thesis_sticking', ['closing={}'])
+    )
 
 
 def test_a_changed_file_of_a_packaged_name_is_found_out(tmp_path: Path) -> None:

@@ -38,11 +38,12 @@ def test_each_value_or_the_section_it_is_in_has_a_comment(noun, name):
 
 @pytest.mark.parametrize('name', NAMES)
 def test_the_linear_clutch_refuses_what_it_would_ignore(name):
-    with pytest.raises(ParameterError) as caught:
-        RunSettings(load_scenario(name))
+    with refused(ParameterError, 'initial.clutch_phase') as caught:
+        load_scenario(name, ['clutch=linear'])
     message = str(caught.value)
-    assert message.startswith(f'scenario {name} gives initial.clutch_phase')
-    assert 'which the clutch linear would ignore: choose the clutch stick_slip' in message
+    assert message.startswith(f'drive {name}: line ')
+    assert ': the clutch linear would ignore initial.clutch_phase' in message
+    assert message.endswith(': give the car clutch: stick_slip, or leave that out')
 
 
 @pytest.mark.parametrize('section', ['friction', 'heat', 'brake', 'closing'])
@@ -53,15 +54,14 @@ def test_each_section_of_the_clutch_that_sticks_is_named(section):
         'brake': 'brake={time_s: [0.0], torque_n_m: [9.0]}',
         'closing': 'closing={}',
     }[section]
-    scenario = load_scenario('thesis', [change])
     with refused(ParameterError, key=section):
-        RunSettings(scenario)
-    assert RunSettings(scenario, clutch='stick_slip').scenario.of_stick_slip == (section,)
+        load_scenario('thesis', [change])
+    assert load_scenario('thesis_sticking', [change]).of_stick_slip == (section,)
 
 
 @pytest.mark.parametrize('name', [name for name in NAMES if name != 'tip_in'])
 def test_a_launch_starts_at_rest_with_an_open_clutch_and_a_balanced_shaft(name):
-    settings = RunSettings(load_scenario(name), clutch='stick_slip')
+    settings = RunSettings(load_scenario(name))
     start = initial_state(settings)
     assert start.engine_speed == pytest.approx(104.72)
     assert (start.sides[0].shaft_speed, start.wheel_speed) == (0.0, 0.0)
@@ -77,6 +77,6 @@ def test_launches_and_shifts_close_the_clutch_after_lock_up_and_nothing_else_doe
 
 
 def test_the_tip_in_starts_locked():
-    start = initial_state(RunSettings(load_scenario('tip_in'), clutch='stick_slip'))
+    start = initial_state(RunSettings(load_scenario('tip_in')))
     assert start.engine_speed == start.sides[0].shaft_speed
     assert start.sides[0].torque_request > 0.0

@@ -38,17 +38,15 @@ TRUE = {'vehicle.mass_kg': 1789.25, 'actuator.delay_s': 0.013, 'load.slope_rad':
 PLAIN = RunSettings(THESIS, architecture='base', mode='realtime')
 VARIED = RunSettings(
     load_scenario('launch', TRUE),
-    clutch='stick_slip',
     wear_gain=math.nextafter(0.7, 1.0),
     seed=424243,
     known_scenario=LAUNCH,
 )
 SHIFT = RunSettings(
-    load_scenario('upshift', TRUE, 'stick_slip'),
-    clutch='stick_slip',
+    load_scenario('upshift', TRUE),
     off_going_wear_gain=0.9,
     handover='slip',
-    known_scenario=load_scenario('upshift', clutch='stick_slip'),
+    known_scenario=load_scenario('upshift'),
 )
 ALL = pytest.mark.parametrize('of', [PLAIN, VARIED, SHIFT], ids=['plain', 'varied', 'shift'])
 
@@ -137,7 +135,7 @@ def test_a_key_that_only_one_has_is_a_difference() -> None:
 
 
 def test_known_values_of_runs_with_other_cases_are_the_same_and_others_differ() -> None:
-    plain = RunSettings(LAUNCH, clutch='stick_slip')
+    plain = RunSettings(LAUNCH)
     assert known_values(VARIED) == known_values(plain)
     assert not {'wear_gain', 'seed', 'off_going_wear_gain'} & known_values(VARIED).keys()
     assert values_of(VARIED) != values_of(plain)
@@ -161,7 +159,7 @@ def test_a_handover_in_a_file_has_its_name_in_the_settings() -> None:
     assert values_of(in_a_file)['handover'] == 'mine'
 
 
-@pytest.mark.parametrize('name', ['controller', 'architecture', 'clutch', 'mode', 'handover'])
+@pytest.mark.parametrize('name', ['controller', 'architecture', 'mode', 'handover'])
 def test_a_name_that_no_file_could_have_is_refused(name: str) -> None:
     change: Any = {name: '../evil'}
     with refused(ParameterError, name):

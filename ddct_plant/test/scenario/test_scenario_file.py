@@ -183,7 +183,6 @@ def test_an_unknown_scenario_is_refused(name, key, place):
     ('setting', 'value'),
     [
         ('architecture', 'none'),
-        ('clutch', 'sticky'),
         ('mode', 'fast'),
         ('wear_gain', 0.0),
         ('wear_gain', float('nan')),

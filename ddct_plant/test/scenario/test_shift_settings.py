@@ -15,16 +15,16 @@ from ddct_plant.signals.signal import RunKind
 
 
 def settings(*overrides, **values):
-    scenario = load_scenario('upshift', overrides, clutch='stick_slip')
-    return RunSettings(scenario, **{'clutch': 'stick_slip', **values})
+    scenario = load_scenario('upshift', overrides)
+    return RunSettings(scenario, **values)
 
 
 def test_the_packaged_upshifts_are_shifts_and_a_launch_is_none():
     for name in SHIFTS:
-        upshift = RunSettings(load_scenario(name), clutch='stick_slip')
+        upshift = RunSettings(load_scenario(name))
         assert upshift.scenario.adjusted == ()
         assert upshift.kind() == RunKind(clutch='stick_slip', shift=True)
-    assert not RunSettings(load_scenario('launch'), clutch='stick_slip').kind().shift
+    assert not RunSettings(load_scenario('launch')).kind().shift
 
 
 def test_keys_of_the_shift_are_set_like_others_and_survive_their_file():
@@ -78,19 +78,23 @@ def test_a_shift_in_another_scenario_needs_its_gear():
 @pytest.mark.parametrize(
     ('values', 'key'),
     [
-        ({'clutch': 'linear'}, 'closing'),
         ({'architecture': 'base'}, 'architecture'),
         ({'off_going_wear_gain': 0.0}, 'off_going_wear_gain'),
     ],
 )
-def test_a_shift_needs_sticking_clutches_the_detailed_architecture_and_possible_wear(values, key):
+def test_a_shift_needs_the_detailed_architecture_and_possible_wear(values, key):
     with refused(ParameterError, key):
         settings(**values)
+
+
+def test_a_shift_needs_clutches_that_stick():
+    with refused(ParameterError, 'closing'):
+        settings('clutch=linear')
 
 
 @pytest.mark.parametrize('values', [{'off_going_wear_gain': 0.8}, {'handover': 'timed'}])
 def test_settings_of_a_shift_are_refused_in_another_run(values):
     (key,) = values
     with refused(ParameterError, key):
-        RunSettings(load_scenario('launch'), clutch='stick_slip', **values)
+        RunSettings(load_scenario('launch'), **values)
     assert getattr(settings(**values), key) == values[key]

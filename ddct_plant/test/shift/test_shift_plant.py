@@ -166,9 +166,8 @@ def test_settings_that_do_not_fit_are_refused(key, scenario, shift):
 
 
 def test_the_linear_clutch_and_impossible_wear_are_refused():
+    linear = content((1, 2), 20.0, 100.0, closing=None, clutch='linear')
     with refused(ParameterError, 'shift'):
-        settings_of(
-            content((1, 2), 20.0, 100.0, closing=None), {'off_going_gear': 1}, 1.0, 'linear'
-        )
+        settings_of(linear, {'off_going_gear': 1}, 1.0)
     with refused(ParameterError, 'off_going_wear_gain'):
         shift_settings('upshift', 0.0)

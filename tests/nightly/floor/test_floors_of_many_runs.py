@@ -25,18 +25,18 @@ def own_cache(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ('scenario', 'clutch', 'controller'),
+    ('scenario', 'controller'),
     [
-        ('launch', 'stick_slip', 'ls8'),
-        ('launch_hot', 'stick_slip', 'mpc3'),
-        ('thesis', 'stick_slip', 'hinf1'),
-        ('thesis', 'linear', 'mpc3'),
+        ('launch', 'ls8'),
+        ('launch_hot', 'mpc3'),
+        ('thesis_sticking', 'hinf1'),
+        ('thesis', 'mpc3'),
     ],
 )
-def test_no_metric_of_a_run_is_below_its_floor(scenario, clutch, controller):
-    settings = RunSettings(load_scenario(scenario), clutch=clutch)
+def test_no_metric_of_a_run_is_below_its_floor(scenario, controller):
+    settings = RunSettings(load_scenario(scenario))
     run = run_headless(settings, controller)
-    metrics = [name for name in METRICS if clutch == 'stick_slip' or name != OF_STICK_SLIP]
+    metrics = [name for name in METRICS if settings.stick_slip or name != OF_STICK_SLIP]
     for metric, over in floors_of_run(settings, metrics, run).items():
         assert over.value >= over.floor.least, metric
 
@@ -52,12 +52,9 @@ def test_no_metric_of_a_shift_is_below_its_floor(scenario, handover, controller)
         assert over.value >= over.floor.least, metric
 
 
-@pytest.mark.parametrize(
-    ('scenario', 'clutch'),
-    [('launch', 'stick_slip'), ('thesis', 'stick_slip'), ('thesis', 'linear')],
-)
-def test_no_peak_jerk_is_below_a_least_that_is_a_bound(scenario, clutch):
-    settings = RunSettings(load_scenario(scenario), clutch=clutch)
+@pytest.mark.parametrize('scenario', ['launch', 'thesis_sticking', 'thesis'])
+def test_no_peak_jerk_is_below_a_least_that_is_a_bound(scenario):
+    settings = RunSettings(load_scenario(scenario))
     bounds = 0
     for controller in ('ls8', 'mpc3', 'hinf1'):
         scored = simulate_and_score(RunPlan(settings, controller, 'headless'), packaged_limits())

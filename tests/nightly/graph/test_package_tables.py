@@ -19,16 +19,16 @@ WITH_TARGET = (
     'reference.shape=engine_speed_target',
     'engine_speed_reference={time_s: [0.0, 2.0], speed_rad_s: [160.0, 180.0]}',
 )
-SHIFT = plan('pi', scenario='upshift', duration_s=2.0, clutch='stick_slip')
+SHIFT = plan('pi', scenario='upshift', duration_s=2.0)
 RUNS = (
     plan('pi'),
-    plan('pi', clutch='stick_slip', changes=('sensors={}',)),
+    plan('pi', scenario='thesis_sticking', changes=('sensors={}',)),
     plan('mpc4'),
     plan('pi', mode='realtime'),
     plan('pi', changes=WITH_TARGET),
     plan('pi', changes=(*WITH_TARGET, 'sensors={}')),
     SHIFT,
-    plan('mpc4', scenario='upshift', duration_s=2.0, clutch='stick_slip', changes=('sensors={}',)),
+    plan('mpc4', scenario='upshift', duration_s=2.0, changes=('sensors={}',)),
 )
 """Runs that have every topic between them."""
 

@@ -37,7 +37,7 @@ def test_every_architecture_leaves_the_same_bytes(tmp_path: Path, architecture: 
 
 @pytest.mark.parametrize(
     ('controller', 'options'),
-    [('pi', {'seed': 2**31 - 1, 'changes': (ALL_ON,)}), ('mpc4', {'clutch': 'stick_slip'})],
+    [('pi', {'seed': 2**31 - 1, 'changes': (ALL_ON,)}), ('mpc4', {'scenario': 'thesis_sticking'})],
     ids=['sensors', 'two inputs'],
 )
 def test_other_kinds_of_runs_leave_the_same_bytes(

@@ -9,12 +9,12 @@ import pytest
 from ddct_bringup.programs import bringup
 
 
-@pytest.mark.parametrize('scenario', ['thesis', 'upshift'])
+@pytest.mark.parametrize('scenario', ['thesis_sticking', 'upshift'])
 def test_a_real_time_run_in_one_process_prints_its_folder_alone(
     capfd: pytest.CaptureFixture[str], tmp_path: Path, scenario: str
 ) -> None:
     out = tmp_path / 'runs'
-    arguments = ['--controller', 'pi', '--scenario', scenario, '--clutch', 'stick_slip']
+    arguments = ['--controller', 'pi', '--scenario', scenario]
     arguments += ['--duration', '0.8', '--single-process', '--mode', 'realtime', '--out', str(out)]
     code = bringup.main(arguments)
     printed = capfd.readouterr()

@@ -17,7 +17,7 @@ def test_of_several_scenarios_the_command_has_the_first_and_the_page_names_the_o
 ) -> None:
     monkeypatch.chdir(tmp_path)
     grid = {'scenario': ['launch', 'launch_hot', 'launch_gentle'], 'duration_s': [2.0]}
-    campaign = {'clutch': 'stick_slip', 'grid': grid, 'random': VARIED}
+    campaign = {'grid': grid, 'random': VARIED}
     Path('pi.yaml').write_text(FILE % 'proportional_gain: 0.2', encoding='utf-8')
     options = {'trials': 1, 'campaign': campaign, 'constraints': ENGAGED}
     made_tuning(Path('tuned'), controller='pi.yaml', **options)

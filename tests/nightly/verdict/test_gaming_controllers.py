@@ -46,7 +46,7 @@ def test_no_controller_is_without_a_test():
 @pytest.mark.parametrize('name', CLAIMS)
 def test_a_controller_does_what_it_claims(name, tmp_path):
     scenario, claimed = CLAIMS[name]
-    made = run(gaming_file(name), scenario=scenario, clutch='stick_slip', out=tmp_path)
+    made = run(gaming_file(name), scenario=scenario, out=tmp_path)
     assert made.valid
     figures = independent_figures(made.path)
     for key, limits in claimed.items():
@@ -58,7 +58,7 @@ def test_a_controller_does_what_it_claims(name, tmp_path):
 
 
 def test_creep_holds_about_9_rpm_of_slip():
-    made = run(gaming_file('creep'), scenario='thesis', clutch='stick_slip')
+    made = run(gaming_file('creep'), scenario='thesis_sticking')
     last = made.trajectory.slip_speed[-30:] * 30.0 / np.pi
     assert last.min() > 7.0
     assert last.max() < 11.0
@@ -66,8 +66,7 @@ def test_creep_holds_about_9_rpm_of_slip():
 
 def test_replay_requests_the_same_with_a_worn_clutch():
     new, worn = (
-        run(gaming_file('replay'), scenario='launch', clutch='stick_slip', wear_gain=wear)
-        for wear in (1.0, 0.8)
+        run(gaming_file('replay'), scenario='launch', wear_gain=wear) for wear in (1.0, 0.8)
     )
     on = slice(30, 150)
     assert np.allclose(new.trajectory.torque_request[on], worn.trajectory.torque_request[on])
@@ -141,7 +140,7 @@ def test_peek_torques_finds_the_mass_ratio_1_in_a_case_of_another_mass(scenario)
 @pytest.mark.filterwarnings('ignore::UserWarning')  # the inertia follows the mass
 def test_peek_settings_finds_the_mass_that_is_known():
     heavy = {'vehicle.mass_kg': 1800}
-    made = run(gaming_file('peek_settings'), scenario='launch', clutch='stick_slip', set=heavy)
+    made = run(gaming_file('peek_settings'), scenario='launch', set=heavy)
     found = dict(made.trajectory.status[100])
     assert float(found['settings.scenario.vehicle.mass_kg']) == 1800.0
 
@@ -149,6 +148,6 @@ def test_peek_settings_finds_the_mass_that_is_known():
 @pytest.mark.filterwarnings('ignore::UserWarning')  # the inertia follows the mass
 def test_peek_torques_computes_the_known_mass_from_the_open_loop_torque():
     heavy = {'vehicle.mass_kg': 1800}
-    made = run(gaming_file('peek_torques'), scenario='launch', clutch='stick_slip', set=heavy)
+    made = run(gaming_file('peek_torques'), scenario='launch', set=heavy)
     found = dict(made.trajectory.status[100])
     assert float(found['mass_ratio']) == pytest.approx(1.2, rel=1e-6)

@@ -25,7 +25,7 @@ LOCKED_WHILE_HOT = 'launch_hot'
 
 def judged(name: str, scenario: str, out: Path) -> tuple[Run, dict[str, Figure]]:
     """Return a run with stick-slip, and its figures by an independent script."""
-    made = run(gaming_file(name), scenario=scenario, clutch='stick_slip', out=out)
+    made = run(gaming_file(name), scenario=scenario, out=out)
     assert made.valid
     return made, independent_figures(made.path)
 

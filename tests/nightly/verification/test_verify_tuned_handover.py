@@ -25,7 +25,6 @@ def test_a_tuning_carries_the_file_of_its_handover(
     controller.write_text(with_options_text('pi_again', 'pi', {}), encoding='utf-8')
     cases = {
         'scenario': 'upshift',
-        'clutch': 'stick_slip',
         'grid': {'handover': ['own.py']},
         'random': {'samples': 1, 'vary': {'duration_s': DURATION}},
     }

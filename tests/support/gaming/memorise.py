@@ -43,7 +43,7 @@ class Listener(Controller):
 
 def recorded(scenario: str) -> list[float]:
     """Return the request of `least_jerk` from the start of feedback on, each 50 ms."""
-    settings = RunSettings(load_scenario(scenario, clutch='stick_slip'), clutch='stick_slip')
+    settings = RunSettings(load_scenario(scenario))
     run = run_headless(settings, 'least_jerk')
     on = [dict(pairs)['feedback'] == 'on' for pairs in run.status]
     return [round(float(each), 2) for each in run.torque_request[on.index(True) :: EVERY]]

@@ -50,7 +50,6 @@ def _further() -> Iterator[RunPlan]:
         *('pi', 'headless'),
         scenario='upshift',
         duration_s=0.6,
-        clutch='stick_slip',
         changes=('score_window_s=[0.3, 0.6]',),
     )
     yield plan(*('pi', 'headless'), duration_s=0.7, changes=(ALL_ON, 'score_window_s=[0.6, 0.7]'))

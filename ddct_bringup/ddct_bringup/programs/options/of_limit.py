@@ -13,10 +13,10 @@ from ddct_plant.program.command_line import ProgramParser
 _HOW_TIMES = 'write START:STOP:COUNT, such as 0.4:1.4:11, or A,B,C, in s'
 _MOST_TIMES = 1000
 _EPILOG = """examples:
-  ddct limit --scenario launch --clutch stick_slip --metrics peak_jerk --controllers ls8,hinf1
-  ddct limit --scenario launch --clutch stick_slip --lock-times 0.6:1.4:9 --figure front.png
-  ddct limit --scenario upshift --handover model --clutch stick_slip --metrics peak_jerk
-  ddct limit --cap peak_jerk=6 --metrics peak_jerk --scenario launch --clutch stick_slip --json -
+  ddct limit --scenario launch --metrics peak_jerk --controllers ls8,hinf1
+  ddct limit --scenario launch --lock-times 0.6:1.4:9 --figure front.png
+  ddct limit --scenario upshift --handover model --metrics peak_jerk
+  ddct limit --cap peak_jerk=6 --metrics peak_jerk --scenario launch --json -
 
 For each lock time: the least value of a metric that any torque request can lead to, with the
 proof checked, and the value that a run of the simulated plant attains. docs/use/limit.md says

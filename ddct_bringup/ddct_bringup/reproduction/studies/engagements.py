@@ -20,11 +20,10 @@ from ddct_bringup.reproduction.studies.study import (
     headers,
     identified_by,
 )
-from ddct_bringup.reproduction.study_run import THESIS_SCENARIO, StudyRun, study_run
+from ddct_bringup.reproduction.study_run import StudyRun, study_run
 from ddct_bringup.verdict.state import ENGAGED
 from ddct_controllers.design.drawing.line_styles import BLACK, BLUE, GREY, VERMILLION
 from ddct_controllers.registry import own_controller_names
-from ddct_plant.base.clutch_kinds import CLUTCHES, STICK_SLIP
 from ddct_plant.base.timebase import PERIOD_S, time_of_step
 from ddct_plant.program.table import Column
 from ddct_plant.program.workers import in_processes
@@ -43,8 +42,8 @@ DOTS_PER_INCH = 58.0
 MARGIN = 0.15
 """Margin beyond the slips of engaged runs, as a share; larger slips leave the panel."""
 _COLOURS = (VERMILLION, BLACK, BLUE)
-Case = tuple[str, str, float, str]
-"""Scenario, clutch, wear gain, controller."""
+Case = tuple[str, float, str]
+"""Scenario, wear gain, controller."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,18 +77,18 @@ COLUMNS: tuple[StudyColumn, ...] = (
 
 def engagement(case: Case) -> tuple[tuple[str, ...], Slip]:
     """Run one case; return its row and its slip, small enough to send between processes."""
-    scenario, clutch, wear_gain, controller = case
-    settings = RunSettings(load_scenario(scenario), clutch=clutch, wear_gain=wear_gain)
+    scenario, wear_gain, controller = case
+    settings = RunSettings(load_scenario(scenario), wear_gain=wear_gain)
     run = study_run(settings, controller)
     label = f'{wear_gain:g}'
     row = (label, controller, *cells(COLUMNS, run))
     return row, Slip(controller, label, run.scores.state, run.start, run.slip_rpm)
 
 
-def _engagements(scenario: str, clutch: str) -> Study:
-    title = f'Every controller in {scenario}, clutch {clutch}'
+def _engagements(scenario: str) -> Study:
+    title = f'Every controller in {scenario}'
     cases = [
-        (scenario, clutch, wear_gain, controller)
+        (scenario, wear_gain, controller)
         for wear_gain in WEAR_GAINS
         for controller in own_controller_names()
     ]
@@ -158,18 +157,13 @@ def _range(slips: Sequence[Slip]) -> tuple[float, float]:
 
 
 def _functions() -> dict[str, StudyFunction]:
-    """Return the studies by name: the stick-slip clutch everywhere, the linear one in `thesis`."""
-    thesis = THESIS_SCENARIO.name
-    pairs = [(thesis, clutch) for clutch in CLUTCHES]
-    others = [name for name in scenario_names() if name != thesis]
-    pairs += [(name, STICK_SLIP) for name in others if not load_scenario(name).shift]
+    """Return the studies by name, one for each packaged scenario that is no gear shift."""
     return {
-        f'engagements_{scenario}' + (f'_{clutch}' if scenario == thesis else ''): partial(
-            _engagements, scenario, clutch
-        )
-        for scenario, clutch in pairs
+        f'engagements_{name}': partial(_engagements, name)
+        for name in scenario_names()
+        if not load_scenario(name).shift
     }
 
 
 ENGAGEMENTS = _functions()
-"""Studies by name, one per scenario and clutch."""
+"""Studies by name, one per scenario."""

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from ddct_bringup.reproduction.numbers.thesis_number import Finding
 from ddct_bringup.reproduction.studies.study import FINER_WEAR_GAINS, Study, identified_by
-from ddct_bringup.reproduction.study_run import THESIS_SCENARIO, StudyRun, study_run
+from ddct_bringup.reproduction.study_run import StudyRun, study_run
 from ddct_bringup.reproduction.values.orders import (
     OSCILLATION_RATINGS,
     SLIP_RATINGS,
@@ -20,15 +20,18 @@ from ddct_bringup.reproduction.values.orders import (
     rows_of_table_5_2,
 )
 from ddct_bringup.verdict.state import ENGAGED, NOT_ENGAGED
-from ddct_plant.base.clutch_kinds import CLUTCHES
+from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
+
+SCENARIOS = ('thesis', 'thesis_sticking')
+"""Names of the scenarios: the thesis's linear clutch, and the one that sticks."""
 
 
 @dataclass(frozen=True)
 class RatedRow:
     """One run of Table 5.2: its values, the ratings that follow, and the printed ones."""
 
-    clutch: str
+    scenario: str
     wear_gain: float
     """Wear gain K_usura."""
     controller: str
@@ -63,7 +66,7 @@ def table_5_2_in_numbers() -> Study:
     return Study(
         f'Table 5.2 in numbers, architecture {WORN_ARCHITECTURE}',
         (
-            'clutch',
+            'scenario',
             'K_usura',
             'controller',
             '|w_d| as the score window ends rad/s',
@@ -76,16 +79,16 @@ def table_5_2_in_numbers() -> Study:
             'w_d, printed',
             'w_sr and A_x, printed',
         ),
-        [row for clutch in CLUTCHES for gain in FINER_WEAR_GAINS for row in rows_of(clutch, gain)],
+        [row for name in SCENARIOS for gain in FINER_WEAR_GAINS for row in rows_of(name, gain)],
         weights=identified_by(3),
     )
 
 
-def rows_of(clutch: str, wear_gain: float) -> list[tuple[str, ...]]:
-    """Return the rows of the table for a clutch and a wear gain, one for each controller."""
+def rows_of(scenario: str, wear_gain: float) -> list[tuple[str, ...]]:
+    """Return the rows of the table for a scenario and a wear gain, one for each controller."""
     return [
         (
-            row.clutch,
+            row.scenario,
             f'{row.wear_gain:g}',
             row.controller,
             *(f'{value:.3g}' for value in (row.slip_end_rad_s, *row.sigmas)),
@@ -94,13 +97,13 @@ def rows_of(clutch: str, wear_gain: float) -> list[tuple[str, ...]]:
             _printed(row.slip_printed, row.slip_holds),
             _printed(row.oscillations_printed, row.oscillations_hold),
         )
-        for row in rated_rows(clutch, wear_gain)
+        for row in rated_rows(scenario, wear_gain)
     ]
 
 
-def rated_rows(clutch: str, wear_gain: float) -> list[RatedRow]:
-    """Return the rated runs of the table's controllers with a clutch and a wear gain."""
-    settings = RunSettings(THESIS_SCENARIO, WORN_ARCHITECTURE, clutch=clutch, wear_gain=wear_gain)
+def rated_rows(scenario: str, wear_gain: float) -> list[RatedRow]:
+    """Return the rated runs of the table's controllers in a scenario with a wear gain."""
+    settings = RunSettings(load_scenario(scenario), WORN_ARCHITECTURE, wear_gain=wear_gain)
     runs = {name: study_run(settings, name) for name in SLIP_RATINGS}
     states = {name: run.scores.state for name, run in runs.items()}
     slips, torsion, acceleration = rows_of_table_5_2(runs)
@@ -109,7 +112,7 @@ def rated_rows(clutch: str, wear_gain: float) -> list[RatedRow]:
     judged = judge_table_5_2(wear_gain, ranked) if wear_gain in WORN else {}
     return [
         RatedRow(
-            clutch,
+            scenario,
             wear_gain,
             name,
             slips[name],

@@ -4,7 +4,7 @@
 
 from dataclasses import replace
 
-from ddct_plant.base.clutch_kinds import CLUTCHES, LINEAR, WEAR_GAIN
+from ddct_plant.base.clutch_kinds import WEAR_GAIN
 from ddct_plant.base.options import Option, Options
 
 ARCHITECTURES = ('base', 'feedforward', 'feedforward_tanh', 'detailed')
@@ -13,7 +13,6 @@ MODES = ('lockstep', 'realtime')
 """Modes of a run: lock-step waits for every reply; real time steps at 100 Hz and counts misses."""
 SETTINGS: Options = {
     'architecture': Option('detailed', 'control architecture', choices=ARCHITECTURES),
-    'clutch': Option(LINEAR, 'model of the clutch', choices=CLUTCHES),
     'wear_gain': WEAR_GAIN,
     'mode': Option('lockstep', 'wait for every node, or 100 Hz on the wall clock', choices=MODES),
     'seed': Option(

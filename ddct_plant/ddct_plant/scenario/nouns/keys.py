@@ -25,6 +25,7 @@ _OF: Mapping[str, tuple[str, ...]] = {
         'gearbox',
         'engine_limits',
         'engine_authority',
+        'clutch',
         'friction',
         'heat.plate_j_k',
         'heat.facing_j_k',
