@@ -14,7 +14,7 @@ from ddct_bringup.verdict.limits import packaged_limits
 LAUNCH = (
     'initial.shaft_speed_rad_s=0',
     'initial.engine_speed_rad_s=104.7',
-    'driveline.total_ratio=16.06',
+    'gear=1',
     'load.slope_rad=0.05',
     'brake.time_s=[0.2,0.4]',
     'brake.torque_n_m=[600,0]',

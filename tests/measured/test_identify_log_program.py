@@ -29,7 +29,7 @@ def test_a_foreign_log_gives_tables_json_and_a_scenario_that_runs(
     check = ['--check', str(folder / 'other.csv')]
     assert identify(folder, *check, '--out', str(out), '--json', str(report)) == 0
     printed = capsys.readouterr().out
-    assert 'intervals of 95 %' in printed
+    assert 'intervals of 95 %' in ' '.join(printed.split())
     content = json.loads(report.read_text())
     rows = {row['name']: row for row in content['parameters']}
     assert {row['state'] for row in rows.values()} == {'fitted'}
@@ -41,7 +41,11 @@ def test_a_foreign_log_gives_tables_json_and_a_scenario_that_runs(
     scenario = load_scenario(str(out))
     assert scenario.name == 'drive'
     assert 'drive.csv' in scenario.description
-    assert [line.split()[0] for line in scenario.adjusted] == ['vehicle.mass_kg', 'load.slope_rad']
+    assert [line.split()[0] for line in scenario.adjusted] == [
+        'vehicle.mass_kg',
+        'gear',
+        'load.slope_rad',
+    ]
     assert scenario.driveline.vehicle_inertia == rows['vehicle_inertia']['value']
     assert run_headless(RunSettings(scenario), 'pi').steps == scenario.steps
 

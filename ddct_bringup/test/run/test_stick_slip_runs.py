@@ -47,7 +47,7 @@ def stored_energy(trajectory, driveline):
         ((), 'ls8', 1.0),
         ((), 'pi', 0.7),
         (('load.slope_rad=0.05', 'friction.static_over_kinetic=1.2'), 'hinf2', 1.0),
-        ((*LAUNCH, 'driveline.total_ratio=16.06'), 'hinf2', 1.0),
+        ((*LAUNCH, 'gear=1'), 'hinf2', 1.0),
     ],
 )
 def test_work_in_is_kinetic_and_elastic_energy_and_what_friction_takes(
@@ -78,7 +78,7 @@ def test_slip_is_zero_while_locked_and_work_is_zero_within_a_locked_period():
 
 
 def test_events_alternate_lie_in_their_period_and_end_in_the_recorded_phase():
-    found = run(*LAUNCH, 'driveline.total_ratio=16.06', controller='hinf2')
+    found = run(*LAUNCH, 'gear=1', controller='hinf2')
     states = {'lock': 2.0, 'release': 1.0}
     phase = found.clutch_phase[0]
     for k in range(1, found.steps + 1):

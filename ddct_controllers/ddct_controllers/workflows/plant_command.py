@@ -95,7 +95,7 @@ def paper_tables(paper: PlantOnPaper) -> dict[str, Table]:
             f'Parameters of the driveline, scenario {paper.scenario}',
             ('symbol', 'value', 'unit', 'scenario key'),
             [
-                (symbol, f'{each.value:.8g}', each.unit, f'driveline.{each.name}')
+                (symbol, f'{each.value:.8g}', each.unit, _key_of(each.name))
                 for symbol, each in paper.parameters.items()
             ],
         ),
@@ -121,3 +121,8 @@ def paper_tables(paper: PlantOnPaper) -> dict[str, Table]:
             [(name, f'{each.factor:.8g}', each.unit) for name, each in paper.c_fol.items()],
         ),
     }
+
+
+def _key_of(name: str) -> str:
+    """Return the scenario key that gives a parameter: `gear` gives the ratio."""
+    return 'gear' if name == 'total_ratio' else f'driveline.{name}'

@@ -7,21 +7,20 @@ No other module uses a total ratio. Others have an `EngagedGear`, which returns 
 torque or the inertia at its other side.
 """
 
-import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from ddct_plant.base.errors import ParameterError, require_number
 from ddct_plant.base.options import OptionGroup, option
 
-RATIO_KEY = 'driveline.total_ratio'
-"""Key of the total ratio in a scenario, for errors."""
 IDENTIFIED_RATIO = 9.3416024
 """Total ratio tau of the thesis's car, from `identify`: that of second gear."""
 RATIOS_OF_CARS = (1.5, 60.0)
 """Least and largest total ratio of gearbox and final drive of a car or truck."""
 AGREE = 1e-3
 """Largest relative difference of two values that count as the same gear or the same car."""
+_SAME_GEAR = 0.01
+"""Largest relative difference of a measured total ratio from the gear that it is taken for."""
 
 
 @dataclass(frozen=True)
@@ -37,7 +36,7 @@ class EngagedGear:
 
     def __post_init__(self) -> None:
         """Check the ratio; raise ParameterError unless it is finite and above 0."""
-        require_number(RATIO_KEY, self.total_ratio, above=0.0)
+        require_number('total_ratio', self.total_ratio, above=0.0)
 
     def __str__(self) -> str:
         """Return the total ratio as text."""
@@ -107,7 +106,7 @@ class Gearbox(OptionGroup, prefix='gearbox.'):
     )
     measured_ratios: tuple[float, ...] = option(
         (IDENTIFIED_RATIO,),
-        'total ratio of each of `measured_gears`, in place of the product of its two ratios',
+        'tau, total ratio of each of `measured_gears`, in place of the product of its two ratios',
         source='`identify`',
         many=True,
         above=0.0,
@@ -144,27 +143,28 @@ class Gearbox(OptionGroup, prefix='gearbox.'):
                 key=key,
             )
 
-    def gear(self, number: int | None) -> EngagedGear:
-        """Return a gear by its number from 1 on; None is the first one that is measured."""
-        if number is None:
-            if not self.measured_ratios:
-                raise ParameterError(
-                    f'gear is missing, and gearbox.measured_gears is empty: give gear, from 1 to '
-                    f'{self.gears}',
-                    key='gear',
-                )
-            return EngagedGear(self.measured_ratios[0])
+    def gear(self, number: int) -> EngagedGear:
+        """Return a gear by its number from 1 on."""
         if number in self.measured_gears:
             return EngagedGear(self.measured_ratios[self.measured_gears.index(number)])
-        return EngagedGear(self._published(number))
+        return EngagedGear(self.ratios[number - 1] * self.final_drives[number - 1])
 
-    def numbers(self, gear: EngagedGear) -> list[int]:
-        """Return the numbers of the gears whose published total ratio agrees with that of one."""
-        return [
-            number
-            for number in range(1, len(self.ratios) + 1)
-            if math.isclose(self._published(number), gear.total_ratio, rel_tol=AGREE)
-        ]
+    def with_measured(self, gear: EngagedGear) -> tuple['Gearbox', int]:
+        """
+        Return the gearbox that has a measured gear, and the number of that gear.
 
-    def _published(self, number: int) -> float:
-        return self.ratios[number - 1] * self.final_drives[number - 1]
+        It is this one with the measured ratio in the gear that is within 1 % of it; without such
+        a gear it is a gearbox with that gear alone.
+        """
+        number = min(range(1, self.gears + 1), key=lambda each: self._distance(each, gear))
+        if self.gear(number) == gear:
+            return self, number
+        if self._distance(number, gear) > _SAME_GEAR:
+            return Gearbox((gear.total_ratio,), (1.0,), (), ()), 1
+        measured = dict(zip(self.measured_gears, self.measured_ratios, strict=True))
+        measured[number] = gear.total_ratio
+        gears, ratios = tuple(measured), tuple(measured.values())
+        return replace(self, measured_gears=gears, measured_ratios=ratios), number
+
+    def _distance(self, number: int, gear: EngagedGear) -> float:
+        return abs(self.gear(number).total_ratio / gear.total_ratio - 1.0)

@@ -87,34 +87,22 @@ _SHAFT_FIELDS = dataclasses.fields(DrivelineShafts)
 
 @dataclass(frozen=True)
 class DrivelineSection(DrivelineShafts, prefix='driveline.'):
-    """Section `driveline` of a scenario: values that follow from others may be left out."""
+    """Section `driveline` of a scenario: J_v may be left out, and follows from mass and radius."""
 
-    total_ratio: float | None = option(
-        None,
-        'tau: second gear times final drive, not the gear number 2 of Section 1.4.5',
-        source='`identify`',
-        otherwise=f'that of `gear`; without a gear {IDENTIFIED_RATIO:.6g}',
-        above=0.0,
-    )
     vehicle_inertia: float | None = option_field(
         dataclasses.replace(_VEHICLE_INERTIA, default=None, otherwise='m_v r_w²')
     )
 
     @classmethod
     def of(cls, parameters: DrivelineParameters) -> Self:
-        """Return the section that gives every value of a driveline."""
-        return cls(**parameters.values())
-
-    @property
-    def gear(self) -> EngagedGear | None:
-        """Gear of the given total ratio, None where none is given."""
-        return None if self.total_ratio is None else EngagedGear(self.total_ratio)
+        """Return the section that gives every value of a driveline but that of its gear."""
+        values = parameters.values()
+        return cls(**{field.name: values[field.name] for field in dataclasses.fields(cls)})
 
     def engaged(self, gear: EngagedGear, vehicle_inertia: float) -> DrivelineParameters:
-        """Return the driveline; gear and J_v in kg m^2 hold where the section gives none."""
+        """Return the driveline in a gear; J_v in kg m^2 holds where the section gives none."""
         given = {name: value for name, value in vars(self).items() if value is not None}
-        derived = {'total_ratio': gear.total_ratio, 'vehicle_inertia': vehicle_inertia}
-        return DrivelineParameters.from_values(derived | given)
+        return DrivelineParameters(gear=gear, **{'vehicle_inertia': vehicle_inertia} | given)
 
 
 _MASS_KG = 1500.0

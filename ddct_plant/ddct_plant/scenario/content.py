@@ -8,6 +8,7 @@ from typing import Any
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import Group, OptionGroup, group_of, key_of
+from ddct_plant.models.parameters import DrivelineSection
 from ddct_plant.scenario.key_names import scenario_key_hint
 from ddct_plant.scenario.rules.consistency import without_derived
 from ddct_plant.scenario.scenario import Scenario
@@ -84,7 +85,7 @@ def scenario_content(scenario: Scenario) -> dict[str, Any]:
 
     The section `driveline` has every value that models take, given or derived.
     """
-    return _content(scenario) | {'driveline': scenario.driveline.values()}
+    return _content(scenario) | {'driveline': _content(DrivelineSection.of(scenario.driveline))}
 
 
 def _content(group: OptionGroup) -> dict[str, Any]:

@@ -16,6 +16,11 @@ MOST_MEANT = 3
 """Largest number of keys in a hint."""
 _ALIKE = 0.8
 """Least similarity of two keys; a common section alone gives about half."""
+_GONE = {
+    'driveline.total_ratio': 'a gear gives its ratio: give gear, or the measured ratio of that '
+    'gear by gearbox.measured_gears and gearbox.measured_ratios',
+}
+"""What to give in place of a key that is no longer there."""
 _PAGE = 'docs/use/scenario.md'
 
 
@@ -27,6 +32,8 @@ def scenario_options() -> Options:
 
 def key_hint(key: str, known: Options) -> str:
     """Return a hint for an unknown key: similar known keys, or the page that lists all keys."""
+    if key in _GONE:
+        return _GONE[key]
     meant = _meant(key, known)
     if not meant:
         return f'{_PAGE} lists the keys'
@@ -36,6 +43,8 @@ def key_hint(key: str, known: Options) -> str:
 
 def scenario_key_hint(name: str, section: Collection[str], prefix: str) -> str:
     """Return a hint for an unknown key: a key of its section, an option of the run, or any key."""
+    if f'{prefix}{name}' in _GONE:
+        return _GONE[f'{prefix}{name}']
     if close := difflib.get_close_matches(name, section, n=1):
         return f'did you mean {prefix}{close[0]}?'
     of_run = options_of(RunSettings)

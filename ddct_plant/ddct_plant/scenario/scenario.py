@@ -114,11 +114,10 @@ class Scenario(OptionGroup):
     sensors: SensorParameters | None = None
     controllers: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     """Options by controller name; each controller checks its own."""
-    gear: int | None = option(
-        None,
+    gear: int = option(
+        2,
         'engaged gear, one of `gearbox`; in a shift the on-coming one',
-        otherwise='the first of `gearbox.measured_gears`',
-        kind=int,
+        source='`identify`: tau is that of second gear',
         at_least=1,
     )
     adjusted: tuple[str, ...] = option(
@@ -144,8 +143,7 @@ class Scenario(OptionGroup):
                 f'score_window_s ends at {last:g} s, before {first:g} s', key='score_window_s'
             )
         self.engine.in_n_m(self.engine_limits)
-        if self.gear is not None:
-            self.gearbox.require_gear('gear', self.gear)
+        self.gearbox.require_gear('gear', self.gear)
         if self.shift is not None:
             self.gearbox.require_gear('shift.off_going_gear', self.shift.off_going_gear)
         self._require_clutch()

@@ -90,7 +90,7 @@ def test_zeros_of_p2_are_the_poles_of_the_locked_driveline():
     [
         ({'engine_inertia': 0.0}, 'driveline.engine_inertia'),
         ({'shaft_damping': -0.1}, 'driveline.shaft_damping'),
-        ({'total_ratio': float('nan')}, 'driveline.total_ratio'),
+        ({'total_ratio': float('nan')}, 'total_ratio'),
         ({'vehicle_inertia': '150'}, 'driveline.vehicle_inertia'),
     ],
 )

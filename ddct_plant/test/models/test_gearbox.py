@@ -38,12 +38,25 @@ def test_a_torque_over_the_inertia_across_the_gear_accelerates_it() -> None:
 
 
 def test_the_identified_gear_has_the_identified_ratio_and_others_the_published_ones() -> None:
-    assert Gearbox().gear(2) == Gearbox().gear(None) == EngagedGear() == DrivelineParameters().gear
+    assert Gearbox().gear(2) == EngagedGear() == DrivelineParameters().gear
     assert Gearbox().gear(1) == EngagedGear(3.9 * 4.118)
-    assert [Gearbox().numbers(Gearbox().gear(number)) for number in range(1, 7)] == [
-        [number] for number in range(1, 7)
+    assert THESIS.driveline.gear == EngagedGear()
+
+
+def test_a_measured_ratio_belongs_to_the_gear_that_is_near_it() -> None:
+    box = Gearbox()
+    assert [box.with_measured(box.gear(number)) for number in range(1, 7)] == [
+        (box, number) for number in range(1, 7)
     ]
-    assert Gearbox().numbers(EngagedGear(12.0)) == []
+    measured, number = box.with_measured(EngagedGear(16.1))
+    assert (number, measured.gear(1), measured.gear(2)) == (1, EngagedGear(16.1), box.gear(2))
+    again, number = measured.with_measured(EngagedGear(9.3))
+    assert (number, again.gear(1), again.gear(2)) == (2, EngagedGear(16.1), EngagedGear(9.3))
+
+
+def test_a_measured_ratio_that_no_gear_has_makes_a_gearbox_of_one_gear() -> None:
+    box, number = Gearbox().with_measured(EngagedGear(12.0))
+    assert (box.gears, number, box.gear(1)) == (1, 1, EngagedGear(12.0))
 
 
 def test_each_gear_has_the_final_drive_of_its_output_shaft() -> None:
@@ -99,7 +112,6 @@ def test_a_scenario_takes_the_gears_of_its_gearbox() -> None:
     ('scenario', 'gears', 'key'),
     [
         ('thesis', {'gear': 4}, 'gear'),
-        ('thesis', {}, 'gear'),
         ('upshift', {'gear': 4, 'shift.off_going_gear': 3}, 'gear'),
         ('upshift', {'gear': 3, 'shift.off_going_gear': 4}, 'shift.off_going_gear'),
     ],
@@ -118,7 +130,7 @@ def test_the_refusal_of_a_gear_says_how_many_the_car_has() -> None:
 
 @pytest.mark.parametrize('ratio', [0.0, -3.0, float('nan'), float('inf'), 'second'])
 def test_a_gear_without_a_positive_ratio_is_refused(ratio: float) -> None:
-    with refused(ParameterError, 'driveline.total_ratio'):
+    with refused(ParameterError, 'total_ratio'):
         EngagedGear(ratio)
 
 
@@ -137,7 +149,7 @@ def test_values_by_key_make_the_same_driveline_again() -> None:
     driveline = DrivelineParameters(engine_damping=0.02).in_gear(EngagedGear(5.0))
     assert DrivelineParameters.from_values(driveline.values()) == driveline
     section = DrivelineSection.of(driveline)
-    assert section.engaged(EngagedGear(), 1.0) == driveline
+    assert section.engaged(EngagedGear(5.0), 1.0) == driveline
 
 
 def test_ratio_and_vehicle_inertia_follow_where_they_are_used() -> None:
@@ -147,15 +159,16 @@ def test_ratio_and_vehicle_inertia_follow_where_they_are_used() -> None:
     assert heavy.driveline.engine_inertia == THESIS.driveline.engine_inertia
 
 
-def test_a_given_vehicle_inertia_and_ratio_prevail() -> None:
-    section = DrivelineSection(total_ratio=12.0, vehicle_inertia=180.0)
-    given = replace(THESIS, given_driveline=section, gear=1)
-    assert given.driveline.gear == EngagedGear(12.0)
+def test_a_given_vehicle_inertia_prevails() -> None:
+    given = replace(THESIS, given_driveline=DrivelineSection(vehicle_inertia=180.0), gear=1)
+    assert given.driveline.gear == Gearbox().gear(1)
     assert given.driveline.vehicle_inertia == 180.0
 
 
-def test_a_written_scenario_has_every_value_of_the_driveline() -> None:
-    assert scenario_content(THESIS)['driveline'] == DrivelineParameters().values()
+def test_a_written_scenario_has_every_value_of_the_driveline_but_its_ratio() -> None:
+    values = DrivelineParameters().values()
+    del values['total_ratio']
+    assert scenario_content(THESIS)['driveline'] == values
     assert THESIS.given_driveline == DrivelineSection()
 
 

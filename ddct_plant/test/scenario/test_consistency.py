@@ -5,7 +5,7 @@
 import pytest
 
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.models.gearbox import Gearbox
+from ddct_plant.models.gearbox import EngagedGear, Gearbox
 from ddct_plant.scenario.file import load_scenario, scenario_digest, scenario_to_yaml
 
 THESIS = load_scenario('thesis')
@@ -16,6 +16,7 @@ control_start_s: 0.6
 score_window_s: [0.6, 1.7]
 engine: {time_s: [0.0], torque_n_m: [100.0]}
 """
+FILE = 'driveline: {total_ratio: 16.06}'
 
 
 def changed(*overrides):
@@ -37,15 +38,14 @@ def the_line(scenario):
 
 def test_the_defaults_agree_without_a_remark():
     assert THESIS.adjusted == ()
-    assert THESIS.gear is None
-    assert Gearbox().ratios[1] * Gearbox().final_drives[1] == pytest.approx(
-        THESIS.driveline.gear.total_ratio, rel=3e-4
-    )
+    assert THESIS.gear == 2
+    published = Gearbox(measured_gears=(), measured_ratios=()).gear(2)
+    assert published.shaft_ratio(THESIS.driveline.gear) == pytest.approx(1.0, rel=3e-4)
 
 
 def test_a_key_that_was_added_leaves_the_digest_of_the_thesis_and_a_moved_one_has_another():
-    assert scenario_digest(THESIS) == '4bfaa598f7b0abcd'
-    assert scenario_digest(changed('gear=2')) != scenario_digest(THESIS)
+    assert scenario_digest(THESIS) == 'e930082b5253a695'
+    assert scenario_digest(changed('gear=1')) != scenario_digest(THESIS)
 
 
 @pytest.mark.parametrize(
@@ -85,27 +85,22 @@ def test_the_mass_follows_the_inertia_and_the_radius_stays(more):
     assert 'vehicle.mass_kg moved from 1500' in the_line(heavy)
 
 
-def test_gear_and_total_ratio_follow_each_other():
-    by_gear, by_total = changed('gear=1'), changed('driveline.total_ratio=16.06')
-    assert by_gear.driveline.gear.total_ratio == 3.9 * 4.118
-    assert by_gear.adjusted == ()
-    assert by_total.gear == 1
-    assert the_line(by_total) == 'gear is now 1, as driveline.total_ratio is 16.06'
+def test_a_gear_gives_its_ratio(tmp_path):
+    first = changed('gear=1')
+    assert first.driveline.gear == EngagedGear(3.9 * 4.118)
+    assert first.adjusted == ()
+    measured = changed('gear=1', 'gearbox.measured_gears=[1]', 'gearbox.measured_ratios=[16.1]')
+    assert measured.driveline.gear == EngagedGear(16.1)
+    assert from_file(tmp_path, '', 'gear=1', drive='gear: 3').driveline == first.driveline
 
 
-def test_a_total_ratio_that_no_gear_has_gets_a_remark(tmp_path):
-    unnamed = changed('driveline.total_ratio=15')
-    assert (
-        the_line(unnamed) == 'gear stays none, as no gear of the car has driveline.total_ratio 15'
-    )
-    named = from_file(tmp_path, '', 'driveline.total_ratio=15', drive='gear: 1')
-    assert 'gear is now none, as driveline.total_ratio is 15' in named.adjusted
-    assert unnamed.gear is named.gear is None
-
-
-def test_a_file_of_another_car_that_names_no_gear_gets_no_remark(tmp_path):
-    other = from_file(tmp_path, 'driveline: {total_ratio: 15}')
-    assert (other.gear, other.adjusted) == (None, ())
+def test_a_total_ratio_is_no_key_and_the_refusal_names_those_that_give_it(tmp_path):
+    for given in (
+        lambda: changed('driveline.total_ratio=16.06'),
+        lambda: from_file(tmp_path, FILE),
+    ):
+        with pytest.raises(ParameterError, match=r'give gear, .* gearbox\.measured_ratios'):
+            given()
 
 
 def test_the_score_window_moves_with_control_start():
@@ -118,7 +113,6 @@ def test_the_score_window_moves_with_control_start():
     'overrides',
     [
         ('vehicle.mass_kg=1800', 'driveline.vehicle_inertia=185.6'),
-        ('gear=1', 'driveline.total_ratio=16.06'),
         ('control_start_s=1', 'score_window_s=[1.1, 1.9]'),
     ],
 )
@@ -126,7 +120,6 @@ def test_both_halves_are_taken_as_given_when_they_agree_to_a_thousandth(override
     both = changed(*overrides)
     assert both.adjusted == ()
     assert both.driveline.vehicle_inertia in (185.6, THESIS.driveline.vehicle_inertia)
-    assert both.driveline.gear.total_ratio in (16.06, THESIS.driveline.gear.total_ratio)
     assert both.score_window_s in ((1.1, 1.9), THESIS.score_window_s)
 
 
@@ -136,10 +129,6 @@ def test_both_halves_are_taken_as_given_when_they_agree_to_a_thousandth(override
         (
             ('vehicle.mass_kg=1800', 'driveline.vehicle_inertia=154.69'),
             'give driveline.vehicle_inertia 185.629 or vehicle.mass_kg 1499.99',
-        ),
-        (
-            ('gear=1', 'driveline.total_ratio=9.3416'),
-            'give driveline.total_ratio 16.0602',
         ),
         (('control_start_s=2.5',), 'move score_window_s to [2.5, 3.6], beyond duration_s, 3 s'),
         (('control_start_s=1', 'score_window_s=[0.2, 0.5]'), 'such as [1.0, 1.3]'),
@@ -186,7 +175,7 @@ def test_a_window_that_begins_before_control_is_kept_and_named():
     [
         ('vehicle.mass_kg=1800', 'control_start_s=1'),
         ('vehicle.mass_kg=1800', 'driveline.vehicle_inertia=185.6'),
-        ('driveline.total_ratio=16.06', 'score_window_s=[0.2, 1.7]'),
+        ('gear=1', 'score_window_s=[0.2, 1.7]'),
     ],
 )
 def test_a_changed_scenario_is_the_same_after_writing_and_reading(tmp_path, overrides):

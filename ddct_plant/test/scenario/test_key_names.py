@@ -17,7 +17,7 @@ OF_THE_THESIS = {
     'J_m': 'driveline.engine_inertia',
     'J_v': 'driveline.vehicle_inertia',
     'k_sa': 'driveline.halfshaft_stiffness',
-    'tau': 'driveline.total_ratio',
+    'tau': 'gearbox.measured_ratios',
     'C_m': 'engine.torque_n_m',
     'm_v': 'vehicle.mass_kg',
     'v_a': 'load.wind_speed_m_s',
@@ -35,7 +35,7 @@ def test_the_error_on_a_symbol_of_the_thesis_names_our_key(symbol, key):
     ('wrong', 'key'),
     [
         ('wear_gian', 'wear_gain'),
-        ('driveline.total_ration', 'driveline.total_ratio'),
+        ('gearbox.measured_ratio', 'gearbox.measured_ratios'),
         ('mass', 'vehicle.mass_kg'),
         ('clutch_phase', 'initial.clutch_phase'),
     ],

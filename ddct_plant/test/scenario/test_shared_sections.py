@@ -15,7 +15,7 @@ from ddct_plant.scenario.rules.driveline import require_driveline
 CHANGES: tuple[dict[str, Any], ...] = (
     {},
     {'vehicle.mass_kg': 1200.0},
-    {'driveline': {'total_ratio': 9.0}},
+    {'driveline': {'engine_inertia': 0.3}},
     {'driveline.engine_inertia': 0.3},
     {'engine': {'time_s': [0.0], 'torque_n_m': [70.0]}},
     {'engine.factor': 0.5},

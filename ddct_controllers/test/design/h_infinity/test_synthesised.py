@@ -9,7 +9,7 @@ from refusals import refused
 from ddct_controllers.registry import make_controller
 from ddct_controllers.synthesised import SYNTHESISED, synthesised_design
 from ddct_plant.base.errors import DdctError
-from ddct_plant.models.gearbox import EngagedGear
+from ddct_plant.models.gearbox import Gearbox
 from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
@@ -21,8 +21,8 @@ def model_in(name, *changes):
 
 @pytest.mark.parametrize('name', SYNTHESISED)
 def test_a_run_has_the_design_for_its_own_driveline(name):
-    first_gear = synthesised_design(name, DrivelineParameters(gear=EngagedGear(16.06)))
-    assert model_in(name, 'driveline.total_ratio=16.06') is first_gear.sampled, 'computed once'
+    first_gear = synthesised_design(name, DrivelineParameters(gear=Gearbox().gear(1)))
+    assert model_in(name, 'gear=1') is first_gear.sampled, 'computed once'
     identified = model_in(name)
     assert identified is synthesised_design(name, DrivelineParameters()).sampled
     assert identified.a.shape != first_gear.sampled.a.shape or not np.allclose(

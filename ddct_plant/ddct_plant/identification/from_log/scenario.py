@@ -35,7 +35,7 @@ from ddct_plant.scenario.csv_profiles import MOST_ROWS
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.initial_speeds import InitialSpeeds
 from ddct_plant.scenario.overrides import parsed_override
-from ddct_plant.scenario.rules.consistency import RADIUS, gear_line
+from ddct_plant.scenario.rules.consistency import RADIUS
 from ddct_plant.scenario.scenario import Scenario
 
 STEEPEST_RAD = 0.6
@@ -195,9 +195,12 @@ def _with_car(base: Scenario, fit: LogFit) -> Scenario:
             f'with vehicle.wheel_radius_m {radius:g} and driveline.vehicle_inertia '
             f'{driveline.vehicle_inertia:g} of the log'
         )
-    same_gear = driveline.gear == base.driveline.gear
-    if base.gear is not None and not same_gear:
-        lines.append(gear_line(None, driveline.gear))
+    gearbox, gear = base.gearbox.with_measured(driveline.gear)
+    if gear != base.gear or gearbox.gears != base.gearbox.gears:
+        lines.append(
+            f'gear moved from {base.gear} to {gear} of {gearbox.gears}: the log has the total '
+            f'ratio {driveline.gear}'
+        )
     for name, value in fit.values.items():
         if value < -NO_DAMPING:
             lines.append(f'driveline.{name} is 0: the log gave {value:.4g}')
@@ -205,7 +208,8 @@ def _with_car(base: Scenario, fit: LogFit) -> Scenario:
         base,
         vehicle=dataclasses.replace(base.vehicle, mass_kg=mass),
         given_driveline=DrivelineSection.of(driveline),
-        gear=base.gear if same_gear else None,
+        gearbox=gearbox,
+        gear=gear,
     )
     if fit.load_torque is not None and not base.slope.given:
         slope = _slope(moved, fit.load_torque)

@@ -3,14 +3,12 @@
 """
 Consistency of scenario values that depend on each other: which of them hold.
 
-    J_v = m_v r_w^2        driveline.vehicle_inertia, vehicle.mass_kg, vehicle.wheel_radius_m
-    total ratio of a gear  gear, driveline.total_ratio
-    the score window       control_start_s, score_window_s
-    a shift's start        initial.engine_speed_rad_s, initial.shaft_speed_rad_s, both gears
+    J_v = m_v r_w^2     driveline.vehicle_inertia, vehicle.mass_kg, vehicle.wheel_radius_m
+    the score window    control_start_s, score_window_s
+    a shift's start     initial.engine_speed_rad_s, initial.shaft_speed_rad_s, both gears
 
-J_v and the total ratio are left out of the scenario where they follow from mass and gear, and are
-computed where they are used. Where both values are given and contradict each other the scenario is
-refused.
+J_v is left out of the scenario where it follows from mass and radius, and is computed where it is
+used. Where both values are given and contradict each other the scenario is refused.
 """
 
 import math
@@ -19,7 +17,7 @@ from dataclasses import replace
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import steps_in, time_of_step
-from ddct_plant.models.gearbox import AGREE, RATIO_KEY, EngagedGear
+from ddct_plant.models.gearbox import AGREE
 from ddct_plant.models.parameters import IDENTIFIED_VEHICLE_INERTIA
 from ddct_plant.scenario.scenario import Scenario
 
@@ -43,7 +41,7 @@ def consistent(scenario: Scenario, origins: Origins, start_before: float | None)
     `start_before` is `control_start_s` in s of the file, before `--set`. Raise ParameterError
     where given values contradict each other, or where the score window would be empty.
     """
-    scenario = without_derived(_with_gear(_with_mass(scenario, origins), origins))
+    scenario = without_derived(_with_mass(scenario, origins))
     scenario = _with_locked_off_going_clutch(scenario, origins)
     if start_before is not None and _origin(origins, 'control_start_s') > _origin(
         origins, 'score_window_s'
@@ -107,36 +105,6 @@ def _with_mass(scenario: Scenario, origins: Origins) -> Scenario:
     return scenario
 
 
-def _with_gear(scenario: Scenario, origins: Origins) -> Scenario:
-    """
-    Decide which of gear and total ratio holds: the one of the higher origin.
-
-    A scenario that gives no ratio has that of its gear. A file with another car's ratio and no
-    gear gets no line in `adjusted`.
-    """
-    number, given, box = scenario.gear, scenario.given_driveline.gear, scenario.gearbox
-    if given is None or box.gear(number) == given:
-        return scenario
-    of_number = box.gear(number)
-    fits = box.numbers(given)
-    if number in fits:
-        return scenario
-    of_gear, of_total = _origin(origins, 'gear'), _origin(origins, RATIO_KEY)
-    if number is not None and of_gear > of_total:
-        about = f'{RATIO_KEY} moved from {given} to {of_number}: gear {number}'
-        return _with_line(_without_ratio(scenario), about)
-    if number is not None and of_gear == of_total:
-        raise ParameterError(
-            f'gear is {number} and {RATIO_KEY} is {given}, but that gear has {of_number}: '
-            f'give {RATIO_KEY} {of_number}, or one of them only'
-        )
-    if number is None and not fits:
-        about = f'gear stays none, as no gear of the car has {RATIO_KEY} {given}'
-        return _with_line(scenario, about) if of_total == SET else scenario
-    name = fits[0] if fits else None
-    return _with_line(replace(scenario, gear=name), gear_line(name, given))
-
-
 def _with_locked_off_going_clutch(scenario: Scenario, origins: Origins) -> Scenario:
     """
     Return the scenario with the engine at the speed of the off-going shaft, if it has a shift.
@@ -148,7 +116,7 @@ def _with_locked_off_going_clutch(scenario: Scenario, origins: Origins) -> Scena
         return scenario
     off_going = scenario.gearbox.gear(shift.off_going_gear)
     speed = off_going.shaft_ratio(scenario.driveline.gear) * initial.shaft_speed_rad_s
-    moving = (SHAFT_SPEED, 'shift.off_going_gear', 'gear', RATIO_KEY)
+    moving = (SHAFT_SPEED, 'shift.off_going_gear', 'gear')
     highest = max(_origin(origins, key) for key in moving)
     agree = math.isclose(initial.engine_speed_rad_s, speed, rel_tol=AGREE)
     if agree or highest <= _origin(origins, ENGINE_SPEED):
@@ -163,29 +131,15 @@ def _with_locked_off_going_clutch(scenario: Scenario, origins: Origins) -> Scena
 
 
 def without_derived(scenario: Scenario) -> Scenario:
-    """Return the scenario without given values that are those which mass and gear give."""
-    section = scenario.given_driveline
-    if section.vehicle_inertia == scenario.vehicle.inertia:
-        scenario = _without_inertia(scenario)
-    return (
-        _without_ratio(scenario)
-        if section.gear == scenario.gearbox.gear(scenario.gear)
-        else scenario
-    )
-
-
-def gear_line(number: int | None, gear: EngagedGear) -> str:
-    """Return the line in `adjusted` for a gear number that follows from a given total ratio."""
-    return f'gear is now {number or "none"}, as {RATIO_KEY} is {gear}'
+    """Return the scenario without a given J_v that is that of mass and radius."""
+    if scenario.given_driveline.vehicle_inertia == scenario.vehicle.inertia:
+        return _without_inertia(scenario)
+    return scenario
 
 
 def _without_inertia(scenario: Scenario) -> Scenario:
     section = replace(scenario.given_driveline, vehicle_inertia=None)
     return replace(scenario, given_driveline=section)
-
-
-def _without_ratio(scenario: Scenario) -> Scenario:
-    return replace(scenario, given_driveline=replace(scenario.given_driveline, total_ratio=None))
 
 
 def _move_window(scenario: Scenario, start_before: float) -> Scenario:

@@ -52,4 +52,6 @@ def least_usual(parameters: DrivelineParameters) -> str:
         if usual[name] > 0.0 and value > 0.0
     }
     name = max(distances, key=lambda name: distances[name])
+    if name == 'total_ratio':
+        return f'gear has the total ratio {values[name]:g}'
     return f'{parameters.prefix}{name} is {values[name]:g}'

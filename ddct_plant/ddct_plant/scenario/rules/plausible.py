@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import replace
 
-from ddct_plant.models.gearbox import RATIO_KEY, RATIOS_OF_CARS
+from ddct_plant.models.gearbox import RATIOS_OF_CARS
 from ddct_plant.scenario.scenario import Scenario
 
 RANGES: Mapping[str, tuple[float, float, str]] = {
@@ -16,7 +16,6 @@ RANGES: Mapping[str, tuple[float, float, str]] = {
     'driveline.shaft_inertia': (1e-4, 1.0, 'kg m^2'),
     'driveline.vehicle_inertia': (10.0, 20_000.0, 'kg m^2'),
     'driveline.halfshaft_stiffness': (500.0, 500_000.0, 'N m/rad'),
-    RATIO_KEY: (*RATIOS_OF_CARS, ''),
 }
 """Least and largest value of cars and trucks and its unit, by key; a value beyond this wide range
 is probably in another unit."""
@@ -24,7 +23,7 @@ is probably in another unit."""
 
 def with_remarks(scenario: Scenario) -> Scenario:
     """Return the scenario with a line in `adjusted` for each value that no car has."""
-    lines = [line for key in RANGES if (line := _remark(scenario, key))]
+    lines = [line for key in RANGES if (line := _remark(scenario, key))] + _of_gear(scenario)
     new = [line for line in lines if line not in scenario.adjusted]
     return replace(scenario, adjusted=(*scenario.adjusted, *new)) if new else scenario
 
@@ -38,6 +37,17 @@ def _remark(scenario: Scenario, key: str) -> str:
     has = f'{least:g} to {most:g} {unit}'.strip()
     given = f'{value:g} {unit}'.strip()
     return f'{key} is {given}, but cars and trucks have {has}: is it in another unit?'
+
+
+def _of_gear(scenario: Scenario) -> list[str]:
+    least, most = RATIOS_OF_CARS
+    ratio = scenario.driveline.values()['total_ratio']
+    if least <= ratio <= most:
+        return []
+    return [
+        f'gear {scenario.gear} has the total ratio {ratio:g}, but cars and trucks have {least:g} '
+        f'to {most:g}: are gearbox.ratios and gearbox.final_drives right?'
+    ]
 
 
 def _values(scenario: Scenario, section: str) -> Mapping[str, float]:

@@ -35,13 +35,13 @@ def require_shift(scenario: Scenario) -> None:
     _require_start(scenario, shift)
 
 
-def _require_gears(on_coming: int | None, shift: ShiftParameters) -> None:
+def _require_gears(on_coming: int, shift: ShiftParameters) -> None:
     """Raise ParameterError unless it is an upshift from one clutch to the other."""
     off_going = shift.off_going_gear
-    if on_coming is None or on_coming < off_going or (on_coming - off_going) % 2 == 0:
+    if on_coming < off_going or (on_coming - off_going) % 2 == 0:
         raise ParameterError(
             f'shift.off_going_gear is {off_going}, and gear, the on-coming one, is '
-            f'{on_coming or "none"}: give a higher gear as gear, one of them even and the other '
+            f'{on_coming}: give a higher gear as gear, one of them even and the other '
             'odd, as each clutch has the even or the odd gears, and only upshifts are simulated',
             key='shift.off_going_gear',
         )
