@@ -113,7 +113,10 @@ def test_in_real_time_an_engine_alone_has_the_limits_of_its_present_speed(
     graph_of: GraphOf,
 ) -> None:
     """Its full load is 250 N m at 261.8 rad/s and 170 N m at 157.08 rad/s."""
-    graph, driver = _driven(graph_of, 'engine_limits={}', 'thesis_sticking')
+    full_load = [0, 110, 170, 225, 250, 217, 165, 308]
+    graph, driver = _driven(
+        graph_of, f'engine_limits={{full_load_n_m: {full_load}}}', 'thesis_sticking'
+    )
     driver.tick(0, 261.8)
     driver.request(0, 320.0)
     graph.spin_until(lambda: len(driver.answers) == 1, 'the answer to a request')

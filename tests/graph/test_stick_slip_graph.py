@@ -26,6 +26,7 @@ OVER_REVVED = (
     'engine_limits.cut_rad_s=199',
     'engine_limits.resume_rad_s=190',
     'engine_limits.idle_rad_s=100',
+    'engine_limits.full_load_n_m=[0, 110, 170, 225, 250, 217, 165, 308]',
 )
 
 

@@ -104,7 +104,11 @@ def test_a_controller_is_in_a_batch_if_it_is_linear_throughout(controller, reaso
             {},
             'reference.shape is engine_speed_target',
         ),
-        ({'engine_limits': {}}, {}, 'the scenario gives engine_limits'),
+        (
+            {'engine_limits': {}, 'engine.torque_n_m': [0.0, 200.0]},
+            {},
+            'the scenario gives engine_limits',
+        ),
         ({'sensors.engine_speed.noise_rad_s': 0.1}, {}, 'the scenario gives sensors'),
     ],
 )

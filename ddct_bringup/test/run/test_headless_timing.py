@@ -25,6 +25,7 @@ def test_of_a_run_that_ends_early_they_are_those_that_were_run():
     limits = (
         *('engine_limits.over_rev_rad_s=200', 'engine_limits.cut_rad_s=199'),
         *('engine_limits.resume_rad_s=190', 'engine_limits.idle_rad_s=100'),
+        'engine_limits.full_load_n_m=[0, 110, 170, 225, 250, 217, 165, 308]',
     )
     scenario = load_scenario('thesis_sticking', limits)
     timing, steps = timing_of(RunSettings(scenario, wear_gain=0.7))

@@ -161,7 +161,10 @@ def test_a_car_at_rest_is_held_by_its_brake(slope):
     assert found.joint_effort[0, 2] == pytest.approx(found.joint_effort[0, 3])
 
 
+STRONG = 'engine_limits.full_load_n_m=[0, 110, 170, 225, 250, 217, 165, 308]'
+"""An engine that gives the demand of `thesis` at some speed."""
 OVER_REV = (
+    STRONG,
     'engine_limits.over_rev_rad_s=325.0',
     'engine_limits.cut_rad_s=324.0',
     'engine_limits.resume_rad_s=323.0',
@@ -193,7 +196,7 @@ def test_the_run_ends_with_the_first_state_at_or_beyond_a_limit(changes, reached
 
 @pytest.mark.parametrize('name', ['thesis', 'thesis_sticking'])
 def test_the_static_controller_goes_by_what_a_limited_engine_delivers(name):
-    weak = f'engine_limits.full_load_n_m={[100.0] * 8}'
+    weak = f'engine_limits.full_load_n_m={[100.0] * 7 + [308.0]}'
     scenario = load_scenario(name, [weak, 'duration_s=1.0'])
     found = run_headless(RunSettings(scenario), 'pi')
     assert found.engine_torque.max() == 100.0 < found.torque_demand.max()

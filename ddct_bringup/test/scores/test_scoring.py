@@ -23,7 +23,8 @@ TRAJECTORY = run_headless(SETTINGS, 'ls8')
 FACTS = made_facts()
 
 
-ENGINE_LIMITS = EngineLimits(stall_rad_s=52.0, over_rev_rad_s=785.0)
+FULL_LOAD = (0.0, 110.0, 170.0, 225.0, 250.0, 217.0, 165.0, 308.0)
+ENGINE_LIMITS = EngineLimits(stall_rad_s=52.0, over_rev_rad_s=785.0, full_load_n_m=FULL_LOAD)
 
 
 def scored(last_engine_speed, rows=301, engine_limits=ENGINE_LIMITS, **signals):

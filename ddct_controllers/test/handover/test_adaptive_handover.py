@@ -51,7 +51,9 @@ def test_a_worn_clutch_carries_what_it_is_meant_to_without_flare_and_tie_up(scen
 
 @pytest.mark.parametrize('wear_gain', [0.85, 1.15])
 def test_an_engine_that_cannot_give_the_demand_is_not_taken_for_wear(wear_gain):
-    beyond = {'engine.torque_n_m': [300.0]}
+    # It gives 300 N m at the highest speed alone.
+    full_load = [0.0, 110.0, 170.0, 225.0, 250.0, 217.0, 165.0, 300.0]
+    beyond = {'engine.torque_n_m': [300.0], 'engine_limits.full_load_n_m': full_load}
     scenario = load_scenario('upshift_full', beyond)
     settings = replace(worn('upshift_full', wear_gain), scenario=scenario)
     ticks = shift(settings, 'adaptive')

@@ -11,6 +11,7 @@ from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import OptionGroup, option_field
 from ddct_plant.scenario.choices.settings import SETTINGS
 from ddct_plant.scenario.control import ENGINE_SPEED_TARGET, PROFILE
+from ddct_plant.scenario.rules.capability import require_able
 from ddct_plant.scenario.rules.shift import require_shift
 from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.signals.signal import RunKind
@@ -56,6 +57,7 @@ class RunSettings(OptionGroup):
         self._require_reference()
         self._require_shift()
         self._require_known()
+        require_able(self.known_scenario or self.scenario)
 
     @cached_property
     def known(self) -> Self:

@@ -62,12 +62,13 @@ def test_a_bad_key_of_the_shift_is_named(override, key):
     [('initial.shaft_speed_rad_s=100', 171.92), ('gear=4', 644.449)],
 )
 def test_the_engine_speed_follows_the_car_and_the_gear_unless_it_is_given_too(override, speed):
-    shift = settings(override)
+    slowly = 'reference.reference_end_s=1.0'
+    shift = settings(override, slowly)
     moved = f'initial.engine_speed_rad_s moved from 277.838 to {speed}'
     assert shift.scenario.adjusted[-1].startswith(moved)
     assert shift.scenario.initial.engine_speed_rad_s == pytest.approx(speed, abs=0.01)
     with refused(ParameterError, 'initial.engine_speed_rad_s'):
-        settings(override, 'initial.engine_speed_rad_s=250')
+        settings(override, slowly, 'initial.engine_speed_rad_s=250')
 
 
 def test_a_shift_in_another_scenario_needs_its_gear():
