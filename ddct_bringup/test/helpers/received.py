@@ -93,6 +93,12 @@ def found_in(root: object, values: Iterable[float]) -> list[float]:
     return [value for value in values if value in numbers or repr(value) in whole]
 
 
+def numbers_in(root: object) -> bytes:
+    """Return the bits of all numbers in an object, at any depth, sorted."""
+    found = [np.ravel(each) for each in _within(root) if not isinstance(each, str)]
+    return bytes(np.sort(np.concatenate(found).astype(float)).tobytes()) if found else b''
+
+
 def _within(root: object) -> Iterator[object]:
     """Yield numbers, texts and arrays of numbers in an object, at any depth."""
     waiting, before = [root], set()

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import pytest
 from handed_over import flare, shift, tie_up_work
+from other_actuators import ACTUATORS, SLOW
 from refusals import refused
 from shifts import HANDOVER_S, shift_settings
 
@@ -14,15 +15,31 @@ from ddct_controllers.handover.interface import (
     HandoverMeasurement,
     HandoverModel,
 )
-from ddct_controllers.handover.laws import HANDOVERS, make_handover
+from ddct_controllers.handover.laws import (
+    GAINS_LAG_S,
+    HANDOVERS,
+    SEARCH_RATE,
+    make_handover,
+)
+from ddct_controllers.handover.torque_phase import TorquePhase
+from ddct_controllers.interface import Measurement
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.models.actuator import PRINTED_ACTUATOR, Actuator
 from ddct_plant.models.driveline import LOCKED, PHASES
 from ddct_plant.scenario.initial_state import initial_request
+from ddct_plant.scenario.rules.shift import gears_of
+from ddct_plant.shift.balance import off_going_torque
 from ddct_plant.shift.roles import OFF_GOING
 
 START, STEPS = 30, round(HANDOVER_S / PERIOD_S)
 COLD = ['upshift', 'upshift_light', 'upshift_full', 'upshift_2_3']
+
+
+def with_actuator(name, actuator, **keys):
+    """Return the settings of a packaged shift with an actuator that all know."""
+    settings = shift_settings(name, **keys)
+    return replace(settings, scenario=replace(settings.scenario, actuator=actuator))
 
 
 @pytest.mark.parametrize('name', HANDOVERS)
@@ -95,12 +112,62 @@ def test_the_slip_handover_keeps_the_clutch_at_its_slip_while_it_carries_torque(
     assert min(slips) > 2.0
 
 
-def test_the_torque_cut_rises_in_the_inertia_phase_and_fades_to_the_lock():
-    ticks = shift(shift_settings('upshift', torque_cut_n_m=40.0), 'timed', 1.9)
+@pytest.mark.parametrize('name', HANDOVERS)
+@pytest.mark.parametrize('actuator', ACTUATORS.values(), ids=ACTUATORS)
+def test_with_every_actuator_that_it_knows_a_handover_neither_flares_nor_ties_up(actuator, name):
+    ticks = shift(with_actuator('upshift', actuator), name)
+    assert flare(ticks) < 9.0
+    assert tie_up_work(ticks) < 75.0
+
+
+@pytest.mark.parametrize('name', ['slip', 'adaptive'])
+def test_a_handover_that_does_not_know_its_slow_actuator_flares_or_ties_up(name):
+    """Its law is that of the known settings, so the true actuator has not reached it."""
+    law = make_handover(replace(shift_settings('upshift'), handover=name))
+    ticks = shift(with_actuator('upshift', SLOW), name, law=law)
+    assert flare(ticks) > 10.5 or tie_up_work(ticks) > 110.0
+
+
+@pytest.mark.parametrize('actuator', ACTUATORS.values(), ids=ACTUATORS)
+def test_the_slip_handover_falls_as_much_in_the_lag_of_every_actuator(actuator):
+    """The request before the clutch slips is the balance less a share that grows with time."""
+    settings = with_actuator('upshift', actuator)
+    ticks = shift(settings, 'slip')
+    model = HandoverModel(settings)
+    shares = []
+    for step in (START + 1, START + 3):
+        now = ticks[step].outputs
+        measured = HandoverMeasurement(
+            step, 100.0, now.engine_speed, now.slip_speed, 0.0, now.vehicle_speed
+        )
+        shares.append(ticks[step].command.off_going_request / model.off_going(measured))
+    rate = (shares[0] - shares[1]) / (2.0 * PERIOD_S)
+    assert rate * actuator.lag_s == pytest.approx(SEARCH_RATE * GAINS_LAG_S, rel=0.02)
+
+
+@pytest.mark.parametrize('actuator', ACTUATORS.values(), ids=ACTUATORS)
+def test_the_torque_phase_has_the_torque_of_the_known_actuator(actuator):
+    settings = with_actuator('upshift', actuator)
+    phase, plant = TorquePhase(settings), Actuator(0.0, actuator)
+    gears = gears_of(settings.scenario)
+    for step, open_loop in enumerate((0.0, 20.0, 40.0, 60.0, 80.0, 100.0)):
+        now = Measurement(step, 270.0, 160.0, 17.0, 5.5, 100.0, [0.0], [0.0], 60.0, open_loop)
+        carried = off_going_torque(gears, 100.0, 60.0, 270.0, plant.mean_torque(open_loop))
+        found = phase.measured(now)
+        assert found.engine_torque == pytest.approx(100.0 - carried)
+        assert found.load_torque == pytest.approx(60.0 - gears.off_going.wheel_torque(carried))
+
+
+@pytest.mark.parametrize(('actuator', 'rise_s'), [(PRINTED_ACTUATOR, 0.1), (SLOW, 2 * SLOW.lag_s)])
+def test_the_torque_cut_rises_in_the_inertia_phase_and_fades_to_the_lock(actuator, rise_s):
+    settings = with_actuator('upshift', actuator, torque_cut_n_m=40.0)
+    ticks = shift(settings, 'timed', 1.9)
     periods = 0
     for tick in ticks:
         periods += tick.command.share == 1.0
-        share_of_cut = min(max(tick.outputs.slip_speed, 0.0) / 30.0, periods / 10, 1.0)
+        share_of_cut = min(
+            max(tick.outputs.slip_speed, 0.0) / 30.0, periods * PERIOD_S / rise_s, 1.0
+        )
         assert tick.command.torque_cut == pytest.approx(40.0 * share_of_cut)
     cuts = [tick.command.torque_cut for tick in ticks]
     assert max(cuts) == 40.0
