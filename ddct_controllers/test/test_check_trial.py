@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from ddct_controllers.check.loops import update_time
+from ddct_controllers.check.loops import rate, update_time
 from ddct_controllers.check.subject import CheckFailedError, Subject
 from ddct_controllers.check.trial import ClosedLoopLog, closed_trial
 from ddct_controllers.check.watch import OutputMonitor
@@ -92,3 +92,18 @@ def test_a_scaled_trial_without_a_request_has_the_drivers_demand() -> None:
 
     once, scaled = (closed_trial(SETTINGS, Idle(), scale=scale).slip for scale in (1.0, 9.55))
     np.testing.assert_allclose(scaled, once, rtol=1e-12, atol=1e-9)
+
+
+@pytest.mark.parametrize(('factor', 'passes'), [(2.0, True), (1.0, True), (0.5, False)])
+def test_a_request_moves_at_most_as_fast_as_the_actuator_of_the_car_follows(
+    factor: float, passes: bool
+) -> None:
+    """3000 N m/s are below ten strokes of 350 N m per second, and above five."""
+    scenario = load_scenario('thesis', {'actuator.bandwidth_factor': factor})
+    subject = Subject('pi', RunSettings(scenario), OutputMonitor())
+    subject.closed_loop = ClosedLoopLog(request=[0.0, 30.0] * 100)
+    if passes:
+        assert '3000 N m per second' in rate(subject)
+    else:
+        with pytest.raises(CheckFailedError, match='more than 1750'):
+            rate(subject)

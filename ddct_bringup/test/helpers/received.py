@@ -95,8 +95,12 @@ def found_in(root: object, values: Iterable[float]) -> list[float]:
 
 def numbers_in(root: object) -> bytes:
     """Return the bits of all numbers in an object, at any depth, sorted."""
-    found = [np.ravel(each) for each in _within(root) if not isinstance(each, str)]
-    return bytes(np.sort(np.concatenate(found).astype(float)).tobytes()) if found else b''
+    found = [
+        np.asarray(each, dtype=float).ravel()
+        for each in _within(root)
+        if not isinstance(each, str)
+    ]
+    return bytes(np.sort(np.concatenate(found)).tobytes()) if found else b''
 
 
 def _within(root: object) -> Iterator[object]:

@@ -77,7 +77,7 @@ def first_requests(run: RunSettings) -> list[float]:
 def test_feedforward_and_stored_reference_change_with_the_known_actuator_alone(
     architecture: str,
 ) -> None:
-    runs = known_and_unknown('thesis', clutch='linear', architecture=architecture)
+    runs = known_and_unknown('thesis', architecture=architecture)
     for found in (first_references, first_requests):
         usual, known, unknown = (found(run) for run in runs)
         assert unknown == usual != known

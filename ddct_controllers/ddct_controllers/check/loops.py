@@ -17,7 +17,11 @@ LATE_SHARE = 0.05
 AGAIN = 2
 """Number of further runs of a controller that seems slow."""
 MOST_STROKES_PER_S = 10.0
-"""Largest mean rate of the request, in full strokes of the clutch's capacity per second."""
+"""
+Largest mean rate of the request, in full strokes of the clutch's capacity per second.
+
+It is for the bandwidth of the printed actuator, and in proportion to that of another one.
+"""
 HALF = 0.5
 """Least share of a reference step followed within 1 s; with less an engagement takes too long."""
 WELL = 0.8
@@ -61,7 +65,8 @@ def rate(subject: Subject) -> str:
     """Check that the request does not chatter."""
     scenario = subject.settings.scenario
     start = scenario.control_start_step
-    most = MOST_STROKES_PER_S * scenario.friction.most_n_m
+    strokes_per_s = MOST_STROKES_PER_S * scenario.actuator.bandwidth_factor
+    most = strokes_per_s * scenario.friction.most_n_m
     changes = np.abs(np.diff(subject.closed_loop.request[start:]))
     per_second = float(changes.mean()) / PERIOD_S
     found = (

@@ -24,8 +24,8 @@ FAILS = {
 def test_every_controller_but_mpc4_engages_in_an_upshift_with_the_actuator_of_its_car(
     actuator: str,
 ) -> None:
-    scenario = load_scenario('upshift', keys_of(ACTUATORS[actuator]), clutch='stick_slip')
-    settings, limits = RunSettings(scenario, clutch='stick_slip'), packaged_limits()
+    scenario = load_scenario('upshift', keys_of(ACTUATORS[actuator]))
+    settings, limits = RunSettings(scenario), packaged_limits()
     states = {
         name: scored_headless(settings, name, limits).state for name in own_controller_names()
     }
