@@ -19,7 +19,9 @@ from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
 UNBOUND = ('friction.most_n_m=100000.0',)
-"""Change of the scenario: a clutch without a limit of its torque, as in the labelled charts."""
+"""
+Change of the plant alone: a clutch without a limit of its torque, as in the labelled charts.
+"""
 FILE = Path(__file__).parents[1] / 'verdict' / 'states_by_eye.yaml'
 
 
@@ -62,9 +64,11 @@ class LabelledRun:
 
     def comes_together(self) -> bool:
         """Run it headless, and return whether the plates turn together at its end by the rules."""
-        unbound = () if self.scenario == 'thesis' else UNBOUND
+        known, unbound = None, ()
+        if self.scenario != 'thesis':
+            known, unbound = load_scenario(self.scenario, self.set), UNBOUND
         scenario = load_scenario(self.scenario, [*unbound, *self.set])
-        settings = RunSettings(scenario, wear_gain=self.wear_gain)
+        settings = RunSettings(scenario, wear_gain=self.wear_gain, known_scenario=known)
         controller = make_controller(self.controller, settings)
         if self.gain != 1.0 or self.delay_steps:
             controller = Spoiled(controller, self.gain, self.delay_steps)
