@@ -3,17 +3,13 @@
 """The driveline with dry friction, stepped exactly: one clutch or two, and the wheels."""
 
 from collections.abc import Mapping, Sequence
-from itertools import chain
 
 from ddct_plant.base.timebase import time_of_step
 from ddct_plant.friction.engagements import OFF_GOING, ON_COMING, WHEEL, EngagedGears
 from ddct_plant.friction.tie_up import TieUp
 from ddct_plant.hybrid.interval_map import Interval
 from ddct_plant.models.driveline import (
-    LOCKED,
-    OPEN,
     PHASES,
-    SLIPPING,
     DrivelineOutputs,
     OffGoingOutputs,
     PhaseEvent,
@@ -26,8 +22,7 @@ from ddct_plant.models.parameters import VehicleParameters
 _ENGINE, _SHAFT = STATES_AND_ANGLES.places('engine_speed', 'shaft_speed')
 _OF_DRIVELINE = slice(0, len(STATES_AND_ANGLES))
 _OTHER, _OTHER_ANGLE = len(STATES_AND_ANGLES), len(STATES_AND_ANGLES) + 1
-PHASE_NUMBERS = {phase: float(number) for number, phase in enumerate(PHASES)}
-"""Index in PHASES by phase, as signals have it."""
+_OPEN, _SLIPPING, _LOCKED = map(float, range(len(PHASES)))
 
 
 class FrictionDriveline:
@@ -69,11 +64,11 @@ class FrictionDriveline:
         self.synchronising_work = 0.0
         """Kinetic energy in J that the preselection of its gear has given the on-coming shaft."""
         self._phases = [
-            OPEN if side.open else phase_of(sign, side.torque)
+            _OPEN if side.open else phase_of(sign, side.torque)
             for side, sign in zip(initial.sides, signs, strict=False)
         ]
         self._torques = initial.engine_torque, initial.load_torque
-        self._tie_up_work = 0.0
+        self._tie_up_work = 0.0 if self._tie_up else None
         self._steps = 0
 
     @property
@@ -87,7 +82,6 @@ class FrictionDriveline:
         values = engaged.to_values(now.state)
         engine_torque, load_torque = self._torques
         torques = engine_torque, now.friction[ON_COMING], load_torque + now.friction[WHEEL]
-        shift = len(self._phases) > 1
         return driveline_outputs(
             self._parameters,
             self._wheel_radius,
@@ -95,12 +89,12 @@ class FrictionDriveline:
             torques,
             clutch_sticks=now.signs[ON_COMING] == 0,
             wheels_stick=now.signs[WHEEL] == 0,
-            clutch_phase=PHASE_NUMBERS[self._phases[ON_COMING]],
+            clutch_phase=self._phases[ON_COMING],
             friction_work=now.work[ON_COMING],
             phase_events=self._events(ON_COMING),
-            gear_speed=engaged.gear_speed(values),
-            off_going=self._off_going(values) if shift else None,
-            tie_up_work=self._tie_up_work if shift else None,
+            gear_speed=engaged.gear.wheel_speed(values[engaged.turning]),
+            off_going=self._off_going(values) if self._tie_up else None,
+            tie_up_work=self._tie_up_work,
         )
 
     def _off_going(self, values: Sequence[float]) -> OffGoingOutputs:
@@ -110,7 +104,7 @@ class FrictionDriveline:
             shaft_speed,
             now.friction[OFF_GOING],
             values[_ENGINE] - shaft_speed if now.signs[OFF_GOING] else 0.0,
-            PHASE_NUMBERS[self._phases[OFF_GOING]],
+            self._phases[OFF_GOING],
             now.work[OFF_GOING],
             self._events(OFF_GOING),
         )
@@ -131,31 +125,31 @@ class FrictionDriveline:
         engine_torque: float,
         load_torque: float,
         holding_torque: float,
-        *capacities: Sequence[float],
+        kinetic_torque: Sequence[float],
+        static_torque: Sequence[float],
+        off_going_kinetic: Sequence[float] = (),
+        off_going_static: Sequence[float] = (),
     ) -> None:
         """
-        Advance by 10 ms with held C_m and C_load and the capacities of the friction elements.
+        Advance by 10 ms with held C_m and C_load and the (11,) nodes of each clutch's capacities.
 
         All are in N m. `load_torque` is that of air and slope; `holding_torque`, the capacity of
-        rolling resistance and brake at the wheel, is held too. `capacities` are the (11,) nodes of
-        the kinetic and the static one of each clutch in turn, the on-coming one first. Raise
-        ParameterError for a negative capacity, or a static one below the kinetic one.
+        rolling resistance and brake at the wheel, is held too. Only a shift has an off-going
+        clutch. Raise ParameterError for a negative capacity, or a static one below the kinetic
+        one.
         """
-        kinetic_torques, static_torques = capacities[::2], capacities[1::2]
-        kinetic = static = [*chain(*kinetic_torques), holding_torque]
-        # A new clutch has one list for both.
-        if any(k is not s for k, s in zip(kinetic_torques, static_torques, strict=True)):
-            static = [*chain(*static_torques), holding_torque]
+        kinetic = static = [*kinetic_torque, *off_going_kinetic, holding_torque]
+        if static_torque is not kinetic_torque or off_going_static is not off_going_kinetic:
+            static = [*static_torque, *off_going_static, holding_torque]
         before, inputs = self.now, (engine_torque, load_torque)
         now = self.now = self._engaged.integrator.advance(
             before.state, before.signs, inputs, kinetic, static
         )
         if self._tie_up:
             self._tie_up_work = self._tie_up.work(before, now, inputs, kinetic, static)
-        self._phases = [
-            phase_of(sign, torque[-1])
-            for sign, torque in zip(now.signs, kinetic_torques, strict=False)
-        ]
+        self._phases = [phase_of(now.signs[ON_COMING], kinetic_torque[-1])]
+        if off_going_kinetic:
+            self._phases.append(phase_of(now.signs[OFF_GOING], off_going_kinetic[-1]))
         self._torques = inputs
         self._steps += 1
         if self._steps in self._changes:
@@ -177,11 +171,11 @@ class FrictionDriveline:
             self.synchronising_work = self._parameters.shaft_inertia * gained / 2.0
 
 
-def phase_of(sign: int, capacity: float) -> str:
-    """Return the phase of a clutch with the sign of its slip and its capacity in N m."""
+def phase_of(sign: int, capacity: float) -> float:
+    """Return the index in PHASES for the sign of the slip and the capacity in N m."""
     if sign == 0:
-        return LOCKED
-    return SLIPPING if capacity else OPEN
+        return _LOCKED
+    return _SLIPPING if capacity else _OPEN
 
 
 def _sign(slip: float) -> int:

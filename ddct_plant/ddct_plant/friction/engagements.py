@@ -62,7 +62,8 @@ class EngagedGears:
         held = (*range(inputs), inputs + self.clutches)  # C_m, C_load and the holding torque
         self.integrator = HybridIntegrator(system, SUBSTEP_S, SUBSTEPS, held)
         """Integrator of the system, whose elements are the clutches and then the wheels."""
-        self._gear = gear
+        self.gear, self.turning = gear, _SHAFT
+        """Gear that turns the wheels, and the place in the values of its shaft's speed."""
 
     def of_values(self, values: Sequence[float]) -> list[float]:
         """Return the state of the system for the values."""
@@ -71,10 +72,6 @@ class EngagedGears:
     def to_values(self, state: list[float]) -> list[float]:
         """Return the values for a state of the system."""
         return state
-
-    def gear_speed(self, values: Sequence[float]) -> float:
-        """Return the speed w_g in rad/s of the driveshaft's inner end."""
-        return self._gear.wheel_speed(values[_SHAFT])
 
 
 class BothEngaged(EngagedGears):
@@ -134,6 +131,7 @@ class OneOfTwoEngaged(EngagedGears):
             clutches, slips = clutches[::-1], slips[::-1]
         system = _system(a, engine, load, clutches, slips)
         super().__init__(gears.on_coming, engaged.gear, system)
+        self.turning = self._places[_SHAFT]
 
     def of_values(self, values: Sequence[float]) -> list[float]:
         """Return the state: the values in another order."""
@@ -142,10 +140,6 @@ class OneOfTwoEngaged(EngagedGears):
     def to_values(self, state: list[float]) -> list[float]:
         """Return the values of SHIFT_STATES."""
         return self.of_values(state)
-
-    def gear_speed(self, values: Sequence[float]) -> float:
-        """Return w_g in rad/s, which the shaft of the engaged gear gives."""
-        return self._gear.wheel_speed(values[self._places[_SHAFT]])
 
 
 def one_clutch_system(parameters: DrivelineParameters) -> FrictionSystem:

@@ -88,7 +88,7 @@ class Ledger:
         p, flows = self._parameters, engaged.integrator.flows
         size = len(before.state)
         shift = np.array([engaged.to_values(row) for row in np.eye(size)]).T
-        gear = np.array([engaged.gear_speed(engaged.to_values(row)) for row in np.eye(size)])
+        gear = engaged.gear.wheel_speed(shift[engaged.turning])
         rows = np.array([shift[0], shift[1], shift[7], gear - shift[2]])
         dampers = [p.engine_damping, p.shaft_damping, p.shaft_damping, p.halfshaft_damping]
         state, signs, total = np.array(before.state), before.signs, 0.0
