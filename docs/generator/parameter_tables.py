@@ -14,11 +14,12 @@ from ddct_plant.graph.arguments import init_ros
 from ddct_plant.graph.node import GraphNode
 from ddct_plant.program.scheduling import Scheduling
 from ddct_plant.program.table import Table
+from ddct_plant.scenario.choices.scenarios import CHOICES
 from ddct_plant.scenario.settings import RunSettings
 
 HEADERS = ('parameter', 'default', 'meaning')
 SHARED = {
-    *('known', 'case', 'scenario', 'known_scenario'),
+    *('known', 'case', *CHOICES, 'known_scenario'),
     *options_of(RunSettings),
     *options_of(Scheduling),
 }

@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import fields, replace
 from functools import cache, partial
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +17,7 @@ import pytest
 from support.documented import ROOT
 
 from ddct_bringup.campaign.campaign import Campaign
-from ddct_bringup.campaign.keys import FILE_KEY, SCENARIO, run_options, sections
+from ddct_bringup.campaign.keys import FILE_KEY, run_options, sections
 from ddct_bringup.campaign.spec import _KEYS as CAMPAIGN_KEYS
 from ddct_bringup.campaign.spec import spec_of
 from ddct_bringup.campaign.specification.named_files import digest_of
@@ -28,7 +29,8 @@ from ddct_controllers.from_file.with_options import KIND as WITH_OPTIONS
 from ddct_controllers.registry import controller_spec
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.yaml_text import dump_yaml
-from ddct_plant.scenario.file import ScenarioFile, load_scenario
+from ddct_plant.scenario.choices.scenarios import CHOICES
+from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.key_names import scenario_options
 from ddct_plant.scenario.settings import RunSettings
 
@@ -120,7 +122,7 @@ def contents() -> Iterator[tuple[str, dict[str, Any]]]:
             yield key, {**CAMPAIGN, key: [file]}
     options = controller_spec('pi').options or {}
     grid = (
-        SCENARIO,
+        *CHOICES,
         *run_options(),
         *scenario_options(),
         *sections(),
@@ -144,16 +146,19 @@ def test_those_of_a_campaign_are_listed_and_each_file_is_in_its_digest(place: Pa
     assert found == in_digest == listed('a campaign')
 
 
-def test_those_of_a_scenario_are_listed(place: Path) -> None:
+def test_those_of_a_scenario_a_car_and_a_drive_are_listed(place: Path) -> None:
     found = set()
-    for key in (*scenario_options(), *sections()):
-        for value in (*FILES, PROFILE):
-            name = 'csv' if value is PROFILE else key
+    bases = {'scenario': {'car': 'c635', 'drive': 'launch'}, 'car': {}, 'drive': {}}
+    for key in ('car', 'drive', 'base', 'set', *scenario_options(), *sections()):
+        for noun, value in product(bases, (*FILES, PROFILE)):
             section, _, rest = key.partition('.')
-            content = {section: {rest: value} if rest else value}
-            file = ScenarioFile(str(place / 'own.yaml'), content)
-            if opens(file.scenario):
-                found.add(name)
+            content = {**bases[noun], section: {rest: value} if rest else value}
+            (place / 'own.yaml').write_text(dump_yaml(content), encoding='utf-8')
+            chosen = {noun: str(place / 'own.yaml')}
+            if noun == 'car':
+                chosen['drive'] = 'launch'
+            if opens(partial(load_scenario, **chosen)):
+                found.add('csv' if value is PROFILE else key)
     assert found == listed('a scenario')
 
 

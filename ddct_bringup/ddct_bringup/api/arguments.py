@@ -21,6 +21,7 @@ from ddct_controllers.registry import (
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import options_of, require_known
 from ddct_plant.program.scheduling import Scheduling
+from ddct_plant.scenario.choices.scenarios import Choice
 from ddct_plant.scenario.file import ScenarioFile
 from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
@@ -75,9 +76,12 @@ def warn_of_adjusted(scenario: Scenario) -> None:
 
 def base_from(
     labels: Iterable[str],
-    scenario: str | Path = 'thesis',
+    scenario: str | Path | None = None,
     set: Mapping[str, Any] | None = None,
     duration: float | None = None,
+    *,
+    car: str | Path | None = None,
+    drive: str | Path | None = None,
     **given: Any,
 ) -> RunBase:
     """Return the common base of runs with the controllers called `labels`."""
@@ -88,11 +92,15 @@ def base_from(
     changes = dict(set or {}) if duration is None else {**(set or {}), 'duration_s': duration}
     require_known(sorted(given), options_of(RunSettings), 'option')
     return RunBase(
-        ScenarioFile.read(str(scenario)),
+        ScenarioFile.read(Choice(_text(scenario), _text(car), _text(drive))),
         {key: plain(changes[key]) for key in changes},
         {key: plain(given[key]) for key in given},
         tuple(labels),
     )
+
+
+def _text(chosen: str | Path | None) -> str | None:
+    return None if chosen is None else str(chosen)
 
 
 def plain(value: Any) -> Any:

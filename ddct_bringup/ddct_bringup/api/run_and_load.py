@@ -39,7 +39,9 @@ def run(
     controller: Any = 'pi',
     *,
     name: str = '',
-    scenario: str | Path = 'thesis',
+    scenario: str | Path | None = None,
+    car: str | Path | None = None,
+    drive: str | Path | None = None,
     set: Mapping[str, Any] | None = None,
     duration: float | None = None,
     headless: bool = True,
@@ -54,16 +56,20 @@ def run(
     Run one controller in the closed loop and judge the run.
 
     `controller` and `name` are the arguments of `chosen_from`: a name, a file, a class, a factory,
-    an object, a linear system. `set` changes scenario keys, as {'load.slope_rad': 0.05}, the
-    options of the controller among them, as {'controllers.NAME.KEY': value}. `settings` are those
-    of `RunSettings`: architecture, clutch, wear_gain, mode, seed. Without `headless` the ROS graph
-    runs, each node a process. With `out` the bag is kept as `<out>/<name>/`; a run that is not
-    valid, with its `reason`, is kept as `<out>/<name>.partial/`. With `floors` the peak jerk is
-    compared with the least of its case, which takes a second the first time. `beside` names other
-    controllers whose options `set` may hold too.
+    an object, a linear system. `scenario`, `car` and `drive` are names or files; a car or drive
+    takes the place of that of the scenario, by default `thesis`, and a drive without a scenario
+    has the car `c635` unless another is given. `set` changes scenario keys, as
+    {'load.slope_rad': 0.05}, the options of the controller among them, as
+    {'controllers.NAME.KEY': value}. `settings` are those of `RunSettings`: architecture, clutch,
+    wear_gain, mode, seed. Without `headless` the ROS graph runs, each node a process. With `out`
+    the bag is kept as `<out>/<name>/`; a run that is not valid, with its `reason`, is kept as
+    `<out>/<name>.partial/`. With `floors` the peak jerk is compared with the least of its case,
+    which takes a second the first time. `beside` names other controllers whose options `set` may
+    hold too.
     """
     chosen = chosen_from(controller, name)
-    ready = run_settings([controller_label(chosen), *beside], scenario, set, duration, **settings)
+    given = {'scenario': scenario, 'car': car, 'drive': drive, 'set': set, 'duration': duration}
+    ready = run_settings([controller_label(chosen), *beside], **given, **settings)
     warn_of_adjusted(ready.scenario)
     plan = RunPlan(ready, chosen, _layout(headless))
     judged_by = load_limits(limits)

@@ -31,7 +31,8 @@ class Campaign(RunSet):
         super().__init__(
             controllers=controllers,
             bases={
-                name: RunBase(spec.scenario_file(name), {}, {}, labels) for name in spec.scenarios
+                choice: RunBase(spec.scenario_file(choice), {}, {}, labels)
+                for choice in spec.choices
             },
             common=spec.common,
             grid=spec.grid,

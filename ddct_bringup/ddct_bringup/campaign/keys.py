@@ -8,15 +8,23 @@ from functools import cache
 from ddct_controllers.registry import controller_names, controller_spec
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import Option, Options, group_of, key_of, options_of
+from ddct_plant.scenario.choices.scenarios import CHOICES, DEFAULT_CAR, DEFAULT_SCENARIO
 from ddct_plant.scenario.csv_profiles import FACTOR, FACTOR_OPTION
 from ddct_plant.scenario.key_names import key_hint, scenario_options
 from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
 
 SCENARIO, MODE, CONTROLLERS = 'scenario', 'mode', 'controllers'
-COMMON = (SCENARIO, 'architecture')
+COMMON = (*CHOICES, 'architecture')
 """Keys that are given for all runs, or varied."""
-_SCENARIO_OPTION = Option('thesis', 'name of a scenario, or its file')
+_CHOICES = {
+    name: Option('', f'name of a {name}, or its file', otherwise=otherwise)
+    for name, otherwise in zip(
+        CHOICES,
+        (DEFAULT_SCENARIO, f'that of the scenario, or {DEFAULT_CAR}', 'that of the scenario'),
+        strict=True,
+    )
+}
 HANDOVER = 'handover'
 """Key of the handover of a gear shift, by its name or the file of its code."""
 FILE_KEY = '.csv'
@@ -35,7 +43,7 @@ def option_of(where: str, key: str) -> Option | None:
 
     Raise ParameterError, which begins with `where`, for an unknown key.
     """
-    known = {SCENARIO: _SCENARIO_OPTION, **run_options(), **scenario_options()}
+    known = {**_CHOICES, **run_options(), **scenario_options()}
     if key in known:
         return known[key]
     section, _, rest = key.partition('.')

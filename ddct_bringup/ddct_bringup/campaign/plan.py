@@ -163,8 +163,8 @@ def carried(spec: CampaignSpec, inputs: InputFiles) -> dict[str, Any]:
     Files of its own folder keep their names. Raise DdctError for one that cannot be read.
     """
 
-    def place(name: str) -> str:
-        return inputs.add(files_of(spec.folder / name))
+    def place(key: str, name: str) -> str:
+        return inputs.add(files_of(key, spec.folder / name))
 
     content = with_places(spec.content, place)
     if CONTROLLERS in content:

@@ -12,13 +12,14 @@ from typing import Any, Self
 import numpy as np
 
 from ddct_bringup.campaign.draws import Draw, drawn_in_part, run_seeds, uniforms
-from ddct_bringup.campaign.keys import COMMON, SCENARIO
+from ddct_bringup.campaign.keys import COMMON
 from ddct_bringup.campaign.rows import SEED, require_suitable
 from ddct_bringup.campaign.specification.distributions import Distribution
 from ddct_bringup.run.run_base import RunBase
 from ddct_controllers.interface import Controller, ControllerSpec
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.input_file import located
+from ddct_plant.scenario.choices.scenarios import Choice
 from ddct_plant.scenario.settings import RunSettings
 
 MOST_CHECKED = 1000
@@ -67,10 +68,10 @@ class RunSet:
     """
 
     controllers: Sequence[ControllerSpec[Controller]]
-    bases: Mapping[str, RunBase]
+    bases: Mapping[Choice, RunBase]
     """Common settings of the runs, by the scenario's name."""
     common: Mapping[str, Any]
-    """Values for all runs; its `scenario` is a key of `bases`."""
+    """Values for all runs; its scenario, car and drive are a key of `bases`."""
     grid: Mapping[str, Sequence[Any]]
     """Values on the grid by key; the last key changes fastest."""
     samples: int = 1
@@ -136,7 +137,7 @@ class RunSet:
         varied: Mapping[str, Any],
         given: dict[str, Any],
     ) -> PlannedRow | ImpossibleRow:
-        base = self.bases[given.pop(SCENARIO)]
+        base = self.bases[Choice.taken_from(given)]
         try:
             settings = base.at(
                 {key: self.placed(key, given[key]) for key in given}, drawn=self.vary

@@ -5,10 +5,11 @@
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import product
 from pathlib import Path
 from typing import Any
 
-from ddct_bringup.campaign.keys import COMMON, CONTROLLERS, SCENARIO
+from ddct_bringup.campaign.keys import COMMON, CONTROLLERS
 from ddct_bringup.campaign.specification.distributions import Distribution
 from ddct_bringup.campaign.specification.parts import (
     FLOOR_SAMPLES,
@@ -30,7 +31,7 @@ from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import Option
 from ddct_plant.files.input_file import SCHEMA_KEY, located, require_schema_version, user_text
 from ddct_plant.files.yaml_text import parse_yaml_with_lines
-from ddct_plant.scenario.choices.scenarios import is_packaged
+from ddct_plant.scenario.choices.scenarios import CHOICES, Choice, is_packaged
 from ddct_plant.scenario.file import ScenarioFile
 from ddct_plant.scenario.key_names import scenario_options
 
@@ -50,7 +51,7 @@ class CampaignSpec:
     """Folder that files are relative to."""
     controllers: tuple[str, ...]
     common: Mapping[str, str]
-    """Values for all runs: `scenario`, and `architecture` where it is given."""
+    """Values for all runs: scenario, car, drive and architecture where they are given."""
     root: int
     grid: Mapping[str, tuple[Any, ...]]
     """Values on the grid by key."""
@@ -82,13 +83,20 @@ class CampaignSpec:
         ]
 
     @property
-    def scenarios(self) -> tuple[str, ...]:
-        """Names of the scenarios, or their files as the specification names them."""
-        return self.values_of(SCENARIO) if SCENARIO in self.keys else (self.common[SCENARIO],)
+    def choices(self) -> tuple[Choice, ...]:
+        """Scenarios, cars and drives of the runs, with files as the specification names them."""
+        values = (
+            self.values_of(key) if key in self.keys else (self.common.get(key),) for key in CHOICES
+        )
+        return tuple(Choice(*each) for each in product(*values))
 
-    def scenario_file(self, name: str) -> ScenarioFile:
-        """Return a scenario that a specification names; raise DdctError for an invalid one."""
-        return ScenarioFile.read(name if is_packaged(name) else str(self.folder / name))
+    def scenario_file(self, choice: Choice) -> ScenarioFile:
+        """Return what a specification chooses; raise DdctError where that is invalid."""
+        names = {
+            key: name if is_packaged(name) else str(self.folder / name)
+            for key, name in choice.given.items()
+        }
+        return ScenarioFile.read(Choice(**names))
 
     def text(self) -> str:
         """Return the specification as canonical text, independent of its formatting."""

@@ -36,9 +36,9 @@ from ddct_plant.files.json_records import to_json, write_json
 from ddct_plant.files.output_file import write_text
 from ddct_plant.files.yaml_text import dump_yaml
 from ddct_plant.program.command_line import package_version
+from ddct_plant.scenario.choices.scenarios import CHOICES, DEFAULT_SCENARIO
 
 SUMMARY, PAGE = 'summary.json', 'report.html'
-THESIS = 'thesis'
 _ROOM, _REPORT = 'ddct_bringup.campaign_report', 'ddct_bringup.report'
 _SHOWN_FIRST = (FAILED_SHARE, 'peak_jerk_m_s3')
 """Quantities that the maps show when the page opens, the first available one of these."""
@@ -65,8 +65,12 @@ def write_campaign_page(folder: Path) -> Summary:
 
 
 def scenario_of(recorded: RecordedCampaign) -> str:
-    """Return the name of the scenario of a campaign, or that it was varied."""
-    return 'varied' if SCENARIO in recorded.plan.grid else recorded.plan.spec.get(SCENARIO, THESIS)
+    """Return what the runs of a campaign drive, by name, or that it was varied."""
+    plan = recorded.plan
+    if {*CHOICES} & {*plan.grid}:
+        return 'varied'
+    given = [str(plan.spec[key]) for key in CHOICES if key in plan.spec]
+    return ', '.join(given) or DEFAULT_SCENARIO
 
 
 def facts_of(recorded: RecordedCampaign) -> dict[str, str]:

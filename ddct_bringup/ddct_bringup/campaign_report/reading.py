@@ -10,7 +10,7 @@ import pyarrow as pa
 from ddct_bringup.campaign.arrow_columns import numpy_column, read_parquet
 from ddct_bringup.campaign.columns import COMPARED, CONTROLLER, INDEX, PATH, SCHEMA_VERSION
 from ddct_bringup.campaign.conduct import RESULTS
-from ddct_bringup.campaign.keys import COMMON, SCENARIO, option_of
+from ddct_bringup.campaign.keys import COMMON, option_of
 from ddct_bringup.campaign.plan import RecordedCampaign
 from ddct_bringup.campaign.rows import STATE
 from ddct_bringup.campaign.spec import CampaignSpec
@@ -18,6 +18,7 @@ from ddct_bringup.campaign_report.results import OtherVersion, Results
 from ddct_bringup.manifest.file_states import require_unaltered
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.files.input_file import SCHEMA_KEY, require_schema_version
+from ddct_plant.scenario.choices.scenarios import Choice
 from ddct_plant.scenario.differences import values_by_key
 from ddct_plant.scenario.settings import RunSettings
 
@@ -114,8 +115,7 @@ def nominal_values(spec: CampaignSpec) -> dict[str, float]:
     """
     first = {key: spec.values_of(key)[0] for key in COMMON if key in spec.keys}
     common = {**spec.common, **first}
-    file = spec.scenario_file(common.pop(SCENARIO))
-    scenario = file.scenario()
+    scenario = spec.scenario_file(Choice.taken_from(common)).scenario()
     given = {**vars(RunSettings(scenario, **common)), **values_by_key(scenario)}
     found: dict[str, float] = {}
     for key in spec.keys:

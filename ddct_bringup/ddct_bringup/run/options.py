@@ -15,7 +15,7 @@ from ddct_plant.base.options import Option, require_known
 from ddct_plant.files.input_file import located
 from ddct_plant.program.printed_table import print_note, print_table
 from ddct_plant.program.table import Table, Weight, with_reasons
-from ddct_plant.scenario.choices.scenarios import scenario_names
+from ddct_plant.scenario.choices.scenarios import CHOICES, packaged_names
 from ddct_plant.scenario.choices.settings import ARCHITECTURES, MODES
 
 
@@ -56,7 +56,7 @@ def print_choices() -> None:
     rows: Sequence[tuple[str, Sequence[str]]] = (
         ('controllers', controller_names()),
         ('architectures', ARCHITECTURES),
-        ('scenarios', scenario_names()),
+        *((f'{noun}s', packaged_names(noun)) for noun in CHOICES),
         ('modes', MODES),
     )
     for title, names in rows:

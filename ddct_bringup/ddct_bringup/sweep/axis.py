@@ -9,10 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from ddct_bringup.campaign.keys import SCENARIO, option_of
+from ddct_bringup.campaign.keys import option_of
 from ddct_plant.base.errors import ParameterError, printable
 from ddct_plant.files.input_file import located
 from ddct_plant.files.yaml_text import parse_yaml
+from ddct_plant.scenario.choices.scenarios import CHOICES
 
 MOST = 10_000
 """Largest number of values of one key and of points of a sweep; use a campaign for more."""
@@ -71,8 +72,8 @@ def axis(key: str, values: Any) -> Axis:
 
     Raise ParameterError for an unknown key, or one that a sweep cannot vary.
     """
-    if key == SCENARIO:
-        raise ParameterError(f'--over {key}: give one by --scenario, or a campaign')
+    if key in CHOICES:
+        raise ParameterError(f'--over {key}: give one by --{key}, or a campaign', key='--over')
     described = option_of('--over', key)
     if described is not None and described.kind is float:
         values = [float(value) if type(value) is int else value for value in values]

@@ -9,7 +9,6 @@ from functools import cached_property
 from math import prod
 from typing import Any
 
-from ddct_bringup.campaign.keys import SCENARIO
 from ddct_bringup.campaign.rows import result_row
 from ddct_bringup.campaign.run_set import RunSet
 from ddct_bringup.campaign.scored import ScoredRow, scored_runs
@@ -65,8 +64,8 @@ class Sweep:
         """Runs of every controller at every point; the last axis changes fastest."""
         return RunSet(
             controllers=[controller_spec(each) for each in self.controllers],
-            bases={self.base.file.name: self.base},
-            common={SCENARIO: self.base.file.name},
+            bases={self.base.file.choice: self.base},
+            common=self.base.file.choice.given,
             grid={axis.key: axis.values for axis in self.axes},
         )
 

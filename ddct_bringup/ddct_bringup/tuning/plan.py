@@ -58,7 +58,8 @@ class TuningPlan:
         folder, content = '.', dict(spec.content)
         if BENCHMARK not in content[CAMPAIGN]:
             content[CAMPAIGN] = with_places(
-                content[CAMPAIGN], lambda name: inputs.add(files_of(spec.folder / name))
+                content[CAMPAIGN],
+                lambda key, name: inputs.add(files_of(key, spec.folder / name)),
             )
         if is_controller_file(judged.chosen):
             place = inputs.add(controller_files(judged.path))

@@ -154,7 +154,7 @@ def test_a_moved_specification_names_the_same_files() -> None:
             },
         },
     }
-    moved = with_places(content, lambda name: f'../{name}')
+    moved = with_places(content, lambda _, name: f'../{name}')
     assert moved['controllers'] == ['mine.py']
     assert moved['scenario'] == '../own.yaml'
     engine = {**PROFILE, 'csv': '../a.csv'}
@@ -164,8 +164,8 @@ def test_a_moved_specification_names_the_same_files() -> None:
         'wear_gain': [1.0],
     }
     assert moved['random']['vary']['brake.csv']['values'] == ['../b.csv']
-    assert with_places(content, str) == content
+    assert with_places(content, lambda _, name: name) == content
     varied = {'grid': {'scenario': ['thesis', 'own.yaml']}}
-    assert with_places(varied, lambda name: f'../{name}') == {
+    assert with_places(varied, lambda _, name: f'../{name}') == {
         'grid': {'scenario': ['thesis', '../own.yaml']}
     }

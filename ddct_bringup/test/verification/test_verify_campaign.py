@@ -32,7 +32,7 @@ PROFILE = {'csv': 'a.csv', 'time': 't', 'value': 'c', 'unit': 'N m'}
 NAMES_FILES = """\
 controllers: [pi, '{mine}']
 scenario: own.yaml
-grid: {{wear_gain: [0.8, 1.0], duration_s: [0.7]}}
+grid: {{car: [c635_thesis, other.yaml], duration_s: [0.7]}}
 """
 
 
@@ -153,6 +153,7 @@ def test_a_campaign_carries_the_files_that_it_names(
     files = {
         'own.yaml': {'car': 'car.yaml', 'drive': 'drives/mine.yaml'},
         'car.yaml': {'base': '../base_car.yaml'},
+        'other.yaml': {'base': '../base_car.yaml', 'friction': {}},
         '../base_car.yaml': {'base': 'c635_thesis', 'vehicle': {'mass_kg': 1500.0}},
         'drives/mine.yaml': {'base': 'base.yaml'},
         'drives/base.yaml': {
@@ -171,7 +172,8 @@ def test_a_campaign_carries_the_files_that_it_names(
     shutil.rmtree(work)
     moved = out.rename(tmp_path / 'moved')
     assert {path.name for path in (moved / 'inputs').rglob('*') if path.is_file()} == {
-        *('mine.py', 'own.yaml', 'a.csv', 'car.yaml', 'base_car.yaml', 'mine.yaml', 'base.yaml')
+        *('mine.py', 'own.yaml', 'a.csv', 'mine.yaml', 'base.yaml'),
+        *('car.yaml', 'other.yaml', 'base_car.yaml'),
     }
     code, document, errors = verified(moved, capfd, '--workers', '1')
     assert (code, document['state'], 'ddct verify' in errors) == (0, 'same_bits', False)

@@ -25,7 +25,13 @@ from ddct_plant.base.options import Option, options_of
 from ddct_plant.fail_safe.request_watch import FailSafeSettings
 from ddct_plant.graph.node_names import name_in_graph
 from ddct_plant.program.scheduling import Scheduling
-from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.choices.scenarios import (
+    CHOICES,
+    DEFAULT_CAR,
+    DEFAULT_SCENARIO,
+    Choice,
+)
+from ddct_plant.scenario.file import ScenarioFile, load_scenario
 from ddct_plant.scenario.recorded_settings import (
     CasePart,
     KnownPart,
@@ -38,7 +44,15 @@ from ddct_plant.scenario.recorded_settings import (
 from ddct_plant.scenario.settings import UNKNOWN, RunSettings, handover_name
 from ddct_plant.shift.roles import OFF_GOING, ON_COMING, ROLES
 
-_SCENARIO = Option('thesis', 'name of a packaged scenario, or path of a YAML file')
+_CHOICES = {
+    'scenario': Option(
+        DEFAULT_SCENARIO,
+        'name of a packaged scenario, or path of a YAML file; with `drive` there is none unless '
+        'given',
+    ),
+    'car': Option('', f'car in place of that of the scenario; without a scenario {DEFAULT_CAR}'),
+    'drive': Option('', 'drive in place of that of the scenario'),
+}
 _KNOWN_SCENARIO = Option(
     '', 'scenario that controllers know, as `scenario` is given; empty: the same as `scenario`'
 )
@@ -70,7 +84,7 @@ def declare_settings(
     `known_only` has none for what controllers do not know. Raise DdctError for a value out of
     range, for an unusable file, and for a value that does not agree with the files.
     """
-    shared = {'scenario': _SCENARIO, 'known_scenario': _KNOWN_SCENARIO, **options_of(RunSettings)}
+    shared = {**_CHOICES, 'known_scenario': _KNOWN_SCENARIO, **options_of(RunSettings)}
     shared = {name: shared[name] for name in shared if not known_only or name not in _OF_CASE}
     files = {
         name: declare(node, name, each)
@@ -98,7 +112,7 @@ def _of_parameters(
         name: declare(node, name, replace(each, default=defaults.get(name, each.default)))
         for name, each in shared.items()
     }
-    scenario = load_scenario(values.pop('scenario'))
+    scenario = _chosen(node, values).scenario()
     known = values.pop('known_scenario', '')
     return RunSettings(scenario, **values, known_scenario=load_scenario(known) if known else None)
 
@@ -120,26 +134,36 @@ def _of_files(node: Node, shared: Mapping[str, Option], files: Mapping[str, str]
         if name in node._parameter_overrides:
             given[name] = declare(node, name, each)
         elif name not in _OF_CASE:  # true values stay out of what others can read
-            usual = settings.scenario.name if name == 'scenario' else getattr(settings, name)
-            declare(node, name, replace(each, default=usual))
-    _require_given(
-        full_name(node), {key: given[key] for key in given if given[key] != ''}, settings
-    )
+            usual = {**dict.fromkeys(CHOICES, ''), 'scenario': settings.scenario.name}
+            default = usual[name] if name in CHOICES else getattr(settings, name)
+            declare(node, name, replace(each, default=default))
+    _require_given(node, {key: given[key] for key in given if given[key] != ''}, settings)
     return replace(settings, handover=given.get('handover', settings.handover))
 
 
-def _require_given(node: str, given: Mapping[str, Any], settings: RunSettings) -> None:
+def _require_given(node: Node, given: dict[str, Any], settings: RunSettings) -> None:
     """Raise ParameterError for a given parameter that is not that of the run."""
     ours: dict[str, object] = {}
+    if {*CHOICES} & given.keys():
+        ours |= values_of_scenario('scenario', _chosen(node, given).scenario())
     for name, value in given.items():
-        if name in ('scenario', 'known_scenario'):
+        if name == 'known_scenario':
             ours |= values_of_scenario(name, load_scenario(value))
         else:
             ours[name] = handover_name(value) if name == 'handover' else value
-    sections = tuple(f'{name}.' for name in given)
+    sections = tuple({f'{key.partition(".")[0]}.' for key in ours if '.' in key})
     theirs = values_of(settings)
     compared = {key: theirs[key] for key in theirs if key in given or key.startswith(sections)}
-    require_agreement(node, ours, compared)
+    require_agreement(full_name(node), ours, compared)
+
+
+def _chosen(node: Node, values: dict[str, Any]) -> ScenarioFile:
+    """Return what the parameters choose, which are taken out of the values by name."""
+    choice = Choice.taken_from(values)
+    given = 'scenario' in node._parameter_overrides or not choice.drive
+    return ScenarioFile.read(
+        Choice(choice.scenario if given else None, choice.car or None, choice.drive or None)
+    )
 
 
 def full_name(node: Node) -> str:

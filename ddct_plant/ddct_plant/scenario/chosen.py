@@ -7,13 +7,14 @@ import sys
 from collections.abc import Sequence
 
 from ddct_plant.base.errors import printable
-from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.choices.command_line import choice_of
+from ddct_plant.scenario.file import ScenarioFile
 from ddct_plant.scenario.scenario import Scenario
 
 
 def scenario_of(options: argparse.Namespace, overrides: Sequence[str]) -> Scenario:
-    """Return the scenario of --scenario with overrides; print `adjusted` on standard error."""
-    scenario = load_scenario(options.scenario, overrides)
+    """Return the chosen scenario with overrides; print `adjusted` on standard error."""
+    scenario = ScenarioFile.read(choice_of(options)).scenario(overrides)
     print_adjusted(scenario)
     return scenario
 

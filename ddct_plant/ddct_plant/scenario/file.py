@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from ddct_plant.files.yaml_text import dump_yaml
+from ddct_plant.scenario.choices.scenarios import Choice
 from ddct_plant.scenario.content import flat, scenario_content, scenario_of
 from ddct_plant.scenario.csv_profiles import with_points
 from ddct_plant.scenario.nouns.composed import composed, file_content
@@ -33,8 +34,8 @@ from ddct_plant.scenario.scenario import Scenario
 class ScenarioFile:
     """A car, a drive and changed keys, from which scenarios with overrides are made."""
 
-    name: str
-    """Name or path of the scenario, car and drive, as requested, for errors and labels."""
+    choice: Choice
+    """What was requested."""
     content: Mapping[str, Any]
     """Values of the scenario by key, nested, before `set`."""
     set: Mapping[str, Any] = dataclasses.field(default_factory=dict)
@@ -49,13 +50,11 @@ class ScenarioFile:
     """Scenarios with numbers that were set before, by the dotted keys of these numbers."""
 
     @classmethod
-    def read(
-        cls, scenario: str | None = None, car: str | None = None, drive: str | None = None
-    ) -> 'ScenarioFile':
-        """Read a scenario, a car, a drive, or what they replace; errors of `load_scenario`."""
-        made = composed(scenario, car, drive)
-        name = scenario or made.content['name']
-        return cls(name, made.content, made.set, made.places, made.files)
+    def read(cls, choice: Choice | str) -> 'ScenarioFile':
+        """Read what is chosen, or the scenario of a name or file; errors of `load_scenario`."""
+        choice = Choice(choice) if isinstance(choice, str) else choice
+        made = composed(choice)
+        return cls(choice, made.content, made.set, made.places, made.files)
 
     def scenario(self, overrides: Iterable[str] | Mapping[str, Any] = ()) -> Scenario:
         """Return the scenario with overrides; arguments and errors as in `load_scenario`."""
@@ -120,15 +119,15 @@ def load_scenario(
     """
     Return the scenario of a name or a YAML file, with another car or drive, and overrides.
 
-    Without a scenario, a drive is driven by the car `c635` unless `car` is given; else the
-    scenario is `thesis`. Overrides are texts `KEY=VALUE`, or values by dotted key.
+    The scenario, car and drive are those of a `Choice`. Overrides are texts `KEY=VALUE`, or values
+    by dotted key.
 
     Dependent values are kept consistent (see `consistency`), and values that no car has get a
     line in `adjusted` (see `plausible`).
     Raise ParameterError for an unknown name or key or a bad value, DdctError for a file that
     cannot be read.
     """
-    return ScenarioFile.read(scenario, car, drive).scenario(overrides)
+    return ScenarioFile.read(Choice(scenario, car, drive)).scenario(overrides)
 
 
 def scenario_to_yaml(scenario: Scenario) -> str:

@@ -9,6 +9,7 @@ from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.models.gearbox import Gearbox
 from ddct_plant.models.static_torque import StaticTorque
 from ddct_plant.plant import Plant
+from ddct_plant.scenario.choices.scenarios import Choice
 from ddct_plant.scenario.file import ScenarioFile, load_scenario
 from ddct_plant.scenario.initial_state import initial_request, locked_request
 from ddct_plant.scenario.settings import RunSettings
@@ -62,7 +63,7 @@ def settings_of(
     off_going_wear_gain: float = 1.0,
 ) -> RunSettings:
     """Return the settings of a shift for the content of a scenario and of its section."""
-    made = ScenarioFile('shift', {**scenario, 'shift': shift}).scenario()
+    made = ScenarioFile(Choice('shift'), {**scenario, 'shift': shift}).scenario()
     return RunSettings(made, off_going_wear_gain=off_going_wear_gain)
 
 

@@ -4,22 +4,22 @@
 
 import hashlib
 from collections.abc import Callable, Iterator, Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any
 
-from ddct_bringup.campaign.keys import FILE_KEY, HANDOVER, SCENARIO
+from ddct_bringup.campaign.keys import FILE_KEY, HANDOVER
 from ddct_bringup.campaign.spec import CampaignSpec
 from ddct_bringup.campaign.specification.distributions import VALUES
 from ddct_bringup.campaign.specification.parts import GRID, RANDOM, VARY
-from ddct_controllers.from_file.controller_file import YAML_SUFFIXES
 from ddct_controllers.from_file.digests import (
     controller_digests,
     handover_digests,
     handover_files,
 )
 from ddct_plant.base.errors import DdctError
-from ddct_plant.scenario.choices.scenarios import is_packaged
-from ddct_plant.scenario.file import ScenarioFile
+from ddct_plant.scenario.choices.scenarios import CHOICES, is_packaged
+from ddct_plant.scenario.nouns.composed import files_of_noun
 from ddct_plant.scenario.settings import is_handover_file
 
 _CSV = 'csv'
@@ -37,13 +37,17 @@ def placed(key: str, value: Any, place: Callable[[str], str]) -> Any:
     return value
 
 
-def with_places(content: Mapping[str, Any], place: Callable[[str], str]) -> dict[str, Any]:
-    """Return a valid specification with the `place` of each file that it names for its cases."""
+def with_places(content: Mapping[str, Any], place: Callable[[str, str], str]) -> dict[str, Any]:
+    """
+    Return a valid specification with the `place` of each file that it names for its cases.
+
+    `place` takes the key and the name of a file.
+    """
 
     def at_place(key: str, value: Any) -> Any:
-        if key == SCENARIO:
-            return value if is_packaged(value) else place(value)
-        return placed(key, value, place)
+        if key in CHOICES:
+            return value if is_packaged(value) else place(key, value)
+        return placed(key, value, partial(place, key))
 
     def described_at_place(key: str, described: Mapping[str, Any]) -> Mapping[str, Any]:
         if VALUES not in described:
@@ -51,8 +55,9 @@ def with_places(content: Mapping[str, Any], place: Callable[[str], str]) -> dict
         return {**described, VALUES: [at_place(key, value) for value in described[VALUES]]}
 
     found = dict(content)
-    if SCENARIO in found:
-        found[SCENARIO] = at_place(SCENARIO, found[SCENARIO])
+    for key in CHOICES:
+        if key in found:
+            found[key] = at_place(key, found[key])
     if GRID in found:
         found[GRID] = {
             key: [at_place(key, value) for value in values] for key, values in found[GRID].items()
@@ -64,18 +69,16 @@ def with_places(content: Mapping[str, Any], place: Callable[[str], str]) -> dict
     return found
 
 
-def files_of(path: Path) -> list[Path]:
+def files_of(key: str, path: Path) -> list[Path]:
     """
-    Return a file that a specification names for its cases, then those that it is made of.
+    Return a file that a specification names by a key, then those that it is made of.
 
-    A scenario has a car, a drive and profiles, a handover modules. Raise DdctError for one that
-    cannot be read.
+    A scenario has a car and a drive, these have bases and profiles, a handover has modules. Raise
+    DdctError for one that cannot be read.
     """
     if is_handover_file(str(path)):
         return handover_files(str(path))
-    if path.suffix not in YAML_SUFFIXES:
-        return [path]
-    return list(ScenarioFile.read(str(path)).files)
+    return list(files_of_noun(key, str(path))) if key in CHOICES else [path]
 
 
 def digest_of(spec: CampaignSpec) -> str:
@@ -85,7 +88,7 @@ def digest_of(spec: CampaignSpec) -> str:
     Nothing in these files runs. Raise DdctError for one that cannot be read.
     """
     digest = hashlib.sha256(spec.text().encode())
-    for path in (*_of_scenarios(spec), *_of_varied_keys(spec)):
+    for path in (*_of_choices(spec), *_of_varied_keys(spec)):
         digest.update(_content_of(path))
     for chosen in spec.chosen:
         digest.update(_digests_text(controller_digests(chosen)))
@@ -106,11 +109,12 @@ def _digests_text(digests: Mapping[str, str]) -> bytes:
     return repr(sorted(digests.items())).encode()
 
 
-def _of_scenarios(spec: CampaignSpec) -> Iterator[Path]:
-    """Yield the scenarios that are files of the user, and the files that they are made of."""
-    for name in spec.scenarios:
+def _of_choices(spec: CampaignSpec) -> Iterator[Path]:
+    """Yield the scenarios, cars and drives that are files, and the files that they are made of."""
+    given = (each for choice in spec.choices for each in choice.given.items())
+    for key, name in dict.fromkeys(given):
         if not is_packaged(name):
-            yield from spec.scenario_file(name).files
+            yield from files_of_noun(key, str(spec.folder / name))
 
 
 def _of_varied_keys(spec: CampaignSpec) -> Iterator[Path]:

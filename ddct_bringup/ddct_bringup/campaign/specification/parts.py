@@ -5,11 +5,12 @@
 from collections.abc import Mapping
 from typing import Any
 
-from ddct_bringup.campaign.keys import COMMON, CONTROLLERS, SCENARIO, option_of, run_options
+from ddct_bringup.campaign.keys import COMMON, CONTROLLERS, option_of, run_options
 from ddct_bringup.campaign.specification.distribution import distribution_of
 from ddct_bringup.campaign.specification.distributions import Distribution
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import Option, require_known
+from ddct_plant.scenario.choices.scenarios import CHOICES
 
 MOST_RUNS = 10_000_000
 """Largest number of runs of one campaign."""
@@ -50,9 +51,9 @@ def common_of(content: Mapping[str, Any]) -> dict[str, str]:
     """Return the values for all runs by key."""
     given = {key: _text(key, content[key]) for key in COMMON if key in content}
     for key, value in given.items():
-        if key != SCENARIO:
+        if key not in CHOICES:
             run_options()[key].checked(key, value)
-    return {SCENARIO: 'thesis', **given}
+    return given
 
 
 def _text(key: str, value: Any) -> str:

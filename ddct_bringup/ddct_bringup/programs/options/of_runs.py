@@ -10,6 +10,7 @@ from ddct_bringup.api import shell
 from ddct_plant.base.options import options_of
 from ddct_plant.program.scheduling import Scheduling
 from ddct_plant.scenario.choices.command_line import add_option, add_scenario_options
+from ddct_plant.scenario.choices.scenarios import CHOICES
 from ddct_plant.scenario.choices.settings import SETTINGS
 
 ALL = 'all'
@@ -125,7 +126,7 @@ def add_columns_option(parser: argparse.ArgumentParser) -> None:
 def settings_given(options: argparse.Namespace) -> dict[str, Any]:
     """Return what the options of `add_settings_options` give, as arguments of `base_from`."""
     return {
-        'scenario': options.scenario,
+        **{name: getattr(options, name) for name in CHOICES},
         'set': shell.changes_of(options.overrides),
         'duration': options.duration,
         **{name: getattr(options, name) for name in SETTINGS},

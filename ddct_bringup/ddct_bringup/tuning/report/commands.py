@@ -10,11 +10,11 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-from ddct_bringup.campaign.keys import SCENARIO, run_options
+from ddct_bringup.campaign.keys import run_options
 from ddct_bringup.campaign.specification.named_files import placed
 from ddct_bringup.tuning.tuned_names import BEST
 from ddct_bringup.tuning.tuning import Tuning
-from ddct_plant.scenario.choices.scenarios import is_packaged
+from ddct_plant.scenario.choices.scenarios import CHOICES, Choice, is_packaged
 
 
 @dataclass(frozen=True)
@@ -31,8 +31,11 @@ class PageCommands:
     @classmethod
     def of(cls, tuning: Tuning, out: Path) -> 'PageCommands':
         """Return the commands of a tuning in the folder `out`."""
-        scenarios = dict.fromkeys(str(_values(tuning, case)[SCENARIO]) for case in tuning.cases)
-        return cls(_compare(tuning, out), list(scenarios)[1:], 'ddct verify .')
+        values = (_values(tuning, case) for case in tuning.cases)
+        chosen = dict.fromkeys(
+            ', '.join(str(each[key]) for key in CHOICES if key in each) for each in values
+        )
+        return cls(_compare(tuning, out), list(chosen)[1:], 'ddct verify .')
 
 
 def _compare(tuning: Tuning, out: Path) -> str:
@@ -43,14 +46,14 @@ def _compare(tuning: Tuning, out: Path) -> str:
     """
     spec = tuning.campaign.spec
     given = dict(_values(tuning, tuning.cases[0]))
-    scenario = str(given.pop(SCENARIO))
+    chosen = Choice.taken_from(given).given
     controllers = [BEST]
     if tuning.present:  # else it may lack a value, and the page has no figures of it
         controllers.insert(0, _in_folder(tuning.judged.path, out))
-    words = ['ddct', 'compare', '--controllers', ','.join(controllers), '--scenario']
-    words.append(
-        scenario if is_packaged(scenario) else _in_folder(str(spec.folder / scenario), out)
-    )
+    words = ['ddct', 'compare', '--controllers', ','.join(controllers)]
+    for noun, name in chosen.items():
+        file = name if is_packaged(name) else _in_folder(str(spec.folder / name), out)
+        words += [f'--{noun}', file]
     for key, value in given.items():
         if key not in spec.vary or type(value) not in (int, float):
             words += _option(key, placed(key, value, partial(_of_spec, spec.folder, out)))

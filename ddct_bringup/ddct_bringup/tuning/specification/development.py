@@ -99,7 +99,7 @@ class Development:
 
     def moved(self, old: Path, new: Path) -> 'Development':
         """Return the same cases with the files that they name relative to another folder."""
-        content = with_places(self.content, lambda name: os.path.relpath(old / name, new))
+        content = with_places(self.content, lambda _, name: os.path.relpath(old / name, new))
         return replace(self, content=content)
 
     def campaign(self, controller: str, folder: Path, *, floors: bool) -> Campaign:

@@ -5,7 +5,13 @@
 import argparse
 
 from ddct_plant.base.options import Option
-from ddct_plant.scenario.choices.scenarios import scenario_names
+from ddct_plant.scenario.choices.scenarios import (
+    DEFAULT_CAR,
+    DEFAULT_SCENARIO,
+    Choice,
+    packaged_names,
+    scenario_names,
+)
 
 _METAVARS = {float: 'X', int: 'N', str: 'NAME'}
 SET_EXAMPLE = 'load.slope_rad=0.05'
@@ -14,13 +20,23 @@ SET_EXAMPLE = 'load.slope_rad=0.05'
 def add_scenario_options(
     parser: argparse._ActionsContainer, *, set_example: str = SET_EXAMPLE
 ) -> None:
-    """Add --scenario, and --set as `overrides`: the arguments of `load_scenario`."""
+    """Add --scenario, --car and --drive, and --set as `overrides`; `choice_of` reads the first."""
+    default = f'default: {DEFAULT_SCENARIO}, or none with --drive'
     parser.add_argument(
         '--scenario',
-        default='thesis',
         metavar='NAME|FILE',
-        help=f'one of {", ".join(scenario_names())}, or a YAML file; default: %(default)s',
+        help=f'one of {", ".join(scenario_names())}, or a YAML file; {default}',
     )
+    for noun, otherwise in (
+        ('car', f'that of the scenario; without one {DEFAULT_CAR}'),
+        ('drive', 'that of the scenario'),
+    ):
+        parser.add_argument(
+            f'--{noun}',
+            metavar='NAME|FILE',
+            help=f'{noun} in place of {otherwise}: one of {", ".join(packaged_names(noun))}, or '
+            'a YAML file',
+        )
     parser.add_argument(
         '--set',
         action='append',
@@ -29,6 +45,11 @@ def add_scenario_options(
         dest='overrides',
         help=f'change a scenario key, such as {set_example}; may be repeated',
     )
+
+
+def choice_of(options: argparse.Namespace) -> Choice:
+    """Return what --scenario, --car and --drive choose."""
+    return Choice(options.scenario, options.car, options.drive)
 
 
 def add_option(parser: argparse.ArgumentParser, name: str, described: Option) -> None:

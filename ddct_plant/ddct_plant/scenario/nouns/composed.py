@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ddct_plant.files.input_file import SCHEMA_KEY
-from ddct_plant.scenario.choices.scenarios import DEFAULT_CAR, DEFAULT_SCENARIO
+from ddct_plant.scenario.choices.scenarios import DEFAULT_CAR, Choice
 from ddct_plant.scenario.nouns.keys import CAR, DRIVE, NOUNS, SCENARIO, by_noun, owner_of
 from ddct_plant.scenario.nouns.part import DESCRIPTION, Part, Text
 from ddct_plant.scenario.nouns.places import Places
@@ -28,24 +28,22 @@ class Composed:
     """Files of the user that it is made of."""
 
 
-def composed(scenario: str | None, car: str | None, drive: str | None) -> Composed:
+def composed(choice: Choice) -> Composed:
     """
-    Return what a scenario makes, with another car or drive where these are given.
+    Return what a scenario makes, with another car or drive where these are chosen.
 
-    Without a scenario a drive has the car `c635` unless another is given; else the scenario is
-    `thesis`. What a scenario changes by `set` it changes of another car and drive too. Raise
-    DdctError that names file and line.
+    What a scenario changes by `set` it changes of another car and drive too. Raise DdctError that
+    names file and line.
     """
-    given = {
-        noun: Text(noun, name) for noun, name in ((CAR, car), (DRIVE, drive)) if name is not None
-    }
-    if scenario is None and DRIVE in given:
+    given = {noun: Text(noun, choice.given[noun]) for noun in NOUNS if noun in choice.given}
+    scenario = choice.whole_scenario
+    if scenario is None:
         texts = {CAR: Text(CAR, DEFAULT_CAR), **given}
         name = f'{texts[DRIVE].stem}_{texts[CAR].stem}'
         parts = {noun: Part.read(texts[noun]) for noun in NOUNS}
         places = Places(f'{texts[DRIVE].label} with {texts[CAR].label}')
         return _joined(parts, {NAME: name}, {}, places, ())
-    file = ScenarioText.read(DEFAULT_SCENARIO if scenario is None else scenario)
+    file = ScenarioText.read(scenario)
     parts = {noun: Part.read(given[noun]) if noun in given else file.part(noun) for noun in NOUNS}
     own = {NAME: file.name, **file.own}
     if given:
@@ -54,6 +52,13 @@ def composed(scenario: str | None, car: str | None, drive: str | None) -> Compos
         own |= {NAME: f'{drive_name}_{car_name}'}
     files = (file.text.path,) if file.text.path else ()
     return _joined(parts, own, file.set, file.places, files)
+
+
+def files_of_noun(noun: str, path: str) -> tuple[Path, ...]:
+    """Return the file of a scenario, a car or a drive, and the files that it is made of."""
+    if noun == SCENARIO:
+        return composed(Choice(path)).files
+    return Part.read(Text(noun, path)).files
 
 
 def _joined(

@@ -8,7 +8,7 @@ import pytest
 from refusals import refused
 
 from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.scenario.choices.scenarios import packaged_names, scenario_names
+from ddct_plant.scenario.choices.scenarios import Choice, packaged_names, scenario_names
 from ddct_plant.scenario.file import ScenarioFile, load_scenario
 
 LAUNCH = load_scenario('launch')
@@ -68,7 +68,7 @@ def test_a_file_has_its_values_above_those_of_its_bases(write) -> None:
     assert (made.friction.most_n_m, made.friction.kiss_torque_n_m) == (300.0, 2.0)
     assert made.heat.plate_j_k == 900.0
     assert made.engine_limits == LAUNCH.engine_limits
-    files = ScenarioFile.read('launch', car=car).files
+    files = ScenarioFile.read(Choice('launch', car=car)).files
     assert files == (Path('b.yaml'), Path('cars/a.yaml'))
 
 
@@ -97,7 +97,7 @@ def test_points_and_a_file_with_a_profile_replace_each_other_and_a_factor_those_
     assert load_scenario(drive=half).engine.torque_n_m == (5.0, 10.0)
     points = write('points.yaml', 'base: half.yaml\nengine: {time_s: [0.0], torque_n_m: [7.0]}\n')
     assert load_scenario(drive=points).engine.torque_n_m == (7.0,)
-    files = ScenarioFile.read(drive=half).files
+    files = ScenarioFile.read(Choice(drive=half)).files
     assert files == (Path('half.yaml'), Path('data/logged.yaml'), Path('data/pedal.csv'))
 
 
