@@ -15,6 +15,7 @@ from ddct_bringup.verdict.limits import packaged_limits
 from ddct_bringup.verdict.state import LATE, NOT_ENGAGED, state_of
 from ddct_controllers.interface import Command, Controller, Measurement
 from ddct_controllers.registry import make_controller
+from ddct_plant.base.clutch_kinds import STICK_SLIP
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
 
@@ -64,9 +65,8 @@ class LabelledRun:
 
     def comes_together(self) -> bool:
         """Run it headless, and return whether the plates turn together at its end by the rules."""
-        known, unbound = None, ()
-        if self.scenario != 'thesis':
-            known, unbound = load_scenario(self.scenario, self.set), UNBOUND
+        known = load_scenario(self.scenario, self.set)
+        unbound = UNBOUND if known.clutch == STICK_SLIP else ()
         scenario = load_scenario(self.scenario, [*unbound, *self.set])
         settings = RunSettings(scenario, wear_gain=self.wear_gain, known_scenario=known)
         controller = make_controller(self.controller, settings)

@@ -28,11 +28,12 @@ def changed_values(scenario: Scenario) -> tuple[str, ...]:
         return ()
     values, packaged = values_by_key(scenario), _packaged_values(scenario.name)
     keys = [*values, *(key for key in packaged if key not in values)]
-    before = _unwritten_defaults(scenario.name) | packaged
+    before = _packaged_defaults(scenario.name) | packaged
+    now = _unwritten_defaults(scenario) | values
     return tuple(
-        f'{key}={_text(values[key])}' if key in values else f'{key} left out'
+        f'{key}={_text(now[key])}' if key in now else f'{key} left out'
         for key in keys
-        if key not in _NOT_COMPARED and values.get(key) != before.get(key)
+        if key not in _NOT_COMPARED and now.get(key) != before.get(key)
     )
 
 
@@ -57,9 +58,12 @@ def _packaged_values(name: str) -> dict[str, object]:
 
 
 @cache
-def _unwritten_defaults(name: str) -> dict[str, object]:
-    """Return the defaults of the sections that a packaged scenario has; it may not write them."""
-    scenario = load_scenario(name)
+def _packaged_defaults(name: str) -> dict[str, object]:
+    return _unwritten_defaults(load_scenario(name))
+
+
+def _unwritten_defaults(scenario: Scenario) -> dict[str, object]:
+    """Return the defaults of the sections that a scenario has; its file may not have them."""
     return {
         key: option.default
         for key, option in scenario_options().items()

@@ -30,6 +30,8 @@ def test_options_of_controllers_and_left_out_sections_count() -> None:
     assert changed_values(gain) == ('controllers.pi.proportional_gain=0.2',)
     launch = dataclasses.replace(load_scenario('launch'), closing=None)
     assert 'closing.dwell_s left out' in changed_values(launch)
+    linear = load_scenario('thesis_sticking', ['clutch=linear'])
+    assert changed_values(linear) == ('clutch=linear',)
     assert 'closing.dwell_s=0.1' in changed_values(
         load_scenario('thesis_sticking', ['closing={}'])
     )
