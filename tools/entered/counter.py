@@ -9,7 +9,7 @@ from types import CodeType, FrameType
 from typing import Any, NamedTuple
 
 PACKAGES = ('ddct_plant', 'ddct_reference', 'ddct_controllers', 'ddct_bringup')
-EQUATIONS = ('ddct_plant.models', 'ddct_plant.shift')
+EQUATIONS = ('ddct_plant.models', 'ddct_plant.friction', 'ddct_plant.shift')
 """Rooms with the equations of the plant."""
 STEP = 'step'
 """Method of a driveline that integrates a period."""
