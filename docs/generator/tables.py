@@ -32,6 +32,7 @@ from ddct_plant.linear.sampling import discretise_zoh
 from ddct_plant.program.table import Table
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import RunSettings
+from generator.actuator_tables import other_actuators
 from generator.option_tables import TABLES as OPTION_TABLES
 from generator.pages import DOCS
 from generator.score_tables import score_tables
@@ -101,7 +102,10 @@ TABLES: Mapping[str, Callable[[], Mapping[str, Table]]] = {
     'plant': plant_tables,
     'loop-shaping': lambda: thesis_tables(thesis_record()),
     'h-infinity': h_infinity_tables,
-    'margins': lambda: {'sampled_loops': sampled_loops()},
+    'margins': lambda: {
+        'sampled_loops': sampled_loops(),
+        'other_actuators': other_actuators(),
+    },
     'calibration': calibration_tables,
     'tuning': tuning_tables,
     'missing': tables_of_missing_messages,

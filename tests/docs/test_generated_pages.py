@@ -8,6 +8,7 @@ import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 import pytest
+from generator.actuator_tables import other_actuators
 from generator.drawings.block_diagrams import drawings
 from generator.option_tables import TABLES as OPTION_TABLES
 from generator.pages import DOCS, as_markdown, fill_pages, marked_pages, shown_tables
@@ -80,6 +81,13 @@ def test_the_tables_of_options_are_what_the_code_declares() -> None:
 
 def test_figures_metrics_and_limits_are_those_of_the_programs() -> None:
     assert shown_tables('scores') == as_markdown(score_tables()), 'run: make docs KINDS=scores'
+
+
+@pytest.mark.slow
+def test_the_margins_with_other_actuators_are_those_of_the_designs() -> None:
+    shown = {name: rows for name, rows in shown_tables('margins').items() if 'actuators' in name}
+    expected = as_markdown({'other_actuators': other_actuators()})
+    assert shown == expected, 'run: make docs KINDS=margins'
 
 
 def test_the_tables_of_tunings_are_those_of_the_kept_results() -> None:

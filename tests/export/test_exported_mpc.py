@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from other_actuators import BETWEEN, FAST, SLOW, keys_of
 from support.exported_checks import (
     compare_exported,
     require_binding_limits,
@@ -27,6 +28,13 @@ from ddct_controllers.registry import make_controller
 def test_the_c_gives_the_torques_of_the_original(tmp_path, name):
     settings = run_settings(architecture='feedforward', wear=0.7)
     compare_exported(name, settings, tmp_path / 'c')
+
+
+@pytest.mark.parametrize('actuator', [SLOW, FAST, BETWEEN])
+def test_the_model_of_another_actuator_is_exported(tmp_path, actuator):
+    """Two requests wait, none or one acts for a part of the period."""
+    changes = [f'{key}={value}' for key, value in keys_of(actuator).items()]
+    compare_exported('mpc_preview', run_settings(*changes), tmp_path / 'c')
 
 
 @pytest.mark.parametrize(

@@ -25,8 +25,8 @@ SLIPPING_RAD_S = 1.0
 """Slip from which the engine's torque balance has the whole torque that the clutch can carry."""
 STANDING_RAD_S = 1.0
 """Speed of the primary shaft below which the car may be held by its brake."""
-OPENING_STEPS = 6
-"""Number of periods with feedback in which an off-going clutch still carries some torque."""
+CARRIES_LAGS = 1.4
+"""Time with feedback in lags of the actuator in which an off-going clutch carries some torque."""
 PARTED_SHARE, PARTED_N_M = 1.2, 10.0
 """Torque of plates that have parted, over that of constant slip, and beyond it in N m."""
 
@@ -66,7 +66,8 @@ class LeastJerk(Controller):
         for part in parts:
             part.reset()
         self._started = self._on = False
-        self._opening = OPENING_STEPS if self._shifts else 0
+        opening_s = CARRIES_LAGS * self.design.actuator.lag_s if self._shifts else 0.0
+        self._opening = round(opening_s / PERIOD_S)
         self._torque = self._torque_before = self.design.initial_request
         self._engine_torque = 0.0
         self._plan.start(self.design.initial_request)
