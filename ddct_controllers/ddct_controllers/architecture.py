@@ -24,7 +24,7 @@ from ddct_plant.base.options import require_known
 from ddct_plant.base.timebase import time_of_step
 from ddct_plant.models.load import RoadLoad
 from ddct_plant.models.static_torque import StaticTorque
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings
 from ddct_plant.signals.gain_changes import GainRecord
 from ddct_plant.signals.handover_share import WHOLE, OnComingShare
 
@@ -200,14 +200,13 @@ class Architecture:
         return Command(0.0, engine_torque=engine)
 
 
-def make_architecture(settings: RunSettings, controller: Controller) -> Architecture:
+def make_architecture(settings: KnownSettings, controller: Controller) -> Architecture:
     """
     Build the run's architecture around `controller`, from the known settings.
 
     In `detailed` feedback starts at the scenario's `control_start_s`, in a shift with the share 1
     of its handover, in the other architectures at t = 0.
     """
-    settings = settings.known
     scenario = settings.scenario
     static = StaticTorque(scenario.controlled_driveline, scenario.equilibrium)
     closing = scenario.closing
@@ -230,7 +229,7 @@ class LoopNeeds(NamedTuple):
     preview_steps: int
 
 
-def loop_needs(chosen: Chosen, settings: RunSettings) -> LoopNeeds:
+def loop_needs(chosen: Chosen, settings: KnownSettings) -> LoopNeeds:
     """Build a controller and its architecture for a run, and return what they need; else raise."""
 
     def work(chosen: Chosen) -> LoopNeeds:
@@ -241,7 +240,7 @@ def loop_needs(chosen: Chosen, settings: RunSettings) -> LoopNeeds:
     return separately(chosen, work)
 
 
-def _make_open_loop(settings: RunSettings, static: StaticTorque) -> OpenLoop:
+def _make_open_loop(settings: KnownSettings, static: StaticTorque) -> OpenLoop:
     """Return C_fOL (Section 1.4.5.1), the feedforward (1.6.2), or nothing (1.6.1)."""
     scenario = settings.scenario
     if settings.detailed:

@@ -67,9 +67,9 @@ class ControllerNode(FollowerNode):
             self, 'controller', Option('pi', f'one of: {", ".join(controller_names())}')
         )
         self._controller, info = self._make_controller(name)
-        self._architecture = make_architecture(self.settings, self._controller)
+        self._architecture = make_architecture(self.known, self._controller)
         self.add_on_set_parameters_callback(self._set_gains)
-        self._measured_topics = measurement_topics(sensed=self.settings.sensed)
+        self._measured_topics = measurement_topics(sensed=self.known.sensed)
         self._request = Output(self, TORQUE_REQUEST)
         if self._controller.commands_engine:
             self._engine_request = Output(self, ENGINE_REQUEST)
@@ -114,7 +114,7 @@ class ControllerNode(FollowerNode):
 
     def _of_handover(self) -> tuple[Topic, ...]:
         """Return the topics of the handover that the controller reads in a gear shift."""
-        if not self.settings.shift:
+        if not self.known.shift:
             return ()
         commands_engine = self._controller.commands_engine
         return (HANDOVER_SHARE, TORQUE_CUT) if commands_engine else (HANDOVER_SHARE,)
@@ -148,7 +148,7 @@ class ControllerNode(FollowerNode):
         Return its pairs for `run_info` too, with the options that differ from the scenario's.
         """
         spec = controller_spec(name)
-        section = spec.values(self.settings.scenario.controllers.get(spec.name, {}))
+        section = spec.values(self.known.scenario.controllers.get(spec.name, {}))
         options = spec.options or {}
         given = {
             key: self._declare_gain(key, replace(options[key], default=section[key]))
@@ -156,7 +156,7 @@ class ControllerNode(FollowerNode):
         }
         if spec.compiled:
             end_at_exit()  # the middleware's threads run on
-        controller = make_controller(name, self.settings, given)
+        controller = make_controller(name, self.known, given)
         for key, value in controller.gains().items():
             if key not in given:
                 about = Option(

@@ -14,7 +14,7 @@ from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import REQUIRED, Options
 from ddct_plant.graph.node_reports import CONTROLLER, TWO_INPUT, flag
 from ddct_plant.linear.lti import StateSpace
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings
 
 Status = tuple[tuple[str, str], ...]
 """Pairs (key, value) for `controller/status`; deterministic, so no wall time in them."""
@@ -111,7 +111,7 @@ class Controller(ABC):
 class ControllerContext:
     """Arguments of a controller's factory."""
 
-    settings: RunSettings
+    settings: KnownSettings
     """Known settings of the run: without wear, seed and what varies for the plant alone."""
     gains: Mapping[str, Any]
     """

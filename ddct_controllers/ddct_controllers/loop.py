@@ -45,7 +45,7 @@ class PlantLoop(ABC):
     def __init__(self, settings: RunSettings, *, two_input: bool = False) -> None:
         """Start in the run's initial state; `two_input`: the engine's torque is requested too."""
         self.plant = Plant(settings, two_input=two_input)
-        self._handover = make_handover(settings) if settings.shift else None
+        self._handover = make_handover(settings.known) if settings.shift else None
 
     @abstractmethod
     def request(self, observation: Observation, command: HandoverCommand) -> Request:
@@ -103,8 +103,8 @@ class ClosedLoop(PlantLoop):
         super().__init__(settings, two_input=controller.commands_engine)
         self.kind = settings.kind(two_input=controller.commands_engine)
         """Kind of the run, which decides which signals it has."""
-        self._reference = reference or make_reference(settings, controller.preview_steps)
-        self.architecture = make_architecture(settings, controller)
+        self._reference = reference or make_reference(settings.known, controller.preview_steps)
+        self.architecture = make_architecture(settings.known, controller)
         self._changes: dict[int, dict[str, float]] = {}
         for change in changes:
             self._changes.setdefault(change.step, {})[change.gain] = change.after

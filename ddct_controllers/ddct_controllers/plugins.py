@@ -60,7 +60,7 @@ class Plugins:
 CONTROLLERS = Plugins('controller', 'ddct.controllers')
 """Controllers; the factory takes a ControllerContext."""
 HANDOVERS = Plugins('handover', 'ddct.handovers')
-"""Handovers of a gear shift; the class takes a RunSettings."""
+"""Handovers of a gear shift; the class takes a KnownSettings."""
 
 
 def factory_spec(

@@ -25,7 +25,7 @@ from ddct_controllers.synthesised import SYNTHESISED, synthesised_design
 from ddct_plant.base.errors import DdctError, ParameterError, require_name
 from ddct_plant.program.own_process import ProcessEndedError, in_own_process
 from ddct_plant.scenario.scenario import Scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings
 
 Chosen = str | ControllerSpec[Controller]
 """Choice of a controller: its name or file, or the specification of one without either."""
@@ -82,7 +82,7 @@ def require_known_controllers(scenario: Scenario, labels: Iterable[str]) -> None
             _OWN[name].values(given)
 
 
-def working_controllers(settings: RunSettings, report: Callable[[str], None]) -> list[str]:
+def working_controllers(settings: KnownSettings, report: Callable[[str], None]) -> list[str]:
     """
     Return the names of `controller_names` whose controllers can be built for a run.
 
@@ -102,7 +102,7 @@ def working_controllers(settings: RunSettings, report: Callable[[str], None]) ->
 
 
 def make_controller(
-    chosen: Chosen, settings: RunSettings, changes: Mapping[str, Any] | None = None
+    chosen: Chosen, settings: KnownSettings, changes: Mapping[str, Any] | None = None
 ) -> Controller:
     """
     Build a controller for a run, from its known settings.
@@ -112,7 +112,6 @@ def make_controller(
     be read or a third party's factory fails.
     """
     spec = controller_spec(chosen)
-    settings = settings.known
     given = {**settings.scenario.controllers.get(spec.name, {}), **(changes or {})}
     controller = spec(ControllerContext(settings, given))
     controller.registered_name = spec.name

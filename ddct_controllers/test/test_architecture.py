@@ -21,10 +21,10 @@ from ddct_plant.models.load import RoadLoad
 from ddct_plant.models.static_torque import constant_slip_torque
 from ddct_plant.scenario.choices.settings import ARCHITECTURES
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 from ddct_plant.signals.topics import TORQUE_PARTS
 
-SETTINGS = RunSettings(load_scenario('thesis'))
+SETTINGS = RunSettings(KnownSettings(load_scenario('thesis')))
 START = SETTINGS.scenario.control_start_step
 BEFORE = Measurement(
     step=START - 1,
@@ -64,7 +64,7 @@ def static_torque() -> float:
 
 def test_detailed_holds_feedback_in_reset_until_control_starts():
     controller = Recording()
-    request = make_architecture(SETTINGS, controller).update(BEFORE)
+    request = make_architecture(SETTINGS.known, controller).update(BEFORE)
     assert request.torque == static_torque()
     assert controller.calls == ['reset']
     assert dict(request.status)['feedback'] == 'held off'
@@ -73,7 +73,7 @@ def test_detailed_holds_feedback_in_reset_until_control_starts():
 @pytest.mark.parametrize('name', [name for name in ARCHITECTURES if name != 'detailed'])
 def test_the_others_have_feedback_from_the_first_step(name):
     controller = Recording()
-    architecture = make_architecture(replace(SETTINGS, architecture=name), controller)
+    architecture = make_architecture(replace(SETTINGS.known, architecture=name), controller)
     request = architecture.update(replace(BEFORE, step=0))
     assert controller.calls == ['update']
     assert dict(request.status)['feedback'] == 'on'
@@ -81,7 +81,7 @@ def test_the_others_have_feedback_from_the_first_step(name):
 
 
 def test_both_parts_add_up_and_are_numbers():
-    request = make_architecture(SETTINGS, Recording()).update(ON)
+    request = make_architecture(SETTINGS.known, Recording()).update(ON)
     status = dict(request.status)
     assert request.torque == static_torque() + 7.0
     assert (request.open_loop, request.closed_loop, request.closing) == (static_torque(), 7.0, 0.0)
@@ -92,7 +92,9 @@ def test_both_parts_add_up_and_are_numbers():
 
 def test_detailed_takes_the_equilibrium_of_the_scenario():
     scenario = replace(SETTINGS.scenario, equilibrium='full')
-    request = make_architecture(replace(SETTINGS, scenario=scenario), Recording()).update(BEFORE)
+    request = make_architecture(replace(SETTINGS.known, scenario=scenario), Recording()).update(
+        BEFORE
+    )
     driveline = scenario.driveline
     damping = driveline.gear.total_ratio * driveline.shaft_damping * BEFORE.shaft_speed
     assert request.torque == constant_slip_torque(driveline, 250.0, load_torque() + damping)
@@ -100,14 +102,16 @@ def test_detailed_takes_the_equilibrium_of_the_scenario():
 
 
 def test_base_is_feedback_alone():
-    request = make_architecture(replace(SETTINGS, architecture='base'), Recording()).update(ON)
+    request = make_architecture(replace(SETTINGS.known, architecture='base'), Recording()).update(
+        ON
+    )
     assert request.torque == 7.0
     assert request.open_loop == 0.0
 
 
 @pytest.mark.parametrize('name', FEEDFORWARD)
 def test_feedforward_adds_the_filters_torque_for_both_inputs(name):
-    architecture = make_architecture(replace(SETTINGS, architecture=name), Recording())
+    architecture = make_architecture(replace(SETTINGS.known, architecture=name), Recording())
     filter_ = Feedforward(SETTINGS.scenario.driveline, SETTINGS.scenario.actuator)
     for step in range(3):
         request = architecture.update(replace(BEFORE, step=step))
@@ -126,20 +130,20 @@ def test_feedforward_leads_a_rising_torque_and_tends_to_the_static_one():
 
 def test_while_feedback_is_off_the_engine_follows_the_driver():
     controller = Recording()
-    assert make_architecture(SETTINGS, controller).update(BEFORE).engine_torque is None
+    assert make_architecture(SETTINGS.known, controller).update(BEFORE).engine_torque is None
     controller.commands_engine = True
-    assert make_architecture(SETTINGS, controller).update(BEFORE).engine_torque == 250.0
+    assert make_architecture(SETTINGS.known, controller).update(BEFORE).engine_torque == 250.0
 
 
 def test_a_request_of_nothing_is_not_saturated():
-    base = replace(SETTINGS, architecture='base')
+    base = replace(SETTINGS.known, architecture='base')
     for torque, saturated in ((0.0, 'false'), (-1e-9, 'true')):
         request = make_architecture(base, Recording(torque)).update(ON)
         assert dict(request.status)['saturated'] == saturated
 
 
 def test_a_negative_request_is_reported_as_saturated_but_passed_on():
-    request = make_architecture(SETTINGS, Recording(-1e4)).update(ON)
+    request = make_architecture(SETTINGS.known, Recording(-1e4)).update(ON)
     assert request.torque < 0.0
     assert dict(request.status)['saturated'] == 'true'
 
@@ -147,7 +151,7 @@ def test_a_negative_request_is_reported_as_saturated_but_passed_on():
 @pytest.mark.parametrize('torque', [math.nan, math.inf])
 def test_a_command_that_is_not_finite_ends_the_run(torque):
     with refused(DdctError, "controller 'Recording': its torque at step 60"):
-        make_architecture(SETTINGS, Recording(torque)).update(ON)
+        make_architecture(SETTINGS.known, Recording(torque)).update(ON)
 
 
 @pytest.mark.parametrize(
@@ -163,7 +167,7 @@ def test_a_status_that_the_graph_cannot_carry_names_controller_and_step(status):
     controller.registered_name = 'mine'
     controller.update = lambda measurement: Command(7.0, status)
     with pytest.raises(DdctError) as caught:
-        make_architecture(SETTINGS, controller).update(ON)
+        make_architecture(SETTINGS.known, controller).update(ON)
     assert str(caught.value).startswith(f"controller 'mine': its status at step {START} is ")
     assert str(caught.value).isprintable()
 
@@ -175,7 +179,7 @@ def test_a_controller_that_raises_is_named_with_the_step_and_the_line(measuremen
     setattr(controller, method, lambda measurement: 1 / 0)
     line = inspect.currentframe().f_lineno - 1
     with pytest.raises(ForeignError) as caught:
-        make_architecture(SETTINGS, controller).update(measurement)
+        make_architecture(SETTINGS.known, controller).update(measurement)
     assert str(caught.value) == (
         f"controller 'mine': it failed at step {measurement.step} (ZeroDivisionError: division by "
         f'zero, in {Path(__file__).name} line {line}): mend the controller'
@@ -191,7 +195,7 @@ def test_numbers_that_diverge_end_the_run_with_the_controllers_name_and_the_step
     controller.registered_name = 'mine'
     controller.update = update
     with pytest.raises(DdctError) as caught:
-        make_architecture(SETTINGS, controller).update(ON)
+        make_architecture(SETTINGS.known, controller).update(ON)
     assert str(caught.value) == (
         f"controller 'mine': it cannot go on at step {ON.step} (Singular matrix): the "
         'loop diverges in this scenario, or its options do not suit it'
@@ -200,7 +204,7 @@ def test_numbers_that_diverge_end_the_run_with_the_controllers_name_and_the_step
 
 def test_changed_gains_act_all_or_none_from_the_next_update_on_and_stand_in_the_status():
     pi = PiController(0.1, 0.02)
-    architecture = make_architecture(SETTINGS, pi)
+    architecture = make_architecture(SETTINGS.known, pi)
     usual = architecture.update(ON)
     for wrong in ({'nix': 1.0}, {'integral_gain': 0.5, 'proportional_gain': -1.0}):
         with pytest.raises(ParameterError, match='nix: known: proportional_gain|at least 0'):
@@ -219,7 +223,7 @@ def test_changed_gains_act_all_or_none_from_the_next_update_on_and_stand_in_the_
 
 @pytest.mark.parametrize('value', [True, '1', math.nan, None])
 def test_a_gain_that_is_no_finite_number_is_refused(value):
-    architecture = make_architecture(SETTINGS, PiController(0.1, 0.02))
+    architecture = make_architecture(SETTINGS.known, PiController(0.1, 0.02))
     with refused(ParameterError, 'integral_gain'):
         architecture.change_gains({'integral_gain': value})
 
@@ -231,5 +235,5 @@ def test_a_gain_of_which_the_controller_does_not_report_the_value_is_refused():
 
     controller = Silent()
     with pytest.raises(ParameterError, match='unknown gain torque'):
-        make_architecture(SETTINGS, controller).change_gains({'torque': 1.0})
+        make_architecture(SETTINGS.known, controller).change_gains({'torque': 1.0})
     assert controller.torque == 7.0

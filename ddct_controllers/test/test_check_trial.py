@@ -14,26 +14,26 @@ from ddct_controllers.check.watch import OutputMonitor
 from ddct_controllers.interface import Command, Controller
 from ddct_controllers.registry import make_controller
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 
 def slip(*changes: str) -> list[float]:
-    settings = RunSettings(load_scenario('thesis', changes))
-    return closed_trial(settings, make_controller('pi', settings)).slip
+    settings = RunSettings(KnownSettings(load_scenario('thesis', changes)))
+    return closed_trial(settings.known, make_controller('pi', settings.known)).slip
 
 
 def test_trials_leave_the_sensors_of_a_scenario_out():
     assert slip('sensors.engine_speed.noise_rad_s=1') == slip()
 
 
-SETTINGS = RunSettings(load_scenario('thesis'))
+SETTINGS = RunSettings(KnownSettings(load_scenario('thesis')))
 QUICK_S, LATE_S = 0.001, 0.02
 """Update times in s, within the period of 10 ms and beyond it."""
 
 
 def timed(late: int, monkeypatch: pytest.MonkeyPatch) -> Subject:
     """Return the subject of trials with 100 updates, `late` of which are late."""
-    subject = Subject('pi', SETTINGS, OutputMonitor())
+    subject = Subject('pi', SETTINGS.known, OutputMonitor())
     log = ClosedLoopLog(update_s=[LATE_S] * late + [QUICK_S] * (100 - late))
     monkeypatch.setattr('ddct_controllers.check.loops.closed_trial', lambda *_: log)
     subject.closed_loop = log
@@ -71,7 +71,7 @@ class ConstantRequest(Controller):
 def test_a_scaled_trial_scales_what_the_controller_adds_and_leaves_the_drivers_demand() -> None:
     """A scale of 9.55, that of a unit, does not multiply the driver's demand."""
     controller: Any = ConstantRequest()
-    log = closed_trial(SETTINGS, controller, scale=3.0)
+    log = closed_trial(SETTINGS.known, controller, scale=3.0)
     start = SETTINGS.scenario.control_start_step
     _, measured = log.measurements[start]
     assert measured.engine_torque > 100.0
@@ -79,7 +79,7 @@ def test_a_scaled_trial_scales_what_the_controller_adds_and_leaves_the_drivers_d
     assert command.clutch_torque == pytest.approx(30.0)
     assert command.engine_torque == pytest.approx(measured.engine_torque + 15.0)
     plain: Any = ConstantRequest()
-    closed_trial(SETTINGS, plain)
+    closed_trial(SETTINGS.known, plain)
     assert plain.update(measured).engine_torque == measured.engine_torque + 5.0
 
 
@@ -90,7 +90,9 @@ def test_a_scaled_trial_without_a_request_has_the_drivers_demand() -> None:
         def update(self, measurement: Any) -> Command:
             return Command(0.0, engine_torque=measurement.engine_torque)
 
-    once, scaled = (closed_trial(SETTINGS, Idle(), scale=scale).slip for scale in (1.0, 9.55))
+    once, scaled = (
+        closed_trial(SETTINGS.known, Idle(), scale=scale).slip for scale in (1.0, 9.55)
+    )
     np.testing.assert_allclose(scaled, once, rtol=1e-12, atol=1e-9)
 
 
@@ -100,7 +102,7 @@ def test_a_request_moves_at_most_as_fast_as_the_actuator_of_the_car_follows(
 ) -> None:
     """3000 N m/s are below ten strokes of 350 N m per second, and above five."""
     scenario = load_scenario('thesis', {'actuator.bandwidth_factor': factor})
-    subject = Subject('pi', RunSettings(scenario), OutputMonitor())
+    subject = Subject('pi', KnownSettings(scenario), OutputMonitor())
     subject.closed_loop = ClosedLoopLog(request=[0.0, 30.0] * 100)
     if passes:
         assert '3000 N m per second' in rate(subject)

@@ -15,9 +15,9 @@ from ddct_plant.models.static_torque import StaticTorque
 from ddct_plant.scenario.choices.settings import ARCHITECTURES
 from ddct_plant.scenario.control import ClosingParameters
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
-SETTINGS = RunSettings(load_scenario('thesis_sticking', ['closing={}']))
+SETTINGS = RunSettings(KnownSettings(load_scenario('thesis_sticking', ['closing={}'])))
 START = SETTINGS.scenario.control_start_step
 P = ClosingParameters()
 MOST = P.most_request(SETTINGS.scenario.friction)
@@ -103,7 +103,7 @@ def test_noise_of_encoders_neither_keeps_it_open_nor_opens_it():
 
 
 def test_it_waits_for_control_to_start():
-    architecture = make_architecture(SETTINGS, ConstantCommand())
+    architecture = make_architecture(SETTINGS.known, ConstantCommand())
     before = [architecture.update(replace(ALIKE, step=step)) for step in range(START)]
     assert set(states(before)) == {'open'}
 
@@ -185,7 +185,7 @@ def test_slip_opens_it_and_its_torque_fades_while_feedback_acts():
 
 @pytest.mark.parametrize('name', ARCHITECTURES)
 def test_the_closed_request_is_the_same_in_every_architecture(name):
-    settings = replace(SETTINGS, architecture=name)
+    settings = replace(SETTINGS.known, architecture=name)
     found = answers([ALIKE] * 200, ConstantCommand(carried(ALIKE)), settings)[-1]
     assert dict(found.status)['closing'] == 'closed'
     assert found.open_loop == found.torque
@@ -202,7 +202,7 @@ def test_the_engine_is_handed_back_to_the_driver_without_a_step():
 
 
 def test_without_the_section_no_torque_and_no_status_is_added():
-    plain = replace(SETTINGS, scenario=load_scenario('thesis'))
+    plain = replace(SETTINGS.known, scenario=load_scenario('thesis'))
     found = answers([ALIKE] * 60, settings=plain)
     assert {request.torque for request in found} == {carried(ALIKE)}
     assert not any(key.startswith('closing') for key, _ in found[-1].status)

@@ -12,9 +12,9 @@ from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_controllers.registry import controller_label, make_controller
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
-SETTINGS = RunSettings(load_scenario('thesis'))
+SETTINGS = RunSettings(KnownSettings(load_scenario('thesis')))
 
 
 class Mine(Controller):
@@ -33,7 +33,7 @@ def make_mine(context: ControllerContext) -> Controller:
 
 
 def model_of(system, name=''):
-    return make_controller(chosen_from(system, name), SETTINGS).linear_model()
+    return make_controller(chosen_from(system, name), SETTINGS.known).linear_model()
 
 
 def test_names_and_files_stay_what_they_are(tmp_path):
@@ -50,7 +50,7 @@ def test_a_class_a_factory_and_an_object_have_their_own_or_the_given_name(given,
     assert controller_label(chosen_from(given)) == name
     chosen = chosen_from(given, 'given')
     assert controller_label(chosen) == 'given'
-    made = make_controller(chosen, SETTINGS)
+    made = make_controller(chosen, SETTINGS.known)
     assert isinstance(made, Mine)
     assert made.registered_name == 'given'
 
@@ -58,11 +58,11 @@ def test_a_class_a_factory_and_an_object_have_their_own_or_the_given_name(given,
 def test_an_object_is_used_itself_and_reset_for_each_run():
     mine = Mine()
     chosen = chosen_from(mine)
-    assert make_controller(chosen, SETTINGS) is mine
-    assert make_controller(chosen, SETTINGS) is mine
+    assert make_controller(chosen, SETTINGS.known) is mine
+    assert make_controller(chosen, SETTINGS.known) is mine
     assert mine.resets == 2
     with refused(ParameterError, key='controllers.Mine'):
-        make_controller(chosen, SETTINGS, {'gain': 1.0})
+        make_controller(chosen, SETTINGS.known, {'gain': 1.0})
 
 
 @pytest.mark.parametrize('library', ['scipy', 'control'])
@@ -100,7 +100,7 @@ def test_a_sampled_system_is_taken_as_it_is(library):
 
 def test_our_own_forms_are_taken():
     assert model_of(PRINTED_CONTROLLERS['ls8'], 'mine').a.tolist() == (
-        make_controller('ls8', SETTINGS).linear_model().a.tolist()
+        make_controller('ls8', SETTINGS.known).linear_model().a.tolist()
     )
 
 
@@ -136,7 +136,7 @@ def test_a_system_that_is_no_controller_is_refused_by_name():
 )
 def test_a_factory_of_no_controller_fails_when_it_is_called(given, key):
     with refused(DdctError, key):
-        make_controller(chosen_from(given, 'mine'), SETTINGS)
+        make_controller(chosen_from(given, 'mine'), SETTINGS.known)
 
 
 def test_a_system_of_another_period_or_two_inputs_fails_when_it_is_made():
@@ -147,7 +147,7 @@ def test_a_system_of_another_period_or_two_inputs_fails_when_it_is_made():
         (control.ss([[0]], [[1, 1]], [[1]], [[0, 0]]), 'state space'),
     ):
         with refused(DdctError, key):
-            make_controller(chosen_from(system, 'mine'), SETTINGS)
+            make_controller(chosen_from(system, 'mine'), SETTINGS.known)
 
 
 def test_a_spec_is_taken_as_it_is():

@@ -10,9 +10,9 @@ from ddct_controllers.interface import Command, Controller, Measurement
 from ddct_controllers.registry import controller_names, make_controller
 from ddct_plant.base.units import rad_s_from_rpm
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
-SETTINGS = RunSettings(load_scenario('thesis'))
+SETTINGS = RunSettings(KnownSettings(load_scenario('thesis')))
 
 
 def torque(controller: Controller, error_rpm: float) -> float:
@@ -34,14 +34,14 @@ def test_the_printed_controllers_and_the_pi_are_linear():
 
 
 def test_the_linear_controllers_are_those_with_a_linear_model():
-    made = {name: make_controller(name, SETTINGS) for name in controller_names()}
+    made = {name: make_controller(name, SETTINGS.known) for name in controller_names()}
     assert [name for name in made if made[name].linear_model() is not None] == LINEAR
 
 
 @pytest.mark.parametrize('name', LINEAR)
 def test_it_gives_the_torques_that_the_controller_gives(name):
     """They agree within 1e-9 of the largest torque for a random error."""
-    controller = make_controller(name, SETTINGS)
+    controller = make_controller(name, SETTINGS.known)
     model = controller.linear_model()
     state, expected, found = np.zeros(len(model.a)), [], []
     for error_rpm in np.random.default_rng(0).normal(size=300):
@@ -52,7 +52,7 @@ def test_it_gives_the_torques_that_the_controller_gives(name):
 
 
 def test_that_of_the_pi_has_its_present_gains():
-    controller = make_controller('pi', SETTINGS)
+    controller = make_controller('pi', SETTINGS.known)
     controller.set_gain('proportional_gain', 0.5)
     assert controller.linear_model().d[0, 0] == -0.5
 

@@ -14,9 +14,9 @@ from ddct_controllers.mpc.variants import PREDICTIVE
 from ddct_controllers.registry import make_controller
 from ddct_plant.base.errors import DdctError
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
-SETTINGS = RunSettings(load_scenario('thesis'))
+SETTINGS = RunSettings(KnownSettings(load_scenario('thesis')))
 CONTROLLERS = (*PREDICTIVE, 'pedal_mpc', 'decoupled_pid', 'torque_estimator')
 SCALARS = (
     *('engine_speed', 'shaft_speed', 'wheel_speed'),
@@ -45,7 +45,7 @@ def spoilt(good, field, value):
     ],
 )
 def test_no_number_is_refused_and_leaves_no_trace(name, way, field):
-    controllers = [make_controller(name, SETTINGS) for _ in range(2)]
+    controllers = [make_controller(name, SETTINGS.known) for _ in range(2)]
     preview = controllers[0].preview_steps
     for each in controllers:
         for step in range(58, 60):

@@ -12,7 +12,7 @@ from ddct_controllers.state_of_art.lqi import noise_levels
 from ddct_plant.models.clutch import FrictionParameters
 from ddct_plant.scenario.control import ClosingParameters
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 SMALL = (
     'vehicle.mass_kg=1150.0',
@@ -24,9 +24,9 @@ SMALL = (
 
 
 def design(scenario: str, *overrides: str, **gains: float) -> LeastJerkDesign:
-    settings = RunSettings(load_scenario(scenario, overrides))
+    settings = RunSettings(KnownSettings(load_scenario(scenario, overrides)))
     values = {name: each.default for name, each in LeastJerkOptions().options.items()}
-    return LeastJerkDesign.of(ControllerContext(settings, values | gains))
+    return LeastJerkDesign.of(ControllerContext(settings.known, values | gains))
 
 
 def test_the_numbers_of_the_c635_are_those_that_its_controllers_were_tuned_with():

@@ -11,7 +11,7 @@ from ddct_controllers.registry import make_controller
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.units import rad_s_from_rpm
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 
 def measurement(error_rpm: float) -> Measurement:
@@ -69,6 +69,6 @@ def test_a_bad_gain_is_refused(name, value, key):
     ],
 )
 def test_a_scenario_with_bad_gains_is_refused(gains, key):
-    settings = RunSettings(load_scenario('thesis', [f'controllers.pi={gains}']))
+    settings = RunSettings(KnownSettings(load_scenario('thesis', [f'controllers.pi={gains}'])))
     with refused(ParameterError, key=key):
-        make_controller('pi', settings)
+        make_controller('pi', settings.known)

@@ -17,9 +17,9 @@ from ddct_controllers.registry import make_controller
 from ddct_plant.base.errors import DdctError
 from ddct_plant.linear.lti import FactoredTransferFunction
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
-SETTINGS = RunSettings(load_scenario('thesis'))
+SETTINGS = RunSettings(KnownSettings(load_scenario('thesis')))
 NOW = Measurement(
     step=100,
     engine_speed=200.0,
@@ -41,7 +41,7 @@ class Mine(Controller):
 
 
 def test_the_place_of_a_class_is_its_file_and_line() -> None:
-    place = place_of_method(make_controller(chosen_from(Mine), SETTINGS), 'update')
+    place = place_of_method(make_controller(chosen_from(Mine), SETTINGS.known), 'update')
     assert place.startswith(f'{__file__} line ')
 
 
@@ -55,19 +55,19 @@ def in_yaml(tmp_path: Path) -> str:
 
 
 def test_the_place_of_a_controller_in_yaml_is_its_file_and_key(in_yaml: str) -> None:
-    made = make_controller(in_yaml, SETTINGS)
+    made = make_controller(in_yaml, SETTINGS.known)
     for method in ('__init__', 'reset', 'update', 'linear_model'):
         assert place_of_method(made, method) == f'{in_yaml} line 3 (polynomial)'
 
 
 def test_the_place_of_a_linear_system_from_python_is_its_name() -> None:
     system = FactoredTransferFunction(-1.0, (), (0.0,))
-    made = make_controller(chosen_from(system, 'quick'), SETTINGS)
+    made = make_controller(chosen_from(system, 'quick'), SETTINGS.known)
     assert place_of_method(made, 'update') == "the linear system 'quick'"
 
 
 def test_a_run_places_an_unusable_command_there_too(in_yaml: str) -> None:
-    running = make_architecture(SETTINGS, make_controller(in_yaml, SETTINGS))
+    running = make_architecture(SETTINGS.known, make_controller(in_yaml, SETTINGS.known))
     with np.errstate(over='ignore'), pytest.raises(DdctError) as caught:
         running.update(NOW)
     assert str(caught.value).endswith(f'in {in_yaml} line 3 (polynomial)')
@@ -75,7 +75,7 @@ def test_a_run_places_an_unusable_command_there_too(in_yaml: str) -> None:
 
 
 def test_a_run_places_an_error_of_an_update_there_too(in_yaml: str) -> None:
-    controller: Any = make_controller(in_yaml, SETTINGS)
+    controller: Any = make_controller(in_yaml, SETTINGS.known)
     controller._filter = None
     with pytest.raises(DdctError, match=re.escape('in mine.yaml line 3 (polynomial)')):
-        make_architecture(SETTINGS, controller).update(NOW)
+        make_architecture(SETTINGS.known, controller).update(NOW)

@@ -20,9 +20,9 @@ from ddct_controllers.registry import (
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.base.options import Option
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
-SETTINGS = RunSettings(load_scenario('thesis'))
+SETTINGS = RunSettings(KnownSettings(load_scenario('thesis')))
 
 
 class Third(Controller):
@@ -69,33 +69,35 @@ def add_entry_point(monkeypatch):
 
 def test_every_name_builds_a_controller():
     for name in controller_names():
-        assert isinstance(make_controller(name, SETTINGS), Controller)
+        assert isinstance(make_controller(name, SETTINGS.known), Controller)
 
 
 def test_an_unknown_name_lists_the_known_ones():
     with refused(ParameterError, 'ls99'):
-        make_controller('ls99', SETTINGS)
+        make_controller('ls99', SETTINGS.known)
 
 
 @pytest.mark.parametrize('name', ['mine.fmu', 'build/libmine.so', '/dev/fd/63'])
 def test_a_file_of_another_kind_leads_to_those_that_are_needed(name):
     with refused(ParameterError, name):
-        make_controller(name, SETTINGS)
+        make_controller(name, SETTINGS.known)
 
 
 def test_the_gain_of_a_printed_controller_is_its_only_option():
-    settings = RunSettings(load_scenario('thesis', ['controllers.ls8={gain: -0.028936}']))
-    twice, once = make_controller('ls8', settings), make_controller('ls8', SETTINGS)
+    settings = RunSettings(
+        KnownSettings(load_scenario('thesis', ['controllers.ls8={gain: -0.028936}']))
+    )
+    twice, once = make_controller('ls8', settings.known), make_controller('ls8', SETTINGS.known)
     assert np.allclose(twice.linear_model().c, 2.0 * once.linear_model().c, rtol=1e-12)
-    wrong = RunSettings(load_scenario('thesis', ['controllers.ls8={pole: 2.0}']))
+    wrong = RunSettings(KnownSettings(load_scenario('thesis', ['controllers.ls8={pole: 2.0}'])))
     with refused(ParameterError, key='controllers.ls8.pole'):
-        make_controller('ls8', wrong)
+        make_controller('ls8', wrong.known)
 
 
 def test_a_third_partys_controller_is_listed_and_built(add_entry_point):
     add_entry_point('third', f'{__name__}:make_third')
     assert controller_names()[-1] == 'third'
-    assert type(make_controller('third', SETTINGS)).__name__ == 'Third'
+    assert type(make_controller('third', SETTINGS.known)).__name__ == 'Third'
 
 
 def test_installed_packages_are_searched_once_until_another_is_added(tmp_path, monkeypatch):
@@ -122,7 +124,7 @@ def test_installed_packages_are_searched_once_until_another_is_added(tmp_path, m
 def test_a_third_party_cannot_replace_one_of_ours(add_entry_point):
     add_entry_point('pi', f'{__name__}:make_third')
     assert controller_names().count('pi') == 1
-    assert type(make_controller('pi', SETTINGS)).__name__ == 'PiController'
+    assert type(make_controller('pi', SETTINGS.known)).__name__ == 'PiController'
 
 
 @pytest.mark.parametrize(
@@ -137,14 +139,14 @@ def test_a_third_party_cannot_replace_one_of_ours(add_entry_point):
 def test_a_broken_entry_point_is_named(add_entry_point, value, key):
     add_entry_point('third', value)
     with refused(DdctError, key, place="controller 'third'"):
-        make_controller('third', SETTINGS)
+        make_controller('third', SETTINGS.known)
 
 
 @pytest.mark.parametrize('name', ['../evil', '/tmp/evil', '.hidden', 'a b', 'x' * 300])
 def test_an_entry_point_cannot_name_a_folder_elsewhere(add_entry_point, name):
     add_entry_point(name, f'{__name__}:make_third')
     with refused(ParameterError, key='controller name'):
-        make_controller(name, SETTINGS)
+        make_controller(name, SETTINGS.known)
 
 
 @pytest.mark.parametrize(
@@ -160,7 +162,7 @@ def test_a_declaration_of_the_wrong_type_names_the_controller(
     monkeypatch.setattr(Third, attribute, value)
     add_entry_point('third', f'{__name__}:make_third')
     with refused(DdctError, key=attribute, place="controller 'third'"):
-        make_controller('third', SETTINGS)
+        make_controller('third', SETTINGS.known)
 
 
 @pytest.mark.parametrize(
@@ -184,7 +186,7 @@ def test_declarations_of_a_controller_are_checked_when_it_is_made(
     monkeypatch.setattr(Third, method, answers)
     add_entry_point('third', f'{__name__}:make_third')
     with refused(DdctError, key, place="controller 'third'"):
-        make_controller('third', SETTINGS)
+        make_controller('third', SETTINGS.known)
 
 
 def test_an_option_of_ours_is_checked_though_its_controller_does_not_run(add_entry_point):
@@ -197,16 +199,16 @@ def test_an_option_of_ours_is_checked_though_its_controller_does_not_run(add_ent
 
 def test_a_controller_has_the_name_under_which_it_was_requested(add_entry_point):
     add_entry_point('third', f'{__name__}:make_third')
-    assert make_controller('third', SETTINGS).registered_name == 'third'
-    assert make_controller('ls8', SETTINGS).registered_name == 'ls8'
+    assert make_controller('third', SETTINGS.known).registered_name == 'third'
+    assert make_controller('ls8', SETTINGS.known).registered_name == 'ls8'
 
 
 def test_declared_options_reach_a_third_partys_controller_checked_and_whole(add_entry_point):
     add_entry_point('mine', f'{__name__}:Declaring')
-    settings = RunSettings(load_scenario('thesis', ['controllers.mine.gain=2']))
+    settings = RunSettings(KnownSettings(load_scenario('thesis', ['controllers.mine.gain=2'])))
     expected = {'gain': 2.0, 'steps': 3, 'limit_n_m': None}
-    plain: Any = make_controller('mine', settings)
-    changed: Any = make_controller('mine', settings, {'steps': 4, 'limit_n_m': 5.0})
+    plain: Any = make_controller('mine', settings.known)
+    changed: Any = make_controller('mine', settings.known, {'steps': 4, 'limit_n_m': 5.0})
     assert plain.taken == expected
     assert changed.taken == {**expected, 'steps': 4, 'limit_n_m': 5.0}
 
@@ -222,9 +224,9 @@ def test_declared_options_reach_a_third_partys_controller_checked_and_whole(add_
 )
 def test_a_bad_option_of_a_third_partys_controller_is_named(add_entry_point, change, complaint):
     add_entry_point('mine', f'{__name__}:Declaring')
-    settings = RunSettings(load_scenario('thesis', [f'controllers.mine.{change}']))
+    settings = RunSettings(KnownSettings(load_scenario('thesis', [f'controllers.mine.{change}'])))
     with pytest.raises(ParameterError) as caught:
-        make_controller('mine', settings)
+        make_controller('mine', settings.known)
     assert str(caught.value) == complaint
 
 
@@ -233,9 +235,9 @@ def test_an_option_that_a_third_partys_controller_does_not_declare_is_refused(
     add_entry_point, factory
 ):
     add_entry_point('third', f'{__name__}:{factory}')
-    settings = RunSettings(load_scenario('thesis', ['controllers.third.gian=2.5']))
+    settings = RunSettings(KnownSettings(load_scenario('thesis', ['controllers.third.gian=2.5'])))
     with pytest.raises(ParameterError) as caught:
-        make_controller('third', settings)
+        make_controller('third', settings.known)
     assert str(caught.value) == (
         'controllers.third: gian given, but third takes no options: declare it, in its class: '
         "options = {'gian': Option(2.5, 'what it is', 'its unit')}"
@@ -249,4 +251,4 @@ def test_options_that_are_no_declaration_name_the_controller(
     monkeypatch.setattr(Third, 'options', options)
     add_entry_point('third', f'{__name__}:Third')
     with refused(DdctError, key='options', place="controller 'third'"):
-        make_controller('third', SETTINGS)
+        make_controller('third', SETTINGS.known)

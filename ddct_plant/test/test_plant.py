@@ -8,14 +8,14 @@ from ddct_plant.base.timebase import time_of_step
 from ddct_plant.plant import Plant
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.plant import make_engine, make_load
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 SLOPE = 'slope={time_s: [0.0, 1.0], slope_rad: [0.0, 0.2]}'
 
 
 @pytest.mark.parametrize('name', ['thesis', 'thesis_sticking'])
 def test_the_load_is_that_of_the_slope_at_the_time_of_each_step(name):
-    settings = RunSettings(load_scenario(name, [SLOPE]))
+    settings = RunSettings(KnownSettings(load_scenario(name, [SLOPE])))
     plant, load = Plant(settings), make_load(settings)
     found = []
     for step in range(60):
@@ -29,7 +29,7 @@ def test_the_load_is_that_of_the_slope_at_the_time_of_each_step(name):
 
 def test_a_commanded_engine_delivers_what_its_limits_allow_at_the_speed_of_the_engine():
     """At rest in gear: the shaft has no speed, at which the engine would deliver nothing."""
-    settings = RunSettings(load_scenario('launch'))
+    settings = RunSettings(KnownSettings(load_scenario('launch')))
     plant, engine = Plant(settings, two_input=True), make_engine(settings)
     observation = plant.observe(plant.tick(0))
     engine_speed, shaft_speed = observation.tick.true.joint_speed[:2]

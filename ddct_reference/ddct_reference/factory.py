@@ -11,13 +11,13 @@ from ddct_plant.models.static_torque import StaticTorque
 from ddct_plant.plant import Plant
 from ddct_plant.scenario.control import ENGINE_SPEED_TARGET, PROFILE
 from ddct_plant.scenario.scenario import Scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 from ddct_reference.descent import CrfRamp, Descent, ProfileDescent, TimedDescent
 from ddct_reference.engine_speed_target import EngineSpeedTarget
 from ddct_reference.slip_reference import NEVER, DescendingReference, SlipReference
 
 
-def make_reference(settings: RunSettings, preview_steps: int = 0) -> SlipReference:
+def make_reference(settings: KnownSettings, preview_steps: int = 0) -> SlipReference:
     """
     Build the reference of a run from its known settings, with a preview of so many periods.
 
@@ -25,7 +25,6 @@ def make_reference(settings: RunSettings, preview_steps: int = 0) -> SlipReferen
     In a shift control starts with the first period whose share of C_fOL is 1.
     The other architectures have a stored function of time, that of the nominal detailed run.
     """
-    settings = settings.known
     scenario = settings.scenario
     start_step = NEVER if settings.shift else scenario.control_start_step
     if settings.reference_shape == ENGINE_SPEED_TARGET:
@@ -39,7 +38,7 @@ def make_reference(settings: RunSettings, preview_steps: int = 0) -> SlipReferen
     return DescendingReference(make_descent(settings), start_step, preview_steps, stored)
 
 
-def make_descent(settings: RunSettings) -> Descent:
+def make_descent(settings: KnownSettings) -> Descent:
     """Return the descent of a run's reference, which is not `engine_speed_target`."""
     reference = settings.scenario.reference
     if settings.reference_shape == 'ramp':
@@ -62,7 +61,7 @@ def nominal_slip(scenario: Scenario) -> list[float]:
     enters: the values are those of any controller's run, to the last bit.
     """
     clutch = STICK_SLIP if scenario.of_stick_slip else LINEAR
-    settings = RunSettings(replace(scenario, clutch=clutch), architecture='detailed')
+    settings = RunSettings(KnownSettings(replace(scenario, clutch=clutch)))
     plant = Plant(settings)
     static = StaticTorque(scenario.driveline, scenario.equilibrium)
     load = RoadLoad(scenario.load, scenario.vehicle, scenario.slope)

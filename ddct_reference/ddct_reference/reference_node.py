@@ -36,12 +36,12 @@ class ReferenceNode(FollowerNode):
             'preview_steps',
             Option(0, 'periods to look ahead, as the controller needs', at_least=0, at_most=1000),
         )
-        self._reference = make_reference(self.settings, preview_steps)
+        self._reference = make_reference(self.known, preview_steps)
         self._output = Output(self, SLIP_REFERENCE)
         self.publish_run_info(reference_info(preview_steps))
-        self._measured_topics = measurement_topics(sensed=self.settings.sensed)
+        self._measured_topics = measurement_topics(sensed=self.known.sensed)
         shafts = (self._measured_topics.joint_states,) if self._reference.follows_shaft else ()
-        shares = (HANDOVER_SHARE,) if self.settings.shift else ()
+        shares = (HANDOVER_SHARE,) if self.known.shift else ()
         self.follow(self._measured_topics.slip, *shafts, *shares)
 
     def answer(self, step: int, stamp_ns: int, inputs: dict[str, Any]) -> Reply:

@@ -10,7 +10,7 @@ from ddct_plant.base.errors import ParameterError
 from ddct_plant.scenario.choices.settings import ARCHITECTURES
 from ddct_plant.scenario.control import EngineSpeedReference
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 from ddct_reference.engine_speed_target import EngineSpeedTarget
 from ddct_reference.factory import make_reference
 
@@ -92,12 +92,12 @@ def test_a_missing_tick_changes_nothing_of_the_later_ones():
 def test_only_the_detailed_architecture_may_use_it(architecture):
     scenario = load_scenario('thesis', TARGET)
     if architecture == 'detailed':
-        assert make_reference(RunSettings(scenario)).follows_shaft
+        assert make_reference(KnownSettings(scenario)).follows_shaft
         return
     with refused(ParameterError, key='reference.shape'):
-        RunSettings(scenario, architecture)
+        RunSettings(KnownSettings(scenario, architecture))
 
 
 def test_it_needs_a_target_engine_speed():
     with refused(ParameterError, key='reference.shape'):
-        RunSettings(load_scenario('thesis', TARGET[:1]))
+        RunSettings(KnownSettings(load_scenario('thesis', TARGET[:1])))

@@ -5,7 +5,7 @@
 import pytest
 
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 from ddct_reference.factory import make_reference, nominal_slip
 
 CONSTANT = (
@@ -35,6 +35,10 @@ def test_it_is_that_of_the_known_actuator():
     """With 20 ms more delay the torque rises later, so the slip is higher when control starts."""
     known, usual = load_scenario('thesis', ['actuator.delay_s=0.03']), load_scenario('thesis')
     assert nominal_slip(known)[-1] > nominal_slip(usual)[-1] + 1.0
-    unknown = RunSettings(known, 'feedforward', known_scenario=usual)
-    stored = [make_reference(each).update(40, 0.0, 0.0) for each in (unknown, unknown.known)]
-    assert stored[0] == stored[1]
+    unknown = RunSettings(KnownSettings(usual, 'feedforward'), CaseSettings(scenario=known))
+    stored, slower = (
+        make_reference(each).update(40, 0.0, 0.0)
+        for each in (unknown.known, KnownSettings(known, 'feedforward'))
+    )
+    assert stored != slower
+    assert stored[0][0] == nominal_slip(usual)[40]

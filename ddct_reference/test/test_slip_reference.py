@@ -9,7 +9,7 @@ from ddct_plant.base.errors import DdctError
 from ddct_plant.scenario.choices.settings import ARCHITECTURES
 from ddct_plant.scenario.control import REFERENCE_SHAPES
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 from ddct_reference.descent import CrfRamp
 from ddct_reference.factory import make_reference
 from ddct_reference.slip_reference import DescendingReference, SlipReference
@@ -77,10 +77,10 @@ def test_the_rate_of_a_stored_reference_leads_from_each_value_to_the_next():
 )
 def test_the_preview_is_the_later_reference(architecture, shape):
     changes = [f'reference.shape={shape}', 'control_start_s=0.03', 'reference.reference_end_s=0.1']
-    settings = RunSettings(load_scenario('thesis', changes), architecture)
-    ahead = make_reference(settings, preview_steps=4)
+    settings = RunSettings(KnownSettings(load_scenario('thesis', changes), architecture))
+    ahead = make_reference(settings.known, preview_steps=4)
     speeds = [ahead.update(step, slip)[0] for step, slip in enumerate(SLIPS)]
-    coming = values(make_reference(settings), SLIPS)
+    coming = values(make_reference(settings.known), SLIPS)
     first = settings.scenario.control_start_step if settings.detailed else 0
     for step in range(first, len(SLIPS) - 4):
         assert speeds[step] == coming[step : step + 5]
@@ -102,8 +102,8 @@ def test_the_preview_has_the_requested_length_at_every_step(shape, architecture,
             'engine_speed_reference.time_s=[0.0]',
             'engine_speed_reference.speed_rad_s=[210.0]',
         ]
-    settings = RunSettings(load_scenario('thesis', changes), architecture)
-    reference = make_reference(settings, preview_steps)
+    settings = RunSettings(KnownSettings(load_scenario('thesis', changes), architecture))
+    reference = make_reference(settings.known, preview_steps)
     for step in range(60):
         speeds, rates = reference.update(step, 20.0, 160.0)
         assert (len(speeds), len(rates)) == (preview_steps + 1, preview_steps + 1), step
@@ -113,7 +113,7 @@ def test_the_preview_has_the_requested_length_at_every_step(shape, architecture,
 @pytest.mark.parametrize('end_s', [0.9, 1.3, 1.6, 1.97])
 def test_a_timed_shape_reaches_exactly_zero_at_its_end_and_not_before(shape, end_s):
     changes = [f'reference.shape={shape}', f'reference.reference_end_s={end_s}']
-    reference = make_reference(RunSettings(load_scenario('thesis', changes), 'base'))
+    reference = make_reference(KnownSettings(load_scenario('thesis', changes), 'base'))
     found = np.array(values(reference, [0.0] * 210))
     end_step = round(100 * end_s)
     assert np.all(found[60:end_step] > 0.0)
@@ -125,7 +125,7 @@ def test_feedforward_tanh_differs_from_feedforward_only_after_control_start():
     start = scenario.control_start_step
     slips = [0.0] * (start + 20)
     ramp, tanh = (
-        values(make_reference(RunSettings(scenario, name)), slips)
+        values(make_reference(KnownSettings(scenario, name)), slips)
         for name in ('feedforward', 'feedforward_tanh')
     )
     assert ramp[: start + 1] == tanh[: start + 1]
@@ -137,7 +137,12 @@ def test_feedforward_tanh_differs_from_feedforward_only_after_control_start():
 def test_the_stored_reference_does_not_depend_on_the_wear_of_the_run():
     scenario = load_scenario('thesis')
     new, worn = (
-        values(make_reference(RunSettings(scenario, 'base', wear_gain=gain)), [0.0] * 70)
+        values(
+            make_reference(
+                RunSettings(KnownSettings(scenario, 'base'), CaseSettings(wear_gain=gain)).known
+            ),
+            [0.0] * 70,
+        )
         for gain in (1.0, 0.7)
     )
     assert new == worn
@@ -156,7 +161,7 @@ def test_in_a_shift_it_follows_the_slip_until_the_share_is_one_and_refuses_a_low
         'engine_speed_reference.speed_rad_s': [100.0],
     }
     scenario = load_scenario('upshift', changes)
-    reference = make_reference(RunSettings(scenario), preview_steps)
+    reference = make_reference(KnownSettings(scenario), preview_steps)
     for step, slip in enumerate([50.0, 51.0, 52.0]):
         speeds, rates = reference.update(step, slip, 150.0, 0.25 * step)
         assert speeds == [slip] * (preview_steps + 1)

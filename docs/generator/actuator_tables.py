@@ -11,7 +11,7 @@ from ddct_plant.files.json_records import to_json
 from ddct_plant.models.actuator import PRINTED_ACTUATOR, ActuatorParameters
 from ddct_plant.program.table import Table
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 DESIGNS = ('pi', *PRINTED_CONTROLLERS, 'hinf_thesis', 'hinf_fitted')
 ACTUATORS = (PRINTED_ACTUATOR, ActuatorParameters(0.02, 0.6), ActuatorParameters(0.005, 2.0))
@@ -29,8 +29,8 @@ def other_actuators() -> Table:
 
 
 def _row(name: str, actuator: ActuatorParameters) -> list[str]:
-    settings = RunSettings(load_scenario('thesis'))
-    model = make_controller(name, settings).linear_model()
+    settings = RunSettings(KnownSettings(load_scenario('thesis')))
+    model = make_controller(name, settings.known).linear_model()
     assert model is not None
     driveline = settings.scenario.driveline
     margins = loop_margins(sampled_loop(model, driveline, actuator=actuator))

@@ -13,8 +13,8 @@ from ddct_plant.base.option import OPTION_HEADERS, option_rows
 from ddct_plant.base.options import OptionGroup, Options, group_of, options_of
 from ddct_plant.program.scheduling import Scheduling
 from ddct_plant.program.table import Table
+from ddct_plant.scenario.choices.settings import SETTINGS
 from ddct_plant.scenario.scenario import Scenario
-from ddct_plant.scenario.settings import RunSettings
 
 
 def _scenario() -> Table:
@@ -51,8 +51,8 @@ def _controllers(*names: str, without: Sequence[str] = ()) -> Table:
     return Table('', OPTION_HEADERS[:-1], rows)
 
 
-def _without_source(group: type, prefix: str = '') -> Table:
-    rows = option_rows(options_of(group), prefix)
+def _without_source(options: Options, prefix: str = '') -> Table:
+    rows = option_rows(options, prefix)
     return Table('', OPTION_HEADERS[:-1], [_code(row)[:-1] for row in rows])
 
 
@@ -63,9 +63,9 @@ def _code(row: Sequence[str]) -> tuple[str, ...]:
 _OF_EVERY_MPC = tuple(program_options(BASIS.settings()))
 TABLES = {
     'scenario': _scenario(),
-    'run': _without_source(RunSettings),
-    'scheduling': _without_source(Scheduling),
-    'measured_run': _without_source(MeasuredKeys, MeasuredKeys.prefix),
+    'run': _without_source(SETTINGS),
+    'scheduling': _without_source(options_of(Scheduling)),
+    'measured_run': _without_source(options_of(MeasuredKeys), MeasuredKeys.prefix),
     'pi': _controllers('pi'),
     'mpc': _controllers('mpc1', 'mpc2', 'mpc3', 'mpc_preview'),
     'mpc4': _controllers('mpc4', 'mpc4_wear', without=_OF_EVERY_MPC[3:]),

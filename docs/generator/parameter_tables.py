@@ -15,12 +15,12 @@ from ddct_plant.graph.node import GraphNode
 from ddct_plant.program.scheduling import Scheduling
 from ddct_plant.program.table import Table
 from ddct_plant.scenario.choices.scenarios import CHOICES
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.choices.settings import SETTINGS
 
 HEADERS = ('parameter', 'default', 'meaning')
 SHARED = {
-    *('known', 'case', *CHOICES, 'known_scenario'),
-    *options_of(RunSettings),
+    *('known', 'case', *CHOICES),
+    *SETTINGS,
     *options_of(Scheduling),
 }
 """Names of the parameters that every node has."""

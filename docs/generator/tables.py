@@ -31,7 +31,7 @@ from ddct_plant.linear.lti import FactoredTransferFunction
 from ddct_plant.linear.sampling import discretise_zoh
 from ddct_plant.program.table import Table
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 from generator.actuator_tables import other_actuators
 from generator.option_tables import TABLES as OPTION_TABLES
 from generator.pages import DOCS
@@ -83,7 +83,7 @@ def plant_tables() -> Mapping[str, Table]:
 
 def sampled_loops() -> Table:
     """Return the margins of every linear controller in the scenario `thesis`, new clutch."""
-    settings = RunSettings(load_scenario('thesis'))
+    settings = RunSettings(KnownSettings(load_scenario('thesis')))
     return margins_table(frequency_evidence(controller_names(), settings), settings)
 
 

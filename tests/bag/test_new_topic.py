@@ -65,7 +65,7 @@ class LoopWithMore(ClosedLoop):
 
 
 def headless_run() -> Trajectory:
-    loop = LoopWithMore(RUN.settings, make_controller('pi', RUN.settings))
+    loop = LoopWithMore(RUN.settings, make_controller('pi', RUN.settings.known))
     return run_loop(loop, RUN.settings.scenario.steps)
 
 

@@ -53,7 +53,7 @@ def test_scores_follow_the_settings_alone(bags, recorded: Path) -> None:
     after = read_bag(bags.rewrite(recorded, 'odd', **changes))
     assert {name: getattr(after.facts, name) for name in changes} == changes
     assert after.settings is not None
-    assert after.settings.wear_gain == 0.9
+    assert after.settings.case.wear_gain == 0.9
     assert after.trajectory.sha256() == before.trajectory.sha256()
 
 

@@ -15,7 +15,7 @@ from ddct_bringup.scores.csv_text import signal_columns
 from ddct_bringup.scores.signal_files import signal_file_stems
 from ddct_plant.files import output_file
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 from ddct_plant.signals.topics import all_signals
 
 MOST_LETTERS = 63
@@ -60,7 +60,7 @@ def test_the_text_of_a_mat_file_leaves_the_eight_bytes_after_it_empty(bags, traj
 
 def test_every_signal_has_a_name_that_matlab_takes():
     scenario = load_scenario('launch', {'sensors.engine_speed.noise_rad_s': 0.1})
-    settings = RunSettings(scenario, 'detailed', 1.0, 'lockstep', 0)
+    settings = RunSettings(KnownSettings(scenario))
     columns = signal_columns(run_headless(settings, 'mpc4'))
     names = {*columns, *(signal.column for signal in all_signals())}
     assert len(columns) > 20

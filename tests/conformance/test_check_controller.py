@@ -22,12 +22,12 @@ from ddct_controllers.template.new_controller import install_command
 from ddct_controllers.workflows.evidence import frequency_evidence
 from ddct_controllers.workflows.evidence_types import linear_entries
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 pytestmark = pytest.mark.slow
 
 HERE = Path(__file__).parent
-SETTINGS = RunSettings(load_scenario('thesis'))
+SETTINGS = RunSettings(KnownSettings(load_scenario('thesis')))
 IN_UPDATE = ['wrong_controllers.py line']
 WRONG = {
     'WrongType': ('answers', ['of type float', 'return a', *IN_UPDATE]),
@@ -86,7 +86,7 @@ def installed(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
 
 
 def outcomes_of(name: str) -> dict[str, Outcome]:
-    return {each.name: each for each in check_controller(name, SETTINGS)}
+    return {each.name: each for each in check_controller(name, SETTINGS.known)}
 
 
 def failed(outcomes: dict[str, Outcome]) -> dict[str, str]:
@@ -141,8 +141,10 @@ def test_a_packaged_controller_fails_no_check(name: str) -> None:
 
 
 def test_stability_is_that_of_the_loop_with_the_actuator_of_the_scenario() -> None:
-    settings = RunSettings(load_scenario('thesis', ['actuator.delay_s=0.033']))
-    (stability,) = (each for each in check_controller('ls8', settings) if each.name == 'stability')
+    settings = RunSettings(KnownSettings(load_scenario('thesis', ['actuator.delay_s=0.033'])))
+    (stability,) = (
+        each for each in check_controller('ls8', settings.known) if each.name == 'stability'
+    )
     margins = linear_entries(frequency_evidence(['ls8'], settings))[0].nominal.margins
     assert stability.state == PASS
     assert f'gain margin {margins.gain_margin_db:.1f} dB' in stability.detail

@@ -32,7 +32,7 @@ from ddct_plant.files.yaml_text import dump_yaml
 from ddct_plant.scenario.choices.scenarios import CHOICES
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.key_names import scenario_options
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 PAGE = (ROOT / 'docs' / 'use' / 'security.md').read_text(encoding='utf-8')
 NAMED = 'named_by_a_key'
@@ -50,7 +50,7 @@ CONTROLLERS = {
     WITH_OPTIONS: {'controller': '-', 'options': {}},
 }
 """Keys of each kind of controller file; those of linear controllers are numbers."""
-SHIFT = RunSettings(load_scenario('upshift'))
+SHIFT = RunSettings(KnownSettings(load_scenario('upshift')))
 
 
 @pytest.fixture

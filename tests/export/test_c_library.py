@@ -22,7 +22,7 @@ from ddct_controllers.registry import make_controller
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.program import own_process
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 TOLERANCE_N_M = 1e-6
 """Tolerance in N m, as between the C and Python of a controller: both solvers leave about 1e-9."""
@@ -68,7 +68,7 @@ def exported(tmp_path):
 
     def make(name: str, settings: RunSettings = SETTINGS) -> str:
         folder = tmp_path / name
-        export_controller(make_controller(name, settings), name, settings, folder)
+        export_controller(make_controller(name, settings.known), name, settings.known, folder)
         sources = ('ddct_mpc.c', 'ddct_mpc_library.c')
         compile_c(folder, '-O0', '-shared', '-fPIC', *sources, '-o', 'ddct_mpc.so')
         file = folder / 'mpc.yaml'
@@ -95,7 +95,7 @@ def test_the_exported_mpc_run_from_its_file_gives_the_torques_of_python(exported
 
 def test_in_a_shift_the_exported_mpc_starts_as_that_of_python_does(exported):
     scenario = load_scenario('upshift', ['duration_s=1.6'])
-    shift = RunSettings(scenario)
+    shift = RunSettings(KnownSettings(scenario))
     expected = run_headless(shift, 'mpc_offset_free')
     found = run_headless(shift, exported('mpc_offset_free', shift))
     assert np.abs(found.torque_request - expected.torque_request).max() <= TOLERANCE_N_M
@@ -104,7 +104,7 @@ def test_in_a_shift_the_exported_mpc_starts_as_that_of_python_does(exported):
 
 def test_the_template_is_a_pi_controller(library):
     gains = {'proportional_gain': 0.1, 'integral_gain': 0.1}
-    expected = run_headless(SETTINGS, make_controller('pi', SETTINGS, gains))
+    expected = run_headless(SETTINGS, make_controller('pi', SETTINGS.known, gains))
     found = run_headless(SETTINGS, library(TEMPLATE))
     assert np.abs(found.torque_request - expected.torque_request).max() <= 1e-9
 
@@ -112,11 +112,11 @@ def test_the_template_is_a_pi_controller(library):
 def test_a_file_gives_global_variables_of_c_other_values(library):
     gains = {'proportional_gain': 0.31, 'integral_gain': 0.07}
     file = library(TEMPLATE, str(gains))
-    ours = run_headless(SETTINGS, make_controller(file, SETTINGS))
-    assert _torques_differ_by(ours, make_controller('pi', SETTINGS, gains)) <= TOLERANCE_N_M
+    ours = run_headless(SETTINGS, make_controller(file, SETTINGS.known))
+    assert _torques_differ_by(ours, make_controller('pi', SETTINGS.known, gains)) <= TOLERANCE_N_M
     changed = run_settings('duration_s=1', 'controllers.my_controller.integral_gain=0.5')
-    again = run_headless(changed, make_controller(file, changed))
-    other = make_controller('pi', SETTINGS, {**gains, 'integral_gain': 0.5})
+    again = run_headless(changed, make_controller(file, changed.known))
+    other = make_controller('pi', SETTINGS.known, {**gains, 'integral_gain': 0.5})
     assert _torques_differ_by(again, other) <= TOLERANCE_N_M
 
 
@@ -131,12 +131,12 @@ def test_a_variable_that_c_does_not_have_is_named(library, name):
     with refused(
         ParameterError, key=f'c_library.parameters.{name}', place='my_controller.yaml: line 2'
     ):
-        make_controller(file, SETTINGS)
+        make_controller(file, SETTINGS.known)
 
 
 def test_two_controllers_of_one_library_share_no_state(library):
     file = library(TEMPLATE)
-    first, second = (make_controller(file, SETTINGS) for _ in range(2))
+    first, second = (make_controller(file, SETTINGS.known) for _ in range(2))
     expected = run_headless(SETTINGS, second)
     first.reset()
     both = run_headless(SETTINGS, Interleaved(second, first))
@@ -167,7 +167,9 @@ class Interleaved(Controller):
 def test_an_error_of_a_controller_in_c_is_placed_in_its_file_and_function(library, source, check):
     file = library(command(source))
     found = {
-        each.name: each.detail for each in check_controller(file, SETTINGS) if each.state == FAIL
+        each.name: each.detail
+        for each in check_controller(file, SETTINGS.known)
+        if each.state == FAIL
     }
     assert f'ddct_controller_update of {file} line ' in found[check]
     assert found[check].partition(' line ')[2].partition(')')[0].endswith('(c_library')
@@ -189,7 +191,7 @@ def test_preview_and_engine_command_are_as_the_library_declares(library):
         'command->clutch_torque = m->slip_reference[20] + m->slip_reference_rate[20];'
         'command->engine_torque = m->engine_torque + 0.001 * (double)m->step;'
     ).replace('(my_state, 0, 0)', '(my_state, 20, 1)')
-    in_c = make_controller(library(source), SETTINGS)
+    in_c = make_controller(library(source), SETTINGS.known)
     expected = run_headless(SETTINGS, InPython())
     found = run_headless(SETTINGS, in_c)
     assert found.torque_request.tobytes() == expected.torque_request.tobytes()
@@ -238,7 +240,7 @@ def test_a_library_of_another_interface_is_refused(compiled, source, complaint):
 def test_the_refusal_of_a_library_is_one_line_with_its_place(library):
     file = library('int nothing;\n')
     with pytest.raises(DdctError) as caught:
-        make_controller(file, SETTINGS)
+        make_controller(file, SETTINGS.known)
     assert str(caught.value).startswith(f'controller file {file}: line 2: c_library.file: ')
     assert 'it has no ddct_controller: include' in str(caught.value)
     assert '\n' not in str(caught.value)
@@ -299,7 +301,7 @@ def test_a_file_without_a_library_is_refused(tmp_path, content, complaint):
     file = tmp_path / 'mine.yaml'
     file.write_text(f'name: mine\nc_library: {content}\n')
     with pytest.raises(DdctError) as caught:
-        make_controller(str(file), SETTINGS)
+        make_controller(str(file), SETTINGS.known)
     assert str(caught.value).startswith(f'controller file {file}: line 2: ')
     assert complaint in str(caught.value)
     assert '\n' not in str(caught.value)

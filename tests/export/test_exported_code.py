@@ -75,9 +75,9 @@ def exported_mpc3(tmp_path_factory) -> Exported:
     """Return MPC3 with limits that bind, as C, and its measurements in a run."""
     settings = run_settings('controllers.mpc3.torque_rate_n_m_s=300')
     folder = tmp_path_factory.mktemp('mpc3') / 'c'
-    recorded = Recorded(make_controller('mpc3', settings))
+    recorded = Recorded(make_controller('mpc3', settings.known))
     run_headless(settings, recorded)
-    in_c = exported(make_controller('mpc3', settings), 'mpc3', settings, folder)
+    in_c = exported(make_controller('mpc3', settings.known), 'mpc3', settings, folder)
     return Exported(folder, in_c, recorded.measurements)
 
 

@@ -67,7 +67,7 @@ def test_the_engines_authority_is_exported(tmp_path, changes):
 @pytest.mark.parametrize('changes', [{'control_steps': 1}, {'preview': True}, {'limits': True}])
 def test_short_plans_preview_and_soft_limits_are_exported(tmp_path, changes):
     settings = run_settings()
-    original: Any = make_controller('mpc3', settings)
+    original: Any = make_controller('mpc3', settings.known)
     chosen = original.settings
     if changes.pop('limits', False):
         # Slip may not fall below 30 rad/s, which costs against the reference that goes to 0.
@@ -75,7 +75,7 @@ def test_short_plans_preview_and_soft_limits_are_exported(tmp_path, changes):
         changes = {'outputs': outputs, 'soft_limit_weight': 50.0}
     changed = rebuilt(original, dataclasses.replace(chosen, **changes))
     run = compare_loops(changed, exported(changed, 'mpc3', settings, tmp_path / 'c'), settings)
-    other = run_headless(settings, make_controller('mpc3', settings))
+    other = run_headless(settings, make_controller('mpc3', settings.known))
     assert np.abs(run.torque_request - other.torque_request).max() > 1.0
 
 
@@ -101,7 +101,7 @@ def test_the_iteration_limit_is_the_static_bound(tmp_path):
         f'{section}.torque_rate_n_m_s=100',
         f'{section}.highest_torque_n_m=200',
     )
-    original = make_controller('mpc3', settings)
+    original = make_controller('mpc3', settings.known)
     in_c = exported(original, 'mpc3', settings, tmp_path / 'c')
     assert '#define DDCT_MPC_ITERATIONS 1\n' in (tmp_path / 'c' / 'ddct_mpc.h').read_text()
     run = run_headless(settings, in_c)
@@ -114,7 +114,7 @@ def test_the_iteration_limit_is_the_static_bound(tmp_path):
 
 def test_a_reset_controller_repeats_a_new_one_to_the_bit(tmp_path):
     settings = run_settings()
-    in_c = exported(make_controller('mpc3', settings), 'mpc3', settings, tmp_path / 'c')
+    in_c = exported(make_controller('mpc3', settings.known), 'mpc3', settings, tmp_path / 'c')
     first = run_headless(settings, in_c).torque_request
     in_c.reset()
     assert run_headless(settings, in_c).torque_request.tobytes() == first.tobytes()

@@ -73,7 +73,7 @@ def test_any_measurements_give_the_originals_torques(tmp_path, name):
         'engine_authority.lag_s=0.02',
         'engine_authority.maximum_torque_n_m=180',
     )
-    original = make_controller(name, settings)
+    original = make_controller(name, settings.known)
     in_c = exported(original, name, settings, tmp_path / 'c')
     above = 0
     for seed in range(EPISODES):
@@ -115,8 +115,8 @@ def never_changing_its_active_set(folder: Path) -> ExportedController:
 def test_steps_without_a_solution_follow_the_plan_as_the_original_does(tmp_path, name):
     """Some torques are within the limits and some are not, those of the plan neither."""
     settings = limited_settings(name, 1000, 40000)
-    original: Any = make_controller(name, settings)
-    export_controller(original, name, settings, tmp_path / 'c')
+    original: Any = make_controller(name, settings.known)
+    export_controller(original, name, settings.known, tmp_path / 'c')
     original._solver = Hasty(original.program.structure)
     in_c = never_changing_its_active_set(tmp_path / 'c')
     met: Counter[str] = Counter()

@@ -182,7 +182,7 @@ def test_the_rows_of_a_sweep_have_the_reasons(harm: str) -> None:
 
 def test_a_crash_fails_the_checks_in_which_it_happens(harm: str, counter: str) -> None:
     faulty = run_settings('controllers.harmful.fault=3')
-    found = {each.name: each for each in check_controller(harm, faulty)}
+    found = {each.name: each for each in check_controller(harm, faulty.known)}
     assert [found[name].state for name in ('constructor', 'options', 'prints')] == 3 * [PASS]
     assert found['answers'].state == FAIL
     assert f'{ENDS[3]} when update was called at step 65: mend it' in found['answers'].detail
@@ -196,15 +196,15 @@ def test_checks_share_the_trials_that_each_of_them_needs(
     def noted(settings: RunSettings, controller: Controller) -> subject.ClosedLoopLog:
         with made.open('a', encoding='utf-8') as file:
             file.write(f'{type(controller).__name__}\n')
-        return trial(settings, controller)
+        return trial(settings.known, controller)
 
     monkeypatch.setattr(subject, 'closed_trial', noted)
-    check_controller(counter, run_settings())
+    check_controller(counter, run_settings().known)
     assert sorted(made.read_text().split()) == ['CLibraryController', 'PiController']
 
 
 def test_static_variables_are_no_shared_state_but_must_be_reset(counter: str) -> None:
-    found = {each.name: each for each in check_controller(counter, run_settings())}
+    found = {each.name: each for each in check_controller(counter, run_settings().known)}
     assert [found[name].state for name in ('state', 'determinism')] == 2 * [PASS]
     assert found['reset'].state == FAIL
 

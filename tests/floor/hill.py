@@ -34,7 +34,7 @@ from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.base.timebase import time_of_step
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.plant import holding_torque, make_load
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 METRIC = 'peak_jerk'
 BREAKAWAYS = (5, 8, 10, 15, 25, 40)
@@ -113,7 +113,7 @@ def main() -> int:
     parser.add_argument('--lock-times', default='1.0')
     parser.add_argument('--controllers', default='pi,ls8,hinf_sampled')
     options = parser.parse_args()
-    settings = RunSettings(load_scenario('launch_hill'))
+    settings = RunSettings(KnownSettings(load_scenario('launch_hill')))
     start = start_of(settings, run_headless(settings, 'pi'))
     for lock_s in map(float, options.lock_times.split(',')):
         any_friction = hill_case(settings, start, lock_s, None)

@@ -17,7 +17,7 @@ from ddct_bringup.floor.control_start import control_start
 from ddct_bringup.floor.front import front, usual_lock_times
 from ddct_bringup.run.headless import run_headless
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 RUNS = 200
 _BLOCKS = 5
@@ -29,7 +29,7 @@ def main() -> int:
     parser.add_argument('--scenario', default='launch')
     options = parser.parse_args()
     os.environ['DDCT_CACHE'] = ''
-    settings = RunSettings(load_scenario(options.scenario))
+    settings = RunSettings(KnownSettings(load_scenario(options.scenario)))
     start = control_start(settings)
     times = usual_lock_times(settings, start)
     next(front(settings, ['peak_jerk'], times[-1:], start))  # imports

@@ -14,13 +14,13 @@ from ddct_bringup.run.headless import run_headless
 from ddct_controllers.registry import controller_label, controller_spec, make_controller
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 pytestmark = pytest.mark.usefixtures('folder')
 
 
 def settings(*changes: str) -> RunSettings:
-    return RunSettings(load_scenario('thesis', ['duration_s=1', GAINS, *changes]))
+    return RunSettings(KnownSettings(load_scenario('thesis', ['duration_s=1', GAINS, *changes])))
 
 
 @pytest.mark.parametrize('version', VERSIONS)
@@ -41,7 +41,7 @@ def test_the_tests_fmu_is_one_by_the_standard(version: int) -> None:
 
 def test_a_second_run_begins_anew() -> None:
     version = 2
-    controller = make_controller(controller_file(version), settings())
+    controller = make_controller(controller_file(version), settings().known)
     first, second = (run_headless(settings(), controller) for _ in range(2))
     assert first.sha256() == second.sha256()
 
@@ -49,7 +49,7 @@ def test_a_second_run_begins_anew() -> None:
 def test_two_controllers_of_one_file_share_no_state() -> None:
     file = controller_file(2)
     alone = run_headless(settings(), file)
-    one, other = (make_controller(file, settings()) for _ in range(2))
+    one, other = (make_controller(file, settings().known) for _ in range(2))
     run_headless(settings('duration_s=0.8'), other)
     assert run_headless(settings(), one).sha256() == alone.sha256()
 
@@ -59,7 +59,7 @@ def test_every_instance_is_freed_and_no_file_stays(
     version: int, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv(EVENTS, str(folder / 'events'))
-    controller = make_controller(controller_file(version), settings())
+    controller = make_controller(controller_file(version), settings().known)
     assert len(list((folder / 'tmp').iterdir())) == 1
     for _ in range(2):
         run_headless(settings(), controller)
@@ -71,7 +71,7 @@ def test_every_instance_is_freed_and_no_file_stays(
 
 def test_it_is_identified_by_the_digests_of_both_files() -> None:
     version = 3
-    info = make_controller(controller_file(version), settings()).info('mine')
+    info = make_controller(controller_file(version), settings().known).info('mine')
     for key, file in (('controller_file_sha256', 'mine.yaml'), ('fmu_sha256', 'pi.fmu')):
         assert info[key] == hashlib.sha256(Path(file).read_bytes()).hexdigest()
 
@@ -88,7 +88,7 @@ def test_its_parameters_are_options() -> None:
         ('Kp=1', 'controllers.mine.Kp is not a key of mine'),
     ):
         with pytest.raises(ParameterError, match=complaint):
-            make_controller(file, settings(f'controllers.mine.{change}'))
+            make_controller(file, settings(f'controllers.mine.{change}').known)
 
 
 @pytest.mark.parametrize('version', VERSIONS)

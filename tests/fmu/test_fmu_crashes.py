@@ -27,10 +27,10 @@ from ddct_controllers.registry import make_controller
 from ddct_plant.base.errors import DdctError
 from ddct_plant.program import own_process
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 pytestmark = pytest.mark.usefixtures('folder')
-SETTINGS = RunSettings(load_scenario('thesis', ['duration_s=1', GAINS]))
+SETTINGS = RunSettings(KnownSettings(load_scenario('thesis', ['duration_s=1', GAINS])))
 ENDS = {
     EXIT: 'it ended with exit code 0',
     ABORT: 'it crashed (SIGABRT)',
@@ -78,10 +78,10 @@ import os, sys, time
 from ddct_controllers.from_file.fmu import instance
 from ddct_controllers.registry import make_controller, separately
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings
 
 def work(chosen):
-    made = make_controller(chosen, RunSettings(load_scenario('thesis')))
+    made = make_controller(chosen, KnownSettings(load_scenario('thesis')))
     assert os.listdir('tmp')
     os.kill(os.getppid(), 9)
     time.sleep(60)
@@ -100,7 +100,7 @@ def test_a_killed_program_leaves_no_process_and_the_next_run_removes_its_folder(
     # The pipe of standard error ends with the last process that has it, so all have ended.
     assert done.returncode == -signal.SIGKILL, done.stderr
     assert len(unpacked()) == 1
-    kept = make_controller(controller_file(3), SETTINGS)
+    kept = make_controller(controller_file(3), SETTINGS.known)
     assert len(unpacked()) == 1, 'it is that of the killed program, or another one too'
     run_headless(SETTINGS, controller_file(2))
     assert len(unpacked()) == 1, 'a folder in use is gone'

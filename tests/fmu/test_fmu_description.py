@@ -11,10 +11,10 @@ from support.fmu import GAINS, VERSIONS, controller_file, write_fmu
 from ddct_controllers.registry import make_controller
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 pytestmark = pytest.mark.usefixtures('folder')
-SETTINGS = RunSettings(load_scenario('thesis', ['duration_s=1', GAINS]))
+SETTINGS = RunSettings(KnownSettings(load_scenario('thesis', ['duration_s=1', GAINS])))
 
 
 def refused_file(version: int, *changes: tuple[str, str]) -> str:
@@ -22,7 +22,7 @@ def refused_file(version: int, *changes: tuple[str, str]) -> str:
     file = controller_file(version)
     write_fmu(Path('pi.fmu'), version, *changes)
     with refused(ParameterError, 'fmu.file', place='mine.yaml: line 3') as raised:
-        make_controller(file, SETTINGS)
+        make_controller(file, SETTINGS.known)
     assert list(Path('tmp').iterdir()) == []
     return str(raised.value)
 
@@ -47,4 +47,4 @@ def test_a_range_that_is_no_number_is_refused(end: str) -> None:
     file = controller_file(2)
     write_fmu(Path('pi.fmu'), 2, ('min="0" start="0.1"', f'{end}="much" start="0.1"'))
     with refused(ParameterError, 'fmu.parameters.pid.Kp', place='mine.yaml: line 6'):
-        make_controller(file, SETTINGS)
+        make_controller(file, SETTINGS.known)

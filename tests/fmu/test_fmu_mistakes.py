@@ -14,17 +14,17 @@ from ddct_bringup.run.headless import run_headless
 from ddct_controllers.registry import make_controller
 from ddct_plant.base.errors import DdctError
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 pytestmark = pytest.mark.usefixtures('folder')
-SETTINGS = RunSettings(load_scenario('thesis', ['duration_s=1', GAINS]))
+SETTINGS = RunSettings(KnownSettings(load_scenario('thesis', ['duration_s=1', GAINS])))
 UNREADABLE = 'controller file mine.yaml: line 3: fmu.file: '
 
 
 def complaint(file: str) -> str:
     """Return the one line of the error for a controller that cannot be made."""
     with pytest.raises(DdctError) as raised:
-        make_controller(file, SETTINGS)
+        make_controller(file, SETTINGS.known)
     text = str(raised.value)
     assert '\n' not in text
     assert text.startswith('controller file mine.yaml: ')
@@ -82,7 +82,7 @@ def test_an_fmu_that_cannot_run_here_is_refused() -> None:
     assert complaint(file).startswith(f'{UNREADABLE}pi.fmu is no FMU (')
     for step in ('0.005', '0.01'):
         write_fmu(fmu, version, ('stepSize="0.01"', f'stepSize="{step}"'))
-        make_controller(file, SETTINGS)
+        make_controller(file, SETTINGS.known)
 
 
 def test_other_versions_and_broken_binaries_are_refused() -> None:

@@ -23,7 +23,7 @@ from ddct_bringup.run.description import custom_data
 from ddct_bringup.run.plan import RunPlan
 from ddct_plant.models.driveline import PHASES
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 from ddct_plant.signals.topics import RUN_INFO, TOPICS
 
 Record = Callable[[RunPlan], Messages]
@@ -114,7 +114,7 @@ def _shift(*changes: str) -> RunPlan:
     """Return a headless gear shift of 0.7 s."""
     given = ['duration_s=0.7', 'score_window_s=[0.3,0.6]', *changes]
     scenario = load_scenario('upshift', given)
-    return RunPlan(RunSettings(scenario), 'pi', 'headless')
+    return RunPlan(RunSettings(KnownSettings(scenario)), 'pi', 'headless')
 
 
 def _made_up_run() -> Trajectory:

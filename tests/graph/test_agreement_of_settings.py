@@ -31,7 +31,6 @@ SHIFT = plan('pi', scenario='upshift', duration_s=1.0)
         ('engine', {'seed': 7}, ['seed 7', 'have 0']),
         ('actuator', {'mode': 'realtime'}, ['mode realtime', 'have lockstep']),
         ('load', {'scenario': 'launch'}, ['scenario.', 'launch']),
-        ('load', {'known_scenario': 'launch'}, ['known_scenario.', 'launch']),
         ('reference', {'architecture': 'base'}, ['architecture base', 'have detailed']),
         ('controller', {'scenario': 'launch'}, ['scenario.', 'launch']),
         ('recorder', {'wear_gain': 0.5}, ['wear_gain 0.5', 'have 1.0']),
@@ -50,7 +49,7 @@ def test_values_that_agree_with_the_files_of_the_run_may_be_given_too(
 ) -> None:
     run = plan(wear_gain=0.8)
     graph = graph_of(run)
-    given = {'wear_gain': 0.8, 'mode': 'lockstep', 'known_scenario': ''}
+    given = {'wear_gain': 0.8, 'mode': 'lockstep'}
     graph.add('clutch', {**given, 'scenario': scenario_file(tmp_path)})
     graph.add('controller', {'architecture': 'detailed'})
     graph.add_all()

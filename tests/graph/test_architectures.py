@@ -14,7 +14,7 @@ from support.runs import LAYOUTS, bag_bytes, expected, record
 from ddct_bringup.run.plan import RunPlan
 from ddct_plant.scenario.choices.settings import ARCHITECTURES
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 
 pytestmark = pytest.mark.slow
 
@@ -27,7 +27,11 @@ def test_both_layouts_leave_the_same_bytes_and_the_headless_trajectory(
 ) -> None:
     bags = []
     for layout in LAYOUTS[1:]:
-        run = RunPlan(RunSettings(SCENARIO, architecture, wear_gain=0.9), 'hinf2', layout)
+        run = RunPlan(
+            RunSettings(KnownSettings(SCENARIO, architecture), CaseSettings(wear_gain=0.9)),
+            'hinf2',
+            layout,
+        )
         recording = record(run, tmp_path / layout)
         assert recording.trajectory.sha256() == expected(run).sha256(), layout
         bags.append(bag_bytes(tmp_path / layout))
@@ -40,5 +44,5 @@ def test_a_clutch_that_sticks_has_the_same_stored_reference_in_the_graph_and_hea
     tmp_path: Path, architecture: str, name: str
 ) -> None:
     scenario = load_scenario(name, ['duration_s=0.6', 'score_window_s=[0.3,0.6]'])
-    run = RunPlan(RunSettings(scenario, architecture), 'hinf2', 'single-process')
+    run = RunPlan(RunSettings(KnownSettings(scenario, architecture)), 'hinf2', 'single-process')
     assert record(run, tmp_path / name).trajectory.sha256() == expected(run).sha256()

@@ -104,9 +104,9 @@ def test_an_interruption_ends_the_process_of_all_nodes_and_what_it_has_recorded_
 @pytest.mark.compiler
 def test_the_exported_mpc_run_back_through_the_graph_is_that_of_python(tmp_path: Path) -> None:
     original = plan('mpc3')
-    controller = make_controller('mpc3', original.settings)
+    controller = make_controller('mpc3', original.settings.known)
     folder = tmp_path / 'c'
-    export_controller(controller, 'mpc3', original.settings, folder)
+    export_controller(controller, 'mpc3', original.settings.known, folder)
     sources = ('ddct_mpc.c', 'ddct_mpc_library.c')
     compile_c(folder, '-O2', '-shared', '-fPIC', *sources, '-o', 'ddct_mpc.so')
     (folder / 'mpc.yaml').write_text('name: mpc3_in_c\nc_library: {file: ddct_mpc.so}\n')

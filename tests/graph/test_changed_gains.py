@@ -27,7 +27,7 @@ from ddct_bringup.verdict.limits import load_limits
 from ddct_controllers.mpc.variants import PREDICTIVE
 from ddct_plant.graph.node import GraphNode
 from ddct_plant.scenario.file import load_scenario, scenario_to_yaml
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 from ddct_plant.signals.gain_changes import GainChange
 
 UNSET = {'highest_torque_n_m', 'lowest_slip_rpm', 'iteration_limit'}
@@ -86,7 +86,7 @@ def test_options_of_a_third_party_are_set_alike_by_set_a_file_and_parameters(
     file = tmp_path / 'mine.yaml'
     file.write_text(scenario_to_yaml(load_scenario('thesis', keys)), encoding='utf-8')
     from_set = graph_of(plan('dead_zone', changes=keys)).add('controller')
-    settings = RunSettings(load_scenario(str(file)))
+    settings = RunSettings(KnownSettings(load_scenario(str(file))))
     from_file = graph_of(RunPlan(settings, 'dead_zone')).add('controller')
     given = {f'gains.{name}': value for name, value in wanted.items()}
     from_parameters = graph_of(plan('dead_zone')).add('controller', given)

@@ -82,7 +82,7 @@ def test_control_nodes_find_no_true_value_in_their_parameters_and_objects(
         given = {each: node.get_parameter(each).value for each in node.own_parameters()}
         given |= {each: of.value for each, of in node._parameter_overrides.items()}
         assert not {'case', 'wear_gain', 'seed', 'off_going_wear_gain'} & given.keys()
-        assert not found_in([given, node.settings], values)
+        assert not found_in([given, node.known, node._true], values)
         written = Path(given['known']).read_text(encoding='utf-8')
         assert not found_in(written, values)
     assert graph.nodes['clutch'].settings == settings

@@ -15,7 +15,7 @@ from support.waiting import WITHIN_S
 from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.run.headless import run_headless
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 from ddct_plant.signals.topics import TORQUE_PARTS, all_signals
 
 PAGE = 'docs/develop/own_node.md'
@@ -57,7 +57,7 @@ def test_own_nodes_give_the_trajectory_of_ours_by_the_lines_of_the_page(tmp_path
 
     gains = ('proportional_gain=0.2', 'integral_gain=0.6')
     scenario = load_scenario('thesis', [f'controllers.pi.{gain}' for gain in gains])
-    ours = run_headless(RunSettings(scenario, architecture='base'), 'pi')
+    ours = run_headless(RunSettings(KnownSettings(scenario, architecture='base')), 'pi')
     own = read_bag(tmp_path / 'runs' / 'own').trajectory
     for signal in all_signals():
         found, wanted = (getattr(run, signal.name) for run in (own, ours))

@@ -19,7 +19,7 @@ from ddct_plant.base.timebase import PERIOD_S, step_of_stamp
 from ddct_plant.fail_safe.request_watch import REQUEST_TIMEOUT_S
 from ddct_plant.graph.qos import RECORDER_QOS
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 from ddct_plant.signals.message_kind import stamp_ns
 from ddct_plant.signals.topics import ENGINE_REQUEST, ENGINE_TORQUE
 
@@ -66,7 +66,7 @@ def test_a_commanded_engine_with_limits_is_the_headless_one_while_the_shaft_stan
     tmp_path: Path,
 ) -> None:
     changes = ['duration_s=0.6', 'score_window_s=[0.3,0.6]']
-    settings = RunSettings(load_scenario('launch', changes))
+    settings = RunSettings(KnownSettings(load_scenario('launch', changes)))
     run = RunPlan(settings, 'mpc4', 'single-process')
     trajectory = record(run, tmp_path / 'run').trajectory
     assert trajectory.sha256() == expected(run).sha256()

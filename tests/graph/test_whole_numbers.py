@@ -46,7 +46,7 @@ def test_whole_numbers_are_values_of_each_parameter_that_is_a_number(
     assert numbers_of(node) == whole
     types = {name: node.describe_parameter(name).type for name in whole}
     assert types == dict.fromkeys(whole, Parameter.Type.DOUBLE.value)
-    assert isinstance(node.settings.wear_gain, float)
+    assert isinstance(node.settings.case.wear_gain, float)
 
 
 def test_a_gain_takes_a_whole_number_while_it_runs(graph_of: GraphOf) -> None:

@@ -16,7 +16,7 @@ from ddct_bringup.scores.csv_text import signals_csv
 from ddct_plant.identification.from_log import command
 from ddct_plant.identification.identify import main
 from ddct_plant.scenario.file import load_scenario, scenario_to_yaml
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 pytestmark = pytest.mark.slow
 
@@ -47,7 +47,7 @@ def test_a_foreign_log_gives_tables_json_and_a_scenario_that_runs(
         'load.slope_rad',
     ]
     assert scenario.driveline.vehicle_inertia == rows['vehicle_inertia']['value']
-    assert run_headless(RunSettings(scenario), 'pi').steps == scenario.steps
+    assert run_headless(RunSettings(KnownSettings(scenario)), 'pi').steps == scenario.steps
 
 
 def test_the_scenario_of_a_noisy_bag_reproduces_another_run_of_the_same_car(
@@ -70,7 +70,9 @@ def test_the_scenario_of_a_noisy_bag_reproduces_another_run_of_the_same_car(
     fixed = ['--fix', 'engine_damping']
     assert main(['--from', str(tmp_path / 'noisy.csv'), '--out', str(out), *fixed]) == 0
     truth = expected(plan('ls8', 'headless', duration_s=3.0, changes=heavy))
-    found = run_headless(RunSettings(load_scenario(str(out), ['duration_s=3.0'])), 'ls8')
+    found = run_headless(
+        RunSettings(KnownSettings(load_scenario(str(out), ['duration_s=3.0']))), 'ls8'
+    )
     thesis = expected(plan('ls8', 'headless', duration_s=3.0))
     spread = np.std(truth.slip_speed)
     assert np.sqrt(np.mean((found.slip_speed - truth.slip_speed) ** 2)) < 0.02 * spread

@@ -18,7 +18,7 @@ from ddct_bringup.run.headless import run_headless
 from ddct_plant.base.errors import DdctError
 from ddct_plant.models.gearbox import EngagedGear
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 RATIO = TRUE['total_ratio']
 GEAR = EngagedGear(RATIO)
@@ -105,7 +105,7 @@ def test_a_true_log_passes_with_any_of_its_columns_left_out(
     ('scenario', 'controller'), [('thesis', 'pi'), ('tip_in', 'ls8'), ('launch', 'pi')]
 )
 def test_what_the_bench_simulates_contradicts_nothing(scenario: str, controller: str) -> None:
-    settings = RunSettings(load_scenario(scenario), 'detailed', 1.0, 'lockstep', 0)
+    settings = RunSettings(KnownSettings(load_scenario(scenario)))
     run = run_headless(settings, controller)
     values = dict(zip(('engine_speed', 'shaft_speed', 'wheel_speed'), run.joint_speed.T))  # noqa: B905 the twist is left out
     values |= {'engine_torque': run.engine_torque, 'clutch_torque': run.joint_effort[:, 1]}

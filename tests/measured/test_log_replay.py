@@ -14,7 +14,7 @@ from ddct_plant.identification.identify import main
 from ddct_plant.measured.log import SPEEDS, MeasuredLog
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.scenario import Scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 pytestmark = pytest.mark.slow
 
@@ -56,7 +56,7 @@ def test_a_drive_of_a_known_plant_comes_back_from_the_scenario_of_its_log(
     assert scenario.name == 'tip_in'
     assert scenario.duration_s == pytest.approx(3.0 - 0.01 * rows)
     assert scenario.initial.engine_speed_rad_s == pytest.approx(185.0, abs=0.5)
-    run = run_headless(RunSettings(scenario), 'pi')
+    run = run_headless(RunSettings(KnownSettings(scenario)), 'pi')
     replayed = np.array(run.joint_speed)[:, :3]
     speeds = np.column_stack([true.signals[name] for name in SPEEDS])[rows:]
     speeds = speeds[: len(replayed)]

@@ -49,6 +49,7 @@ FILES = {
     'ddct_plant/identification/from_log/log_fit_report.py': 'identify --log --json',
     'ddct_plant/identification/identification_report.py': 'identify --json',
     'ddct_plant/measured/columns.py': 'column map, YAML',
+    'ddct_plant/scenario/case.py': 'options --case, and files of a case, YAML',
     'ddct_plant/scenario/content.py': 'scenario, YAML',
     'ddct_plant/scenario/csv_profiles.py': 'profiles of a scenario, YAML and CSV',
     'ddct_plant/scenario/file.py': 'scenario, YAML',
@@ -65,6 +66,7 @@ VALUES_BY_KEY = {
     'ddct_controllers/registry.py',
     'ddct_plant/base/options.py',
     'ddct_plant/scenario/scenario.py',
+    'ddct_plant/scenario/settings.py',
 }
 """Modules that hand users' values on by their option's key, until an `Option` has checked them."""
 CALLERS = {

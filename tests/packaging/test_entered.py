@@ -8,7 +8,7 @@ from ddct_bringup import api
 from ddct_controllers.architecture import make_architecture
 from ddct_controllers.registry import make_controller
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 from entered.counter import Entered, Noun
 
 pytestmark = pytest.mark.slow
@@ -30,7 +30,7 @@ def test_the_way_leads_from_the_call_to_the_equations_and_not_into_the_scores() 
 
 def test_what_no_step_follows_is_not_on_the_way() -> None:
     entered = Entered()
-    settings = RunSettings(load_scenario('thesis'))
-    entered.call(lambda: make_architecture(settings, make_controller('pi', settings)))
+    settings = RunSettings(KnownSettings(load_scenario('thesis')))
+    entered.call(lambda: make_architecture(settings.known, make_controller('pi', settings.known)))
     assert Noun('ddct_controllers.architecture', 'Architecture') in entered.nouns
     assert entered.way == set()

@@ -154,8 +154,8 @@ def test_no_controller_or_architecture_loads_python_control_to_run():
         'from ddct_controllers.architecture import make_architecture\n'
         'from ddct_controllers.registry import controller_names, make_controller\n'
         'from ddct_plant.scenario.file import load_scenario\n'
-        'from ddct_plant.scenario.settings import RunSettings\n'
-        "settings = RunSettings(load_scenario('thesis'), 'feedforward')\n"
+        'from ddct_plant.scenario.settings import KnownSettings\n'
+        "settings = KnownSettings(load_scenario('thesis'), 'feedforward')\n"
         'for name in controller_names():\n'
         '    make_architecture(settings, make_controller(name, settings))\n'
         "assert 'ddct_controllers.design.h_infinity.design' in sys.modules\n"

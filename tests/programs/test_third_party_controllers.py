@@ -19,7 +19,7 @@ from ddct_controllers.linear import PI
 from ddct_controllers.registry import make_controller
 from ddct_plant.base.errors import DdctError
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings
 
 SUPPORT = Path(__file__).parent.parent
 HEADLESS, IN_ONE_PROCESS = '--headless', '--single-process'
@@ -116,7 +116,7 @@ def test_a_controller_that_cannot_be_built_stops_only_the_programs_that_need_it(
 )
 def test_a_controller_that_cannot_be_built_is_named(name: str, words: list[str]) -> None:
     with pytest.raises(DdctError) as failure:
-        make_controller(name, RunSettings(load_scenario('thesis')))
+        make_controller(name, KnownSettings(load_scenario('thesis')))
     for word in words:
         assert word in str(failure.value)
 

@@ -22,7 +22,7 @@ from ddct_bringup.report.evidence import FREQUENCY_FILE
 from ddct_bringup.thesis.predictions import predicted_range
 from ddct_bringup.verdict.limits import load_limits
 from ddct_plant.program.command_line import package_version
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 CONTROLLERS = ('pi', 'ls8', 'hinf1')
 WITHOUT = ('time_to_final_lock_s', 'releases', 'peak_temperature_degc', 'worst_lateness_us')
@@ -193,7 +193,7 @@ def test_labels_distinguish_wear_gains_and_architectures_of_one_scenario(
     worn = plan('ls8', 'headless', duration_s=3.0, wear_gain=0.7)
     record(worn, tmp_path / 'worn')
     other = plan('ls8', 'headless', duration_s=3.0)
-    settings = RunSettings(other.settings.scenario, 'feedforward')
+    settings = RunSettings(KnownSettings(other.settings.scenario, 'feedforward'))
     record(type(other)(settings, 'ls8', 'headless'), tmp_path / 'other')
     out = tmp_path / 'report.html'
     bags = [str(folder) for folder in (demo / 'ls8', tmp_path / 'worn', tmp_path / 'other')]

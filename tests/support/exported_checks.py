@@ -16,7 +16,7 @@ from support.exported_mpc import exported, limited_settings, run_settings
 
 def compare_exported(name: str, settings: RunSettings, folder: Path) -> Trajectory:
     """Export a controller into a folder and compare both loops; return the original's run."""
-    original = make_controller(name, settings)
+    original = make_controller(name, settings.known)
     return compare_loops(original, exported(original, name, settings, folder), settings)
 
 

@@ -15,7 +15,7 @@ from ddct_controllers.interface import Command, Controller, Measurement
 from ddct_controllers.mpc.export.export_controller import export_controller
 from ddct_plant.base.errors import DdctError
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 
 STRICT = (
     *('-std=c99', '-Wall', '-Wextra', '-Wpedantic', '-Werror', '-Wconversion', '-Wshadow'),
@@ -111,7 +111,9 @@ class ExportedController(Controller):
 def run_settings(*changes: str, architecture: str = 'detailed', wear: float = 1.0) -> RunSettings:
     """Return two seconds of the thesis's scenario."""
     scenario = load_scenario('thesis', ['duration_s=2', *changes])
-    return RunSettings(scenario, architecture=architecture, wear_gain=wear)
+    return RunSettings(
+        KnownSettings(scenario, architecture=architecture), CaseSettings(wear_gain=wear)
+    )
 
 
 def limited_settings(name: str, highest: float, rate: float, *changes: str) -> RunSettings:
@@ -129,7 +131,7 @@ def exported(
     controller: Controller, name: str, settings: RunSettings, folder: Path
 ) -> ExportedController:
     """Return the exported C controller of `controller`, which was built for `settings`."""
-    export_controller(controller, name, settings, folder)
+    export_controller(controller, name, settings.known, folder)
     return ExportedController(folder)
 
 

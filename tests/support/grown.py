@@ -18,10 +18,10 @@ from pathlib import Path
 import numpy as np
 from ddct_bringup.run.headless import run_headless
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 scenario = load_scenario('thesis', {{'duration_s': 1.0, 'score_window_s': [0.7, 1.0], **{SENSOR}}})
-settings = RunSettings(scenario)
+settings = RunSettings(KnownSettings(scenario))
 run = run_headless(settings, 'pi')
 """
 

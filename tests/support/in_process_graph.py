@@ -27,7 +27,7 @@ from ddct_plant.graph.node import GraphNode
 from ddct_plant.graph.spin import finish_node, make_executor
 from ddct_plant.graph.steady_time import SteadyTime
 from ddct_plant.nodes.driveline_node import DrivelineNode
-from ddct_plant.scenario.settings import UNKNOWN
+from ddct_plant.scenario.case import OF_CASE
 from support.waiting import WITHIN_S, wait_until
 
 CHECK_PERIOD_S = 0.001
@@ -254,7 +254,7 @@ def by_hand(graph: InProcessGraph, settings: Mapping[str, Any]) -> InProcessGrap
 
     Those of the plant and the recorder get all, those that control none that they do not have.
     """
-    known = {key: settings[key] for key in settings if key not in UNKNOWN}
+    known = {key: settings[key] for key in settings if key not in OF_CASE}
     graph.parameters['*'].pop('known')
     for path in ('controller', 'reference', 'handover'):
         graph.parameters.setdefault(path, {}).update(known)

@@ -35,7 +35,7 @@ def described(steps, controller='pi', *, scenario='made-up', **changes):
     times = {name: changes.pop(name, value) for name, value in times.items()}
     clutch = changes.pop('clutch', 'linear')
     made = replace(load_scenario('thesis', {**times, 'clutch': clutch}), name=scenario)
-    settings = RunSettings(made, **changes)
+    settings = RunSettings.of(made, changes)
     return {SETTINGS: RecordedSettings.of(settings, controller, times['duration_s']).text()}
 
 

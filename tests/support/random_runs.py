@@ -94,12 +94,8 @@ def outcome(random: np.random.Generator, index: int, *, shifts: bool = False) ->
     file = ScenarioFile.read(scenario)
     try:
         loaded = file.scenario(changes)
-        settings = RunSettings(
-            loaded,
-            wear_gain=wear,
-            **of_shift,
-        )
-        controller = make_controller(name, settings)
+        settings = RunSettings.of(loaded, {**of_shift, 'wear_gain': wear})
+        controller = make_controller(name, settings.known)
         assert isinstance(controller, Controller)
         run = run_headless(settings, controller)
         start = control_start(settings)

@@ -33,7 +33,9 @@ def plan(
 ) -> RunPlan:
     """Return a short run of a packaged scenario; `of_shift` are settings of a gear shift."""
     content = load_scenario(scenario, [f'duration_s={duration_s}', *changes])
-    settings = RunSettings(content, wear_gain=wear_gain, mode=mode, seed=seed, **of_shift)
+    settings = RunSettings.of(
+        content, {**of_shift, 'wear_gain': wear_gain, 'mode': mode, 'seed': seed}
+    )
     return RunPlan(settings, controller, layout)
 
 

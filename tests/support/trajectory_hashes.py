@@ -23,7 +23,7 @@ from ddct_controllers.registry import own_controller_names
 from ddct_plant.program.arithmetic import Arithmetic, arithmetic
 from ddct_plant.program.kernel import KERNEL, THREADS
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 SCENARIOS = ('thesis', 'launch', 'upshift_light')
 FEATURES = tuple(import_module('numpy._core._multiarray_umath').__cpu_dispatch__)
@@ -54,7 +54,7 @@ def hashes_here(controllers: Sequence[str]) -> Hashes:
         arithmetic(),
         {
             f'{scenario} {controller}': run_headless(
-                RunSettings(load_scenario(scenario)), controller
+                RunSettings(KnownSettings(load_scenario(scenario))), controller
             ).sha256()
             for scenario in SCENARIOS
             for controller in controllers

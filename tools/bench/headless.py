@@ -10,7 +10,7 @@ from ddct_bringup.run.headless import run_headless, run_loop
 from ddct_controllers.loop import ClosedLoop
 from ddct_controllers.registry import make_controller
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 LEAST_S = 0.05
 """Least duration of one measurement, s, so that the clock does not limit it."""
@@ -22,10 +22,10 @@ def step_s(controller: str, scenario: str = 'thesis') -> float:
 
     It is that of this thread alone, so that other programs count less. Short runs are repeated.
     """
-    settings = RunSettings(load_scenario(scenario))
+    settings = RunSettings(KnownSettings(load_scenario(scenario)))
     elapsed, steps = 0.0, 0
     while elapsed < LEAST_S:
-        loop = ClosedLoop(settings, make_controller(controller, settings))
+        loop = ClosedLoop(settings, make_controller(controller, settings.known))
         started = time.thread_time()
         trajectory = run_loop(loop, settings.scenario.steps)
         elapsed += time.thread_time() - started
@@ -38,7 +38,7 @@ def _beside_python_control() -> tuple[Cost, Cost]:
         from bench.python_control_loop import PythonControlLoop
     except ImportError as error:
         raise NotMeasured(str(error)) from error
-    settings = RunSettings(load_scenario('thesis'))
+    settings = RunSettings(KnownSettings(load_scenario('thesis')))
     run = run_headless(settings, 'pi')
     peer = PythonControlLoop(settings, run)
     return partial(step_s, 'pi'), peer.step_s

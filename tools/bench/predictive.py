@@ -23,9 +23,9 @@ from ddct_controllers.mpc.model.transmission_model import transmission_model
 from ddct_controllers.mpc.qp.backend import DEFAULT_BACKEND, make_backend
 from ddct_controllers.mpc.qp.problem import QpStructure
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
-RUN = RunSettings(load_scenario('thesis'))
+RUN = RunSettings(KnownSettings(load_scenario('thesis')))
 MODEL = transmission_model(RUN.scenario.driveline)
 Program = tuple[np.ndarray, np.ndarray, np.ndarray]
 """Gradient and bounds of one program, which change from step to step; the matrices stay."""
@@ -66,7 +66,7 @@ class _Recording(Controller):
 
 
 def _preview() -> MpcController[Any]:
-    return MpcController(MODEL, make_observer(RUN, MODEL), PREVIEW.settings())
+    return MpcController(MODEL, make_observer(RUN.known, MODEL), PREVIEW.settings())
 
 
 def _recorded() -> _Recording:
@@ -133,7 +133,7 @@ def _beside_do_mpc() -> tuple[Cost, Cost]:
     except ImportError as error:
         raise NotMeasured(f'{error}: make .venv/.bench') from error
     run = _recorded()
-    peer = DoMpcController(MODEL, make_observer(RUN, MODEL), PREVIEW.settings())
+    peer = DoMpcController(MODEL, make_observer(RUN.known, MODEL), PREVIEW.settings())
     return partial(_update_s, _preview(), run), partial(_update_s, peer, run)
 
 

@@ -40,7 +40,7 @@ class PythonControlLoop:
         self._actuator, self._nodes = lifted(model, 0)
         self._static = StaticTorque(scenario.driveline, scenario.equilibrium)
         self._load, self._radius = make_load(settings), scenario.vehicle.wheel_radius_m
-        gains = make_controller('pi', settings).gains()
+        gains = make_controller('pi', settings.known).gains()
         self._proportional, self._integral = gains.values()
         request = max(initial.sides[0].torque_request, 0.0)
         # States: driveline with angles (7), actuator with the delayed request (5), integral.

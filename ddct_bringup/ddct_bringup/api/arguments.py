@@ -19,9 +19,11 @@ from ddct_controllers.registry import (
     working_controllers,
 )
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.base.options import options_of, require_known
+from ddct_plant.base.options import require_known
 from ddct_plant.program.scheduling import Scheduling
 from ddct_plant.scenario.choices.scenarios import Choice
+from ddct_plant.scenario.choices.settings import SETTINGS
+from ddct_plant.scenario.content import flat
 from ddct_plant.scenario.file import ScenarioFile
 from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
@@ -59,7 +61,7 @@ def planned(
     chosen = controllers_from(controller_names() if controllers is None else controllers)
     settings = run_settings([controller_label(each) for each in chosen], **options)
     if controllers is None:
-        chosen = [*working_controllers(settings, complain)]
+        chosen = [*working_controllers(settings.known, complain)]
     return [RunPlan(settings, each, layout, scheduling or Scheduling()) for each in chosen]
 
 
@@ -82,20 +84,24 @@ def base_from(
     *,
     car: str | Path | None = None,
     drive: str | Path | None = None,
+    case: Mapping[str, Any] | None = None,
     **given: Any,
 ) -> RunBase:
     """Return the common base of runs with the controllers called `labels`."""
-    if not isinstance(set, Mapping | None):
-        raise ParameterError(
-            f"set is {set!r}: give keys and values, as {{'load.slope_rad': 0.05}}", key='set'
-        )
+    for name, values in (('set', set), ('case', case)):
+        if not isinstance(values, Mapping | None):
+            raise ParameterError(
+                f"{name} is {values!r}: give keys and values, as {{'load.slope_rad': 0.05}}",
+                key=name,
+            )
     changes = dict(set or {}) if duration is None else {**(set or {}), 'duration_s': duration}
-    require_known(sorted(given), options_of(RunSettings), 'option')
+    require_known(sorted(given), SETTINGS, 'option')
     return RunBase(
         ScenarioFile.read(Choice(_text(scenario), _text(car), _text(drive))),
         {key: plain(changes[key]) for key in changes},
         {key: plain(given[key]) for key in given},
         tuple(labels),
+        {key: plain(value) for key, value in flat(case or {}).items()},
     )
 
 

@@ -117,17 +117,17 @@ class RunFacts(RunConditions):
         scenario = settings.scenario
         return cls(
             controller=controller,
-            architecture=settings.architecture,
+            architecture=settings.known.architecture,
             scenario=scenario.name,
-            wear_gain=settings.wear_gain,
-            mode=settings.mode,
-            seed=settings.seed,
+            wear_gain=settings.case.wear_gain,
+            mode=settings.known.mode,
+            seed=settings.case.seed,
             control_start_s=scenario.control_start_s,
             score_window_s=scenario.score_window_s,
             duration_s=time_of_step(steps),
             clutch=settings.clutch,
-            off_going_wear_gain=settings.off_going_wear_gain if settings.shift else None,
-            handover=settings.handover_name if settings.shift else None,
+            off_going_wear_gain=settings.case.off_going_wear_gain if settings.shift else None,
+            handover=settings.known.handover_name if settings.shift else None,
         )
 
 

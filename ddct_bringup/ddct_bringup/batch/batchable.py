@@ -14,7 +14,7 @@ from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.lti import StateSpace
 from ddct_plant.scenario.control import ENGINE_SPEED_TARGET
 from ddct_plant.scenario.scenario import Scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 SUPPORTED_KEYS = frozenset(
     {
@@ -47,20 +47,23 @@ def why_not_batchable(settings: RunSettings, controller: Controller) -> str:
     The controller is not changed except for a reset.
     """
     return (
-        _why_not_plant(settings)
-        or _why_not_plant(settings.known)
+        _why_not_scenario(settings.scenario)
+        or _why_not_known(settings.known)
         or _why_not_controller(controller)
     )
 
 
-def _why_not_plant(settings: RunSettings) -> str:
-    if settings.stick_slip:
-        return f'the clutch is {settings.clutch}'
-    if not settings.lockstep:
-        return f'the mode is {settings.mode}'
-    if settings.reference_shape == ENGINE_SPEED_TARGET:
+def _why_not_known(known: KnownSettings) -> str:
+    if known.stick_slip:
+        return f'the clutch is {known.clutch}'
+    if not known.lockstep:
+        return f'the mode is {known.mode}'
+    if known.reference_shape == ENGINE_SPEED_TARGET:
         return f'reference.shape is {ENGINE_SPEED_TARGET}'
-    scenario = settings.scenario
+    return _why_not_scenario(known.scenario)
+
+
+def _why_not_scenario(scenario: Scenario) -> str:
     for name, default in _UNSUPPORTED:
         if getattr(scenario, name) != default:
             return f'the scenario gives {name}'

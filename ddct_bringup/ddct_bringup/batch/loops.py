@@ -15,7 +15,7 @@ from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.linear.lti import StateSpace
 from ddct_plant.scenario.control import PROFILE
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 from ddct_plant.signals.topics import all_signals
 from ddct_reference.factory import make_descent
 
@@ -62,7 +62,7 @@ def simulate_batch(runs: Sequence[RunSettings], feedback: Sequence[StateSpace]) 
     return _trajectory(record, rows)
 
 
-def _open_loops(runs: Sequence[RunSettings], plants: Plants) -> OpenLoops:
+def _open_loops(runs: Sequence[KnownSettings], plants: Plants) -> OpenLoops:
     """Return the open loops of runs, given by known settings, as `make_architecture` does."""
     if runs[0].detailed:
         return plants.static_torque
@@ -102,7 +102,7 @@ def _trajectory(record: np.ndarray, rows: Mapping[str, slice]) -> Trajectory:
     )
 
 
-def reference_kind(settings: RunSettings) -> str:
+def reference_kind(settings: KnownSettings) -> str:
     """Return the key that runs with one common `References` share."""
     shape = settings.reference_shape
     return shape if shape in (RAMP, PROFILE) else 'timed'
@@ -115,7 +115,7 @@ class References:
     The R runs, given by their known settings, have one kind, architecture and start.
     """
 
-    def __init__(self, runs: Sequence[RunSettings], steps: int) -> None:
+    def __init__(self, runs: Sequence[KnownSettings], steps: int) -> None:
         """Compute everything that does not depend on the slip, up to step `steps`."""
         self._start = runs[0].scenario.control_start_step
         self._stored = None if runs[0].detailed else _nominal_slips(runs, self._start)
@@ -148,7 +148,7 @@ class References:
         return self._start_value * self._table[since]
 
 
-def _timed(runs: Sequence[RunSettings], periods: np.ndarray) -> np.ndarray:
+def _timed(runs: Sequence[KnownSettings], periods: np.ndarray) -> np.ndarray:
     """Return the remaining share of the initial slip along each descent, (periods, R)."""
     first, places = distinct((run.reference_shape, run.scenario.reference) for run in runs)
     descents = [make_descent(runs[index]) for index in first]
@@ -156,9 +156,9 @@ def _timed(runs: Sequence[RunSettings], periods: np.ndarray) -> np.ndarray:
     return np.take(np.array(shares).T, places, axis=-1)
 
 
-def _nominal_slips(runs: Sequence[RunSettings], control_start: int) -> np.ndarray:
+def _nominal_slips(runs: Sequence[KnownSettings], control_start: int) -> np.ndarray:
     """Return the nominal slip of each run as `nominal_slip` does, (control_start + 1, R)."""
-    nominal = [RunSettings(run.scenario, architecture='detailed') for run in runs]
+    nominal = [RunSettings(KnownSettings(run.scenario)) for run in runs]
     plants = Plants(nominal, control_start)
     slips = [plants.outputs().slip_speed]
     for step in range(control_start):

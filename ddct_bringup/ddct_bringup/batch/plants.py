@@ -19,7 +19,7 @@ from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.models.static_torque import StaticTorque
 from ddct_plant.scenario.initial_state import initial_state
 from ddct_plant.scenario.plant import make_load
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import AnySettings, RunSettings
 
 _STATES = slice(0, len(STATES))
 _ENGINE, _LOAD = len(STATES), len(STATES) + 1
@@ -48,7 +48,7 @@ class Plants:
             stacked([run.scenario.driveline for run in known]), known[0].scenario.equilibrium
         )
         start = stacked([initial_state(run) for run in runs])
-        self._wear = np.array([run.wear_gain for run in runs])
+        self._wear = np.array([run.case.wear_gain for run in runs])
         self._loads, self._known_loads = Loads(runs, steps), Loads(known, steps)
         times = np.arange(steps + 1) / STEPS_PER_S
         engines = [scenario.demand for scenario in scenarios]
@@ -102,7 +102,7 @@ class Plants:
 class Loads:
     """Road loads of R cars as columns, the counterpart of `RoadLoad`."""
 
-    def __init__(self, runs: Sequence[RunSettings], steps: int) -> None:
+    def __init__(self, runs: Sequence[AnySettings], steps: int) -> None:
         """Extend the profiles of the roads to step `steps`."""
         loads = [make_load(run) for run in runs]
         self.wheel_radius: Any = np.array([load.wheel_radius for load in loads])

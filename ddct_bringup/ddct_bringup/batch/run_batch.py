@@ -93,7 +93,7 @@ def _alike(settings: RunSettings, model: StateSpace) -> Hashable:
         known.scenario.control_start_step,
         scenario.score_window_s,
         (scenario.equilibrium, known.scenario.equilibrium),
-        settings.architecture,
+        known.architecture,
         reference_kind(known),
         known.scenario.actuator.delay_substeps,  # it gives the order of the feedforward
         len(model.a),

@@ -7,12 +7,12 @@ from functools import cache
 
 from ddct_controllers.registry import controller_names, controller_spec
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.base.options import Option, Options, group_of, key_of, options_of
+from ddct_plant.base.options import Option, Options, group_of, key_of
 from ddct_plant.scenario.choices.scenarios import CHOICES, DEFAULT_CAR, DEFAULT_SCENARIO
+from ddct_plant.scenario.choices.settings import SETTINGS
 from ddct_plant.scenario.csv_profiles import FACTOR, FACTOR_OPTION
 from ddct_plant.scenario.key_names import key_hint, scenario_options
 from ddct_plant.scenario.scenario import Scenario
-from ddct_plant.scenario.settings import RunSettings
 
 SCENARIO, MODE, CONTROLLERS = 'scenario', 'mode', 'controllers'
 COMMON = (*CHOICES, 'architecture')
@@ -34,7 +34,7 @@ FILE_KEY = '.csv'
 @cache
 def run_options() -> Options:
     """Return the settings that can vary, without the mode: a campaign has no wall clock."""
-    return {name: each for name, each in options_of(RunSettings).items() if name != MODE}
+    return {name: each for name, each in SETTINGS.items() if name != MODE}
 
 
 def option_of(where: str, key: str) -> Option | None:

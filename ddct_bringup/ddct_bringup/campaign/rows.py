@@ -35,7 +35,7 @@ METRIC_COLUMNS = tuple(metric.key for metric in REPEATABLE)
 def require_suitable(controller: Chosen, settings: RunSettings) -> None:
     """Raise an error of the user's controller; a controller that fails in a run gets its rows."""
     try:
-        loop_needs(controller, settings)
+        loop_needs(controller, settings.known)
     except ParameterError:
         raise
     except DdctError:

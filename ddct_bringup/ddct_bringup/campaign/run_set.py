@@ -42,7 +42,7 @@ class PlannedRow:
     @property
     def seed(self) -> int:
         """Seed of the random numbers within the run."""
-        return self.settings.seed
+        return self.settings.case.seed
 
 
 @dataclass(frozen=True)

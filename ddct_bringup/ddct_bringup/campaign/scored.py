@@ -98,7 +98,7 @@ class Scorer:
             if run.controller.compiled or (self.floors and run.has_floors):
                 continue
             try:
-                controller = make_controller(run.controller, run.settings)
+                controller = make_controller(run.controller, run.settings.known)
             except FOREIGN_FAILURES:
                 continue  # the run step by step gives the reason
             if not why_not_batchable(run.settings, controller):
@@ -122,7 +122,7 @@ def are_linear(campaign: Campaign) -> bool:
         if isinstance(run, ImpossibleRow) or run.controller.compiled:
             return False
         try:
-            controller = make_controller(run.controller, run.settings)
+            controller = make_controller(run.controller, run.settings.known)
         except FOREIGN_FAILURES:
             return False
         if why_not_batchable(run.settings, controller):

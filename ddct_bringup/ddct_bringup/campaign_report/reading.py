@@ -116,7 +116,7 @@ def nominal_values(spec: CampaignSpec) -> dict[str, float]:
     first = {key: spec.values_of(key)[0] for key in COMMON if key in spec.keys}
     common = {**spec.common, **first}
     scenario = spec.scenario_file(Choice.taken_from(common)).scenario()
-    given = {**vars(RunSettings(scenario, **common)), **values_by_key(scenario)}
+    given = {**RunSettings.of(scenario, common).values, **values_by_key(scenario)}
     found: dict[str, float] = {}
     for key in spec.keys:
         option = option_of(key, key)

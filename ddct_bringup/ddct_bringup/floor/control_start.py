@@ -28,8 +28,8 @@ def control_start(settings: RunSettings) -> Start:
     """
     if not settings.detailed:
         raise ParameterError(
-            f'architecture {settings.architecture}: feedback is on from t = 0, so the state at '
-            'control start depends on the controller: choose the architecture detailed',
+            f'architecture {settings.known.architecture}: feedback is on from t = 0, so the state '
+            'at control start depends on the controller: choose the architecture detailed',
             key='architecture',
         )
     start = _simulated(settings)
@@ -51,7 +51,7 @@ def _simulated(settings: RunSettings) -> Start:
     for known, start in _kept:
         if known == settings:
             return start
-    controller = make_controller(_DRIVER, settings)
+    controller = make_controller(_DRIVER, settings.known)
     assert isinstance(controller, Controller)
     scenario = settings.scenario
     # When feedback starts in a shift, and when the off-going clutch is open, the run shows.

@@ -39,7 +39,7 @@ def point_of(case: Case, run: Trajectory) -> np.ndarray:
 def _add_capacity(case: Case, point: np.ndarray, run: Trajectory) -> None:
     """Write what the capacity of a run leaves over into its point."""
     columns, first = case.motion.columns, case.start.step
-    rest = run.clutch_torque - case.settings.wear_gain * run.actuator_torque
+    rest = run.clutch_torque - case.settings.case.wear_gain * run.actuator_torque
     rest = rest[first : first + len(case.motion.capacity)]
     common = np.clip(rest[:, 0], case.capacity.low, case.capacity.high)
     if columns.capacity.stop > columns.capacity.start:

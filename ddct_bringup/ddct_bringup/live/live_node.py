@@ -52,7 +52,7 @@ class LiveNode(GraphNode):
         self._print = print_line
         self._stamp_ns = self._sent_ns = START_NS
         self._run_info: dict[str, tuple[Topic, bytes]] = {}
-        topics = recorded_topics(self.settings.kind())
+        topics = recorded_topics(self.known.kind())
         tick_topics = {topic for topic in topics if topic.every_tick}
         self._not_received = tick_topics - {RECORDER_ACK}
         # Number of views, counted in a thread of the server; those that got time and run_info.

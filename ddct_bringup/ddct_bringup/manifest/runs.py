@@ -16,7 +16,6 @@ from ddct_controllers.from_file.controller_file import is_controller_file
 from ddct_controllers.from_file.digests import controller_files, handover_files
 from ddct_controllers.registry import controller_label
 from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.base.options import options_of
 from ddct_plant.scenario.content import scenario_content, scenario_from_mapping
 from ddct_plant.scenario.settings import RunSettings, is_handover_file
 
@@ -35,9 +34,9 @@ class PlannedRun:
     settings: Mapping[str, str | float]
     """Values of `RunSettings` by name; a handover's file by its place in the inputs."""
     scenario: Mapping[str, Any]
-    """Content of the true scenario, with the points of its profiles."""
-    known_scenario: Mapping[str, Any] | None
-    """Content of the scenario that controllers know, where it differs."""
+    """Content of the scenario that controllers know, with the points of its profiles."""
+    true_scenario: Mapping[str, Any] | None
+    """Content of the scenario of the case, where it differs."""
 
     def __post_init__(self) -> None:
         """Raise ParameterError for an unknown layout."""
@@ -53,16 +52,16 @@ class PlannedRun:
         chosen = plan.controller if isinstance(plan.controller, str) else None
         if chosen is not None and is_controller_file(chosen):
             chosen = inputs.add(controller_files(chosen))
-        values = {name: getattr(settings, name) for name in options_of(RunSettings)}
-        if is_handover_file(settings.handover):
-            values['handover'] = inputs.add(handover_files(settings.handover))
-        known = settings.known_scenario
+        values = settings.values
+        if is_handover_file(settings.known.handover):
+            values['handover'] = inputs.add(handover_files(settings.known.handover))
+        true = settings.case.scenario
         return cls(
             chosen,
             plan.layout,
             values,
-            scenario_content(settings.scenario),
-            scenario_content(known) if known else None,
+            scenario_content(settings.known.scenario),
+            scenario_content(true) if true else None,
         )
 
     def run_settings(self, result: Path) -> RunSettings:
@@ -70,11 +69,11 @@ class PlannedRun:
         values: dict[str, Any] = dict(self.settings)
         if is_handover_file(str(values['handover'])):
             values['handover'] = str(result / INPUTS / values['handover'])
-        known = self.known_scenario
-        return RunSettings(
+        true = self.true_scenario
+        return RunSettings.of(
             scenario_from_mapping(self.scenario),
-            **values,
-            known_scenario=scenario_from_mapping(known) if known else None,
+            values,
+            scenario_from_mapping(true) if true else None,
         )
 
     def headless_plan(self, result: Path) -> RunPlan:

@@ -64,7 +64,7 @@ def _chosen(options: argparse.Namespace) -> tuple['shell.RunSettings', list[str]
     settings = shell.run_settings(labels, **settings_given(options))
     shell.print_adjusted(settings.scenario)
     shell.require_headless(settings)
-    return settings, shell.working_controllers(settings, _complain) if everyone else names
+    return settings, shell.working_controllers(settings.known, _complain) if everyone else names
 
 
 if __name__ == '__main__':

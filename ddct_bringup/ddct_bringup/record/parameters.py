@@ -44,7 +44,7 @@ def declare_parameters(node: GraphNode) -> RecorderParameters:
         node,
         'nodes',
         Option(
-            tuple(each.path for each in nodes_of(shift=node.settings.shift)),
+            tuple(each.path for each in nodes_of(shift=node.known.shift)),
             'nodes whose run_info the bag must hold, in a gear shift those of both sides; names '
             "without a leading slash are those of the recorder's namespace",
             kind=str,

@@ -63,13 +63,13 @@ class RecorderNode(GraphNode):
         super().__init__('recorder', **kwargs)
         recording = self._recording = declare_parameters(self)
         self._nodes = RunInfoCollector(recording.nodes)
-        self._run = self.settings.kind(two_input=recording.two_input)
+        self._run = self.known.kind(two_input=recording.two_input)
         self._topics = recorded_topics(self._run)
         ticks = [topic for topic in self._topics if topic.every_tick]
         self._buffer = TickBuffer(
             [topic.name for topic in ticks if topic is not RECORDER_ACK],
             self._same_message,
-            wait_for_all=self.settings.lockstep,
+            wait_for_all=self.known.lockstep,
             certain=frozenset(topic.name for topic in ticks if topic.is_tick),
             undecided=frozenset({TORQUE_PARTS.name}),
         )
@@ -80,7 +80,7 @@ class RecorderNode(GraphNode):
             self._nodes,
             self._acknowledge,
         )
-        if not self.settings.lockstep:
+        if not self.known.lockstep:
             clock_ns = self.steady_time.monotonic_ns
             self.limit = StampLimit(tick_names(), clock_ns, from_t0=True)
         self._wall_clock = WallClockFacts()
@@ -126,12 +126,12 @@ class RecorderNode(GraphNode):
         """
         pairs = {
             TWO_INPUT: flag(self._recording.two_input),
-            KNOWN: values_text(known_values(self.settings)),
+            KNOWN: values_text(known_values(self.known)),
         }
         if not has_files(self):
             pairs[CASE] = values_text(values_of(self.settings))
         self.publish_latched(RUN_SETTINGS, pairs)
-        if self.settings.shift:
+        if self.known.shift:
             self.publish_latched(OFF_GOING_RUN_SETTINGS, pairs)
 
     def _subscribe_all(self) -> None:
@@ -174,7 +174,7 @@ class RecorderNode(GraphNode):
 
     def _on_second_node(self, error: DdctError) -> None:
         """Raise the error; once a real-time run has begun, keep it until the clutch is open."""
-        if self.settings.lockstep or not self._bag.is_open:
+        if self.known.lockstep or not self._bag.is_open:
             raise error
         if self._second_node is None:
             self._second_node = error

@@ -20,10 +20,10 @@ from ddct_controllers.interface import Command, Controller, Measurement
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.program.table import Quantity
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 
 THESIS_SCENARIO = load_scenario('thesis')
-THESIS_SETTINGS = RunSettings(THESIS_SCENARIO)
+THESIS_SETTINGS = RunSettings(KnownSettings(THESIS_SCENARIO))
 SLIP_ERROR = Quantity(
     'slip_rmse_rpm',
     'RMSE w_d',
@@ -94,7 +94,12 @@ def study_run(settings: RunSettings, controller: str | Controller) -> StudyRun:
 @cache
 def thesis_run(controller: str, architecture: str, wear_gain: float) -> StudyRun:
     """Return the run of a controller of the registry in the thesis's scenario."""
-    return study_run(RunSettings(THESIS_SCENARIO, architecture, wear_gain=wear_gain), controller)
+    return study_run(
+        RunSettings(
+            KnownSettings(THESIS_SCENARIO, architecture), CaseSettings(wear_gain=wear_gain)
+        ),
+        controller,
+    )
 
 
 class StaticControllerAlone(Controller):

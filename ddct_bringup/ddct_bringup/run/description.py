@@ -37,7 +37,7 @@ def run_info_of(
     settings: RunSettings, name: str, controller: Controller, steps: int
 ) -> RunInfoOfNodes:
     """Return the `run_info` that the nodes of a graph with these settings publish."""
-    info = node_info(settings, controller.info(name), controller.preview_steps, steps)
+    info = node_info(settings.known, controller.info(name), controller.preview_steps, steps)
     return {name_in_graph(node): pairs for node, pairs in info.items()}
 
 

@@ -190,7 +190,7 @@ def simulate(plan: RunPlan, changes: Sequence[GainChange] = ()) -> tuple[Recordi
     """
 
     def work(chosen: Chosen) -> tuple[RunInfoOfNodes, Trajectory, RunTiming]:
-        controller, timing = make_controller(chosen, plan.settings), RunTiming()
+        controller, timing = make_controller(chosen, plan.settings.known), RunTiming()
         described = run_info_of(plan.settings, plan.name, controller, plan.steps)
         return described, run_headless(plan.settings, controller, timing, changes), timing
 

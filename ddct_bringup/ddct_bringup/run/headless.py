@@ -4,7 +4,7 @@
 Run the closed loop without ROS: one step at a time, the same classes as the nodes.
 
     from ddct_bringup.run.headless import run_headless
-    trajectory = run_headless(RunSettings(load_scenario('thesis')), 'pi')
+    trajectory = run_headless(RunSettings(KnownSettings(load_scenario('thesis'))), 'pi')
 
 The result equals that of the graph, in any process layout, to the last bit.
 """
@@ -45,7 +45,9 @@ def run_headless(
 
         def work(chosen: Chosen) -> tuple[Trajectory, RunTiming]:
             found = RunTiming()
-            return run_headless(settings, make_controller(chosen, settings), found, changes), found
+            return run_headless(
+                settings, make_controller(chosen, settings.known), found, changes
+            ), found
 
         trajectory, found = separate_run(settings, controller, work)
         if timing is not None:

@@ -45,9 +45,9 @@ class RunPlan:
         self.scheduling.require_permitted()
         # The run of compiled code that crashes fails by that, and others go on.
         with suppress(ProcessEndedError):
-            loop_needs(self.controller, self.settings)
+            loop_needs(self.controller, self.settings.known)
         if self.settings.shift:
-            make_handover(self.settings)
+            make_handover(self.settings.known)
         if self.layout == 'headless':
             require_headless(self.settings)
         else:
@@ -77,7 +77,7 @@ class RunPlan:
         The settings of the run are written into the folder `work`, in a file for each part. Every
         node gets the known ones, and those that do not control the case besides.
         """
-        two_input, preview_steps = loop_needs(self.controller, self.settings)
+        two_input, preview_steps = loop_needs(self.controller, self.settings.known)
         known, case = self._write_settings(work)
         parameters: dict[str, dict[str, object]] = {
             # Only the chosen ones: an empty text is no value on the command line of a node.
@@ -94,7 +94,7 @@ class RunPlan:
             'driveline': {'require_recorder': True, 'answer_timeout_s': ANSWER_TIMEOUT_S},
         }
         if self.settings.shift:  # the settings have the name of a file alone
-            parameters['handover'] = {'handover': self.settings.handover}
+            parameters['handover'] = {'handover': self.settings.known.handover}
         for node in nodes_of(shift=self.settings.shift):
             own = parameters.setdefault(node.path, {})
             if node.namespace:

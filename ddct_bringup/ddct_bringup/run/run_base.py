@@ -1,32 +1,21 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Settings of runs from a scenario, changed keys and options; the only constructor of them."""
+"""Settings of runs from a scenario, changed keys, a case and options; made here alone."""
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from typing import Any
 
 from ddct_controllers.registry import require_known_controllers
-from ddct_plant.base.options import options_of
+from ddct_plant.files.input_file import located
+from ddct_plant.scenario.case import CaseOf, is_always_known, require_of_case
+from ddct_plant.scenario.choices.settings import SETTINGS
 from ddct_plant.scenario.file import ScenarioFile
 from ddct_plant.scenario.overrides import parsed_override
-from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.sensors.parameters import SensorParameters
 
-_SETTINGS = options_of(RunSettings)
 _NOTHING: Mapping[str, Any] = {}
-_KNOWN = (
-    *('architecture', 'clutch', 'handover', 'controllers', 'sensors'),
-    *('name', 'description', 'duration_s', 'control_start_s', 'score_window_s', 'pedal_position'),
-    *('reference', 'slip_reference', 'engine_speed_reference', 'closing'),
-)
-"""
-Keys, and sections, that are known where they vary: what a row is, and what no plant has.
-
-To vary a reference for the plant alone would change nothing. Drawn sensors are not known.
-"""
 
 
 @dataclass(frozen=True)
@@ -38,65 +27,73 @@ class RunBase:
     changes: Mapping[str, Any]
     """Values by dotted scenario key, as `--set` gives them."""
     settings: Mapping[str, Any]
-    """Values of `RunSettings` by name, such as `wear_gain`."""
+    """Values of `SETTINGS` by name, such as `architecture`."""
     labels: Sequence[str]
     """Names of the controllers, since `changes` may contain options of theirs."""
-    _last_known: dict[str, Scenario] = field(
-        default_factory=dict, init=False, repr=False, compare=False
-    )
-    """The known scenario of the last runs that had one, by its changes."""
+    case: Mapping[str, Any] = field(default_factory=dict)
+    """Values of the case by dotted key, as `--case` gives them."""
+    _last: dict[str, CaseOf] = field(default_factory=dict, init=False, repr=False, compare=False)
+    """Cases of the last known scenario, which most runs share, by what it was made of."""
 
-    @cached_property
-    def _unchanged(self) -> Scenario:
-        """Scenario of the runs without changes."""
-        return self._built(_NOTHING)
+    def __post_init__(self) -> None:
+        """Raise ParameterError for a case with a key that controllers know in any run."""
+        with located('case'):
+            require_of_case(self.case)
 
-    def at(self, varied: Mapping[str, Any] = _NOTHING, drawn: Collection[str] = ()) -> RunSettings:
+    def at(
+        self,
+        varied: Mapping[str, Any] = _NOTHING,
+        drawn: Collection[str] = (),
+        known: Collection[str] = (),
+    ) -> RunSettings:
         """
-        Return the settings with values by key: those of `RunSettings`, or dotted scenario keys.
+        Return the settings with values by key: those of `SETTINGS`, or dotted scenario keys.
 
-        Dependent values change with them, as with `--set`. What controllers know has of `varied`
-        the keys of `_KNOWN` alone, and of them no sensors that are `drawn`. Raise DdctError for
-        values that cannot be used.
+        Values that vary are of the case, but for those that each run knows, those with a key in
+        `known`, and sensors that are not `drawn`. Dependent values change with them, as with
+        `--set`. Raise DdctError for values that cannot be used.
         """
-        settings = {**self.settings, **{key: varied[key] for key in varied if key in _SETTINGS}}
-        of_scenario = {key: varied[key] for key in varied if key not in _SETTINGS}
-        known = {key: of_scenario[key] for key in of_scenario if _is_known(key, drawn)}
-        scenario = self._scenario(self._with(of_scenario))
-        if len(known) == len(of_scenario):
-            return RunSettings(scenario, **settings)
-        known_scenario = self._known_scenario(self._with(known))
-        if scenario.sensors is not None and known_scenario.sensors is None:
-            # That there are sensors is known, since other topics carry their measurements.
-            known_scenario = replace(known_scenario, sensors=SensorParameters())
-        return RunSettings(scenario, **settings, known_scenario=known_scenario)
+        given = {**self.case, **varied}
+        of_run = {key: given[key] for key in given if key in SETTINGS}
+        learnt = {
+            key: varied[key]
+            for key in varied
+            if key not in SETTINGS and _is_known(key, drawn, known)
+        }
+        overrides = {key: given[key] for key in given if key not in {*of_run, *learnt}}
+        values = {**self.settings, **of_run}
+        sensed = any(_section(key) == 'sensors' for key in overrides if key in varied)
+        cases = self._cases(learnt, sensed=sensed)
+        return RunSettings.of(cases.known, values, cases.scenario(overrides))
 
-    def _with(self, varied: Mapping[str, Any]) -> Mapping[str, Any]:
-        ours = {key: value for key, value in self.changes.items() if key not in varied}
-        return {**ours, **varied}
+    def _cases(self, learnt: Mapping[str, Any], *, sensed: bool) -> CaseOf:
+        """
+        Return the cases of the scenario with these values, as controllers know it.
 
-    def _known_scenario(self, changes: Mapping[str, Any]) -> Scenario:
-        """Return the scenario that controllers know, which most runs share, with some changes."""
-        key = repr(changes)
-        if key not in self._last_known:
-            self._last_known.clear()
-            self._last_known[key] = self._scenario(changes)
-        return self._last_known[key]
-
-    def _scenario(self, changes: Mapping[str, Any]) -> Scenario:
-        """Return the scenario with changes by dotted key; without any it is built once."""
-        return self._built(changes) if changes else self._unchanged
-
-    def _built(self, changes: Mapping[str, Any]) -> Scenario:
-        scenario = self.file.scenario(changes)
-        require_known_controllers(scenario, self.labels)
-        return scenario
+        Where drawn values make it `sensed`, that there are sensors is known, since other topics
+        carry their measurements.
+        """
+        key = repr((learnt, sensed))
+        if key not in self._last:
+            ours = {each: self.changes[each] for each in self.changes if each not in learnt}
+            changes = {**ours, **learnt}
+            scenario = self.file.scenario(changes)
+            require_known_controllers(scenario, self.labels)
+            if sensed and scenario.sensors is None:
+                scenario = replace(scenario, sensors=SensorParameters())
+            self._last.clear()
+            self._last[key] = CaseOf(scenario, self.file.of_cases(scenario, changes))
+        return self._last[key]
 
 
-def _is_known(key: str, drawn: Collection[str]) -> bool:
+def _is_known(key: str, drawn: Collection[str], known: Collection[str]) -> bool:
     """Return whether controllers know the value of a varied key."""
-    section = key.partition('.')[0]
-    return section in _KNOWN and not (section == 'sensors' and key in drawn)
+    of_sensors = _section(key) == 'sensors' and key not in drawn
+    return key in known or of_sensors or is_always_known(key)
+
+
+def _section(key: str) -> str:
+    return key.partition('.')[0]
 
 
 def changes_of(overrides: Sequence[str]) -> dict[str, object]:

@@ -73,10 +73,10 @@ def _of_less_weight(column: RunColumn) -> RunColumn:
 def _title(settings: RunSettings, overrides: Sequence[str]) -> str:
     changes = changed_values(settings.scenario) or overrides
     conditions = (
-        settings.architecture,
-        f'wear gain {settings.wear_gain:g}',
+        settings.known.architecture,
+        f'wear gain {settings.case.wear_gain:g}',
         *shift_conditions(settings).values(),
-        settings.mode,
+        settings.known.mode,
     )
     return f'{scenario_title(settings.scenario.name, changes)}; {", ".join(conditions)}'
 

@@ -10,6 +10,6 @@ def shift_conditions(settings: RunSettings) -> dict[str, str]:
     if not settings.shift:
         return {}
     return {
-        'handover': f'handover {settings.handover_name}',
-        'off_going_wear_gain': f'off-going wear gain {settings.off_going_wear_gain:g}',
+        'handover': f'handover {settings.known.handover_name}',
+        'off_going_wear_gain': f'off-going wear gain {settings.case.off_going_wear_gain:g}',
     }

@@ -55,7 +55,7 @@ class Sweep:
             )
         if not self.first.lockstep:
             raise ParameterError(
-                f'mode is {self.first.mode}, but a sweep needs no graph: leave the mode out'
+                f'mode is {self.first.known.mode}, but a sweep needs no graph: leave the mode out'
             )
         self.run_set.require_sound()
 
@@ -81,8 +81,8 @@ class Sweep:
         changes = [f'{key}={value}' for key, value in self.base.changes.items()]
         swept = [axis.key for axis in self.axes]
         shared = {
-            'architecture': settings.architecture,
-            'wear_gain': f'wear gain {settings.wear_gain:g}',
+            'architecture': settings.known.architecture,
+            'wear_gain': f'wear gain {settings.case.wear_gain:g}',
             **shift_conditions(settings),
         }
         kept = ', '.join(text for key, text in shared.items() if key not in swept)

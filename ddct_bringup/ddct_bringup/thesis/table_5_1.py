@@ -88,6 +88,6 @@ def is_thesis_run(settings: RunSettings) -> bool:
     """
     return (
         settings.detailed
-        and settings.wear_gain == 1.0
+        and settings.case.wear_gain == 1.0
         and scenario_digest(settings.scenario) == scenario_digest(load_scenario('thesis'))
     )

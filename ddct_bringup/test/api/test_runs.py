@@ -27,7 +27,7 @@ from ddct_bringup.run.headless import run_headless
 from ddct_controllers import plugins, registry
 from ddct_controllers.design.drawing.line_looks import controller_look
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 
 pytestmark = pytest.mark.slow
 
@@ -75,7 +75,9 @@ def worn():
 
 
 def test_a_run_is_that_of_the_headless_loop(worn):
-    settings = RunSettings(load_scenario('thesis', ['duration_s=3.0']), wear_gain=0.7)
+    settings = RunSettings(
+        KnownSettings(load_scenario('thesis', ['duration_s=3.0'])), CaseSettings(wear_gain=0.7)
+    )
     assert worn.trajectory.sha256() == run_headless(settings, 'ls8').sha256()
     assert (worn.settings, worn.controller, worn.path) == (settings, 'ls8', None)
 
@@ -286,7 +288,9 @@ def test_a_run_that_is_not_valid_leaves_a_good_result_as_it_is(tmp_path, monkeyp
     before = {file.name: file.read_bytes() for file in good.path.parent.iterdir()}
 
     def half(plan, folder):
-        settings = RunSettings(load_scenario('thesis', [f'duration_s={SHORT_S / 2}']))
+        settings = RunSettings(
+            KnownSettings(load_scenario('thesis', [f'duration_s={SHORT_S / 2}']))
+        )
         data = custom_data(plan.settings, plan.name, plan.steps)
         info = {'load': {'version': '0.1.0'}}
         write_trajectory(run_headless(settings, 'ls8'), folder, plan.name, data, info)

@@ -11,14 +11,16 @@ from ddct_bringup.bag.run_facts import RunConditions, RunFacts, ShiftConditions,
 from ddct_bringup.run.description import custom_data
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 
 NAMES = ('controller', 'architecture', 'scenario', 'mode')
-LAUNCH = RunSettings(load_scenario('thesis'), wear_gain=math.nextafter(0.7, 1.0), seed=2**31 - 1)
+LAUNCH = RunSettings(
+    KnownSettings(load_scenario('thesis')),
+    CaseSettings(wear_gain=math.nextafter(0.7, 1.0), seed=2**31 - 1),
+)
 SHIFT = RunSettings(
-    load_scenario('upshift'),
-    off_going_wear_gain=0.9,
-    handover='/home/somebody/mine.py',
+    KnownSettings(load_scenario('upshift'), handover='/home/somebody/mine.py'),
+    CaseSettings(off_going_wear_gain=0.9),
 )
 
 

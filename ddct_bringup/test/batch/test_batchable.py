@@ -20,9 +20,9 @@ from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.lti import StateSpace
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.scenario import Scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
-SETTINGS = RunSettings(load_scenario('thesis'))
+SETTINGS = RunSettings(KnownSettings(load_scenario('thesis')))
 PI = PiController(0.1, 0.1)
 
 
@@ -80,8 +80,8 @@ class Limited(PiController):
         (Led(), 'the controller does not do what its linear_model says'),
         (Remembering(), 'the controller does more than reset while feedback is held off'),
         (Broken(), 'the controller failed when it was tried (ValueError: no)'),
-        (make_controller('mpc1', SETTINGS), 'the controller does more than reset'),
-        (make_controller('mpc4', SETTINGS), 'the controller commands the engine'),
+        (make_controller('mpc1', SETTINGS.known), 'the controller does more than reset'),
+        (make_controller('mpc4', SETTINGS.known), 'the controller commands the engine'),
     ],
 )
 def test_a_controller_is_in_a_batch_if_it_is_linear_throughout(controller, reason):
@@ -114,7 +114,7 @@ def test_a_controller_is_in_a_batch_if_it_is_linear_throughout(controller, reaso
 )
 def test_a_plant_is_in_a_batch_if_it_is_linear(changes, settings, reason):
     assert (
-        why_not_batchable(RunSettings(load_scenario('thesis', changes), **settings), PI) == reason
+        why_not_batchable(RunSettings.of(load_scenario('thesis', changes), settings), PI) == reason
     )
 
 

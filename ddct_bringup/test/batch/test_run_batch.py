@@ -22,7 +22,7 @@ from ddct_plant.linear.lti import StateSpace
 from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.scenario.choices.settings import ARCHITECTURES
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 
 SHORT = {'duration_s': 1.2, 'control_start_s': 0.2, 'score_window_s': [0.2, 1.1]}
 LIMITS = packaged_limits()
@@ -63,12 +63,15 @@ def scenario(random, **changes):
 def runs_of_every_kind():
     """Return a run of every linear controller, and of every architecture and shape."""
     random = np.random.default_rng(15)
-    plain = RunSettings(load_scenario('thesis'))
+    plain = RunSettings(KnownSettings(load_scenario('thesis')))
     runs = []
     for name in own_controller_names():
-        controller = make_controller(name, plain)
+        controller = make_controller(name, plain.known)
         if controller.linear_model() is not None:
-            settings = RunSettings(scenario(random), wear_gain=float(random.uniform(0.5, 2.5)))
+            settings = RunSettings(
+                KnownSettings(scenario(random)),
+                CaseSettings(wear_gain=float(random.uniform(0.5, 2.5))),
+            )
             runs.append((settings, controller))
     for architecture in ARCHITECTURES:
         shapes = ('ramp', 'tanh', 'polynomial', 'profile')
@@ -76,9 +79,10 @@ def runs_of_every_kind():
             equilibrium = ('thesis', 'full')[index % 2]
             described = scenario(random, **{'reference.shape': shape, 'equilibrium': equilibrium})
             settings = RunSettings(
-                described, architecture, wear_gain=float(random.uniform(0.4, 2.8))
+                KnownSettings(described, architecture),
+                CaseSettings(wear_gain=float(random.uniform(0.4, 2.8))),
             )
-            runs += [(settings, make_controller(name, settings)) for name in ('pi', 'ls3')]
+            runs += [(settings, make_controller(name, settings.known)) for name in ('pi', 'ls3')]
     return runs
 
 
@@ -144,8 +148,11 @@ def test_a_result_does_not_depend_on_the_rest_of_the_batch(runs, batch):
 
 def test_whole_trajectories_are_those_of_the_run_step_by_step():
     random = np.random.default_rng(1)
-    settings = [RunSettings(scenario(random), wear_gain=0.8 + 0.2 * i) for i in range(3)]
-    runs = [(each, make_controller('ls8', each)) for each in settings]
+    settings = [
+        RunSettings(KnownSettings(scenario(random)), CaseSettings(wear_gain=0.8 + 0.2 * i))
+        for i in range(3)
+    ]
+    runs = [(each, make_controller('ls8', each.known)) for each in settings]
     stack = trajectories(runs)
     for index, (each, controller) in enumerate(runs):
         controller.reset()
@@ -158,8 +165,8 @@ def test_whole_trajectories_are_those_of_the_run_step_by_step():
 
 
 def test_a_controller_may_be_used_in_many_runs_and_before_the_batch():
-    settings = RunSettings(load_scenario('thesis', SHORT))
-    controller = make_controller('ls3', settings)
+    settings = RunSettings(KnownSettings(load_scenario('thesis', SHORT)))
+    controller = make_controller('ls3', settings.known)
     fresh = run_batch([(settings, controller)], LIMITS)
     run_headless(settings, controller)
     assert run_batch([(settings, controller)] * 3, LIMITS) == 3 * fresh
@@ -169,8 +176,10 @@ def test_every_run_is_scored_over_its_own_window():
     windows = ([0.2, 0.7], [0.3, 1.1], [0.2, 1.1])
     runs = []
     for window in windows:
-        settings = RunSettings(load_scenario('thesis', {**SHORT, 'score_window_s': window}))
-        runs.append((settings, make_controller('ls8', settings)))
+        settings = RunSettings(
+            KnownSettings(load_scenario('thesis', {**SHORT, 'score_window_s': window}))
+        )
+        runs.append((settings, make_controller('ls8', settings.known)))
     together = run_batch(runs, LIMITS)
     for ours, run in zip(together, runs, strict=True):
         expected = step_by_step(*run)
@@ -179,7 +188,7 @@ def test_every_run_is_scored_over_its_own_window():
 
 
 def test_a_run_that_grows_beyond_all_numbers_has_no_result():
-    settings = RunSettings(load_scenario('thesis', SHORT))
+    settings = RunSettings(KnownSettings(load_scenario('thesis', SHORT)))
     one = np.ones((1, 1))
     wild = LinearController(StateSpace(1e4 * one, 1e3 * one, 1e3 * one, 0.0 * one, PERIOD_S))
     calm = PiController(0.1, 0.1)
@@ -193,7 +202,9 @@ def test_a_run_in_which_rounding_grows_has_no_result():
     changes |= {'load.slope_rad': -0.027073904265832754}
     changes |= {'driveline.halfshaft_stiffness': 10541.593582404965}
     scenario = load_scenario('thesis', changes)
-    settings = RunSettings(scenario, architecture='base', wear_gain=1.6112888721496896)
+    settings = RunSettings(
+        KnownSettings(scenario, architecture='base'), CaseSettings(wear_gain=1.6112888721496896)
+    )
     swinging, moved = (PiController(gain, 0.1) for gain in (20.0, 20.0 * (1.0 + 1e-15)))
     runs = [run_headless(settings, each).slip_speed for each in (swinging, moved)]
     assert np.abs(runs[0] - runs[1]).max() > 1.0, 'the run is not chaotic'
@@ -204,10 +215,10 @@ def test_a_run_in_which_rounding_grows_has_no_result():
 
 
 def test_a_run_that_cannot_be_built_leaves_the_others_alone():
-    settings = RunSettings(load_scenario('thesis', SHORT))
+    settings = RunSettings(KnownSettings(load_scenario('thesis', SHORT)))
     weightless = dataclasses.replace(settings.scenario.given_driveline, shaft_inertia=1e-310)
-    odd = dataclasses.replace(
-        settings, scenario=dataclasses.replace(settings.scenario, given_driveline=weightless)
+    odd = RunSettings(
+        KnownSettings(dataclasses.replace(settings.scenario, given_driveline=weightless))
     )
     controller = PiController(0.1, 0.1)
     runs = [(settings, controller), (odd, controller), (settings, controller)]

@@ -42,7 +42,7 @@ def test_the_indices_go_through_controllers_then_the_grid_then_samples() -> None
     assert [run.controller.name for run in runs] == ['pi'] * 12 + ['ls8'] * 12
     grid = [(run.varied['wear_gain'], run.varied['clutch']) for run in runs[:12:3]]
     assert grid == [(0.7, 'linear'), (0.7, 'stick_slip'), (1.0, 'linear'), (1.0, 'stick_slip')]
-    assert [(run.settings.wear_gain, run.settings.clutch) for run in runs[:12:3]] == grid
+    assert [(run.settings.case.wear_gain, run.settings.clutch) for run in runs[:12:3]] == grid
 
 
 def test_all_controllers_have_the_same_cases_with_the_same_noise() -> None:
@@ -51,7 +51,7 @@ def test_all_controllers_have_the_same_cases_with_the_same_noise() -> None:
         first, second = made.run(case), made.run(case + made.cases)
         assert first.varied == second.varied
         assert first.settings == second.settings
-    assert len({made.run(case).settings.seed for case in range(made.cases)}) == made.cases
+    assert len({made.run(case).settings.case.seed for case in range(made.cases)}) == made.cases
     assert len({made.run(case).varied['vehicle.mass_kg'] for case in range(made.cases)}) == 12
 
 

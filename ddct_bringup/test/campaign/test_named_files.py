@@ -84,13 +84,13 @@ def test_a_changed_module_beside_a_python_file_changes_it(tmp_path: Path, change
 
 def test_a_handover_file_is_relative_to_the_specification(tmp_path: Path) -> None:
     made = campaign(tmp_path, **SHIFT)
-    named = [made.run(case).settings.handover for case in range(2)]
+    named = [made.run(case).settings.known.handover for case in range(2)]
     assert named == ['timed', str(tmp_path / 'own.py')]
     assert [made.run(case).varied['handover'] for case in range(2)] == ['timed', 'own.py']
     drawn = {'handover': {'distribution': 'choice', 'values': ['own.py']}}
     grid, random = {'duration_s': [1.0]}, {'samples': 1, 'vary': drawn}
     made = campaign(tmp_path, **{**SHIFT, 'grid': grid, 'random': random})
-    assert made.run(0).settings.handover == named[1]
+    assert made.run(0).settings.known.handover == named[1]
 
 
 @pytest.mark.process

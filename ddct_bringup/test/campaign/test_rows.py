@@ -18,7 +18,7 @@ from ddct_bringup.verdict.limits import packaged_limits
 from ddct_controllers.from_python import chosen_from
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.scenario.file import ScenarioFile, load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 
 BASE = RunBase(ScenarioFile.read('thesis_sticking'), {'duration_s': 2.0}, {}, labels=())
 
@@ -37,7 +37,9 @@ def test_varied_values_are_set_as_by_set_with_their_dependent_values():
     settings = BASE.at({'wear_gain': 0.8, 'vehicle.mass_kg': 1800.0})
     scenario = load_scenario('thesis_sticking', ['duration_s=2.0', 'vehicle.mass_kg=1800.0'])
     known = load_scenario('thesis_sticking', ['duration_s=2.0'])
-    assert settings == RunSettings(scenario, wear_gain=0.8, known_scenario=known)
+    assert settings == RunSettings(
+        KnownSettings(known), CaseSettings(wear_gain=0.8, scenario=scenario)
+    )
     inertia = settings.scenario.driveline.vehicle_inertia
     assert inertia == pytest.approx(1800.0 * settings.scenario.vehicle.wheel_radius_m**2)
 

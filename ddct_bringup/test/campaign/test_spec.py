@@ -26,7 +26,7 @@ def written(folder: Path, text: str) -> Path:
 def test_a_specification_has_defaults_for_all_but_what_varies(tmp_path: Path) -> None:
     spec = read_spec(written(tmp_path, PI + GRID))
     assert (spec.common, spec.root, spec.samples) == ({}, 0, 1)
-    assert Campaign(spec).run(1).settings.wear_gain == 1.0
+    assert Campaign(spec).run(1).settings.case.wear_gain == 1.0
     assert Campaign(spec).run(1).settings.scenario.name == 'thesis'
 
 

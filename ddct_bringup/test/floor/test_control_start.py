@@ -15,7 +15,7 @@ from ddct_bringup.scores.scored_recording import simulate_and_score
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 
 @pytest.fixture
@@ -34,7 +34,7 @@ def simulated(monkeypatch):
 
 
 def settings_of(**further):
-    return RunSettings(load_scenario('thesis'), **further)
+    return RunSettings.of(load_scenario('thesis'), further)
 
 
 @pytest.mark.slow
@@ -55,7 +55,7 @@ def test_other_settings_have_a_start_of_their_own(simulated):
 
 
 def test_a_scenario_without_slip_is_simulated_once_too(simulated):
-    settings = RunSettings(load_scenario('tip_in'))
+    settings = RunSettings(KnownSettings(load_scenario('tip_in')))
     for _ in range(2):
         with pytest.raises(ParameterError, match='do not slip at control start'):
             control_start(settings)

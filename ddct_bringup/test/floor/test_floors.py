@@ -33,7 +33,7 @@ from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.program.arithmetic import blas_libraries
 from ddct_plant.scenario.file import ScenarioFile, load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 RULES = packaged_limits().rules
 pytestmark = pytest.mark.slow
@@ -48,7 +48,7 @@ RUNS = (
 
 
 def settings_of(scenario='launch', **further):
-    return RunSettings(load_scenario(scenario), **further)
+    return RunSettings.of(load_scenario(scenario), further)
 
 
 @pytest.mark.parametrize(('scenario', 'controller'), RUNS)
@@ -240,7 +240,7 @@ def test_friction_that_depends_on_the_slip_speed_is_refused():
     changes = {'friction.slip_rad_s': [0.0, 100.0], 'friction.slip_share': [1.0, 0.9]}
     scenario = ScenarioFile.read('launch').scenario(changes)
     with refused(ParameterError, 'friction.slip_rad_s'):
-        floor_of(RunSettings(scenario), 'peak_jerk', 0.8)
+        floor_of(RunSettings(KnownSettings(scenario)), 'peak_jerk', 0.8)
 
 
 def test_the_least_friction_work_is_the_energy_of_the_slip_and_a_little_more():

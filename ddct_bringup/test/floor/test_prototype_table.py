@@ -24,7 +24,7 @@ from ddct_bringup.run.headless import run_headless
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.models.driveline import LOCK
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 LEAST = {
     0.40: 18.4,
@@ -71,7 +71,7 @@ class GivenTorques(Case):
 
 @pytest.fixture(scope='module')
 def settings():
-    return RunSettings(load_scenario('launch'))
+    return RunSettings(KnownSettings(load_scenario('launch')))
 
 
 @pytest.fixture(scope='module')

@@ -17,7 +17,7 @@ from ddct_controllers.interface import Command, Controller, Measurement
 from ddct_controllers.registry import make_controller
 from ddct_plant.base.clutch_kinds import STICK_SLIP
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 
 UNBOUND = ('friction.most_n_m=100000.0',)
 """
@@ -67,13 +67,15 @@ class LabelledRun:
         """Run it headless, and return whether the plates turn together at its end by the rules."""
         known = load_scenario(self.scenario, self.set)
         unbound = UNBOUND if known.clutch == STICK_SLIP else ()
-        scenario = load_scenario(self.scenario, [*unbound, *self.set])
-        settings = RunSettings(scenario, wear_gain=self.wear_gain, known_scenario=known)
-        controller = make_controller(self.controller, settings)
+        true = load_scenario(self.scenario, [*unbound, *self.set])
+        settings = RunSettings(
+            KnownSettings(known), CaseSettings(wear_gain=self.wear_gain, scenario=true)
+        )
+        controller = make_controller(self.controller, settings.known)
         if self.gain != 1.0 or self.delay_steps:
             controller = Spoiled(controller, self.gain, self.delay_steps)
         trajectory = run_headless(settings, controller)
-        engagement = Engagement(trajectory, scenario.control_start_step, (0, scenario.steps))
+        engagement = Engagement(trajectory, true.control_start_step, (0, true.steps))
         return state_of(engagement, None, packaged_limits().rules).name not in (NOT_ENGAGED, LATE)
 
 

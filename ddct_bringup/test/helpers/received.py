@@ -11,9 +11,10 @@ from typing import Any
 import numpy as np
 
 from ddct_bringup.run.run_base import RunBase
-from ddct_plant.base.options import options_of
+from ddct_plant.scenario.case import OF_CASE
+from ddct_plant.scenario.choices.settings import SETTINGS
 from ddct_plant.scenario.file import ScenarioFile
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import CaseSettings, RunSettings
 
 UNKNOWN = {
     'wear_gain': 1.1375,
@@ -62,20 +63,19 @@ def settings_with(
 ) -> RunSettings:
     """Return the settings of a run whose plant alone has the values that vary."""
     changes = {'duration_s': settings.pop('duration_s', 1.2)}
-    assert set(settings) <= set(options_of(RunSettings))
+    assert set(settings) <= set(SETTINGS)
     return RunBase(ScenarioFile.read(scenario), changes, settings, ['Keeper']).at(varied)
 
 
 def true_values(settings: RunSettings) -> list[float]:
     """Return the values that differ from what a controller knows, the derived inertia too."""
-    values = [settings.wear_gain, settings.seed, settings.off_going_wear_gain]
-    values += [settings.scenario.vehicle.mass_kg, settings.scenario.actuator.delay_s]
-    values += [settings.scenario.driveline.vehicle_inertia]
-    known = settings.known
-    ours = [known.wear_gain, known.seed, known.off_going_wear_gain]
-    ours += [known.scenario.vehicle.mass_kg, known.scenario.actuator.delay_s]
-    ours += [known.scenario.driveline.vehicle_inertia]
-    return [value for value, other in zip(values, ours, strict=True) if value != other]
+    values, usual = (
+        [getattr(case, name) for name in OF_CASE] for case in (settings.case, CaseSettings())
+    )
+    for found, scenario in ((values, settings.scenario), (usual, settings.known.scenario)):
+        found += [scenario.vehicle.mass_kg, scenario.actuator.delay_s]
+        found += [scenario.driveline.vehicle_inertia]
+    return [value for value, other in zip(values, usual, strict=True) if value != other]
 
 
 def found_in(root: object, values: Iterable[float]) -> list[float]:

@@ -23,7 +23,7 @@ from ddct_plant.scenario.settings import RunSettings
 def settings_of(scenario='upshift', overrides=(), **further) -> RunSettings:
     """Return the settings of a shift with overrides KEY=VALUE."""
     loaded = load_scenario(scenario, overrides)
-    return RunSettings(loaded, **further)
+    return RunSettings.of(loaded, further)
 
 
 def compared_starts(handover: str, names: Iterable[str]) -> int:
@@ -32,7 +32,7 @@ def compared_starts(handover: str, names: Iterable[str]) -> int:
     expected = control_start(settings)
     compared = 0
     for name in names:
-        controller = make_controller(name, settings)
+        controller = make_controller(name, settings.known)
         if controller.commands_engine:
             continue
         run = run_loop(ClosedLoop(settings, controller), expected.step + 12)

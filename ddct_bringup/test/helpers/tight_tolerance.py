@@ -30,9 +30,9 @@ def tight_tolerance_run(settings: RunSettings, name: str) -> dict[str, np.ndarra
     initial = initial_state(settings)
     engine = Engine(scenario.engine, scenario.engine_authority)
     load = RoadLoad(scenario.load, scenario.vehicle)
-    controller = make_controller(name, settings)
-    reference = make_reference(settings, controller.preview_steps)
-    architecture = make_architecture(settings, controller)
+    controller = make_controller(name, settings.known)
+    reference = make_reference(settings.known, controller.preview_steps)
+    architecture = make_architecture(settings.known, controller)
     delayed = initial.sides[0].torque_request
     state = np.concatenate(
         [
@@ -54,7 +54,7 @@ def tight_tolerance_run(settings: RunSettings, name: str) -> dict[str, np.ndarra
         c_m = engine.torque(step, request.engine_torque)
 
         def derivative(_, x, held=delayed, c_m=c_m, c_load=c_load):
-            c_f = settings.wear_gain * (filter_.c @ x[4:])[0]
+            c_f = settings.case.wear_gain * (filter_.c @ x[4:])[0]
             driveline = plant.a @ x[:4] + plant.b @ [c_m, c_f, c_load]
             return np.concatenate([driveline, filter_.a @ x[4:] + filter_.b[:, 0] * held])
 

@@ -14,7 +14,7 @@ from ddct_plant.bag_file.records import read_records  # noqa: E402
 from ddct_plant.base.errors import DdctError  # noqa: E402
 from ddct_plant.base.timebase import stamp_of_step  # noqa: E402
 from ddct_plant.scenario.file import load_scenario  # noqa: E402
-from ddct_plant.scenario.settings import RunSettings  # noqa: E402
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 from ddct_plant.signals import topics  # noqa: E402
 from ddct_plant.signals.signal import RunKind  # noqa: E402
 
@@ -42,7 +42,7 @@ def message(topic, step, *values):
 
 @pytest.fixture
 def bag(tmp_path):
-    settings = RunSettings(load_scenario('thesis'))
+    settings = RunSettings(KnownSettings(load_scenario('thesis')))
     place = (tmp_path, 'pi')
     return RecordedBag(
         place, RunKind(), settings, AllNodes(), lambda stamp: message(topics.RECORDER_ACK, 0)

@@ -20,7 +20,7 @@ from ddct_controllers.workflows.evidence import frequency_evidence
 from ddct_plant.base.units import rad_s_from_rpm, rpm_from_rad_s
 from ddct_plant.files.json_records import to_json
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 
 pytestmark = pytest.mark.slow
 
@@ -60,19 +60,21 @@ def test_a_small_step_of_the_slip_error_has_the_response_of_the_sampled_loop(nam
 
     It depends on the sampling, the delay, the wear gain, every sign and unit.
     """
-    require_run_as_the_loop(name, RunSettings(SCENARIO, wear_gain=wear_gain))
+    require_run_as_the_loop(
+        name, RunSettings(KnownSettings(SCENARIO), CaseSettings(wear_gain=wear_gain))
+    )
 
 
 def require_run_as_the_loop(name: str, settings: RunSettings) -> None:
     without, stepped = (
-        run_headless(settings, SteppedError(make_controller(name, settings), step_rpm))
+        run_headless(settings, SteppedError(make_controller(name, settings.known), step_rpm))
         for step_rpm in (0.0, STEP_RPM)
     )
     change = stepped.slip_speed[AT_STEP:] - without.slip_speed[AT_STEP:]
     found = rpm_from_rad_s(change) / STEP_RPM
-    model = make_controller(name, settings).linear_model()
+    model = make_controller(name, settings.known).linear_model()
     scenario = settings.scenario
-    loop = sampled_loop(model, scenario.driveline, settings.wear_gain, scenario.actuator)
+    loop = sampled_loop(model, scenario.driveline, settings.case.wear_gain, scenario.actuator)
     _, expected = step_response(loop, 0.01 * (len(found) - 1))
     assert found == pytest.approx(expected, abs=1e-3 * np.abs(expected).max())
 
@@ -80,7 +82,7 @@ def require_run_as_the_loop(name: str, settings: RunSettings) -> None:
 @pytest.mark.parametrize('delay_s', [0.0, 0.013, 0.04])
 def test_the_sampled_loop_has_the_actuator_of_the_run(delay_s):
     changes = [f'actuator.delay_s={delay_s}', 'actuator.bandwidth_factor=0.8']
-    require_run_as_the_loop('ls8', RunSettings(load_scenario('thesis', changes)))
+    require_run_as_the_loop('ls8', RunSettings(KnownSettings(load_scenario('thesis', changes))))
 
 
 def test_compare_leaves_the_evidence_beside_the_scores(tmp_path):
@@ -98,7 +100,7 @@ def test_compare_leaves_the_evidence_beside_the_scores(tmp_path):
 
 @pytest.mark.parametrize('name', ['mpc3', 'mpc4'])
 def test_a_predictive_controller_has_no_frequency_response(name):
-    (entry,) = frequency_evidence([name], RunSettings(SCENARIO)).controllers
+    (entry,) = frequency_evidence([name], RunSettings(KnownSettings(SCENARIO))).controllers
     assert to_json(entry) == {
         'controller': name,
         'linear': False,

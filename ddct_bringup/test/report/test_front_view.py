@@ -14,7 +14,7 @@ from ddct_bringup.scores.floors import with_floors
 from ddct_bringup.scores.scored_recording import ScoredRecording, simulate_and_score
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 pytestmark = pytest.mark.slow
 
@@ -27,7 +27,7 @@ LESS = 3e-4
 
 def runs_of(*controllers: str, floors: bool = True) -> list[ScoredRecording]:
     """Return runs in `launch` with their jerk over the least."""
-    settings = RunSettings(load_scenario('launch'))
+    settings = RunSettings(KnownSettings(load_scenario('launch')))
     plans = [RunPlan(settings, each, 'headless') for each in controllers]
     scored = [simulate_and_score(plan, LIMITS) for plan in plans]
     return with_floors(scored, LIMITS) if floors else scored

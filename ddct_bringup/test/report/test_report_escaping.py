@@ -22,9 +22,11 @@ from ddct_bringup.scores.scoring import unreadable_run
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.base.errors import DdctError
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
-SETTINGS = RunSettings(load_scenario('thesis', ['duration_s=0.7', 'score_window_s=[0.1,0.6]']))
+SETTINGS = RunSettings(
+    KnownSettings(load_scenario('thesis', ['duration_s=0.7', 'score_window_s=[0.1,0.6]']))
+)
 EVIL = '</script></textarea></style>--><evil onload="x"> \'"&amp; w_<evil>'
 """Text that closes every open element and opens one that no page has."""
 

@@ -15,7 +15,7 @@ from ddct_bringup.scores.scored_recording import ScoredRecording
 from ddct_controllers.workflows.evidence import actuator_conditions, frequency_evidence
 from ddct_plant.files.json_records import json_text, to_json
 from ddct_plant.scenario.file import load_scenario, scenario_digest
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 
 @pytest.fixture(scope='module')
@@ -57,7 +57,7 @@ def test_whole_evidence_is_taken(remark, whole):
 
 @pytest.mark.parametrize('change', ['actuator.delay_s=0.05', 'actuator.bandwidth_factor=0.5'])
 def test_evidence_for_another_actuator_is_computed_anew(remark, whole, change):
-    slow = dataclasses.replace(SETTINGS, scenario=load_scenario('thesis', [change]))
+    slow = RunSettings(KnownSettings(load_scenario('thesis', [change])))
     digest = scenario_digest(slow.scenario)
     conditions = dataclasses.replace(whole.conditions, scenario_digest=digest)
     assert remark(json_text(dataclasses.replace(whole, conditions=conditions)), slow) == COMPUTED

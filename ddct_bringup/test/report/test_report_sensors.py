@@ -13,7 +13,7 @@ from ddct_bringup.scores.scored_recording import ScoredRecording
 from ddct_bringup.scores.scoring import score_run
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 CHART = 'Slip speed as measured, less the true one'
 
@@ -21,7 +21,7 @@ CHART = 'Slip speed as measured, less the true one'
 def page(*changes: str) -> str:
     """Return the report of a short run of `pi`."""
     given = ['duration_s=0.7', 'score_window_s=[0.1,0.6]', *changes]
-    settings = RunSettings(load_scenario('thesis', given))
+    settings = RunSettings(KnownSettings(load_scenario('thesis', given)))
     recording = Recording(
         path=Path('/nowhere/pi_0.mcap'),
         trajectory=run_headless(settings, 'pi'),

@@ -33,7 +33,7 @@ from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.base.timebase import time_of_step
 from ddct_plant.files.json_records import to_json
 from ddct_plant.scenario.file import ScenarioFile, load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 pytestmark = pytest.mark.slow
 
@@ -47,7 +47,7 @@ DIP, FLARE, TIE_UP = (
 def settings(handover: str) -> RunSettings:
     """Return an upshift with a torque cut."""
     scenario = load_scenario('upshift', ['shift.torque_cut_n_m=20'])
-    return RunSettings(scenario, handover=handover)
+    return RunSettings(KnownSettings(scenario, handover=handover))
 
 
 @pytest.fixture(scope='module')
@@ -125,7 +125,8 @@ def test_the_page_has_the_metrics_of_the_shift_and_its_words_and_other_pages_hav
     other = report_page(
         [
             simulate_and_score(
-                RunPlan(RunSettings(load_scenario('thesis')), 'pi', 'headless'), packaged_limits()
+                RunPlan(RunSettings(KnownSettings(load_scenario('thesis'))), 'pi', 'headless'),
+                packaged_limits(),
             )
         ],
         [],

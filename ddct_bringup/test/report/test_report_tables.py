@@ -27,7 +27,7 @@ from ddct_controllers.workflows.evidence_types import (
     WorstCornerEntry,
 )
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 
 THESIS = load_scenario('thesis')
 
@@ -42,9 +42,9 @@ def run(controller='ls8', settings=None, timing=None, valid=True, **metrics):
 @pytest.mark.parametrize(
     'settings',
     [
-        RunSettings(THESIS, wear_gain=0.7),
-        RunSettings(THESIS, architecture='feedforward'),
-        RunSettings(dataclasses.replace(THESIS, duration_s=4.0)),
+        RunSettings(KnownSettings(THESIS), CaseSettings(wear_gain=0.7)),
+        RunSettings(KnownSettings(THESIS, architecture='feedforward')),
+        RunSettings(KnownSettings(dataclasses.replace(THESIS, duration_s=4.0))),
         None,
     ],
 )
@@ -53,14 +53,19 @@ def test_other_conditions_than_the_thesis_s_are_not_set_beside_it(settings):
 
 
 def test_the_thesis_s_conditions_are():
-    rows = comparable_rows([run('ls8', RunSettings(THESIS)), run('ls1', RunSettings(THESIS))])
+    rows = comparable_rows(
+        [
+            run('ls8', RunSettings(KnownSettings(THESIS))),
+            run('ls1', RunSettings(KnownSettings(THESIS))),
+        ]
+    )
     assert [row and row.label for row in rows] == ['LS8', None]
 
 
 def test_a_cell_has_the_computed_value_the_printed_one_and_their_difference():
     runs = [
-        run('ls8', RunSettings(THESIS), engagement_time_s=0.781),
-        run('ls1', RunSettings(THESIS), engagement_time_s=1.562),
+        run('ls8', RunSettings(KnownSettings(THESIS)), engagement_time_s=0.781),
+        run('ls1', RunSettings(KnownSettings(THESIS)), engagement_time_s=1.562),
         run('pi'),
     ]
     cells = metric_cells(TABLE_5_1[0], runs, comparable_rows(runs))
@@ -73,9 +78,9 @@ def test_a_cell_has_the_computed_value_the_printed_one_and_their_difference():
 
 def test_a_predicted_value_has_its_range_and_its_verdict_and_a_calibrated_one_has_not():
     runs = [
-        run('mpc3', RunSettings(THESIS), engagement_time_s=0.62),
-        run('mpc4', RunSettings(THESIS)),
-        run('ls8', RunSettings(THESIS), engagement_time_s=0.71),
+        run('mpc3', RunSettings(KnownSettings(THESIS)), engagement_time_s=0.62),
+        run('mpc4', RunSettings(KnownSettings(THESIS))),
+        run('ls8', RunSettings(KnownSettings(THESIS)), engagement_time_s=0.71),
     ]
     predicted, undefined, calibrated = metric_cells(TABLE_5_1[0], runs, comparable_rows(runs))
     assert predicted.verdict == 'hit'
@@ -85,8 +90,8 @@ def test_a_predicted_value_has_its_range_and_its_verdict_and_a_calibrated_one_ha
 
 
 def test_a_run_that_is_not_valid_neither_hits_nor_misses():
-    hit = run('mpc3', RunSettings(THESIS), engagement_time_s=0.62)
-    failed = run('mpc3', RunSettings(THESIS), valid=False, engagement_time_s=0.62)
+    hit = run('mpc3', RunSettings(KnownSettings(THESIS)), engagement_time_s=0.62)
+    failed = run('mpc3', RunSettings(KnownSettings(THESIS)), valid=False, engagement_time_s=0.62)
     runs = [hit, failed]
     cells = metric_cells(TABLE_5_1[0], runs, comparable_rows(runs))
     assert [cell.verdict for cell in cells] == ['hit', '']

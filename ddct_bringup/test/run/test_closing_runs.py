@@ -10,14 +10,16 @@ from ddct_bringup.metrics.engagement import Engagement
 from ddct_bringup.metrics.values import window_steps
 from ddct_bringup.run.headless import run_headless
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 
 ON, OFF = 'closing={}', 'closing=null'
 
 
 @lru_cache
 def run(scenario, controller, *changes, wear_gain=1.0):
-    settings = RunSettings(load_scenario(scenario, changes), wear_gain=wear_gain)
+    settings = RunSettings(
+        KnownSettings(load_scenario(scenario, changes)), CaseSettings(wear_gain=wear_gain)
+    )
     trajectory = run_headless(settings, controller)
     start, window_s = settings.scenario.control_start_step, settings.scenario.score_window_s
     return Engagement(trajectory, start, window_steps(window_s)), trajectory

@@ -14,11 +14,11 @@ from ddct_bringup.run.plan import RunPlan
 from ddct_controllers.from_file.designed import DesignedController
 from ddct_controllers.printed import PRINTED_CONTROLLERS
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 pytestmark = pytest.mark.slow
 
-SETTINGS = RunSettings(load_scenario('thesis', ['duration_s=1.0']))
+SETTINGS = RunSettings(KnownSettings(load_scenario('thesis', ['duration_s=1.0'])))
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ import pytest
 
 from ddct_bringup.run.headless import run_headless
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 TARGET = [
     'reference.shape=engine_speed_target',
@@ -18,7 +18,7 @@ TARGET = [
 
 @pytest.mark.parametrize('controller', ['mpc_preview', 'mpc4_wear'])
 def test_controllers_of_one_and_two_inputs_follow_it(controller):
-    settings = RunSettings(load_scenario('thesis', TARGET))
+    settings = RunSettings(KnownSettings(load_scenario('thesis', TARGET)))
     run = run_headless(settings, controller)
     start = settings.scenario.control_start_step
     error = run.slip_reference[:, 0] - run.slip_speed

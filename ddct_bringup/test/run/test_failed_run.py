@@ -13,9 +13,9 @@ from ddct_bringup.scores.bags import find_bags
 from ddct_bringup.scores.scoring import unreadable_run
 from ddct_plant.base.errors import DdctError
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 
-SETTINGS = RunSettings(load_scenario('thesis'), wear_gain=0.7)
+SETTINGS = RunSettings(KnownSettings(load_scenario('thesis')), CaseSettings(wear_gain=0.7))
 FACTS = custom_data(SETTINGS, 'ls8', 300)
 
 

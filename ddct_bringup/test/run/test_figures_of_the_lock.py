@@ -9,14 +9,16 @@ import pytest
 from ddct_bringup.campaign.rows import scored_headless
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 
 LIMITS = packaged_limits()
 
 
 @lru_cache
 def scored(scenario, controller, wear_gain=1.0):
-    settings = RunSettings(load_scenario(scenario), wear_gain=wear_gain)
+    settings = RunSettings(
+        KnownSettings(load_scenario(scenario)), CaseSettings(wear_gain=wear_gain)
+    )
     return scored_headless(settings, controller, LIMITS).metrics
 
 

@@ -15,11 +15,11 @@ from ddct_controllers.interface import Command, Controller
 from ddct_controllers.registry import controller_names
 from ddct_plant.base.errors import DdctError
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 
 pytestmark = pytest.mark.slow
 
-SETTINGS = RunSettings(load_scenario('thesis'))
+SETTINGS = RunSettings(KnownSettings(load_scenario('thesis')))
 
 
 @pytest.mark.parametrize('name', ['pi', 'ls8', 'hinf1'])
@@ -36,7 +36,7 @@ def test_a_run_repeats_to_the_last_bit(name):
 
 
 def test_wear_changes_the_trajectory():
-    worn = RunSettings(SETTINGS.scenario, wear_gain=0.7)
+    worn = RunSettings(KnownSettings(SETTINGS.scenario), CaseSettings(wear_gain=0.7))
     assert run_headless(worn, 'ls8').sha256() != run_headless(SETTINGS, 'ls8').sha256()
 
 
@@ -82,5 +82,5 @@ def test_a_controller_that_commands_nan_ends_the_run():
 def test_a_plant_beyond_all_numbers_ends_the_run_without_warnings(recwarn):
     heavy = load_scenario('thesis', ['vehicle.gravity_m_s2=1e300'])
     with pytest.raises(DdctError):
-        run_headless(RunSettings(heavy), 'pi')
+        run_headless(RunSettings(KnownSettings(heavy)), 'pi')
     assert [str(each.message) for each in recwarn] == []

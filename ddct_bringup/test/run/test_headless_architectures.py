@@ -14,7 +14,7 @@ from ddct_controllers.registry import controller_names
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.scenario.choices.settings import ARCHITECTURES
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 
 pytestmark = pytest.mark.slow
 
@@ -33,7 +33,10 @@ class NoFeedback(Controller):
 
 @cache
 def run(architecture: str, controller: str, wear_gain: float = 1.0) -> Trajectory:
-    return run_headless(RunSettings(SCENARIO, architecture, wear_gain=wear_gain), controller)
+    return run_headless(
+        RunSettings(KnownSettings(SCENARIO, architecture), CaseSettings(wear_gain=wear_gain)),
+        controller,
+    )
 
 
 def peak_error_rad_s(trajectory: Trajectory) -> float:
@@ -44,7 +47,9 @@ def peak_error_rad_s(trajectory: Trajectory) -> float:
 @pytest.mark.parametrize('architecture', ARCHITECTURES)
 @pytest.mark.parametrize('name', controller_names())
 def test_every_controller_runs_in_every_architecture(architecture, name):
-    settings = RunSettings(load_scenario('thesis', ['duration_s=0.8']), architecture)
+    settings = RunSettings(
+        KnownSettings(load_scenario('thesis', ['duration_s=0.8']), architecture)
+    )
     trajectory = run_headless(settings, name)
     assert trajectory.steps == 80
     assert np.all(np.isfinite(trajectory.slip_speed))
@@ -96,7 +101,7 @@ def test_hinf2_follows_a_tanh_closer_than_a_ramp_and_with_less_torsion():
 
 def test_feedforward_alone_removes_nearly_all_slip_that_the_static_law_leaves():
     feedforward, static = (
-        run_headless(RunSettings(SCENARIO, name), NoFeedback())
+        run_headless(RunSettings(KnownSettings(SCENARIO, name)), NoFeedback())
         for name in ('feedforward', 'detailed')
     )
     left, growing = feedforward.slip_speed[START], static.slip_speed[START]

@@ -5,7 +5,7 @@
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 
 
 def timing_of(settings):
@@ -16,7 +16,7 @@ def timing_of(settings):
 
 def test_the_steps_are_the_periods_and_there_is_an_update_for_each_state():
     scenario = load_scenario('thesis', ['duration_s=0.8'])
-    timing, steps = timing_of(RunSettings(scenario))
+    timing, steps = timing_of(RunSettings(KnownSettings(scenario)))
     assert timing.steps == steps == scenario.steps == 80
     assert len(timing.update_times_us) == 81
 
@@ -28,6 +28,6 @@ def test_of_a_run_that_ends_early_they_are_those_that_were_run():
         'engine_limits.full_load_n_m=[0, 110, 170, 225, 250, 217, 165, 308]',
     )
     scenario = load_scenario('thesis_sticking', limits)
-    timing, steps = timing_of(RunSettings(scenario, wear_gain=0.7))
+    timing, steps = timing_of(RunSettings(KnownSettings(scenario), CaseSettings(wear_gain=0.7)))
     assert timing.steps == steps < scenario.steps
     assert len(timing.update_times_us) == steps + 1

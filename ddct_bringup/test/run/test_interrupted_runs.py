@@ -10,9 +10,9 @@ import pytest
 from ddct_bringup.run import execution
 from ddct_bringup.run.plan import RunPlan
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
-PLAN = RunPlan(RunSettings(load_scenario('thesis')), 'pi', 'headless')
+PLAN = RunPlan(RunSettings(KnownSettings(load_scenario('thesis'))), 'pi', 'headless')
 
 
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])

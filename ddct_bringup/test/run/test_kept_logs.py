@@ -11,7 +11,7 @@ from ddct_bringup.run import execution
 from ddct_bringup.run.execution import execute, kept_logs
 from ddct_bringup.run.plan import RunPlan
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 QUIET = '[INFO] [1.0] [load]: started\nnothing of note, [ERROR] in the middle of a line\n'
 WITH_ERROR = '[INFO] [1.0] [actuator]: x\n[ERROR] [2.0] [actuator]: safe state\n'
@@ -26,7 +26,7 @@ def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., Path]:
         monkeypatch.setattr(
             execution, '_execute_processes', lambda _plan, _folder, work, *_: _leave(work, logs)
         )
-        execute(RunPlan(RunSettings(load_scenario('thesis')), 'ls8'), tmp_path)
+        execute(RunPlan(RunSettings(KnownSettings(load_scenario('thesis'))), 'ls8'), tmp_path)
         return tmp_path
 
     return run_with

@@ -3,6 +3,7 @@
 """Our laws and designs are made for the known actuator; the true one reaches the plant alone."""
 
 from dataclasses import replace
+from typing import Any
 
 import pytest
 from other_actuators import SLOW, keys_of
@@ -31,20 +32,22 @@ OF_THE_THESIS = {
 """Controllers that keep the printed actuator."""
 
 
-def known_and_unknown(scenario: str, **settings: str) -> tuple[RunSettings, ...]:
+def known_and_unknown(scenario: str, **settings: Any) -> tuple[RunSettings, ...]:
     """Return a run with the printed actuator, one with another, and one where none knows it."""
     usual = settings_with({}, scenario, **settings)
     unknown = settings_with(keys_of(SLOW), scenario, **settings)
-    known = replace(usual, scenario=replace(usual.scenario, actuator=SLOW))
+    known = RunSettings(
+        replace(usual.known, scenario=replace(usual.scenario, actuator=SLOW)), usual.case
+    )
     assert unknown.scenario.actuator == known.known.scenario.actuator == SLOW
-    assert unknown.known == usual
+    assert unknown.known == usual.known
     return usual, known, unknown
 
 
 @pytest.mark.parametrize('name', own_controller_names())
 def test_a_controller_changes_with_the_known_actuator_alone_unless_it_is_the_thesiss(name: str):
     runs = known_and_unknown('upshift')
-    usual, known, unknown = (numbers_in(make_controller(name, run)) for run in runs)
+    usual, known, unknown = (numbers_in(make_controller(name, run.known)) for run in runs)
     assert unknown == usual
     assert (known == usual) == (name in OF_THE_THESIS)
 
@@ -52,19 +55,19 @@ def test_a_controller_changes_with_the_known_actuator_alone_unless_it_is_the_the
 @pytest.mark.parametrize('name', HANDOVERS)
 def test_a_handover_changes_with_the_known_actuator_alone(name: str) -> None:
     runs = known_and_unknown('upshift', handover=name)
-    usual, known, unknown = (numbers_in(make_handover(run)) for run in runs)
+    usual, known, unknown = (numbers_in(make_handover(run.known)) for run in runs)
     assert unknown == usual != known
 
 
 def first_references(run: RunSettings) -> list[float]:
     """Return the references in rad/s before control starts."""
-    reference = make_reference(run)
+    reference = make_reference(run.known)
     return [reference.update(step, 0.0)[0][0] for step in range(50)]
 
 
 def first_requests(run: RunSettings) -> list[float]:
     """Return the requests in N m for an engine torque that rises."""
-    architecture = make_architecture(run, PiController(0.0, 0.0))
+    architecture = make_architecture(run.known, PiController(0.0, 0.0))
     return [
         architecture.update(
             Measurement(step, 200.0, 200.0, 20.0, 6.0, 10.0 * step, [0.0], [0.0], 0.0, 0.0)
@@ -93,10 +96,7 @@ def test_a_shift_engages_with_a_slow_actuator_that_is_known_and_ties_up_with_an_
     name: str,
 ) -> None:
     """`tests/nightly/run/test_other_actuators.py` has every controller and a fast actuator."""
-    _, known, unknown = (
-        replace(run, scenario=replace(run.scenario, duration_s=2.5))
-        for run in known_and_unknown('upshift')
-    )
+    _, known, unknown = known_and_unknown('upshift', duration_s=2.5)
     limits = packaged_limits()
     assert scored_headless(known, name, limits).state == ENGAGED
     assert scored_headless(unknown, name, limits).state == 'tied_up'

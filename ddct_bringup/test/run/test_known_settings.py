@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A controller gets the known settings alone, and the plant the true ones."""
 
-from dataclasses import asdict, replace
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -34,25 +34,28 @@ from ddct_plant.models.load import RoadLoad
 from ddct_plant.models.static_torque import StaticTorque
 from ddct_plant.scenario.file import ScenarioFile, load_scenario
 from ddct_plant.scenario.initial_state import initial_request, initial_state
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 from ddct_plant.shift.roles import OFF_GOING
 
 NOISE = 'sensors.engine_speed.noise_rad_s'
 NOISY = {'engine_speed': {'noise_rad_s': 0.1}}
 
 
-def noise_of(settings: RunSettings) -> Any:
+def noise_of(settings: KnownSettings) -> Any:
     """Return the noise of the engine speed's sensor in rad/s."""
     assert settings.scenario.sensors is not None
     return asdict(settings.scenario.sensors)['engine_speed']['noise_rad_s']
 
 
-def test_the_known_settings_are_the_settings_where_nothing_is_unknown() -> None:
+def test_a_run_without_a_case_has_the_known_scenario_and_a_case_leaves_it() -> None:
     settings = settings_with({})
-    assert settings.known is settings
-    worn = replace(settings, wear_gain=0.8, seed=3)
-    assert worn.known == settings
-    assert worn.known.known is worn.known
+    assert settings.scenario is settings.known.scenario
+    assert settings.case == CaseSettings()
+    varied = settings_with({'wear_gain': 0.8, 'vehicle.mass_kg': 1789.25})
+    assert varied.known == settings.known
+    assert varied.scenario.vehicle.mass_kg == 1789.25
+    same = settings_with({'vehicle.mass_kg': settings.scenario.vehicle.mass_kg})
+    assert same == settings
 
 
 @pytest.mark.parametrize(
@@ -71,7 +74,7 @@ def test_a_controller_and_a_handover_find_no_true_value_in_a_headless_run(
     assert len(keeper.measurements) == settings.scenario.steps + 1
     assert not found_in(keeper, values)
     if settings.shift:
-        assert not found_in(make_handover(settings), values)
+        assert not found_in(make_handover(settings.known), values)
 
 
 def test_load_and_open_loop_of_a_measurement_are_those_of_the_known_car(tmp_path: Path) -> None:
@@ -106,20 +109,20 @@ def test_the_first_request_is_that_of_the_known_car_and_the_state_that_of_the_tr
     varied = {'load.slope_rad': 0.08, 'wear_gain': 0.8}
     hill, plain = settings_with(varied, 'tip_in'), settings_with({}, 'tip_in')
     assert (
-        initial_request(hill)
-        == initial_request(plain)
+        initial_request(hill.known)
+        == initial_request(plain.known)
         == initial_state(hill).sides[0].torque_request
     )
     assert initial_state(hill).load_torque > initial_state(plain).load_torque
     shift, usual = settings_with(varied, 'upshift'), settings_with({}, 'upshift')
-    assert initial_request(shift, OFF_GOING) == initial_request(usual, OFF_GOING)
+    assert initial_request(shift.known, OFF_GOING) == initial_request(usual.known, OFF_GOING)
 
 
 @pytest.mark.parametrize('architecture', ['detailed', 'feedforward', 'feedforward_tanh', 'base'])
 def test_a_batch_and_a_run_step_by_step_know_the_same(architecture: str) -> None:
     varied = {**UNKNOWN, 'load.wind_speed_m_s': 7.0, 'vehicle.wheel_radius_m': 0.3}
     cases = [settings_with(each, 'thesis', architecture=architecture) for each in ({}, varied)]
-    controller = make_controller('pi', cases[0])
+    controller = make_controller('pi', cases[0].known)
     stack = trajectories([(settings, controller) for settings in cases])
     for place, settings in enumerate(cases):
         alone = run_headless(settings, 'pi')
@@ -138,7 +141,7 @@ def test_a_controller_of_a_batch_finds_no_true_value() -> None:
             made.append(self)
 
     settings = settings_with(UNKNOWN, 'thesis')
-    controller = make_controller(chosen_from(Kept), settings)
+    controller = make_controller(chosen_from(Kept), settings.known)
     assert trajectories([(settings, controller)]).slip_speed.shape[0] == 1
     assert made
     assert not found_in(made, true_values(settings))
@@ -202,10 +205,10 @@ def test_options_handover_and_reference_of_a_row_are_known_and_drawn_sensors_are
 def test_known_settings_of_another_kind_of_run_are_refused() -> None:
     upshift, launch = load_scenario('upshift'), load_scenario('launch')
     with refused(ParameterError, key='shift'):
-        RunSettings(upshift, known_scenario=launch)
+        RunSettings(KnownSettings(launch), CaseSettings(scenario=upshift))
     noisy = load_scenario('launch', {'sensors': NOISY})
     with refused(ParameterError, key='sensors'):
-        RunSettings(noisy, known_scenario=launch)
+        RunSettings(KnownSettings(launch), CaseSettings(scenario=noisy))
     linear, sticking = load_scenario('thesis'), load_scenario('thesis_sticking')
     with refused(ParameterError, key='clutch'):
-        RunSettings(linear, known_scenario=sticking)
+        RunSettings(KnownSettings(sticking), CaseSettings(scenario=linear))

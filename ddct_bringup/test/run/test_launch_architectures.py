@@ -9,7 +9,7 @@ from ddct_bringup.run.headless import run_headless
 from ddct_plant.scenario.choices.scenarios import scenario_names
 from ddct_plant.scenario.choices.settings import ARCHITECTURES
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 
 pytestmark = pytest.mark.slow
 
@@ -19,7 +19,9 @@ FOR_STICK_SLIP = [name for name in WITH_ONE_CLUTCH if load_scenario(name).of_sti
 
 
 def run(name, architecture, wear_gain=1.0):
-    settings = RunSettings(load_scenario(name), architecture, wear_gain)
+    settings = RunSettings(
+        KnownSettings(load_scenario(name), architecture), CaseSettings(wear_gain=wear_gain)
+    )
     return run_headless(settings, 'hinf1')
 
 
@@ -46,7 +48,7 @@ def test_the_clutch_starts_in_the_phase_of_the_scenario(name, phase, architectur
 
 def test_a_scenario_for_both_clutches_has_the_reference_of_the_linear_one():
     of_clutch = [
-        run_headless(RunSettings(load_scenario(name), 'base'), 'pi').slip_reference
+        run_headless(RunSettings(KnownSettings(load_scenario(name), 'base')), 'pi').slip_reference
         for name in ('thesis', 'thesis_sticking')
     ]
     np.testing.assert_array_equal(*of_clutch)

@@ -10,7 +10,7 @@ import pytest
 from ddct_bringup.run.headless import run_headless
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 CAPACITY_N_M = 350.0
 """Torque capacity published for the C635, N m."""
@@ -28,7 +28,7 @@ REST = 1e-9
 
 @lru_cache
 def run(scenario, controller='ls8', *changes):
-    settings = RunSettings(load_scenario(scenario, changes))
+    settings = RunSettings(KnownSettings(load_scenario(scenario, changes)))
     return settings.scenario, run_headless(settings, controller)
 
 

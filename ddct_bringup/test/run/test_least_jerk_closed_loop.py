@@ -16,7 +16,7 @@ from ddct_controllers.interface import Command, Controller
 from ddct_controllers.least_jerk.controller import NAME, SPEC
 from ddct_plant.models.driveline import LOCKED, PHASES
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 
 pytestmark = pytest.mark.slow
 
@@ -26,7 +26,9 @@ LAUNCHES = ('launch', 'launch_hill', 'launch_hot', 'launch_gentle')
 
 @cache
 def run_of(scenario, wear_gain=1.0, *changes):
-    settings = RunSettings(load_scenario(scenario, changes), wear_gain=wear_gain)
+    settings = RunSettings(
+        KnownSettings(load_scenario(scenario, changes)), CaseSettings(wear_gain=wear_gain)
+    )
     return settings, run_headless(settings, SPEC)
 
 
@@ -98,8 +100,8 @@ def test_sensor_noise_moves_the_torque_of_a_gentle_launch_little():
     (sensors,) = Cases.packaged().content['grid']['sensors']
     for seed in (11, 12, 13):
         settings = RunSettings(
-            load_scenario('launch_gentle', {'sensors': sensors}),
-            seed=seed,
+            KnownSettings(load_scenario('launch_gentle', {'sensors': sensors})),
+            CaseSettings(seed=seed),
         )
         run = run_headless(settings, SPEC)
         after_its_start = settings.scenario.control_start_step + 10
@@ -121,7 +123,7 @@ def lock_s_of_case(scenario, wear_gain, seed, changes):
     """Return the time to the lock in s with the benchmark's sensors; no plates may part again."""
     (sensors,) = Cases.packaged().content['grid']['sensors']
     made = load_scenario(scenario, {'sensors': sensors, **changes})
-    settings = RunSettings(made, wear_gain=wear_gain, seed=seed)
+    settings = RunSettings(KnownSettings(made), CaseSettings(wear_gain=wear_gain, seed=seed))
     after = locked(run_headless(settings, SPEC))[made.control_start_step :]
     first = int(np.argmax(after))
     assert after[first:].all()
@@ -188,14 +190,16 @@ class AllAtOnce(Controller):
 
 def test_no_request_with_feedback_on_undoes_the_flare_of_a_worn_clutch_at_full_torque():
     """The torque phase makes it: docs/controllers/least_jerk.md states it as a bound."""
-    settings = RunSettings(load_scenario('upshift_full'), wear_gain=0.75)
+    settings = RunSettings(
+        KnownSettings(load_scenario('upshift_full')), CaseSettings(wear_gain=0.75)
+    )
     run = run_headless(settings, AllAtOnce())
     assert run.engine_speed.max() - run.engine_speed[30] > 10.5
 
 
 def test_plates_part_in_a_tip_in_whatever_is_requested():
     """The overshoot of the half-shafts exceeds the static capacity of 1.1 times 350 N m."""
-    settings = RunSettings(load_scenario('tip_in'))
+    settings = RunSettings(KnownSettings(load_scenario('tip_in')))
     run = run_headless(settings, AllAtOnce())
     assert locked(run)[30:60].all()
     assert not locked(run)[60:90].all()

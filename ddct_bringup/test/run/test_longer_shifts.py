@@ -9,7 +9,7 @@ import pytest
 
 from ddct_bringup.run.headless import run_headless
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 SHORT_S, ROWS = 2.0, 201
 SHIFTS = {
@@ -24,7 +24,7 @@ SHIFTS = {
 
 def hashes(scenario: str, **changes: float) -> tuple[int, dict[str, str]]:
     """Return the steps of a run, and by signal the hash of its rows of the first 2 s."""
-    settings = RunSettings(load_scenario(scenario, changes))
+    settings = RunSettings(KnownSettings(load_scenario(scenario, changes)))
     run = run_headless(settings, SHIFTS[scenario])
     digests = {}
     for name, values in run.signals.items():

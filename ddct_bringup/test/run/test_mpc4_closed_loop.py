@@ -30,18 +30,21 @@ from ddct_controllers.registry import make_controller
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.scenario.choices.settings import ARCHITECTURES
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 
 pytestmark = pytest.mark.slow
 
-SETTINGS = RunSettings(load_scenario('thesis'))
+SETTINGS = RunSettings(KnownSettings(load_scenario('thesis')))
 START = SETTINGS.scenario.control_start_step
 BOTH = ('mpc4', 'mpc4_wear')
 
 
 def run(controller, *changes, wear_gain=1.0, architecture='detailed'):
     scenario = load_scenario('thesis', changes)
-    return run_headless(RunSettings(scenario, architecture, wear_gain=wear_gain), controller)
+    return run_headless(
+        RunSettings(KnownSettings(scenario, architecture), CaseSettings(wear_gain=wear_gain)),
+        controller,
+    )
 
 
 def metrics(trajectory):
@@ -79,7 +82,7 @@ def test_without_the_pull_the_slip_error_decays_at_the_rate_of_the_weights(weigh
     times = 0.01 * np.arange(1, 8)
     rate = np.sum(times) / (np.sum(times**2) + 7 * weight**2)
     model = transmission_model(SETTINGS.scenario.driveline)
-    observer = make_observer(SETTINGS, model)
+    observer = make_observer(SETTINGS.known, model)
     settings = TwoInputCost(weight, demand_weight=0.0).settings()
     mpc4 = MpcController(model, observer, settings, SETTINGS.scenario.engine_authority)
     modes = np.linalg.eigvals(closed_loop(mpc4.program, observer, model))
@@ -125,7 +128,7 @@ def test_the_engine_delivers_the_requested_torque_as_the_controller_expects(name
 
 def test_mpc4_runs_away_with_a_worn_clutch_as_its_torque_level_grows():
     assert abs(rpm_from_rad_s(run('mpc4', wear_gain=0.95).slip_speed[-1])) > 100.0
-    mpc4: Any = make_controller('mpc4', SETTINGS)
+    mpc4: Any = make_controller('mpc4', SETTINGS.known)
     new, worn = (transmission_model(SETTINGS.scenario.driveline, gain) for gain in (1.0, 0.95))
     assert growth(mpc4.program, mpc4.observer, new) < 1.0
     assert growth(mpc4.program, mpc4.observer, worn) > 1.05
@@ -186,7 +189,7 @@ def test_with_the_wear_estimated_it_is_as_smooth_at_every_wear(wear_gain):
 def test_a_clutch_worn_beyond_its_bounds_runs_away_and_the_run_goes_on_to_its_end(wear_gain):
     """The capacity of a clutch that sticks is limited: the slip grows and the loop diverges."""
     scenario = load_scenario('thesis_sticking', ['duration_s=6'])
-    settings = RunSettings(scenario, wear_gain=wear_gain)
+    settings = RunSettings(KnownSettings(scenario), CaseSettings(wear_gain=wear_gain))
     trajectory = run_headless(settings, 'mpc4_wear')
     assert trajectory.steps == 600
     assert np.isfinite(trajectory.torque_request).all()
@@ -197,8 +200,8 @@ def test_a_clutch_worn_beyond_its_bounds_runs_away_and_the_run_goes_on_to_its_en
 @pytest.mark.parametrize('architecture', ARCHITECTURES)
 def test_they_run_in_every_architecture_and_reset_completely(name, architecture):
     scenario = load_scenario('thesis', ['duration_s=1.0'])
-    settings = RunSettings(scenario, architecture, wear_gain=1.1)
-    controller = make_controller(name, settings)
+    settings = RunSettings(KnownSettings(scenario, architecture), CaseSettings(wear_gain=1.1))
+    controller = make_controller(name, settings.known)
     first = run_headless(settings, controller)
     assert np.all(np.isfinite(first.slip_speed))
     controller.reset()
@@ -206,17 +209,17 @@ def test_they_run_in_every_architecture_and_reset_completely(name, architecture)
 
 
 def test_the_loop_without_an_actuator_transmits_the_request_at_once():
-    controller = make_controller('pi', SETTINGS)
+    controller = make_controller('pi', SETTINGS.known)
     trajectory = run_loop(LoopWithoutActuator(SETTINGS, controller), 80)
     np.testing.assert_array_equal(
         trajectory.clutch_torque, np.repeat(trajectory.torque_request[:, None], 11, axis=1)
     )
-    usual = run_loop(ClosedLoop(SETTINGS, make_controller('pi', SETTINGS)), 80)
+    usual = run_loop(ClosedLoop(SETTINGS, make_controller('pi', SETTINGS.known)), 80)
     assert usual.sha256() == run('pi', 'duration_s=0.8').sha256()
 
 
 def test_the_model_without_an_actuator_is_that_loop():
-    trajectory = run_loop(LoopWithoutActuator(SETTINGS, make_controller('pi', SETTINGS)), 80)
+    trajectory = run_loop(LoopWithoutActuator(SETTINGS, make_controller('pi', SETTINGS.known)), 80)
     model = model_without_actuator(SETTINGS.scenario.driveline)
     position, speed = trajectory.joint_position[0], trajectory.joint_speed[0]
     state = model.at_rest(tuple(speed[:3]), position[3], 0.0)

@@ -23,11 +23,11 @@ from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.models.driveline_model import driveline_matrices
 from ddct_plant.models.printed import ACTUATOR
 from ddct_plant.scenario.choices.settings import ARCHITECTURES
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 pytestmark = pytest.mark.slow
 
-SETTINGS = RunSettings(THESIS_SCENARIO)
+SETTINGS = RunSettings(KnownSettings(THESIS_SCENARIO))
 
 
 @pytest.fixture(scope='module')
@@ -97,13 +97,15 @@ class AsDrawn(Controller):
 def with_full_information(name):
     """Return a controller of Table 4.1 with the information of `mpc_preview`."""
     options = {'measured': 'speeds', 'load_known': True, 'delay_in_model': True, 'preview': True}
-    return PREDICTIVE[name](ControllerContext(SETTINGS, options))
+    return PREDICTIVE[name](ControllerContext(SETTINGS.known, options))
 
 
 @pytest.mark.parametrize('name', TABLE_4_1)
 @pytest.mark.parametrize('architecture', ARCHITECTURES)
 def test_with_full_information_slip_ends_at_zero_without_a_fallback(name, architecture):
-    run = run_headless(RunSettings(THESIS_SCENARIO, architecture), with_full_information(name))
+    run = run_headless(
+        RunSettings(KnownSettings(THESIS_SCENARIO, architecture)), with_full_information(name)
+    )
     assert abs(rpm_from_rad_s(run.slip_speed[-1])) < 1.0
     assert {dict(status).get('fallbacks', '0') for status in run.status} == {'0'}
 
@@ -153,7 +155,7 @@ def test_mpc_preview_is_mpc3_with_full_information():
     ],
 )
 def test_every_option_changes_the_run_and_none_breaks_it(changes):
-    run = run_headless(SETTINGS, PREDICTIVE['mpc3'](ControllerContext(SETTINGS, changes)))
+    run = run_headless(SETTINGS, PREDICTIVE['mpc3'](ControllerContext(SETTINGS.known, changes)))
     usual = thesis_run('mpc3', 'detailed', 1.0).trajectory
     difference = run.torque_request - usual.torque_request
     assert np.abs(difference).max() > 0.05
@@ -170,7 +172,9 @@ def test_wear_leaves_an_error_that_the_thesis_rates_bad(wear_gain):
 
 def test_both_solvers_give_the_same_run():
     runs = [
-        run_headless(SETTINGS, PREDICTIVE['mpc3'](ControllerContext(SETTINGS, {'backend': b})))
+        run_headless(
+            SETTINGS, PREDICTIVE['mpc3'](ControllerContext(SETTINGS.known, {'backend': b}))
+        )
         for b in ('daqp', 'osqp')
     ]
     difference = np.abs(runs[0].torque_request - runs[1].torque_request).max()
@@ -180,7 +184,7 @@ def test_both_solvers_give_the_same_run():
 
 def test_limits_of_the_request_hold_in_the_loop():
     options = {'highest_torque_n_m': 300.0, 'torque_rate_n_m_s': 1500.0}
-    run = run_headless(SETTINGS, PREDICTIVE['mpc3'](ControllerContext(SETTINGS, options)))
+    run = run_headless(SETTINGS, PREDICTIVE['mpc3'](ControllerContext(SETTINGS.known, options)))
     requests = run.torque_request[60:]
     assert requests.max() == pytest.approx(300.0, abs=1e-6)
     assert np.abs(np.diff(requests)).max() <= 15.0 + 1e-6

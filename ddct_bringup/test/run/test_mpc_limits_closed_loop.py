@@ -13,7 +13,7 @@ from ddct_bringup.run.headless import run_headless
 from ddct_controllers.mpc.variants import PREDICTIVE
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 
 pytestmark = pytest.mark.slow
 
@@ -29,7 +29,9 @@ def run(
     name: str, *options: str, changes: tuple[str, ...] = (), wear_gain: float = 1.0
 ) -> Trajectory:
     given = [*changes, *(f'controllers.{name}.{option}' for option in options)]
-    settings = RunSettings(load_scenario('thesis', given), wear_gain=wear_gain)
+    settings = RunSettings(
+        KnownSettings(load_scenario('thesis', given)), CaseSettings(wear_gain=wear_gain)
+    )
     return run_headless(settings, name)
 
 
@@ -86,7 +88,9 @@ def test_the_plates_do_not_pass_each_other(name):
 def test_the_plates_pass_each_other_as_far_as_in_scipy_and_on_the_page(option, sentence):
     """The sentence agrees within 0.01 rpm with scipy's integration of the loop to 1e-10."""
     given = [f'controllers.mpc_preview.{each}' for each in option]
-    integrated = tight_tolerance_run(RunSettings(load_scenario('thesis', given)), 'mpc_preview')
+    integrated = tight_tolerance_run(
+        RunSettings(KnownSettings(load_scenario('thesis', given))), 'mpc_preview'
+    )
     expected = rpm_from_rad_s(integrated['w_d'][START:].min())
     lowest = rpm_from_rad_s(run('mpc_preview', *option).slip_speed[START:].min())
     assert lowest == pytest.approx(expected, abs=0.01)

@@ -23,7 +23,7 @@ from ddct_plant.models.linear_driveline import Driveline
 from ddct_plant.scenario.choices.settings import ARCHITECTURES
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.initial_state import initial_request
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 
 pytestmark = pytest.mark.slow
 
@@ -35,7 +35,8 @@ OWN = ('mpc_offset_free', 'mpc_torsion', 'mpc_wear')
 def settings(wear_gain=1.0, scenario=SCENARIO, architecture='detailed', **options):
     controllers = {**scenario.controllers, **options}
     return RunSettings(
-        replace(scenario, controllers=controllers), architecture, wear_gain=wear_gain
+        KnownSettings(replace(scenario, controllers=controllers), architecture),
+        CaseSettings(wear_gain=wear_gain),
     )
 
 

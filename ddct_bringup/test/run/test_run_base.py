@@ -61,7 +61,7 @@ def test_a_scenario_that_no_key_changes_is_built_once() -> None:
     base = base_of(options(), ['pi'])
     worn, new = base.at({'wear_gain': 1.2}), base.at({'wear_gain': 1.0})
     assert worn.scenario is new.scenario
-    assert (worn.wear_gain, new.wear_gain) == (1.2, 1.0)
+    assert (worn.case.wear_gain, new.case.wear_gain) == (1.2, 1.0)
     heavy = base.at({'wear_gain': 1.2, 'vehicle.mass_kg': 1500.0})
     assert heavy.scenario.vehicle.mass_kg == 1500.0
     assert base.at({'clutch': 'stick_slip'}).stick_slip

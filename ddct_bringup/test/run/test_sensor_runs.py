@@ -38,7 +38,7 @@ class MeasurementLog(Controller):
 
 
 def settings(*changes: str, **run: Any) -> RunSettings:
-    return RunSettings(load_scenario('thesis', [*SHORT, *changes]), **run)
+    return RunSettings.of(load_scenario('thesis', [*SHORT, *changes]), run)
 
 
 def biased(quantity: str, unit: str) -> str:

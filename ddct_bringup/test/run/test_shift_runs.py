@@ -30,7 +30,7 @@ pytestmark = pytest.mark.slow
 
 def settings(*overrides, **values):
     scenario = load_scenario('upshift', overrides)
-    return RunSettings(scenario, **values)
+    return RunSettings.of(scenario, values)
 
 
 def feedback(run):

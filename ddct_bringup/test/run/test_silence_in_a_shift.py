@@ -27,7 +27,7 @@ from ddct_plant.scenario.plant import (
     make_engine,
     make_load,
 )
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 from ddct_plant.shift.roles import OFF_GOING, ON_COMING
 from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import (
@@ -51,7 +51,9 @@ SILENT_FROM = 60
 OPEN_BY = SILENT_FROM + 45 + 10
 """Step by which the table promises an open clutch: 0.45 s, and the lag of the actuator."""
 HANDOVER = (HANDOVER_SHARE, OFF_GOING_TORQUE_REQUEST, TORQUE_CUT)
-SETTINGS = RunSettings(load_scenario('upshift', {'shift.handover_s': 1.0}), handover='timed')
+SETTINGS = RunSettings(
+    KnownSettings(load_scenario('upshift', {'shift.handover_s': 1.0}), handover='timed')
+)
 STEPS = SETTINGS.scenario.steps
 TORQUES = (ENGINE_TORQUE, LOAD_TORQUE, HOLDING_TORQUE, CLUTCH_TORQUE, OFF_GOING_CLUTCH_TORQUE)
 
@@ -60,7 +62,7 @@ class Side:
     """Actuator with its fail-safe, and clutch, of one side."""
 
     def __init__(self, role: str) -> None:
-        first = initial_request(SETTINGS, role)
+        first = initial_request(SETTINGS.known, role)
         actuator = make_actuator(SETTINGS, first)
         self.actuator = GuardedActuator(actuator, first, FailSafeSettings())
         self._clutch = friction_clutch(SETTINGS, role)
@@ -87,10 +89,10 @@ class RealTimeShift:
         self.engine = GuardedEngine(make_engine(SETTINGS), REQUEST_TIMEOUT_S)
         self._demand = make_engine(SETTINGS).demand
         self._load, self._holding = make_load(SETTINGS), holding_torque(SETTINGS)
-        self._handover = make_handover(SETTINGS)
-        controller = make_controller('pi', SETTINGS)
-        self._reference = make_reference(SETTINGS, controller.preview_steps)
-        self._architecture = make_architecture(SETTINGS, controller)
+        self._handover = make_handover(SETTINGS.known)
+        controller = make_controller('pi', SETTINGS.known)
+        self._reference = make_reference(SETTINGS.known, controller.preview_steps)
+        self._architecture = make_architecture(SETTINGS.known, controller)
         self._driveline = make_driveline(SETTINGS, initial_state(SETTINGS))
         clutches = CLUTCH_TORQUE.name, OFF_GOING_CLUTCH_TORQUE.name
         self.owner = RealtimeOwner(

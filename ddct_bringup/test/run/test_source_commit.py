@@ -10,7 +10,7 @@ import pytest
 from ddct_bringup.run import description
 from ddct_bringup.run.description import as_of_commit, commit_of, short_commit, source_commit
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 MODULE = Path('ddct_bringup') / 'ddct_bringup' / 'run' / 'source_commit.py'
 OTHER = Path('ddct_plant') / 'ddct_plant' / 'clutch.py'
@@ -120,7 +120,7 @@ def test_git_is_called_for_the_first_run_of_a_process_alone(
     monkeypatch.setattr(description, '__file__', str(sources / MODULE))
     description._loaded_commit.cache_clear()
     try:
-        settings = RunSettings(load_scenario('thesis'))
+        settings = RunSettings(KnownSettings(load_scenario('thesis')))
         first = description.custom_data(settings, 'pi', 300)['commit']
         assert first == git(sources, 'rev-parse', 'HEAD')
         (sources / OTHER).write_text('another clutch\n')
@@ -134,7 +134,7 @@ def test_git_is_called_for_the_first_run_of_a_process_alone(
 
 def test_the_bag_contains_the_commit(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(description, 'source_commit', lambda: 'abc-dirty')
-    settings = RunSettings(load_scenario('thesis'))
+    settings = RunSettings(KnownSettings(load_scenario('thesis')))
     assert description.custom_data(settings, 'pi', 300)['commit'] == 'abc-dirty'
 
 

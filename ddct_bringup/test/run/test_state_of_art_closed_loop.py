@@ -18,7 +18,7 @@ from ddct_controllers.state_of_art.pedal_mpc import engagement_time_s
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.scenario.choices.settings import ARCHITECTURES
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 
 pytestmark = pytest.mark.slow
 
@@ -36,7 +36,9 @@ CORNERS = [
 
 @cache
 def trajectory(name, wear_gain=1.0, *changes):
-    settings = RunSettings(load_scenario('thesis', changes), wear_gain=wear_gain)
+    settings = RunSettings(
+        KnownSettings(load_scenario('thesis', changes)), CaseSettings(wear_gain=wear_gain)
+    )
     return settings, run_headless(settings, name)
 
 
@@ -67,7 +69,11 @@ def test_a_small_difference_dies_out(name, options, wear_gain):
             initial=replace(SCENARIO.initial, engine_speed_rad_s=engine_speed),
             controllers={name: options},
         )
-        slips.append(run_headless(RunSettings(scenario, wear_gain=wear_gain), name).slip_speed)
+        slips.append(
+            run_headless(
+                RunSettings(KnownSettings(scenario), CaseSettings(wear_gain=wear_gain)), name
+            ).slip_speed
+        )
     difference = np.abs(slips[1] - slips[0])
     assert difference[60] == pytest.approx(0.5, abs=0.01)
     assert difference[-100:].max() < 0.07
@@ -77,7 +83,7 @@ def test_a_small_difference_dies_out(name, options, wear_gain):
 @pytest.mark.parametrize('name', STATE_OF_ART)
 @pytest.mark.parametrize('architecture', ARCHITECTURES)
 def test_it_engages_in_every_architecture(name, architecture):
-    settings = RunSettings(SCENARIO, architecture, wear_gain=0.85)
+    settings = RunSettings(KnownSettings(SCENARIO, architecture), CaseSettings(wear_gain=0.85))
     assert abs(rpm_from_rad_s(run_headless(settings, name).slip_speed[-1])) < 10.0
 
 
@@ -142,7 +148,8 @@ def test_the_pedal_sets_when_the_slip_is_over(pedal):
 def test_a_faster_engagement_shakes_the_driveline_more():
     torsion = [
         study_run(
-            RunSettings(load_scenario('thesis', [f'pedal_position={pedal}'])), 'pedal_mpc'
+            RunSettings(KnownSettings(load_scenario('thesis', [f'pedal_position={pedal}']))),
+            'pedal_mpc',
         ).metrics['torsion_speed_std_rpm']
         for pedal in (0.0, 0.5, 1.0)
     ]

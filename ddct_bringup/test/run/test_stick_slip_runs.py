@@ -18,7 +18,7 @@ from ddct_plant.models.load import RoadLoad
 from ddct_plant.models.static_torque import StaticTorque
 from ddct_plant.scenario.file import load_scenario, scenario_to_yaml
 from ddct_plant.scenario.initial_state import initial_state
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 
 UNDAMPED = ('driveline.shaft_damping=0.0', 'driveline.halfshaft_damping=0.0')
 """Changes that leave friction as the only dissipation."""
@@ -27,7 +27,7 @@ LAUNCH = ('initial.shaft_speed_rad_s=0', 'initial.engine_speed_rad_s=104.7')
 
 def settings(*changes, wear_gain=1.0):
     scenario = load_scenario('thesis_sticking', changes)
-    return RunSettings(scenario, wear_gain=wear_gain)
+    return RunSettings(KnownSettings(scenario), CaseSettings(wear_gain=wear_gain))
 
 
 def run(*changes, controller='pi', wear_gain=1.0):
@@ -120,7 +120,7 @@ def test_the_load_loses_its_rolling_resistance_to_the_holding_torque():
     scenario = settings().scenario
     vehicle, rolling = scenario.vehicle, scenario.load.rolling_coefficient
     resistance = vehicle.mass_kg * vehicle.gravity_m_s2 * rolling * vehicle.wheel_radius_m
-    found, linear = run(), run_headless(RunSettings(load_scenario('thesis')), 'pi')
+    found, linear = run(), run_headless(RunSettings(KnownSettings(load_scenario('thesis'))), 'pi')
     assert found.holding_torque == pytest.approx(resistance)
     assert found.load_torque[0] + found.holding_torque[0] == pytest.approx(linear.load_torque[0])
     assert linear.holding_torque is None
@@ -128,7 +128,7 @@ def test_the_load_loses_its_rolling_resistance_to_the_holding_torque():
 
 def test_plates_of_one_speed_start_locked_and_carry_what_keeps_them_so():
     start = initial_state(settings())
-    linear = initial_state(RunSettings(load_scenario('thesis')))
+    linear = initial_state(RunSettings(KnownSettings(load_scenario('thesis'))))
     assert start.sides[0].torque == pytest.approx(linear.sides[0].torque)
     assert start.twist == pytest.approx(linear.twist)
     assert start.load_torque + start.wheel_torque == pytest.approx(linear.load_torque)
@@ -187,7 +187,7 @@ STALL = (
 @pytest.mark.parametrize('name', ['thesis', 'thesis_sticking'])
 def test_the_run_ends_with_the_first_state_at_or_beyond_a_limit(changes, reached, name):
     scenario = load_scenario(name, changes)
-    found = run_headless(RunSettings(scenario, wear_gain=0.7), 'pi')
+    found = run_headless(RunSettings(KnownSettings(scenario), CaseSettings(wear_gain=0.7)), 'pi')
     speeds = found.joint_speed[:, 0] - reached
     assert 0 < found.steps < scenario.steps
     assert (np.sign(speeds[:-1]) == np.sign(speeds[0])).all()
@@ -198,7 +198,7 @@ def test_the_run_ends_with_the_first_state_at_or_beyond_a_limit(changes, reached
 def test_the_static_controller_goes_by_what_a_limited_engine_delivers(name):
     weak = f'engine_limits.full_load_n_m={[100.0] * 7 + [308.0]}'
     scenario = load_scenario(name, [weak, 'duration_s=1.0'])
-    found = run_headless(RunSettings(scenario), 'pi')
+    found = run_headless(RunSettings(KnownSettings(scenario)), 'pi')
     assert found.engine_torque.max() == 100.0 < found.torque_demand.max()
     road = RoadLoad(scenario.load, scenario.vehicle)
     static = StaticTorque(scenario.driveline, scenario.equilibrium)

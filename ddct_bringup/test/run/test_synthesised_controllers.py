@@ -14,14 +14,14 @@ from ddct_bringup.run.headless import run_headless
 from ddct_bringup.thesis.table_5_1 import thesis_row
 from ddct_bringup.thesis.table_metrics import TABLE_METRICS
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 
 SCENARIO = load_scenario('thesis')
 PAGE = Path(__file__).parents[3] / 'docs' / 'controllers' / 'hinf_sampled.md'
 
 
 def metrics(controller: str, wear_gain: float = 1.0) -> Metrics:
-    settings = RunSettings(SCENARIO, wear_gain=wear_gain)
+    settings = RunSettings(KnownSettings(SCENARIO), CaseSettings(wear_gain=wear_gain))
     return compute_metrics(
         run_headless(settings, controller),
         control_start_s=SCENARIO.control_start_s,
@@ -47,7 +47,7 @@ def test_hinf_sampled_dominates_hinf1_as_printed_by_at_least_2_percent(sampled, 
 @pytest.fixture(scope='module', params=['hinf_sampled', 'hinf1'])
 def integrated(request):
     """Return the name of a controller and the signals of its run as scipy integrates it."""
-    return request.param, tight_tolerance_run(RunSettings(SCENARIO), request.param)
+    return request.param, tight_tolerance_run(RunSettings(KnownSettings(SCENARIO)), request.param)
 
 
 def test_its_figures_are_those_of_a_loop_that_scipy_integrates(integrated):
@@ -72,14 +72,14 @@ def test_its_figures_are_those_of_a_loop_that_scipy_integrates(integrated):
 
 def test_it_goes_through_zero_and_comes_back_as_far_as_scipy_finds(integrated):
     name, signals = integrated
-    lowest = run_headless(RunSettings(SCENARIO), name).slip_speed.min()
+    lowest = run_headless(RunSettings(KnownSettings(SCENARIO)), name).slip_speed.min()
     assert lowest == pytest.approx(signals['w_d'].min(), rel=2e-3)
 
 
 def test_it_goes_further_through_zero_than_hinf1():
     """A slower, smoother loop goes further through zero."""
     sampled, hinf1 = (
-        run_headless(RunSettings(SCENARIO), name).slip_speed.min()
+        run_headless(RunSettings(KnownSettings(SCENARIO)), name).slip_speed.min()
         for name in ('hinf_sampled', 'hinf1')
     )
     assert sampled < 1.3 * hinf1 < 0.0

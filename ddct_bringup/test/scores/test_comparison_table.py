@@ -11,7 +11,7 @@ from printed_table import value_under
 
 from ddct_bringup.scores.comparison_table import print_comparison
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 
 THESIS = load_scenario('thesis')
 SLOPE = 'load.slope_rad=0.05'
@@ -32,7 +32,10 @@ def entry(controller='ls8', *, valid=True):
 def printed(settings=None, overrides=(), runs=()):
     stream = io.StringIO()
     print_comparison(
-        runs or [entry('ls8'), entry('mpc4')], settings or RunSettings(THESIS), overrides, stream
+        runs or [entry('ls8'), entry('mpc4')],
+        settings or RunSettings(KnownSettings(THESIS)),
+        overrides,
+        stream,
     )
     return stream.getvalue()
 
@@ -50,7 +53,9 @@ def printed(settings=None, overrides=(), runs=()):
     ],
 )
 def test_computed_values_are_below_their_headings(heading, alone, unit, value, worn):
-    text = printed(RunSettings(THESIS, wear_gain=0.7) if worn else None)
+    text = printed(
+        RunSettings(KnownSettings(THESIS), CaseSettings(wear_gain=0.7)) if worn else None
+    )
     assert value_under(text, alone if worn else heading, 'ls8') == (unit, value)
 
 
@@ -70,11 +75,11 @@ def test_each_value_of_the_thesis_is_right_of_the_computed_one(controller, print
 @pytest.mark.parametrize(
     ('settings', 'overrides'),
     [
-        (RunSettings(THESIS, wear_gain=0.7), ()),
-        (RunSettings(THESIS, wear_gain=1.3), ()),
-        (RunSettings(THESIS, architecture='feedforward'), ()),
-        (RunSettings(dataclasses.replace(THESIS, name='mine')), ()),
-        (RunSettings(load_scenario('thesis', [SLOPE])), (SLOPE,)),
+        (RunSettings(KnownSettings(THESIS), CaseSettings(wear_gain=0.7)), ()),
+        (RunSettings(KnownSettings(THESIS), CaseSettings(wear_gain=1.3)), ()),
+        (RunSettings(KnownSettings(THESIS, architecture='feedforward')), ()),
+        (RunSettings(KnownSettings(dataclasses.replace(THESIS, name='mine'))), ()),
+        (RunSettings(KnownSettings(load_scenario('thesis', [SLOPE]))), (SLOPE,)),
     ],
     ids=['worn', 'thicker', 'architecture', 'scenario', 'changed scenario'],
 )
@@ -102,12 +107,12 @@ def test_a_run_that_is_not_valid_neither_hits_nor_misses():
     ],
 )
 def test_the_title_lists_the_changes_of_the_packaged_scenario(overrides, title):
-    text = printed(RunSettings(load_scenario('thesis', overrides)), overrides)
+    text = printed(RunSettings(KnownSettings(load_scenario('thesis', overrides))), overrides)
     assert title in ' '.join(text.split())
 
 
 def test_the_title_of_a_scenario_of_ones_own_has_what_set_gave():
     own = dataclasses.replace(load_scenario('thesis', [SLOPE]), name='mine')
     assert f'mine, 1 value changed: {SLOPE}; ' in ' '.join(
-        printed(RunSettings(own), [SLOPE]).split()
+        printed(RunSettings(KnownSettings(own)), [SLOPE]).split()
     )

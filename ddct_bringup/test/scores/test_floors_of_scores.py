@@ -18,14 +18,14 @@ from ddct_bringup.scores.scored_recording import ScoredRecording, simulate_and_s
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.verdict.limits import Limits, packaged_limits
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 pytestmark = pytest.mark.slow
 
 
 def settings_of(scenario: str = 'thesis', **further: Any) -> RunSettings:
     """Return settings of a packaged scenario."""
-    return RunSettings(load_scenario(scenario), **further)
+    return RunSettings.of(load_scenario(scenario), further)
 
 
 def scored(controller: str, settings: RunSettings, limits: Limits | None = None) -> ScoredRun:
@@ -94,7 +94,7 @@ def test_for_a_run_that_does_more_than_lock_once_the_least_is_a_yardstick(
         ('ls8', settings_of('tip_in'), 'nothing to engage'),
         (
             'pi',
-            RunSettings(load_scenario('thesis', {'duration_s': 6.0})),
+            RunSettings(KnownSettings(load_scenario('thesis', {'duration_s': 6.0}))),
             '540 periods after control start',
         ),
     ],

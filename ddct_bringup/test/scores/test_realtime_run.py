@@ -18,12 +18,12 @@ from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.base.timebase import stamp_of_step
 from ddct_plant.graph.node_names import StatusName
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 STEPS = 300
 TOLERATED = 3
 COUNTS = {'steps': '300', 'missed_steps': '4', 'resends': '5', 'late_messages': '6'}
-SETTINGS = RunSettings(load_scenario('thesis'))
+SETTINGS = RunSettings(KnownSettings(load_scenario('thesis')))
 TRAJECTORY = run_headless(SETTINGS, 'ls8')
 
 

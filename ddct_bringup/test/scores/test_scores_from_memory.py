@@ -22,7 +22,7 @@ SHIFT = {'off_going_wear_gain': 0.9, 'seed': 3}
 
 def plan_of(controller: str, scenario: str, overrides: list[str], **settings: Any) -> RunPlan:
     loaded = load_scenario(scenario, overrides)
-    return RunPlan(RunSettings(loaded, **settings), controller, 'headless')
+    return RunPlan(RunSettings.of(loaded, settings), controller, 'headless')
 
 
 @pytest.mark.parametrize(

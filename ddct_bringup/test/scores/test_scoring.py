@@ -16,9 +16,9 @@ from ddct_bringup.scores.scored_recording import score_recording
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.models.engine_limits import EngineLimits
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
-SETTINGS = RunSettings(load_scenario('thesis'))
+SETTINGS = RunSettings(KnownSettings(load_scenario('thesis')))
 TRAJECTORY = run_headless(SETTINGS, 'ls8')
 FACTS = made_facts()
 
@@ -34,7 +34,7 @@ def scored(last_engine_speed, rows=301, engine_limits=ENGINE_LIMITS, **signals):
     speeds[-1, 0] = last_engine_speed
     trajectory = Trajectory({**cut, 'joint_speed': speeds})
     scenario = dataclasses.replace(SETTINGS.scenario, engine_limits=engine_limits)
-    settings = dataclasses.replace(SETTINGS, scenario=scenario)
+    settings = RunSettings(dataclasses.replace(SETTINGS.known, scenario=scenario))
     recording = Recording(Path('x.mcap'), trajectory, FACTS, settings=settings)
     return score_recording(recording, 'x', packaged_limits()).scores
 

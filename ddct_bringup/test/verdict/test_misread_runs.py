@@ -8,12 +8,14 @@ import pytest
 
 from ddct_bringup.reproduction.study_run import study_run
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 
 
 @cache
 def scores(controller, scenario='thesis_sticking', wear_gain=1.0, changes=()):
-    settings = RunSettings(load_scenario(scenario, changes), wear_gain=wear_gain)
+    settings = RunSettings(
+        KnownSettings(load_scenario(scenario, changes)), CaseSettings(wear_gain=wear_gain)
+    )
     return study_run(settings, controller).scores
 
 

@@ -17,7 +17,7 @@ from ddct_controllers.interface import Command, Controller
 from ddct_controllers.registry import make_controller
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 
 THESIS = load_scenario('thesis')
 
@@ -26,7 +26,7 @@ class WrongSign(Controller):
     """The PI of the thesis with the wrong sign of its output."""
 
     def __init__(self):
-        self._right = make_controller('pi', RunSettings(THESIS))
+        self._right = make_controller('pi', KnownSettings(THESIS))
 
     def reset(self):
         self._right.reset()
@@ -41,7 +41,7 @@ def run(controller='pi', gain=1.0, duration_s=3.0, clutch='linear', **settings):
     scenario = dataclasses.replace(
         THESIS, controllers={'pi': gains}, duration_s=duration_s, clutch=clutch
     )
-    return run_headless(RunSettings(scenario, **settings), controller)
+    return run_headless(RunSettings.of(scenario, settings), controller)
 
 
 def state(trajectory, start=THESIS.control_start_step):
@@ -51,7 +51,7 @@ def state(trajectory, start=THESIS.control_start_step):
 
 def state_degraded(controller, settings, end_s=None, gain=1.0, delay_steps=0):
     """Return the state of a run up to `end_s`; `gain` and `delay_steps` degrade the controller."""
-    made = make_controller(controller, settings)
+    made = make_controller(controller, settings.known)
     whole = run_headless(settings, Spoiled(made, gain, delay_steps) if gain != 1.0 else made)
     rows = None if end_s is None else round(100 * end_s) + 1
     trajectory = Trajectory({name: values[:rows] for name, values in whole.signals.items()})
@@ -97,13 +97,13 @@ def test_a_drive_whose_torque_steps_part_the_plates_for_a_while_ends_engaged(con
         'engine.time_s=[0,0.5,1.8,2.1,3,3.2,4.2,4.4,6]',
         'engine.torque_n_m=[5,260,260,100,100,220,220,60,60]',
     )
-    settings = RunSettings(load_scenario('thesis_sticking', changes))
+    settings = RunSettings(KnownSettings(load_scenario('thesis_sticking', changes)))
     assert state_degraded(controller, settings) == 'engaged'
 
 
 @pytest.mark.parametrize('end_s', [3.0, 3.2, 3.55, 3.63, 3.64, 3.65])
 def test_a_limit_cycle_of_1400_rpm_is_no_engagement_though_the_plates_lock_in_between(end_s):
     scenario = load_scenario('launch_hot', ['closing=null', 'duration_s=4'])
-    settings = RunSettings(scenario, wear_gain=0.6)
+    settings = RunSettings(KnownSettings(scenario), CaseSettings(wear_gain=0.6))
     ended = state_degraded('ls6', settings, end_s, gain=6.1, delay_steps=1)
     assert ended in ('not_engaged', 'late')

@@ -12,7 +12,7 @@ from ddct_controllers.check.watch import OutputMonitor
 from ddct_controllers.registry import separately
 from ddct_plant.base.errors import FOREIGN_FAILURES
 from ddct_plant.program.own_process import ProcessEndedError
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings
 
 PASS, FAIL, SKIPPED = 'pass', 'fail', 'skipped'
 
@@ -63,10 +63,10 @@ CHECKS = (
 )
 
 
-def check_controller(name: str, settings: RunSettings) -> list[Outcome]:
+def check_controller(name: str, settings: KnownSettings) -> list[Outcome]:
     """Return an outcome per check of CHECKS for a controller of the registry or in a file."""
     printed = OutputMonitor()
-    subject = Subject(name, settings.known, printed)
+    subject = Subject(name, settings, printed)
     outcomes: dict[str, Outcome] = {}
     causes: dict[str, str] = {}
     with contextlib.redirect_stdout(printed):

@@ -13,7 +13,7 @@ from ddct_plant.program.printed_table import print_table
 from ddct_plant.program.table import Table, Weight
 from ddct_plant.scenario.choices.command_line import add_scenario_options
 from ddct_plant.scenario.chosen import scenario_of
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings
 
 PROGRAM = 'ddct check-controller'
 _DESCRIPTION = """\
@@ -39,7 +39,7 @@ def _check(argv: list[str]) -> int:
     parser.add_argument('--json', metavar='FILE', help="write the report; '-' is stdout")
     options = parser.parse_args(argv)
     require_place('--json', options.json)
-    settings = RunSettings(scenario_of(options, options.overrides))
+    settings = KnownSettings(scenario_of(options, options.overrides))
     print(f'{PROGRAM}: trying {options.controller}', file=sys.stderr, flush=True)
     outcomes = check_controller(options.controller, settings)
     report = {'controller': options.controller, 'checks': [asdict(each) for each in outcomes]}

@@ -28,7 +28,7 @@ from ddct_controllers.places import place_of_error
 from ddct_controllers.plugins import CONTROLLERS
 from ddct_controllers.registry import controller_spec, make_controller
 from ddct_plant.base.errors import DdctError, ForeignError
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings
 
 _TRIALS = ('closed_loop', 'measurements', 'torques', 'response')
 """Attributes of a subject that hold plain values of its trials."""
@@ -54,7 +54,7 @@ class Subject:
     """A controller by name; every `make` returns a new object."""
 
     name: str
-    settings: RunSettings
+    settings: KnownSettings
     printed: OutputMonitor
 
     @cached_property

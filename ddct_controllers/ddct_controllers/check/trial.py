@@ -16,7 +16,7 @@ from ddct_controllers.loop import ClosedLoop
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.base.units import rad_s_from_rpm
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 from ddct_reference.slip_reference import NEVER, SlipReference
 
 RAMP_S = 0.8
@@ -85,7 +85,7 @@ def more_slip(measurement: Measurement, by_rad_s: float = PROBE_RAD_S) -> Measur
     return replace(measurement, engine_speed=measurement.engine_speed + by_rad_s)
 
 
-def probe_step(settings: RunSettings) -> int:
+def probe_step(settings: KnownSettings) -> int:
     """Return the step at which trials change a signal."""
     return settings.scenario.control_start_step + round(PROBE_S / PERIOD_S)
 
@@ -115,7 +115,7 @@ class TrialReference(SlipReference):
 
 
 def closed_trial(
-    settings: RunSettings,
+    settings: KnownSettings,
     controller: Controller,
     *,
     reference_step: bool = False,
@@ -133,7 +133,7 @@ def closed_trial(
     start, probe = settings.scenario.control_start_step, probe_step(settings)
     _log_calls(controller, log, scale)
     reference = TrialReference(start, controller.preview_steps, probe if reference_step else NEVER)
-    loop = ClosedLoop(exact, controller, reference)
+    loop = ClosedLoop(RunSettings(exact), controller, reference)
     for step in range(probe + round(AFTER_S / PERIOD_S) + 1):
         reply = loop.reply(step)
         signals: Any = reply.signals
@@ -180,7 +180,7 @@ class StepResponse:
 
 
 def step_response(
-    settings: RunSettings,
+    settings: KnownSettings,
     make: Callable[[], Controller],
     scale: float = 1.0,
     plain: ClosedLoopLog | None = None,

@@ -14,7 +14,7 @@ from ddct_controllers.handover.on_coming_estimate import OnComingEstimate
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.models.engine_limits import LimitedEngine
 from ddct_plant.scenario.rules.shift import gears_of
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings
 from ddct_plant.signals.handover_share import OnComingShare
 
 SLIPS_RAD_S = 1.0
@@ -45,7 +45,7 @@ class AdaptiveHandover(Handover):
     carries C_fOL when the off-going one opens: the engine neither runs up nor is braked.
     """
 
-    def __init__(self, settings: RunSettings) -> None:
+    def __init__(self, settings: KnownSettings) -> None:
         """Start locked."""
         super().__init__(settings)
         self._model = HandoverModel(settings)

@@ -38,25 +38,25 @@ class HandoverNode(FollowerNode):
     def __init__(self, **kwargs: Any) -> None:
         """Build the handover of the run; raise ParameterError for a run without a shift."""
         super().__init__('handover', **kwargs)
-        self._handover = make_handover(self.settings)
+        self._handover = make_handover(self.known)
         self._share = Output(self, HANDOVER_SHARE)
         self._request = Output(self, OFF_GOING_TORQUE_REQUEST)
         self._cut = Output(self, TORQUE_CUT)
-        self.publish_run_info(handover_info(self.settings))
-        self._ratio = gears_of(self.settings.scenario).ratio
-        self._topics = measurement_topics(sensed=self.settings.sensed)
+        self.publish_run_info(handover_info(self.known))
+        self._ratio = gears_of(self.known.scenario).ratio
+        self._topics = measurement_topics(sensed=self.known.sensed)
         self.follow(
             self._topics.joint_states,
             self._topics.slip,
             self._topics.vehicle_speed,
             TORQUE_DEMAND,
-            *(() if self.settings.sensed else (OFF_GOING_SLIP,)),
+            *(() if self.known.sensed else (OFF_GOING_SLIP,)),
         )
 
     def answer(self, step: int, stamp_ns: int, inputs: dict[str, Any]) -> Reply:
         """Return the command for the period of step k; the cut has the longest way."""
         joints = inputs[self._topics.joint_states.name]
-        if self.settings.sensed:
+        if self.known.sensed:
             off_going_slip = joints.engine - self._ratio * joints.primary_shaft
         else:
             off_going_slip = inputs[OFF_GOING_SLIP.name]

@@ -11,7 +11,7 @@ from ddct_plant.models.static_torque import StaticTorque
 from ddct_plant.plant import Tick
 from ddct_plant.scenario.initial_state import locked_request
 from ddct_plant.scenario.rules.shift import gears_of, shift_of
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings
 from ddct_plant.shift.balance import off_going_torque
 from ddct_plant.signals.handover_share import OnComingShare
 
@@ -99,7 +99,7 @@ class HandoverCommand(NamedTuple):
 class Handover(ABC):
     """A law of the handover, made for a run, called once per period, in order."""
 
-    def __init__(self, settings: RunSettings) -> None:
+    def __init__(self, settings: KnownSettings) -> None:
         """Start before the shift; a law with parameters or state overrides this."""
         super().__init__()
 
@@ -111,7 +111,7 @@ class Handover(ABC):
 class HandoverModel:
     """Torques of the rigid car that handovers expect, and the parts of a command they share."""
 
-    def __init__(self, settings: RunSettings) -> None:
+    def __init__(self, settings: KnownSettings) -> None:
         """Use the gears and the car of the settings."""
         self._scenario = scenario = settings.scenario
         shift, self._gears = shift_of(scenario), gears_of(scenario)

@@ -14,7 +14,7 @@ from ddct_controllers.handover.interface import (
 from ddct_controllers.handover.third_party import third_party_handover
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.scenario.rules.shift import shift_of
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings
 
 GAINS_LAG_S = 0.043
 """Lag in s of the actuator that the gains and the search of the handover `slip` are given for."""
@@ -45,7 +45,7 @@ class TimedHandover(Handover):
     `shift.handover_s`. The actuators delay both alike.
     """
 
-    def __init__(self, settings: RunSettings) -> None:
+    def __init__(self, settings: KnownSettings) -> None:
         """Start locked."""
         super().__init__(settings)
         self._model = HandoverModel(settings)
@@ -74,7 +74,7 @@ class ModelHandover(Handover):
     and the balance holds between the clutches.
     """
 
-    def __init__(self, settings: RunSettings) -> None:
+    def __init__(self, settings: KnownSettings) -> None:
         """Start locked."""
         super().__init__(settings)
         self._model = HandoverModel(settings)
@@ -108,7 +108,7 @@ class SlipHandover(Handover):
     loop, an integrator, the same phase.
     """
 
-    def __init__(self, settings: RunSettings) -> None:
+    def __init__(self, settings: KnownSettings) -> None:
         """Start locked."""
         super().__init__(settings)
         self._model = HandoverModel(settings)
@@ -157,7 +157,7 @@ class SlipHandover(Handover):
         return carried + self._difference + self._proportional * error
 
 
-HANDOVERS: Mapping[str, Callable[[RunSettings], Handover]] = {
+HANDOVERS: Mapping[str, Callable[[KnownSettings], Handover]] = {
     'timed': TimedHandover,
     'slip': SlipHandover,
     'model': ModelHandover,
@@ -166,12 +166,11 @@ HANDOVERS: Mapping[str, Callable[[RunSettings], Handover]] = {
 """Handovers by name."""
 
 
-def make_handover(settings: RunSettings) -> Handover:
+def make_handover(settings: KnownSettings) -> Handover:
     """
     Return the handover of a run, from its known settings: one of ours by name, or a third party's.
 
     Raise ParameterError for an unknown name, DdctError for code of others that fails.
     """
-    settings = settings.known
     made = HANDOVERS.get(settings.handover)
     return made(settings) if made else third_party_handover(settings, HANDOVERS)

@@ -17,13 +17,13 @@ from ddct_plant.base.errors import (
     ParameterError,
     require_number,
 )
-from ddct_plant.scenario.settings import RunSettings, is_handover_file
+from ddct_plant.scenario.settings import KnownSettings, is_handover_file
 from ddct_plant.signals.handover_share import LEAST_DEVIATION
 
 _PAGE = 'docs/develop/gear_shift.md'
 
 
-def third_party_handover(settings: RunSettings, own: Iterable[str]) -> Handover:
+def third_party_handover(settings: KnownSettings, own: Iterable[str]) -> Handover:
     """
     Return the handover that the run's settings name, with its commands checked.
 
@@ -31,7 +31,7 @@ def third_party_handover(settings: RunSettings, own: Iterable[str]) -> Handover:
     error, DdctError where the code cannot be loaded or fails.
     """
     name = settings.handover
-    made: Callable[[RunSettings], Any]
+    made: Callable[[KnownSettings], Any]
     if is_handover_file(name):
         _require_new(settings.handover_name, name, own)
         made = the_one_class(name, Handover, _PAGE)
@@ -60,7 +60,7 @@ def _require_new(label: str, file: str, own: Iterable[str]) -> None:
         )
 
 
-def _entry_point(name: str, own: Iterable[str]) -> Callable[[RunSettings], Any]:
+def _entry_point(name: str, own: Iterable[str]) -> Callable[[KnownSettings], Any]:
     if point := HANDOVERS.point(name):
         return HANDOVERS.load(point)
     names = ', '.join([*own, *HANDOVERS.names()])
@@ -73,7 +73,7 @@ def _entry_point(name: str, own: Iterable[str]) -> Callable[[RunSettings], Any]:
 class _Checked(Handover):
     """A handover of others, whose failures and commands name it."""
 
-    def __init__(self, settings: RunSettings, handover: Handover) -> None:
+    def __init__(self, settings: KnownSettings, handover: Handover) -> None:
         super().__init__(settings)
         # Without the folder: a repetition elsewhere fails with the same reason.
         self._name, self._handover = Path(settings.handover).name, handover

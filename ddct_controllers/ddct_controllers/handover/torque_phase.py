@@ -5,7 +5,7 @@
 from ddct_controllers.interface import Measurement
 from ddct_plant.models.actuator import Actuator
 from ddct_plant.scenario.rules.shift import gears_of
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings
 from ddct_plant.shift.balance import off_going_torque
 
 
@@ -20,7 +20,7 @@ class TorquePhase:
     known actuator.
     """
 
-    def __init__(self, settings: RunSettings) -> None:
+    def __init__(self, settings: KnownSettings) -> None:
         """Start with the on-coming actuator at rest on a request of zero."""
         self._gears = gears_of(settings.scenario)
         self._actuator = Actuator(0.0, settings.scenario.actuator)

@@ -10,13 +10,13 @@ from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.models.driveline import LOCKED
 from ddct_plant.models.engine import EngineAuthority, EngineResponse
 from ddct_plant.models.parameters import DrivelineParameters
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings
 
 WAIT_STEPS = 60
 """Number of steps for which a demand waits for plates that are not closed."""
 
 
-def starts_locked(settings: RunSettings) -> bool:
+def starts_locked(settings: KnownSettings) -> bool:
     """Return whether a run begins with locked plates, and so without an engagement."""
     locked = settings.scenario.initial.clutch_phase == LOCKED
     return settings.stick_slip and not settings.shift and locked

@@ -22,20 +22,20 @@ from ddct_controllers.mpc.program.settings import MOST
 from ddct_plant.base.options import REQUIRED, OptionGroup, option
 from ddct_plant.models.actuator import PRINTED_ACTUATOR
 from ddct_plant.scenario.initial_state import initial_request
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings
 
 PRINTED, KNOWN = 'printed', 'known'
 """Actuators that a model may have: that of the thesis, and that of the known settings."""
 
 
-def run_start(settings: RunSettings) -> AtRest:
+def run_start(settings: KnownSettings) -> AtRest:
     """Return the start of a run for an observer: actuator at rest, load balanced."""
     stiffness = settings.scenario.driveline.halfshaft_stiffness
     return AtRest(stiffness, initial_request(settings))
 
 
 def make_observer(
-    settings: RunSettings,
+    settings: KnownSettings,
     model: TransmissionModel,
     noise: NoiseLevels | None = None,
     *,
@@ -83,7 +83,7 @@ class ObserverInputs(OptionGroup):
     )
 
     def parts(
-        self, run: RunSettings, model: TransmissionModel | None = None, *, noise_rpm: float = 1.0
+        self, run: KnownSettings, model: TransmissionModel | None = None, *, noise_rpm: float = 1.0
     ) -> tuple[TransmissionModel, Observer]:
         """
         Return the model with its known inputs, and its filter.
@@ -132,7 +132,7 @@ class DisturbanceObserver(OptionGroup):
         at_most=MOST,
     )
 
-    def parts(self, run: RunSettings) -> tuple[TransmissionModel, Observer]:
+    def parts(self, run: KnownSettings) -> tuple[TransmissionModel, Observer]:
         """Return the model with both errors as its states, and its filter."""
         drift = Drifts.of(run.scenario, self.clutch_drift_n_m, self.load_drift_n_m)
         noise = NoiseLevels(drift=drift)
@@ -144,7 +144,7 @@ class DisturbanceObserver(OptionGroup):
 class WearEstimate(WearNoise):
     """Filter that estimates the wear of the clutch, with the model of a new one."""
 
-    def parts(self, run: RunSettings) -> tuple[TransmissionModel, WearObserver]:
+    def parts(self, run: KnownSettings) -> tuple[TransmissionModel, WearObserver]:
         """Return the model with the errors of C_f and C_load, and its filter."""
         model = offset_free_model(run.scenario.controlled_driveline, run.scenario.actuator)
         drifts = Drifts.of(run.scenario, self.clutch_drift_n_m, self.load_drift_n_m)

@@ -96,7 +96,7 @@ def _controller_evidence(
     name = controller_label(chosen)
     if compiled_code(chosen):
         return _without_evidence(name, linear=False)
-    controller = make_controller(chosen, settings)
+    controller = make_controller(chosen, settings.known)
     model = _linear_model(name, controller)
     if model is None:
         return _without_evidence(name, linear=False)
@@ -104,7 +104,7 @@ def _controller_evidence(
     try:
         wear = {
             gain: loop_evidence(model, scenario.driveline, gain, scenario.actuator)
-            for gain in sorted({*WEAR_GAINS, settings.wear_gain})
+            for gain in sorted({*WEAR_GAINS, settings.case.wear_gain})
         }
         worst = _corner_evidence(model, corners)
     except (DdctError, np.linalg.LinAlgError) as error:

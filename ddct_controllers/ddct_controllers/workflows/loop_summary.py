@@ -27,7 +27,7 @@ def loop_summary(name: str, settings: RunSettings) -> list[str]:
     """Return lines for a terminal on the controller called `name`; none unless it is linear."""
     if compiled_code(name):
         return []
-    controller = make_controller(name, settings)
+    controller = make_controller(name, settings.known)
     if not isinstance(controller, LinearController):
         return []
     model, label = controller.linear_model(), controller_label(name)
@@ -43,7 +43,7 @@ def loop_summary(name: str, settings: RunSettings) -> list[str]:
 
 
 def _stability(model: StateSpace, settings: RunSettings) -> str:
-    scenario, wear_gain = settings.scenario, settings.wear_gain
+    scenario, wear_gain = settings.scenario, settings.case.wear_gain
     loop = sampled_loop(model, scenario.driveline, wear_gain, scenario.actuator)
     where = f'the sampled loop with its hold and delay, at wear gain {wear_gain:g},'
     if outside := unstable_poles(loop):

@@ -27,7 +27,7 @@ from ddct_plant.program.table import Table, Weight, text_or_dash, with_reasons
 from ddct_plant.scenario.choices.command_line import add_scenario_options
 from ddct_plant.scenario.chosen import scenario_of
 from ddct_plant.scenario.differences import changed_values, scenario_title
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 
 _UNDEFINED = {
     'w_c': '|L| is below 1 at every frequency',
@@ -75,12 +75,13 @@ def add_parser(subparsers: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Print the table, write the JSON, and return the exit code."""
-    settings = RunSettings(scenario_of(options, options.overrides), wear_gain=options.wear_gain)
+    known = KnownSettings(scenario_of(options, options.overrides))
+    settings = RunSettings(known, CaseSettings(wear_gain=options.wear_gain))
     every = options.controller == 'all'
     labels = [] if every else [controller_label(options.controller)]
     require_known_controllers(settings.scenario, labels)
     report = partial(complain, 'ddct design')
-    names = working_controllers(settings, report) if every else [options.controller]
+    names = working_controllers(settings.known, report) if every else [options.controller]
     evidence = frequency_evidence(names, settings, report if every else None)
     if not linear_entries(evidence):
         raise DdctError(
@@ -107,8 +108,8 @@ def margins_table(evidence: FrequencyEvidence, settings: RunSettings) -> Table:
         *(quantity.heading for quantity in LOOP_QUANTITY_OF.values()),
         *('wear below', 'corner M_s', f'unstable of {evidence.conditions.corners}'),
     )
-    rows = [_row(entry, settings.wear_gain) for entry in linear_entries(evidence)]
-    title = f'Sampled loop, wear gain {settings.wear_gain:g}, {changed}'
+    rows = [_row(entry, settings.case.wear_gain) for entry in linear_entries(evidence)]
+    title = f'Sampled loop, wear gain {settings.case.wear_gain:g}, {changed}'
     table = Table(
         title, headers, rows, numbers=(False, False), weights=_WEIGHTS, complete='--json FILE'
     )

@@ -15,7 +15,7 @@ from ddct_controllers.registry import (
 from ddct_plant.scenario.choices.command_line import add_scenario_options
 from ddct_plant.scenario.choices.settings import ARCHITECTURES
 from ddct_plant.scenario.chosen import scenario_of
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings
 
 _DESCRIPTION = """\
 Write a predictive controller, with its observer and solver, as self-contained C99 for a
@@ -47,7 +47,7 @@ def add_parser(subparsers: Any) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Write the C, print the names of its files, and return the exit code."""
-    settings = RunSettings(
+    settings = KnownSettings(
         scenario_of(options, options.overrides), architecture=options.architecture
     )
     require_known_controllers(settings.scenario, [controller_label(options.controller)])

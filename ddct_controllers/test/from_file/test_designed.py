@@ -15,10 +15,10 @@ from ddct_controllers.registry import controller_label, make_controller
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.linear.lti import FactoredTransferFunction
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 G_C = FactoredTransferFunction(-0.1 / 3.0, (0.8361, (82.23, 2563.0)), (0.0, (5.325, 339.3)))
-SETTINGS = RunSettings(load_scenario('thesis'))
+SETTINGS = RunSettings(KnownSettings(load_scenario('thesis')))
 TEXT = DesignedController('mine', G_C, {'method': 'by hand'}).to_yaml()
 
 
@@ -39,7 +39,7 @@ def test_a_controller_comes_back_to_the_bit(write):
 
 def test_the_registry_builds_it_under_the_name_inside(write):
     file = write(TEXT)
-    controller = make_controller(file, SETTINGS)
+    controller = make_controller(file, SETTINGS.known)
     assert isinstance(controller, LinearController)
     assert controller_label(file) == 'mine'
     assert controller_label('ls8') == 'ls8'
@@ -47,22 +47,26 @@ def test_the_registry_builds_it_under_the_name_inside(write):
 
 def test_its_numbers_are_options(write):
     file = write(TEXT)
-    settings = RunSettings(load_scenario('thesis', ['controllers.mine={gain: -0.5}']))
-    changed = make_controller(file, settings).linear_model()
+    settings = RunSettings(
+        KnownSettings(load_scenario('thesis', ['controllers.mine={gain: -0.5}']))
+    )
+    changed = make_controller(file, settings.known).linear_model()
     expected = LinearController(dataclasses.replace(G_C, gain=-0.5)).linear_model()
     assert changed is not None and np.array_equal(changed.c, expected.c)
     assert np.array_equal(changed.d, expected.d) and np.array_equal(changed.a, expected.a)
 
 
 def test_it_takes_no_other_option(write):
-    settings = RunSettings(load_scenario('thesis', ['controllers.mine={gian: 2.0}']))
+    settings = RunSettings(
+        KnownSettings(load_scenario('thesis', ['controllers.mine={gian: 2.0}']))
+    )
     with refused(ParameterError, key='controllers.mine.gian'):
-        make_controller(write(TEXT), settings)
+        make_controller(write(TEXT), settings.known)
 
 
 def test_it_may_not_take_the_name_of_another_controller(write):
     with refused(ParameterError, key='name'):
-        make_controller(write(TEXT.replace('name: mine', 'name: ls8')), SETTINGS)
+        make_controller(write(TEXT.replace('name: mine', 'name: ls8')), SETTINGS.known)
 
 
 @pytest.mark.parametrize(
@@ -90,7 +94,7 @@ def test_an_unusable_content_is_named_with_its_file(write, old, new, key, place)
     assert old in TEXT
     file = write(TEXT.replace(old, new))
     with refused(DdctError, key=key, place=place):
-        make_controller(file, SETTINGS)
+        make_controller(file, SETTINGS.known)
 
 
 @pytest.mark.parametrize('gain', ['-1e-2', '-.01', '-1.0e-02', '-0.01'])
@@ -110,16 +114,16 @@ def test_no_object_is_built_from_a_file(write, tmp_path):
 @pytest.mark.parametrize('text', ['', 'just words', '[1, 2]'])
 def test_a_file_that_is_no_mapping_is_named(write, text):
     with refused(ParameterError, key='the file'):
-        make_controller(write(text), SETTINGS)
+        make_controller(write(text), SETTINGS.known)
 
 
 def test_a_missing_file_is_named(tmp_path):
     with refused(DdctError, place='none.yaml'):
-        make_controller(str(tmp_path / 'none.yaml'), SETTINGS)
+        make_controller(str(tmp_path / 'none.yaml'), SETTINGS.known)
 
 
 def test_a_file_that_is_no_text_is_named(tmp_path):
     path = tmp_path / 'binary.yaml'
     path.write_bytes(b'\xff\xfe\x00')
     with pytest.raises(DdctError, match='not UTF-8'):
-        make_controller(str(path), SETTINGS)
+        make_controller(str(path), SETTINGS.known)

@@ -15,9 +15,9 @@ from ddct_controllers.interface import Measurement
 from ddct_controllers.registry import make_controller
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
-SETTINGS = RunSettings(load_scenario('thesis'))
+SETTINGS = RunSettings(KnownSettings(load_scenario('thesis')))
 NOW = Measurement(
     step=7,
     engine_speed=211.0,
@@ -79,7 +79,7 @@ def inputs_in_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
             f'name: mine\nfmu: {{file: mine.fmu, inputs: {{{mapped}}}, '
             'outputs: {u: clutch_torque_n_m}}\n'
         )
-        make_controller(str(file), SETTINGS)
+        make_controller(str(file), SETTINGS.known)
         return found_inputs
 
     return inputs

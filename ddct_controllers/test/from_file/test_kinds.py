@@ -11,9 +11,9 @@ from ddct_controllers.from_file.kinds import KINDS
 from ddct_controllers.registry import controller_spec, make_controller
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
-SETTINGS = RunSettings(load_scenario('thesis'))
+SETTINGS = RunSettings(KnownSettings(load_scenario('thesis')))
 CHOICES = ', '.join(KINDS)
 
 
@@ -48,7 +48,7 @@ def test_the_error_for_a_file_of_no_or_two_kinds_has_line_and_choices(tmp_path, 
     path = tmp_path / 'mine.yaml'
     path.write_text(text)
     with pytest.raises(ParameterError, match=re.escape(f'controller file {path}: {complaint}')):
-        make_controller(str(path), SETTINGS)
+        make_controller(str(path), SETTINGS.known)
 
 
 def sha256(path):
@@ -61,10 +61,10 @@ def test_a_linear_controller_is_identified_by_the_digest_of_its_file(tmp_path):
         b'name: mine\r\nunits: {input: rpm, output: N m}\r\n'
         b'polynomial: {num: [-0.1, -1.0], den: [1.0, 0.0]}  # \xc3\xa9\n'
     )
-    info = make_controller(str(path), SETTINGS).info('mine')
+    info = make_controller(str(path), SETTINGS.known).info('mine')
     assert info['controller_file_sha256'] == sha256(path)
     path.write_text(path.read_text().replace('-0.1', '-0.2'))
-    again = make_controller(str(path), SETTINGS).info('mine')
+    again = make_controller(str(path), SETTINGS.known).info('mine')
     assert again['controller_file_sha256'] == sha256(path) != info['controller_file_sha256']
 
 

@@ -18,9 +18,9 @@ from ddct_controllers.interface import Controller, Measurement
 from ddct_controllers.registry import controller_spec, make_controller
 from ddct_plant.base.errors import DdctError
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
-SETTINGS = RunSettings(load_scenario('thesis'))
+SETTINGS = RunSettings(KnownSettings(load_scenario('thesis')))
 FILE = 'controller_file_sha256'
 
 
@@ -48,7 +48,7 @@ class Mine(Controller):
 
 
 def made(file: Path) -> Controller:
-    return make_controller(str(file), SETTINGS)
+    return make_controller(str(file), SETTINGS.known)
 
 
 def gain(of: Controller) -> float:
@@ -247,7 +247,9 @@ def test_a_helper_that_cannot_be_read_is_named(tmp_path: Path) -> None:
 def test_an_error_of_a_helper_in_a_run_is_found_with_its_line(tmp_path: Path) -> None:
     text = controller('from helper import share', 'share(measurement.step)')
     written(tmp_path, {'mine.py': text, 'helper.py': 'def share(k):\n    return 1 / (k - k)\n'})
-    checks = {each.name: each for each in check_controller(str(tmp_path / 'mine.py'), SETTINGS)}
+    checks = {
+        each.name: each for each in check_controller(str(tmp_path / 'mine.py'), SETTINGS.known)
+    }
     assert checks['answers'].state == FAIL
     assert f'in {tmp_path / "helper.py"} line 2' in checks['answers'].detail
 
@@ -256,7 +258,9 @@ def test_an_error_of_a_helper_in_a_run_is_found_with_its_line(tmp_path: Path) ->
 def test_a_clock_that_a_helper_reads_is_found(tmp_path: Path) -> None:
     text = controller('from helper import now', '1e-11 * now()')
     written(tmp_path, {'mine.py': text, 'helper.py': 'from time import time as now\n'})
-    checks = {each.name: each for each in check_controller(str(tmp_path / 'mine.py'), SETTINGS)}
+    checks = {
+        each.name: each for each in check_controller(str(tmp_path / 'mine.py'), SETTINGS.known)
+    }
     assert 'it calls time.time in ' in checks['determinism'].detail
 
 

@@ -13,9 +13,9 @@ from ddct_controllers.check.checks import FAIL, PASS, check_controller
 from ddct_controllers.registry import controller_label, controller_spec, make_controller
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
-SETTINGS = RunSettings(load_scenario('thesis'))
+SETTINGS = RunSettings(KnownSettings(load_scenario('thesis')))
 HEAD = """\
 from dataclasses import dataclass
 from ddct_controllers.interface import Command, Controller
@@ -31,20 +31,21 @@ def file(tmp_path: Path) -> Path:
 
 
 def test_it_is_called_as_its_class_and_takes_its_options(file: Path) -> None:
-    settings = RunSettings(load_scenario('thesis', ['controllers.Mine.gain=0.3']))
-    made = make_controller(str(file), settings)
+    settings = RunSettings(KnownSettings(load_scenario('thesis', ['controllers.Mine.gain=0.3'])))
+    made = make_controller(str(file), settings.known)
     assert controller_label(str(file)) == made.registered_name == 'Mine'
     assert vars(made)['gain'] == 0.3
     with refused(ParameterError, key='controllers.Mine.gian'):
         make_controller(
-            str(file), RunSettings(load_scenario('thesis', ['controllers.Mine.gian=1']))
+            str(file),
+            KnownSettings(load_scenario('thesis', ['controllers.Mine.gian=1'])),
         )
 
 
 def test_it_is_identified_by_the_digest_of_its_file_and_an_edit_counts_at_once(file: Path) -> None:
     for text in (HEAD + PROPORTIONAL, (HEAD + PROPORTIONAL).replace('0.1', '0.2')):
         file.write_bytes(text.replace('\n', '\r\n').encode())
-        made = make_controller(str(file), SETTINGS)
+        made = make_controller(str(file), SETTINGS.known)
         digest = hashlib.sha256(file.read_bytes()).hexdigest()
         assert made.info('Mine')['controller_file_sha256'] == digest
         assert vars(made)['gain'] == (0.1 if '0.1' in text else 0.2)
@@ -56,7 +57,7 @@ def test_each_controller_has_the_file_and_what_lies_beside_it_for_itself(file: P
     text = PROPORTIONAL.replace('self.gain = ', 'beside_mine_7.MADE.append(1); self.gain = ')
     file.write_text(f'import beside_mine_7\n{HEAD}{text}')
     spec = controller_spec(str(file))
-    made = [make_controller(chosen, SETTINGS) for chosen in (str(file), spec, spec)]
+    made = [make_controller(chosen, SETTINGS.known) for chosen in (str(file), spec, spec)]
     for each in made:
         assert type(each).update.__globals__['beside_mine_7'].MADE == [1]
 
@@ -111,9 +112,12 @@ def test_a_file_that_is_not_there_is_named(tmp_path: Path) -> None:
 
 
 def test_an_error_in_it_is_found_with_its_line(file: Path) -> None:
-    assert {each.state for each in check_controller(str(file), SETTINGS)} <= {PASS, 'skipped'}
+    assert {each.state for each in check_controller(str(file), SETTINGS.known)} <= {
+        PASS,
+        'skipped',
+    }
     file.write_text((HEAD + PROPORTIONAL).replace('-self.gain', 'self.gain'))
-    found = {each.name: each.detail for each in check_controller(str(file), SETTINGS)}
+    found = {each.name: each.detail for each in check_controller(str(file), SETTINGS.known)}
     assert f'change the sign in {file} line 14; ' in found['sign']
 
 
@@ -129,7 +133,7 @@ def test_an_error_in_it_is_found_with_its_line(file: Path) -> None:
 def test_its_own_module_is_watched(file: Path, wrong: str, check: str, words: str) -> None:
     text = PROPORTIONAL.replace('Command(-self.gain * measurement.slip_error_rpm)', wrong)
     file.write_text(f'import time\ncount = []\n{HEAD}{text}')
-    outcomes = {each.name: each for each in check_controller(str(file), SETTINGS)}
+    outcomes = {each.name: each for each in check_controller(str(file), SETTINGS.known)}
     assert outcomes[check].state == FAIL
     assert words in outcomes[check].detail
     assert f'{file} line 1' in outcomes[check].detail

@@ -12,9 +12,9 @@ from ddct_controllers.registry import make_controller
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.linear.lti import StateSpace
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
-SETTINGS = RunSettings(load_scenario('thesis'))
+SETTINGS = RunSettings(KnownSettings(load_scenario('thesis')))
 LS8 = PRINTED_CONTROLLERS['ls8']
 HEAD = 'name: mine\nunits: {input: rpm, output: N m}\n'
 OMEGA = np.geomspace(0.01, 300.0, 200)
@@ -33,7 +33,7 @@ def write(tmp_path):
 @pytest.fixture
 def model(write):
     def linear_model(text) -> StateSpace:
-        return make_controller(write(HEAD + text), SETTINGS).linear_model()
+        return make_controller(write(HEAD + text), SETTINGS.known).linear_model()
 
     return linear_model
 
@@ -158,11 +158,11 @@ def test_a_controller_that_cannot_run_is_named_with_file_and_line(
     assert old in text
     file = write(HEAD + text.replace(old, new))
     with refused(ParameterError, key=key, place=f'controller file {file}: line {line}'):
-        make_controller(file, SETTINGS)
+        make_controller(file, SETTINGS.known)
 
 
 @pytest.mark.parametrize('units', ['{input: rad/s, output: N m}', '{input: rpm}', 'rpm', ''])
 def test_a_file_states_the_units_of_the_loop_or_is_refused(write, units):
     text = f'name: mine\nunits: {units}\n{POLYNOMIAL}'
     with refused(DdctError, key='units', place='any.yaml: line 2'):
-        make_controller(write(text), SETTINGS)
+        make_controller(write(text), SETTINGS.known)

@@ -17,9 +17,9 @@ from ddct_controllers.mpc.controller import MpcController
 from ddct_controllers.registry import controller_spec, make_controller
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
-SETTINGS = RunSettings(load_scenario('thesis'))
+SETTINGS = RunSettings(KnownSettings(load_scenario('thesis')))
 PI_GAINS = {'proportional_gain': 0.25, 'integral_gain': 0.5}
 LINEAR = 'units: {input: rpm, output: N m}\npolynomial: {num: [-0.1, -1.0], den: [1, 0]}\n'
 Write = Callable[[str, str], str]
@@ -38,7 +38,7 @@ def write(tmp_path: Path) -> Write:
 
 def test_a_packaged_controller_has_the_gains_of_the_file(write: Write) -> None:
     file = write('tuned.yaml', with_options_text('tuned', 'pi', PI_GAINS))
-    controller = make_controller(file, SETTINGS)
+    controller = make_controller(file, SETTINGS.known)
     assert isinstance(controller, PiController) and controller.gains() == PI_GAINS
     assert controller.registered_name == 'tuned'
 
@@ -46,7 +46,7 @@ def test_a_packaged_controller_has_the_gains_of_the_file(write: Write) -> None:
 def test_whole_numbers_stay_whole(write: Write) -> None:
     text = with_options_text('short', 'mpc3', {'prediction_steps': 9, 'output_weight': 1})
     spec = controller_spec(write('short.yaml', text))
-    assert isinstance(spec(ControllerContext(SETTINGS, {})), MpcController)
+    assert isinstance(spec(ControllerContext(SETTINGS.known, {})), MpcController)
     options = spec.options or {}
     assert (options['prediction_steps'].default, options['output_weight'].default) == (9, 1.0)
     assert options['prediction_steps'].kind is int and options['output_weight'].kind is float
@@ -54,18 +54,20 @@ def test_whole_numbers_stay_whole(write: Write) -> None:
 
 def test_its_options_can_be_set_again(write: Write) -> None:
     file = write('tuned.yaml', with_options_text('tuned', 'pi', PI_GAINS))
-    changed = RunSettings(load_scenario('thesis', ['controllers.tuned={integral_gain: 0.0}']))
-    assert make_controller(file, changed).gains() == {**PI_GAINS, 'integral_gain': 0.0}
+    changed = RunSettings(
+        KnownSettings(load_scenario('thesis', ['controllers.tuned={integral_gain: 0.0}']))
+    )
+    assert make_controller(file, changed.known).gains() == {**PI_GAINS, 'integral_gain': 0.0}
 
 
 def test_files_of_other_kinds_are_relative_to_it(write: Write) -> None:
     write('mine.yaml', 'name: mine\n' + LINEAR)
     write('mine.py', IMPORTS + PROPORTIONAL)
     linear = write('a.yaml', with_options_text('a', 'mine.yaml', {'num_0': -0.2}))
-    model = make_controller(linear, SETTINGS).linear_model()
+    model = make_controller(linear, SETTINGS.known).linear_model()
     assert model is not None and np.array_equal(model.d, [[-0.2]])
     python = make_controller(
-        write('b.yaml', with_options_text('b', 'mine.py', {'gain': 0.7})), SETTINGS
+        write('b.yaml', with_options_text('b', 'mine.py', {'gain': 0.7})), SETTINGS.known
     )
     assert getattr(python, 'gain', None) == 0.7
     assert set(python.digests) == {'controller_file_sha256', 'base_controller_file_sha256'}

@@ -18,7 +18,7 @@ from ddct_controllers.handover.interface import (
 from ddct_controllers.handover.on_coming_estimate import MOST_GAIN
 from ddct_plant.base.timebase import steps_in
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import CaseSettings, RunSettings
 from ddct_plant.signals.handover_share import WHOLE, OnComingShare
 
 WEAR = (0.7, 1.0, 1.3)
@@ -29,14 +29,14 @@ HANDED_OVER = 50
 
 def worn(scenario: str, wear_gain: float) -> RunSettings:
     """Return a shift whose on-coming clutch has a wear gain."""
-    return replace(shift_settings(scenario), wear_gain=wear_gain)
+    return RunSettings(shift_settings(scenario).known, CaseSettings(wear_gain=wear_gain))
 
 
 def carried_over_requested(ticks: list[Tick], settings: RunSettings) -> float:
     """Return what the on-coming clutch carries over what it is meant to, without the reserve."""
     on_coming = ticks[-1].command.on_coming
     meant = 100.0
-    return settings.wear_gain * on_coming.request(meant) / meant
+    return settings.case.wear_gain * on_coming.request(meant) / meant
 
 
 @pytest.mark.parametrize('scenario', SHIFTS)
@@ -55,7 +55,8 @@ def test_an_engine_that_cannot_give_the_demand_is_not_taken_for_wear(wear_gain):
     full_load = [0.0, 110.0, 170.0, 225.0, 250.0, 217.0, 165.0, 300.0]
     beyond = {'engine.torque_n_m': [300.0], 'engine_limits.full_load_n_m': full_load}
     scenario = load_scenario('upshift_full', beyond)
-    settings = replace(worn('upshift_full', wear_gain), scenario=scenario)
+    known = replace(shift_settings('upshift_full').known, scenario=scenario)
+    settings = RunSettings(known, CaseSettings(wear_gain=wear_gain))
     ticks = shift(settings, 'adaptive')
     assert carried_over_requested(ticks, settings) == pytest.approx(1.0, abs=0.05)
 
@@ -93,7 +94,11 @@ def test_a_longer_handover_finds_the_wear_better():
         abs(ticks[-1].command.wear_deviation + 0.25)
         for ticks in (
             shift(
-                replace(shift_settings('upshift', handover_s=seconds), wear_gain=0.75), 'adaptive'
+                replace(
+                    shift_settings('upshift', handover_s=seconds),
+                    case=CaseSettings(wear_gain=0.75),
+                ),
+                'adaptive',
             )
             for seconds in (0.05, 0.6)
         )
@@ -106,9 +111,9 @@ def test_a_longer_handover_finds_the_wear_better():
 def test_a_mass_that_is_not_known_moves_the_torque_by_less_than_five_percent(mass_kg, wear_gain):
     settings = worn('upshift_full', wear_gain)
     car = load_scenario('upshift_full', {'vehicle.mass_kg': mass_kg})
-    other = replace(settings, scenario=car)
+    other = RunSettings(replace(settings.known, scenario=car))
     known, unknown = (
-        carried_over_requested(shift(other, 'adaptive', law=AdaptiveHandover(each)), other)
+        carried_over_requested(shift(other, 'adaptive', law=AdaptiveHandover(each.known)), other)
         for each in (other, settings)
     )
     assert unknown == pytest.approx(known, abs=0.05)
@@ -119,8 +124,8 @@ class LosesSamples(Handover):
 
     def __init__(self, settings: RunSettings) -> None:
         """Make the handover."""
-        super().__init__(settings)
-        self._law = AdaptiveHandover(settings)
+        super().__init__(settings.known)
+        self._law = AdaptiveHandover(settings.known)
 
     def update(self, measurement: HandoverMeasurement) -> HandoverCommand:
         """Return the command for the period of t_k."""

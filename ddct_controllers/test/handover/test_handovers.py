@@ -189,4 +189,4 @@ def test_a_handover_expects_what_the_locked_clutch_carries():
 
 def test_an_unknown_handover_is_refused():
     with refused(ParameterError, 'handover'):
-        make_handover(replace(shift_settings('upshift'), handover='quick'))
+        make_handover(replace(shift_settings('upshift').known, handover='quick'))

@@ -29,7 +29,7 @@ def in_file(tmp_path: Path, body: str) -> Handover:
             {body}
     """
     file.write_text(dedent(text))
-    settings = replace(shift_settings('upshift'), handover=str(file))
+    settings = replace(shift_settings('upshift').known, handover=str(file))
     assert settings.handover_name == 'mine'
     return make_handover(settings)
 
@@ -62,7 +62,7 @@ def test_a_file_with_the_name_of_another_handover_is_refused_before_it_runs(tmp_
     file = tmp_path / 'timed.py'
     file.write_text('raise SystemExit("it has run")\n')
     with pytest.raises(DdctError, match='timed is the name of another handover: rename'):
-        make_handover(replace(shift_settings('upshift'), handover=str(file)))
+        make_handover(replace(shift_settings('upshift').known, handover=str(file)))
 
 
 def test_a_package_adds_one_by_an_entry_point(monkeypatch):
@@ -76,10 +76,10 @@ def test_a_package_adds_one_by_an_entry_point(monkeypatch):
     )
     monkeypatch.setattr(plugins, '_installed', lambda _: points)
     settings = shift_settings('upshift')
-    theirs = make_handover(replace(settings, handover='theirs'))
-    assert theirs.update(NOW) == TimedHandover(settings).update(NOW)
+    theirs = make_handover(replace(settings.known, handover='theirs'))
+    assert theirs.update(NOW) == TimedHandover(settings.known).update(NOW)
     for name, wrong in (('broken', 'cannot be loaded'), ('foreign', 'cannot be made')):
         with pytest.raises(DdctError, match=wrong):
-            make_handover(replace(settings, handover=name))
+            make_handover(replace(settings.known, handover=name))
     with pytest.raises(DdctError, match='timed, slip, model, adaptive, broken, foreign, theirs'):
-        make_handover(replace(settings, handover='none'))
+        make_handover(replace(settings.known, handover='none'))

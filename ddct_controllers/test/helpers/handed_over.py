@@ -29,7 +29,7 @@ def shift(
 ) -> list[Tick]:
     """Run a shift whose on-coming clutch is asked for C_fOL, times a factor at the end."""
     plant = Plant(settings)
-    law = law or make_handover(replace(settings, handover=name))
+    law = law or make_handover(replace(settings.known, handover=name))
     static = StaticTorque(settings.scenario.controlled_driveline, 'full')
     found = []
     for step in range(130):

@@ -12,7 +12,7 @@ from ddct_controllers.registry import make_controller
 from ddct_controllers.synthesised import synthesised_design
 from ddct_controllers.workflows.design_program import main
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 
 def require_written_as_designed(
@@ -23,8 +23,8 @@ def require_written_as_designed(
     assert main([*options, '--write-anyway']) == 0
     path = folder / 'mine.yaml'
     assert f'bringup --controller {path}' in capsys.readouterr().out
-    settings = RunSettings(load_scenario('thesis'))
-    built = make_controller(str(path), settings).linear_model()
+    settings = RunSettings(KnownSettings(load_scenario('thesis')))
+    built = make_controller(str(path), settings.known).linear_model()
     expected = synthesised_design(f'hinf_{weights}').sampled
     for part in 'abcd':
         assert np.array_equal(getattr(built, part), getattr(expected, part))

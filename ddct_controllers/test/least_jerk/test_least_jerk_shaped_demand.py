@@ -21,7 +21,7 @@ from ddct_plant.models.engine import EngineAuthority
 from ddct_plant.models.gearbox import EngagedGear
 from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 STEPS = 34
 """Period of the locked driveline in second gear, in steps."""
@@ -103,6 +103,6 @@ def test_the_authority_over_the_engine_bounds_the_torque():
     ],
 )
 def test_only_a_run_that_starts_locked_has_its_engine_commanded(scenario, periods, commands):
-    settings = RunSettings(load_scenario(scenario))
-    controller = SPEC(ControllerContext(settings, {'demand_periods': periods}))
+    settings = RunSettings(KnownSettings(load_scenario(scenario)))
+    controller = SPEC(ControllerContext(settings.known, {'demand_periods': periods}))
     assert controller.commands_engine is commands

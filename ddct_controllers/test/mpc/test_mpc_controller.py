@@ -20,15 +20,15 @@ from ddct_controllers.mpc.variants import PREDICTIVE
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.units import rad_s_from_rpm, rpm_from_rad_s
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
-RUN = RunSettings(load_scenario('thesis'))
+RUN = RunSettings(KnownSettings(load_scenario('thesis')))
 MODEL = transmission_model(RUN.scenario.driveline)
 MPC3 = PREVIEW.settings()
 
 
 def controller(settings=MPC3):
-    return MpcController(MODEL, make_observer(RUN, MODEL), settings)
+    return MpcController(MODEL, make_observer(RUN.known, MODEL), settings)
 
 
 def measurement(step, slip=60.0, open_loop=250.0, reference=None, preview=22):
@@ -69,7 +69,7 @@ def test_without_active_limits_it_is_the_least_squares_solution():
     """The first move is that of the least squares over the simulated step responses."""
     mpc = controller(replace(MPC3, inputs=(replace(MPC3.inputs[0], lowest=-math.inf),)))
     first = measurement(60)
-    state = make_observer(RUN, MODEL).correct((210.0, 150.0, 17.0), 60.0)
+    state = make_observer(RUN.known, MODEL).correct((210.0, 150.0, 17.0), 60.0)
     responses, free = np.zeros((22, 4)), np.zeros(22)
     for j in range(4):
         x = np.zeros(9)
@@ -95,7 +95,7 @@ def test_final_and_torque_weights_are_in_the_least_squares():
     mpc = controller(replace(settings, inputs=(free,)))
     own = mpc.update(measurement(60)).clutch_torque
     # In the second step the controller has a torque of its own.
-    observer = make_observer(RUN, MODEL)
+    observer = make_observer(RUN.known, MODEL)
     observer.correct((210.0, 150.0, 17.0), 60.0)
     observer.predict((250.0 + own, 300.0, 60.0))
     state = observer.correct((210.0, 149.0, 17.0), 60.0)
@@ -303,7 +303,7 @@ def test_a_level_that_gives_way_leaves_room_for_rounding():
 
 def test_soft_limits_are_divided_as_the_outputs_are():
     """K_usura divides the soft limits; the hard ones limit the request and stay as they are."""
-    mpc = PREDICTIVE['mpc3'](ControllerContext(RUN, {'lowest_slip_rpm': 600.0}))
+    mpc = PREDICTIVE['mpc3'](ControllerContext(RUN.known, {'lowest_slip_rpm': 600.0}))
     lower, upper = mpc.clutch.bounds(250.0, divisor=0.8)
     soft = mpc.program.structure.soft_rows
     assert lower[soft] == pytest.approx([rad_s_from_rpm(750.0)] * 22)
@@ -379,7 +379,7 @@ def test_a_reset_controller_is_a_new_one(backend):
 )
 def test_bad_options_are_named(options, key):
     with refused(ParameterError, key=key):
-        PREDICTIVE['mpc3'](ControllerContext(RUN, options))
+        PREDICTIVE['mpc3'](ControllerContext(RUN.known, options))
 
 
 def test_options_reach_the_program():
@@ -389,7 +389,7 @@ def test_options_reach_the_program():
         'torque_rate_n_m_s': 100.0,
         'preview': True,
     }
-    mpc = PREDICTIVE['mpc1'](ControllerContext(RUN, options))
+    mpc = PREDICTIVE['mpc1'](ControllerContext(RUN.known, options))
     assert mpc.preview_steps == 9
     requests = [250.0] + [250.0 + a.clutch_torque for a in answers(mpc, reference=[0.0] * 10)]
     assert max(np.abs(np.diff(requests))) == pytest.approx(1.0)
@@ -398,7 +398,7 @@ def test_options_reach_the_program():
 def test_the_lowest_slip_is_soft_and_holds_where_it_can():
     """At a slip of 60 rad/s all 22 periods have a soft row, and the program is solved."""
     free, limited = (
-        PREDICTIVE['mpc3'](ControllerContext(RUN, options))
+        PREDICTIVE['mpc3'](ControllerContext(RUN.known, options))
         for options in ({}, {'lowest_slip_rpm': 600.0})
     )
     assert limited.program.structure.soft_rows.tolist() == list(range(4, 26))

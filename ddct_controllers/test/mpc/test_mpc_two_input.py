@@ -29,9 +29,9 @@ from ddct_plant.models.engine import Engine, EngineAuthority, EngineResponse
 from ddct_plant.models.static_torque import constant_slip_torque
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.initial_state import initial_state
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
-RUN = RunSettings(load_scenario('thesis'))
+RUN = RunSettings(KnownSettings(load_scenario('thesis')))
 MODEL = transmission_model(RUN.scenario.driveline)
 MPC4 = TwoInputCost().settings()
 FREE = EngineAuthority()
@@ -43,7 +43,7 @@ FACTORIES = {'mpc4': PREDICTIVE['mpc4'], 'mpc4_wear': PREDICTIVE['mpc4_wear']}
 
 
 def controller(authority=FREE, settings=MPC4):
-    return MpcController(MODEL, make_observer(RUN, MODEL), settings, authority)
+    return MpcController(MODEL, make_observer(RUN.known, MODEL), settings, authority)
 
 
 class Vehicle:
@@ -257,7 +257,7 @@ def test_the_pull_alone_keeps_the_engine_on_the_demand():
 
 @pytest.mark.parametrize('name', FACTORIES)
 def test_a_reset_controller_is_a_new_one(name):
-    make, context = FACTORIES[name], ControllerContext(RUN, {})
+    make, context = FACTORIES[name], ControllerContext(RUN.known, {})
     mpc = make(context)
     first = answers(mpc)
     mpc.reset()
@@ -313,19 +313,19 @@ def test_without_a_solution_the_plan_is_followed_within_the_limits_and_counted()
 )
 def test_bad_options_are_named(name, options, key):
     with refused(ParameterError, key=key.replace('{}', name)):
-        FACTORIES[name](ControllerContext(RUN, options))
+        FACTORIES[name](ControllerContext(RUN.known, options))
 
 
 def test_options_reach_the_program():
     options = {'slip_acceleration_weight': 0.05, 'demand_weight': 0.3, 'preview': True}
-    settings = PREDICTIVE['mpc4'](ControllerContext(RUN, options)).settings
+    settings = PREDICTIVE['mpc4'](ControllerContext(RUN.known, options)).settings
     assert settings.outputs[1].weight == 0.05
     assert settings.inputs[1].target_weight == 0.3
     assert settings.preview
 
 
 def test_the_estimate_of_the_wear_is_shown():
-    mpc = PREDICTIVE['mpc4_wear'](ControllerContext(RUN, {}))
+    mpc = PREDICTIVE['mpc4_wear'](ControllerContext(RUN.known, {}))
     shown = float(dict(answers(mpc)[-1].status)['wear_gain_estimate'])
     assert 0.5 <= shown <= 1.5
     assert shown == mpc.observer.wear_gain

@@ -18,15 +18,15 @@ from ddct_controllers.mpc.qp.problem import QpSolution
 from ddct_controllers.mpc.variants import PREDICTIVE
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
-SETTINGS = RunSettings(load_scenario('thesis'))
+SETTINGS = RunSettings(KnownSettings(load_scenario('thesis')))
 DRIVELINE = SETTINGS.scenario.driveline
 MAKERS = {'mpc_wear': PREDICTIVE['mpc_wear'], 'mpc4_wear': PREDICTIVE['mpc4_wear']}
 
 
 def make_controller(options=None, name='mpc_wear'):
-    return MAKERS[name](ControllerContext(SETTINGS, options or {}))
+    return MAKERS[name](ControllerContext(SETTINGS.known, options or {}))
 
 
 @pytest.mark.parametrize('wear_gain', [0.7, 1.3])

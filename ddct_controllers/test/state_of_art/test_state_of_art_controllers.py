@@ -15,9 +15,9 @@ from ddct_controllers.state_of_art.controllers import STATE_OF_ART
 from ddct_controllers.state_of_art.pedal_mpc import engagement_time_s
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
-SETTINGS = RunSettings(load_scenario('thesis'))
+SETTINGS = RunSettings(KnownSettings(load_scenario('thesis')))
 TWO_INPUTS = ('torque_estimator', 'decoupled_pid')
 
 
@@ -37,16 +37,16 @@ def answers(controller):
 def test_they_are_in_the_registry():
     assert set(STATE_OF_ART) <= set(controller_names())
     for name in STATE_OF_ART:
-        assert make_controller(name, SETTINGS).commands_engine == (name in TWO_INPUTS)
-    assert make_controller('pedal_mpc', SETTINGS).linear_model() is None
+        assert make_controller(name, SETTINGS.known).commands_engine == (name in TWO_INPUTS)
+    assert make_controller('pedal_mpc', SETTINGS.known).linear_model() is None
 
 
 @pytest.mark.parametrize('name', STATE_OF_ART)
 def test_a_reset_controller_is_a_new_one_to_the_bit(name):
-    controller = make_controller(name, SETTINGS)
+    controller = make_controller(name, SETTINGS.known)
     first = answers(controller)
     controller.reset()
-    assert answers(controller) == first == answers(make_controller(name, SETTINGS))
+    assert answers(controller) == first == answers(make_controller(name, SETTINGS.known))
     assert len({command.clutch_torque for command in first}) == len(first)
 
 
@@ -55,7 +55,7 @@ def test_the_engine_makes_the_slip_fall(name):
     """It does at once, by J_m times the requested rate; the clutch follows slowly."""
     commands = {}
     for rate in (0.0, -100.0):
-        controller = make_controller(name, SETTINGS)
+        controller = make_controller(name, SETTINGS.known)
         for step in range(60):
             controller.hold(measurement(step))
         commands[rate] = controller.update(replace(measurement(60), slip_reference_rate=[rate]))
@@ -71,7 +71,7 @@ def test_they_follow_an_engine_speed_that_the_scenario_gives(name):
     for start in (240.0, 260.0):
         points = {'time_s': [0.6, 1.6], 'speed_rad_s': [start, start + 10.0]}
         changes = [f'engine_speed_reference.{key}={value}' for key, value in points.items()]
-        controller = make_controller(name, RunSettings(load_scenario('thesis', changes)))
+        controller = make_controller(name, KnownSettings(load_scenario('thesis', changes)))
         commands[start] = answers(controller)[-1]
     reference = float(dict(commands[260.0].status)['engine_speed_reference_rad_s'])
     assert reference == pytest.approx(262.9)
@@ -80,15 +80,15 @@ def test_they_follow_an_engine_speed_that_the_scenario_gives(name):
 
 @pytest.mark.parametrize('pedal', [0.0, 0.25, 1.0])
 def test_the_engagement_time_falls_with_the_pedal(pedal):
-    settings = RunSettings(load_scenario('thesis', [f'pedal_position={pedal}']))
-    context = ControllerContext(settings, {'slowest_engagement_s': 2.0})
+    settings = RunSettings(KnownSettings(load_scenario('thesis', [f'pedal_position={pedal}'])))
+    context = ControllerContext(settings.known, {'slowest_engagement_s': 2.0})
     assert engagement_time_s(context) == pytest.approx(2.0 - 1.6 * pedal)
-    command = answers(make_controller('pedal_mpc', settings))[0]
+    command = answers(make_controller('pedal_mpc', settings.known))[0]
     assert float(dict(command.status)['horizon_s']) == pytest.approx(1.2 - 0.8 * pedal)
 
 
 def test_the_horizon_shrinks_to_a_third_and_stays():
-    controller = make_controller('pedal_mpc', SETTINGS)
+    controller = make_controller('pedal_mpc', SETTINGS.known)
     horizons = [
         float(dict(controller.update(measurement(step)).status)['horizon_s'])
         for step in range(58, 160)
@@ -99,7 +99,7 @@ def test_the_horizon_shrinks_to_a_third_and_stays():
 
 
 def test_without_a_solution_the_request_stays_and_is_counted():
-    controller: Any = make_controller('pedal_mpc', SETTINGS)
+    controller: Any = make_controller('pedal_mpc', SETTINGS.known)
     controller.hold(measurement(59))
     before = controller.update(measurement(60)).clutch_torque
 
@@ -130,5 +130,5 @@ def test_without_a_solution_the_request_stays_and_is_counted():
 def test_a_bad_option_is_named(name, options, complaint):
     scenario = replace(SETTINGS.scenario, controllers={name: options})
     with pytest.raises(ParameterError) as caught:
-        make_controller(name, RunSettings(scenario))
+        make_controller(name, KnownSettings(scenario))
     assert complaint in str(caught.value)

@@ -22,9 +22,9 @@ from ddct_plant.models.clutch import FrictionParameters
 from ddct_plant.models.driveline_model import driveline_matrices
 from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
-SETTINGS = RunSettings(load_scenario('thesis'))
+SETTINGS = RunSettings(KnownSettings(load_scenario('thesis')))
 DRIVELINE = DrivelineParameters()
 NOISE = lqi.noise_levels(FrictionParameters())
 FREQUENCY = lqi.OPTIONS['natural_frequency_rad_s'].default
@@ -51,7 +51,7 @@ def test_the_slip_model_is_the_driveline_but_for_the_drag(column):
 
 
 def test_it_is_linear_and_has_a_linear_model():
-    model = make_controller('lqi', SETTINGS).linear_model()
+    model = make_controller('lqi', SETTINGS.known).linear_model()
     assert np.array_equal(model.a, MODEL.a)
     assert np.linalg.matrix_rank(MODEL.a) <= len(MODEL.a) == 9
     assert 1.0 in np.linalg.eigvals(MODEL.a).real.round(9), 'the integral'
@@ -179,5 +179,5 @@ def test_a_constant_torque_error_leaves_no_slip(wear_gain):
 )
 def test_a_bad_option_is_named(options, complaint):
     with pytest.raises(ParameterError) as caught:
-        lqi.SPEC(ControllerContext(SETTINGS, options))
+        lqi.SPEC(ControllerContext(SETTINGS.known, options))
     assert complaint in str(caught.value)

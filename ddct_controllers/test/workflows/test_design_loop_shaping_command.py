@@ -13,7 +13,7 @@ from ddct_controllers.registry import make_controller
 from ddct_controllers.workflows import loop_shaping_command
 from ddct_plant.program.command_line import run_program
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings
 
 pytestmark = pytest.mark.slow
 
@@ -68,7 +68,7 @@ def test_a_design_is_written_with_charts_and_is_a_controller(tmp_path, capsys):
     assert designed.provenance['specifications']['rise_time_s'] == 0.6
     assert designed.provenance['sampled_loop']['rise_time_s'] <= 0.6
     assert designed.provenance['sampled_loop']['stable']
-    make_controller(str(path), RunSettings(load_scenario('thesis')))
+    make_controller(str(path), KnownSettings(load_scenario('thesis')))
 
 
 @pytest.mark.usefixtures('without_charts')

@@ -9,10 +9,10 @@ from ddct_controllers.workflows.evidence import loop_evidence
 from ddct_controllers.workflows.loop_summary import formula, loop_summary
 from ddct_plant.linear.lti import FactoredTransferFunction
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 
 SCENARIO = load_scenario('thesis')
-SETTINGS = RunSettings(SCENARIO)
+SETTINGS = RunSettings(KnownSettings(SCENARIO))
 HEAD = 'name: mine\nunits: {input: rpm, output: N m}\n'
 POLYNOMIAL = 'polynomial: {num: [-0.035, -0.8, -1.1], den: [1, 8, 0]}\n'
 
@@ -60,9 +60,11 @@ def test_a_sampled_controller_is_shown_as_it_is(summary):
 
 @pytest.mark.parametrize('wear_gain', [1.0, 1.3])
 def test_a_stable_loop_has_the_margins_of_the_evidence(summary, tmp_path, wear_gain):
-    settings = RunSettings(load_scenario('thesis'), wear_gain=wear_gain)
+    settings = RunSettings(
+        KnownSettings(load_scenario('thesis')), CaseSettings(wear_gain=wear_gain)
+    )
     stability = summary(POLYNOMIAL, settings)[-1]
-    model = make_controller(str(tmp_path / 'any.yaml'), settings).linear_model()
+    model = make_controller(str(tmp_path / 'any.yaml'), settings.known).linear_model()
     margins = loop_evidence(model, SCENARIO.driveline, wear_gain, SCENARIO.actuator).margins
     assert f'at wear gain {wear_gain:g}, is stable: ' in stability
     assert f'gain margin {margins.gain_margin_db:.1f} dB' in stability
@@ -78,7 +80,7 @@ def test_an_unstable_loop_is_printed_in_capitals_and_a_wrong_sign_is_suspected(s
 
 
 def test_the_loop_has_the_actuator_of_the_scenario(summary):
-    slow = RunSettings(load_scenario('thesis', ['actuator.delay_s=0.9']))
+    slow = RunSettings(KnownSettings(load_scenario('thesis', ['actuator.delay_s=0.9'])))
     assert 'is stable: ' in summary(POLYNOMIAL)[-1]
     assert 'UNSTABLE: ' in summary(POLYNOMIAL, slow)[-1]
 

@@ -18,7 +18,7 @@ from ddct_controllers.workflows.evidence_types import ControllerEntry
 from ddct_plant.linear.lti import StateSpace
 from ddct_plant.program.command_line import run_program
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings
 
 pytestmark = pytest.mark.slow
 
@@ -201,7 +201,7 @@ def test_a_linear_model_of_the_wrong_kind_is_one_line(stub, capsys, model, compl
 def test_among_all_a_linear_model_that_cannot_be_used_leaves_the_others(monkeypatch, capsys):
     names = ['ls8', 'pi']
     monkeypatch.setattr(margins_command, 'working_controllers', lambda settings, tell: names)
-    broken = type(evidence.make_controller('pi', RunSettings(load_scenario('thesis'))))
+    broken = type(evidence.make_controller('pi', KnownSettings(load_scenario('thesis'))))
     monkeypatch.setattr(broken, 'linear_model', lambda self: [[1.0]])
     assert run() == 0
     shown = capsys.readouterr()

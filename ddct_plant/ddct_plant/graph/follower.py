@@ -40,7 +40,7 @@ class FollowerNode(GraphNode):
 
         Values are read by `Topic.read`, or by the function that `readers` has for a topic.
         """
-        lockstep = self.settings.lockstep
+        lockstep = self.known.lockstep
         names = [topic.name for topic in inputs]
         self.join = StampJoin(names, allow_gaps=not lockstep, shown=self.shown)
         if not lockstep:
@@ -83,7 +83,7 @@ class FollowerNode(GraphNode):
             f'{shown} carries two different messages for stamp {stamp} ns, publishers: '
             f'{publishers_of(self, topic)}: stop one, or use another ROS_DOMAIN_ID'
         )
-        if self.settings.lockstep:
+        if self.known.lockstep:
             raise error
         self._disputed = True
         self.get_logger().error(f'{error}; {shown} counts as missing from now on')

@@ -30,8 +30,9 @@ from ddct_plant.graph.rare_warnings import RareWarnings, find_sources
 from ddct_plant.graph.settings import (
     UndeclaredParameterError,
     as_declared,
+    declare_case,
+    declare_known,
     declare_scheduling,
-    declare_settings,
     full_name,
     has_files,
 )
@@ -43,6 +44,7 @@ from ddct_plant.scenario.recorded_settings import (
     require_same,
     values_of,
 )
+from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.signals.tables.run import RUN_INFO, RUN_SETTINGS
 from ddct_plant.signals.topic import Topic
 from ddct_plant.ticks.stamp_limit import StampLimit
@@ -74,12 +76,14 @@ class GraphNode(Node):
         self._kind = name
         self.steady_time = steady_time or SteadyTime()
         """Time by which the node waits."""
-        self.settings = declare_settings(self, self.DEFAULTS, known_only=self.KNOWN_ONLY)
+        self.known = declare_known(self, self.DEFAULTS)
+        """Settings of the run that every node has, and every controller knows."""
+        self._true = None if self.KNOWN_ONLY else declare_case(self, self.known, self.DEFAULTS)
         self.add_pre_set_parameters_callback(self._as_declared)
         # Before anything is made that may start a process, which then has the same.
-        declare_scheduling(self, lockstep=self.settings.lockstep).apply()
+        declare_scheduling(self, lockstep=self.known.lockstep).apply()
         self._warnings = RareWarnings(self, self.steady_time.monotonic)
-        if not self.settings.lockstep:
+        if not self.known.lockstep:
             find_sources()
         self.limit: StampLimit | None = None
         """Limit of plausible stamps in real time; None in lock-step."""
@@ -89,6 +93,12 @@ class GraphNode(Node):
         """Future that is set at the end of the node, with the DdctError that ended it, or None."""
         # The same as done.done(), which takes long enough to matter for every message.
         self._over = False
+
+    @property
+    def settings(self) -> RunSettings:
+        """True settings of the run; a node that controls has none."""
+        assert self._true is not None, f'{self.get_name()} has the known settings alone'
+        return self._true
 
     def publish_run_info(
         self, extra: Mapping[str, str] | None = None, *, records: bool = False
@@ -115,10 +125,10 @@ class GraphNode(Node):
         _, pairs = RUN_SETTINGS.read(message)
         theirs = {key: pairs[key] for key in ours if key in pairs}
         require_agreement(full_name(self), {key: ours[key] for key in theirs}, theirs)
-        if CASE in pairs and not self.KNOWN_ONLY:
-            require_same(full_name(self), values_of(self.settings), pairs[CASE])
+        if CASE in pairs and self._true is not None:
+            require_same(full_name(self), values_of(self._true), pairs[CASE])
         elif KNOWN in pairs:
-            require_same(full_name(self), known_values(self.settings), pairs[KNOWN])
+            require_same(full_name(self), known_values(self.known), pairs[KNOWN])
 
     def subscribe_values(
         self,
@@ -167,7 +177,7 @@ class GraphNode(Node):
     def _reject(self, where: str, error: Exception) -> None:
         """Raise an error about a bad message in lock-step; in real time the message is missing."""
         reason = f'{where}: {error}'
-        if self.settings.lockstep:
+        if self.known.lockstep:
             raise DdctError(reason) from error
         self._refuse(reason)
 

@@ -18,7 +18,7 @@ from ddct_plant.fail_safe.request_watch import (
     FailSafeSettings,
 )
 from ddct_plant.program.command_line import package_version
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings
 from ddct_plant.shift.roles import OFF_GOING, ON_COMING
 from ddct_plant.signals.topics import CONTROLLER_TIMING
 from ddct_plant.ticks.durations import DurationHistogram
@@ -73,9 +73,9 @@ def engine_info(two_input: bool, request_timeout_s: float = REQUEST_TIMEOUT_S) -
     return {TWO_INPUT: flag(two_input), 'request_timeout_s': repr(request_timeout_s)}
 
 
-def role_info(settings: RunSettings, role: str) -> Pairs:
+def role_info(known: KnownSettings, role: str) -> Pairs:
     """Return the own pair of a clutch or an actuator in a gear shift, its role; else none."""
-    return {ROLE: role} if settings.shift else {}
+    return {ROLE: role} if known.shift else {}
 
 
 def actuator_info(fail_safe: FailSafeSettings | None = None) -> Pairs:
@@ -91,9 +91,9 @@ def driveline_info(steps: int, fail_safe: FailSafeSettings | None = None) -> Pai
     return {STEPS: str(steps), **timeout, **_ramp(fail_safe)}
 
 
-def handover_info(settings: RunSettings) -> Pairs:
+def handover_info(known: KnownSettings) -> Pairs:
     """Return the handover's own pair, the name of its law."""
-    return {'handover': settings.handover_name}
+    return {'handover': known.handover_name}
 
 
 def reference_info(preview_steps: int) -> Pairs:
@@ -107,7 +107,7 @@ def controller_info(controller: Mapping[str, str]) -> Pairs:
 
 
 def node_info(
-    settings: RunSettings, controller: Mapping[str, str], preview_steps: int, steps: int
+    known: KnownSettings, controller: Mapping[str, str], preview_steps: int, steps: int
 ) -> dict[str, Pairs]:
     """
     Return the `run_info` of each node of a graph with default timeouts, by the node's path.
@@ -117,17 +117,17 @@ def node_info(
     own: dict[str, Mapping[str, str]] = {
         'engine': engine_info(controller[TWO_INPUT] == flag(True)),
         'load': {},
-        'clutch': role_info(settings, ON_COMING),
+        'clutch': role_info(known, ON_COMING),
         'driveline': driveline_info(steps),
-        'actuator': {**role_info(settings, ON_COMING), **actuator_info()},
+        'actuator': {**role_info(known, ON_COMING), **actuator_info()},
         'reference': reference_info(preview_steps),
         'controller': controller_info(controller),
         'recorder': {},
     }
-    if settings.shift:
-        role = role_info(settings, OFF_GOING)
+    if known.shift:
+        role = role_info(known, OFF_GOING)
         own |= {
-            'handover': handover_info(settings),
+            'handover': handover_info(known),
             f'{OFF_GOING}/clutch': role,
             f'{OFF_GOING}/actuator': {**role, **actuator_info()},
         }

@@ -25,23 +25,26 @@ from ddct_plant.base.options import Option, options_of
 from ddct_plant.fail_safe.request_watch import FailSafeSettings
 from ddct_plant.graph.node_names import name_in_graph
 from ddct_plant.program.scheduling import Scheduling
+from ddct_plant.scenario.case import case_of_file, with_case
 from ddct_plant.scenario.choices.scenarios import (
     CHOICES,
     DEFAULT_CAR,
     DEFAULT_SCENARIO,
     Choice,
 )
-from ddct_plant.scenario.file import ScenarioFile, load_scenario
+from ddct_plant.scenario.file import ScenarioFile
 from ddct_plant.scenario.recorded_settings import (
     CasePart,
     KnownPart,
+    case_settings,
+    known_settings,
+    known_values,
     read_part,
     require_agreement,
-    run_settings,
     values_of,
     values_of_scenario,
 )
-from ddct_plant.scenario.settings import UNKNOWN, RunSettings, handover_name
+from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings, handover_name
 from ddct_plant.shift.roles import OFF_GOING, ON_COMING, ROLES
 
 _CHOICES = {
@@ -53,50 +56,72 @@ _CHOICES = {
     'car': Option('', f'car in place of that of the scenario; without a scenario {DEFAULT_CAR}'),
     'drive': Option('', 'drive in place of that of the scenario'),
 }
-_KNOWN_SCENARIO = Option(
-    '', 'scenario that controllers know, as `scenario` is given; empty: the same as `scenario`'
+_KNOWN_FILE = Option(
+    '',
+    'JSON file with the known settings of the run, which the program that starts a run writes; '
+    'other settings that are given must agree with it',
 )
-_FILES = {
-    'known': Option(
-        '',
-        'JSON file with the known settings of the run, which the program that starts a run '
-        'writes; other settings that are given must agree with it',
-    ),
-    'case': Option(
-        '', 'JSON file with the settings that controllers do not know; only beside `known`'
-    ),
-}
-_OF_CASE = ('case', 'known_scenario', *UNKNOWN)
-"""Parameters that nodes which control do not have."""
+_CASE_FILE = Option(
+    '',
+    'file of what controllers do not know: beside `known` the JSON file of the same program, else '
+    'a YAML file of keys, such as `vehicle.mass_kg: 1700`',
+)
+_OF_KNOWN = {**_CHOICES, **options_of(KnownSettings)}
+"""Parameters of every node, besides the file `known`."""
 _ROLE = Option(
     ON_COMING, 'side of a gear shift; a run without a shift has the first alone', choices=ROLES
 )
 _FAIL_SAFE = options_of(FailSafeSettings)
 
 
-def declare_settings(
-    node: Node, defaults: Mapping[str, Any], *, known_only: bool = False
-) -> RunSettings:
+def declare_known(node: Node, defaults: Mapping[str, Any]) -> KnownSettings:
     """
-    Return the settings of a run that `node` has, from its files or from its parameters.
+    Return the known settings of a run that `node` has, from their file or from its parameters.
 
-    The shared parameters are declared, with other `defaults` by name where given. A node with
-    `known_only` has none for what controllers do not know. Raise DdctError for a value out of
-    range, for an unusable file, and for a value that does not agree with the files.
+    The parameters are declared, with other `defaults` by name where given. Raise DdctError for a
+    value out of range, for an unusable file, and for a value that does not agree with the file.
     """
-    shared = {**_CHOICES, 'known_scenario': _KNOWN_SCENARIO, **options_of(RunSettings)}
-    shared = {name: shared[name] for name in shared if not known_only or name not in _OF_CASE}
-    files = {
-        name: declare(node, name, each)
-        for name, each in _FILES.items()
-        if not known_only or name not in _OF_CASE
-    }
-    if any(files.values()):
-        settings = _of_files(node, shared, files)
+    file = declare(node, 'known', _KNOWN_FILE)
+    if file:
+        known = known_settings(read_part(KnownPart, file).known)
+        given = _given_beside_file(node, known)
+        handover = given.get('handover', known.handover)
+        _require_given(node, given, known_values(known))
+        known = replace(known, handover=handover)
     else:
-        settings = _of_parameters(node, shared, defaults)
-    for line in settings.known.scenario.adjusted:  # of the known one: every node can read the log
+        values = _of_parameters(node, _OF_KNOWN, defaults)
+        known = KnownSettings(_chosen(node, values).scenario(), **values)
+    for line in known.scenario.adjusted:
         node.get_logger().info(line)
+    return known
+
+
+def declare_case(node: Node, known: KnownSettings, defaults: Mapping[str, Any]) -> RunSettings:
+    """
+    Return the true settings of a run of which `node` has the `known` ones, with those of its case.
+
+    Raise the errors of `declare_known`.
+    """
+    file, in_files = declare(node, 'case', _CASE_FILE), has_files(node)
+    if file.endswith('.json') != in_files:
+        missing = 'case' if in_files else 'known'
+        raise ParameterError(
+            f'parameter {missing} is missing: give the JSON files of both parts of the settings, '
+            'known and case, or none of them',
+            key=missing,
+        )
+    if not in_files:
+        values = _of_parameters(node, options_of(CaseSettings), defaults)
+        return with_case(known, {**case_of_file(file), **values} if file else values)
+    settings = RunSettings(known, case_settings(known, read_part(CasePart, file).case))
+    # Only given ones are declared: true values stay out of what others can read.
+    options = options_of(CaseSettings)
+    given = {
+        name: declare(node, name, options[name])
+        for name in options
+        if name in node._parameter_overrides
+    }
+    _require_given(node, given, values_of(settings))
     return settings
 
 
@@ -106,54 +131,34 @@ def has_files(node: Node) -> bool:
 
 
 def _of_parameters(
-    node: Node, shared: Mapping[str, Option], defaults: Mapping[str, Any]
-) -> RunSettings:
-    values = {
+    node: Node, options: Mapping[str, Option], defaults: Mapping[str, Any]
+) -> dict[str, Any]:
+    return {
         name: declare(node, name, replace(each, default=defaults.get(name, each.default)))
-        for name, each in shared.items()
+        for name, each in options.items()
     }
-    scenario = _chosen(node, values).scenario()
-    known = values.pop('known_scenario', '')
-    return RunSettings(scenario, **values, known_scenario=load_scenario(known) if known else None)
 
 
-def _of_files(node: Node, shared: Mapping[str, Option], files: Mapping[str, str]) -> RunSettings:
-    """Return the settings in files; parameters have known values, or what is given and agrees."""
-    if not all(files.values()):
-        missing = next(name for name, file in files.items() if not file)
-        raise ParameterError(
-            f'parameter {missing} is missing: give the files of both parts of the settings, '
-            'known and case, or none of them',
-            key=missing,
-        )
-    known = read_part(KnownPart, files['known']).known
-    case = read_part(CasePart, files['case']).case if 'case' in files else None
-    settings = run_settings(known, case)
+def _given_beside_file(node: Node, known: KnownSettings) -> dict[str, Any]:
+    """Return the parameters that are given; all have their values of the file as defaults."""
     given: dict[str, Any] = {}
-    for name, each in shared.items():
-        if name in node._parameter_overrides:
-            given[name] = declare(node, name, each)
-        elif name not in _OF_CASE:  # true values stay out of what others can read
-            usual = {**dict.fromkeys(CHOICES, ''), 'scenario': settings.scenario.name}
-            default = usual[name] if name in CHOICES else getattr(settings, name)
-            declare(node, name, replace(each, default=default))
-    _require_given(node, {key: given[key] for key in given if given[key] != ''}, settings)
-    return replace(settings, handover=given.get('handover', settings.handover))
+    usual = {**vars(known), **dict.fromkeys(CHOICES, ''), 'scenario': known.scenario.name}
+    for name, each in _OF_KNOWN.items():
+        value = declare(node, name, replace(each, default=usual[name]))
+        if name in node._parameter_overrides and value:
+            given[name] = value
+    return given
 
 
-def _require_given(node: Node, given: dict[str, Any], settings: RunSettings) -> None:
+def _require_given(node: Node, given: dict[str, Any], run: Mapping[str, object]) -> None:
     """Raise ParameterError for a given parameter that is not that of the run."""
     ours: dict[str, object] = {}
     if {*CHOICES} & given.keys():
         ours |= values_of_scenario('scenario', _chosen(node, given).scenario())
     for name, value in given.items():
-        if name == 'known_scenario':
-            ours |= values_of_scenario(name, load_scenario(value))
-        else:
-            ours[name] = handover_name(value) if name == 'handover' else value
+        ours[name] = handover_name(value) if name == 'handover' else value
     sections = tuple({f'{key.partition(".")[0]}.' for key in ours if '.' in key})
-    theirs = values_of(settings)
-    compared = {key: theirs[key] for key in theirs if key in given or key.startswith(sections)}
+    compared = {key: run[key] for key in run if key in given or key.startswith(sections)}
     require_agreement(full_name(node), ours, compared)
 
 
@@ -183,7 +188,7 @@ def declare_scheduling(node: Node, *, lockstep: bool) -> Scheduling:
     return scheduling
 
 
-def declare_role(node: Node, settings: RunSettings) -> str:
+def declare_role(node: Node, known: KnownSettings) -> str:
     """
     Declare the side of a gear shift on which a node is, as parameter `role`, and return it.
 
@@ -191,14 +196,14 @@ def declare_role(node: Node, settings: RunSettings) -> str:
     than that of the node's namespace.
     """
     role = declare(node, 'role', _ROLE)
-    if role == OFF_GOING and not settings.shift:
+    if role == OFF_GOING and not known.shift:
         raise ParameterError(
-            f'parameter role is {role}, but scenario {settings.scenario.name} is no gear shift: '
+            f'parameter role is {role}, but scenario {known.scenario.name} is no gear shift: '
             'choose one with a section shift, such as upshift, or leave role out',
             key='role',
         )
     place = OFF_GOING if node.get_namespace().rpartition('/')[2] == OFF_GOING else ON_COMING
-    if settings.shift and role != place:
+    if known.shift and role != place:
         raise ParameterError(
             f'node {full_name(node)} has the role {role}, but its name is that of the {place} '
             f'side: start it with --ros-args -p role:={place}, or in another namespace',

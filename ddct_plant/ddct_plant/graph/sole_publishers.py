@@ -159,7 +159,7 @@ class SolePublishers:
 
     def _end(self, topic: str, complaint: str) -> None:
         """End the node, in real time with an open clutch before that."""
-        lockstep, now = self._node.settings.lockstep, self._clock()
+        lockstep, now = self._node.known.lockstep, self._clock()
         error = self._error(topic, complaint)
         if self._proved_at is None:
             self._proved_at = now

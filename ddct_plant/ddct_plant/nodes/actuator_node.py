@@ -36,21 +36,21 @@ class ActuatorNode(FollowerNode):
     def __init__(self, **kwargs: Any) -> None:
         """Build the actuator in its steady state for the run's first request."""
         super().__init__('actuator', **kwargs)
-        role = declare_role(self, self.settings)
+        role = declare_role(self, self.known)
         fail_safe = declare_fail_safe(
             self,
             'request_timeout_s',
             REQUEST_TIMEOUT_S,
             'Real time: when requests stop for longer, the clutch opens',
         )
-        first = initial_request(self.settings, role)
+        first = initial_request(self.known, role)
         self._actuator = GuardedActuator(make_actuator(self.settings, first), first, fail_safe)
         self._torque = Output(self, ACTUATOR_TORQUE)
         self._request = self.shown(REQUEST)
         self._requests_without_clock = 0
-        self.publish_run_info({**role_info(self.settings, role), **actuator_info(fail_safe)})
+        self.publish_run_info({**role_info(self.known, role), **actuator_info(fail_safe)})
         self.follow(TORQUE_REQUEST)
-        if not self.settings.lockstep:
+        if not self.known.lockstep:
             self._safe_state = SafeStateReport(self)
 
     def answer(self, step: int, stamp_ns: int, inputs: dict[str, Any]) -> Reply:

@@ -32,10 +32,10 @@ class ClutchNode(FollowerNode):
     def __init__(self, **kwargs: Any) -> None:
         """Build the clutch of the run, with its wear gain."""
         super().__init__('clutch', **kwargs)
-        role = declare_role(self, self.settings)
+        role = declare_role(self, self.known)
         self._torque = Output(self, CLUTCH_TORQUE)
-        self.publish_run_info(role_info(self.settings, role))
-        if self.settings.stick_slip:
+        self.publish_run_info(role_info(self.known, role))
+        if self.known.stick_slip:
             self._friction = friction_clutch(self.settings, role)
             self._temperature = Output(self, CLUTCH_TEMPERATURE)
             self.follow(ACTUATOR_TORQUE, SLIP, CLUTCH_PHASE)
@@ -46,7 +46,7 @@ class ClutchNode(FollowerNode):
     def answer(self, step: int, stamp_ns: int, inputs: dict[str, Any]) -> Reply:
         """Return the transmitted torque, or the capacities, over the period of step k."""
         (actuator_torque,) = inputs[ACTUATOR_TORQUE.name]
-        if not self.settings.stick_slip:
+        if not self.known.stick_slip:
             return (self._torque.fill(stamp_ns, self._linear.transmit(actuator_torque)),)
         reply = self._friction.reply(
             step, actuator_torque, inputs[SLIP.name], inputs[CLUTCH_PHASE.name]

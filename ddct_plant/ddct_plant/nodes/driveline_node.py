@@ -84,7 +84,7 @@ class DrivelineNode(GraphNode):
         super().__init__('driveline', **kwargs)
         self._keeps_graph = keeps_graph
         self._kept = ExitStack()
-        self._run = self.settings.kind()
+        self._run = self.known.kind()
         self._torques = [topic for topic in TORQUES if topic.in_run(self._run)]
         self._clutches = [topic for topic in CLUTCHES if topic.in_run(self._run)]
         self.plan = declare_tick_plan(self, self._torques, self._clutches)
@@ -114,7 +114,7 @@ class DrivelineNode(GraphNode):
             *(self.driveline.step, self.plan, self._publish_tick, self._sole_publishers.finish),
             self.steady_time.monotonic,
         )
-        if self.settings.lockstep:
+        if self.known.lockstep:
             return TickOwner(*parts, over=self._engine_ends_run)
         owner = RealtimeOwner(
             *parts, over=self._engine_ends_run, on_started=lambda: self.every(PERIOD_S, owner.tick)

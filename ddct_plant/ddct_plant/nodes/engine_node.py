@@ -52,7 +52,7 @@ class EngineNode(FollowerNode):
             'two_input',
             Option(False, 'wait for engine/torque_request of a two-input controller'),
         )
-        cut = TORQUE_CUT if self.settings.shift else None
+        cut = TORQUE_CUT if self.known.shift else None
         self._command = ENGINE_REQUEST if self._two_input else cut
         self._engine = make_engine(self.settings)
         timeout_s = declare_timeout(
@@ -81,7 +81,7 @@ class EngineNode(FollowerNode):
             self.follow(JOINT_STATES, self._command, readers=readers)
         else:
             self.follow(JOINT_STATES, readers=readers)
-        if not self.settings.lockstep:
+        if not self.known.lockstep:
             self._safe_state = SafeStateReport(self)
 
     def answer(self, step: int, stamp_ns: int, inputs: dict[str, Any]) -> Reply:
@@ -117,7 +117,7 @@ class EngineNode(FollowerNode):
     def _on_tick(self, stamp: int, speed: float) -> None:
         step = step_of_stamp(stamp)
         self._demand.fill(stamp, self._engine.demand(step)).publish()
-        if not self.settings.lockstep:
+        if not self.known.lockstep:
             self._answer_alone(step, stamp, speed)
 
     def _answer_alone(self, step: int, stamp: int, speed: float) -> None:

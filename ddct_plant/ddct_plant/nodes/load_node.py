@@ -20,7 +20,7 @@ class LoadNode(FollowerNode):
         super().__init__('load', **kwargs)
         self._load = make_load(self.settings)
         self._torque = Output(self, LOAD_TORQUE)
-        if self.settings.stick_slip:
+        if self.known.stick_slip:
             self._friction = holding_torque(self.settings)
             self._holding = Output(self, HOLDING_TORQUE)
         self.publish_run_info()
@@ -31,7 +31,7 @@ class LoadNode(FollowerNode):
         time_s = time_of_step(step)
         load = self._load.torque(inputs[VEHICLE_SPEED.name], time_s)
         torque = self._torque.fill(stamp_ns, load)
-        if not self.settings.stick_slip:
+        if not self.known.stick_slip:
             return (torque,)
         capacity = self._friction.capacity(time_s)
         return (torque, self._holding.fill(stamp_ns, capacity))

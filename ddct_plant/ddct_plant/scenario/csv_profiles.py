@@ -105,6 +105,22 @@ def with_points(content: Mapping[str, Any], set_keys: Iterable[str]) -> dict[str
     return content
 
 
+def described_profiles(content: Mapping[str, Any], set_keys: Iterable[str]) -> dict[str, Any]:
+    """
+    Return the sections of a scenario's content that a CSV file or a factor describes.
+
+    They are those without points of `--set`, whose keys are `set_keys`, in their place.
+    """
+    given = set(set_keys)
+    return {
+        name: content[name]
+        for name, group in SECTIONS.items()
+        if isinstance(content.get(name), Mapping)
+        and {_FILE, FACTOR} & content[name].keys()
+        and not {f'{name}.{each}' for each in (TIME, *value_names(group))} & given
+    }
+
+
 def _scaled(section: dict[str, Any], values: Iterable[str], factor: float) -> dict[str, Any]:
     """Return a section with its values multiplied; values that are no numbers stay unchanged."""
     scaled = dict(section)

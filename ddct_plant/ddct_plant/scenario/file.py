@@ -14,7 +14,7 @@ from typing import Any
 from ddct_plant.files.yaml_text import dump_yaml
 from ddct_plant.scenario.choices.scenarios import Choice
 from ddct_plant.scenario.content import flat, scenario_content, scenario_of
-from ddct_plant.scenario.csv_profiles import with_points
+from ddct_plant.scenario.csv_profiles import described_profiles, with_points
 from ddct_plant.scenario.nouns.composed import composed, file_content
 from ddct_plant.scenario.nouns.places import Places
 from ddct_plant.scenario.overrides import (
@@ -79,6 +79,19 @@ class ScenarioFile:
             scenario = with_remarks(consistent(scenario, start.origins, self._control_start))
             require_driveline(scenario.driveline, scenario.clutch)
             return scenario
+
+    def of_cases(self, known: Scenario, changes: Mapping[str, Any]) -> 'ScenarioFile':
+        """
+        Return a file with the content of `known`, the scenario that this one gives with `changes`.
+
+        Overrides of it are those of a case. Profiles that a CSV file or a factor describes stay
+        described, so that another file or factor takes their place.
+        """
+        content, given = dict(self.content), {**self.set, **changes}
+        set_keys = [leaf for key, value in given.items() for leaf in put(content, key, value)]
+        described = described_profiles(content, set_keys)
+        places = Places(self.places.otherwise)
+        return ScenarioFile(self.choice, {**scenario_content(known), **described}, places=places)
 
     def _start(self, pairs: Sequence[tuple[str, Any]]) -> '_Start':
         """Return the scenario with values by dotted key, from the content of the files."""

@@ -14,12 +14,12 @@ from ddct_plant.scenario.control import ClosingParameters
 from ddct_plant.scenario.plant import friction_clutch, holding_torque, make_engine, make_load
 from ddct_plant.scenario.rules.shift import gears_of, shift_of
 from ddct_plant.scenario.scenario import Scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import AnySettings, KnownSettings, RunSettings
 from ddct_plant.shift.roles import ON_COMING, ROLES
 from ddct_plant.shift.start import driving_start
 
 
-def initial_request(settings: RunSettings, role: str = ON_COMING) -> float:
+def initial_request(known: KnownSettings, role: str = ON_COMING) -> float:
     """
     Return the request before t_0 in N m of the clutch with a role, for the known car.
 
@@ -27,8 +27,7 @@ def initial_request(settings: RunSettings, role: str = ON_COMING) -> float:
     slipping. It is zero for an open clutch, as is the on-coming one of a shift; that of the
     off-going one keeps it locked.
     """
-    known = settings.known
-    if not settings.shift:
+    if not known.shift:
         return _before(known).torque_request
     if role == ON_COMING:
         return 0.0
@@ -56,14 +55,14 @@ def initial_state(settings: RunSettings) -> InitialState:
 
 
 def _with_requests(settings: RunSettings, driving: InitialState) -> InitialState:
-    requests = (initial_request(settings, role) for role in ROLES)
+    requests = (initial_request(settings.known, role) for role in ROLES)
     sides = zip(driving.sides, requests, strict=True)
     return replace(
         driving, sides=tuple(replace(side, torque_request=request) for side, request in sides)
     )
 
 
-def _driving(settings: RunSettings) -> InitialState:
+def _driving(settings: AnySettings) -> InitialState:
     """
     Return the drive in the off-going gear before a shift, without the requests.
 
@@ -94,7 +93,7 @@ class _Before(NamedTuple):
     torque_request: float
 
 
-def _before(settings: RunSettings) -> _Before:
+def _before(settings: AnySettings) -> _Before:
     """Return the drive before t_0, with the request that these settings give."""
     scenario, initial = settings.scenario, settings.scenario.initial
     wheel_speed = scenario.driveline.gear.wheel_speed(initial.shaft_speed_rad_s)
@@ -114,9 +113,9 @@ def _before(settings: RunSettings) -> _Before:
 def _linear(settings: RunSettings) -> InitialState:
     """Return the state before a launch, with the linear clutch."""
     initial_speeds = settings.scenario.initial
-    before, torque_request = _before(settings), initial_request(settings)
+    before, torque_request = _before(settings), initial_request(settings.known)
     shaft_speed = initial_speeds.shaft_speed_rad_s
-    clutch_torque = LinearClutch(settings.wear_gain).transmit([torque_request])[0]
+    clutch_torque = LinearClutch(settings.case.wear_gain).transmit([torque_request])[0]
     return InitialState(
         engine_speed=initial_speeds.engine_speed_rad_s,
         wheel_speed=before.wheel_speed,

@@ -9,8 +9,8 @@ from dataclasses import fields
 from functools import cache
 
 from ddct_plant.base.options import Option, OptionGroup, Options, group_of, options_of
+from ddct_plant.scenario.choices.settings import SETTINGS
 from ddct_plant.scenario.scenario import Scenario
-from ddct_plant.scenario.settings import RunSettings
 
 MOST_MEANT = 3
 """Largest number of keys in a hint."""
@@ -47,10 +47,9 @@ def scenario_key_hint(name: str, section: Collection[str], prefix: str) -> str:
         return _GONE[f'{prefix}{name}']
     if close := difflib.get_close_matches(name, section, n=1):
         return f'did you mean {prefix}{close[0]}?'
-    of_run = options_of(RunSettings)
-    known = {**scenario_options(), **of_run}
+    known = {**scenario_options(), **SETTINGS}
     for meant in _meant(f'{prefix}{name}', known):
-        if meant in of_run:
+        if meant in SETTINGS:
             option = f'--{meant.replace("_", "-")}'
             return f'{meant} stands beside the scenario: give it to the program, as {option}'
     if prefix and not any(each.startswith(prefix) for each in _meant(f'{prefix}{name}', known)):

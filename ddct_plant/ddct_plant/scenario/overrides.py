@@ -40,14 +40,18 @@ def with_numbers(scenario: Scenario, pairs: Iterable[tuple[str, float]]) -> Scen
     return dataclasses.replace(scenario, **changes)
 
 
-def parsed_override(override: str) -> tuple[str, Any]:
-    """Return the dotted key and the value of `KEY=VALUE`; raise ParameterError for other text."""
+def parsed_override(override: str, option: str = '--set') -> tuple[str, Any]:
+    """
+    Return the dotted key and the value of `KEY=VALUE`, given by an `option`.
+
+    Raise ParameterError for other text.
+    """
     key, equals, text = override.partition('=')
     if not equals or not key:
         raise ParameterError(
-            f'--set {override}: write KEY=VALUE, for example duration_s=2.0',
+            f'{option} {override}: write KEY=VALUE, for example duration_s=2.0',
         )
-    with located(f'--set {override}'):
+    with located(f'{option} {override}'):
         return key, parse_yaml(text)
 
 
@@ -62,7 +66,7 @@ def put(content: dict[str, Any], key: str, value: Any) -> list[str]:
     for folder in folders:
         group = target.get(folder, {})
         if not isinstance(group, dict):
-            raise ParameterError(f'--set {key}: {folder} holds a value, not keys', key=key)
+            raise ParameterError(f'{key}: {folder} holds a value, not keys', key=key)
         target[folder] = dict(group)
         target = target[folder]
     target[leaf] = value

@@ -21,7 +21,7 @@ from ddct_plant.models.load import HoldingTorque, RoadLoad, air_and_slope
 from ddct_plant.scenario.rules.driveline import least_usual
 from ddct_plant.scenario.rules.shift import gears_of
 from ddct_plant.scenario.scenario import Scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import AnySettings, RunSettings
 from ddct_plant.sensors.sensed import DrivelineSensors, TorqueEstimate
 from ddct_plant.shift.roles import ON_COMING
 
@@ -64,7 +64,7 @@ def engagements(scenario: Scenario) -> tuple[EngagedGears, dict[int, EngagedGear
     return first, changes
 
 
-def make_engine(settings: RunSettings) -> Engine:
+def make_engine(settings: AnySettings) -> Engine:
     """Return the engine of the scenario, with its authority and limits."""
     scenario = settings.scenario
     return Engine(scenario.demand, scenario.engine_authority, scenario.engine_limits)
@@ -77,18 +77,19 @@ def make_actuator(settings: RunSettings, initial_request: float) -> Actuator:
 
 def linear_clutch(settings: RunSettings) -> LinearClutch:
     """Return the linear clutch of the thesis."""
-    return LinearClutch(settings.wear_gain)
+    return LinearClutch(settings.case.wear_gain)
 
 
 def friction_clutch(settings: RunSettings, role: str = ON_COMING) -> FrictionClutch:
     """Return the stick-slip clutch of a role, with its wear, at its initial temperatures."""
     scenario = settings.scenario
-    wear_gain = settings.wear_gain if role == ON_COMING else settings.off_going_wear_gain
+    case = settings.case
+    wear_gain = case.wear_gain if role == ON_COMING else case.off_going_wear_gain
     open_below = OPEN_BELOW if settings.shift else 0.0
     return FrictionClutch(scenario.friction, wear_gain, scenario.heat, open_below)
 
 
-def make_load(settings: RunSettings) -> RoadLoad:
+def make_load(settings: AnySettings) -> RoadLoad:
     """Return the road load at the wheel; in stick-slip runs without rolling resistance."""
     scenario = settings.scenario
     if settings.stick_slip:
@@ -96,7 +97,7 @@ def make_load(settings: RunSettings) -> RoadLoad:
     return RoadLoad(scenario.load, scenario.vehicle, scenario.slope)
 
 
-def holding_torque(settings: RunSettings) -> HoldingTorque:
+def holding_torque(settings: AnySettings) -> HoldingTorque:
     """Return the friction at the wheel of a stick-slip run: rolling resistance and brake."""
     scenario = settings.scenario
     load = RoadLoad(scenario.load, scenario.vehicle, scenario.slope)
@@ -106,10 +107,10 @@ def holding_torque(settings: RunSettings) -> HoldingTorque:
 def driveline_sensors(settings: RunSettings) -> DrivelineSensors | None:
     """Return the sensors of the driveline, None for a run without sensors."""
     sensors = settings.scenario.sensors
-    return DrivelineSensors(sensors, settings.seed) if sensors else None
+    return DrivelineSensors(sensors, settings.case.seed) if sensors else None
 
 
 def torque_estimate(settings: RunSettings) -> TorqueEstimate | None:
     """Return the estimate of C_m, None for a run without sensors."""
     sensors = settings.scenario.sensors
-    return TorqueEstimate(sensors, settings.seed) if sensors else None
+    return TorqueEstimate(sensors, settings.case.seed) if sensors else None

@@ -20,7 +20,7 @@ from ddct_plant.files.json_records import from_json, parse_json, read_json, to_j
 from ddct_plant.scenario.content import scenario_content, scenario_from_mapping
 from ddct_plant.scenario.differences import values_by_key
 from ddct_plant.scenario.scenario import Scenario
-from ddct_plant.scenario.settings import UNKNOWN, RunSettings, is_handover_file
+from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings, is_handover_file
 
 SETTINGS = 'settings'
 """Key of the JSON in the custom data of a bag."""
@@ -33,7 +33,7 @@ _ABSENT = 'left out'
 
 
 @dataclass(frozen=True)
-class KnownSettings:
+class KnownRecord:
     """Settings that every node of a run has, and every controller knows."""
 
     controller: str
@@ -74,7 +74,7 @@ class KnownSettings:
 
 
 @dataclass(frozen=True)
-class CaseSettings:
+class CaseRecord:
     """True settings of a run that controllers, handovers and the reference do not know."""
 
     wear_gain: float
@@ -94,7 +94,7 @@ class KnownPart:
     """Content of the file with the known settings, which every node reads."""
 
     schema_version: int
-    known: KnownSettings
+    known: KnownRecord
 
 
 @dataclass(frozen=True)
@@ -102,7 +102,7 @@ class CasePart:
     """Content of the file with the rest of the settings, which nodes of the plant read."""
 
     schema_version: int
-    case: CaseSettings
+    case: CaseRecord
 
 
 @dataclass(frozen=True)
@@ -110,29 +110,29 @@ class RecordedSettings:
     """Settings of a run as its bag has them."""
 
     schema_version: int
-    known: KnownSettings
-    case: CaseSettings
+    known: KnownRecord
+    case: CaseRecord
 
     @classmethod
     def of(cls, settings: RunSettings, controller: str, duration_s: float) -> 'RecordedSettings':
         """Return the record of a run with the controller of this name."""
-        shift = settings.shift
-        true, known = settings.scenario, settings.known.scenario
+        known, case = settings.known, settings.case
+        shift, of_known = known.shift, scenario_content(known.scenario)
         return cls(
             SCHEMA,
-            KnownSettings(
+            KnownRecord(
                 controller=controller,
                 duration_s=duration_s,
-                architecture=settings.architecture,
-                mode=settings.mode,
-                handover=settings.handover_name if shift else None,
-                scenario=scenario_content(known),
+                architecture=known.architecture,
+                mode=known.mode,
+                handover=known.handover_name if shift else None,
+                scenario=of_known,
             ),
-            CaseSettings(
-                wear_gain=float(settings.wear_gain),
-                seed=settings.seed,
-                off_going_wear_gain=float(settings.off_going_wear_gain) if shift else None,
-                scenario=_patch(scenario_content(known), scenario_content(true)),
+            CaseRecord(
+                wear_gain=float(case.wear_gain),
+                seed=case.seed,
+                off_going_wear_gain=float(case.off_going_wear_gain) if shift else None,
+                scenario=_patch(of_known, scenario_content(settings.scenario)),
             ),
         )
 
@@ -171,27 +171,30 @@ def read_part(kind: type[Part], file: str) -> Part:
     return read_json(kind, Path(file), newest=SCHEMA)
 
 
-def run_settings(known: KnownSettings, case: CaseSettings | None = None) -> RunSettings:
-    """
-    Return the settings of a run; those that controllers know without a case.
+def known_settings(record: KnownRecord) -> KnownSettings:
+    """Return the known settings of a record; raise DdctError for values that make no run."""
+    return KnownSettings(
+        _scenario(record.scenario),
+        architecture=record.architecture,
+        mode=record.mode,
+        **({} if record.handover is None else {'handover': record.handover}),
+    )
 
-    Raise DdctError for values that make no run.
-    """
-    known_scenario = _scenario(known.scenario)
-    shared: dict[str, Any] = {
-        'architecture': known.architecture,
-        'mode': known.mode,
-        **({} if known.handover is None else {'handover': known.handover}),
-    }
-    if case is None:
-        return RunSettings(known_scenario, **shared)
-    differs = bool(case.scenario)
-    of_case = {name: getattr(case, name) for name in UNKNOWN}
-    return RunSettings(
-        _scenario(_merged(known.scenario, case.scenario)) if differs else known_scenario,
-        **shared,
-        **{name: value for name, value in of_case.items() if value is not None},
-        known_scenario=known_scenario if differs else None,
+
+def run_settings(known: KnownRecord, case: CaseRecord) -> RunSettings:
+    """Return the settings of a run; raise DdctError for values that make none."""
+    settings = known_settings(known)
+    return RunSettings(settings, case_settings(settings, case))
+
+
+def case_settings(known: KnownSettings, record: CaseRecord) -> CaseSettings:
+    """Return the case of a record of a run with these known settings; raise DdctError as there."""
+    off_going, patch = record.off_going_wear_gain, record.scenario
+    return CaseSettings(
+        wear_gain=record.wear_gain,
+        seed=record.seed,
+        **({} if off_going is None else {'off_going_wear_gain': off_going}),
+        scenario=_scenario(_merged(scenario_content(known.scenario), patch)) if patch else None,
     )
 
 
@@ -199,22 +202,23 @@ def values_of(settings: RunSettings) -> dict[str, object]:
     """
     Return the values of all settings by key, to be compared.
 
-    Keys of scenarios are dotted, below `scenario` and `known_scenario`. A handover has its name.
+    Keys of scenarios are dotted, below `scenario` and `case.scenario`. A handover has its name.
     """
-    values = {name: getattr(settings, name) for name in options_of(RunSettings)}
+    case = settings.case
     return {
-        **values,
-        'handover': settings.handover_name,
-        **values_of_scenario('scenario', settings.scenario),
-        **values_of_scenario('known_scenario', settings.known.scenario),
+        **known_values(settings.known),
+        **{name: getattr(case, name) for name in options_of(CaseSettings)},
+        **values_of_scenario('case.scenario', settings.scenario),
     }
 
 
-def known_values(settings: RunSettings) -> dict[str, object]:
-    """Return the values that controllers know, as `values_of` without any that they do not."""
-    values = values_of(settings.known)
-    unknown = ('known_scenario.', *UNKNOWN)
-    return {key: values[key] for key in values if not key.startswith(unknown)}
+def known_values(known: KnownSettings) -> dict[str, object]:
+    """Return the values of the known settings by key, as `values_of` has them."""
+    return {
+        **{name: getattr(known, name) for name in options_of(KnownSettings)},
+        'handover': known.handover_name,
+        **values_of_scenario('scenario', known.scenario),
+    }
 
 
 def values_text(values: Mapping[str, object]) -> str:

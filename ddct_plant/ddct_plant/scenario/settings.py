@@ -1,14 +1,20 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""The settings that every node of one run shares."""
+"""
+Settings of a run: what is known of it, and its case, which the plant alone has.
 
-from dataclasses import dataclass, field, replace
-from functools import cached_property
-from typing import Self
+    settings = RunSettings(KnownSettings(load_scenario('launch')), CaseSettings(wear_gain=0.8))
+
+Controllers, handovers, references and the first request are made from `settings.known`.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, Protocol, Self
 
 from ddct_plant.base.clutch_kinds import STICK_SLIP
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.base.options import OptionGroup, option_field
+from ddct_plant.base.options import OptionGroup, option_field, options_of
 from ddct_plant.scenario.choices.settings import SETTINGS
 from ddct_plant.scenario.control import ENGINE_SPEED_TARGET, PROFILE
 from ddct_plant.scenario.rules.capability import require_able
@@ -17,10 +23,6 @@ from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.signals.signal import RunKind
 
 _PYTHON = '.py'
-UNKNOWN = ('wear_gain', 'seed', 'off_going_wear_gain')
-"""Settings that no controller knows; those that it knows have their defaults."""
-OF_SHIFTS = ('off_going_wear_gain', 'handover')
-"""Settings that only a gear shift has."""
 
 
 def is_handover_file(handover: str) -> bool:
@@ -34,45 +36,21 @@ def handover_name(handover: str) -> str:
 
 
 @dataclass(frozen=True)
-class RunSettings(OptionGroup):
-    """
-    True settings of one run, which its plant has; `known` is the part that a controller gets.
-
-    Handover, reference, controllers and the first request are made from `known` alone.
-    """
+class KnownSettings(OptionGroup):
+    """Settings of a run that each of its nodes has, and each controller knows."""
 
     scenario: Scenario
+    """What is known of the car, and the drive."""
     architecture: str = option_field(SETTINGS['architecture'])
-    wear_gain: float = option_field(SETTINGS['wear_gain'])
     mode: str = option_field(SETTINGS['mode'])
-    seed: int = option_field(SETTINGS['seed'])
-    off_going_wear_gain: float = option_field(SETTINGS['off_going_wear_gain'])
     handover: str = option_field(SETTINGS['handover'])
-    known_scenario: Scenario | None = field(default=None, repr=False)
-    """Scenario that controllers know where it differs from the true one, else None."""
 
     def __post_init__(self) -> None:
         """Check every setting; raise ParameterError that names a bad one and the choices."""
         super().__post_init__()
         self._require_reference()
         self._require_shift()
-        self._require_known()
-        require_able(self.known_scenario or self.scenario)
-
-    @cached_property
-    def known(self) -> Self:
-        """
-        Settings that a controller knows: the known scenario, clutches without wear, no seed.
-
-        They are these settings themselves where they do not differ, and know of no others.
-        """
-        known = replace(
-            self,
-            scenario=self.known_scenario or self.scenario,
-            known_scenario=None,
-            **{name: SETTINGS[name].default for name in UNKNOWN},
-        )
-        return self if known == self else known
+        require_able(self.scenario)
 
     @property
     def detailed(self) -> bool:
@@ -126,9 +104,9 @@ class RunSettings(OptionGroup):
         return RunKind(self.lockstep, two_input, self.clutch, self.sensed, self.shift)
 
     def _require_shift(self) -> None:
-        """Refuse a shift that cannot be, and settings of a shift in another run."""
+        """Refuse a shift that cannot be, and a handover in another run."""
         if not self.shift:
-            self._require_defaults_of_a_shift()
+            require_default_without_shift(self, 'handover', self.handover)
             return
         require_shift(self.scenario)
         if not self.detailed:
@@ -138,39 +116,6 @@ class RunSettings(OptionGroup):
                 'the architecture detailed',
                 key='architecture',
             )
-
-    def _require_known(self) -> None:
-        """Refuse known settings of another kind of run, whose topics would not fit together."""
-        if self.known_scenario is None:
-            return
-        if self.clutch != self.known_scenario.clutch:
-            raise ParameterError(
-                f'clutch is {self.clutch}, but what controllers know of scenario '
-                f'{self.scenario.name} has {self.known_scenario.clutch}: give both the same',
-                key='clutch',
-            )
-        for section in ('sensors', 'shift'):
-            ours, known = (
-                getattr(each, section) is not None for each in (self.scenario, self.known.scenario)
-            )
-            if ours != known:
-                raise ParameterError(
-                    f'{section} is varied for the plant alone, but what controllers know of '
-                    f'scenario {self.scenario.name} has {"one" if known else "none"}: give the '
-                    f'section {section} in the scenario'
-                    + (', or in the grid' if section == 'sensors' else ''),
-                    key=section,
-                )
-
-    def _require_defaults_of_a_shift(self) -> None:
-        for name in OF_SHIFTS:
-            value = getattr(self, name)
-            if value != SETTINGS[name].default:
-                raise ParameterError(
-                    f'{name} is {value}, but scenario {self.scenario.name} is no gear shift: '
-                    'choose one with a section shift, such as upshift, or leave it out',
-                    key=name,
-                )
 
     def _require_reference(self) -> None:
         start_s, end_s = self.scenario.control_start_s, self.scenario.reference.reference_end_s
@@ -211,3 +156,133 @@ class RunSettings(OptionGroup):
                 'engine_speed_reference.time_s and engine_speed_reference.speed_rad_s',
                 key='reference.shape',
             )
+
+
+@dataclass(frozen=True)
+class CaseSettings(OptionGroup):
+    """What the world varies from run to run, and no controller knows."""
+
+    wear_gain: float = option_field(SETTINGS['wear_gain'])
+    off_going_wear_gain: float = option_field(SETTINGS['off_going_wear_gain'])
+    seed: int = option_field(SETTINGS['seed'])
+    scenario: Scenario | None = field(default=None, repr=False)
+    """The known scenario with the overrides of the case; None without any."""
+
+
+@dataclass(frozen=True)
+class RunSettings:
+    """True settings of one run, which its plant has: the known ones with those of the case."""
+
+    known: KnownSettings
+    case: CaseSettings = CaseSettings()
+
+    def __post_init__(self) -> None:
+        """Raise ParameterError for a case that does not fit what is known."""
+        if not self.shift:
+            require_default_without_shift(
+                self.known, 'off_going_wear_gain', self.case.off_going_wear_gain
+            )
+        self._require_same_topics()
+
+    @classmethod
+    def of(cls, known: Scenario, values: Mapping[str, Any], true: Scenario | None = None) -> Self:
+        """Return the settings with values by name; `true` is the scenario of the case, if any."""
+        of_case = options_of(CaseSettings)
+        return cls(
+            KnownSettings(known, **{key: values[key] for key in values if key not in of_case}),
+            CaseSettings(**{key: values[key] for key in values if key in of_case}, scenario=true),
+        )
+
+    @property
+    def scenario(self) -> Scenario:
+        """The true scenario, which the plant has."""
+        return self.case.scenario or self.known.scenario
+
+    @property
+    def values(self) -> dict[str, Any]:
+        """Values beside the scenarios, by the names in `SETTINGS`."""
+        parts = {**vars(self.known), **vars(self.case)}
+        return {name: parts[name] for name in SETTINGS}
+
+    @property
+    def detailed(self) -> bool:
+        """Whether the architecture is CRF's detailed model."""
+        return self.known.detailed
+
+    @property
+    def clutch(self) -> str:
+        """Name of the clutch model."""
+        return self.known.clutch
+
+    @property
+    def stick_slip(self) -> bool:
+        """Whether the clutch sticks and slips, and rolling resistance and brake are friction."""
+        return self.known.stick_slip
+
+    @property
+    def sensed(self) -> bool:
+        """Whether controller and reference read sensors instead of the true signals."""
+        return self.known.sensed
+
+    @property
+    def lockstep(self) -> bool:
+        """Whether the owner of time waits for every reply."""
+        return self.known.lockstep
+
+    @property
+    def shift(self) -> bool:
+        """Whether the run is a gear shift with two clutches."""
+        return self.known.shift
+
+    def kind(self, *, two_input: bool = False) -> RunKind:
+        """Return the kind of the run, which decides its topics; `two_input` if it commands C_m."""
+        return self.known.kind(two_input=two_input)
+
+    def _require_same_topics(self) -> None:
+        """Refuse a true scenario of another kind of run, whose topics would not fit."""
+        if self.case.scenario is None:
+            return
+        if self.case.scenario.clutch != self.clutch:
+            raise ParameterError(
+                f'clutch is {self.case.scenario.clutch}, but what controllers know of scenario '
+                f'{self.scenario.name} has {self.clutch}: give both the same',
+                key='clutch',
+            )
+        for section in ('sensors', 'shift'):
+            true, known = (
+                getattr(each, section) is not None for each in (self.scenario, self.known.scenario)
+            )
+            if true != known:
+                raise ParameterError(
+                    f'{section} is varied for the plant alone, but what controllers know of '
+                    f'scenario {self.scenario.name} has {"one" if known else "none"}: give the '
+                    f'section {section} in the scenario'
+                    + (', or in the grid' if section == 'sensors' else ''),
+                    key=section,
+                )
+
+
+class AnySettings(Protocol):
+    """Known or true settings, for models that are made of either."""
+
+    @property
+    def scenario(self) -> Scenario:
+        """Scenario of the models."""
+
+    @property
+    def stick_slip(self) -> bool:
+        """Whether the clutch sticks and slips."""
+
+    @property
+    def detailed(self) -> bool:
+        """Whether the architecture is CRF's detailed model."""
+
+
+def require_default_without_shift(known: KnownSettings, name: str, value: Any) -> None:
+    """Raise ParameterError for a setting of gear shifts that a run without a shift has."""
+    if value != SETTINGS[name].default:
+        raise ParameterError(
+            f'{name} is {value}, but scenario {known.scenario.name} is no gear shift: '
+            'choose one with a section shift, such as upshift, or leave it out',
+            key=name,
+        )

@@ -21,7 +21,7 @@ class Sum(follower.FollowerNode):
     """Answers with the sum of its two inputs; no node of ROS."""
 
     def __init__(self) -> None:
-        self.settings: Any = SimpleNamespace(lockstep=True)
+        self.known: Any = SimpleNamespace(lockstep=True)
         self.answers: list[float] = []
         self.published = 0
         self.follow(JOINT_STATES, ENGINE_REQUEST)

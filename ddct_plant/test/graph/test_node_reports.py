@@ -19,7 +19,7 @@ from ddct_plant.graph.node_reports import (
     update_times,
 )
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 from ddct_plant.ticks.durations import DurationHistogram
 
 pytestmark = pytest.mark.slow
@@ -87,8 +87,8 @@ def test_safe_state_and_update_times_are_read_as_they_were_written() -> None:
 
 
 def test_a_headless_run_has_the_run_info_of_each_node_with_default_timeouts() -> None:
-    settings = RunSettings(load_scenario('thesis'))
-    info = node_info(settings, {'controller': 'pi', 'two_input': 'true'}, 22, 350)
+    settings = RunSettings(KnownSettings(load_scenario('thesis')))
+    info = node_info(settings.known, {'controller': 'pi', 'two_input': 'true'}, 22, 350)
     assert list(info) == [
         *('engine', 'load', 'clutch', 'driveline', 'actuator', 'reference', 'controller'),
         'recorder',

@@ -12,7 +12,7 @@ from ddct_plant.plant import Plant
 from ddct_plant.scenario.choices.scenarios import Choice
 from ddct_plant.scenario.file import ScenarioFile, load_scenario
 from ddct_plant.scenario.initial_state import initial_request, locked_request
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 from ddct_plant.shift.roles import OFF_GOING
 
 HANDOVER_S, SLOPE = 0.2, 290.0
@@ -51,9 +51,8 @@ def shift_settings(
     changes = {f'shift.{key}': value for key, value in keys.items()}
     scenario = load_scenario(name, changes)
     return RunSettings(
-        scenario,
-        off_going_wear_gain=off_going_wear_gain,
-        handover=handover,
+        KnownSettings(scenario, handover=handover),
+        CaseSettings(off_going_wear_gain=off_going_wear_gain),
     )
 
 
@@ -64,7 +63,7 @@ def settings_of(
 ) -> RunSettings:
     """Return the settings of a shift for the content of a scenario and of its section."""
     made = ScenarioFile(Choice('shift'), {**scenario, 'shift': shift}).scenario()
-    return RunSettings(made, off_going_wear_gain=off_going_wear_gain)
+    return RunSettings(KnownSettings(made), CaseSettings(off_going_wear_gain=off_going_wear_gain))
 
 
 class Sample(NamedTuple):
@@ -112,7 +111,7 @@ class Law:
 def run(settings: RunSettings, tick: Callable[[int, Plant, Any, Any], None]) -> Plant:
     """Run a shift and call `tick` with the step, the plant, its outputs and its reply."""
     plant = Plant(settings)
-    law = Law(settings, initial_request(settings, OFF_GOING))
+    law = Law(settings, initial_request(settings.known, OFF_GOING))
     reply = None
     for step in range(settings.scenario.steps + 1):
         observation = plant.observe(plant.tick(step), torque_cut=0.0)

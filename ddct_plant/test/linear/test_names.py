@@ -18,7 +18,7 @@ from ddct_plant.models.driveline_model import (
 from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.initial_state import initial_state
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 PARAMETERS = DrivelineParameters()
 
@@ -62,7 +62,7 @@ def test_a_path_is_the_response_of_one_output_to_one_torque() -> None:
 
 
 def test_an_initial_state_gives_its_values_in_the_order_of_the_model() -> None:
-    start = initial_state(RunSettings(load_scenario('tip_in')))
+    start = initial_state(RunSettings(KnownSettings(load_scenario('tip_in'))))
     values = dict(zip(STATES, start.states, strict=True))
     assert values['engine_speed'] == start.engine_speed == 160.0
     assert values['wheel_speed'] == start.wheel_speed

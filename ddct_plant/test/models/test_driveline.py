@@ -11,9 +11,9 @@ from ddct_plant.models.linear_driveline import Driveline
 from ddct_plant.models.static_torque import constant_slip_torque
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.initial_state import initial_state
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 
-SETTINGS = RunSettings(load_scenario('thesis'), wear_gain=0.8)
+SETTINGS = RunSettings(KnownSettings(load_scenario('thesis')), CaseSettings(wear_gain=0.8))
 SCENARIO = SETTINGS.scenario
 INITIAL = initial_state(SETTINGS)
 

@@ -18,7 +18,7 @@ from ddct_plant.models.printed import ACTUATOR
 from ddct_plant.models.static_torque import constant_slip_torque
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.initial_state import initial_state
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 VEHICLE = VehicleParameters()
 
@@ -155,7 +155,7 @@ def test_actuator_starts_at_rest_on_what_it_can_give():
 
 def test_a_run_downhill_starts_with_no_request_where_the_static_torque_is_negative():
     changes = ['load.slope_rad=-0.3', 'engine.torque_n_m=[0, 0]']
-    settings = RunSettings(load_scenario('thesis', changes))
+    settings = RunSettings(KnownSettings(load_scenario('thesis', changes)))
     start = initial_state(settings)
     driveline = settings.scenario.driveline
     assert constant_slip_torque(driveline, start.engine_torque, start.load_torque) < -1.0

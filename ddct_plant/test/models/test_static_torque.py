@@ -15,7 +15,7 @@ from ddct_plant.scenario.choices.settings import ARCHITECTURES
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.initial_state import initial_state
 from ddct_plant.scenario.scenario import Scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 
 THESIS = load_scenario('thesis')
 LOADED = load_scenario(
@@ -25,7 +25,9 @@ LOADED = load_scenario(
 
 def slopes_at_start(scenario: Scenario, architecture: str, wear_gain: float = 1.0) -> np.ndarray:
     """Return d/dt of w_m, w_p, w_r and theta_sr at t = 0."""
-    start = initial_state(RunSettings(scenario, architecture, wear_gain=wear_gain))
+    start = initial_state(
+        RunSettings(KnownSettings(scenario, architecture), CaseSettings(wear_gain=wear_gain))
+    )
     model = driveline_matrices(scenario.driveline)
     state = start.states
     torques = [start.engine_torque, start.sides[0].torque, start.load_torque]

@@ -9,7 +9,7 @@ from ddct_plant.base.errors import ParameterError
 from ddct_plant.scenario.choices.scenarios import scenario_names
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.rules.capability import require_able
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 
 HELD = 'brake={time_s: [0.0], torque_n_m: [5000.0]}'
 RELEASED = 'brake={time_s: [0.0, 0.5, 0.6], torque_n_m: [5000.0, 5000.0, 0.0]}'
@@ -46,7 +46,7 @@ def test_engine_and_clutch_can_give_what_the_packaged_scenarios_ask_for(name):
 )
 def test_what_is_too_much_is_refused_with_its_numbers(changes, key, numbers):
     with pytest.raises(ParameterError) as caught:
-        RunSettings(load_scenario('launch', changes))
+        RunSettings(KnownSettings(load_scenario('launch', changes)))
     assert caught.value.key == key
     for number in numbers:
         assert number in str(caught.value)
@@ -65,23 +65,23 @@ def test_what_is_too_much_is_refused_with_its_numbers(changes, key, numbers):
     ],
 )
 def test_what_is_just_enough_is_taken(changes):
-    RunSettings(load_scenario('launch', changes))
+    RunSettings(KnownSettings(load_scenario('launch', changes)))
 
 
 def test_a_clutch_that_does_not_stick_has_no_greatest_torque():
     heavy = ['engine.torque_n_m=[0, 900]']
-    RunSettings(load_scenario('thesis', heavy))
+    RunSettings(KnownSettings(load_scenario('thesis', heavy)))
     with refused(ParameterError, 'engine.torque_n_m'):
-        RunSettings(load_scenario('thesis_sticking', heavy))
+        RunSettings(KnownSettings(load_scenario('thesis_sticking', heavy)))
 
 
 def test_what_varies_for_the_plant_alone_may_ask_for_more():
     known, true = load_scenario('launch'), load_scenario('launch', ['engine.torque_n_m=[0, 300]'])
-    RunSettings(true, known_scenario=known)
+    RunSettings(KnownSettings(known), CaseSettings(scenario=true))
     with refused(ParameterError, 'engine.torque_n_m'):
-        RunSettings(known, known_scenario=true)
+        RunSettings(KnownSettings(true), CaseSettings(scenario=known))
 
 
 def test_the_on_coming_clutch_of_a_shift_has_to_carry_the_demand():
     with refused(ParameterError, 'engine.torque_n_m'):
-        RunSettings(load_scenario('upshift', ['friction.most_n_m=85']))
+        RunSettings(KnownSettings(load_scenario('upshift', ['friction.most_n_m=85'])))

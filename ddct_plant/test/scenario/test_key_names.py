@@ -6,12 +6,11 @@ import pytest
 from refusals import refused
 
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.base.options import options_of
+from ddct_plant.scenario.choices.settings import SETTINGS
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.key_names import MOST_MEANT, key_hint, scenario_options
-from ddct_plant.scenario.settings import RunSettings
 
-KEYS = {**scenario_options(), **options_of(RunSettings)}
+KEYS = {**scenario_options(), **SETTINGS}
 OF_THE_THESIS = {
     'K_usura': 'wear_gain',
     'J_m': 'driveline.engine_inertia',

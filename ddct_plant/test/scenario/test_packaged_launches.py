@@ -9,7 +9,7 @@ from ddct_plant.base.errors import ParameterError
 from ddct_plant.scenario.choices.scenarios import packaged_names, packaged_text, scenario_names
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.initial_state import initial_state
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 NAMES = ('launch', 'launch_gentle', 'launch_hill', 'launch_hot', 'tip_in')
 
@@ -61,7 +61,7 @@ def test_each_section_of_the_clutch_that_sticks_is_named(section):
 
 @pytest.mark.parametrize('name', [name for name in NAMES if name != 'tip_in'])
 def test_a_launch_starts_at_rest_with_an_open_clutch_and_a_balanced_shaft(name):
-    settings = RunSettings(load_scenario(name))
+    settings = RunSettings(KnownSettings(load_scenario(name)))
     start = initial_state(settings)
     assert start.engine_speed == pytest.approx(104.72)
     assert (start.sides[0].shaft_speed, start.wheel_speed) == (0.0, 0.0)
@@ -77,6 +77,6 @@ def test_launches_and_shifts_close_the_clutch_after_lock_up_and_nothing_else_doe
 
 
 def test_the_tip_in_starts_locked():
-    start = initial_state(RunSettings(load_scenario('tip_in')))
+    start = initial_state(RunSettings(KnownSettings(load_scenario('tip_in'))))
     assert start.engine_speed == start.sides[0].shaft_speed
     assert start.sides[0].torque_request > 0.0

@@ -22,6 +22,7 @@ from ddct_plant.scenario.recorded_settings import (
     RecordedSettings,
     _merged,
     _patch,
+    known_settings,
     known_values,
     read_part,
     require_agreement,
@@ -31,22 +32,20 @@ from ddct_plant.scenario.recorded_settings import (
     values_of,
     values_text,
 )
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 
 THESIS, LAUNCH = load_scenario('thesis'), load_scenario('launch')
 TRUE = {'vehicle.mass_kg': 1789.25, 'actuator.delay_s': 0.013, 'load.slope_rad': 0.1 / 3.0}
-PLAIN = RunSettings(THESIS, architecture='base', mode='realtime')
+PLAIN = RunSettings(KnownSettings(THESIS, architecture='base', mode='realtime'))
 VARIED = RunSettings(
-    load_scenario('launch', TRUE),
-    wear_gain=math.nextafter(0.7, 1.0),
-    seed=424243,
-    known_scenario=LAUNCH,
+    KnownSettings(LAUNCH),
+    CaseSettings(
+        wear_gain=math.nextafter(0.7, 1.0), seed=424243, scenario=load_scenario('launch', TRUE)
+    ),
 )
 SHIFT = RunSettings(
-    load_scenario('upshift', TRUE),
-    off_going_wear_gain=0.9,
-    handover='slip',
-    known_scenario=load_scenario('upshift'),
+    KnownSettings(load_scenario('upshift'), handover='slip'),
+    CaseSettings(off_going_wear_gain=0.9, scenario=load_scenario('upshift', TRUE)),
 )
 ALL = pytest.mark.parametrize('of', [PLAIN, VARIED, SHIFT], ids=['plain', 'varied', 'shift'])
 
@@ -65,7 +64,7 @@ def test_settings_come_back_from_a_bag_to_the_last_bit(of: RunSettings) -> None:
 
 @ALL
 def test_the_known_part_makes_the_known_settings(of: RunSettings) -> None:
-    assert run_settings(recorded(of).known) == of.known
+    assert known_settings(recorded(of).known) == of.known
 
 
 @ALL
@@ -83,14 +82,14 @@ def test_each_part_has_a_file_of_its_own(tmp_path: Path, of: RunSettings) -> Non
 def test_no_value_of_the_case_is_in_the_known_part() -> None:
     record = recorded(VARIED)
     text = json.dumps(to_json(record.known))
-    for value in (VARIED.wear_gain, VARIED.seed, *TRUE.values()):
+    for value in (VARIED.case.wear_gain, VARIED.case.seed, *TRUE.values()):
         assert repr(value) not in text
     assert set(record.case.scenario) == {'vehicle', 'driveline', 'actuator', 'load', 'adjusted'}
     assert record.case.scenario['vehicle'] == {'mass_kg': 1789.25}
 
 
 def test_a_case_without_other_values_of_the_scenario_has_none() -> None:
-    worn = replace(PLAIN, wear_gain=0.8)
+    worn = RunSettings(PLAIN.known, CaseSettings(wear_gain=0.8))
     assert recorded(worn).case.scenario == {}
     assert recorded(worn).case.off_going_wear_gain is None
     assert recorded(worn).known.handover is None
@@ -117,7 +116,7 @@ def test_a_patch_makes_the_true_content_of_the_known_one(known: Any, true: Any) 
 
 
 def test_a_difference_is_named_with_both_values() -> None:
-    others = replace(VARIED, seed=7)
+    others = RunSettings(VARIED.known, replace(VARIED.case, seed=7))
     with refused(ParameterError, 'seed') as caught:
         require_same('/clutch', values_of(VARIED), values_text(values_of(others)))
     assert str(caught.value) == (
@@ -135,26 +134,31 @@ def test_a_key_that_only_one_has_is_a_difference() -> None:
 
 
 def test_known_values_of_runs_with_other_cases_are_the_same_and_others_differ() -> None:
-    plain = RunSettings(LAUNCH)
-    assert known_values(VARIED) == known_values(plain)
-    assert not {'wear_gain', 'seed', 'off_going_wear_gain'} & known_values(VARIED).keys()
+    plain = RunSettings(KnownSettings(LAUNCH))
+    assert known_values(VARIED.known) == known_values(plain.known)
+    assert not {'wear_gain', 'seed', 'off_going_wear_gain'} & known_values(VARIED.known).keys()
     assert values_of(VARIED) != values_of(plain)
-    hill = replace(plain, scenario=load_scenario('launch', {'load.slope_rad': 0.1}))
+    hill = replace(plain.known, scenario=load_scenario('launch', {'load.slope_rad': 0.1}))
     with refused(ParameterError, 'scenario.load.slope_rad'):
-        require_agreement('/load', known_values(hill), known_values(plain))
+        require_agreement('/load', known_values(hill), known_values(plain.known))
     with refused(ParameterError, 'handover'):
         require_agreement(
-            '/handover', known_values(SHIFT), known_values(replace(SHIFT, handover='timed'))
+            '/handover',
+            known_values(SHIFT.known),
+            known_values(replace(SHIFT.known, handover='timed')),
         )
 
 
 def test_remarks_and_descriptions_are_no_difference() -> None:
     named = replace(THESIS, description='another', adjusted=('moved',))
-    assert values_of(RunSettings(named)) == values_of(RunSettings(THESIS))
+    assert values_of(RunSettings(KnownSettings(named))) == values_of(
+        RunSettings(KnownSettings(THESIS))
+    )
 
 
 def test_a_handover_in_a_file_has_its_name_in_the_settings() -> None:
-    in_a_file = replace(SHIFT, handover='/home/somebody/mine.py')
+    known = replace(SHIFT.known, handover='/home/somebody/mine.py')
+    in_a_file = RunSettings(known, SHIFT.case)
     assert recorded(in_a_file).known.handover == 'mine'
     assert values_of(in_a_file)['handover'] == 'mine'
 
@@ -177,5 +181,5 @@ def test_a_duration_that_no_run_has_is_refused(duration_s: float) -> None:
 def test_a_scenario_that_cannot_be_built_is_one_line(content: dict[str, Any]) -> None:
     known = recorded(PLAIN).known
     with pytest.raises(DdctError) as caught:
-        run_settings(replace(known, scenario={**known.scenario, **content}))
+        known_settings(replace(known, scenario={**known.scenario, **content}))
     assert '\n' not in str(caught.value)

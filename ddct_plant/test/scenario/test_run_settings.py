@@ -12,7 +12,7 @@ from ddct_plant.scenario.choices.settings import ARCHITECTURES
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.initial_state import initial_state
 from ddct_plant.scenario.plant import make_driveline
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 
 THESIS = load_scenario('thesis')
 EARLY_END = load_scenario('thesis', ['reference.reference_end_s=0.6'])
@@ -20,17 +20,17 @@ EARLY_END = load_scenario('thesis', ['reference.reference_end_s=0.6'])
 
 def test_an_unknown_architecture_lists_all_four():
     with refused(ParameterError, key='architecture'):
-        RunSettings(THESIS, architecture='open_loop')
+        RunSettings(KnownSettings(THESIS, architecture='open_loop'))
 
 
 def test_a_tanh_that_ends_no_later_than_control_starts_is_refused():
     with refused(ParameterError, key='reference.reference_end_s'):
-        RunSettings(EARLY_END, architecture='feedforward_tanh')
+        RunSettings(KnownSettings(EARLY_END, architecture='feedforward_tanh'))
 
 
 @pytest.mark.parametrize('architecture', ['base', 'feedforward', 'detailed'])
 def test_the_end_does_not_matter_to_a_ramp(architecture):
-    assert RunSettings(EARLY_END, architecture).reference_shape == 'ramp'
+    assert RunSettings(KnownSettings(EARLY_END, architecture)).known.reference_shape == 'ramp'
 
 
 @pytest.mark.parametrize('architecture', ARCHITECTURES)
@@ -38,15 +38,20 @@ def test_the_shape_of_the_scenario_is_taken_or_refused(architecture):
     scenario = load_scenario('thesis', ['reference.shape=polynomial'])
     if architecture == 'feedforward_tanh':
         with refused(ParameterError, key='reference.shape'):
-            RunSettings(scenario, architecture)
+            RunSettings(KnownSettings(scenario, architecture))
     else:
-        assert RunSettings(scenario, architecture).reference_shape == 'polynomial'
+        assert (
+            RunSettings(KnownSettings(scenario, architecture)).known.reference_shape
+            == 'polynomial'
+        )
 
 
 def test_the_clutch_starts_open_but_for_the_detailed_architecture():
     scenario = load_scenario('thesis', ['engine.torque_n_m=[25.0, 308.0]'])
     for architecture in ARCHITECTURES:
-        (side,) = initial_state(RunSettings(scenario, architecture, wear_gain=0.7)).sides
+        (side,) = initial_state(
+            RunSettings(KnownSettings(scenario, architecture), CaseSettings(wear_gain=0.7))
+        ).sides
         if architecture == 'detailed':
             assert side.torque_request > 20.0
             assert side.torque == 0.7 * side.torque_request
@@ -56,7 +61,7 @@ def test_the_clutch_starts_open_but_for_the_detailed_architecture():
 
 def test_a_driveline_that_sticks_and_cannot_be_integrated_is_named():
     scenario = load_scenario('thesis', ['driveline.shaft_inertia=0.0002'])
-    settings = RunSettings(replace(scenario, clutch='stick_slip'))
+    settings = RunSettings(KnownSettings(replace(scenario, clutch='stick_slip')))
     with refused(ParameterError, 'driveline.shaft_inertia', place='scenario thesis'):
         make_driveline(settings, initial_state(settings))
 

@@ -191,7 +191,7 @@ def test_an_unknown_scenario_is_refused(name, key, place):
 )
 def test_a_bad_run_setting_is_named(setting, value):
     with refused(ParameterError, setting):
-        RunSettings(load_scenario('thesis'), **{setting: value})
+        RunSettings.of(load_scenario('thesis'), {setting: value})
 
 
 @pytest.mark.parametrize('text', ['1e-3', '1E-3', '.1e-2', '+10e-4', '1.0e-3', '0.001'])

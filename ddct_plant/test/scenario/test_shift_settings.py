@@ -10,21 +10,21 @@ from ddct_plant.base.errors import ParameterError
 from ddct_plant.files.yaml_text import dump_yaml, parse_yaml
 from ddct_plant.scenario.content import scenario_content, scenario_from_mapping
 from ddct_plant.scenario.file import load_scenario, scenario_digest, scenario_to_yaml
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 from ddct_plant.signals.signal import RunKind
 
 
 def settings(*overrides, **values):
     scenario = load_scenario('upshift', overrides)
-    return RunSettings(scenario, **values)
+    return RunSettings.of(scenario, values)
 
 
 def test_the_packaged_upshifts_are_shifts_and_a_launch_is_none():
     for name in SHIFTS:
-        upshift = RunSettings(load_scenario(name))
+        upshift = RunSettings(KnownSettings(load_scenario(name)))
         assert upshift.scenario.adjusted == ()
         assert upshift.kind() == RunKind(clutch='stick_slip', shift=True)
-    assert not RunSettings(load_scenario('launch')).kind().shift
+    assert not RunSettings(KnownSettings(load_scenario('launch'))).kind().shift
 
 
 def test_keys_of_the_shift_are_set_like_others_and_survive_their_file():
@@ -97,5 +97,5 @@ def test_a_shift_needs_clutches_that_stick():
 def test_settings_of_a_shift_are_refused_in_another_run(values):
     (key,) = values
     with refused(ParameterError, key):
-        RunSettings(load_scenario('launch'), **values)
-    assert getattr(settings(**values), key) == values[key]
+        RunSettings.of(load_scenario('launch'), values)
+    assert settings(**values).values[key] == values[key]

@@ -12,7 +12,7 @@ from ddct_plant.models.driveline import DrivelineOutputs, JointValues
 from ddct_plant.scenario.differences import changed_values
 from ddct_plant.scenario.file import load_scenario, scenario_digest, scenario_to_yaml
 from ddct_plant.scenario.plant import driveline_sensors, torque_estimate
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 from ddct_plant.sensors.parameters import OPTIONS, SensorParameters
 from ddct_plant.sensors.sensed import DrivelineSensors, TorqueEstimate
 
@@ -101,7 +101,7 @@ def test_the_numbers_of_a_seed_stay_what_they_are():
 
 
 def test_the_scenario_of_the_thesis_has_no_sensors_and_makes_none():
-    settings = RunSettings(load_scenario('thesis'))
+    settings = RunSettings(KnownSettings(load_scenario('thesis')))
     assert not settings.sensed
     assert (driveline_sensors(settings), torque_estimate(settings)) == (None, None)
 

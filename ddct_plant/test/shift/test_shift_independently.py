@@ -158,7 +158,7 @@ def shift_by_the_other_method(settings: RunSettings) -> tuple[np.ndarray, np.nda
     """
     scenario = settings.scenario
     other = Independent(settings)
-    first = initial_request(settings, OFF_GOING)
+    first = initial_request(settings.known, OFF_GOING)
     law = Law(settings, first)
     actuators = Actuator(0.0), Actuator(first)
     road = air_and_slope(scenario.load, scenario.vehicle)

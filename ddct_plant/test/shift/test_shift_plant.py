@@ -15,7 +15,7 @@ from ddct_plant.base.errors import ParameterError
 from ddct_plant.models.driveline import PHASES, DrivelineOutputs
 from ddct_plant.plant import Plant, PlantReply
 from ddct_plant.scenario.initial_state import initial_state
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import CaseSettings, RunSettings
 
 
 def rows(settings: RunSettings) -> list[dict[str, Any]]:
@@ -52,7 +52,7 @@ def test_each_clutch_has_its_own_wear_and_heat():
     assert worn[step]['off_going_clutch_torque'][5] == pytest.approx(0.7 * carried)
     assert worn[step]['clutch_torque'] == new[step]['clutch_torque']
     settings = shift_settings('upshift')
-    on_coming_worn = rows(replace(settings, wear_gain=0.7))
+    on_coming_worn = rows(replace(settings, case=CaseSettings(wear_gain=0.7)))
     assert on_coming_worn[step]['clutch_torque'][5] == pytest.approx(
         0.7 * new[step]['clutch_torque'][5]
     )

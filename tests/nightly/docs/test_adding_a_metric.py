@@ -90,11 +90,14 @@ def test_a_batch_has_the_value_of_each_single_run(patched: Path) -> None:
         from ddct_bringup.verdict.limits import packaged_limits
         from ddct_controllers.registry import make_controller
         from ddct_plant.scenario.file import load_scenario
-        from ddct_plant.scenario.settings import RunSettings
+        from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 
         scenario = load_scenario('thesis')
-        settings = [RunSettings(scenario, wear_gain=wear) for wear in (0.7, 1.0)]
-        runs = [(each, make_controller('pi', each)) for each in settings]
+        settings = [
+            RunSettings(KnownSettings(scenario), CaseSettings(wear_gain=wear))
+            for wear in (0.7, 1.0)
+        ]
+        runs = [(each, make_controller('pi', each.known)) for each in settings]
         for each, found in zip(settings, run_batch(runs, packaged_limits())):
             alone = scored_headless(each, 'pi', packaged_limits()).metrics['{KEY}']
             assert abs(found.metrics['{KEY}'] / alone - 1.0) < 1e-9

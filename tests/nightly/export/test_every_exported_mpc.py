@@ -17,17 +17,20 @@ from support.exported_mpc import exported, run_settings
 
 from ddct_controllers.registry import make_controller
 from ddct_plant.scenario.choices.settings import ARCHITECTURES
+from ddct_plant.scenario.settings import CaseSettings
 
 
 @pytest.mark.parametrize('name', EXPORTABLE)
 def test_the_c_gives_the_torques_of_the_original(tmp_path, name):
     settings = run_settings()
-    original = make_controller(name, settings)
+    original = make_controller(name, settings.known)
     in_c = exported(original, name, settings, tmp_path / 'c')
     for wear in (0.7, 1.0, 1.3):
         for controller in (original, in_c):
             controller.reset()
-        compare_loops(original, in_c, dataclasses.replace(settings, wear_gain=wear))
+        compare_loops(
+            original, in_c, dataclasses.replace(settings, case=CaseSettings(wear_gain=wear))
+        )
 
 
 @pytest.mark.parametrize('architecture', ARCHITECTURES)

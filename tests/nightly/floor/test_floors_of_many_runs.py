@@ -15,7 +15,7 @@ from ddct_bringup.scores.scored_recording import simulate_and_score
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_controllers.handover.laws import HANDOVERS
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 
 @pytest.fixture(autouse=True)
@@ -34,7 +34,7 @@ def own_cache(tmp_path, monkeypatch):
     ],
 )
 def test_no_metric_of_a_run_is_below_its_floor(scenario, controller):
-    settings = RunSettings(load_scenario(scenario))
+    settings = RunSettings(KnownSettings(load_scenario(scenario)))
     run = run_headless(settings, controller)
     metrics = [name for name in METRICS if settings.stick_slip or name != OF_STICK_SLIP]
     for metric, over in floors_of_run(settings, metrics, run).items():
@@ -54,7 +54,7 @@ def test_no_metric_of_a_shift_is_below_its_floor(scenario, handover, controller)
 
 @pytest.mark.parametrize('scenario', ['launch', 'thesis_sticking', 'thesis'])
 def test_no_peak_jerk_is_below_a_least_that_is_a_bound(scenario):
-    settings = RunSettings(load_scenario(scenario))
+    settings = RunSettings(KnownSettings(load_scenario(scenario)))
     bounds = 0
     for controller in ('ls8', 'mpc3', 'hinf1'):
         scored = simulate_and_score(RunPlan(settings, controller, 'headless'), packaged_limits())

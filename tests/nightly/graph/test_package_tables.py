@@ -12,7 +12,7 @@ from support.in_process_graph import GraphOf, by_hand
 from support.runs import plan
 
 from ddct_bringup.processes.graph_nodes import NODE_PROGRAMS, nodes_of
-from ddct_plant.scenario.settings import UNKNOWN
+from ddct_plant.scenario.case import OF_CASE
 
 OF_ROS = {'/rosout', '/parameter_events', '/run_info'}
 WITH_TARGET = (
@@ -74,7 +74,7 @@ def test_shared_parameters_and_those_of_its_own_are_all_that_a_node_declares(
     for spec in NODE_PROGRAMS:
         shown = {row[0].strip('`') for row in rows_of(tables.get(spec.name, ''))}
         node = graph.add(spec.name)
-        case = {'case', 'known_scenario', *UNKNOWN}
+        case = {'case', *OF_CASE}
         shared = SHARED - case if node.KNOWN_ONLY else SHARED
         declared = set(node.own_parameters())
         gains = {name for name in declared if name.startswith('gains.')}

@@ -11,7 +11,7 @@ from support.sensors import ALL_ON
 from ddct_bringup.run.plan import RunPlan
 from ddct_plant.scenario.choices.settings import ARCHITECTURES
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 
 SCENARIO = load_scenario('thesis', ['duration_s=0.8', 'reference.reference_end_s=0.75'])
 
@@ -28,7 +28,7 @@ def require_headless(runs: tuple[RunPlan, RunPlan], folder: Path) -> None:
 
 @pytest.mark.parametrize('architecture', ARCHITECTURES)
 def test_every_architecture_leaves_the_same_bytes(tmp_path: Path, architecture: str) -> None:
-    settings = RunSettings(SCENARIO, architecture, wear_gain=0.9)
+    settings = RunSettings(KnownSettings(SCENARIO, architecture), CaseSettings(wear_gain=0.9))
     processes, headless = (
         RunPlan(settings, 'hinf2', layout) for layout in ('processes', 'headless')
     )

@@ -17,7 +17,7 @@ from ddct_controllers.registry import make_controller
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.scenario.choices.settings import ARCHITECTURES
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 
 SCENARIO = load_scenario('thesis')
 LONG = replace(SCENARIO, duration_s=5.0)
@@ -25,7 +25,7 @@ OWN = ('mpc_offset_free', 'mpc_torsion', 'mpc_wear')
 
 
 def settings(wear_gain=1.0, scenario=SCENARIO, architecture='detailed'):
-    return RunSettings(scenario, architecture, wear_gain=wear_gain)
+    return RunSettings(KnownSettings(scenario, architecture), CaseSettings(wear_gain=wear_gain))
 
 
 @pytest.mark.parametrize('wear_gain', FINER_WEAR_GAINS)

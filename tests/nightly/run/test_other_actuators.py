@@ -10,7 +10,7 @@ from ddct_bringup.verdict.limits import packaged_limits
 from ddct_bringup.verdict.state import ENGAGED
 from ddct_controllers.registry import own_controller_names
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 FAILS = {
     'printed': {'mpc4', 'mpc4_wear'},
@@ -25,7 +25,7 @@ def test_every_controller_but_mpc4_engages_in_an_upshift_with_the_actuator_of_it
     actuator: str,
 ) -> None:
     scenario = load_scenario('upshift', keys_of(ACTUATORS[actuator]))
-    settings, limits = RunSettings(scenario), packaged_limits()
+    settings, limits = RunSettings(KnownSettings(scenario)), packaged_limits()
     states = {
         name: scored_headless(settings, name, limits).state for name in own_controller_names()
     }

@@ -19,7 +19,7 @@ from ddct_controllers.loop import ClosedLoop
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.scenario.choices.scenarios import scenario_names
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 HERE = Path(__file__).parent
 EVERY = round(EVERY_S / PERIOD_S)
@@ -43,7 +43,7 @@ class Listener(Controller):
 
 def recorded(scenario: str) -> list[float]:
     """Return the request of `least_jerk` from the start of feedback on, each 50 ms."""
-    settings = RunSettings(load_scenario(scenario))
+    settings = RunSettings(KnownSettings(load_scenario(scenario)))
     run = run_headless(settings, 'least_jerk')
     on = [dict(pairs)['feedback'] == 'on' for pairs in run.status]
     return [round(float(each), 2) for each in run.torque_request[on.index(True) :: EVERY]]
@@ -57,7 +57,7 @@ def memory() -> dict[int, float]:
         settings = cases.run(index).settings
         listener = Listener()
         run_loop(ClosedLoop(settings, listener), SAMPLES + 1)
-        known[listener.key.value] = settings.wear_gain
+        known[listener.key.value] = settings.case.wear_gain
     assert len(known) == cases.cases, 'two cases have one key'
     return known
 

@@ -108,7 +108,7 @@ def replay_row(
             raise DdctError(f'it fails as its row says ({row["reason"]}): {error}') from error
 
     kept = keep_run(plan, out, limits, as_its_row, overwrite=overwrite)
-    found = differences(row, {SEED: run.settings.seed, **result_row(kept.scores, run.varied)})
+    found = differences(row, {SEED: run.settings.case.seed, **result_row(kept.scores, run.varied)})
     how = 'bit for bit' if row[PATH] == SERIAL else f'to {VECTORISED_RTOL:g}'
     words = f'its {len(compared_in(row))} figures and words are those of the row, {how}'
     return Replay(index, row[PATH], found, words, kept)

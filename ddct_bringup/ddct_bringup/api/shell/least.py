@@ -177,6 +177,6 @@ def _no_ratio(header: str, row: Sequence[str]) -> str:
 def _title(settings: RunSettings) -> str:
     parts = [
         settings.scenario.name,
-        f'wear gain {settings.wear_gain:g}',
+        f'wear gain {settings.case.wear_gain:g}',
     ]
     return ', '.join([*parts, *shift_conditions(settings).values()])

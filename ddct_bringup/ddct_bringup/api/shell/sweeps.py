@@ -32,7 +32,7 @@ def planned_sweep(
     base = base_from([controller_label(each) for each in chosen], **options)
     if controllers is None:
         first = base.at({axis.key: axis.values[0] for axis in axes})
-        chosen = [*working_controllers(first, complain)]
+        chosen = [*working_controllers(first.known, complain)]
     return Sweep(base, axes, chosen, limits)
 
 

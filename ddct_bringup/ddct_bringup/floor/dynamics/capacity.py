@@ -40,7 +40,7 @@ class CapacityRange:
 
     def with_run(self, settings: RunSettings, run: Trajectory, periods: range) -> 'CapacityRange':
         """Return the interval widened so that it contains the capacities of a run."""
-        rest = run.clutch_torque - settings.wear_gain * run.actuator_torque
+        rest = run.clutch_torque - settings.case.wear_gain * run.actuator_torque
         rest = rest[periods.start : periods.stop]
         held = np.ptp(rest, axis=1) <= _RESIDUAL
         low = min(self.low, rest[held].min(initial=self.low))
@@ -78,7 +78,7 @@ def capacity_range(settings: RunSettings, temperature_c: float) -> CapacityRange
         )
     ends = np.array([coolest, hottest]) if friction.kiss_drift_n_m_k else np.array([AMBIENT_C])
     kiss = friction.kiss_torque_n_m - friction.kiss_drift_n_m_k * (ends - AMBIENT_C)
-    rest = -settings.wear_gain * kiss
+    rest = -settings.case.wear_gain * kiss
     return CapacityRange(rest.min(), rest.max(), friction.most_n_m, positive=True)
 
 

@@ -28,7 +28,7 @@ class Inputs:
         columns: Columns,
     ) -> None:
         """Begin at control start."""
-        self._wear_gain, self._start = settings.wear_gain, start
+        self._wear_gain, self._start = settings.case.wear_gain, start
         self._engine, self._load, self._capacity = engine, load, capacity
         self._columns = columns
         self._model = ActuatorModel.of(settings)

@@ -85,8 +85,8 @@ def off_going_of(settings: RunSettings, run: Trajectory, step: int, unforced: in
     requests = np.maximum(run.off_going_torque_request, 0.0)
     if requests[step:].any():
         raise ParameterError(
-            f'handover {settings.handover_name}: it requests torque of the off-going clutch after '
-            'its share of C_fOL is 1: there is no floor',
+            f'handover {settings.known.handover_name}: it requests torque of the off-going clutch '
+            'after its share of C_fOL is 1: there is no floor',
             key='handover',
         )
     if shift_of(settings.scenario).disengagement_s is not None:
@@ -142,7 +142,7 @@ def _most_capacity(
     """Return the largest static capacity in N m for the actuator's torque, both (n, 11)."""
     scenario = settings.scenario
     clutch = FrictionClutch(
-        scenario.friction, settings.off_going_wear_gain, scenario.heat, OPEN_BELOW
+        scenario.friction, settings.case.off_going_wear_gain, scenario.heat, OPEN_BELOW
     )
     coolest, hottest = temperature_c - COOLER_K, temperature_c + WARMER_K
     inner = [each for each in scenario.friction.temperature_c if coolest < each < hottest]

@@ -93,14 +93,14 @@ def start_of(settings: RunSettings, run: Trajectory) -> Start:
     step = ShiftCourse(run, scored_from).feedback_start if settings.shift else scored_from
     if run.steps < step and settings.shift:
         raise ParameterError(
-            f'handover {settings.handover_name}: its share of C_fOL is never 1, so that there is '
-            'no inertia phase, and no floor',
+            f'handover {settings.known.handover_name}: its share of C_fOL is never 1, so that '
+            'there is no inertia phase, and no floor',
             key='handover',
         )
     if run.steps < step:
         raise ParameterError('the run ends before control start: there is no floor')
     requests = np.maximum(run.torque_request[:step], 0.0)
-    before = max(initial_request(settings), 0.0)
+    before = max(initial_request(settings.known), 0.0)
     state = np.array(
         [
             run.engine_speed[step],

@@ -55,7 +55,7 @@ def usual_requests(case: Case) -> np.ndarray:
         closing = torque
     requests = np.where(time_s < lock_s, slipping, np.minimum(closing, CLOSED))
     middle = (case.capacity.low + case.capacity.high) / 2.0
-    return np.asarray(np.maximum(requests - middle, 0.0) / case.settings.wear_gain)
+    return np.asarray(np.maximum(requests - middle, 0.0) / case.settings.case.wear_gain)
 
 
 def replayed(case: Case, requests: np.ndarray) -> Trajectory:

@@ -44,7 +44,7 @@ from ddct_plant.base.errors import DdctError
 from ddct_plant.files.output_file import write_text
 from ddct_plant.scenario.file import load_scenario, scenario_digest
 from ddct_plant.scenario.scenario import Scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 QUANTITIES = {
     'level': ('torque level', (1.0, 0.0, 0.0, 0.0, 0.0, 0.0)),
@@ -101,7 +101,7 @@ def fitted_rows(scenario: Scenario) -> list[ResidualEntry]:
 
 def _row_values(scenario: Scenario) -> dict[str, dict[str, float | None]]:
     """Return the values of the fitted rows by name; None where one is undefined."""
-    return {row: study_run(RunSettings(scenario), row).table_values for row in ROWS}
+    return {row: study_run(RunSettings(KnownSettings(scenario)), row).table_values for row in ROWS}
 
 
 def _defined(values: Mapping[str, float | None]) -> dict[str, float]:

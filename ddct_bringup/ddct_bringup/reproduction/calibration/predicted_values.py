@@ -23,7 +23,7 @@ from ddct_bringup.thesis.table_5_1 import PREDICTED_ROWS
 from ddct_bringup.thesis.table_metrics import TABLE_METRICS
 from ddct_plant.scenario.file import scenario_digest
 from ddct_plant.scenario.scenario import Scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 
 OPEN_LOOP = 'C_fOL alone'
 """
@@ -57,7 +57,7 @@ def predicted_values(scenario: Scenario) -> dict[str, Value]:
 
 
 def _table_5_1(scenario: Scenario) -> dict[str, Value]:
-    settings = RunSettings(scenario)
+    settings = RunSettings(KnownSettings(scenario))
     runs = {row.controller: study_run(settings, row.controller) for row in PREDICTED_ROWS}
     runs[OPEN_LOOP] = study_run(settings, StaticControllerAlone())
     return {
@@ -68,7 +68,9 @@ def _table_5_1(scenario: Scenario) -> dict[str, Value]:
 
 
 def _table_5_2(scenario: Scenario, wear_gain: float) -> dict[str, Value]:
-    settings = RunSettings(scenario, WORN_ARCHITECTURE, wear_gain=wear_gain)
+    settings = RunSettings(
+        KnownSettings(scenario, WORN_ARCHITECTURE), CaseSettings(wear_gain=wear_gain)
+    )
     runs = {name: study_run(settings, name) for name in SLIP_RATINGS}
     rows = rows_of_table_5_2(runs)
     found: dict[str, Value] = {

@@ -36,7 +36,7 @@ from ddct_plant.base.units import rad_s_from_rpm
 from ddct_plant.models.engine import TorqueProfile
 from ddct_plant.scenario.control import ReferenceParameters
 from ddct_plant.scenario.scenario import Scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 _STEP = 1e-4
 """Difference step of the Jacobian, as a share of each parameter's range."""
@@ -148,7 +148,7 @@ def row_values(scenario: Scenario, controller: str) -> dict[str, float]:
     """
     _, end = scenario.score_window_s
     shortened = dataclasses.replace(scenario, duration_s=end)
-    run = study_run(RunSettings(shortened), controller)
+    run = study_run(RunSettings(KnownSettings(shortened)), controller)
     figures, final_rpm = run.table_values, run.metrics['slip_final_rpm']
     if figures['engagement_time_s'] is None and final_rpm is not None:
         left = abs(rad_s_from_rpm(final_rpm)) / scenario.reference.slope_rad_s2

@@ -23,7 +23,7 @@ from ddct_bringup.reproduction.values.plant_values import (
 from ddct_controllers.design.drawing.line_styles import GREY, REFERENCE_LINE, LineStyle
 from ddct_plant.base.timebase import steps_in
 from ddct_plant.base.units import rpm_from_rad_s
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 from ddct_plant.simplified.plants import printed_lti_slip
 
 if TYPE_CHECKING:
@@ -46,7 +46,7 @@ def _tanh_run(end_s: float) -> StudyRun:
     """Return a run with the tanh reference that ends at `end_s` seconds."""
     reference = dataclasses.replace(THESIS_SCENARIO.reference, reference_end_s=end_s)
     scenario = dataclasses.replace(THESIS_SCENARIO, reference=reference)
-    return study_run(RunSettings(scenario, 'feedforward_tanh'), 'pi')
+    return study_run(RunSettings(KnownSettings(scenario, 'feedforward_tanh')), 'pi')
 
 
 def _draw_reference(axes: 'Axes') -> str:

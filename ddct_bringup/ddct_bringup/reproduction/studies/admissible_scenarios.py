@@ -31,7 +31,7 @@ from ddct_controllers.mpc.costs import TABLE_4_1
 from ddct_controllers.mpc.estimators import FULL
 from ddct_plant.program.table import text_or_dash
 from ddct_plant.scenario.scenario import Scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 _PER_RAD_S = READINGS['Q per rad/s, noise as it is']
 _MORE_KNOWN = dataclasses.replace(
@@ -179,7 +179,7 @@ def score_windows() -> Study:
 
 def _window_row(label: str, scenario: Scenario) -> tuple[str, ...]:
     fitted = fitted_rows(scenario)
-    settings = RunSettings(scenario)
+    settings = RunSettings(KnownSettings(scenario))
     return (
         f'{scenario.score_window_s[1]:.1f}',
         label,

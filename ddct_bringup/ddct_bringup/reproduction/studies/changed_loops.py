@@ -32,7 +32,7 @@ from ddct_controllers.mpc.program.horizon import CondensedProgram
 from ddct_plant.base.timebase import PERIOD_S, SUBSTEPS
 from ddct_plant.models.driveline_model import driveline_matrices
 from ddct_plant.models.parameters import DrivelineParameters
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 ALL_BUT_ONE = 1.0 - 1e-6
 """Magnitude above which a mode counts as an integrator."""
@@ -110,7 +110,7 @@ class _Direct:
 class MeasuredState(Observer):
     """Observer with w_m, w_p, w_r and theta_sr measured; actuator states follow the model."""
 
-    def __init__(self, settings: RunSettings, model: TransmissionModel) -> None:
+    def __init__(self, settings: KnownSettings, model: TransmissionModel) -> None:
         super().__init__(model, np.eye(len(model.a), MEASURED + 1), run_start(settings))
         self.twist: Callable[[], float] | None = None
         """Function that returns theta_sr in rad; without it there is no estimate."""

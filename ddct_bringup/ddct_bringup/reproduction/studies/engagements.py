@@ -29,7 +29,7 @@ from ddct_plant.program.table import Column
 from ddct_plant.program.workers import in_processes
 from ddct_plant.scenario.choices.scenarios import scenario_names
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -78,7 +78,9 @@ COLUMNS: tuple[StudyColumn, ...] = (
 def engagement(case: Case) -> tuple[tuple[str, ...], Slip]:
     """Run one case; return its row and its slip, small enough to send between processes."""
     scenario, wear_gain, controller = case
-    settings = RunSettings(load_scenario(scenario), wear_gain=wear_gain)
+    settings = RunSettings(
+        KnownSettings(load_scenario(scenario)), CaseSettings(wear_gain=wear_gain)
+    )
     run = study_run(settings, controller)
     label = f'{wear_gain:g}'
     row = (label, controller, *cells(COLUMNS, run))

@@ -47,7 +47,7 @@ from ddct_plant.base.units import rad_s_from_rpm
 from ddct_plant.models.actuator import PRINTED_ACTUATOR
 from ddct_plant.models.engine import EngineAuthority
 from ddct_plant.models.parameters import DrivelineParameters
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 PULLS = (0.0, 0.01, 0.05, 0.1, 0.14, 0.2, 0.5, 1.0, 2.0)
 NEAR_WEAR = (0.95, 1.05)
@@ -66,12 +66,12 @@ class Mpc4Reading:
     model: Model = transmission_model
     """Model in the controller."""
     plant: Model = transmission_model
-    observer: Callable[[RunSettings, TransmissionModel], Observer] = make_observer
+    observer: Callable[[KnownSettings, TransmissionModel], Observer] = make_observer
 
     def controller(self, run: RunSettings) -> MpcController[Any]:
         """Return the controller of a run."""
         model = self.model(run.scenario.driveline, 1.0)
-        observer = self.observer(run, model)
+        observer = self.observer(run.known, model)
         return MpcController(model, observer, self.settings, run.scenario.engine_authority)
 
     def run(self) -> Trajectory:
@@ -86,7 +86,7 @@ class Mpc4Reading:
             speed = THESIS_SCENARIO.initial.shaft_speed_rad_s
             slip = float(start.trajectory.slip_speed[start.start])
             initial = replace(THESIS_SCENARIO.initial, engine_speed_rad_s=speed + slip)
-            settings = RunSettings(replace(THESIS_SCENARIO, initial=initial))
+            settings = RunSettings(KnownSettings(replace(THESIS_SCENARIO, initial=initial)))
             loop = LoopWithoutActuator
         return run_loop(loop(settings, self.controller(settings)), settings.scenario.steps)
 
@@ -167,7 +167,7 @@ def torque_level() -> Study:
     worn = [transmission_model(driveline, gain) for gain in NEAR_WEAR]
     rows = []
     for pull in PULLS:
-        observer = make_observer(THESIS_SETTINGS, model)
+        observer = make_observer(THESIS_SETTINGS.known, model)
         settings = TwoInputCost(demand_weight=pull).settings()
         mpc4 = MpcController(model, observer, settings, EngineAuthority())
         run = study_run(THESIS_SETTINGS, mpc4)

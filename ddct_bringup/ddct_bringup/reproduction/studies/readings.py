@@ -28,7 +28,7 @@ from ddct_controllers.mpc.model.transmission_model import SLIP_SPEED, Transmissi
 from ddct_controllers.mpc.program.settings import InputTerms, MpcSettings, OutputTerms
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.scenario.scenario import Scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 Change = Callable[[MpcSettings], MpcSettings]
 
@@ -50,9 +50,9 @@ class Reading:
 
     def run(self, row: TableRow, scenario: Scenario = THESIS_SCENARIO) -> StudyRun:
         """Return the run of a row in a scenario with the thesis's driveline."""
-        run = RunSettings(scenario, self.architecture)
+        run = RunSettings(KnownSettings(scenario, self.architecture))
         settings = self.change(row.settings())
-        parts = self.knowledge.parts(run, self.model, noise_rpm=self.noise_rpm)
+        parts = self.knowledge.parts(run.known, self.model, noise_rpm=self.noise_rpm)
         return study_run(run, self.beside(MpcController(*parts, settings)))
 
 

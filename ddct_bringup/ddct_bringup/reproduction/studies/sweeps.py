@@ -31,7 +31,7 @@ from ddct_controllers.state_of_art.controllers import STATE_OF_ART
 from ddct_controllers.state_of_art.pedal_mpc import engagement_time_s
 from ddct_plant.models.engine import EngineAuthority
 from ddct_plant.program.table import Column, Weight
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 TORSION_FACTORS = (0.0, 1.0, 3.0, 6.0, 12.0, 20.0, 40.0)
 """Weights of w_sr per rpm as multiples of that of w_d, besides the default."""
@@ -88,7 +88,7 @@ def torsion_weight() -> Study:
 def _torsion_case(factor: float) -> tuple[tuple[str, str], StudyRun]:
     weight = factor * BASIS.output_weight
     options = {**THESIS_SCENARIO.controllers, 'mpc_torsion': {'torsion_weight': weight}}
-    settings = RunSettings(replace(THESIS_SCENARIO, controllers=options))
+    settings = RunSettings(KnownSettings(replace(THESIS_SCENARIO, controllers=options)))
     label = f'{weight:.2f}' + (' (default)' if factor == DEFAULT_FACTOR else '')
     return (label, f'{factor:.3g}'), study_run(settings, 'mpc_torsion')
 
@@ -124,7 +124,9 @@ def _largest_deviation(run: StudyRun) -> float:
 def pedal_positions() -> Study:
     """Run `pedal_mpc` at several pedal positions."""
     every = {
-        f'{position:g}': RunSettings(replace(THESIS_SCENARIO, pedal_position=position))
+        f'{position:g}': RunSettings(
+            KnownSettings(replace(THESIS_SCENARIO, pedal_position=position))
+        )
         for position in (0.0, 0.25, 0.5, 0.75, 1.0)
     }
     return run_study(
@@ -133,7 +135,7 @@ def pedal_positions() -> Study:
         (*TABLE_5_1, _SETTLED),
         [
             (
-                (position, f'{engagement_time_s(ControllerContext(settings, {})):.2f}'),
+                (position, f'{engagement_time_s(ControllerContext(settings.known, {})):.2f}'),
                 study_run(settings, 'pedal_mpc'),
             )
             for position, settings in every.items()
@@ -147,7 +149,7 @@ def engine_authority() -> Study:
     cases = [(name, case) for name in ('mpc4', 'mpc4_wear') for case in AUTHORITIES]
     cases += [(name, 'none') for name in ('mpc3', 'mpc_preview')]
     settings = {
-        case: RunSettings(replace(THESIS_SCENARIO, engine_authority=authority))
+        case: RunSettings(KnownSettings(replace(THESIS_SCENARIO, engine_authority=authority)))
         for case, authority in {**AUTHORITIES, 'none': EngineAuthority()}.items()
     }
     return run_study(

@@ -21,7 +21,7 @@ from ddct_bringup.reproduction.values.orders import (
 )
 from ddct_bringup.verdict.state import ENGAGED, NOT_ENGAGED
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 
 SCENARIOS = ('thesis', 'thesis_sticking')
 """Names of the scenarios: the thesis's linear clutch, and the one that sticks."""
@@ -103,7 +103,10 @@ def rows_of(scenario: str, wear_gain: float) -> list[tuple[str, ...]]:
 
 def rated_rows(scenario: str, wear_gain: float) -> list[RatedRow]:
     """Return the rated runs of the table's controllers in a scenario with a wear gain."""
-    settings = RunSettings(load_scenario(scenario), WORN_ARCHITECTURE, wear_gain=wear_gain)
+    settings = RunSettings(
+        KnownSettings(load_scenario(scenario), WORN_ARCHITECTURE),
+        CaseSettings(wear_gain=wear_gain),
+    )
     runs = {name: study_run(settings, name) for name in SLIP_RATINGS}
     states = {name: run.scores.state for name, run in runs.items()}
     slips, torsion, acceleration = rows_of_table_5_2(runs)

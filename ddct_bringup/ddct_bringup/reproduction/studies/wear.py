@@ -19,7 +19,7 @@ from ddct_controllers.registry import make_controller
 from ddct_plant.base.timebase import PERIOD_S, steps_in
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.program.table import Column
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 
 CONTROLLERS = (
     *('mpc3', 'mpc_preview', 'mpc_offset_free', 'mpc_torsion', 'mpc_wear'),
@@ -84,7 +84,7 @@ def _largest_in_last_part(run: StudyRun) -> float:
 
 
 def _after_load_step(run: StudyRun) -> float:
-    controller = make_controller(str(run.controller), run.settings)
+    controller = make_controller(str(run.controller), run.settings.known)
     return rpm_from_rad_s(slip_after_load_step(run.settings, controller, *_LOAD_STEP)[-1])
 
 
@@ -111,8 +111,8 @@ def wear_estimate() -> Study:
 
 
 def _estimate_row(wear_gain: float, noise_rad_s: float) -> tuple[str, ...]:
-    settings = RunSettings(THESIS_SCENARIO, wear_gain=wear_gain)
-    controller = PREDICTIVE['mpc_wear'](ControllerContext(settings, {}))
+    settings = RunSettings(KnownSettings(THESIS_SCENARIO), CaseSettings(wear_gain=wear_gain))
+    controller = PREDICTIVE['mpc_wear'](ControllerContext(settings.known, {}))
     gains: list[float] = []
     slip = slip_after_load_step(
         settings,

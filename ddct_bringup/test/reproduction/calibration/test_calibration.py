@@ -25,7 +25,7 @@ from ddct_bringup.run.headless import run_headless
 from ddct_bringup.thesis.table_5_1 import PREDICTED, THESIS_TABLE, thesis_row
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 pytestmark = pytest.mark.slow
 
@@ -140,7 +140,7 @@ def test_standard_error_of_a_function_is_that_of_the_normal_equations(optimum):
 
 def test_engagement_time_without_engagement_is_the_time_that_the_reference_would_still_need():
     scenario = PROBLEM.scenario([*VALUES[:4], 0.0, 0.0])
-    slip = run_headless(RunSettings(scenario), 'pi').slip_speed
+    slip = run_headless(RunSettings(KnownSettings(scenario)), 'pi').slip_speed
     end = round(100 * scenario.score_window_s[1])
     assert np.all(slip[60 : end + 1] > 0.0)
     expected = (end - 60) / 100 + slip[end] / scenario.reference.slope_rad_s2

@@ -16,7 +16,7 @@ from ddct_bringup.run.headless import run_headless
 from ddct_plant.base.errors import DdctError
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.scenario import Scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 DURATION_S = 20.0
 
@@ -34,7 +34,7 @@ def peak_slip(slip: np.ndarray, first_s: float, last_s: float) -> float:
 def test_integral_alone_grows_at_the_rate_of_the_linear_loop():
     scenario = long_run(0.0, 0.14)
     rate = pi_growth_rate(scenario.driveline, 0.0, 0.14)
-    slip = run_headless(RunSettings(scenario), 'pi').slip_speed
+    slip = run_headless(RunSettings(KnownSettings(scenario)), 'pi').slip_speed
     change = np.diff(slip)
     turns = np.flatnonzero(change[1:] * change[:-1] < 0.0) + 1
     turns = turns[turns > 150][:8]  # after the engagement, before saturation
@@ -48,7 +48,7 @@ def test_integral_alone_grows_at_the_rate_of_the_linear_loop():
 def test_frozen_pi_is_stable_and_its_slip_dies_out():
     scenario = load_scenario('thesis')
     assert pi_growth_rate(scenario.driveline, **FROZEN_GAINS) < 0.0
-    slip = run_headless(RunSettings(long_run(**FROZEN_GAINS)), 'pi').slip_speed
+    slip = run_headless(RunSettings(KnownSettings(long_run(**FROZEN_GAINS))), 'pi').slip_speed
     assert peak_slip(slip, 15.0, 20.0) < 0.02 * peak_slip(slip, 0.6, 2.0)
 
 

@@ -11,10 +11,10 @@ from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.models.driveline_model import driveline_matrices
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.initial_state import initial_state
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 PAGE = Path(__file__).resolve().parents[4] / 'docs' / 'thesis' / 'calibration.md'
-SETTINGS = RunSettings(load_scenario('thesis'))
+SETTINGS = RunSettings(KnownSettings(load_scenario('thesis')))
 
 
 def test_page_states_the_acceleration_and_the_slip_that_the_start_makes():

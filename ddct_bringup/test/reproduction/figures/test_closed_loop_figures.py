@@ -25,7 +25,7 @@ from ddct_bringup.run.headless import run_headless
 from ddct_bringup.thesis.table_5_1 import thesis_row
 from ddct_plant.base.units import rpm_from_rad_s
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -59,7 +59,7 @@ def lines(axes: 'Axes') -> dict[str, np.ndarray]:
 )
 def test_run_figure_contains_the_signal_of_the_run_from_0_5_s(number, architecture, shown, unit):
     axes = drawing(number)[0].axes[0]
-    run = run_headless(RunSettings(THESIS_SCENARIO, architecture), shown[0])
+    run = run_headless(RunSettings(KnownSettings(THESIS_SCENARIO, architecture)), shown[0])
     signals = {
         'w_d, rpm': rpm_from_rad_s(run.slip_speed),
         'w_sr, rpm': rpm_from_rad_s(run.joint_speed[:, 3]),
@@ -76,7 +76,12 @@ def test_wear_figure_shows_hinf2_at_both_ends_of_the_wear():
     chart, _ = drawing('5.1')
     shown = lines(chart.axes[0])
     for wear in (0.7, 1.3):
-        run = run_headless(RunSettings(THESIS_SCENARIO, 'feedforward', wear_gain=wear), 'hinf2')
+        run = run_headless(
+            RunSettings(
+                KnownSettings(THESIS_SCENARIO, 'feedforward'), CaseSettings(wear_gain=wear)
+            ),
+            'hinf2',
+        )
         label = f'H∞2 (K_usura = {wear:g})'
         np.testing.assert_array_equal(shown[label][1], rpm_from_rad_s(run.slip_speed[50:]))
         assert abs(shown[label][1][-1]) < 1.0
@@ -87,7 +92,10 @@ def test_the_time_axis_ends_with_the_longest_run(monkeypatch):
 
     def run_of(controller: str, architecture: str, wear_gain: float) -> StudyRun:
         scenario = load_scenario('thesis', ['duration_s=1.0'] if wear_gain < 1.0 else [])
-        return study_run(RunSettings(scenario, architecture, wear_gain=wear_gain), controller)
+        return study_run(
+            RunSettings(KnownSettings(scenario, architecture), CaseSettings(wear_gain=wear_gain)),
+            controller,
+        )
 
     monkeypatch.setattr(run_figures, 'thesis_run', run_of)
     axes = drawing('5.1')[0].axes[0]
@@ -141,7 +149,7 @@ def test_verdict_on_the_figures_of_mpc4_holds():
     controlled = rpm_from_rad_s(run.slip_speed[THESIS_SCENARIO.control_start_step :])
     assert controlled.min() > 0.0
     near = np.flatnonzero(controlled < 10.0)
-    integrated = tight_tolerance_run(RunSettings(THESIS_SCENARIO), 'mpc4')['w_d']
+    integrated = tight_tolerance_run(RunSettings(KnownSettings(THESIS_SCENARIO)), 'mpc4')['w_d']
     from_scipy = rpm_from_rad_s(integrated[THESIS_SCENARIO.control_start_step :])
     assert near[0] == np.argmax(from_scipy < 10.0)
     assert (round(1000.0 / from_scipy[0]), near[0]) == (2, 46)  # % of where it began, periods
@@ -160,7 +168,7 @@ def test_remarks_distinguish_fitted_and_predicted_rows_of_table_5_1():
 
 def test_reference_figure_is_what_the_detailed_run_follows_once_control_starts():
     time, values = lines(drawing('1.12')[0].axes[0])['reference']
-    run = run_headless(RunSettings(THESIS_SCENARIO), 'pi')
+    run = run_headless(RunSettings(KnownSettings(THESIS_SCENARIO)), 'pi')
     np.testing.assert_array_equal(values, rpm_from_rad_s(run.slip_reference[: len(time), 0]))
 
 

@@ -12,7 +12,7 @@ from ddct_controllers.design import feedforward
 from ddct_controllers.design.feedforward import TORQUE_RATE_WEIGHT, design_feedforward
 from ddct_controllers.interface import Command, Controller, Measurement
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 SCENARIO = load_scenario('thesis')
 
@@ -29,7 +29,9 @@ def acceleration_std(weight: float) -> float:
     """Return the standard deviation of A_x in m/s^2 without feedback."""
     model = design_feedforward(SCENARIO.driveline, SCENARIO.actuator, torque_rate_weight=weight)
     with patch.object(feedforward, 'design_feedforward', lambda *_: model):
-        trajectory = run_headless(RunSettings(SCENARIO, 'feedforward'), NoFeedback())
+        trajectory = run_headless(
+            RunSettings(KnownSettings(SCENARIO, 'feedforward')), NoFeedback()
+        )
     found = compute_metrics(
         trajectory,
         control_start_s=SCENARIO.control_start_s,

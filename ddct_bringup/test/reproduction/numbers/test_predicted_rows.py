@@ -16,7 +16,7 @@ from ddct_bringup.thesis.predictions import Prediction, Predictions, predicted_r
 from ddct_bringup.thesis.table_5_1 import PREDICTED, PREDICTION_TOLERANCE, THESIS_TABLE, thesis_row
 from ddct_bringup.thesis.table_metrics import TABLE_METRICS
 from ddct_plant.scenario.file import load_scenario, scenario_digest
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
 
 THESIS = load_scenario('thesis')
 KEPT = Predictions(
@@ -37,7 +37,7 @@ def run(controller, figures=VALUES):
 
 def printed(*runs, settings=None, overrides=()):
     stream = io.StringIO()
-    print_comparison(runs, settings or RunSettings(THESIS), overrides, stream)
+    print_comparison(runs, settings or RunSettings(KnownSettings(THESIS)), overrides, stream)
     text = re.sub('(?<= )--+(?= )', '-', stream.getvalue())
     return [' '.join(line.split()) for line in text.splitlines()]
 
@@ -77,10 +77,10 @@ def test_calibrated_row_and_a_controller_without_a_row_neither_hit_nor_miss():
 @pytest.mark.parametrize(
     'settings',
     [
-        RunSettings(load_scenario('thesis', ['load.slope_rad=0.01'])),
-        RunSettings(dataclasses.replace(THESIS, duration_s=2.0)),
-        RunSettings(THESIS, 'feedforward'),
-        RunSettings(THESIS, wear_gain=0.7),
+        RunSettings(KnownSettings(load_scenario('thesis', ['load.slope_rad=0.01']))),
+        RunSettings(KnownSettings(dataclasses.replace(THESIS, duration_s=2.0))),
+        RunSettings(KnownSettings(THESIS, 'feedforward')),
+        RunSettings(KnownSettings(THESIS), CaseSettings(wear_gain=0.7)),
     ],
     ids=['scenario', 'duration', 'architecture', 'wear'],
 )

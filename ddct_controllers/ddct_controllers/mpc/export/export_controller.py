@@ -18,7 +18,7 @@ from ddct_controllers.mpc.export.text import constants, macros, remark
 from ddct_controllers.mpc.model.transmission_model import SLIP_SPEED
 from ddct_controllers.mpc.program.settings import MpcSettings
 from ddct_plant.program.command_line import package_version
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings
 
 HEADER, SOURCE, EXAMPLE = 'ddct_mpc.h', 'ddct_mpc.c', 'ddct_mpc_example.c'
 LIBRARY = 'ddct_mpc_library.c'
@@ -31,7 +31,7 @@ _MARK = 'Made by design mpc --export; make it again instead of editing it.'
 def export_controller(
     controller: Controller,
     name: str,
-    settings: RunSettings,
+    settings: KnownSettings,
     folder: Path,
     *,
     overwrite: bool = False,
@@ -73,7 +73,7 @@ def _texts(tables: ControllerTables, about: list[str]) -> dict[str, str]:
     }
 
 
-def _about(name: str, settings: RunSettings, chosen: MpcSettings) -> list[str]:
+def _about(name: str, settings: KnownSettings, chosen: MpcSettings) -> list[str]:
     """Return the remark at the head of every file: origin, settings and version."""
     clutch = chosen.inputs[0]
     slip_limits = (terms.lowest for terms in chosen.outputs if terms.output == SLIP_SPEED)

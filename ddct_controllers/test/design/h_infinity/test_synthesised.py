@@ -12,11 +12,11 @@ from ddct_plant.base.errors import DdctError
 from ddct_plant.models.gearbox import Gearbox
 from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings
 
 
 def model_in(name, *changes):
-    return make_controller(name, RunSettings(load_scenario('thesis', changes))).linear_model()
+    return make_controller(name, KnownSettings(load_scenario('thesis', changes))).linear_model()
 
 
 @pytest.mark.parametrize('name', SYNTHESISED)

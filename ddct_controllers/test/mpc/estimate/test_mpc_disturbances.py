@@ -32,9 +32,9 @@ from ddct_controllers.mpc.model.transmission_model import (
 from ddct_controllers.mpc.variants import PREDICTIVE
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
-SETTINGS = RunSettings(load_scenario('thesis'))
+SETTINGS = RunSettings(KnownSettings(load_scenario('thesis')))
 DRIVELINE = SETTINGS.scenario.driveline
 PLANT = transmission_model(DRIVELINE)
 COLUMNS = {
@@ -140,17 +140,19 @@ def test_the_gain_is_what_the_covariance_recursion_settles_on():
 
 
 def test_torsion_speed_is_weighted_as_at_the_primary_shaft():
-    slip, torsion = PREDICTIVE['mpc_torsion'](ControllerContext(SETTINGS, {})).settings.outputs
+    slip, torsion = PREDICTIVE['mpc_torsion'](
+        ControllerContext(SETTINGS.known, {})
+    ).settings.outputs
     assert (slip.output, torsion.output) == (SLIP_SPEED, TORSION_SPEED)
     assert torsion.weight == pytest.approx(slip.weight * DRIVELINE.gear.total_ratio)
 
 
 def test_each_option_changes_its_own_setting():
     options = {'torsion_weight': 0.0, 'preview': False, 'load_drift_n_m': 1.0}
-    controller = PREDICTIVE['mpc_torsion'](ControllerContext(SETTINGS, options))
+    controller = PREDICTIVE['mpc_torsion'](ControllerContext(SETTINGS.known, options))
     assert controller.settings.outputs[1].weight == 0.0
     assert controller.preview_steps == 0
-    default = PREDICTIVE['mpc_torsion'](ControllerContext(SETTINGS, {}))
+    default = PREDICTIVE['mpc_torsion'](ControllerContext(SETTINGS.known, {}))
     assert not np.allclose(controller.observer.gain, default.observer.gain)
 
 
@@ -168,22 +170,22 @@ def test_each_option_changes_its_own_setting():
 )
 def test_bad_options_are_named(name, options, key):
     with refused(ParameterError, key=key.replace('{}', name)):
-        PREDICTIVE[name](ControllerContext(SETTINGS, options))
+        PREDICTIVE[name](ControllerContext(SETTINGS.known, options))
 
 
 def test_a_negative_torsion_weight_is_refused():
     with refused(ParameterError, key='controllers.mpc_torsion.torsion_weight'):
-        PREDICTIVE['mpc_torsion'](ControllerContext(SETTINGS, {'torsion_weight': -1.0}))
+        PREDICTIVE['mpc_torsion'](ControllerContext(SETTINGS.known, {'torsion_weight': -1.0}))
 
 
 def test_a_torsion_weight_whose_square_is_infinite_is_refused():
     with refused(ParameterError, key='controllers.mpc_torsion.torsion_weight'):
-        PREDICTIVE['mpc_torsion'](ControllerContext(SETTINGS, {'torsion_weight': 1e200}))
+        PREDICTIVE['mpc_torsion'](ControllerContext(SETTINGS.known, {'torsion_weight': 1e200}))
 
 
 def test_a_torsion_weight_is_no_key_of_the_other_controller():
     with refused(ParameterError, key='controllers.mpc_offset_free.torsion_weight'):
-        PREDICTIVE['mpc_offset_free'](ControllerContext(SETTINGS, {'torsion_weight': 1.0}))
+        PREDICTIVE['mpc_offset_free'](ControllerContext(SETTINGS.known, {'torsion_weight': 1.0}))
 
 
 def test_behind_a_stiffer_half_shaft_the_errors_are_found_too():

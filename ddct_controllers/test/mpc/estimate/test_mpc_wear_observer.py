@@ -29,9 +29,9 @@ from ddct_controllers.mpc.model.transmission_model import (
 )
 from ddct_plant.models.actuator import Actuator
 from ddct_plant.scenario.file import load_scenario
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
-SETTINGS = RunSettings(load_scenario('thesis'))
+SETTINGS = RunSettings(KnownSettings(load_scenario('thesis')))
 DRIVELINE = SETTINGS.scenario.driveline
 NOISE = NoiseLevels()
 DRIFTS = Drifts.of(SETTINGS.scenario)

@@ -27,9 +27,9 @@ from ddct_plant.models.static_torque import constant_slip_torque
 from ddct_plant.scenario.control import EngineSpeedReference
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.initial_state import initial_request
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
-SETTINGS = RunSettings(load_scenario('thesis'))
+SETTINGS = RunSettings(KnownSettings(load_scenario('thesis')))
 DRIVELINE = SETTINGS.scenario.driveline
 RIGID = RigidTransmission(DRIVELINE)
 NO_POINTS = EngineSpeedReference()
@@ -106,7 +106,7 @@ def test_the_estimator_finds_the_torque_that_the_clutch_transmits_beyond_its_mod
 
 
 def test_the_slow_clutch_passes_constant_slip_at_once_and_the_rest_as_a_low_pass():
-    clutch = SlowClutch(ControllerContext(SETTINGS, {}), 0.5)
+    clutch = SlowClutch(ControllerContext(SETTINGS.known, {}), 0.5)
     now = measurement()
     static = constant_slip_torque(DRIVELINE, now.engine_torque, now.load_torque)
     wanted = RIGID.constant_slip_acceleration(now) + 10.0
@@ -120,11 +120,11 @@ def test_the_slow_clutch_passes_constant_slip_at_once_and_the_rest_as_a_low_pass
 
 @pytest.mark.parametrize('actuator', ACTUATORS.values(), ids=ACTUATORS)
 def test_the_slow_clutch_knows_the_torque_and_the_lag_of_its_actuator(actuator):
-    settings = RunSettings(load_scenario('thesis', keys_of(actuator)))
-    clutch = SlowClutch(ControllerContext(settings, {}), 0.5)
+    settings = RunSettings(KnownSettings(load_scenario('thesis', keys_of(actuator))))
+    clutch = SlowClutch(ControllerContext(settings.known, {}), 0.5)
     corner = RIGID.rigid_below_rad_s / 2.0
     assert clutch.pid.derivative == pytest.approx(2.0 * 0.5 * (2.0 / corner + actuator.lag_s))
-    first = initial_request(settings)
+    first = initial_request(settings.known)
     plant = Actuator(first, actuator)
     for request in (first + 50.0, first, first + 20.0, first + 80.0):
         nodes = plant.update(request)
