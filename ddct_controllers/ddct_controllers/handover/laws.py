@@ -16,20 +16,17 @@ from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.scenario.rules.shift import shift_of
 from ddct_plant.scenario.settings import KnownSettings
 
-GAINS_LAG_S = 0.043
-"""Lag in s of the actuator that the gains and the search of the handover `slip` are given for."""
-PROPORTIONAL, INTEGRAL = 1.2, 24.0
+PROPORTIONAL, INTEGRAL = 0.0516, 0.044376
 """
-Gains of the handover `slip` in 1/s and 1/s^2, over the inertia of the engine, at that lag.
+Gains of the handover `slip` over J_m/L and J_m/L^2, with the lag L of the actuator.
 
-A torque C changes the slip of the engine at C/J_m. The torque of a slipping clutch does not damp
-the driveshaft: more proportional gain amplifies its oscillation.
+A torque C changes the slip of the engine at C/J_m, so the lag costs this loop the same phase in
+every car. The torque of a slipping clutch does not damp the driveshaft: more proportional gain
+amplifies its oscillation.
 """
-SEARCH_FROM, SEARCH_RATE = 0.1, 1.5
+SEARCH_FROM, SEARCH_FALL = 0.1, 0.0645
 """
-Start of the search for slip above the balance, and its rate per second, as shares of the balance.
-
-The rate is that at the lag `GAINS_LAG_S`, in which the request falls by 6 %.
+Start of the search for slip above the balance, and its fall in a lag, as shares of the balance.
 """
 FOUND = 0.2
 """Slip from which the clutch counts as slipping, as a share of `shift.handover_slip_rad_s`."""
@@ -102,10 +99,6 @@ class SlipHandover(Handover):
     gone, and the clutch opens. This follows Goetz (Integrated Powertrain Control for Twin Clutch
     Transmissions, University of Leeds, 2005), who transfers the torque under control of clutch
     slip: a clutch that slips forward cannot brake the car. Law and gains are our own.
-
-    With a lag L of the actuator, in whole ms, the search is slower in proportion to L, the
-    proportional gain lower by as much, and the integral gain by its square. So the lag costs the
-    loop, an integrator, the same phase.
     """
 
     def __init__(self, settings: KnownSettings) -> None:
@@ -113,15 +106,12 @@ class SlipHandover(Handover):
         super().__init__(settings)
         self._model = HandoverModel(settings)
         self._target = shift_of(settings.scenario).handover_slip_rad_s
-        engine_inertia, actuator = (
-            settings.scenario.driveline.engine_inertia,
-            settings.scenario.actuator,
-        )
-        self._lag_s = round(actuator.lag_s, 3)
-        pace = GAINS_LAG_S / self._lag_s
-        self._proportional = PROPORTIONAL * pace * engine_inertia
-        self._integral_per_step = INTEGRAL * pace**2 * engine_inertia * PERIOD_S
-        self._search_rate = SEARCH_RATE * pace
+        scenario = settings.scenario
+        engine_inertia = scenario.driveline.engine_inertia
+        lag_ms = round(1e3 * scenario.actuator.lag_s)
+        self._proportional = 1e3 * PROPORTIONAL / lag_ms * engine_inertia
+        self._integral_per_step = 1e6 * INTEGRAL / lag_ms**2 * engine_inertia * PERIOD_S
+        self._search_rate = 1e3 * SEARCH_FALL / lag_ms
         self._difference: float | None = None
         """Request less the balance in N m that the slip needs; None until the clutch slips."""
         self._rise_steps = 0
@@ -139,7 +129,7 @@ class SlipHandover(Handover):
             if not slips and share >= LEAST_SHARE:
                 return HandoverCommand(0.0, max((1.0 + share) * carried, 0.0), 0.0)
             # It slips by the torque of what was requested a lag before.
-            self._difference = (share + self._search_rate * self._lag_s) * carried
+            self._difference = (share + SEARCH_FALL) * carried
         self._rise_steps += 1
         share = min(self._rise_steps / self._model.steps, 1.0)
         request = 0.0 if self._open else self._request(measurement, share)

@@ -15,12 +15,7 @@ from ddct_controllers.handover.interface import (
     HandoverMeasurement,
     HandoverModel,
 )
-from ddct_controllers.handover.laws import (
-    GAINS_LAG_S,
-    HANDOVERS,
-    SEARCH_RATE,
-    make_handover,
-)
+from ddct_controllers.handover.laws import HANDOVERS, SEARCH_FALL, make_handover
 from ddct_controllers.handover.torque_phase import TorquePhase
 from ddct_controllers.interface import Measurement
 from ddct_plant.base.errors import ParameterError
@@ -142,7 +137,7 @@ def test_the_slip_handover_falls_as_much_in_the_lag_of_every_actuator(actuator):
         )
         shares.append(ticks[step].command.off_going_request / model.off_going(measured))
     rate = (shares[0] - shares[1]) / (2.0 * PERIOD_S)
-    assert rate * actuator.lag_s == pytest.approx(SEARCH_RATE * GAINS_LAG_S, rel=0.02)
+    assert rate * actuator.lag_s == pytest.approx(SEARCH_FALL, rel=0.02)
 
 
 @pytest.mark.parametrize('actuator', ACTUATORS.values(), ids=ACTUATORS)
