@@ -53,6 +53,11 @@ FILES = {
     'ddct_plant/scenario/content.py': 'scenario, YAML',
     'ddct_plant/scenario/csv_profiles.py': 'profiles of a scenario, YAML and CSV',
     'ddct_plant/scenario/file.py': 'scenario, YAML',
+    'ddct_plant/scenario/nouns/composed.py': 'car, drive and scenario, YAML',
+    'ddct_plant/scenario/nouns/keys.py': 'car, drive and scenario, YAML',
+    'ddct_plant/scenario/nouns/layers.py': 'car and drive, YAML',
+    'ddct_plant/scenario/nouns/part.py': 'car and drive, YAML',
+    'ddct_plant/scenario/nouns/scenario_text.py': 'scenario, YAML',
     'ddct_plant/scenario/overrides.py': 'options --set of a scenario',
     'ddct_plant/scenario/recorded_settings.py': 'settings in a bag, JSON',
 }
@@ -79,6 +84,8 @@ CALLERS = {
     'ddct_bringup/api/tuning.py': 'arguments of Python programs',
     'ddct_bringup/programs/options/of_runs.py': 'arguments of argparse',
     'ddct_bringup/bag/trajectory.py': 'signals: arrays of numbers, or tuples of texts and events',
+    'ddct_plant/models/driveline.py': 'signals: numbers, or tuples of numbers and events',
+    'ddct_plant/scenario/choices/scenarios.py': 'arguments of Python programs',
 }
 """Modules at the other edges, with what passes there."""
 EDGES = {*FILES, *VALUES_BY_KEY, *CALLERS}
