@@ -48,6 +48,13 @@ def test_a_foreign_log_gives_tables_json_and_a_scenario_that_runs(
     ]
     assert scenario.driveline.vehicle_inertia == rows['vehicle_inertia']['value']
     assert run_headless(RunSettings(KnownSettings(scenario)), 'pi').steps == scenario.steps
+    car = load_scenario('thesis', ['gear=1'], car=str(folder / 'mycar_car.yaml'))
+    assert (car.driveline.shaft_inertia, car.vehicle) == (
+        scenario.driveline.shaft_inertia,
+        scenario.vehicle,
+    )
+    replay = load_scenario(car='c635_thesis', drive=str(folder / 'mycar_drive.yaml'))
+    assert (replay.engine, replay.duration_s) == (scenario.engine, scenario.duration_s)
 
 
 def test_the_scenario_of_a_noisy_bag_reproduces_another_run_of_the_same_car(
@@ -157,7 +164,7 @@ def test_a_bad_log_is_refused_in_one_line_with_its_place(
     [
         (
             ['--fix', 'total_ratio'],
-            '--columns, --check, --fix, --set, --force, --out and --overwrite need a log',
+            '--check, --fix, --set, --force, --out and --overwrite need a log',
         ),
         (['--from', 'a.csv', '--as-printed'], '--as-printed is about the thesis'),
         (['--from', 'a.csv', '--hold-out', '1.5'], '--hold-out is 1.5: give a share'),

@@ -21,6 +21,7 @@ from ddct_plant.identification.identification_report import (
 )
 from ddct_plant.models.printed import CLUTCH_TO_SLIP_AS_PRINTED
 from ddct_plant.program.command_line import ProgramParser, run_program, show_and_write
+from ddct_plant.scenario.choices.scenarios import CHOICES
 
 PROGRAM = 'ddct identify'
 _DESCRIPTION = """\
@@ -63,11 +64,11 @@ def _run(argv: list[str]) -> int:
         if options.as_printed:
             raise DdctError('--as-printed is about the thesis, --from about a log: give one')
         return identify_log(options)
-    of_log = ('columns', 'check', 'fix', 'overrides', 'force', 'out', 'overwrite')
+    of_log = (*CHOICES, 'columns', 'check', 'fix', 'overrides', 'force', 'out', 'overwrite')
     if any(getattr(options, name) for name in of_log):
         raise DdctError(
-            '--columns, --check, --fix, --set, --force, --out and --overwrite need a log: give '
-            '--from LOG'
+            '--scenario, --car, --drive, --columns, --check, --fix, --set, --force, --out and '
+            '--overwrite need a log: give --from LOG'
         )
     coefficients = PRINTED
     if options.as_printed:

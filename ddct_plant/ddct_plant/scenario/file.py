@@ -11,12 +11,12 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from ddct_plant.files.yaml_text import dump_yaml
 from ddct_plant.scenario.choices.scenarios import Choice
 from ddct_plant.scenario.content import flat, scenario_content, scenario_of
 from ddct_plant.scenario.csv_profiles import described_profiles, with_points
-from ddct_plant.scenario.nouns.composed import composed, file_content
+from ddct_plant.scenario.nouns.composed import composed
 from ddct_plant.scenario.nouns.places import Places
+from ddct_plant.scenario.nouns.written import whole_text
 from ddct_plant.scenario.overrides import (
     is_number_of,
     parsed_override,
@@ -145,7 +145,7 @@ def load_scenario(
 
 def scenario_to_yaml(scenario: Scenario) -> str:
     """Return the YAML text, with car and drive in it, that `load_scenario` reads back as equal."""
-    return dump_yaml(file_content(scenario_content(scenario)))
+    return whole_text(scenario_content(scenario))
 
 
 def scenario_digest(scenario: Scenario) -> str:

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ddct_plant.base.errors import DdctError
-from ddct_plant.files.output_file import require_place, write_text
+from ddct_plant.files.output_file import require_place
 from ddct_plant.identification.from_log.fit import fit_log
 from ddct_plant.identification.from_log.log_fit_report import LogFitReport, content_of, print_fit
 from ddct_plant.identification.from_log.prediction import predict
@@ -20,6 +20,7 @@ from ddct_plant.identification.from_log.scenario import (
     replay_of,
     require_new_scenario,
     with_radius,
+    write_scenario,
 )
 from ddct_plant.identification.from_log.stretch import TORQUES
 from ddct_plant.identification.from_log.stretches import stretches_of
@@ -31,7 +32,6 @@ from ddct_plant.program.command_line import ProgramParser, show_and_write
 from ddct_plant.program.progress import Progress
 from ddct_plant.scenario.choices.command_line import add_scenario_options
 from ddct_plant.scenario.chosen import scenario_of as base_scenario
-from ddct_plant.scenario.file import scenario_to_yaml
 
 NEEDED = (*SPEEDS, *TORQUES)
 """Quantities that a log must have."""
@@ -72,7 +72,11 @@ def add_log_options(parser: ProgramParser) -> None:
         action='store_true',
         help='accept a fit that is refused: write the scenario all the same, exit code 0',
     )
-    group.add_argument('--out', metavar='FILE.yaml', help='write a scenario that replays the log')
+    group.add_argument(
+        '--out',
+        metavar='FILE.yaml',
+        help='write a scenario that replays the log, and its car and drive beside it',
+    )
     group.add_argument(
         '--overwrite', action='store_true', help='replace an earlier scenario at --out'
     )
@@ -120,8 +124,7 @@ def identify_log(options: argparse.Namespace) -> int:
         )
     if options.out:
         whole = read_log(options.log, columns, NEEDED)
-        scenario = replay_of(base, name_of(options.log), fit, whole)
-        write_text(options.out, scenario_to_yaml(scenario))
+        write_scenario(options.out, replay_of(base, name_of(options.log), fit, whole))
     return 0
 
 

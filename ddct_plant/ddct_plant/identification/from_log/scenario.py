@@ -12,7 +12,7 @@ import numpy as np
 
 from ddct_plant.base.errors import LONGEST_NAME, DdctError
 from ddct_plant.base.timebase import PERIOD_S, time_of_step
-from ddct_plant.files.output_file import STDOUT, require_new
+from ddct_plant.files.output_file import STDOUT, require_new, write_text
 from ddct_plant.identification.from_log.delays import residuals_by_name, without_ends
 from ddct_plant.identification.from_log.result import (
     ASSUMED,
@@ -30,10 +30,13 @@ from ddct_plant.models.engine import TorqueProfile
 from ddct_plant.models.gearbox import AGREE
 from ddct_plant.models.load import RoadLoad
 from ddct_plant.models.parameters import DrivelineSection
-from ddct_plant.scenario.content import flat
+from ddct_plant.scenario.content import flat, scenario_content
 from ddct_plant.scenario.csv_profiles import MOST_ROWS
-from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.file import scenario_to_yaml
 from ddct_plant.scenario.initial_speeds import InitialSpeeds
+from ddct_plant.scenario.nouns.composed import files_of_noun
+from ddct_plant.scenario.nouns.keys import SCENARIO
+from ddct_plant.scenario.nouns.written import beside, texts_by_file
 from ddct_plant.scenario.overrides import parsed_override
 from ddct_plant.scenario.rules.consistency import RADIUS
 from ddct_plant.scenario.scenario import Scenario
@@ -49,18 +52,34 @@ _MOVED = ('driveline.', 'vehicle.mass_kg', 'gear')
 
 
 def require_new_scenario(target: str | None, *, overwrite: bool) -> None:
-    """Raise DdctError where the `target` of --out exists; `overwrite` replaces a scenario only."""
-    if not target or target == STDOUT or not Path(target).exists():
+    """
+    Raise DdctError where the `target` of --out, or its car or drive, exists.
+
+    With `overwrite` those are replaced, and no other files.
+    """
+    if not target or target == STDOUT:
         return
-    require_new('--out', target, overwrite=overwrite)
-    try:
-        load_scenario(str(Path(target).resolve()))
-    except DdctError as error:
-        raise DdctError(
-            f'{target} is no scenario, and --overwrite replaces only that: choose another --out '
-            f'({error})',
-            key='--out',
-        ) from error
+    for noun, path in {SCENARIO: Path(target), **beside(Path(target))}.items():
+        if not path.exists():
+            continue
+        require_new('--out', path, overwrite=overwrite)
+        try:
+            files_of_noun(noun, str(path.resolve()))
+        except DdctError as error:
+            raise DdctError(
+                f'{path} is no {noun}, and --overwrite replaces only that: choose another --out '
+                f'({error})',
+                key='--out',
+            ) from error
+
+
+def write_scenario(target: str, scenario: Scenario) -> None:
+    """Write a scenario with its car and drive beside it; in one on standard output."""
+    if target == STDOUT:
+        write_text(STDOUT, scenario_to_yaml(scenario))
+        return
+    for path, text in texts_by_file(scenario_content(scenario), Path(target)).items():
+        write_text(str(path), text)
 
 
 def radius_of(base: Scenario, overrides: Sequence[str], log: MeasuredLog) -> WheelRadius:

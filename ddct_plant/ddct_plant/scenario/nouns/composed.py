@@ -7,12 +7,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ddct_plant.files.input_file import SCHEMA_KEY
 from ddct_plant.scenario.choices.scenarios import DEFAULT_CAR, Choice
-from ddct_plant.scenario.nouns.keys import CAR, DRIVE, NOUNS, SCENARIO, by_noun, owner_of
+from ddct_plant.scenario.nouns.keys import CAR, DRIVE, NOUNS, SCENARIO, owner_of
 from ddct_plant.scenario.nouns.part import DESCRIPTION, Part, Text
 from ddct_plant.scenario.nouns.places import Places
-from ddct_plant.scenario.nouns.scenario_text import NAME, SCHEMA_VERSION, SET, ScenarioText
+from ddct_plant.scenario.nouns.scenario_text import NAME, SET, ScenarioText
 
 
 @dataclass(frozen=True)
@@ -86,10 +85,3 @@ def _joined(
         ),
         files=(*files, *(file for noun in NOUNS for file in parts[noun].files)),
     )
-
-
-def file_content(content: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the content of a scenario as that of a file with its car and drive in it."""
-    parts = by_noun(content)
-    own = {name: value for name, value in parts[SCENARIO].items() if value not in ({}, [])}
-    return {SCHEMA_KEY: SCHEMA_VERSION, **own, CAR: parts[CAR], DRIVE: parts[DRIVE]}
