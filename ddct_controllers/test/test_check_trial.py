@@ -6,13 +6,16 @@ from typing import Any
 
 import numpy as np
 import pytest
+from refusals import refused
 
+from ddct_controllers.check.checks import check_controller
 from ddct_controllers.check.loops import rate, update_time
 from ddct_controllers.check.subject import CheckFailedError, Subject
 from ddct_controllers.check.trial import ClosedLoopLog, closed_trial
 from ddct_controllers.check.watch import OutputMonitor
 from ddct_controllers.interface import Command, Controller
 from ddct_controllers.registry import make_controller
+from ddct_plant.base.errors import ParameterError
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
@@ -24,6 +27,12 @@ def slip(*changes: str) -> list[float]:
 
 def test_trials_leave_the_sensors_of_a_scenario_out():
     assert slip('sensors.engine_speed.noise_rad_s=1') == slip()
+
+
+@pytest.mark.parametrize('scenario', ['launch', 'upshift'])
+def test_plates_that_lock_are_refused(scenario: str) -> None:
+    with refused(ParameterError, 'clutch'):
+        check_controller('pi', KnownSettings(load_scenario(scenario)))
 
 
 SETTINGS = RunSettings(KnownSettings(load_scenario('thesis')))

@@ -10,7 +10,7 @@ from ddct_controllers.check import conduct, installation, loops, signals
 from ddct_controllers.check.subject import CheckFailedError, CheckSkippedError, Subject
 from ddct_controllers.check.watch import OutputMonitor
 from ddct_controllers.registry import separately
-from ddct_plant.base.errors import FOREIGN_FAILURES
+from ddct_plant.base.errors import FOREIGN_FAILURES, ParameterError
 from ddct_plant.program.own_process import ProcessEndedError
 from ddct_plant.scenario.settings import KnownSettings
 
@@ -64,7 +64,18 @@ CHECKS = (
 
 
 def check_controller(name: str, settings: KnownSettings) -> list[Outcome]:
-    """Return an outcome per check of CHECKS for a controller of the registry or in a file."""
+    """
+    Return an outcome per check of CHECKS for a controller of the registry or in a file.
+
+    Raise ParameterError for plates that stick: a locked clutch does not answer the checks' steps.
+    """
+    if settings.stick_slip:
+        raise ParameterError(
+            f'scenario {settings.scenario.name} has the clutch stick_slip, whose plates lock, and '
+            'the checks judge how plates answer that slip: choose one with the clutch linear, '
+            'such as thesis',
+            key='clutch',
+        )
     printed = OutputMonitor()
     subject = Subject(name, settings, printed)
     outcomes: dict[str, Outcome] = {}
