@@ -10,14 +10,21 @@ from ddct_controllers.mpc.model.transmission_model import (
     SLIP_SPEED,
     TORSION_SPEED,
 )
-from ddct_controllers.mpc.program.settings import InputTerms, MpcSettings, OutputTerms, weight
+from ddct_controllers.mpc.program.settings import (
+    MOST_STEPS,
+    InputTerms,
+    MpcSettings,
+    OutputTerms,
+    weight,
+)
 from ddct_plant.base.options import OptionGroup
 from ddct_plant.base.units import rpm_from_rad_s
+from ddct_plant.models.actuator import PRINTED_ACTUATOR, ActuatorParameters
 from ddct_plant.models.gearbox import EngagedGear
 from ddct_plant.models.parameters import DrivelineParameters
 
 PREDICTION_STEPS = 7
-"""Prediction horizon of MPC4 in periods: T_p = 0.07 s."""
+"""Prediction horizon of MPC4 in periods with the printed actuator: T_p = 0.07 s."""
 SLIP_WEIGHT, SLIP_ACCELERATION_WEIGHT = 1.0, math.sqrt(0.05)
 """
 Weights of w_d per rad/s and of dw_d/dt per rad/s^2: square roots, as (4.1) does not square Q.
@@ -40,7 +47,11 @@ class TableRow(OptionGroup):
     torque_weight: float = weight(0.0, 's: weight per N m of u: R on u, as Section 4.1 has it')
     preview: bool = False
 
-    def settings(self, driveline: DrivelineParameters | None = None) -> MpcSettings:
+    def settings(
+        self,
+        driveline: DrivelineParameters | None = None,
+        actuator: ActuatorParameters = PRINTED_ACTUATOR,
+    ) -> MpcSettings:
         """Return the row's settings; docs/thesis/mpc_readings.md has other readings of Q and R."""
         slip, at_the_end = map(rpm_from_rad_s, (self.output_weight, self.final_weight))
         return MpcSettings(
@@ -77,7 +88,9 @@ class TorsionCost(OptionGroup):
         None, 'weight of w_sr per rpm; 0 is `mpc_offset_free`', '0.26 tau'
     )
 
-    def settings(self, driveline: DrivelineParameters) -> MpcSettings:
+    def settings(
+        self, driveline: DrivelineParameters, actuator: ActuatorParameters = PRINTED_ACTUATOR
+    ) -> MpcSettings:
         """Return the settings with the weight of w_sr, or the driveline's default for it."""
         per_rpm = self.torsion_weight
         if per_rpm is None:
@@ -97,10 +110,19 @@ class TwoInputCost(OptionGroup):
     )
     demand_weight: float = weight(DEMAND_WEIGHT, 'r: weight per N m between C_m and the demand')
 
-    def settings(self, driveline: DrivelineParameters | None = None) -> MpcSettings:
-        """Return the settings of this cost; R = P = 0, inputs constant over the horizon."""
+    def settings(
+        self,
+        driveline: DrivelineParameters | None = None,
+        actuator: ActuatorParameters = PRINTED_ACTUATOR,
+    ) -> MpcSettings:
+        """
+        Return the settings of this cost; R = P = 0, inputs constant over the horizon.
+
+        The horizon is as much longer as the actuator lags more: within its lag no request acts.
+        """
+        longer = max(actuator.lag_s / PRINTED_ACTUATOR.lag_s, 1.0)
         return MpcSettings(
-            prediction_steps=PREDICTION_STEPS,
+            prediction_steps=min(round(PREDICTION_STEPS * longer), MOST_STEPS),
             control_steps=1,
             outputs=(
                 OutputTerms(SLIP_SPEED, SLIP_WEIGHT),

@@ -3,11 +3,19 @@
 """The predictive controllers by their names in the registry, with cost and estimator of each."""
 
 from collections.abc import Collection
+from dataclasses import replace
 from typing import Any
 
 from ddct_controllers.interface import ControllerContext, ControllerSpec
 from ddct_controllers.mpc.controller import MpcController
-from ddct_controllers.mpc.costs import PREVIEW, TABLE_4_1, TableRow, TorsionCost, TwoInputCost
+from ddct_controllers.mpc.costs import (
+    PREDICTION_STEPS,
+    PREVIEW,
+    TABLE_4_1,
+    TableRow,
+    TorsionCost,
+    TwoInputCost,
+)
 from ddct_controllers.mpc.estimators import (
     AS_DRAWN,
     FULL,
@@ -39,9 +47,12 @@ def predictive(
 
     def make(context: ControllerContext) -> MpcController[Any]:
         values, run = context.gains, context.settings
-        chosen = with_values(cost, values).settings(run.scenario.controlled_driveline)
+        scenario = run.scenario
+        chosen = with_values(cost, values).settings(
+            scenario.controlled_driveline, scenario.actuator
+        )
         model, observer = with_values(estimate, values).parts(run)
-        authority = run.scenario.engine_authority if commands_engine else None
+        authority = scenario.engine_authority if commands_engine else None
         return MpcController(model, observer, with_options(chosen, values), authority)
 
     options: dict[str, Option] = {}
@@ -49,6 +60,12 @@ def predictive(
         if group not in fixed:
             options |= group.options
     options |= program_options(cost.settings(DrivelineParameters()))
+    if isinstance(cost, TwoInputCost):
+        options['prediction_steps'] = replace(
+            options['prediction_steps'],
+            default=None,
+            otherwise=f'{PREDICTION_STEPS}, more where the actuator lags by more than as printed',
+        )
     return ControllerSpec(name, make, options)
 
 

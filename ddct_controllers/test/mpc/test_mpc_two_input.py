@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from other_actuators import FAST, LATE, SLOW, keys_of
 from refusals import refused
 
 from ddct_controllers.interface import ControllerContext, Measurement
@@ -25,6 +26,7 @@ from ddct_controllers.mpc.model.transmission_model import (
 from ddct_controllers.mpc.program.settings import InputTerms, OutputTerms
 from ddct_controllers.mpc.variants import PREDICTIVE
 from ddct_plant.base.errors import ParameterError
+from ddct_plant.models.actuator import PRINTED_ACTUATOR
 from ddct_plant.models.engine import Engine, EngineAuthority, EngineResponse
 from ddct_plant.models.static_torque import constant_slip_torque
 from ddct_plant.scenario.file import load_scenario
@@ -139,6 +141,19 @@ def test_the_model_with_an_engine_is_the_engine_before_the_model(lag_s):
         x, state = MODEL.a @ x + MODEL.b @ inputs, model.a @ state + model.b @ requested
         np.testing.assert_allclose(state[:STATES], x, rtol=1e-9, atol=1e-9)
         assert state[STATES:] == pytest.approx([300.0, engine.deviation])
+
+
+@pytest.mark.parametrize('name', FACTORIES)
+@pytest.mark.parametrize(
+    ('actuator', 'horizon'), [(PRINTED_ACTUATOR, 7), (FAST, 7), (SLOW, 12), (LATE, 16)]
+)
+def test_the_horizon_is_longer_in_proportion_to_the_lag_of_the_known_actuator(
+    name, actuator, horizon
+):
+    known = KnownSettings(load_scenario('thesis', keys_of(actuator)))
+    assert FACTORIES[name](ControllerContext(known, {})).settings.prediction_steps == horizon
+    given = FACTORIES[name](ControllerContext(known, {'prediction_steps': 9}))
+    assert given.settings.prediction_steps == 9
 
 
 def test_free_it_is_the_least_squares_solution_for_a_reference_along_its_tangent():

@@ -177,7 +177,13 @@ def program_options(settings: MpcSettings) -> Options:
 
 
 def with_options(settings: MpcSettings, values: Mapping[str, Any]) -> MpcSettings:
-    """Return `settings` changed by the values of its `program_options`."""
+    """
+    Return `settings` changed by the values of its `program_options`.
+
+    A horizon of None is that of `settings`.
+    """
+    if values['prediction_steps'] is None:
+        values = {**values, 'prediction_steps': settings.prediction_steps}
     limits = {
         field: values[key] for key, field in _CLUTCH_LIMITS.items() if values[key] is not None
     }
