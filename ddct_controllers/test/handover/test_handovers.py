@@ -34,7 +34,8 @@ COLD = ['upshift', 'upshift_light', 'upshift_full', 'upshift_2_3']
 def with_actuator(name, actuator, **keys):
     """Return the settings of a packaged shift with an actuator that all know."""
     settings = shift_settings(name, **keys)
-    return replace(settings, scenario=replace(settings.scenario, actuator=actuator))
+    scenario = replace(settings.scenario, actuator=actuator)
+    return replace(settings, known=replace(settings.known, scenario=scenario))
 
 
 @pytest.mark.parametrize('name', HANDOVERS)
@@ -118,7 +119,7 @@ def test_with_every_actuator_that_it_knows_a_handover_neither_flares_nor_ties_up
 @pytest.mark.parametrize('name', ['slip', 'adaptive'])
 def test_a_handover_that_does_not_know_its_slow_actuator_flares_or_ties_up(name):
     """Its law is that of the known settings, so the true actuator has not reached it."""
-    law = make_handover(replace(shift_settings('upshift'), handover=name))
+    law = make_handover(shift_settings('upshift', handover=name).known)
     ticks = shift(with_actuator('upshift', SLOW), name, law=law)
     assert flare(ticks) > 10.5 or tie_up_work(ticks) > 110.0
 
@@ -128,7 +129,7 @@ def test_the_slip_handover_falls_as_much_in_the_lag_of_every_actuator(actuator):
     """The request before the clutch slips is the balance less a share that grows with time."""
     settings = with_actuator('upshift', actuator)
     ticks = shift(settings, 'slip')
-    model = HandoverModel(settings)
+    model = HandoverModel(settings.known)
     shares = []
     for step in (START + 1, START + 3):
         now = ticks[step].outputs
@@ -143,7 +144,7 @@ def test_the_slip_handover_falls_as_much_in_the_lag_of_every_actuator(actuator):
 @pytest.mark.parametrize('actuator', ACTUATORS.values(), ids=ACTUATORS)
 def test_the_torque_phase_has_the_torque_of_the_known_actuator(actuator):
     settings = with_actuator('upshift', actuator)
-    phase, plant = TorquePhase(settings), Actuator(0.0, actuator)
+    phase, plant = TorquePhase(settings.known), Actuator(0.0, actuator)
     gears = gears_of(settings.scenario)
     for step, open_loop in enumerate((0.0, 20.0, 40.0, 60.0, 80.0, 100.0)):
         now = Measurement(step, 270.0, 160.0, 17.0, 5.5, 100.0, [0.0], [0.0], 60.0, open_loop)
