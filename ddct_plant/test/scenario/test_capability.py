@@ -24,7 +24,7 @@ def test_engine_and_clutch_can_give_what_the_packaged_scenarios_ask_for(name):
     ('changes', 'key', 'numbers'),
     [
         (['engine.torque_n_m=[0, 300]'], 'engine.torque_n_m', ['300 N m', '250 N m']),
-        (['friction.most_n_m=90'], 'engine.torque_n_m', ['140 N m', '100 N m', '90 N m']),
+        (['friction.most_n_m=90'], 'engine.torque_share', ['140 N m', '100 N m', '90 N m']),
         (
             ['engine={time_s: [0.0], torque_share: [1.0]}', 'friction.most_n_m=150'],
             'engine.torque_share',
@@ -83,5 +83,5 @@ def test_what_varies_for_the_plant_alone_may_ask_for_more():
 
 
 def test_the_on_coming_clutch_of_a_shift_has_to_carry_the_demand():
-    with refused(ParameterError, 'engine.torque_n_m'):
+    with refused(ParameterError, 'engine.torque_share'):
         RunSettings(KnownSettings(load_scenario('upshift', ['friction.most_n_m=85'])))

@@ -163,7 +163,7 @@ def shift_by_the_other_method(settings: RunSettings) -> tuple[np.ndarray, np.nda
     actuators = Actuator(0.0), Actuator(first)
     road = air_and_slope(scenario.load, scenario.vehicle)
     holding = HoldingTorque(RoadLoad(scenario.load, scenario.vehicle), scenario.brake)
-    engine = scenario.engine.torque_n_m[0]
+    engine = scenario.demand.torque_n_m[0]
     states = [other.state]
     resisting = road.torque(other.state[2] * scenario.vehicle.wheel_radius_m) + holding.capacity(0)
     for step in range(scenario.steps):

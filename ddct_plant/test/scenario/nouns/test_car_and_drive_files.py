@@ -28,16 +28,32 @@ def write(tmp_path, monkeypatch):
     return written
 
 
-@pytest.mark.parametrize('drive', [each for each in packaged_names('drive') if each != 'thesis'])
-def test_every_car_whose_clutch_sticks_has_every_launch_and_shift(drive: str) -> None:
+DRIVES = [each for each in packaged_names('drive') if each != 'thesis']
+ENGINES_WITHOUT_LIMITS = ('c635_no_limits', 'c635_thesis')
+
+
+@pytest.mark.parametrize('drive', DRIVES)
+def test_every_car_whose_engine_has_limits_has_every_launch_and_shift(drive: str) -> None:
     cars = packaged_names('car')
     assert len(cars) == 4
-    for car in cars:
-        if car == 'c635_thesis':
-            with pytest.raises(ParameterError, match='the clutch linear would ignore'):
-                load_scenario(car=car, drive=drive)
-        else:
-            assert load_scenario(car=car, drive=drive).name == f'{drive}_{car}'
+    for car in set(cars).difference(ENGINES_WITHOUT_LIMITS):
+        assert load_scenario(car=car, drive=drive).name == f'{drive}_{car}'
+
+
+@pytest.mark.parametrize('drive', DRIVES)
+def test_an_engine_without_limits_has_no_share_of_full_load(drive: str) -> None:
+    if drive == 'tip_in':
+        assert load_scenario(car='c635_no_limits', drive=drive).demand.torque_n_m[-1] == 320.0
+        return
+    for car in ENGINES_WITHOUT_LIMITS:
+        with refused(ParameterError, 'engine.torque_share'):
+            load_scenario(car=car, drive=drive)
+
+
+def test_a_car_whose_clutch_is_linear_has_no_launch() -> None:
+    in_n_m = ['engine.torque_n_m=[0, 140]']
+    with pytest.raises(ParameterError, match='the clutch linear would ignore'):
+        load_scenario(overrides=in_n_m, car='c635_thesis', drive='launch')
 
 
 def test_a_car_and_a_drive_are_the_scenario_of_both() -> None:
@@ -74,7 +90,7 @@ def test_a_file_has_its_values_above_those_of_its_bases(write) -> None:
 
 def test_a_section_that_is_null_is_off_and_an_empty_one_has_its_defaults(write) -> None:
     off = write('off.yaml', 'base: city7\nengine_limits: null\nfriction: null\n')
-    made = load_scenario(drive='launch', car=off)
+    made = load_scenario(drive='launch', car=off, overrides=['engine.torque_n_m=[0, 140]'])
     assert (made.engine_limits, made.friction) == (None, LAUNCH.friction)
     on = write('on.yaml', 'base: off.yaml\nengine_limits: {}\n')
     assert load_scenario(drive='launch', car=on).engine_limits == LAUNCH.engine_limits
