@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The control nodes of a graph have the known settings alone, and the run is as headless."""
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -91,16 +92,44 @@ def test_control_nodes_find_no_true_value_in_their_parameters_and_objects(
         assert not found_in([each.value for each in parameters], values), node.get_name()
 
 
-def test_what_a_program_writes_for_control_nodes_has_no_true_value(tmp_path: Path) -> None:
+def files_named_in(file: Path) -> set[Path]:
+    """Return a file with those that it names, and that these name."""
+    found, waiting = set(), [file]
+    while waiting:
+        each = waiting.pop()
+        if each not in found and each.is_file():
+            found.add(each)
+            words = re.split(r'[\s"\',:{}\[\]]+', each.read_text(encoding='utf-8'))
+            waiting += [Path(word) for word in words if word.startswith('/')]
+    return found
+
+
+def test_a_control_process_can_name_no_file_with_a_true_value(tmp_path: Path) -> None:
     settings = settings_with(UNKNOWN_IN_A_SHIFT, 'upshift', duration_s=0.5)
     values = true_values(settings)
-    file = RunPlan(settings, 'pi', 'processes').write_parameter_file(tmp_path, tmp_path)
-    files = {each.name: each.read_text(encoding='utf-8') for each in tmp_path.iterdir()}
-    assert sorted(files) == ['case.json', 'known.json', file.name]
-    assert sorted(found_in(files.pop('case.json'), values)) == sorted(values)
-    assert not found_in(files, values)
-    parameters = yaml.safe_load(file.read_text(encoding='utf-8'))
-    of_case = {node for node, each in parameters.items() if 'case' in each['ros__parameters']}
+    files = RunPlan(settings, 'pi', 'processes').write_parameter_files(tmp_path, tmp_path)
+    for node in nodes_of(shift=True):
+        *_, file = files.arguments_of(node)
+        named = files_named_in(Path(file))
+        texts = [each.read_text(encoding='utf-8') for each in named]
+        expected = [] if node.path in CONTROL else values
+        assert sorted(found_in(texts, values)) == sorted(expected), node.path
+        assert len(named) == (2 if node.path in CONTROL else 3)
+        beside = [each.read_text(encoding='utf-8') for each in Path(file).parent.iterdir()]
+        assert node.path not in CONTROL or not found_in(beside, values)
+
+
+def test_case_and_known_settings_are_in_the_parameters_of_the_nodes_that_have_them(
+    tmp_path: Path,
+) -> None:
+    settings = settings_with(UNKNOWN_IN_A_SHIFT, 'upshift', duration_s=0.5)
+    files = RunPlan(settings, 'pi', 'processes').write_parameter_files(tmp_path, tmp_path)
+    of_case = {
+        node
+        for file in (files.control, files.plant)
+        for node, each in yaml.safe_load(file.read_text(encoding='utf-8')).items()
+        if 'case' in each['ros__parameters']
+    }
     assert of_case == {
         f'/**/{node.path}' for node in nodes_of(shift=True) if node.path not in CONTROL
     }

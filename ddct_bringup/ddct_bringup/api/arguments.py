@@ -81,10 +81,10 @@ def base_from(
     scenario: str | Path | None = None,
     set: Mapping[str, Any] | None = None,
     duration: float | None = None,
+    case: Mapping[str, Any] | None = None,
     *,
     car: str | Path | None = None,
     drive: str | Path | None = None,
-    case: Mapping[str, Any] | None = None,
     **given: Any,
 ) -> RunBase:
     """Return the common base of runs with the controllers called `labels`."""

@@ -43,6 +43,7 @@ def run(
     car: str | Path | None = None,
     drive: str | Path | None = None,
     set: Mapping[str, Any] | None = None,
+    case: Mapping[str, Any] | None = None,
     duration: float | None = None,
     headless: bool = True,
     out: str | Path | None = None,
@@ -60,16 +61,26 @@ def run(
     takes the place of that of the scenario, by default `thesis`, and a drive without a scenario
     has the car `c635` unless another is given. `set` changes scenario keys, as
     {'load.slope_rad': 0.05}, the options of the controller among them, as
-    {'controllers.NAME.KEY': value}. `settings` are those of `RunSettings`: architecture, clutch,
-    wear_gain, mode, seed. Without `headless` the ROS graph runs, each node a process. With `out`
-    the bag is kept as `<out>/<name>/`; a run that is not valid, with its `reason`, is kept as
-    `<out>/<name>.partial/`. With `floors` the peak jerk is compared with the least of its case,
+    {'controllers.NAME.KEY': value}; controllers know these values. `case` gives what the plant
+    alone has, as {'vehicle.mass_kg': 1700}: keys of the car or the drive, wear gains, the seed.
+    `settings` are architecture, mode and handover, and in short for the case wear_gain,
+    off_going_wear_gain and seed. Without `headless` the ROS graph runs, each node a process. With
+    `out` the bag is kept as `<out>/<name>/`; a run that is not valid, with its `reason`, is kept
+    as `<out>/<name>.partial/`. With `floors` the peak jerk is compared with the least of its case,
     which takes a second the first time. `beside` names other controllers whose options `set` may
     hold too.
     """
     chosen = chosen_from(controller, name)
-    given = {'scenario': scenario, 'car': car, 'drive': drive, 'set': set, 'duration': duration}
-    ready = run_settings([controller_label(chosen), *beside], **given, **settings)
+    ready = run_settings(
+        [controller_label(chosen), *beside],
+        scenario,
+        set,
+        duration,
+        case,
+        car=car,
+        drive=drive,
+        **settings,
+    )
     warn_of_adjusted(ready.scenario)
     plan = RunPlan(ready, chosen, _layout(headless))
     judged_by = load_limits(limits)

@@ -40,6 +40,7 @@ class Campaign(RunSet):
             of=spec.of,
             floor_samples=spec.floor_samples,
             vary=spec.vary,
+            known=spec.known,
             root=spec.root,
         )
         if self.runs > MOST_RUNS:

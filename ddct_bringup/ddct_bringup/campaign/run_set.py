@@ -82,6 +82,8 @@ class RunSet:
     """Number of samples, the first at each point, whose runs have floors; None for all."""
     vary: Mapping[str, Distribution] = field(default_factory=dict)
     """Distributions of the keys that are drawn in each sample, by key."""
+    known: Sequence[str] = ()
+    """Varied keys that controllers learn, besides those that they know in any run."""
     root: int | None = None
     """Root of the random numbers, and of the seed of each case; None where all have one seed."""
 
@@ -140,7 +142,9 @@ class RunSet:
         base = self.bases[Choice.taken_from(given)]
         try:
             settings = base.at(
-                {key: self.placed(key, given[key]) for key in given}, drawn=self.vary
+                {key: self.placed(key, given[key]) for key in given},
+                drawn=self.vary,
+                known=self.known,
             )
         except DdctError as error:
             named = error.at(_name(index, varied))

@@ -15,6 +15,7 @@ from ddct_bringup.campaign.specification.parts import (
     FLOOR_SAMPLES,
     FLOORS,
     GRID,
+    KNOWN,
     RANDOM,
     ROOT_SEED,
     common_of,
@@ -22,6 +23,7 @@ from ddct_bringup.campaign.specification.parts import (
     floor_samples_of,
     floors_of,
     grid_of,
+    known_of,
     mapping_of,
     require_apart,
     samples_of,
@@ -37,7 +39,10 @@ from ddct_plant.scenario.key_names import scenario_options
 
 SCHEMA_VERSION = 1
 """Schema version of a specification."""
-_KEYS = (SCHEMA_KEY, CONTROLLERS, *COMMON, ROOT_SEED, GRID, RANDOM, FLOORS, FLOOR_SAMPLES)
+_KEYS = (
+    *(SCHEMA_KEY, CONTROLLERS, *COMMON, ROOT_SEED, GRID, RANDOM, KNOWN),
+    *(FLOORS, FLOOR_SAMPLES),
+)
 _ROOT = Option(0, 'root of all random numbers', at_least=0, at_most=2**31 - 1)
 
 
@@ -58,6 +63,8 @@ class CampaignSpec:
     samples: int
     vary: Mapping[str, Distribution]
     """Distributions of the keys that are drawn in each sample, by key."""
+    known: tuple[str, ...] = ()
+    """Varied keys that controllers learn, besides those that they know in any run."""
     of: int = 1
     """Number of samples of the whole campaign; the first `samples` of them run."""
     floors: bool = False
@@ -146,6 +153,7 @@ def spec_of(content: Any, folder: Path) -> CampaignSpec:
         grid=grid,
         samples=samples,
         vary=vary,
+        known=known_of(content, (*grid, *vary)),
         of=of,
         floors=floors_of(content),
         floor_samples=floor_samples_of(content, samples),

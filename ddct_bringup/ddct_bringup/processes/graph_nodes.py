@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from ddct_plant.graph.node_names import name_in_graph
+from ddct_plant.graph.node_reports import CONTROL_NODES
 from ddct_plant.shift.roles import OFF_GOING
 
 
@@ -32,6 +34,11 @@ class NodeSpec:
     def path(self) -> str:
         """Full name within the graph, without a leading slash: 'off_going/actuator'."""
         return f'{self.namespace}/{self.name}' if self.namespace else self.name
+
+    @property
+    def controls(self) -> bool:
+        """Whether it has the known settings of the run alone."""
+        return name_in_graph(self.path) in CONTROL_NODES
 
     @property
     def log_name(self) -> str:
@@ -98,6 +105,22 @@ def nodes_of_process(arguments: Sequence[str]) -> list[NodeSpec]:
     return nodes_of(shift=_OF_A_SHIFT in arguments)
 
 
-def ros_arguments(parameter_file: Path) -> list[str]:
-    """Return the arguments by which nodes read their parameters from a file."""
-    return ['--ros-args', '--params-file', str(parameter_file)]
+@dataclass(frozen=True)
+class ParameterFiles:
+    """ROS 2 parameter files of a run: nodes that control cannot name what they do not know."""
+
+    control: Path
+    """File of the nodes that have the known settings alone."""
+    plant: Path
+    """File of the plant and the recorder, which have the case too."""
+
+    def arguments_of(self, node: NodeSpec) -> list[str]:
+        """Return the arguments by which the process of a node reads its parameters."""
+        if node.name == ALL_NODES:
+            return ros_arguments(self.control, self.plant)
+        return ros_arguments(self.control if node.controls else self.plant)
+
+
+def ros_arguments(*files: Path) -> list[str]:
+    """Return the arguments by which nodes read their parameters from files."""
+    return ['--ros-args', *(each for file in files for each in ('--params-file', str(file)))]

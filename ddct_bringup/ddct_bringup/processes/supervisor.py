@@ -16,7 +16,7 @@ from pathlib import Path
 
 from ddct_bringup.processes.fork_server import start_processes, state_of
 from ddct_bringup.processes.forked import Forked
-from ddct_bringup.processes.graph_nodes import DRIVELINE, NodeSpec, ros_arguments
+from ddct_bringup.processes.graph_nodes import DRIVELINE, NodeSpec
 from ddct_bringup.processes.shared_memory import remove_dead_segments
 from ddct_plant.base.errors import DdctError
 from ddct_plant.program.own_process import last_call
@@ -41,18 +41,18 @@ _MOST_ELAPSED_S = 1.0
 class Node(Forked):
     """Process of a node, and how it ended."""
 
-    def __init__(self, spec: NodeSpec, parameter_file: Path, log: Path) -> None:
-        """Prepare the node with its parameter file; `write_log` writes its output into `log`."""
+    def __init__(self, spec: NodeSpec, arguments: Sequence[str], log: Path) -> None:
+        """Prepare the node with ROS arguments; `write_log` writes its output into `log`."""
         self.name = spec.path
         self._title = spec.title
         self.log = log
         self.killed = False
         """Whether it had to be killed because it did not end after the other signals."""
         self._paused_s = 0.0
-        arguments = [*spec.arguments, *ros_arguments(parameter_file)]
+        given = [*spec.arguments, *arguments]
         if spec.namespace:
-            arguments += ['-r', f'__ns:=/{spec.namespace}']
-        super().__init__(spec.module, *arguments, name=spec.path, patience=PATIENCE)
+            given += ['-r', f'__ns:=/{spec.namespace}']
+        super().__init__(spec.module, *given, name=spec.path, patience=PATIENCE)
 
     def check(self, elapsed_s: float) -> None:
         """Raise DdctError where somebody has paused it for long, `elapsed_s` after the last."""
@@ -105,16 +105,19 @@ class Supervisor:
     """Processes of one graph; as a context manager it always stops them."""
 
     def __init__(
-        self, logs: Path, parameter_file: Path, stopped: Callable[[], bool] = lambda: False
+        self,
+        logs: Path,
+        arguments_of: Callable[[NodeSpec], Sequence[str]],
+        stopped: Callable[[], bool] = lambda: False,
     ) -> None:
         """
         Store the settings; a log of each node is written into the folder `logs` at the end.
 
-        The nodes read their parameters from `parameter_file`. Waiting raises KeyboardInterrupt
-        when `stopped()`.
+        Each node has the ROS arguments of `arguments_of`. Waiting raises KeyboardInterrupt when
+        `stopped()`.
         """
         self._logs = logs
-        self._parameter_file = parameter_file
+        self._arguments_of = arguments_of
         self._stopped = stopped
         self._nodes: list[Node] = []
 
@@ -136,7 +139,9 @@ class Supervisor:
 
     def start(self, specs: Sequence[NodeSpec]) -> None:
         """Start one process per node; raise the errors of `start_processes`."""
-        nodes = [Node(spec, self._parameter_file, self._logs / spec.log_name) for spec in specs]
+        nodes = [
+            Node(spec, self._arguments_of(spec), self._logs / spec.log_name) for spec in specs
+        ]
         try:
             start_processes([node.process for node in nodes], self._stopped)
         finally:

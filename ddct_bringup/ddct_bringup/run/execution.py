@@ -3,6 +3,7 @@
 """Execute one planned run in its layout and write its bag into a folder."""
 
 import re
+import shutil
 import sys
 import time
 from collections.abc import Callable, Iterable, Sequence
@@ -23,11 +24,10 @@ from ddct_bringup.processes.graph_nodes import (
     RECORDER,
     all_nodes,
     nodes_of,
-    ros_arguments,
 )
 from ddct_bringup.run.description import custom_data, run_info_of
 from ddct_bringup.run.headless import run_headless, separate_run
-from ddct_bringup.run.plan import RunPlan
+from ddct_bringup.run.plan import SIDES, RunPlan
 from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_controllers import workflows
 from ddct_controllers.from_file.controller_file import is_controller_file
@@ -135,6 +135,8 @@ def print_logs_with_warnings(program: str, folders: Iterable[Path]) -> None:
 
 def _keep_warnings(work: Path) -> None:
     """Remove all files but logs with a node's warning, and the folder if none is left."""
+    for folder in (work / name for name in SIDES):
+        shutil.rmtree(folder, ignore_errors=True)
     for path in work.iterdir():
         if path.suffix != '.log' or not _WARNING.search(path.read_bytes()):
             path.unlink()
@@ -149,8 +151,8 @@ def _execute_processes(
     stopped: Callable[[], bool],
     live: 'processes.LiveView | None',
 ) -> None:
-    parameter_file = plan.write_parameter_file(folder, work)
-    with processes.Supervisor(work, parameter_file, stopped) as supervisor:
+    files = plan.write_parameter_files(folder, work)
+    with processes.Supervisor(work, files.arguments_of, stopped) as supervisor:
         nodes = nodes_of(shift=plan.settings.shift)
         supervisor.start([node for node in nodes if node is not RECORDER or not live])
         if live:
@@ -170,13 +172,14 @@ def _execute_single_process(
     plan: RunPlan, folder: Path, work: Path, stopped: Callable[[], bool]
 ) -> None:
     """Run all nodes in this process, or in one of their own where the controller may end it."""
-    parameter_file, shift = plan.write_parameter_file(folder, work), plan.settings.shift
+    files, shift = plan.write_parameter_files(folder, work), plan.settings.shift
+    whole = all_nodes(shift=shift)
     if not compiled_code(plan.controller):
-        arguments = ros_arguments(parameter_file)
+        arguments = files.arguments_of(whole)
         processes.run_single_process(nodes_of(shift=shift), arguments, stopped)
         return
-    with processes.Supervisor(work, parameter_file, stopped) as supervisor:
-        supervisor.start([all_nodes(shift=shift)])
+    with processes.Supervisor(work, files.arguments_of, stopped) as supervisor:
+        supervisor.start([whole])
         supervisor.wait_for(ALL_NODES)
 
 

@@ -6,7 +6,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from ddct_bringup.processes.graph_nodes import ANSWER_TIMEOUT_S, nodes_of
+from ddct_bringup.processes.graph_nodes import ANSWER_TIMEOUT_S, ParameterFiles, nodes_of
 from ddct_controllers.architecture import loop_needs
 from ddct_controllers.handover.laws import make_handover
 from ddct_controllers.registry import Chosen, controller_label
@@ -25,6 +25,8 @@ from ddct_plant.shift.roles import OFF_GOING
 
 LAYOUTS = ('processes', 'single-process', 'headless')
 """Process layouts: one process per node, one for all, and without ROS."""
+SIDES = CONTROL, PLANT = 'control', 'plant'
+"""Folders for the files of nodes that have the known settings alone, and of the others."""
 
 
 @dataclass(frozen=True)
@@ -74,7 +76,7 @@ class RunPlan:
         """
         Return the ROS parameters by node path for a bag in `folder`; '*' is every node.
 
-        The settings of the run are written into the folder `work`, in a file for each part. Every
+        The settings of the run are written below the folder `work`, in a file for each part. Every
         node gets the known ones, and those that do not control the case besides.
         """
         two_input, preview_steps = loop_needs(self.controller, self.settings.known)
@@ -106,20 +108,26 @@ class RunPlan:
     def _write_settings(self, work: Path) -> tuple[str, str]:
         """Write the settings of the run into `work`; return the files of their two parts."""
         recorded = RecordedSettings.of(self.settings, self.name, time_of_step(self.steps))
-        files = str(work / 'known.json'), str(work / 'case.json')
+        for name in SIDES:
+            (work / name).mkdir(exist_ok=True)
+        files = str(work / CONTROL / 'known.json'), str(work / PLANT / 'case.json')
         for file, part in zip(files, recorded.parts, strict=True):
             write_json(file, part)
         return files
 
-    def write_parameter_file(self, folder: Path, work: Path) -> Path:
-        """Write `node_parameters` as a ROS 2 parameter file into `work` and return its path."""
-        path = work / 'parameters.yaml'
-        content = {
-            '/**' if node == '*' else f'/**/{node}': {'ros__parameters': parameters}
-            for node, parameters in self.node_parameters(folder, work).items()
-        }
-        path.write_text(dump_yaml(content), encoding='utf-8')
-        return path
+    def write_parameter_files(self, folder: Path, work: Path) -> ParameterFiles:
+        """Write `node_parameters` as ROS 2 parameter files below `work`, and return them."""
+        contents: dict[str, dict[str, object]] = {name: {} for name in SIDES}
+        for node, parameters in self.node_parameters(folder, work).items():
+            every = node == '*'
+            section = {'/**' if every else f'/**/{node}': {'ros__parameters': parameters}}
+            controls = name_in_graph(node) in CONTROL_NODES
+            for name in SIDES if every else (CONTROL,) if controls else (PLANT,):
+                contents[name] |= section
+        files = [work / name / 'parameters.yaml' for name in SIDES]
+        for file, content in zip(files, contents.values(), strict=True):
+            file.write_text(dump_yaml(content), encoding='utf-8')
+        return ParameterFiles(*files)
 
 
 def require_headless(settings: RunSettings) -> None:

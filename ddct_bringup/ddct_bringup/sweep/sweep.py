@@ -78,7 +78,8 @@ class Sweep:
     def conditions(self) -> str:
         """Common conditions of all runs as a heading: scenario, architecture and others."""
         settings = self.first
-        changes = [f'{key}={value}' for key, value in self.base.changes.items()]
+        given = {**self.base.changes, **self.base.case}
+        changes = [f'{key}={value}' for key, value in given.items()]
         swept = [axis.key for axis in self.axes]
         shared = {
             'architecture': settings.known.architecture,

@@ -10,7 +10,7 @@ from refusals import refused
 
 from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.spec import read_spec
-from ddct_plant.base.errors import DdctError
+from ddct_plant.base.errors import DdctError, ParameterError
 
 GRID = 'grid: {wear_gain: [0.7, 1.0]}\n'
 PI = 'controllers: [pi]\n'
@@ -149,3 +149,32 @@ def test_missing_or_excessive_parts_are_reported_before_anything_is_computed(
     spec = read_spec(written(tmp_path, text))
     with refused(DdctError, key):
         Campaign(spec)
+
+
+def test_controllers_learn_the_varied_keys_that_are_listed_as_known(tmp_path: Path) -> None:
+    text = PI + 'grid: {vehicle.mass_kg: [1700], load.slope_rad: [0.05], wear_gain: [0.8]}\n'
+    unknown, known = (
+        Campaign(read_spec(written(tmp_path, text + more))).run(0).settings
+        for more in ('', 'known: [vehicle.mass_kg]\n')
+    )
+    assert unknown.known.scenario.vehicle.mass_kg == 1500.0
+    assert known.known.scenario.vehicle.mass_kg == 1700.0
+    assert known.known.scenario.load.slope_rad == 0.0
+    assert known.scenario == unknown.scenario
+    assert known.case.wear_gain == unknown.case.wear_gain == 0.8
+
+
+@pytest.mark.parametrize(
+    ('known', 'key'),
+    [
+        ('[vehicle.mass]', 'vehicle.mass'),
+        ('[load.slope_rad]', 'load.slope_rad'),
+        ('[wear_gain]', 'known'),
+        ('vehicle.mass_kg', 'known'),
+        ('[vehicle.mass_kg, vehicle.mass_kg]', 'known'),
+    ],
+)
+def test_what_cannot_be_known_is_refused(tmp_path: Path, known: str, key: str) -> None:
+    text = PI + f'grid: {{vehicle.mass_kg: [1700], wear_gain: [0.8]}}\nknown: {known}\n'
+    with refused(ParameterError, key):
+        read_spec(written(tmp_path, text))

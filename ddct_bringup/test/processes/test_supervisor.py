@@ -60,7 +60,7 @@ def processes(
     """Return a function that makes a supervisor of programs with these lines, by node name."""
     monkeypatch.setattr(supervisor, 'STOP_LADDER', [(number, 1.0) for number, _ in STOP_LADDER])
     monkeypatch.setattr(supervisor, 'CHECK_PERIOD_S', 0.05)
-    made = Supervisor(tmp_path, tmp_path / 'parameters.yaml')
+    made = Supervisor(tmp_path, lambda node: ())
 
     def make(namespace: str = '', **lines: tuple[str, str]) -> Supervisor:
         programs = {
@@ -367,7 +367,7 @@ def test_a_node_has_ten_seconds_to_end_by_itself_and_five_to_be_terminated(
     deaf: Any = SimpleNamespace(
         name='load', running=True, stop=lambda number: signals.append((number, round(now_s, 1)))
     )
-    nodes = Supervisor(Path(), Path())
+    nodes = Supervisor(Path(), lambda node: ())
     nodes._nodes = [deaf]
     nodes.stop(lambda name: True)
     assert signals == [(signal.SIGINT, 0.0), (signal.SIGTERM, 10.0), (signal.SIGKILL, 15.0)]
@@ -389,7 +389,7 @@ def test_ctrl_c_while_nodes_start_leaves_none(
 ) -> None:
     nodes = processes(driveline=OBEDIENT)
     started = time.monotonic()
-    stopping = Supervisor(tmp_path, tmp_path / 'parameters.yaml', lambda: True)
+    stopping = Supervisor(tmp_path, lambda node: (), lambda: True)
     with stopping, pytest.raises(KeyboardInterrupt):
         stopping.start([NodeSpec('load', module(LIVE.format(first=OBEDIENT[0], then='pass')))])
     assert time.monotonic() - started < WITHIN_S

@@ -75,6 +75,7 @@ if TYPE_CHECKING:
     from ddct_plant.graph.spin import run_node
     from ddct_plant.program.printed_table import print_note, print_table, print_tables
     from ddct_plant.program.progress import with_progress
+    from ddct_plant.scenario.case import case_values
     from ddct_plant.scenario.chosen import print_adjusted
     from ddct_plant.scenario.differences import scenario_title
     from ddct_plant.scenario.settings import RunSettings

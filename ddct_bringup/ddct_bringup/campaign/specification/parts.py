@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Parts of a specification: controllers, grid, random samples, floors; mistakes name the key."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ddct_bringup.campaign.keys import COMMON, CONTROLLERS, option_of, run_options
@@ -10,11 +10,13 @@ from ddct_bringup.campaign.specification.distribution import distribution_of
 from ddct_bringup.campaign.specification.distributions import Distribution
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import Option, require_known
+from ddct_plant.files.input_file import located
+from ddct_plant.scenario.case import OF_CASE
 from ddct_plant.scenario.choices.scenarios import CHOICES
 
 MOST_RUNS = 10_000_000
 """Largest number of runs of one campaign."""
-GRID, VARY = 'grid', 'vary'
+GRID, VARY, KNOWN = 'grid', 'vary', 'known'
 RANDOM, SAMPLES, OF, ROOT_SEED = 'random', 'samples', 'of', 'seed'
 FLOORS, FLOOR_SAMPLES = 'floors', 'floor_samples'
 
@@ -80,6 +82,26 @@ def grid_of(content: Mapping[str, Any]) -> dict[str, tuple[Any, ...]]:
                 option.checked(where, value)
         grid[key] = _distinct(where, values)
     return grid
+
+
+def known_of(content: Mapping[str, Any], varied: Sequence[str]) -> tuple[str, ...]:
+    """Return the varied keys that controllers learn."""
+    given = content.get(KNOWN, [])
+    if not isinstance(given, list):
+        raise ParameterError(
+            f'{KNOWN} is {given!r}: give a list of keys that vary, such as [vehicle.mass_kg]',
+            key=KNOWN,
+        )
+    for key in given:
+        if key in OF_CASE:
+            raise ParameterError(
+                f'{KNOWN}: {key} is of the case alone, and no controller can learn it: leave it '
+                'out',
+                key=KNOWN,
+            )
+    with located(KNOWN):
+        require_known(given, varied, 'key that varies')
+    return _distinct(KNOWN, given)
 
 
 def _not_empty(where: str, content: Any) -> Mapping[str, Any]:

@@ -9,7 +9,11 @@ from typing import Any
 from ddct_bringup.api import shell
 from ddct_plant.base.options import options_of
 from ddct_plant.program.scheduling import Scheduling
-from ddct_plant.scenario.choices.command_line import add_option, add_scenario_options
+from ddct_plant.scenario.choices.command_line import (
+    add_case_option,
+    add_option,
+    add_scenario_options,
+)
 from ddct_plant.scenario.choices.scenarios import CHOICES
 from ddct_plant.scenario.choices.settings import SETTINGS
 
@@ -24,6 +28,7 @@ USUAL, NONE = 'usual', 'none'
 def add_settings_options(parser: argparse.ArgumentParser) -> None:
     """Add the options that describe a run to a program's parser."""
     add_scenario_options(parser)
+    add_case_option(parser)
     for name, described in SETTINGS.items():
         add_option(parser, name, described)
     parser.add_argument(
@@ -129,5 +134,6 @@ def settings_given(options: argparse.Namespace) -> dict[str, Any]:
         **{name: getattr(options, name) for name in CHOICES},
         'set': shell.changes_of(options.overrides),
         'duration': options.duration,
+        'case': shell.case_values(options.case),
         **{name: getattr(options, name) for name in SETTINGS},
     }

@@ -14,7 +14,7 @@ from ddct_plant.scenario.choices.scenarios import (
 )
 
 _METAVARS = {float: 'X', int: 'N', str: 'NAME'}
-SET_EXAMPLE = 'load.slope_rad=0.05'
+SET_EXAMPLE, CASE_EXAMPLE = 'load.slope_rad=0.05', 'vehicle.mass_kg=1700'
 
 
 def add_scenario_options(
@@ -44,6 +44,18 @@ def add_scenario_options(
         metavar='KEY=VALUE',
         dest='overrides',
         help=f'change a scenario key, such as {set_example}; may be repeated',
+    )
+
+
+def add_case_option(parser: argparse._ActionsContainer) -> None:
+    """Add --case, whose texts `case_values` reads."""
+    parser.add_argument(
+        '--case',
+        action='append',
+        default=[],
+        metavar='KEY=VALUE|FILE',
+        help=f'what the plant alone has and no controller knows, such as {CASE_EXAMPLE}: a key of '
+        'the car or the drive, a wear gain or the seed, or a YAML file of keys; may be repeated',
     )
 
 
