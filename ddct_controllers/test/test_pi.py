@@ -60,7 +60,7 @@ def test_a_bad_gain_is_refused(name, value, key):
 @pytest.mark.parametrize(
     ('gains', 'key'),
     [
-        ('{proportional_gain: 0.1}', 'controllers.pi.integral_gain'),
+        ('{proportional_gain: none}', 'controllers.pi.proportional_gain'),
         ('{proportional_gain: 0.1, integral_gain: -1.0}', 'controllers.pi.integral_gain'),
         (
             '{proportional_gain: 0.1, integral_gain: 0.1, d: 1.0}',

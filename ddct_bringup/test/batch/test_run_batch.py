@@ -37,12 +37,13 @@ def scenario(random, **changes):
     driveline = {
         f'driveline.{name}': value * times(0.2)
         for name, value in DrivelineParameters().values().items()
-        if name != 'vehicle_inertia'  # it follows from the mass
+        if name not in ('vehicle_inertia', 'total_ratio')  # the mass and the gearbox give these
     }
     slope = {'time_s': [0.0, 0.9], 'slope_rad': random.uniform(-0.1, 0.1, 2).tolist()}
     own = {
         **SHORT,
         **driveline,
+        'gearbox.measured_ratios': [9.3416 * times(0.2)],
         'driveline.engine_damping': 0.02 * times(0.5),
         'vehicle.mass_kg': 1500.0 * times(0.3),
         'load.wind_speed_m_s': float(random.uniform(-15.0, 15.0)),
