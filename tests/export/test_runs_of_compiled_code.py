@@ -33,7 +33,7 @@ from ddct_controllers.workflows.evidence import frequency_evidence
 from ddct_controllers.workflows.loop_summary import loop_summary
 from ddct_plant.program import own_process
 from ddct_plant.program.own_process import ProcessEndedError
-from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.scenario.settings import KnownSettings
 
 SETTINGS = run_settings('duration_s=0.7')
 OPTIONS = {'duration_s': 0.7}
@@ -193,10 +193,10 @@ def test_checks_share_the_trials_that_each_of_them_needs(
 ) -> None:
     made, trial = tmp_path / 'trials', subject.closed_trial
 
-    def noted(settings: RunSettings, controller: Controller) -> subject.ClosedLoopLog:
+    def noted(settings: KnownSettings, controller: Controller) -> subject.ClosedLoopLog:
         with made.open('a', encoding='utf-8') as file:
             file.write(f'{type(controller).__name__}\n')
-        return trial(settings.known, controller)
+        return trial(settings, controller)
 
     monkeypatch.setattr(subject, 'closed_trial', noted)
     check_controller(counter, run_settings().known)
