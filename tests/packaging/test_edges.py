@@ -58,6 +58,7 @@ FILES = {
     'ddct_plant/scenario/nouns/layers.py': 'car and drive, YAML',
     'ddct_plant/scenario/nouns/part.py': 'car and drive, YAML',
     'ddct_plant/scenario/nouns/scenario_text.py': 'scenario, YAML',
+    'ddct_plant/scenario/nouns/written.py': 'scenario, YAML',
     'ddct_plant/scenario/overrides.py': 'options --set of a scenario',
     'ddct_plant/scenario/recorded_settings.py': 'settings in a bag, JSON',
 }
