@@ -5,7 +5,8 @@
 import numpy as np
 
 from ddct_controllers.design.state_space import series
-from ddct_plant.base.timebase import PERIOD_S, SUBSTEP_S, SUBSTEPS
+from ddct_plant.base.timebase import PERIOD_S, SUBSTEPS
+from ddct_plant.linear.delayed_input import acting_inputs
 from ddct_plant.linear.lti import StateSpace
 from ddct_plant.linear.sampling import discretise_zoh
 
@@ -31,17 +32,15 @@ def _delay_line(periods: int) -> StateSpace:
 
 def _changed_within_period(system: StateSpace, late: int) -> StateSpace:
     """
-    Return the system whose input changes `late` ms after each sample.
+    Return the system whose input changes `late` ms after each sample, y_k = c x_k + d u'.
 
-    With Phi and Gamma of the first `late` ms (1) and of the rest (2), and the earlier input u':
-    x_(k+1) = Phi_2 Phi_1 x_k + Phi_2 Gamma_1 u' + Gamma_2 u_k, y_k = c x_k + d u'.
+    u' is the earlier input, the first state.
     """
-    first = discretise_zoh(system, late * SUBSTEP_S)
-    rest = discretise_zoh(system, (SUBSTEPS - late) * SUBSTEP_S)
+    acting, sampled = acting_inputs(system, late), discretise_zoh(system, PERIOD_S)
     none = np.zeros((1, 1 + len(system.a)))
     return StateSpace(
-        np.vstack([none, np.hstack([rest.a @ first.b, rest.a @ first.a])]),
-        np.vstack([np.ones((1, 1)), rest.b]),
+        np.vstack([none, np.hstack([acting[:, :1], sampled.a])]),
+        np.vstack([np.ones((1, 1)), acting[:, 1:]]),
         np.hstack([system.d, system.c]),
         np.zeros((1, 1)),
         PERIOD_S,
