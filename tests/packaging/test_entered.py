@@ -13,17 +13,23 @@ from entered.counter import Entered, Noun
 
 pytestmark = pytest.mark.slow
 
-LINEAR = ('ddct_plant.models.linear_driveline', 'Driveline')
+LINEAR = Noun('ddct_plant.models.linear_driveline', 'Driveline')
+FRICTION = Noun('ddct_plant.friction.driveline', 'FrictionDriveline')
 
 
-def test_the_way_leads_from_the_call_to_the_equations_and_not_into_the_scores() -> None:
+@pytest.mark.parametrize(
+    ('scenario', 'driveline'), [('thesis', LINEAR), ('launch', FRICTION), ('upshift', FRICTION)]
+)
+def test_the_way_leads_from_the_call_to_the_equations_and_not_into_the_scores(
+    scenario: str, driveline: Noun
+) -> None:
     entered = Entered()
-    entered.call(lambda: api.run('pi', scenario='thesis', duration=2.0))
+    entered.call(lambda: api.run('pi', scenario=scenario, duration=2.0))
     scored = Noun('ddct_bringup.scores.scoring', 'score_run')
     assert entered.way >= {
         Noun('ddct_bringup.api.run_and_load', 'run'),
         Noun('ddct_controllers.architecture', 'Architecture'),
-        Noun(*LINEAR),
+        driveline,
     }
     assert scored in entered.nouns - entered.way
 
