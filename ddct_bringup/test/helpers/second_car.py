@@ -1,0 +1,40 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""The packaged drives with the second car, unlike the C635 in mass, ratios and inertias."""
+
+from ddct_bringup.campaign.rows import scored_headless
+from ddct_bringup.scores.scored_run import ScoredRun
+from ddct_bringup.verdict.limits import packaged_limits
+from ddct_plant.scenario.choices.scenarios import packaged_names
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.scenario import Scenario
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
+
+CAR = 'city7'
+DRIVES = tuple(sorted({*packaged_names('drive')} - {'thesis'}))
+"""Every packaged drive but that of the thesis, whose engine has no limits."""
+OF_ENGINE = {'tip_in': ['engine.torque_share=[0.24, 1.0]']}
+"""Demands in N m that are beyond the engine of the car, as shares of its own."""
+
+
+def scenario_of(drive: str) -> Scenario:
+    """Return the drive with the second car; a gear shift starts at the speed of the C635."""
+    speeds = []
+    ours = load_scenario(drive=drive, car='c635_no_limits' if drive in OF_ENGINE else 'c635')
+    if ours.shift is not None:
+        wheel_speed = ours.driveline.gear.wheel_speed(ours.initial.shaft_speed_rad_s)
+        vehicle_speed = wheel_speed * ours.vehicle.wheel_radius_m
+        car = load_scenario('launch', car=CAR)
+        wheel_speed = vehicle_speed / car.vehicle.wheel_radius_m
+        gears = {'shaft': ours.gear, 'engine': ours.shift.off_going_gear}
+        speeds = [
+            f'initial.{side}_speed_rad_s={car.gearbox.gear(gear).shaft_speed(wheel_speed)!r}'
+            for side, gear in gears.items()
+        ]
+    return load_scenario(drive=drive, car=CAR, overrides=[*speeds, *OF_ENGINE.get(drive, ())])
+
+
+def scored(drive: str, controller: str, *, floors: bool = False) -> ScoredRun:
+    """Return the scores of a run of the drive with the second car."""
+    settings = RunSettings(KnownSettings(scenario_of(drive)))
+    return scored_headless(settings, controller, packaged_limits(), floors=floors)
