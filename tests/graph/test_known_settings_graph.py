@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The control nodes of a graph have the known settings alone, and the run is as headless."""
 
-import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -12,9 +11,11 @@ import yaml
 from received import (
     UNKNOWN,
     UNKNOWN_IN_A_SHIFT,
+    files_named_in,
     found_in,
     keeper_file,
     settings_with,
+    spy_file,
     true_values,
 )
 from support.runs import LAYOUTS, bag_bytes, expected, record
@@ -92,16 +93,13 @@ def test_control_nodes_find_no_true_value_in_their_parameters_and_objects(
         assert not found_in([each.value for each in parameters], values), node.get_name()
 
 
-def files_named_in(file: Path) -> set[Path]:
-    """Return a file with those that it names, and that these name."""
-    found, waiting = set(), [file]
-    while waiting:
-        each = waiting.pop()
-        if each not in found and each.is_file():
-            found.add(each)
-            words = re.split(r'[\s"\',:{}\[\]]+', each.read_text(encoding='utf-8'))
-            waiting += [Path(word) for word in words if word.startswith('/')]
-    return found
+def test_a_controller_in_a_process_of_its_own_finds_no_value_of_the_case(tmp_path: Path) -> None:
+    settings = settings_with(UNKNOWN_IN_A_SHIFT, 'upshift', duration_s=0.5)
+    values = true_values(settings)
+    file, found = spy_file(tmp_path, values)
+    record(RunPlan(settings, file, 'processes'), tmp_path / 'run')
+    notes = found.read_text(encoding='utf-8').splitlines()
+    assert set(notes) == {'made []', 'held []', 'updated []'}
 
 
 def test_a_control_process_can_name_no_file_with_a_true_value(tmp_path: Path) -> None:

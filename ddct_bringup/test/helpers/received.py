@@ -2,15 +2,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """A controller that keeps all that it receives, and a search for true values in it."""
 
+import os
+import re
 import sys
 from collections.abc import Iterable, Iterator
+from functools import partial
 from pathlib import Path
-from types import ModuleType
+from types import CellType, FunctionType, MethodType, ModuleType
 from typing import Any
 
 import numpy as np
 
 from ddct_bringup.run.run_base import RunBase
+from ddct_controllers.interface import Command, Controller, ControllerContext, Measurement
 from ddct_plant.scenario.case import OF_CASE
 from ddct_plant.scenario.choices.settings import SETTINGS
 from ddct_plant.scenario.file import ScenarioFile
@@ -56,6 +60,75 @@ def keeper_file(folder: Path) -> tuple[str, list[Any]]:
     file = folder / 'keeper.py'
     file.write_text(_FILE, encoding='utf-8')
     return str(file), kept
+
+
+def files_named_in(file: Path) -> set[Path]:
+    """Return a file with those that it names, and that these name, without code."""
+    found, waiting = set(), [file]
+    while waiting:
+        each = waiting.pop()
+        if each not in found and each.is_file() and each.suffix != '.py':
+            found.add(each)
+            words = re.split(
+                r'[\s"\',:{}\[\]]+', each.read_text(encoding='utf-8', errors='replace')
+            )
+            waiting += [Path(word) for word in words if word.startswith('/')]
+    return found
+
+
+class Spy(Controller):
+    """Controller that searches all that it gets, and what its process was given, for values."""
+
+    def __init__(self, context: ControllerContext, values: Iterable[float], found: Path) -> None:
+        """Search context and process for values; note in `found` what is there, at each tick."""
+        self.gain = context.gains['gain']
+        self._values, self._found = list(values), found
+        files = {each for given in sys.argv for each in files_named_in(Path(given))}
+        texts = [each.read_text(encoding='utf-8', errors='replace') for each in files]
+        process = (sys.argv, dict(os.environ), texts)
+        self._note('made', (context, process, context.settings.kind))
+
+    def reset(self) -> None:
+        """Keep nothing."""
+
+    def hold(self, measurement: Measurement) -> None:
+        """Search a measurement while feedback is off."""
+        self._note('held', measurement)
+
+    def update(self, measurement: Measurement) -> Command:
+        """Search a measurement; a proportional law."""
+        self._note('updated', measurement)
+        return Command(-self.gain * measurement.slip_error_rpm)
+
+    def _note(self, what: str, root: object) -> None:
+        with self._found.open('a', encoding='utf-8') as file:
+            file.write(f'{what} {found_in(root, self._values)}\n')
+
+
+_SPY = """
+import sys
+from pathlib import Path
+
+sys.path.append({helpers!r})
+import received
+
+from ddct_plant.base.options import Option
+
+
+class Searching(received.Spy):
+    options = {{'gain': Option(0.1, 'gain', 'N m/rpm', at_least=0.0, at_most=1.0)}}
+
+    def __init__(self, context):
+        super().__init__(context, {values!r}, Path({found!r}))
+"""
+
+
+def spy_file(folder: Path, values: Iterable[float]) -> tuple[str, Path]:
+    """Write the controller that searches for values; return its file, and that of its notes."""
+    found, file = folder / 'found.txt', folder / 'searching.py'
+    text = _SPY.format(helpers=str(Path(__file__).parent), values=list(values), found=str(found))
+    file.write_text(text, encoding='utf-8')
+    return str(file), found
 
 
 def settings_with(
@@ -117,7 +190,15 @@ def _within(root: object) -> Iterator[object]:
         if id(each) in before or isinstance(each, type | ModuleType):
             continue
         before.add(id(each))
-        if isinstance(each, dict):
+        if isinstance(each, FunctionType):
+            cells = (cell for cell in each.__closure__ or () if cell != CellType())
+            waiting += [cell.cell_contents for cell in cells]
+            waiting += [each.__defaults__, each.__kwdefaults__]
+        if isinstance(each, MethodType):
+            waiting += [each.__self__, each.__func__]
+        elif isinstance(each, partial):
+            waiting += [each.func, each.args, each.keywords]
+        elif isinstance(each, dict):
             waiting += [*each.keys(), *each.values()]
         elif isinstance(each, list | tuple | set | frozenset):
             waiting += each
