@@ -10,6 +10,7 @@ from support.processes import Program, Programs
 from support.runs import plan
 
 ENGINE, CONTROLLER = 'ddct_plant.nodes.engine_node', 'ddct_controllers.controller_node'
+CASE = Path(__file__).parent / 'unknown_key.case.yaml'
 CASES: dict[str, tuple[str, list[str], list[str]]] = {
     'out of range': (ENGINE, ['-p', 'wear_gain:=-1.0'], ['wear_gain', '-1.0']),
     'not a number': (ENGINE, ['-p', 'wear_gain:=abc'], ['wear_gain', 'abc']),
@@ -20,6 +21,19 @@ CASES: dict[str, tuple[str, list[str], list[str]]] = {
     'missing scenario file': (ENGINE, ['-p', 'scenario:=no/such.yaml'], ['no/such.yaml']),
     'unknown architecture': (ENGINE, ['-p', 'architecture:=open'], ["'open'", 'detailed']),
     'unknown mode': (ENGINE, ['-p', 'mode:=fast'], ["'fast'", 'lockstep']),
+    'unknown key of the case': (ENGINE, ['-p', f'case:={CASE}'], ['mas_kg', 'vehicle.mass_kg?']),
+    'files of one part': (ENGINE, ['-p', 'case:=case.json'], ['parameter known is missing']),
+    'case of a controller': (CONTROLLER, ['-p', f'case:={CASE}'], ['unknown parameter case']),
+    'wear of a controller': (
+        CONTROLLER,
+        ['-p', 'wear_gain:=0.8'],
+        ['unknown parameter wear_gain'],
+    ),
+    'seed of a reference': (
+        'ddct_reference.reference_node',
+        ['-p', 'seed:=4'],
+        ['unknown parameter seed'],
+    ),
     'negative seed': (ENGINE, ['-p', 'seed:=-1'], ['seed']),
     'unknown controller': (CONTROLLER, ['-p', 'controller:=pid'], ["'pid'", 'ls8']),
     'bad gain': (CONTROLLER, ['-p', 'gains.integral_gain:=-1.0'], ['integral_gain', '-1']),

@@ -4,6 +4,7 @@
 
 import json
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,7 @@ from support.runs import expected, plan
 from ddct_bringup.bag.reader import read_bag
 from ddct_plant.base.errors import DdctError
 from ddct_plant.graph.qos import RECORDER_LATCHED_QOS
+from ddct_plant.scenario.case import with_case
 from ddct_plant.scenario.file import scenario_to_yaml
 from ddct_plant.signals.tables.run import RUN_SETTINGS
 
@@ -128,6 +130,26 @@ def test_nodes_by_hand_that_agree_leave_the_bag_of_the_run_whatever_their_order(
     graph = by_hand(graph_of(run), settings)
     for name in ('controller', 'clutch'):
         graph.add(name)
+    graph.add_all()
+    graph.run()
+    recording = read_bag(graph.folder)
+    assert recording.settings == run.settings
+    assert recording.trajectory.sha256() == expected(run).sha256()
+
+
+def test_nodes_by_hand_with_a_file_of_the_case_leave_the_bag_of_the_run(
+    graph_of: GraphOf, tmp_path: Path
+) -> None:
+    file = tmp_path / 'case.yaml'
+    file.write_text('vehicle: {mass_kg: 1700}\nwear_gain: 0.8\n', encoding='utf-8')
+    run = plan('ls8')
+    run = replace(
+        run, settings=with_case(run.settings.known, {'vehicle.mass_kg': 1700, 'wear_gain': 0.8})
+    )
+    graph = by_hand(graph_of(run), {'scenario': scenario_file(tmp_path)})
+    for name, parameters in graph.parameters.items():
+        if name not in ('*', 'controller', 'reference', 'handover'):
+            parameters['case'] = str(file)
     graph.add_all()
     graph.run()
     recording = read_bag(graph.folder)

@@ -23,6 +23,7 @@ from rclpy.parameter import Parameter
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import Option, options_of
 from ddct_plant.fail_safe.request_watch import FailSafeSettings
+from ddct_plant.files.input_file import located
 from ddct_plant.graph.node_names import name_in_graph
 from ddct_plant.program.scheduling import Scheduling
 from ddct_plant.scenario.case import case_of_file, with_case
@@ -110,12 +111,14 @@ def declare_case(node: Node, known: KnownSettings, defaults: Mapping[str, Any]) 
             'known and case, or none of them',
             key=missing,
         )
+    options = options_of(CaseSettings)
     if not in_files:
-        values = _of_parameters(node, options_of(CaseSettings), defaults)
-        return with_case(known, {**case_of_file(file), **values} if file else values)
+        values = case_of_file(file) if file else {}
+        with located('case'):
+            own = {key: options[key].checked(key, values[key]) for key in values if key in options}
+        return with_case(known, {**values, **_of_parameters(node, options, {**defaults, **own})})
     settings = RunSettings(known, case_settings(known, read_part(CasePart, file).case))
     # Only given ones are declared: true values stay out of what others can read.
-    options = options_of(CaseSettings)
     given = {
         name: declare(node, name, options[name])
         for name in options
