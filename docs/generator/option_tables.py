@@ -14,11 +14,14 @@ from ddct_plant.base.options import OptionGroup, Options, group_of, options_of
 from ddct_plant.program.scheduling import Scheduling
 from ddct_plant.program.table import Table
 from ddct_plant.scenario.choices.settings import SETTINGS
+from ddct_plant.scenario.nouns.keys import CAR, DRIVE, SCENARIO, owner_of
 from ddct_plant.scenario.scenario import Scenario
 
 
-def _scenario() -> Table:
-    return Table('', OPTION_HEADERS, [_code(row) for row in _rows(Scenario)])
+def _keys(owner: str) -> Table:
+    """Return the keys of a scenario that belong to the car, the drive or the file itself."""
+    rows = [_code(row) for row in _rows(Scenario) if owner_of(row[0]) == owner]
+    return Table('', OPTION_HEADERS, rows)
 
 
 def _rows(group: type[OptionGroup]) -> list[tuple[str, ...]]:
@@ -62,7 +65,7 @@ def _code(row: Sequence[str]) -> tuple[str, ...]:
 
 _OF_EVERY_MPC = tuple(program_options(BASIS.settings()))
 TABLES = {
-    'scenario': _scenario(),
+    **{owner: _keys(owner) for owner in (SCENARIO, CAR, DRIVE)},
     'run': _without_source(SETTINGS),
     'scheduling': _without_source(options_of(Scheduling)),
     'measured_run': _without_source(options_of(MeasuredKeys), MeasuredKeys.prefix),

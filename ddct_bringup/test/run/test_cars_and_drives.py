@@ -33,13 +33,10 @@ def settings(*options: str) -> RunSettings:
     ('options', 'chosen'),
     [
         ([], {}),
+        (['--car', 'city7', '--drive', 'launch'], {'car': 'city7', 'drive': 'launch'}),
         (
-            ['--car', 'c635_no_limits', '--drive', 'upshift'],
-            {'car': 'c635_no_limits', 'drive': 'upshift'},
-        ),
-        (
-            ['--scenario', 'upshift_hot', '--car', 'c635_no_limits'],
-            {'scenario': 'upshift_hot', 'car': 'c635_no_limits'},
+            ['--scenario', 'launch_hot', '--car', 'city7'],
+            {'scenario': 'launch_hot', 'car': 'city7'},
         ),
         (['--drive', 'launch'], {'drive': 'launch'}),
         (['--car', 'c635_no_limits'], {'car': 'c635_no_limits'}),

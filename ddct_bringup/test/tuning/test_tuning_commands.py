@@ -30,8 +30,11 @@ def test_the_commands_run_for_a_controller_and_a_scenario_from_files_with_all_op
         FILE % 'proportional_gain: 0.2, integral_gain: 0.3', encoding='utf-8'
     )
     grid = {'gear': [2], 'sensors': [SENSORS], 'clutch': ['linear']}
-    campaign = {'scenario': 'my car.yaml', 'architecture': 'feedforward', 'random': VARIED}
-    campaign['grid'] = grid
+    Path('cars').mkdir()
+    Path('cars', 'mine.yaml').write_text('base: ../base.yaml\n', encoding='utf-8')
+    Path('base.yaml').write_text('base: c635_thesis\nload: {frontal_area_m2: 2.0}\n')
+    campaign = {'scenario': 'my car.yaml', 'car': 'cars/mine.yaml', 'grid': grid}
+    campaign |= {'architecture': 'feedforward', 'random': VARIED}
     goals = {'torsion_speed_std_rpm': {'statistic': 'worst'}}
     options = {'objectives': goals, 'constraints': ENGAGED, 'trials': 2, 'campaign': campaign}
     made_tuning(Path('my tuning'), controller='my pi.yaml', **options)
@@ -41,9 +44,10 @@ def test_the_commands_run_for_a_controller_and_a_scenario_from_files_with_all_op
     found = compared_settings(Path('..', 'tuned'))
     assert found.keys() == {'mine', 'mine_tuned'}
     for settings in found.values():
-        assert (settings.architecture, settings.clutch) == ('feedforward', 'linear')
-        assert settings.wear_gain == 1.0  # it was drawn: the nominal value
+        assert (settings.known.architecture, settings.known.clutch) == ('feedforward', 'linear')
+        assert settings.case.wear_gain == 1.0  # it was drawn: the nominal value
         assert settings.scenario.duration_s == 2.9
+        assert settings.scenario.load.frontal_area_m2 == 2.0
         sensors: Any = settings.scenario.sensors
         assert sensors.engine_speed.noise_rad_s == 1e-7
         assert settings.scenario.vehicle.mass_kg == scenario.vehicle.mass_kg
