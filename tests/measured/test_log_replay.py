@@ -83,11 +83,11 @@ def test_lines_of_the_base_scenario_that_the_log_makes_untrue_are_left_out(
     write_csv(tmp_path / 'drive.csv', 3, drive(1))
     options = ['--from', str(tmp_path / 'drive.csv'), '--columns', str(tmp_path / 'map.yaml')]
     out = tmp_path / 'mine.yaml'
-    assert main([*options, '--set', 'vehicle.mass_kg=1800', '--out', str(out)]) == 0
-    assert 'driveline.vehicle_inertia moved from' in capsys.readouterr().err
+    assert main([*options, '--set', 'vehicle.mass_kg=290', '--out', str(out)]) == 0
+    assert 'vehicle.mass_kg is 290 kg' in capsys.readouterr().err
     scenario = load_scenario(str(out))
-    assert not any('driveline.vehicle_inertia moved' in line for line in scenario.adjusted)
-    assert any(line.startswith('vehicle.mass_kg moved from 1800') for line in scenario.adjusted)
+    assert not any('290 kg' in line for line in scenario.adjusted)
+    assert any(line.startswith('vehicle.mass_kg moved from 290 to') for line in scenario.adjusted)
 
 
 def test_the_profile_is_the_torque_of_the_log_at_its_own_times(tmp_path: Path) -> None:

@@ -66,7 +66,7 @@ def test_a_small_difference_dies_out(name, options, wear_gain):
         scenario = replace(
             SCENARIO,
             duration_s=4.6,
-            initial=replace(SCENARIO.initial, engine_speed_rad_s=engine_speed),
+            given_initial=replace(SCENARIO.given_initial, engine_speed_rad_s=engine_speed),
             controllers={name: options},
         )
         slips.append(

@@ -10,20 +10,23 @@ from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import Group, OptionGroup, group_of, key_of
 from ddct_plant.models.parameters import DrivelineSection
 from ddct_plant.scenario.key_names import scenario_key_hint
-from ddct_plant.scenario.rules.consistency import without_derived
 from ddct_plant.scenario.scenario import Scenario
 
 
 def scenario_from_mapping(content: Mapping[str, Any]) -> Scenario:
     """Return the scenario of nested mappings, as `scenario_content` returns them."""
-    return without_derived(scenario_of(content))
-
-
-def scenario_of(content: Mapping[str, Any]) -> Scenario:
-    """Return the scenario of nested mappings, with given values as they are."""
     content = {'description': '', **content}
     content['controllers'] = _gains(content.get('controllers') or {})
-    return _build(Scenario, content)
+    return without_derived(_build(Scenario, content))
+
+
+def without_derived(scenario: Scenario) -> Scenario:
+    """Return the scenario without a given J_v that is that of mass and radius to the last bit."""
+    section = scenario.given_driveline
+    if section.vehicle_inertia != scenario.vehicle.inertia:
+        return scenario
+    section = dataclasses.replace(section, vehicle_inertia=None)
+    return dataclasses.replace(scenario, given_driveline=section)
 
 
 def flat(content: Any, key: str = '') -> dict[str, Any]:

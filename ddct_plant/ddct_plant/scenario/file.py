@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from ddct_plant.scenario.choices.scenarios import Choice
-from ddct_plant.scenario.content import flat, scenario_content, scenario_of
+from ddct_plant.scenario.content import scenario_content, scenario_from_mapping
 from ddct_plant.scenario.csv_profiles import described_profiles, with_points
 from ddct_plant.scenario.nouns.composed import composed
 from ddct_plant.scenario.nouns.places import Places
@@ -21,10 +21,10 @@ from ddct_plant.scenario.overrides import (
     is_number_of,
     parsed_override,
     put,
-    time_or_none,
+    with_changes,
     with_numbers,
 )
-from ddct_plant.scenario.rules.consistency import FILE, SET, consistent
+from ddct_plant.scenario.rules.body import derived
 from ddct_plant.scenario.rules.driveline import require_driveline
 from ddct_plant.scenario.rules.plausible import with_remarks
 from ddct_plant.scenario.scenario import Scenario
@@ -75,8 +75,9 @@ class ScenarioFile:
             scenario = start.scenario
         with start.places.located():
             if start is self._starts.get(keys):
-                scenario = with_numbers(start.scenario, pairs)
-            scenario = with_remarks(consistent(scenario, start.origins, self._control_start))
+                following = derived(self._changed[0], dict(pairs))
+                scenario = with_numbers(start.scenario, [*pairs, *following.items()])
+            scenario = with_remarks(scenario)
             require_driveline(scenario.driveline, scenario.clutch)
             return scenario
 
@@ -95,29 +96,24 @@ class ScenarioFile:
 
     def _start(self, pairs: Sequence[tuple[str, Any]]) -> '_Start':
         """Return the scenario with values by dotted key, from the content of the files."""
-        content = dict(self.content)
-        of_file = [leaf for key, value in self.set.items() for leaf in put(content, key, value)]
-        set_keys = [leaf for key, value in pairs for leaf in put(content, key, value)]
+        changed, of_file = self._changed
+        content, set_keys = with_changes(changed, pairs)
         places = self.places.with_set(set_keys)
         with places.located():
             content = with_points(content, [*of_file, *set_keys])
-            scenario = scenario_of(content)
-        origins = dict.fromkeys(flat(content), FILE) | dict.fromkeys([*of_file, *set_keys], SET)
-        return _Start(scenario, origins, places)
+            return _Start(scenario_from_mapping(content), places)
 
     @cached_property
-    def _control_start(self) -> float | None:
-        """Time in s at which control starts in the file, None if it is missing or wrong."""
-        return time_or_none(self.content.get('control_start_s'))
+    def _changed(self) -> tuple[Mapping[str, Any], list[str]]:
+        """The content with the changed keys of the file, and these keys."""
+        return with_changes(self.content, self.set.items())
 
 
 @dataclass(frozen=True)
 class _Start:
-    """A scenario with overrides, before dependent values follow from them."""
+    """A scenario with overrides."""
 
     scenario: Scenario
-    origins: Mapping[str, int]
-    """Origin of each given value by dotted key."""
     places: Places
     """Files and lines of the keys."""
 
@@ -135,8 +131,8 @@ def load_scenario(
     The scenario, car and drive are those of a `Choice`. Overrides are texts `KEY=VALUE`, or values
     by dotted key.
 
-    Dependent values are kept consistent (see `consistency`), and values that no car has get a
-    line in `adjusted` (see `plausible`).
+    Of mass, wheel radius and inertia of the vehicle what is not given follows (see `Body`).
+    Values that no car has get a line in `adjusted` (see `plausible`).
     Raise ParameterError for an unknown name or key or a bad value, DdctError for a file that
     cannot be read.
     """

@@ -3,15 +3,15 @@
 """Overrides of a scenario: texts `KEY=VALUE`, their place in a file's content, changed numbers."""
 
 import dataclasses
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import OptionGroup, key_of, options_of
-from ddct_plant.base.timebase import steps_in, time_of_step
 from ddct_plant.files.input_file import located
 from ddct_plant.files.yaml_text import parse_yaml
-from ddct_plant.scenario.content import flat
+from ddct_plant.scenario.content import flat, without_derived
+from ddct_plant.scenario.rules.body import with_body
 from ddct_plant.scenario.scenario import Scenario
 
 _SECTIONS = {key_of(field): field.name for field in dataclasses.fields(Scenario)}
@@ -37,7 +37,7 @@ def with_numbers(scenario: Scenario, pairs: Iterable[tuple[str, float]]) -> Scen
     changes: dict[str, Any] = groups.pop('', {})
     for name, values in groups.items():
         changes[name] = dataclasses.replace(getattr(scenario, name), **values)
-    return dataclasses.replace(scenario, **changes)
+    return without_derived(dataclasses.replace(scenario, **changes))
 
 
 def parsed_override(override: str, option: str = '--set') -> tuple[str, Any]:
@@ -53,6 +53,19 @@ def parsed_override(override: str, option: str = '--set') -> tuple[str, Any]:
         )
     with located(f'{option} {override}'):
         return key, parse_yaml(text)
+
+
+def with_changes(
+    content: Mapping[str, Any], pairs: Iterable[tuple[str, Any]]
+) -> tuple[dict[str, Any], list[str]]:
+    """
+    Return a nested content with values by dotted key, and the dotted keys of these values.
+
+    Mass, wheel radius and inertia of the vehicle that are not among them follow.
+    """
+    changed = dict(content)
+    keys = [leaf for key, value in pairs for leaf in put(changed, key, value)]
+    return with_body(changed, content, keys), keys
 
 
 def put(content: dict[str, Any], key: str, value: Any) -> list[str]:
@@ -71,11 +84,3 @@ def put(content: dict[str, Any], key: str, value: Any) -> list[str]:
         target = target[folder]
     target[leaf] = value
     return list(flat(value, key))
-
-
-def time_or_none(value: Any) -> float | None:
-    """Return a replaced time of the file in s, None if it is no multiple of 10 ms or missing."""
-    try:
-        return time_of_step(steps_in('', value))
-    except (ParameterError, TypeError, ValueError, OverflowError):
-        return None

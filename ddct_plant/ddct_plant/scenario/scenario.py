@@ -14,6 +14,7 @@ from ddct_plant.base.errors import ParameterError, require_name
 from ddct_plant.base.options import ASSUMED, REQUIRED, OptionGroup, option, section
 from ddct_plant.base.timebase import LONGEST_S, steps_in
 from ddct_plant.models.actuator import ActuatorParameters
+from ddct_plant.models.body import Body
 from ddct_plant.models.clutch import FrictionParameters
 from ddct_plant.models.clutch_heat import HeatParameters
 from ddct_plant.models.engine import EngineAuthority, TorqueProfile
@@ -28,7 +29,7 @@ from ddct_plant.scenario.control import (
     ReferenceParameters,
     SlipProfile,
 )
-from ddct_plant.scenario.initial_speeds import InitialSpeeds
+from ddct_plant.scenario.initial_speeds import InitialSection, InitialSpeeds
 from ddct_plant.sensors.parameters import SensorParameters
 from ddct_plant.shift.gear_pair import GearPair
 from ddct_plant.shift.parameters import ShiftParameters
@@ -88,7 +89,8 @@ class Scenario(OptionGroup):
         'the vehicle with the shaft, so that constant torques hold the slip constant',
         choices=EQUILIBRIA,
     )
-    initial: InitialSpeeds = InitialSpeeds()
+    given_initial: InitialSection = section(InitialSection(), key='initial')
+    """Section `initial` of the file; models take `initial`, which is complete."""
     reference: ReferenceParameters = ReferenceParameters()
     slip_reference: SlipProfile = section(SlipProfile(), left_out=True)
     slope: SlopeProfile = section(SlopeProfile(), left_out=True)
@@ -142,10 +144,21 @@ class Scenario(OptionGroup):
             raise ParameterError(
                 f'score_window_s ends at {last:g} s, before {first:g} s', key='score_window_s'
             )
+        if last < self.control_start_s:
+            raise ParameterError(
+                f'score_window_s ends at {last:g} s, before control_start_s, '
+                f'{self.control_start_s:g} s, so nothing of the control is scored: give a later '
+                'window',
+                key='score_window_s',
+            )
+        if self.given_driveline.vehicle_inertia is not None:
+            vehicle, inertia = self.vehicle, self.given_driveline.vehicle_inertia
+            Body(vehicle.mass_kg, vehicle.wheel_radius_m, inertia).require_agreement()
         self.engine.in_n_m(self.engine_limits)
         self.gearbox.require_gear('gear', self.gear)
         if self.shift is not None:
             self.gearbox.require_gear('shift.off_going_gear', self.shift.off_going_gear)
+        self.initial.require_phase()
         self._require_clutch()
         if self.slope.given and self.load.slope_rad:
             raise ParameterError(
@@ -172,6 +185,14 @@ class Scenario(OptionGroup):
     def driveline(self) -> DrivelineParameters:
         """Driveline in the engaged gear, for models; raise ParameterError for a bad value."""
         return self.given_driveline.engaged(self.gearbox.gear(self.gear), self.vehicle.inertia)
+
+    @cached_property
+    def initial(self) -> InitialSpeeds:
+        """Speeds of both plates at the start; raise ParameterError for some that contradict."""
+        off_going = self.gearbox.gear(self.shift.off_going_gear) if self.shift else None
+        return self.given_initial.speeds(
+            self.driveline.gear, off_going, self.vehicle.wheel_radius_m
+        )
 
     @cached_property
     def controlled_driveline(self) -> DrivelineParameters:

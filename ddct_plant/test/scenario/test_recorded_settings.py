@@ -84,7 +84,7 @@ def test_no_value_of_the_case_is_in_the_known_part() -> None:
     text = json.dumps(to_json(record.known))
     for value in (VARIED.case.wear_gain, VARIED.case.seed, *TRUE.values()):
         assert repr(value) not in text
-    assert set(record.case.scenario) == {'vehicle', 'driveline', 'actuator', 'load', 'adjusted'}
+    assert set(record.case.scenario) == {'vehicle', 'driveline', 'actuator', 'load'}
     assert record.case.scenario['vehicle'] == {'mass_kg': 1789.25}
 
 

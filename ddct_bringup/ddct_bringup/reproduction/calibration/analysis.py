@@ -143,7 +143,7 @@ def _best_fit(problem: Problem, values: Values, free: tuple[int, ...]) -> Fit:
 
 def changed_assumptions() -> dict[str, Scenario]:
     """Return scenarios with one changed assumption of the calibration each, by name."""
-    load, initial = BASE.load, BASE.initial
+    load, initial = BASE.load, BASE.given_initial
     return {
         f'road load times {factor:g}': dataclasses.replace(
             BASE,
@@ -157,7 +157,7 @@ def changed_assumptions() -> dict[str, Scenario]:
     } | {
         f'both plates at {speed:g} rad/s': dataclasses.replace(
             BASE,
-            initial=dataclasses.replace(
+            given_initial=dataclasses.replace(
                 initial, engine_speed_rad_s=speed, shaft_speed_rad_s=speed
             ),
         )

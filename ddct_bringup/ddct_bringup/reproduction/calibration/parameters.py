@@ -16,6 +16,7 @@ from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.models.engine import TorqueProfile
 from ddct_plant.models.parameters import DrivelineParameters
+from ddct_plant.scenario.initial_speeds import InitialSection
 from ddct_plant.scenario.scenario import Scenario
 
 Values = Sequence[float] | np.ndarray
@@ -75,6 +76,7 @@ BASE = Scenario(
     control_start_s=0.6,
     score_window_s=(0.6, DURATION_S),
     engine=TorqueProfile((0.0,), (0.0,)),
+    given_initial=InitialSection(engine_speed_rad_s=160.0, shaft_speed_rad_s=160.0),
 )
 """Fixed assumptions, among them both plates at 160 rad/s and the default road load."""
 

@@ -208,7 +208,7 @@ def _drive_lines(scenario: Scenario) -> list[tuple[str, str]]:
         ('initial:', 'assumed: no slip; 160 rad/s is 20 km/h in second gear'),
         *(
             (f'  {name}: {value}', '')
-            for name, value in vars(scenario.initial).items()
+            for name, value in vars(scenario.given_initial).items()
             if value is not None
         ),
         ('reference:', ''),

@@ -85,8 +85,8 @@ class Mpc4Reading:
             start = thesis_run('pi', 'detailed', 1.0)
             speed = THESIS_SCENARIO.initial.shaft_speed_rad_s
             slip = float(start.trajectory.slip_speed[start.start])
-            initial = replace(THESIS_SCENARIO.initial, engine_speed_rad_s=speed + slip)
-            settings = RunSettings(KnownSettings(replace(THESIS_SCENARIO, initial=initial)))
+            initial = replace(THESIS_SCENARIO.given_initial, engine_speed_rad_s=speed + slip)
+            settings = RunSettings(KnownSettings(replace(THESIS_SCENARIO, given_initial=initial)))
             loop = LoopWithoutActuator
         return run_loop(loop(settings, self.controller(settings)), settings.scenario.steps)
 

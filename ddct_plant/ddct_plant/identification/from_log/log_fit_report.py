@@ -20,9 +20,9 @@ from ddct_plant.identification.from_log.stretch import LOAD
 from ddct_plant.identification.from_log.verdict import doubts
 from ddct_plant.measured.log import MeasuredLog
 from ddct_plant.measured.wheel_radius import MeasuredRadius
+from ddct_plant.models.body import RADIUS
 from ddct_plant.program.printed_table import print_note, print_table
 from ddct_plant.program.table import Table, Weight, text_or_dash, with_reasons
-from ddct_plant.scenario.rules.consistency import RADIUS
 
 
 @dataclass(frozen=True)

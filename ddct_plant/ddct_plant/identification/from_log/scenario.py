@@ -26,6 +26,7 @@ from ddct_plant.identification.from_log.stretch import SPEED_COLUMNS, slip_of
 from ddct_plant.identification.from_log.stretches import KnownLoad, stretches_of
 from ddct_plant.measured.log import MeasuredLog
 from ddct_plant.measured.wheel_radius import measured_radius
+from ddct_plant.models.body import RADIUS
 from ddct_plant.models.engine import TorqueProfile
 from ddct_plant.models.gearbox import AGREE
 from ddct_plant.models.load import RoadLoad
@@ -33,12 +34,11 @@ from ddct_plant.models.parameters import DrivelineSection
 from ddct_plant.scenario.content import flat, scenario_content
 from ddct_plant.scenario.csv_profiles import MOST_ROWS
 from ddct_plant.scenario.file import scenario_to_yaml
-from ddct_plant.scenario.initial_speeds import InitialSpeeds
+from ddct_plant.scenario.initial_speeds import InitialSection
 from ddct_plant.scenario.nouns.composed import files_of_noun
 from ddct_plant.scenario.nouns.keys import SCENARIO
 from ddct_plant.scenario.nouns.written import beside, texts_by_file
 from ddct_plant.scenario.overrides import parsed_override
-from ddct_plant.scenario.rules.consistency import RADIUS
 from ddct_plant.scenario.scenario import Scenario
 
 STEEPEST_RAD = 0.6
@@ -99,7 +99,10 @@ def with_radius(base: Scenario, radius: WheelRadius) -> Scenario:
     if not math.isclose(before, moved, rel_tol=AGREE):
         adjusted.append(f'{RADIUS} moved from {before:g} to {moved:g}: V_x over w_r of the log')
     vehicle = dataclasses.replace(base.vehicle, wheel_radius_m=moved)
-    return dataclasses.replace(base, vehicle=vehicle, adjusted=tuple(adjusted))
+    driveline = dataclasses.replace(base.given_driveline, vehicle_inertia=None)
+    return dataclasses.replace(
+        base, vehicle=vehicle, given_driveline=driveline, adjusted=tuple(adjusted)
+    )
 
 
 def load_of(base: Scenario) -> KnownLoad:
@@ -142,7 +145,7 @@ def replay_of(base: Scenario, name: str, fit: LogFit, log: MeasuredLog) -> Scena
             f'{base.name}'
         ),
         duration_s=time_of_step(steps),
-        initial=_initial(base, fit, log, start_s),
+        given_initial=_initial(base, fit, log, start_s),
         engine=profile,
         adjusted=adjusted,
     )
@@ -187,7 +190,7 @@ def _torque(
     return profile, tuple(adjusted)
 
 
-def _initial(base: Scenario, fit: LogFit, log: MeasuredLog, start_s: float) -> InitialSpeeds:
+def _initial(base: Scenario, fit: LogFit, log: MeasuredLog, start_s: float) -> InitialSection:
     """Return the fitted speeds of both plates at the start, equal if the slip is within noise."""
     values = fit.values | fit.delays | fit.bends
     (first, *_) = without_ends(stretches_of(log, load_of(base)), values)
@@ -200,7 +203,7 @@ def _initial(base: Scenario, fit: LogFit, log: MeasuredLog, start_s: float) -> I
     engine, shaft = (max(each, 0.0) for each in at)
     if abs(engine - shaft) <= float(np.std(slip_of(left))):
         engine = shaft = (engine + shaft) / 2.0
-    return InitialSpeeds(engine_speed_rad_s=engine, shaft_speed_rad_s=shaft)
+    return InitialSection(engine_speed_rad_s=engine, shaft_speed_rad_s=shaft)
 
 
 def _with_car(base: Scenario, fit: LogFit) -> Scenario:

@@ -18,11 +18,13 @@ from ddct_plant.files.input_file import (
 )
 from ddct_plant.files.yaml_text import parse_yaml_with_lines
 from ddct_plant.scenario.choices.scenarios import is_packaged, packaged_names, packaged_text
+from ddct_plant.scenario.content import flat
 from ddct_plant.scenario.csv_profiles import SECTIONS as PROFILES
 from ddct_plant.scenario.csv_profiles import file_of, with_file_in
 from ddct_plant.scenario.nouns.keys import require_keys_of
 from ddct_plant.scenario.nouns.layers import layered
 from ddct_plant.scenario.nouns.places import Places, places_of
+from ddct_plant.scenario.rules.body import with_body
 
 SCHEMA_VERSION = 1
 """Version of the keys of a car or drive file; a file without a version has this one."""
@@ -147,7 +149,7 @@ class Part:
         profiles = (file_of(own.get(name)) for name in PROFILES)
         return cls(
             places.otherwise,
-            layered(base.content, own),
+            with_body(layered(base.content, own), base.content, flat(own)),
             content.get(DESCRIPTION) or base.description,
             {**base.places, **places.of_keys},
             (*files, *(each for each in profiles if each), *base.files),

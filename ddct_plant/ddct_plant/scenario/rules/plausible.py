@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Remarks on values that no car has; they are allowed, as a test bench may try anything."""
+"""Remarks on values that no car has and on an early score window; they are allowed."""
 
 import math
 from collections.abc import Mapping
@@ -22,8 +22,9 @@ is probably in another unit."""
 
 
 def with_remarks(scenario: Scenario) -> Scenario:
-    """Return the scenario with a line in `adjusted` for each value that no car has."""
-    lines = [line for key in RANGES if (line := _remark(scenario, key))] + _of_gear(scenario)
+    """Return the scenario with a line in `adjusted` for each value that is probably a mistake."""
+    lines = [line for key in RANGES if (line := _remark(scenario, key))]
+    lines += _of_gear(scenario) + _of_window(scenario)
     new = [line for line in lines if line not in scenario.adjusted]
     return replace(scenario, adjusted=(*scenario.adjusted, *new)) if new else scenario
 
@@ -47,6 +48,16 @@ def _of_gear(scenario: Scenario) -> list[str]:
     return [
         f'gear {scenario.gear} has the total ratio {ratio:g}, but cars and trucks have {least:g} '
         f'to {most:g}: are gearbox.ratios and gearbox.final_drives right?'
+    ]
+
+
+def _of_window(scenario: Scenario) -> list[str]:
+    (first, last), start = scenario.score_window_s, scenario.control_start_s
+    if first >= start:
+        return []
+    return [
+        f'score_window_s {[first, last]} begins before control_start_s, {start:g} s: it also '
+        'scores time without feedback'
     ]
 
 
