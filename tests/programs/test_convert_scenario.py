@@ -69,7 +69,7 @@ def convert(folder: Path, text: str, *options: str) -> Scenario:
 
 def test_a_launch_of_before_is_that_of_today_with_its_ratio(tmp_path: Path) -> None:
     found = convert(tmp_path, LAUNCH, '--clutch', 'stick_slip')
-    today = load_scenario('launch')
+    today = load_scenario('launch', ['engine.torque_n_m=[0.0, 140.0]'])
     assert found.driveline.gear.total_ratio == 16.06
     gains = {'pi': {'proportional_gain': 0.103, 'integral_gain': 0.0223}}
     changed = dataclasses.replace(today, name='old', gearbox=found.gearbox, controllers=gains)

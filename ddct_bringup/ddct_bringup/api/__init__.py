@@ -33,6 +33,6 @@ if TYPE_CHECKING:
     from ddct_controllers.registry import controller_names
     from ddct_plant.base.errors import DdctError, ParameterError
     from ddct_plant.base.options import Option
-    from ddct_plant.scenario.choices.scenarios import scenario_names
+    from ddct_plant.scenario.choices.scenarios import car_names, drive_names, scenario_names
 else:
     __getattr__, __dir__, __all__ = late_names(__name__)

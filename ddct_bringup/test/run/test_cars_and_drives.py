@@ -39,6 +39,7 @@ def settings(*options: str) -> RunSettings:
             {'scenario': 'launch_hot', 'car': 'city7'},
         ),
         (['--drive', 'launch'], {'drive': 'launch'}),
+        (['--car', 'city7', '--drive', 'upshift'], {'car': 'city7', 'drive': 'upshift'}),
         (['--car', 'c635_no_limits'], {'car': 'c635_no_limits'}),
     ],
 )
@@ -104,3 +105,8 @@ def test_a_sweep_names_the_option_for_a_car() -> None:
     with refused(ParameterError, key='--over') as caught:
         api.sweep('pi', over={'car': ['c635', 'city7']})
     assert '--car' in str(caught.value)
+
+
+def test_python_lists_the_packaged_cars_and_drives() -> None:
+    assert {'c635', 'city7'} < {*api.car_names()}
+    assert {*api.drive_names()} < {*api.scenario_names()}

@@ -51,6 +51,16 @@ def scenario_names() -> list[str]:
     return packaged_names('scenario')
 
 
+def car_names() -> list[str]:
+    """Return the names of the cars that come with the package."""
+    return packaged_names('car')
+
+
+def drive_names() -> list[str]:
+    """Return the names of the drives that come with the package."""
+    return packaged_names('drive')
+
+
 def packaged_names(noun: str) -> list[str]:
     """Return the packaged names of a noun: of cars, drives or scenarios."""
     return sorted(file.stem for file in _folder(noun).glob('*.yaml'))
