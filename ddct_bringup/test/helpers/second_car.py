@@ -18,20 +18,8 @@ OF_ENGINE = {'tip_in': ['engine.torque_share=[0.24, 1.0]']}
 
 
 def scenario_of(drive: str) -> Scenario:
-    """Return the drive with the second car; a gear shift starts at the speed of the C635."""
-    speeds = []
-    ours = load_scenario(drive=drive, car='c635_no_limits' if drive in OF_ENGINE else 'c635')
-    if ours.shift is not None:
-        wheel_speed = ours.driveline.gear.wheel_speed(ours.initial.shaft_speed_rad_s)
-        vehicle_speed = wheel_speed * ours.vehicle.wheel_radius_m
-        car = load_scenario('launch', car=CAR)
-        wheel_speed = vehicle_speed / car.vehicle.wheel_radius_m
-        gears = {'shaft': ours.gear, 'engine': ours.shift.off_going_gear}
-        speeds = [
-            f'initial.{side}_speed_rad_s={car.gearbox.gear(gear).shaft_speed(wheel_speed)!r}'
-            for side, gear in gears.items()
-        ]
-    return load_scenario(drive=drive, car=CAR, overrides=[*speeds, *OF_ENGINE.get(drive, ())])
+    """Return the drive with the second car."""
+    return load_scenario(drive=drive, car=CAR, overrides=OF_ENGINE.get(drive, ()))
 
 
 def scored(drive: str, controller: str, *, floors: bool = False) -> ScoredRun:

@@ -72,8 +72,7 @@ def test_a_controller_of_a_run_finds_nothing(tmp_path: Path) -> None:
     file, found = spy_file(tmp_path, true_values(settings))
     run_headless(settings, file)
     assert notes_in(found) == NOTHING
-    with pytest.warns(UserWarning, match='vehicle_inertia moved'):
-        run(file, scenario='launch', case=UNKNOWN, duration=0.9, floors=True)
+    run(file, scenario='launch', case=UNKNOWN, duration=0.9, floors=True)
     assert notes_in(found) == NOTHING
 
 

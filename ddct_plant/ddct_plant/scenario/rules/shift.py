@@ -76,7 +76,7 @@ def _require_start(scenario: Scenario, shift: ShiftParameters) -> None:
     if not math.isclose(given, speed, rel_tol=AGREE):
         raise ParameterError(
             f'initial.engine_speed_rad_s is {given:g}: before a shift the off-going clutch is '
-            f'locked, so give the speed of its shaft in gear {shift.off_going_gear}, '
-            f'{speed:.6g} rad/s',
+            'locked, so leave it out, or give the speed of its shaft in gear '
+            f'{shift.off_going_gear}, {speed:.6g} rad/s',
             key='initial.engine_speed_rad_s',
         )
