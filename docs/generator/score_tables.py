@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from ddct_bringup.metrics.catalogue import FIGURES, OTHERS
 from ddct_bringup.metrics.metric import Metric
 from ddct_bringup.verdict.limits import packaged_limits
+from ddct_bringup.verdict.of_car import OF_CAR
 from ddct_plant.program.table import Table
 
 _HEADERS = ('key', 'in tables', 'unit', 'what it is', 'no value when')
@@ -17,7 +18,7 @@ def score_tables() -> dict[str, Table]:
     limits = [
         (
             f'`{limit.metric}`',
-            f'{limit.value:g} {limit.unit}',
+            OF_CAR if limit.value is None else f'{limit.value:g} {limit.unit}',
             'all' if limit.applies_to is None else ', '.join(f'`{n}`' for n in limit.applies_to),
             limit.source,
         )

@@ -4,6 +4,7 @@
 
 from dataclasses import dataclass
 
+from ddct_plant.models.clutch import FrictionParameters
 from ddct_plant.models.gearbox import EngagedGear
 from ddct_plant.models.parameters import DrivelineParameters, VehicleParameters
 from ddct_plant.scenario.rules.shift import gears_of
@@ -26,6 +27,20 @@ class JudgedPlant:
     """Wheel radius r_w in m."""
     gravity: float
     """Gravitational acceleration g in m/s^2."""
+    engine_side_inertia: float
+    """Inertia J_m + J_p in kg m^2 of a locked clutch on the engine's side of the half-shafts."""
+    vehicle_inertia: float
+    """Inertia J_v of the vehicle at the wheels in kg m^2."""
+    halfshaft_stiffness: float
+    """Stiffness k_sa of the half-shafts in N m/rad."""
+    halfshaft_damping: float
+    """Damping c_sa of the half-shafts in N m s/rad."""
+    working_torque: float
+    """Torque in N m that a hard engagement takes of the clutch."""
+    driven_share: float
+    """Share of the weight on the driven front axle at rest, 0 to 1."""
+    height_over_wheelbase: float
+    """Height of the centre of gravity over the wheelbase, h/L."""
 
     @classmethod
     def of(cls, scenario: Scenario) -> 'JudgedPlant':
@@ -33,13 +48,16 @@ class JudgedPlant:
         driveline = (
             scenario.driveline if scenario.shift is None else gears_of(scenario).both_engaged
         )
-        return cls.of_parameters(driveline, scenario.vehicle)
+        return cls.of_parameters(driveline, scenario.vehicle, scenario.friction)
 
     @classmethod
     def of_parameters(
-        cls, driveline: DrivelineParameters, vehicle: VehicleParameters
+        cls,
+        driveline: DrivelineParameters,
+        vehicle: VehicleParameters,
+        friction: FrictionParameters,
     ) -> 'JudgedPlant':
-        """Return the plant with a driveline and a vehicle."""
+        """Return the plant with a driveline, a vehicle and a clutch."""
         return cls(
             engine_inertia=driveline.engine_inertia,
             rest_inertia=driveline.vehicle_side_inertia,
@@ -47,6 +65,13 @@ class JudgedPlant:
             mass=vehicle.mass_kg,
             wheel_radius=vehicle.wheel_radius_m,
             gravity=vehicle.gravity_m_s2,
+            engine_side_inertia=driveline.engine_inertia + driveline.shaft_inertia,
+            vehicle_inertia=driveline.vehicle_inertia,
+            halfshaft_stiffness=driveline.halfshaft_stiffness,
+            halfshaft_damping=driveline.halfshaft_damping,
+            working_torque=friction.working_torque,
+            driven_share=vehicle.driven_share,
+            height_over_wheelbase=vehicle.height_over_wheelbase,
         )
 
     @property

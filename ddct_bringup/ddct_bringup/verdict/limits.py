@@ -11,7 +11,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cache
 from importlib.resources import files
-from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +24,7 @@ from ddct_bringup.verdict.limits_keys import (
     require_unit,
     rule_value,
 )
+from ddct_bringup.verdict.of_car import LIMITS_OF_CAR, OF_CAR
 from ddct_bringup.verdict.rules import Rules, rules_of
 from ddct_bringup.verdict.traction import TractionRule
 from ddct_plant.base.errors import ParameterError, require_number
@@ -46,7 +46,8 @@ class Limit:
 
     metric: str
     """Key of the metric."""
-    value: float
+    value: float | None
+    """Value in `unit`; None where it follows from the car."""
     unit: str
     applies_to: tuple[str, ...] | None
     """Names of the scenarios that the limit applies to; None for all."""
@@ -90,28 +91,36 @@ class Limits:
         self, metrics: Metrics, scenario: str, plant: JudgedPlant | None
     ) -> tuple[LimitResult, ...]:
         """Return the metrics of a run beside their limits; without a plant no traction."""
-        limits = self.of(scenario)
-        if plant is not None and (traction := self.of_traction(plant.gravity)):
-            limits[TRACTION] = traction
+        strictest = self.of(scenario, plant)
         return tuple(
-            LimitResult(name, metrics[name], each.value, each.unit, each.source, each.convention)
-            for name, each in sorted(limits.items(), key=lambda item: _ORDER[item[0]])
+            LimitResult(name, metrics[name], value, each.unit, each.source, each.convention)
+            for name, (value, each) in sorted(strictest.items(), key=lambda of: _ORDER[of[0]])
         )
 
-    def of_traction(self, gravity: float) -> Limit | None:
-        """Return the limit of the traction at a gravity in m/s^2; None where the file has none."""
-        if self.traction is None:
-            return None
-        largest, reason = self.traction.limit(gravity), f'{CONVENTION}: {self.traction.reason}'
-        return Limit(TRACTION, largest, METRICS[TRACTION].unit, None, reason, convention=True)
+    def of(self, scenario: str, plant: JudgedPlant | None) -> dict[str, tuple[float, Limit]]:
+        """
+        Return value and strictest limit of each metric for a scenario, by the metric's key.
 
-    def of(self, scenario: str) -> dict[str, Limit]:
-        """Return the strictest limit of each metric for a scenario, by the metric's key."""
-        strictest: dict[str, Limit] = {}
-        for limit in sorted(self.limits, key=attrgetter('value')):
-            if limit.applies_to is None or scenario in limit.applies_to:
-                strictest.setdefault(limit.metric, limit)
+        Without a plant there are none that follow from the car.
+        """
+        strictest: dict[str, tuple[float, Limit]] = {}
+        for limit in (*self.limits, *self._of_traction(plant)):
+            value = limit.value
+            if value is None and plant is not None:
+                value = LIMITS_OF_CAR[limit.metric](plant)
+            if value is None or (limit.applies_to and scenario not in limit.applies_to):
+                continue
+            if limit.metric not in strictest or value < strictest[limit.metric][0]:
+                strictest[limit.metric] = value, limit
         return strictest
+
+    def _of_traction(self, plant: JudgedPlant | None) -> tuple[Limit, ...]:
+        """Return the limit of the traction; none without a plant, or where the file has none."""
+        if self.traction is None or plant is None:
+            return ()
+        largest, reason = self.traction.limit(plant), f'{CONVENTION}: {self.traction.reason}'
+        unit = METRICS[TRACTION].unit
+        return (Limit(TRACTION, largest, unit, None, reason, convention=True),)
 
 
 @cache
@@ -157,11 +166,15 @@ def limits_of_text(text: str, name: str) -> Limits:
 
 
 def _traction(content: Any) -> TractionRule:
-    names = ('friction', 'driven_share', 'height_over_wheelbase')
-    rules = require_keys('traction', content, (*names, 'reason'))
+    of_car = ('driven_share', 'height_over_wheelbase')
+    rules = require_keys('traction', content, ('friction', *of_car, 'reason'))
     require_text('traction.reason', rules['reason'])
-    values = {name: rule_value(f'traction.{name}', rules[name], '1') for name in names}
-    return TractionRule(**values, reason=rules['reason'])
+    values = {
+        name: None if rules[name] == OF_CAR else rule_value(f'traction.{name}', rules[name], '1')
+        for name in of_car
+    }
+    friction = rule_value('traction.friction', rules['friction'], '1')
+    return TractionRule(friction, **values, reason=rules['reason'])
 
 
 def _limit(path: str, content: Any) -> Limit:
@@ -174,12 +187,25 @@ def _limit(path: str, content: Any) -> Limit:
     require_unit(f'{path}.unit', limit['unit'], METRICS[metric].unit)
     return Limit(
         metric,
-        require_number(f'{path}.value: it', limit['value'], at_least=0.0, at_most=MOST),
+        _value(path, limit),
         limit['unit'],
         _scenarios(f'{path}.applies_to', limit['applies_to']),
         _source(path, limit),
         limit.get(CONVENTION, False),
     )
+
+
+def _value(path: str, limit: Mapping[str, Any]) -> float | None:
+    """Return the value of a limit; None where it follows from the car."""
+    if limit['value'] != OF_CAR:
+        return require_number(f'{path}.value: it', limit['value'], at_least=0.0, at_most=MOST)
+    if limit['metric'] not in LIMITS_OF_CAR:
+        raise ParameterError(
+            f'{path}.value: no limit of {limit["metric"]} follows from the car, only of '
+            f'{", ".join(LIMITS_OF_CAR)}: give a number',
+            key=f'{path}.value',
+        )
+    return None
 
 
 def _source(path: str, limit: Mapping[str, Any]) -> str:

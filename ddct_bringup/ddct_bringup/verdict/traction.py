@@ -8,6 +8,8 @@ The wheels of the plant roll without slip, so a run with a larger driving force 
 
 from dataclasses import dataclass
 
+from ddct_bringup.metrics.plant import JudgedPlant
+
 
 @dataclass(frozen=True)
 class TractionRule:
@@ -15,19 +17,21 @@ class TractionRule:
 
     friction: float
     """Friction coefficient mu between tyre and road."""
-    driven_share: float
-    """Share of the weight on the driven front axle at rest, 0 to 1."""
-    height_over_wheelbase: float
-    """Height of the centre of gravity over the wheelbase, h/L."""
+    driven_share: float | None
+    """Share of the weight on the driven front axle at rest, 0 to 1; None for that of the car."""
+    height_over_wheelbase: float | None
+    """Height of the centre of gravity over the wheelbase, h/L; None for that of the car."""
     reason: str
     """Reason for these values, one line for tables."""
 
-    def limit(self, gravity: float) -> float:
+    def limit(self, plant: JudgedPlant) -> float:
         """
         Return the largest driving force over the mass in m/s^2: mu g s / (1 + mu h/L).
 
         An acceleration a reduces the load on the front axle by m a h/L, so mu (m g s - m a h/L) =
         m a.
         """
-        least = self.friction * gravity * self.driven_share
-        return least / (1.0 + self.friction * self.height_over_wheelbase)
+        share, height = self.driven_share, self.height_over_wheelbase
+        share = plant.driven_share if share is None else share
+        height = plant.height_over_wheelbase if height is None else height
+        return self.friction * plant.gravity * share / (1.0 + self.friction * height)

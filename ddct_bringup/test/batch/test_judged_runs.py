@@ -15,13 +15,16 @@ from ddct_bringup.metrics.metric import finite
 from ddct_bringup.metrics.plant import JudgedPlant
 from ddct_bringup.metrics.values import raw_metrics
 from ddct_bringup.run.timing_and_failure import RunTiming
+from ddct_plant.models.clutch import FrictionParameters
 from ddct_plant.models.parameters import DrivelineParameters, VehicleParameters
 
 EXACT = ('friction_work_over_least', 'mean_acceleration_m_s2', 'mean_negative_jerk_m_s3')
 RUNS, SAMPLES, START, WINDOW = 40, 431, 200, (200, 300)
 PLANTS = [
     JudgedPlant.of_parameters(
-        DrivelineParameters(engine_inertia=0.1 + 0.01 * run), VehicleParameters()
+        DrivelineParameters(engine_inertia=0.1 + 0.01 * run),
+        VehicleParameters(),
+        FrictionParameters(),
     )
     for run in range(RUNS)
 ]

@@ -12,9 +12,10 @@ from ddct_bringup.metrics.catalogue import METRICS
 from ddct_bringup.metrics.plant import JudgedPlant
 from ddct_bringup.verdict.limits import limits_of_text, load_limits, packaged_limits
 from ddct_plant.base.errors import DdctError
-from ddct_plant.models.parameters import DrivelineParameters, VehicleParameters
+from ddct_plant.scenario.file import load_scenario
 
 TEXT = (files('ddct_bringup.verdict') / 'limits.yaml').read_text(encoding='utf-8')
+PLANT = JudgedPlant.of(load_scenario('thesis'))
 OF_SLIP = """\
   - metric: judder_rpm
     value: 3.0
@@ -40,21 +41,22 @@ def test_the_packaged_file_is_read_and_every_limit_cites_a_clause():
 
 def test_a_limit_of_some_scenarios_applies_to_no_other():
     limits = packaged_limits()
-    assert limits.of('launch_gentle')['mean_negative_jerk_m_s3'].value == 5.0
-    assert 'mean_negative_jerk_m_s3' not in limits.of('launch')
-    assert limits.of('anything')['weighted_acceleration_m_s2'].value == 0.315
+    assert limits.of('launch_gentle', PLANT)['mean_negative_jerk_m_s3'][0] == 5.0
+    assert 'mean_negative_jerk_m_s3' not in limits.of('launch', PLANT)
+    assert limits.of('anything', PLANT)['weighted_acceleration_m_s2'][0] == 0.315
 
 
 def test_the_strictest_of_several_limits_applies():
     convention = f'{OF_SLIP}    convention: true\n    reason: mine\n'
     limits = limits_of_text(TEXT + convention + convention.replace('3.0', '2.0'), 'mine.yaml')
-    assert limits.of('launch')['judder_rpm'].value == 2.0
-    assert limits.of('launch')['judder_rpm'].source == 'convention: mine'
-    assert limits.of('thesis')['judder_rpm'].value == 6.0
+    value, limit = limits.of('launch', PLANT)['judder_rpm']
+    assert (value, limit.source) == (2.0, 'convention: mine')
+    assert limits.of('thesis', PLANT)['judder_rpm'][0] == 6.0
+    assert limits.of('launch', None)['judder_rpm'][0] == 2.0
 
 
 def test_the_limit_of_events_that_must_not_occur_is_zero():
-    assert packaged_limits().of('launch')['releases'].value == 0.0
+    assert packaged_limits().of('launch', None)['releases'][0] == 0.0
 
 
 def test_a_file_without_a_version_is_of_the_present_one():
@@ -171,7 +173,7 @@ def test_a_file_of_something_else_is_refused(text):
 def test_only_the_boolean_true_makes_a_limit_a_convention(word):
     text = f'{TEXT}{OF_SLIP}    convention: {word}\n    reason: mine\n'
     if word == 'true':
-        assert limits_of_text(text, 'x').of('tip_in')['judder_rpm'].convention
+        assert limits_of_text(text, 'x').of('tip_in', PLANT)['judder_rpm'][1].convention
         return
     with refused(
         DdctError, 'limits[7].convention', place=f'limits x: line {len(TEXT.splitlines()) + 5}'
@@ -197,19 +199,18 @@ def test_a_file_that_is_not_there_is_named(tmp_path):
 
 def test_values_stand_beside_the_limits_of_the_scenario_whatever_their_size():
     metrics = {**dict.fromkeys(METRICS), 'judder_rpm': 7.0, 'mean_negative_jerk_m_s3': -6.0}
-    beside = packaged_limits().beside(metrics, 'launch_gentle', None)
+    beside = packaged_limits().beside(metrics, 'launch_gentle', PLANT)
     assert [each.name for each in beside] == [
         *('weighted_acceleration_m_s2', 'releases', 'friction_work_over_least'),
-        *('peak_temperature_degc', 'mean_acceleration_m_s2', 'mean_negative_jerk_m_s3'),
-        'judder_rpm',
+        *('peak_temperature_degc', 'driving_acceleration_m_s2', 'mean_acceleration_m_s2'),
+        *('mean_negative_jerk_m_s3', 'judder_rpm'),
     ]
     judder = beside[-1]
     assert (judder.value, judder.limit, judder.unit) == (7.0, 6.0, 'rpm')
-    assert judder.convention and judder.source.startswith('convention: at the 2.93 Hz')
+    assert judder.convention and judder.source.startswith('convention: at the natural frequency')
     assert beside[-2].value == -6.0
     assert beside[0].value is None
-    plant = JudgedPlant.of_parameters(DrivelineParameters(), VehicleParameters())
-    names = [each.name for each in packaged_limits().beside(metrics, 'launch', plant)]
+    names = [each.name for each in packaged_limits().beside(metrics, 'launch', PLANT)]
     assert 'driving_acceleration_m_s2' in names
     assert 'mean_negative_jerk_m_s3' not in names
 
@@ -218,7 +219,44 @@ def test_the_packaged_traction_is_that_of_a_car_with_front_wheel_drive():
     # mu (m g s - m a h/L) = m a
     traction = packaged_limits().traction
     assert traction is not None
-    limit = traction.limit(9.81)
-    load = 9.81 * traction.driven_share - limit * traction.height_over_wheelbase
+    limit = traction.limit(PLANT)
+    load = 9.81 * PLANT.driven_share - limit * PLANT.height_over_wheelbase
     assert limit == pytest.approx(traction.friction * load)
     assert limit == pytest.approx(4.905)
+
+
+def test_a_limit_follows_from_the_car_that_is_judged():
+    limits = packaged_limits()
+    found = {
+        (name, car): {
+            metric: value
+            for metric, (value, limit) in limits.of(
+                name, JudgedPlant.of(load_scenario(drive=name, car=car))
+            ).items()
+            if limit.value is None
+        }
+        for name in ('launch', 'tip_in')
+        for car in ('c635', 'city7')
+    }
+    works = {key: each['friction_work_over_least'] for key, each in found.items()}
+    assert works == {key: 30.0 if key[1] == 'c635' else 38.0 for key in found}
+    judders = {key: each['judder_rpm'] for key, each in found.items()}
+    assert judders['tip_in', 'c635'] == judders['tip_in', 'city7'] == 6.0  # in second gear
+    assert judders['launch', 'c635'] == judders['launch', 'city7'] == 3.0
+
+
+def test_a_file_may_give_numbers_in_place_of_those_of_the_car():
+    text = TEXT.replace(
+        '  driven_share: of_car', "  driven_share: {value: 0.5, unit: '1', reason: mine}"
+    )
+    text = text.replace('value: of_car\n    unit: rpm', 'value: 6.0\n    unit: rpm')
+    limits = limits_of_text(text, 'mine.yaml')
+    assert limits.of('launch', None)['judder_rpm'][0] == 6.0
+    assert limits.of('launch', PLANT)['driving_acceleration_m_s2'][0] == pytest.approx(
+        9.81 * 0.5 / 1.2
+    )
+
+
+def test_only_some_limits_follow_from_the_car():
+    with refused(DdctError, 'limits[0].value'):
+        limits_of_text(TEXT.replace('value: 0.315', 'value: of_car'), 'mine.yaml')

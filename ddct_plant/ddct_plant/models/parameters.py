@@ -126,6 +126,22 @@ class VehicleParameters(OptionGroup, prefix='vehicle.'):
         source='from J_v and m_v',
         above=0.0,
     )
+    driven_share: float = option(
+        0.6,
+        'share of the weight on the driven front axle at rest, for the limit of the traction',
+        source=ASSUMED,
+        above=0.0,
+        at_most=1.0,
+        left_out=True,
+    )
+    height_over_wheelbase: float = option(
+        0.2,
+        'height of the centre of gravity over the wheelbase, for that limit',
+        source=ASSUMED,
+        at_least=0.0,
+        at_most=1.0,
+        left_out=True,
+    )
     gravity_m_s2: float = option(9.81, 'g', 'm/s²', source='standard gravity', above=0.0)
 
     @property

@@ -18,6 +18,8 @@ _OF: Mapping[str, tuple[str, ...]] = {
     CAR: (
         'vehicle.mass_kg',
         'vehicle.wheel_radius_m',
+        'vehicle.driven_share',
+        'vehicle.height_over_wheelbase',
         'load.frontal_area_m2',
         'load.drag_coefficient',
         'load.rolling_coefficient',
