@@ -71,6 +71,7 @@ VALUES_BY_KEY = {
     'ddct_controllers/mpc/program/settings.py',
     'ddct_controllers/registry.py',
     'ddct_plant/base/options.py',
+    'ddct_plant/scenario/rules/body.py',
     'ddct_plant/scenario/scenario.py',
     'ddct_plant/scenario/settings.py',
 }
