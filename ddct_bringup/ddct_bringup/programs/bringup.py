@@ -29,6 +29,7 @@ examples:
   ddct bringup --controller ls8 --out runs/first         another one into the same folder
   ddct bringup --controller mine.py --out runs/first     the class in a Python file
   ddct bringup --wear-gain 0.7 --set load.slope_rad=0.05 --out runs/worn-uphill
+  ddct bringup --case vehicle.mass_kg=1700 --out runs/loaded     a mass that no controller knows
   ddct bringup --mode realtime --out runs/realtime       100 Hz on the wall clock
   ddct bringup --headless --out runs/quick               the same numbers without a graph
   ddct bringup --mode realtime --live --out runs/live    watch it in Foxglove

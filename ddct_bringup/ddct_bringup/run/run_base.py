@@ -60,7 +60,8 @@ class RunBase:
             for key in varied
             if key not in SETTINGS and _is_known(key, drawn, known)
         }
-        overrides = {key: given[key] for key in given if key not in {*of_run, *learnt}}
+        others = {*SETTINGS, *learnt}
+        overrides = {key: given[key] for key in given if key not in others}
         values = {**self.settings, **of_run}
         sensed = any(_section(key) == 'sensors' for key in overrides if key in varied)
         cases = self._cases(learnt, sensed=sensed)
