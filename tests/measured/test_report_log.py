@@ -122,7 +122,7 @@ def test_a_log_and_a_run_lie_over_each_other(
         np.testing.assert_allclose(both['pi, measured'], both['pi'], atol=1e-3)
     assert set(by_chart['C_f_request']) == {'pi'}
     text = visible(page)
-    assert ' · detailed · linear clutch · wear 1 · lockstep · seed 0 · 1 log of a car' in text
+    assert ' · detailed · wear 1 · lockstep · seed 0 · 1 log of a car' in text
     assert 'The runs come from' not in text
     assert 'Not all runs have the same times' not in text
     assert 'duration_s: 2.0' in text, 'the scenario is that of the simulated run'

@@ -61,7 +61,6 @@ FILES = {
     'ddct_plant/scenario/nouns/written.py': 'scenario, YAML',
     'ddct_plant/scenario/overrides.py': 'options --set of a scenario',
     'ddct_plant/scenario/recorded_settings.py': 'settings in a bag, JSON',
-    'ddct_plant/scenario/rules/body.py': 'scenario, YAML, and options --set',
 }
 """Modules that read or write files, with what they read or write."""
 VALUES_BY_KEY = {
