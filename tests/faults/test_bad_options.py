@@ -18,6 +18,12 @@ BAD_OPTIONS = {
     'clutch': (['--set', 'clutch=dry'], ["'dry'", 'linear']),
     'mode': (['--mode', 'fast'], ["'fast'", 'lockstep', 'realtime']),
     'scenario': (['--scenario', 'theses'], ["'theses'", 'thesis', 'YAML file']),
+    'car': (['--car', 'city8'], ['unknown car', 'did you mean city7?', 'c635_no_limits']),
+    'drive': (['--drive', 'upshfit'], ['unknown drive', 'did you mean upshift?', 'launch_hot']),
+    'car of another clutch': (
+        ['--car', 'c635_thesis', '--drive', 'tip_in'],
+        ['clutch linear would ignore', 'initial.clutch_phase'],
+    ),
     'scenario file': (['--scenario', 'no/such.yaml'], ['no/such.yaml', 'cannot be read']),
     'wear gain zero': (['--wear-gain', '0'], ['wear_gain is 0', 'above 0']),
     'wear gain too large': (['--wear-gain', '3.1'], ['wear_gain is 3.1', 'at most 3']),
@@ -64,6 +70,7 @@ BAD_SCENARIOS = {
     'window backwards': ('score_window_s: [2.0, 0.6]', ['score_window_s', 'before']),
     'bad yaml': ('load: [1, 2', ['not valid YAML', 'line']),
     'no mapping': ('- a\n- b', ['mapping']),
+    'key of the car': ('friction: {most_n_m: 9.0}', ['friction is a key of the car']),
 }
 
 HEAD = """\
