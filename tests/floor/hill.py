@@ -18,7 +18,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ddct_bringup.floor.case import MOST_REQUEST, Case
+from ddct_bringup.floor.case import MOST_REQUESTS, Case
 from ddct_bringup.floor.dynamics.capacity import capacity_range
 from ddct_bringup.floor.dynamics.engine_laws import demand_law
 from ddct_bringup.floor.dynamics.laws import Law
@@ -56,7 +56,7 @@ def hill_case(settings: RunSettings, start: Start, lock_s: float, breakaway: int
         False,
         capacity_range(settings, start.temperature_c),
         packaged_limits().rules,
-        MOST_REQUEST,
+        MOST_REQUESTS * settings.scenario.friction.worn_request,
         (demand_law(settings, start.step, len(steps)), load),
     )
 

@@ -21,8 +21,12 @@ from ddct_bringup.verdict.limits import packaged_limits
 from ddct_bringup.verdict.rules import Rules
 from ddct_plant.scenario.settings import RunSettings
 
-MOST_REQUEST = 2000.0
-"""Highest request in N m that a floor covers, unless a compared run requests more."""
+MOST_REQUESTS = 4.0
+"""
+Highest request that a floor covers, over that with which a worn clutch carries all that it can.
+
+A compared run may request more.
+"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,7 +47,8 @@ class Case:
     capacity: CapacityRange
     rules: Rules
     """Thresholds of the states; a linear clutch locks within their band."""
-    most_request: float = MOST_REQUEST
+    most_request: float
+    """Highest request in N m."""
     near_run: tuple[EngineLaw, Law] | None = None
     """Laws of C_m and of the load near one run, which the runs of a replay have; None: those of
     all runs."""
@@ -120,6 +125,7 @@ def case_at(
         limited,
         capacity_range(settings, start.temperature_c),
         rules or packaged_limits().rules,
+        _most_request(settings),
     )
 
 
@@ -153,5 +159,10 @@ def case_of_run(
         limited,
         capacity,
         rules or packaged_limits().rules,
-        max(MOST_REQUEST, float(run.torque_request[first:].max())),
+        max(_most_request(settings), float(run.torque_request[first:].max())),
     )
+
+
+def _most_request(settings: RunSettings) -> float:
+    """Return the highest request in N m that a floor of these settings covers."""
+    return MOST_REQUESTS * settings.scenario.friction.worn_request

@@ -93,6 +93,7 @@ def least_at(settings):
             False,
             capacity_range(settings, start.temperature_c),
             packaged_limits().rules,
+            2000.0,
         )
         object.__setattr__(case, 'given', given)
         signals = Signals.of_motion(case.motion, settings.scenario)
