@@ -68,7 +68,7 @@ def test_the_site_is_whole(site: Path) -> None:
     assert (site / 'index.html').is_file()
     assert (site / 'searchindex.js').is_file()
     assert (site / 'COLCON_IGNORE').is_file(), 'colcon would find packages in the site'
-    assert 'Engine torque over scenario time' in page(site, 'reference/2_models_of_the_plant')
+    assert 'demand over scenario time' in page(site, 'reference/2_models_of_the_plant')
     notebook = page(site, 'docs/notebooks/thesis_in_one_hour')
     assert '<table' in notebook and 'alt="Slip reference over time' in notebook
     assert 'href="../notebooks/thesis_in_one_hour.html"' in page(site, 'docs/use/python')

@@ -30,6 +30,13 @@ LEAST_SLIP_RAD_S = 50.0 * math.pi / 30.0
 """Least slip at the start of feedback for which the least friction work has a ratio."""
 AT_END_S = 0.3
 """Last part of a run in which the delivered share of the demand counts."""
+GEARBOX = {
+    'ratios': (3.9, 2.269, 1.435, 0.978, 0.755, 0.622),
+    'final_drives': (4.118,) * 6,
+    'measured_gears': (2,),
+    'measured_ratios': (9.3416024,),
+}
+"""Gearbox of a car that does not give its own."""
 Figure = float | int | None
 
 
@@ -184,12 +191,20 @@ def work_over_least(run: IndependentBag) -> float | None:
     shaft = car['shaft_inertia']
     if run.shift:  # both primary shafts turn with the wheels
         shaft *= 1.0 + gear_ratio(run) ** 2
-    rest = shaft + car['vehicle_inertia'] / car['total_ratio'] ** 2
+    rest = shaft + car['vehicle_inertia'] / total_ratio(run) ** 2
     engine = car['engine_inertia']
     least = engine * rest / (engine + rest) * run.slip[start] ** 2 / 2.0
     if not run.sticks:
         return friction_work(run, start) / least
     return math.fsum(run.work('friction_work_j')[start + 1 :]) / least
+
+
+def total_ratio(run: IndependentBag) -> float:
+    """Return the speed of the engaging clutch's shaft over that of the wheels, rigid."""
+    gear, gearbox = run.scenario['gear'], {**GEARBOX, **run.scenario.get('gearbox', {})}
+    measured = dict(zip(gearbox['measured_gears'], gearbox['measured_ratios'], strict=True))
+    product = gearbox['ratios'][gear - 1] * gearbox['final_drives'][gear - 1]
+    return float(measured.get(gear, product))
 
 
 def gear_ratio(run: IndependentBag) -> float:

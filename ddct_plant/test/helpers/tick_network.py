@@ -76,7 +76,7 @@ ONE_CLUTCH = Wiring(
 TWO_CLUTCHES = Wiring(
     _SHIFT_TICKS,
     _SHIFT,
-    ('engine/torque', 'load/torque', 'clutch/torque', 'holding', 'off/torque'),
+    ('engine/torque', 'load/torque', 'holding', 'clutch/torque', 'off/torque'),
     ('clutch/torque', 'off/torque'),
 )
 """`demand` is the part of the engine that publishes its demand at once."""
