@@ -21,7 +21,7 @@ NAMES = (
     *('frequency', 'campaign', 'campaign_plan', 'results', 'result_row', 'summary'),
     *('benchmark', 'benchmark_rows', 'update_times', 'floor'),
     *('tuning_mpc_thesis', 'tuning_pi_launches', 'tuning_plan', 'tuning_trials'),
-    *('tuning_runs', 'scenario', 'profile', 'limits', 'columns', 'parquet'),
+    *('tuning_runs', 'scenario', 'car', 'drive', 'profile', 'limits', 'columns', 'parquet'),
     'live_frames',
 )
 EDITS = st.lists(

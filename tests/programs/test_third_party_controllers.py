@@ -58,8 +58,9 @@ def test_bringup_lists_and_runs_the_example_controller(
     assert lines[0].startswith('controllers:')
     named = ' '.join(lines).partition('KEY')[0]
     assert 'dead_zone' in named
-    width = ' '.join(next(line for line in lines if 'dead_zone_rpm' in line).split())
-    assert width == 'dead_zone_rpm dead_zone 5 half the width of the dead zone'
+    first = next(at for at, line in enumerate(lines) if 'dead_zone_rpm' in line)
+    row = ' '.join(' '.join(lines[first : first + 2]).split())
+    assert row.startswith('dead_zone_rpm dead_zone 5 half the width of the dead zone')
     out = tmp_path / 'runs'
     assert bringup.main(['--controller', 'dead_zone', '--headless', '--out', str(out)]) == 0
     assert (out / 'dead_zone' / 'dead_zone_0.mcap').is_file()
