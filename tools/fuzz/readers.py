@@ -73,7 +73,9 @@ def _scenario(file: Path) -> object:
 
 
 def _car(file: Path) -> object:
-    return load_scenario('launch', car=str(file))
+    """Load a car for a drive in N m that fits every packaged engine and both clutches."""
+    engine = 'engine={time_s: [0.0], torque_n_m: [100.0]}'
+    return load_scenario(car=str(file), drive='thesis', overrides=[engine])
 
 
 def _drive(file: Path) -> object:
