@@ -77,10 +77,11 @@ def test_an_unknown_name_lists_the_known_ones():
         make_controller('ls99', SETTINGS.known)
 
 
-@pytest.mark.parametrize('name', ['mine.fmu', 'build/libmine.so', '/dev/fd/63'])
+@pytest.mark.parametrize('name', ['mine.fmu', 'build/libmine', '/dev/fd/63'])
 def test_a_file_of_another_kind_leads_to_those_that_are_needed(name):
-    with refused(ParameterError, name):
+    with refused(ParameterError, name) as caught:
         make_controller(name, SETTINGS.known)
+    assert 'docs/controllers/fmu_controller.md' in str(caught.value)
 
 
 def test_the_gain_of_a_printed_controller_is_its_only_option():

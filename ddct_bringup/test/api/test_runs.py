@@ -230,8 +230,9 @@ def test_numbers_of_numpy_are_taken_as_pythons(worn):
 
 
 def test_adjusted_scenario_values_give_a_warning_and_nothing_is_printed(capfd):
-    with pytest.warns(UserWarning, match='scenario thesis: '):
-        api.run('pi', duration=SHORT_S, set={'vehicle.mass_kg': 200.0})
+    for start in (api.run, api.compare):
+        with pytest.warns(UserWarning, match='scenario thesis: '):
+            start('pi', duration=SHORT_S, set={'vehicle.mass_kg': 200.0})
     with warnings.catch_warnings():
         warnings.simplefilter('error')
         api.run('pi', duration=SHORT_S)

@@ -51,9 +51,16 @@ def settings_of(scenario='launch', **further):
     return RunSettings.of(load_scenario(scenario), further)
 
 
-@pytest.mark.parametrize(('scenario', 'controller'), RUNS)
-def test_a_run_is_a_point_of_the_program_that_bounds_it(scenario, controller):
-    settings = settings_of(scenario)
+@pytest.mark.parametrize(
+    ('scenario', 'controller', 'changes'),
+    [
+        *((*run, {}) for run in RUNS),
+        # Clipped, and the kiss point of the warm facing leaves a rest of the capacity.
+        ('launch_gentle', 'mpc3', {'friction.kiss_drift_n_m_k': -0.05}),
+    ],
+)
+def test_a_run_is_a_point_of_the_program_that_bounds_it(scenario, controller, changes):
+    settings = RunSettings.of(load_scenario(scenario, changes), {})
     run = run_headless(settings, controller)
     start = control_start(settings)
     case = case_of_run(settings, start, lock_of(run, start.step, RULES), run)

@@ -12,6 +12,8 @@ from ddct_bringup.reproduction.studies import command
 from ddct_bringup.reproduction.studies.command import STUDIES
 from ddct_bringup.reproduction.studies.engagements import Slip, engagement_chart
 from ddct_bringup.reproduction.studies.study import Study
+from ddct_controllers.design.drawing.chart_style import chart_bytes
+from ddct_controllers.registry import own_controller_names
 
 FIRST = Study('The first', ('name', 'value'), [('a', '1'), ('b', '2')], ('Lower is better.',))
 SECOND = Study('The second', ('name',), [('c',)])
@@ -66,6 +68,17 @@ def test_charts_come_as_picture_and_drawing_with_their_data(monkeypatch, tmp_pat
     headings = ','.join(f'"pi: K_usura {worn}: w_d, rpm"' for worn in '012')
     assert data[0].endswith(headings)
     assert data[1:] == ['0,2,3,4', '0.01,1,2,3', '0.02,0.5,1.5,2.5']
+
+
+@pytest.mark.slow
+def test_the_chart_of_every_controller_is_a_picture_of_less_than_150_kb():
+    time_s = 0.01 * np.arange(301)
+    slips = [
+        Slip(name, gain, 'engaged', 60, 200.0 * np.exp(-float(gain) * (1.0 + 0.1 * k) * time_s))
+        for k, name in enumerate(own_controller_names())
+        for gain in ('0.7', '1', '1.3')
+    ]
+    assert len(chart_bytes(engagement_chart('Every controller', slips), 'png')) < 150e3
 
 
 def range_of_panels(*states: str) -> tuple[float, float]:
