@@ -204,18 +204,32 @@ def test_a_fast_log_is_averaged_and_a_slow_acceleration_refused(folder: Path) ->
     assert np.std(left[1:-1]) == pytest.approx(3.0 / np.sqrt(10.0), rel=0.2)
 
 
-def test_a_fast_log_is_averaged_over_the_10_ms_around_each_instant(folder: Path) -> None:
-    time_s = 0.0005 + 0.001 * np.arange(-5, 2000)  # none is on an edge of what is averaged
-    speed = 100.0 + np.random.default_rng(0).standard_normal(len(time_s))
-    rows = [f'{t:.4f},{s:.9f},60.0\n' for t, s in zip(time_s, speed, strict=True)]
+def speeds_of_log(folder: Path, time_s: np.ndarray, engine_speed: np.ndarray) -> np.ndarray:
+    """Return w_m in rad/s on the grid, of a log with samples of it at these times."""
+    rows = [f'{t:.4f},{s:.9f},60.0\n' for t, s in zip(time_s, engine_speed, strict=True)]
     (folder / 'fast.csv').write_text('t,m,p\n' + ''.join(rows))
     (folder / 'map.yaml').write_text(
         'columns:\n  time: {column: t, unit: s}\n  engine_speed: {column: m, unit: rad/s}\n'
         '  shaft_speed: {column: p, unit: rad/s}\nrun: {start_s: 0.0}\n'
     )
     run = read_measured_run(folder / 'fast.csv', load_columns(str(folder / 'map.yaml')))
+    return run.trajectory.joint_speed[:, 0]
+
+
+def test_a_fast_log_is_averaged_over_the_10_ms_around_each_instant(folder: Path) -> None:
+    time_s = 0.0005 + 0.001 * np.arange(-5, 2000)  # none is on an edge of what is averaged
+    speed = 100.0 + np.random.default_rng(0).standard_normal(len(time_s))
     wanted = speed[:2000].reshape(-1, 10).mean(axis=1)  # from 5 ms before to 5 ms after
-    np.testing.assert_allclose(run.trajectory.joint_speed[:200, 0], wanted[:200], atol=1e-8)
+    found = speeds_of_log(folder, time_s, speed)
+    np.testing.assert_allclose(found[:200], wanted[:200], atol=1e-8)
+
+
+def test_a_log_with_5_ms_from_sample_to_sample_is_taken_as_it_is(folder: Path) -> None:
+    """5 ms is the median: two of them, and as many times 4 ms as 6 ms."""
+    time_s = np.cumsum([0.0, 0.005, 0.005, *(100 * [0.004, 0.006])])
+    speed = 100.0 + np.random.default_rng(0).standard_normal(len(time_s))
+    found = speeds_of_log(folder, time_s, speed)
+    np.testing.assert_allclose(found[:100], speed[:200:2], atol=1e-8)
 
 
 @pytest.mark.parametrize(
