@@ -8,10 +8,13 @@ from ddct_bringup.campaign.keys import CONTROLLERS
 from ddct_bringup.campaign.run_set import RunSet
 from ddct_bringup.campaign.spec import CampaignSpec
 from ddct_bringup.campaign.specification.named_files import digest_of, placed
-from ddct_bringup.campaign.specification.parts import MOST_RUNS
+from ddct_bringup.campaign.specification.parts import MOST_RUNS, RANDOM, VARY
 from ddct_bringup.run.run_base import RunBase
 from ddct_controllers.registry import controller_spec
 from ddct_plant.base.errors import ParameterError
+
+_GEARS = 'gear', 'shift.off_going_gear'
+_GEARBOX = 'gearbox'
 
 
 class Campaign(RunSet):
@@ -45,6 +48,18 @@ class Campaign(RunSet):
         )
         if self.runs > MOST_RUNS:
             raise ParameterError(f'{self.runs} runs: give at most {MOST_RUNS}', key='runs')
+        self._require_gears()
+
+    def _require_gears(self) -> None:
+        """Raise ParameterError for a gear to draw that a car does not have."""
+        drawn = [key for key in _GEARS if key in self.vary]
+        if not drawn or any(key.startswith(_GEARBOX) for key in self.spec.keys):
+            return
+        for base in self.bases.values():
+            gearbox = base.file.scenario().gearbox
+            for key in drawn:
+                for gear in self.vary[key].values or self.vary[key].ends:
+                    gearbox.require_gear(f'{RANDOM}.{VARY}.{key}', gear)
 
     def chosen(self, index: int) -> str:
         """Return the name of a run's controller, or the path of its file."""

@@ -140,8 +140,18 @@ def test_a_missing_specification_is_reported(tmp_path: Path) -> None:
             f'random: {{samples: 9999999, vary: {{vehicle.mass_kg: {MASS}}}}}\n',
             'runs',
         ),
+        (
+            PI + 'random: {samples: 2, vary: {gear: '
+            '{distribution: choice, values: [1, 7], weights: [0.999999, 0.000001]}}}\n',
+            'random.vary.gear',
+        ),
+        (
+            PI + 'car: city7\ndrive: upshift\nrandom: {samples: 2, vary: {shift.off_going_gear: '
+            '{distribution: uniform, low: 1, high: 8, step: 1}}}\n',
+            'random.vary.shift.off_going_gear',
+        ),
     ],
-    ids=['controller', 'scenario', 'runs'],
+    ids=['controller', 'scenario', 'runs', 'gear', 'off-going gear'],
 )
 def test_missing_or_excessive_parts_are_reported_before_anything_is_computed(
     tmp_path: Path, text: str, key: str

@@ -134,11 +134,11 @@ class Gearbox(OptionGroup, prefix='gearbox.'):
         """Number of forward gears."""
         return len(self.ratios)
 
-    def require_gear(self, key: str, number: int) -> None:
+    def require_gear(self, key: str, number: float) -> None:
         """Raise ParameterError for the value of `key` unless the car has a gear of this number."""
         if not 1 <= number <= self.gears:
             raise ParameterError(
-                f'{key} is {number}, but the car has {self.gears} gear'
+                f'{key} is {number:g}, but the car has {self.gears} gear'
                 f'{"s" if self.gears > 1 else ""}: give one that it has, or a car with that gear',
                 key=key,
             )
