@@ -22,6 +22,7 @@ from ddct_bringup.benchmark.cases import Cases
 from ddct_bringup.campaign.arrow_columns import read_parquet
 from ddct_bringup.campaign.columns import CONTROLLER, SEED
 from ddct_bringup.campaign.conduct import carry_out
+from ddct_bringup.campaign.keys import SCENARIO
 from ddct_bringup.campaign.plan import RecordedCampaign
 from ddct_bringup.campaign.rows import STATE
 from ddct_bringup.campaign.spec import CampaignSpec
@@ -80,7 +81,7 @@ class ReleaseRows:
 def columns_kept(spec: CampaignSpec) -> list[str]:
     """Return the columns that a release keeps: what runs are evaluated by, and what varied."""
     varied = [key for key in spec.vary if key != SEED]
-    grid = [key for key, values in spec.grid.items() if len(values) > 1]
+    grid = [key for key, values in spec.grid.items() if key == SCENARIO or len(values) > 1]
     quantities = [each.key for each in QUANTITIES]
     return [CONTROLLER, SEED, *grid, *varied, *_OUTCOME, *quantities]
 
