@@ -42,8 +42,10 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
     plan = BenchmarkPlan.of([Judged.of('ls8')], cases, 3, InputFiles())
     rows = release.rows.only(['ls8', 'pi', 'hinf_sampled', 'mpc_wear'])
     judged = {'ls8': JudgedRows(None, rows)}
-    result = result_of(RecordedBenchmark(plan, CodeOrigin.here()), release, judged, {})
-    file = tmp_path_factory.mktemp('benchmark') / 'report.html'
+    out = tmp_path_factory.mktemp('benchmark')
+    recorded = RecordedBenchmark(plan, CodeOrigin.here(), out)
+    result = result_of(recorded, release, judged, {})
+    file = out / 'report.html'
     file.write_text(
         benchmark_page(result, UpdateTimesFile('pi', {'ls8': TIMES})),
         encoding='utf-8',

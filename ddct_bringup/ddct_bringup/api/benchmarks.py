@@ -36,6 +36,7 @@ def benchmark(
     controller: str,
     out: str | Path,
     *,
+    car: str | None = None,
     quick: bool = False,
     seed: int | None = None,
     workers: int | None = None,
@@ -43,12 +44,13 @@ def benchmark(
     """
     Judge a controller, by name or file, into the folder `out`, as `ddct benchmark` does.
 
+    `car` is the car of all cases, by name or file, in place of those of the scenarios.
     `quick` runs a tenth of the cases. `seed` is that of a judge for the held-out cases. What is
     done stays in the folder, and another call goes on with it. Raise DdctError for a controller
     that cannot be judged.
     """
     pandas = pandas_module()
-    cases, folder = Cases.packaged(quick=quick), Path(out)
+    cases, folder = Cases.packaged(quick=quick, car=car), Path(out)
     result, failed = judge_into(
         [judged_of(controller, cases)], cases, folder, seed, workers=workers
     )

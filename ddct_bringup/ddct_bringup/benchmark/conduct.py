@@ -47,7 +47,11 @@ class JudgedRows:
     """Rows of a judged controller."""
 
     development: CaseRows | None
-    """Its rows of the development cases; None of a packaged one, whose rows the release has."""
+    """
+    Its rows of the development cases; None of a packaged one, whose rows the release has.
+
+    With a car of the user they have those of the controllers beside it too.
+    """
     held_out: CaseRows
     """Rows of held-out cases, its own first."""
 
@@ -82,12 +86,15 @@ def carry_out_benchmark(
     """
     inputs = InputFiles()
     plan = BenchmarkPlan.of(judged, cases, judge_seed, inputs, options.release)
-    rows = options.rows or packaged_folder()
-    ours = [each.name for each in judged if each.is_packaged]
-    release_rows(rows).of(cases).rows.only([*cases.beside, *ours])
+    rows = None
+    if cases.car is None:
+        rows = options.rows or packaged_folder()
+        ours = [each.name for each in judged if each.is_packaged]
+        release_rows(rows).of(cases).rows.only([*cases.beside, *ours])
     failed = {}
     with locked_folders(out, shared=True):
         _begin(plan, inputs, rows, out)
+        cases = plan.cases_in(out)
         for each in plan.controllers:
             try:
                 _compute(each, cases, out, options)
@@ -98,7 +105,7 @@ def carry_out_benchmark(
     return failed
 
 
-def _begin(plan: BenchmarkPlan, inputs: InputFiles, rows: Traversable, out: Path) -> None:
+def _begin(plan: BenchmarkPlan, inputs: InputFiles, rows: Traversable | None, out: Path) -> None:
     """Write the manifest, or require the same one in the folder."""
     require_ours_or_empty(out)
     if (out / MANIFEST).exists():
@@ -112,13 +119,14 @@ def _begin(plan: BenchmarkPlan, inputs: InputFiles, rows: Traversable, out: Path
     if out.is_dir() and {each.name for each in out.iterdir()} - begun:
         raise DdctError(f'{out} holds other results: choose another --out')
     mark_folder(out)
-    copy_release_rows(rows, out)
+    if rows is not None:
+        copy_release_rows(rows, out)
     inputs.copy(out)
     limits = NamedLimits.of(packaged_limits(), inputs)
     campaigns = {
         f'{entry.name}/{name}': CampaignPlan.of(campaign, limits, out)
         for entry in plan.controllers
-        for name, campaign in campaigns_of(entry, plan.run_cases, out).items()
+        for name, campaign in campaigns_of(entry, plan.cases_in(out), out).items()
     }
     begin_manifest(out, BENCHMARK, plan, inputs, campaigns)
 
@@ -128,9 +136,13 @@ def campaigns_of(entry: JudgedEntry, cases: Cases, out: Path) -> dict[str, Campa
     judged = entry.judged(out)
     chosen, folder = judged.chosen, judged.folder
     held_out = {HELD_OUT: cases.held_out(chosen, folder, entry.held_out_seed)}
-    if judged.is_packaged:
+    if cases.car is not None:
+        chosen_ones = cases.with_beside(chosen)
+    elif judged.is_packaged:
         return held_out
-    return {DEVELOPMENT: cases.development([chosen], folder), **held_out}
+    else:
+        chosen_ones = [chosen]
+    return {DEVELOPMENT: cases.development(chosen_ones, folder), **held_out}
 
 
 def _compute(entry: JudgedEntry, cases: Cases, out: Path, options: Options) -> None:

@@ -17,6 +17,7 @@ from ddct_controllers.from_file.controller_file import is_controller_file
 from ddct_controllers.from_file.digests import controller_files
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.json_records import from_json
+from ddct_plant.scenario.nouns.keys import CAR
 
 
 @dataclass(frozen=True)
@@ -59,7 +60,9 @@ class BenchmarkPlan:
     """Seed of a judge for all held-out cases; None where it follows from the digests."""
     controllers: tuple[JudgedEntry, ...]
     cases: Mapping[str, Any]
-    """Specification of the cases."""
+    """Specification of the cases; the file of a car is relative to the result."""
+    left_out: Mapping[str, str]
+    """Reasons by name of the scenarios that the car cannot drive."""
 
     @classmethod
     def of(
@@ -81,12 +84,13 @@ class BenchmarkPlan:
             for each in judged
         ]
         limits = dict(packaged_limits().origin)
-        return cls(limits, cases.quick, judge_seed, tuple(entries), dict(cases.content))
+        content = {**cases.content, **_placed_car(cases, inputs)}
+        left_out = dict(cases.left_out)
+        return cls(limits, cases.quick, judge_seed, tuple(entries), content, left_out)
 
-    @property
-    def run_cases(self) -> Cases:
-        """Cases of the benchmark."""
-        return Cases(self.cases, self.quick)
+    def cases_in(self, out: Path) -> Cases:
+        """Return the cases of the benchmark whose result is in a folder."""
+        return Cases(self.cases, self.quick, out, self.left_out)
 
 
 @dataclass(frozen=True)
@@ -95,6 +99,12 @@ class RecordedBenchmark:
 
     plan: BenchmarkPlan
     origin: CodeOrigin
+    out: Path
+
+    @property
+    def cases(self) -> Cases:
+        """Cases of the benchmark."""
+        return self.plan.cases_in(self.out)
 
     @classmethod
     def read(cls, out: Path) -> 'RecordedBenchmark':
@@ -107,8 +117,8 @@ class RecordedBenchmark:
         if manifest.kind != BENCHMARK:
             raise DdctError('it is no benchmark: give the folder of one', place=out)
         plan = from_json(BenchmarkPlan, manifest.plan, f'{out}, plan')
-        plan.run_cases.require_parts()
-        return cls(plan, manifest.origin)
+        plan.cases_in(out).require_parts()
+        return cls(plan, manifest.origin, out)
 
     def require_same(self, other: BenchmarkPlan, out: Path) -> None:
         """Raise DdctError with the first difference of another benchmark from this one, in out."""
@@ -125,11 +135,25 @@ def _folder(judged: Judged, inputs: InputFiles) -> str:
     return Path(own.folder, place).parent.as_posix()
 
 
+def _placed_car(cases: Cases, inputs: InputFiles) -> dict[str, str]:
+    """Return the place in the result for the file of the car, by its key; take it as an input."""
+    if not cases.car_files:
+        return {}
+    own = InputFiles(folder=f'{INPUTS}/{CAR}')
+    place = own.add(cases.car_files)
+    if both := own.files.keys() & inputs.files.keys():
+        raise DdctError(
+            f'the car and a controller called {CAR} both have a file {min(both)}: rename one'
+        )
+    inputs.files.update(own.files)
+    return {CAR: f'{own.folder}/{place}'}
+
+
 _DIFFERENCES = {
     'version': 'of another release',
     'code': 'of another release: its code is another one',
     'limits': 'by other limits',
-    'cases': 'of other cases',
+    'cases': 'of other cases, or with another --car',
     'quick': 'with another number of cases: --quick is given for one of the two',
     'judge_seed': 'with another --seed',
     'controllers': 'of other controllers, or of one whose file has changed since',

@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Result of a benchmark from its rows: the content of `result.json`."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
+from functools import reduce
 
 from ddct_bringup.benchmark.case_rows import CaseRows
 from ddct_bringup.benchmark.comparison import (
@@ -37,15 +38,15 @@ SCHEMA_VERSION = 2
 
 def result_of(
     recorded: RecordedBenchmark,
-    release: ReleaseRows,
+    release: ReleaseRows | None,
     rows: Mapping[str, JudgedRows],
     failed: Mapping[str, str],
 ) -> Result:
     """
     Return the result of a benchmark.
 
-    `release` has the rows of the development cases that ran, `rows` those of the judged
-    controllers by name, `failed` the reasons of those that have none.
+    `release` has the rows of the development cases that ran, None where a car was given. `rows`
+    has those of the judged controllers by name, `failed` the reasons of those that have none.
     """
     board = _board_rows(recorded, release, rows)
     figures = None if recorded.plan.quick else figures_in(board)
@@ -65,19 +66,21 @@ def result_of(
     )
 
 
-def _cases(recorded: RecordedBenchmark, release: ReleaseRows) -> CasesResult:
-    cases = recorded.plan.run_cases
+def _cases(recorded: RecordedBenchmark, release: ReleaseRows | None) -> CasesResult:
+    cases = recorded.cases
     spec = cases.planned.spec
     return CasesResult(
         digest=cases.digest,
         quick=cases.quick,
+        car=cases.car,
+        left_out=dict(cases.left_out),
         scenarios=list(spec.values_of(SCENARIO)),
         samples=spec.samples,
         floor_samples=spec.floor_samples,
         varied=list(spec.vary),
         development_seed=spec.root,
-        release_rows=release.origin,
-        other_code=release.other_code(recorded.origin),
+        release_rows=release.origin if release else None,
+        other_code=release.other_code(recorded.origin) if release else '',
     )
 
 
@@ -112,14 +115,14 @@ def _not_judged(entry: JudgedEntry, error: str | None) -> JudgedResult:
 def _judged(
     entry: JudgedEntry,
     recorded: RecordedBenchmark,
-    release: ReleaseRows,
+    release: ReleaseRows | None,
     rows: JudgedRows,
     figures: dict[str, CaseFigures] | None,
 ) -> JudgedResult:
     """Return the result of one controller; `figures` has those of all on development cases."""
     name = entry.name
     development = _development(rows, release).only(rows.held_out.controllers)
-    varied = list(recorded.plan.run_cases.planned.spec.vary)
+    varied = list(recorded.cases.planned.spec.vary)
     return replace(
         _not_judged(entry, None),
         development=evaluations_of(development, varied, name),
@@ -131,21 +134,25 @@ def _judged(
     )
 
 
-def _development(rows: JudgedRows, release: ReleaseRows) -> CaseRows:
+def _development(rows: JudgedRows, release: ReleaseRows | None) -> CaseRows:
     """Return the development rows of a judged controller, and those of the release."""
-    if rows.development is None:
-        return release.rows
-    return rows.development.beside(release.rows)
+    return _together([rows.development, release.rows if release else None])
+
+
+def _together(found: Iterable[CaseRows | None]) -> CaseRows:
+    """Return those rows of the same cases that there are; none for no rows."""
+    there = [each for each in found if each is not None]
+    return reduce(CaseRows.beside, there) if there else CaseRows((), {})
 
 
 def _board_rows(
-    recorded: RecordedBenchmark, release: ReleaseRows, rows: Mapping[str, JudgedRows]
+    recorded: RecordedBenchmark,
+    release: ReleaseRows | None,
+    rows: Mapping[str, JudgedRows],
 ) -> CaseRows:
     """Return the rows of every controller on the development cases, the judged ones first."""
-    together = release.rows
-    for each in rows.values():
-        if each.development is not None:
-            together = each.development.beside(together)
+    developments = [each.development for each in rows.values()]
+    together = _together([*developments, release.rows if release else None])
     judged = [entry.name for entry in recorded.plan.controllers if entry.name in rows]
     others = [name for name in together.controllers if name not in judged]
     return together.only([*judged, *others])

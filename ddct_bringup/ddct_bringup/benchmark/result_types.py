@@ -183,13 +183,17 @@ class CasesResult:
 
     digest: str
     quick: bool
+    car: str | None
+    """Name of the car, or its file in the result; null for the cars of the scenarios."""
+    left_out: dict[str, str]
+    """Reasons by name of the scenarios that the car cannot drive."""
     scenarios: list[str]
     samples: int
     floor_samples: int
     varied: list[str]
     development_seed: int
-    release_rows: CodeOrigin
-    """Code that computed the kept rows of our controllers."""
+    release_rows: CodeOrigin | None
+    """Code that computed the kept rows of our controllers; null with a car: there are none."""
     other_code: str
     """What to know where that is other code than `release`; empty where it is the same."""
 

@@ -21,6 +21,8 @@ from ddct_plant.program.command_line import (
 from ddct_plant.program.supervision import stop_signals
 
 PROGRAM = 'ddct benchmark'
+_SECONDS_A_RUN = 0.1
+"""Mean time of a run on one core, floors included."""
 _SEED = Option(0, 'seed of a judge', at_least=0, at_most=2**31 - 1)
 
 _EPILOG = f"""\
@@ -28,6 +30,7 @@ examples:
   ddct benchmark mine.yaml --out results/mine             a few minutes on two cores
   ddct benchmark mine.yaml --out results/try --quick      a tenth of the cases
   ddct benchmark a.py b.py ls8 --out results/three        each on its own held-out cases
+  ddct benchmark mine.yaml --out results/city --car city7  in another car, or mycar.yaml
   ddct benchmark mine.yaml --out results/judged --seed 7  a judge chooses the held-out cases
   ddct verify results/mine                                whether a result comes out again
   ddct benchmark --packaged                               our controllers, without a run
@@ -54,10 +57,12 @@ def _benchmark(argv: list[str]) -> int:
         raise ParameterError('give controllers and --out, or --packaged')
     if options.seed is not None:
         _SEED.checked('--seed', options.seed)
-    cases = shell.Cases.packaged(quick=options.quick)
+    cases = shell.Cases.packaged(quick=options.quick, car=options.car)
     judged = _judged(options.controllers, cases)
     if judged is None:
         return 1
+    if cases.car is not None:
+        _say_what_runs(judged, cases)
     with stop_signals() as stops:
         result, _ = shell.judge_into(
             judged,
@@ -83,6 +88,19 @@ def _judged(names: list[str], cases: 'shell.Cases') -> 'list[shell.Judged] | Non
     for label in dict.fromkeys(each for each in labels if labels.count(each) > 1):
         raise ParameterError(f'two controllers are called {label}: rename one')
     return found if len(found) == len(names) else None
+
+
+def _say_what_runs(judged: 'list[shell.Judged]', cases: 'shell.Cases') -> None:
+    """Print the expected time with a car, of which the release has no rows."""
+    controllers = sum(len(cases.with_beside(each.chosen)) for each in judged)
+    runs = 2 * controllers * cases.planned.cases
+    print(
+        f'{PROGRAM}: the release has no rows of {printable(cases.car)}, so '
+        f'{", ".join(cases.beside)} run in the development cases too: {runs} runs, about '
+        f'{max(1, round(runs * _SECONDS_A_RUN / 120))} min on two cores',
+        file=sys.stderr,
+        flush=True,
+    )
 
 
 def _complaints(result: 'shell.Result') -> bool:
@@ -112,7 +130,13 @@ def _show(result: 'shell.Result', options: argparse.Namespace) -> None:
 
 def _show_packaged(options: argparse.Namespace) -> int:
     """Print or write the figures of the packaged controllers; they come with the release."""
-    if options.controllers or options.out or options.quick or options.seed is not None:
+    if (
+        options.controllers
+        or options.out
+        or options.quick
+        or options.car
+        or options.seed is not None
+    ):
         raise ParameterError('--packaged runs nothing: give it alone, or with --json')
     tables = shell.packaged_tables()
     document = {name: table.as_dict() for name, table in tables.items()}
@@ -136,6 +160,9 @@ def _parser() -> argparse.ArgumentParser:
         'controllers', nargs='*', metavar='NAME|FILE', help='a controller or a controller file'
     )
     parser.add_argument('--out', type=Path, metavar='DIR', help='folder for it')
+    parser.add_argument(
+        '--car', metavar='NAME|FILE', help='car of all cases; default: those of the scenarios'
+    )
     parser.add_argument(
         '--packaged', action='store_true', help="our controllers' figures, out of the release"
     )

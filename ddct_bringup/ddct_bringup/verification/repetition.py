@@ -196,13 +196,15 @@ def _repeat_benchmark(
     plan, code = recorded.plan, recorded.origin.code
     judged = [each.judged(result) for each in plan.controllers]
     options = Options(workers, release=code, rows=result)
-    cases = plan.run_cases
+    cases = recorded.cases
     if code == CodeOrigin.here().code:
         judged = [Judged.of(each.path) for each in judged]
-        options, cases = Options(workers), Cases.packaged(quick=plan.quick)
+        options, cases = Options(workers), Cases.packaged(quick=plan.quick, car=cases.car_path)
     failed = carry_out_benchmark(judged, cases, scratch, plan.judge_seed, options)
     shutil.copy(result / TIMING_FILE, scratch)
     write_result(scratch, failed)
+    if cases.car is not None:
+        return Repeated()
     rows = release_rows(result).origin
     return Repeated(
         notes={ROWS: f'computed by other code: {rows.text}'} if rows.code != code else {}

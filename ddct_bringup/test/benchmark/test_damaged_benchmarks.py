@@ -41,6 +41,8 @@ TIMES = {**RATIO, 'update_time_median_us': 10.0, 'pi_update_time_median_us': 5.0
         lambda content: content['cases'].pop('controllers'),
         lambda content: content['cases'].update(controllers=7),
         lambda content: content['cases'].update(seed='1'),
+        lambda content: content['cases'].update(car=7),
+        lambda content: content.update(left_out=['tip_in']),
         lambda content: content['cases'].update(random=None),
         lambda content: content['cases']['random'].update(samples='3'),
     ],

@@ -45,10 +45,10 @@ def benchmark_readers(folder: Path) -> list[Reader]:
 def _plan(file: Path) -> object:
     """Return all that follows from a plan alone."""
     plan, folder = read_json(BenchmarkPlan, file), file.parent
-    plan.run_cases.require_parts()
+    cases = plan.cases_in(folder)
+    cases.require_parts()
     judged = [each.judged(folder) for each in plan.controllers]
     seeds = [JudgedEntry.of(each, '', plan.judge_seed).held_out_seed for each in judged]
-    cases = plan.run_cases
     pairs = zip(judged, seeds, strict=True)
     held_out = [cases.held_out(each.chosen, folder, seed).cases for each, seed in pairs]
     return cases.digest, held_out

@@ -33,7 +33,9 @@ def result_in(out: Path, failed: Mapping[str, str] = _NOTHING) -> Result:
         for each in recorded.plan.controllers
         if each.name not in failed
     }
-    return result_of(recorded, release_rows(out).of(recorded.plan.run_cases), rows, failed)
+    cases = recorded.cases
+    release = release_rows(out).of(cases) if cases.car is None else None
+    return result_of(recorded, release, rows, failed)
 
 
 def write_result(out: Path, failed: Mapping[str, str]) -> Result:

@@ -120,6 +120,13 @@ def notes_of(result: Result) -> Iterator[str]:
     """Yield how the cases differ from those of a plain benchmark, a line each."""
     if result.judge_seed is not None:
         yield f'the held-out cases are those of a judge: --seed {result.judge_seed}'
+    if result.cases.car:
+        yield (
+            f'the car of all cases is {result.cases.car}; the release has no rows of it, so the '
+            'controllers beside the judged ones ran in the development cases too'
+        )
+    for name, reason in result.cases.left_out.items():
+        yield f'{name} is left out, since the car cannot drive it: {reason}'
     if result.cases.quick:
         yield 'a quick benchmark: a tenth of the cases, too few to say who dominates whom'
 
