@@ -136,8 +136,9 @@ def _on_grid(log: MeasuredLog, name: str, grid_s: np.ndarray) -> np.ndarray:
 
 
 def _apart(log: MeasuredLog, name: str) -> float:
+    """Return the median time in s between samples, in whole ns: decimal times are rounded."""
     times = log.samples(name)[0]
-    return float(np.median(np.diff(times))) if len(times) > 1 else np.inf
+    return round(float(np.median(np.diff(times))), 9) if len(times) > 1 else np.inf
 
 
 def _trajectory(values: Mapping[str, np.ndarray], steps: int) -> Trajectory:
