@@ -14,18 +14,16 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
 from ddct_controllers.architecture import make_architecture
-from ddct_controllers.handover.interface import HandoverCommand, HandoverMeasurement
+from ddct_controllers.handover.interface import HandoverMeasurement
 from ddct_controllers.handover.laws import make_handover
 from ddct_controllers.interface import Controller, Measurement
 from ddct_plant.plant import Observation, Plant, PlantReply
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.signals.gain_changes import GainChange
+from ddct_plant.signals.handover_share import WHOLE, OnComingShare
 from ddct_plant.signals.signal import SignalValue
 from ddct_reference.factory import make_reference
 from ddct_reference.slip_reference import SlipReference
-
-NO_HANDOVER = HandoverCommand(share=1.0, off_going_request=0.0, torque_cut=0.0)
-"""What stands for the command of a handover where there is only one clutch."""
 
 
 class Request(NamedTuple):
@@ -48,24 +46,25 @@ class PlantLoop(ABC):
         self._handover = make_handover(settings.known) if settings.shift else None
 
     @abstractmethod
-    def request(self, observation: Observation, command: HandoverCommand) -> Request:
-        """Return what is requested at a step; `command` is that of the handover."""
+    def request(self, observation: Observation, on_coming: OnComingShare) -> Request:
+        """Return what is requested at a step; `on_coming` has the clutch's share of C_fOL."""
 
     def reply(self, step: int) -> PlantReply:
         """Return torques and every signal of step k; advance all but the plant."""
         tick = self.plant.tick(step)
         if self._handover is None:
-            command, observation = NO_HANDOVER, self.plant.observe(tick)
+            observation = self.plant.observe(tick)
+            request = self.request(observation, WHOLE)
+            reply = self.plant.reply(observation, request.torque, request.engine_torque)
         else:
             command = self._handover.update(HandoverMeasurement.of_tick(tick))
             observation = self.plant.observe(tick, command.torque_cut)
-        request = self.request(observation, command)
-        reply = self.plant.reply(
-            observation, request.torque, request.engine_torque, command.off_going_request
-        )
-        reply.signals.update(request.signals)
-        if self._handover is not None:
+            request = self.request(observation, command.on_coming)
+            reply = self.plant.reply(
+                observation, request.torque, request.engine_torque, command.off_going_request
+            )
             reply.signals.update(command.signals)
+        reply.signals.update(request.signals)
         return reply
 
     def advance(self, reply: PlantReply) -> None:
@@ -111,17 +110,17 @@ class ClosedLoop(PlantLoop):
         self.update_time_us = 0.0
         """Wall time of the controller's last update, us."""
 
-    def request(self, observation: Observation, command: HandoverCommand) -> Request:
+    def request(self, observation: Observation, on_coming: OnComingShare) -> Request:
         """Return what the architecture requests at a step."""
         step, measured = observation.tick.step, observation.tick.measured
         if step in self._changes:
             self.architecture.change_gains(self._changes[step])
         speeds, rates = self._reference.update(
-            step, measured.slip_speed, measured.shaft_speed, command.share
+            step, measured.slip_speed, measured.shaft_speed, on_coming.share
         )
         measurement = Measurement.of_plant(observation, speeds, rates)
         started = time.perf_counter()
-        request = self.architecture.update(measurement, command.on_coming)
+        request = self.architecture.update(measurement, on_coming)
         self.update_time_us = 1e6 * (time.perf_counter() - started)
         signals: dict[str, SignalValue] = {
             'slip_reference': speeds,

@@ -2,11 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """The plant of a run, wired as the graph wires its nodes: a launch has one clutch, a shift two."""
 
-from collections.abc import Sequence
 from typing import Any, NamedTuple, Protocol
 
 from ddct_plant.base.timebase import time_of_step
-from ddct_plant.models.driveline import DrivelineOutputs
+from ddct_plant.models.driveline import DrivelineOutputs, OffGoingOutputs
 from ddct_plant.scenario.initial_state import initial_state
 from ddct_plant.scenario.plant import (
     driveline_sensors,
@@ -33,7 +32,6 @@ _OF_SIDE = (
     'clutch_temperature',
 )
 """Names of the signals of a clutch and its actuator; with the linear clutch the first three."""
-_OF_OFF_GOING = tuple(f'{OFF_GOING}_{name}' for name in _OF_SIDE)
 
 
 class Tick(NamedTuple):
@@ -92,11 +90,13 @@ class LinearSide:
     def __init__(self, settings: RunSettings, actuator: TorqueActuator) -> None:
         self.actuator = actuator
         self._clutch = linear_clutch(settings)
+        self.names = _OF_SIDE[:3]
+        """Names of the signals."""
 
     def reply(
-        self, step: int, request: float, slip_speed: float, friction_work: float | None
-    ) -> tuple[tuple[Any, ...], Sequence[SignalValue]]:
-        """Return the transmitted torque for the period of t_k, and the signals of `_OF_SIDE`."""
+        self, step: int, request: float, outputs: DrivelineOutputs | OffGoingOutputs
+    ) -> tuple[tuple[Any, ...], tuple[SignalValue, ...]]:
+        """Return the transmitted torque for the period of t_k, and the values of `names`."""
         actuator_torque = self.actuator.update(request)
         torque = self._clutch.transmit(actuator_torque)
         return (torque,), (request, actuator_torque, torque)
@@ -108,14 +108,19 @@ class StickSlipSide:
     def __init__(self, settings: RunSettings, role: str, actuator: TorqueActuator) -> None:
         self.actuator = actuator
         self._clutch = friction_clutch(settings, role)
+        prefix = f'{OFF_GOING}_' if role == OFF_GOING else ''
+        self.names = tuple(f'{prefix}{name}' for name in _OF_SIDE)
+        """Names of the signals."""
 
     def reply(
-        self, step: int, request: float, slip_speed: float, friction_work: float | None
-    ) -> tuple[tuple[Any, ...], Sequence[SignalValue]]:
-        """Return the capacities for the period of t_k, and the signals of `_OF_SIDE`."""
+        self, step: int, request: float, outputs: DrivelineOutputs | OffGoingOutputs
+    ) -> tuple[tuple[Any, ...], tuple[SignalValue, ...]]:
+        """Return the capacities for the period of t_k, and the values of `names`."""
         actuator_torque = self.actuator.update(request)
-        assert friction_work is not None
-        capacity = self._clutch.reply(step, actuator_torque, slip_speed, friction_work)
+        assert outputs.friction_work is not None
+        capacity = self._clutch.reply(
+            step, actuator_torque, outputs.slip_speed, outputs.friction_work
+        )
         return capacity[:2], (request, actuator_torque, *capacity)
 
 
@@ -193,17 +198,14 @@ class Plant:
             requested = observation.requested if engine_request is None else engine_request
             engine_torque = self._engine.torque(step, requested, true.engine_speed)
         load_torque = self._load.torque(true.vehicle_speed, time_of_step(step))
-        signals = true.signals
-        torques, values = self.sides[0].reply(
-            step, torque_request, true.slip_speed, true.friction_work
-        )
-        signals.update(zip(_OF_SIDE, values, strict=False))
-        if other := true.off_going:
-            of_other, values = self.sides[1].reply(
-                step, off_going_request, other.slip_speed, other.friction_work
-            )
+        signals, side = true.signals, self.sides[0]
+        torques, values = side.reply(step, torque_request, true)
+        signals.update(zip(side.names, values, strict=True))
+        if true.off_going is not None:
+            side = self.sides[1]
+            of_other, values = side.reply(step, off_going_request, true.off_going)
             torques += of_other
-            signals.update(zip(_OF_OFF_GOING, values, strict=True))
+            signals.update(zip(side.names, values, strict=True))
         if self._holding is not None:
             holding = signals['holding_torque'] = self._holding.capacity(time_of_step(step))
             torques = holding, *torques

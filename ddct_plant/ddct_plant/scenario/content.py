@@ -8,7 +8,7 @@ from typing import Any
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import Group, OptionGroup, group_of, key_of
-from ddct_plant.models.parameters import DrivelineSection
+from ddct_plant.models.parameters import DrivelineSection, VehicleParameters
 from ddct_plant.scenario.key_names import scenario_key_hint
 from ddct_plant.scenario.scenario import Scenario
 
@@ -17,16 +17,18 @@ def scenario_from_mapping(content: Mapping[str, Any]) -> Scenario:
     """Return the scenario of nested mappings, as `scenario_content` returns them."""
     content = {'description': '', **content}
     content['controllers'] = _gains(content.get('controllers') or {})
-    return without_derived(_build(Scenario, content))
-
-
-def without_derived(scenario: Scenario) -> Scenario:
-    """Return the scenario without a given J_v that is that of mass and radius to the last bit."""
-    section = scenario.given_driveline
-    if section.vehicle_inertia != scenario.vehicle.inertia:
+    scenario = _build(Scenario, content)
+    section = without_derived(scenario.given_driveline, scenario.vehicle)
+    if section is scenario.given_driveline:
         return scenario
-    section = dataclasses.replace(section, vehicle_inertia=None)
     return dataclasses.replace(scenario, given_driveline=section)
+
+
+def without_derived(section: DrivelineSection, vehicle: VehicleParameters) -> DrivelineSection:
+    """Return the section without a J_v that is that of mass and radius to the last bit."""
+    if section.vehicle_inertia != vehicle.inertia:
+        return section
+    return dataclasses.replace(section, vehicle_inertia=None)
 
 
 def flat(content: Any, key: str = '') -> dict[str, Any]:

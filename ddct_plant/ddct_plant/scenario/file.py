@@ -11,6 +11,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+from ddct_plant.models.body import BODY
 from ddct_plant.scenario.choices.scenarios import Choice
 from ddct_plant.scenario.content import scenario_content, scenario_from_mapping
 from ddct_plant.scenario.csv_profiles import described_profiles, with_points
@@ -75,8 +76,10 @@ class ScenarioFile:
             scenario = start.scenario
         with start.places.located():
             if start is self._starts.get(keys):
-                following = derived(self._changed[0], dict(pairs))
-                scenario = with_numbers(start.scenario, [*pairs, *following.items()])
+                given = dict(pairs)
+                if any(key in given for key in BODY):
+                    given |= derived(self._changed[0], given)
+                scenario = with_numbers(start.scenario, given)
             scenario = with_remarks(scenario)
             require_driveline(scenario.driveline, scenario.clutch)
             return scenario

@@ -28,16 +28,19 @@ def is_number_of(scenario: Scenario, key: str) -> bool:
     return option is not None and option.kind is float and not option.many
 
 
-def with_numbers(scenario: Scenario, pairs: Iterable[tuple[str, float]]) -> Scenario:
+def with_numbers(scenario: Scenario, numbers: Mapping[str, float]) -> Scenario:
     """Return the scenario with other numbers by dotted key; only their groups are built anew."""
     groups: dict[str, dict[str, float]] = {}
-    for key, value in pairs:
+    for key, value in numbers.items():
         section, _, leaf = key.rpartition('.')
         groups.setdefault(_SECTIONS[section] if section else '', {})[leaf] = value
     changes: dict[str, Any] = groups.pop('', {})
     for name, values in groups.items():
         changes[name] = dataclasses.replace(getattr(scenario, name), **values)
-    return without_derived(dataclasses.replace(scenario, **changes))
+    vehicle = changes.get('vehicle', scenario.vehicle)
+    driveline = changes.get('given_driveline', scenario.given_driveline)
+    changes['given_driveline'] = without_derived(driveline, vehicle)
+    return dataclasses.replace(scenario, **changes)
 
 
 def parsed_override(override: str, option: str = '--set') -> tuple[str, Any]:

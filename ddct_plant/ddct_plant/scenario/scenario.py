@@ -154,7 +154,7 @@ class Scenario(OptionGroup):
         if self.given_driveline.vehicle_inertia is not None:
             vehicle, inertia = self.vehicle, self.given_driveline.vehicle_inertia
             Body(vehicle.mass_kg, vehicle.wheel_radius_m, inertia).require_agreement()
-        self.engine.in_n_m(self.engine_limits)
+        _ = self.demand  # refuses a share of an unknown engine
         self.gearbox.require_gear('gear', self.gear)
         if self.shift is not None:
             self.gearbox.require_gear('shift.off_going_gear', self.shift.off_going_gear)

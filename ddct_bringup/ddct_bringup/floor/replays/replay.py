@@ -8,12 +8,12 @@ import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.floor.case import Case
-from ddct_controllers.handover.interface import HandoverCommand
 from ddct_controllers.loop import PlantLoop, Request
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.models.static_torque import StaticTorque
 from ddct_plant.plant import Observation
 from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.signals.handover_share import OnComingShare
 
 CLOSING_SHARE = 1.1
 """Request over C_fOL from the lock on."""
@@ -78,7 +78,7 @@ class ReplayedLoop(PlantLoop):
         super().__init__(settings)
         self._requests = requests
 
-    def request(self, observation: Observation, command: HandoverCommand) -> Request:
+    def request(self, observation: Observation, on_coming: OnComingShare) -> Request:
         """Return the given request of the step."""
         return Request(float(self._requests[observation.tick.step]), None, {})
 

@@ -8,12 +8,12 @@ more, as the world does not ask a car. Each rule is necessary and not sufficient
 keeps it may still not engage.
 """
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 from ddct_plant.base.clutch_kinds import STICK_SLIP
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.models.driveline import LOCKED
-from ddct_plant.models.load import HoldingTorque, RoadLoad, air_and_slope
+from ddct_plant.models.load import RoadLoad
 from ddct_plant.models.static_torque import StaticTorque
 from ddct_plant.scenario.control import REFERENCE_SHAPES
 from ddct_plant.scenario.scenario import Scenario
@@ -27,7 +27,7 @@ def require_able(scenario: Scenario) -> None:
     """
     Raise ParameterError that names the first thing that engine or clutch cannot give.
 
-    A clutch that does not stick has no greatest torque, and the car no brake.
+    With the linear clutch there is no greatest torque, and the car has no brake.
     """
     _require_engine(scenario)
     if scenario.clutch == STICK_SLIP:
@@ -55,7 +55,7 @@ def _require_engine(scenario: Scenario) -> None:
 def _require_clutch(scenario: Scenario) -> None:
     """Refuse a demand with which a locked clutch would have to carry more than its capacity."""
     friction, times = scenario.friction, _times(scenario)
-    carried = max(_constant_slip_torque(scenario, time) for time in times)
+    carried = max(map(_constant_slip_torque(scenario), times))
     most = friction.static_over_kinetic * friction.most_n_m
     if carried > most:
         raise ParameterError(
@@ -71,17 +71,18 @@ def _require_start(scenario: Scenario) -> None:
     """Refuse a start from rest against more torque than engine and clutch have at any time."""
     if scenario.shift or scenario.initial.shaft_speed_rad_s:
         return
-    slope = air_and_slope(scenario.load, scenario.vehicle, scenario.slope)
-    road = RoadLoad(scenario.load, scenario.vehicle, scenario.slope)
-    holding = HoldingTorque(road, scenario.brake)
-    still = min(slope.torque(0.0, time) + holding.capacity(time) for time in _times(scenario))
+    road, brake = RoadLoad(scenario.load, scenario.vehicle, scenario.slope), scenario.brake
+    still = min(
+        road.torque(0.0, time) + (brake.at(time) if brake.given else 0.0)
+        for time in _times(scenario)
+    )
     needed = scenario.driveline.gear.shaft_torque(still)
     limits, most = scenario.engine_limits, scenario.friction.most_n_m
     part, key = 'clutch', 'friction.most_n_m'
     if limits and limits.most_torque < most:
         part, key, most = 'engine', 'engine_limits.full_load_n_m', limits.most_torque
     if needed > most:
-        braked = scenario.brake.given and min(scenario.brake.torque_n_m) > 0.0
+        braked = brake.given and min(brake.torque_n_m) > 0.0
         raise ParameterError(
             f'the car cannot move off: slope, rolling and brake hold it with at least '
             f'{needed:.0f} N m at the clutch, but the {part} gives at most {most:g} N m ({key}): '
@@ -115,7 +116,7 @@ def _require_reference(scenario: Scenario) -> None:
     inertia = (
         p.engine_inertia * p.vehicle_side_inertia / (p.engine_inertia + p.vehicle_side_inertia)
     )
-    least = min(_constant_slip_torque(scenario, time) for time in (*ends, *within))
+    least = min(map(_constant_slip_torque(scenario), (*ends, *within)))
     needed, most = least + inertia * rate, scenario.friction.most_n_m
     if needed > most:
         raise ParameterError(
@@ -126,15 +127,19 @@ def _require_reference(scenario: Scenario) -> None:
         )
 
 
-def _constant_slip_torque(scenario: Scenario, time_s: float) -> float:
-    """Return C_fOL in N m at a time in s, with the speeds of the start."""
+def _constant_slip_torque(scenario: Scenario) -> Callable[[float], float]:
+    """Return C_fOL in N m as a function of the time in s, with the speeds of the start."""
     initial, vehicle = scenario.initial, scenario.vehicle
     static = StaticTorque(scenario.controlled_driveline, scenario.equilibrium)
     wheel_speed = scenario.driveline.gear.wheel_speed(initial.shaft_speed_rad_s)
     road = RoadLoad(scenario.load, vehicle, scenario.slope)
-    load = road.torque(wheel_speed * vehicle.wheel_radius_m, time_s)
-    demand = scenario.demand.at(time_s)
-    return static.torque(demand, load, initial.engine_speed_rad_s, initial.shaft_speed_rad_s)
+    speeds = initial.engine_speed_rad_s, initial.shaft_speed_rad_s
+
+    def torque(time_s: float) -> float:
+        load = road.torque(wheel_speed * vehicle.wheel_radius_m, time_s)
+        return static.torque(scenario.demand.at(time_s), load, *speeds)
+
+    return torque
 
 
 def _times(scenario: Scenario) -> Iterable[float]:
