@@ -10,6 +10,7 @@ from ddct_bringup.campaign.keys import SCENARIO
 from ddct_bringup.campaign.specification.distributions import HIGH, LOW, STEP
 from ddct_bringup.campaign.specification.parts import GRID, RANDOM, VARY
 from ddct_bringup.run.run_base import RunBase
+from ddct_plant.base.clutch_kinds import STICK_SLIP
 from ddct_plant.base.errors import DdctError, without_folders
 from ddct_plant.scenario.choices.scenarios import Choice
 from ddct_plant.scenario.file import ScenarioFile
@@ -26,10 +27,15 @@ def cases_with_car(content: Mapping[str, Any], car: str) -> tuple[dict[str, Any]
     `car` is a name or a path. The ends of each drawn key of the car are multiplied by the car's
     own value over that of the scenario's own car; a key whose value is 0 is not drawn. Sensors of
     the car take the place of those of the specification. Raise DdctError for a car that cannot be
-    read or can drive no scenario.
+    read, cannot lock its clutch or can drive no scenario.
     """
     drivable, left_out = _drivable(content[GRID][SCENARIO], car)
     name, scenario = next(iter(drivable.items()))
+    if scenario.clutch != STICK_SLIP:
+        raise DdctError(
+            f'car {car} has the clutch {scenario.clutch}, which cannot lock: give it clutch: '
+            f'{STICK_SLIP}'
+        )
     before = _scenario(name)
     grid = {**content[GRID], SCENARIO: list(drivable)}
     if scenario.sensors is not None:
