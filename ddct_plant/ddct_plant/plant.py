@@ -155,7 +155,7 @@ class Plant:
         Return the true outputs and the measurements at step k.
 
         No sensor is at the off-going shaft: in a run with sensors its speed is that of the
-        on-coming shaft times the known ratio of the gears, which both are engaged in a handover.
+        on-coming shaft times the known ratio of the gears, since a handover has both engaged.
         """
         true = self.driveline.outputs()
         demand, off_going = self._engine.demand(step), true.off_going

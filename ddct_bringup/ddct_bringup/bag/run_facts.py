@@ -125,7 +125,7 @@ class RunFacts(RunConditions):
             control_start_s=scenario.control_start_s,
             score_window_s=scenario.score_window_s,
             duration_s=time_of_step(steps),
-            clutch=settings.clutch,
+            clutch=settings.known.clutch,
             off_going_wear_gain=settings.case.off_going_wear_gain if settings.shift else None,
             handover=settings.known.handover_name if settings.shift else None,
         )

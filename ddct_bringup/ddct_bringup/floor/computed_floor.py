@@ -71,7 +71,7 @@ def _computed(case: Case, metric: str, begin: Trajectory | None, attain: bool) -
     bound = bound_of(case, objective, signals)
     if bound is None:
         raise ParameterError(
-            f'{metric} is not defined for the clutch {settings.clutch} or the run'
+            f'{metric} is not defined for the clutch {settings.known.clutch} or the run'
         )
     certificate = Proof(bound.kind, bound.certificate.claim, covers)
     if bound.kind == RAY:

@@ -43,7 +43,7 @@ class RunPlan:
 
     def __post_init__(self) -> None:
         """Raise DdctError for a plan that would fail in the graph."""
-        self.scheduling.require_mode(lockstep=self.settings.lockstep)
+        self.scheduling.require_mode(lockstep=self.settings.known.lockstep)
         self.scheduling.require_permitted()
         # The run of compiled code that crashes fails by that, and others go on.
         with suppress(ProcessEndedError):
@@ -132,7 +132,7 @@ class RunPlan:
 
 def require_headless(settings: RunSettings) -> None:
     """Raise ParameterError where a run needs the graph, as in real time."""
-    if not settings.lockstep:
+    if not settings.known.lockstep:
         raise ParameterError(
             'mode realtime needs the graph, which --headless does without: drop one of them',
             key='mode',

@@ -53,7 +53,7 @@ class Sweep:
             raise ParameterError(
                 f'--over gives {points} points: at most {MOST}, `ddct campaign` is made for more'
             )
-        if not self.first.lockstep:
+        if not self.first.known.lockstep:
             raise ParameterError(
                 f'mode is {self.first.known.mode}, but a sweep needs no graph: leave the mode out'
             )

@@ -120,7 +120,7 @@ def _repeat_run(
     settings = planned.run_settings(result)
     if planned.layout == 'headless':
         require_headless(settings)
-    lockstep = settings.lockstep
+    lockstep = settings.known.lockstep
     if not lockstep or planned.controller is None:
         found.left_out[name] = _OBJECT if lockstep else REAL_TIME
         if failed_run(ours) is None:

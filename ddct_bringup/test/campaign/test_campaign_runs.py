@@ -42,7 +42,9 @@ def test_the_indices_go_through_controllers_then_the_grid_then_samples() -> None
     assert [run.controller.name for run in runs] == ['pi'] * 12 + ['ls8'] * 12
     grid = [(run.varied['wear_gain'], run.varied['clutch']) for run in runs[:12:3]]
     assert grid == [(0.7, 'linear'), (0.7, 'stick_slip'), (1.0, 'linear'), (1.0, 'stick_slip')]
-    assert [(run.settings.case.wear_gain, run.settings.clutch) for run in runs[:12:3]] == grid
+    assert [
+        (run.settings.case.wear_gain, run.settings.known.clutch) for run in runs[:12:3]
+    ] == grid
 
 
 def test_all_controllers_have_the_same_cases_with_the_same_noise() -> None:

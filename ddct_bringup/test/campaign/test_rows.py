@@ -46,7 +46,7 @@ def test_varied_values_are_set_as_by_set_with_their_dependent_values():
 
 def test_what_is_varied_replaces_what_all_runs_change():
     settings = BASE.at({'duration_s': 2.5, 'clutch': 'linear'})
-    assert (settings.scenario.duration_s, settings.clutch) == (2.5, 'linear')
+    assert (settings.scenario.duration_s, settings.known.clutch) == (2.5, 'linear')
 
 
 def test_a_value_that_the_scenario_refuses_is_named():

@@ -44,7 +44,7 @@ def make_driveline(settings: RunSettings, initial: InitialState) -> Driveline | 
     except ParameterError as error:
         raise ParameterError(
             f'{least_usual(scenario.driveline)}: the driveline cannot be integrated with the '
-            f'clutch {settings.clutch}: give inertias, damping and stiffness of a car ({error})',
+            f'clutch {scenario.clutch}: give inertias, damping and stiffness of a car ({error})',
             key=least_usual(scenario.driveline).partition(' ')[0],
             place=f'scenario {scenario.name}',
         ) from error

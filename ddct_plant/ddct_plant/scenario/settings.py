@@ -210,24 +210,9 @@ class RunSettings:
         return self.known.detailed
 
     @property
-    def clutch(self) -> str:
-        """Name of the clutch model."""
-        return self.known.clutch
-
-    @property
     def stick_slip(self) -> bool:
         """Whether the clutch sticks and slips, and rolling resistance and brake are friction."""
         return self.known.stick_slip
-
-    @property
-    def sensed(self) -> bool:
-        """Whether controller and reference read sensors instead of the true signals."""
-        return self.known.sensed
-
-    @property
-    def lockstep(self) -> bool:
-        """Whether the owner of time waits for every reply."""
-        return self.known.lockstep
 
     @property
     def shift(self) -> bool:
@@ -242,10 +227,10 @@ class RunSettings:
         """Refuse a true scenario of another kind of run, whose topics would not fit."""
         if self.case.scenario is None:
             return
-        if self.case.scenario.clutch != self.clutch:
+        if self.case.scenario.clutch != self.known.clutch:
             raise ParameterError(
                 f'clutch is {self.case.scenario.clutch}, but what controllers know of scenario '
-                f'{self.scenario.name} has {self.clutch}: give both the same',
+                f'{self.scenario.name} has {self.known.clutch}: give both the same',
                 key='clutch',
             )
         for section in ('sensors', 'shift'):

@@ -102,7 +102,7 @@ def test_the_numbers_of_a_seed_stay_what_they_are():
 
 def test_the_scenario_of_the_thesis_has_no_sensors_and_makes_none():
     settings = RunSettings(KnownSettings(load_scenario('thesis')))
-    assert not settings.sensed
+    assert not settings.known.sensed
     assert (driveline_sensors(settings), torque_estimate(settings)) == (None, None)
 
 

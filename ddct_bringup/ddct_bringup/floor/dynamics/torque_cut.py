@@ -24,7 +24,7 @@ def cut_per_slip(settings: RunSettings) -> float:
 
     With sensors the cut depends on the measured slip.
     """
-    return 0.0 if settings.sensed else most_cut(settings) / CUT_FADE_RAD_S
+    return 0.0 if settings.known.sensed else most_cut(settings) / CUT_FADE_RAD_S
 
 
 def demanded_torque(run: Trajectory) -> np.ndarray:
@@ -44,6 +44,6 @@ def gives_demand(run: Trajectory, start: int) -> bool:
 def cuts_as_usual(settings: RunSettings, run: Trajectory) -> bool:
     """Return whether a torque cut is at most that of the scenario, and fades with the slip."""
     most = np.full(len(run.torque_cut), most_cut(settings))
-    if not settings.sensed:
+    if not settings.known.sensed:
         most = np.minimum(most, cut_per_slip(settings) * np.maximum(run.slip_speed, 0.0))
     return bool(np.all((run.torque_cut >= 0.0) & (run.torque_cut <= most + _RESIDUAL)))

@@ -4,7 +4,7 @@
 Rules for what a drive asks of a car: no more than its engine and its clutch can give.
 
 They are for the car and the drive that controllers know. What varies for the plant alone may ask
-more, as the world does not ask a car. Each rule is necessary and not sufficient: a drive that
+more, since nothing checks it on the road. Each rule is necessary and not sufficient: a drive that
 keeps it may still not engage.
 """
 
