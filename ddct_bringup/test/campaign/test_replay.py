@@ -8,7 +8,7 @@ import pytest
 from in_this_process import in_this_process
 from printed_commands import printed_commands, run_printed
 
-from ddct_bringup.campaign.columns import COMPARED, differences
+from ddct_bringup.campaign.columns import COMPARED, differences, read_row
 from ddct_bringup.campaign.conduct import RESULTS
 from ddct_bringup.campaign_report.folder import PAGE
 from ddct_bringup.programs import campaign
@@ -67,6 +67,19 @@ def test_the_printed_commands_make_the_bag_of_a_row(
     assert run_printed(on_page, I='1') == 1, 'there is a result'
     assert run_printed(of_runs[0]) == 0
     assert all(list(Path('..', folder).rglob('*.mcap')) for folder in ('replay-I', 'replay-0'))
+
+
+def test_a_row_with_the_least_is_replayed_with_it(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    spec = 'controllers: [ls4]\nscenario: upshift\nfloors: true\ngrid: {wear_gain: [0.9]}\n'
+    (tmp_path / 'spec.yaml').write_text(spec, encoding='utf-8')
+    folder = tmp_path / 'campaign'
+    with in_this_process():
+        assert campaign.main([str(tmp_path / 'spec.yaml'), '--out', str(folder)]) == 0
+        assert read_row(folder / RESULTS, 0, 1)['peak_jerk_over_least'] > 1.0
+        assert replay(folder, '--index', '0') == 0
+    assert 'those of the row, bit for bit' in capsys.readouterr().out
 
 
 def test_a_row_is_its_own_replay() -> None:
