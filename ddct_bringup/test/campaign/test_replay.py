@@ -79,7 +79,7 @@ def test_a_row_with_the_least_is_replayed_with_it(
         assert campaign.main([str(tmp_path / 'spec.yaml'), '--out', str(folder)]) == 0
         assert read_row(folder / RESULTS, 0, 1)['peak_jerk_over_least'] > 1.0
         assert replay(folder, '--index', '0') == 0
-    assert 'those of the row, bit for bit' in capsys.readouterr().out
+    assert 'those of the row, bit for bit' in capsys.readouterr().err
 
 
 def test_a_row_is_its_own_replay() -> None:
