@@ -30,6 +30,6 @@ def test_of_several_scenarios_the_command_has_the_first_and_the_page_names_the_o
     found = compared_settings(Path('..', 'tuned'))
     assert found.keys() == {'mine', 'mine_tuned'}
     assert {each.scenario.name for each in found.values()} == {'launch'}
-    assert {each.clutch for each in found.values()} == {'stick_slip'}
+    assert {each.known.clutch for each in found.values()} == {'stick_slip'}
     page = Path(PAGE).read_text(encoding='utf-8')
     assert 'The cases also have launch_hot, launch_gentle' in page
