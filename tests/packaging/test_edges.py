@@ -14,6 +14,7 @@ FILES = {
     'ddct_plant/bag_file/records.py': 'metadata in an MCAP file',
     'ddct_bringup/bag/writer.py': 'metadata of a bag',
     'ddct_bringup/benchmark/cases.py': 'cases of a benchmark, YAML',
+    'ddct_bringup/benchmark/other_car.py': 'cases of a benchmark, YAML',
     'ddct_bringup/benchmark/plan.py': 'manifest.json',
     'ddct_bringup/campaign/columns.py': 'rows of results.parquet',
     'ddct_bringup/campaign/plan.py': 'manifest.json',
