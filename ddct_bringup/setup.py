@@ -15,6 +15,7 @@ PROGRAMS = [
     'bringup = ddct_bringup.programs.bringup:main',
     'campaign = ddct_bringup.programs.campaign:main',
     'compare = ddct_bringup.programs.compare:main',
+    'identify = ddct_bringup.identification.identify:main',
     'limit = ddct_bringup.programs.limit:main',
     'live = ddct_bringup.programs.live:main',
     'recorder = ddct_bringup.record.recorder_node:main',

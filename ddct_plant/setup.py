@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Install the plant: its nodes, the identification and the scenarios."""
+"""Install the plant: its nodes and the scenarios."""
 
 import sys
 from glob import glob
@@ -15,7 +15,6 @@ PROGRAMS = [
     'clutch = ddct_plant.nodes.clutch_node:main',
     'driveline = ddct_plant.nodes.driveline_node:main',
     'engine = ddct_plant.nodes.engine_node:main',
-    'identify = ddct_plant.identification.identify:main',
     'load = ddct_plant.nodes.load_node:main',
 ]
 SCRIPTS = [f'{program.split()[0]} = ddct_plant.program.start:main' for program in PROGRAMS]
@@ -47,7 +46,7 @@ setup(
     extras_require={'test': ['pytest']},
     zip_safe=False,
     maintainer='DDCT team',
-    description='The plant: its nodes, the identification and the scenarios.',
+    description='The plant: its nodes and the scenarios.',
     license='Apache-2.0',
     classifiers=[
         'Intended Audience :: Science/Research',

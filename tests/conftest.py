@@ -19,7 +19,7 @@ from ddct_plant.graph.domain import own_domain
 if TYPE_CHECKING:
     from support.in_process_graph import InProcessGraph
 
-    from ddct_plant.measured.log import MeasuredLog
+    from ddct_bringup.logs.log import MeasuredLog
 
 
 HERE = Path(__file__).parent

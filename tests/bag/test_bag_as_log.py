@@ -11,10 +11,10 @@ from refusals import refused
 
 from ddct_bringup.bag.reader import mcap_of
 from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.logs.columns import own_columns
+from ddct_bringup.logs.log import MeasuredLog, read_log
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import stamp_of_step
-from ddct_plant.measured.columns import own_columns
-from ddct_plant.measured.log import MeasuredLog, read_log
 
 
 def log_of(bag: Path) -> MeasuredLog:

@@ -17,12 +17,12 @@ from support.made_bags import Bags, random_trajectory
 
 from ddct_bringup import api
 from ddct_bringup.bag.reader import mcap_of, read_bag
+from ddct_bringup.logs.columns import own_columns
+from ddct_bringup.logs.log import read_log
 from ddct_bringup.programs import report, score
 from ddct_bringup.run.timing_and_failure import note_failure
 from ddct_plant.bag_file.records import read_records
 from ddct_plant.base.errors import DdctError
-from ddct_plant.measured.columns import own_columns
-from ddct_plant.measured.log import read_log
 
 TICKS_PER_CHUNK = 64 * 1024 // 2000
 """Largest number of ticks in a chunk: a tick takes at least 2000 bytes."""

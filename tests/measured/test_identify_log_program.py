@@ -11,10 +11,10 @@ from support.logs import identify
 from support.other_car import COLUMNS, TRUE, drive, write_csv
 from support.runs import expected, plan, record
 
+from ddct_bringup.identification.from_log import command
+from ddct_bringup.identification.identify import main
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.scores.csv_text import signals_csv
-from ddct_plant.identification.from_log import command
-from ddct_plant.identification.identify import main
 from ddct_plant.scenario.file import load_scenario, scenario_to_yaml
 from ddct_plant.scenario.settings import KnownSettings, RunSettings
 

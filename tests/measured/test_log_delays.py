@@ -16,10 +16,10 @@ from support.logs import (
 )
 from support.other_car import SPEEDS, TRUE, late_log
 
+from ddct_bringup.identification.from_log.fit import fit_log
+from ddct_bringup.logs.columns import load_columns
+from ddct_bringup.logs.log import MeasuredLog
 from ddct_plant.base.errors import DdctError
-from ddct_plant.identification.from_log.fit import fit_log
-from ddct_plant.measured.columns import load_columns
-from ddct_plant.measured.log import MeasuredLog
 from ddct_plant.models.parameters import DrivelineParameters
 
 pytestmark = pytest.mark.slow

@@ -11,14 +11,14 @@ from support.logs import constant_log, drag, hits, log_of
 from support.other_car import LASTS_S, NOISE_RAD_S, ROLLING_N_M, SPEEDS, TRUE, drive
 from support.runs import plan, record
 
+from ddct_bringup.identification.from_log.command import NEEDED
+from ddct_bringup.identification.from_log.fit import fit_log
+from ddct_bringup.identification.from_log.prediction import predict
+from ddct_bringup.identification.from_log.result import LogFit
+from ddct_bringup.identification.from_log.stretches import stretches_of, white_noise
+from ddct_bringup.logs.columns import TIME, own_columns
+from ddct_bringup.logs.log import read_log
 from ddct_plant.base.errors import DdctError
-from ddct_plant.identification.from_log.command import NEEDED
-from ddct_plant.identification.from_log.fit import fit_log
-from ddct_plant.identification.from_log.prediction import predict
-from ddct_plant.identification.from_log.result import LogFit
-from ddct_plant.identification.from_log.stretches import stretches_of, white_noise
-from ddct_plant.measured.columns import TIME, own_columns
-from ddct_plant.measured.log import read_log
 from ddct_plant.models.parameters import DrivelineParameters
 
 pytestmark = pytest.mark.slow

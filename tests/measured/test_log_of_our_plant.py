@@ -8,13 +8,13 @@ from pathlib import Path
 import pytest
 from support.runs import plan, record
 
+from ddct_bringup.identification.from_log.command import NEEDED
+from ddct_bringup.identification.from_log.fit import fit_log
+from ddct_bringup.identification.from_log.scenario import load_of
+from ddct_bringup.identification.identify import main
+from ddct_bringup.logs.columns import TIME, own_columns
+from ddct_bringup.logs.log import read_log
 from ddct_bringup.scores.csv_text import signals_csv
-from ddct_plant.identification.from_log.command import NEEDED
-from ddct_plant.identification.from_log.fit import fit_log
-from ddct_plant.identification.from_log.scenario import load_of
-from ddct_plant.identification.identify import main
-from ddct_plant.measured.columns import TIME, own_columns
-from ddct_plant.measured.log import read_log
 from ddct_plant.scenario.file import load_scenario
 
 pytestmark = pytest.mark.slow

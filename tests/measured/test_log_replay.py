@@ -9,9 +9,9 @@ import pytest
 from support.logs import drive_log, noisy_log, rows_late
 from support.other_car import COLUMNS, drive, write_csv
 
+from ddct_bringup.identification.identify import main
+from ddct_bringup.logs.log import SPEEDS, MeasuredLog
 from ddct_bringup.run.headless import run_headless
-from ddct_plant.identification.identify import main
-from ddct_plant.measured.log import SPEEDS, MeasuredLog
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.scenario import Scenario
 from ddct_plant.scenario.settings import KnownSettings, RunSettings

@@ -12,15 +12,15 @@ from support.logs import drag
 from support.other_car import drive
 from support.runs import plan, record
 
+from ddct_bringup.identification.from_log.command import NEEDED
+from ddct_bringup.identification.from_log.fit import fit_log
+from ddct_bringup.identification.from_log.prediction import predict
+from ddct_bringup.identification.from_log.result import LogFit
+from ddct_bringup.identification.from_log.stretches import stretches_of
+from ddct_bringup.identification.identify import main
+from ddct_bringup.logs.columns import TIME, own_columns
+from ddct_bringup.logs.log import SPEEDS, MeasuredLog, read_log
 from ddct_bringup.scores.csv_text import signals_csv
-from ddct_plant.identification.from_log.command import NEEDED
-from ddct_plant.identification.from_log.fit import fit_log
-from ddct_plant.identification.from_log.prediction import predict
-from ddct_plant.identification.from_log.result import LogFit
-from ddct_plant.identification.from_log.stretches import stretches_of
-from ddct_plant.identification.identify import main
-from ddct_plant.measured.columns import TIME, own_columns
-from ddct_plant.measured.log import SPEEDS, MeasuredLog, read_log
 from ddct_plant.models.parameters import DrivelineParameters
 
 STEP_RAD_S = 0.1

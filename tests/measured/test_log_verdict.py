@@ -10,9 +10,9 @@ import pytest
 from support.logs import identify, judged
 from support.other_car import COLUMNS, TRUE, drive, late_log
 
-from ddct_plant.identification.from_log.verdict import doubts
-from ddct_plant.identification.identify import main
-from ddct_plant.measured.log import SPEEDS
+from ddct_bringup.identification.from_log.verdict import doubts
+from ddct_bringup.identification.identify import main
+from ddct_bringup.logs.log import SPEEDS
 from ddct_plant.program import progress
 from ddct_plant.scenario.file import load_scenario
 

@@ -15,6 +15,7 @@ from support.other_car import COLUMNS, LASTS_S, TRUE, drive, write_csv
 from support.runs import plan, record
 
 from ddct_bringup.bag.measured_run import read_measured_run
+from ddct_bringup.logs.columns import QUANTITIES, load_columns
 from ddct_bringup.metrics.catalogue import METRICS, NEEDED_BY
 from ddct_bringup.programs import report, score
 from ddct_bringup.run.timing_and_failure import NOTE_FILE
@@ -23,7 +24,6 @@ from ddct_bringup.scores.document import run_entry
 from ddct_bringup.scores.scored_recording import score_recording
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.files.json_records import to_json
-from ddct_plant.measured.columns import QUANTITIES, load_columns
 
 pytestmark = pytest.mark.slow
 

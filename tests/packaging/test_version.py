@@ -20,7 +20,7 @@ PROGRAMS = (
     *(f'ddct_bringup.programs.{name}' for name in ('bringup', 'compare', 'live', 'report')),
     *(f'ddct_bringup.programs.{name}' for name in ('reproduce', 'score')),
     'ddct_controllers.workflows.design_program',
-    'ddct_plant.identification.identify',
+    'ddct_bringup.identification.identify',
 )
 
 

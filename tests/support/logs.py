@@ -9,18 +9,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from ddct_bringup.identification.from_log.command import NEEDED
+from ddct_bringup.identification.from_log.fit import fit_log
+from ddct_bringup.identification.from_log.prediction import SpeedPrediction, predict
+from ddct_bringup.identification.from_log.result import LogFit
+from ddct_bringup.identification.from_log.scenario import load_of
+from ddct_bringup.identification.from_log.stretch import TORQUES
+from ddct_bringup.identification.from_log.stretches import stretches_of
+from ddct_bringup.identification.from_log.verdict import reasons_against
+from ddct_bringup.identification.identify import main
+from ddct_bringup.logs.columns import TIME, own_columns
+from ddct_bringup.logs.log import SPEEDS, MeasuredLog, read_log
 from ddct_bringup.scores.csv_text import signals_csv
-from ddct_plant.identification.from_log.command import NEEDED
-from ddct_plant.identification.from_log.fit import fit_log
-from ddct_plant.identification.from_log.prediction import SpeedPrediction, predict
-from ddct_plant.identification.from_log.result import LogFit
-from ddct_plant.identification.from_log.scenario import load_of
-from ddct_plant.identification.from_log.stretch import TORQUES
-from ddct_plant.identification.from_log.stretches import stretches_of
-from ddct_plant.identification.from_log.verdict import reasons_against
-from ddct_plant.identification.identify import main
-from ddct_plant.measured.columns import TIME, own_columns
-from ddct_plant.measured.log import SPEEDS, MeasuredLog, read_log
 from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.scenario.file import load_scenario
 from support.other_car import TRUE, drive

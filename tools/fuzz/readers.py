@@ -18,9 +18,9 @@ import pyarrow.parquet as parquet
 from support.runs import plan
 
 from ddct_bringup.campaign.arrow_columns import read_parquet
+from ddct_bringup.logs.columns import load_columns
 from ddct_bringup.verdict.limits import load_limits
 from ddct_plant.base.errors import DdctError
-from ddct_plant.measured.columns import load_columns
 from ddct_plant.scenario.file import ScenarioFile, load_scenario, scenario_to_yaml
 from fuzz.reader import Reader
 from fuzz.targets.bag_readers import bag_readers, made_bag

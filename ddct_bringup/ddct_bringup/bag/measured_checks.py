@@ -10,9 +10,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from ddct_bringup.logs.wheel_radius import RADII_M
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import PERIOD_S
-from ddct_plant.measured.wheel_radius import RADII_M
 from ddct_plant.models.gearbox import EngagedGear
 
 Values = Mapping[str, np.ndarray]

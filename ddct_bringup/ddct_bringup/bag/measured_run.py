@@ -14,12 +14,12 @@ from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.bag.recording import Recording
 from ddct_bringup.bag.run_facts import MEASURED, RunFacts
 from ddct_bringup.bag.trajectory import Trajectory
+from ddct_bringup.logs.columns import QUANTITIES, TIME, ColumnMap
+from ddct_bringup.logs.log import MeasuredLog, read_log
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.options import options_of, require_known
 from ddct_plant.base.timebase import PERIOD_S, time_of_step
 from ddct_plant.files.input_file import located
-from ddct_plant.measured.columns import QUANTITIES, TIME, ColumnMap
-from ddct_plant.measured.log import MeasuredLog, read_log
 from ddct_plant.signals.signal import RunKind, Signal
 from ddct_plant.signals.topics import recorded_topics
 

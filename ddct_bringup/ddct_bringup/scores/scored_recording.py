@@ -10,6 +10,7 @@ from pathlib import Path
 from ddct_bringup.bag.measured_run import read_recording
 from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.bag.recording import Recording
+from ddct_bringup.logs.columns import ColumnMap
 from ddct_bringup.run.execution import execute, simulate
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.run.timing_and_failure import RunTiming, failed_run, read_timing
@@ -19,7 +20,6 @@ from ddct_bringup.scores.scoring import run_without_score, score_run, unreadable
 from ddct_bringup.scores.validity import incomplete
 from ddct_bringup.verdict.limits import Limits
 from ddct_plant.base.errors import DdctError
-from ddct_plant.measured.columns import ColumnMap
 from ddct_plant.scenario.file import scenario_digest
 from ddct_plant.scenario.settings import RunSettings
 

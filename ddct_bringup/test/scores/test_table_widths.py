@@ -13,10 +13,10 @@ from made_results import made_results
 
 from ddct_bringup.campaign_report.printed_summary import summary_tables
 from ddct_bringup.campaign_report.summary import summary_of
+from ddct_bringup.identification import identify
 from ddct_bringup.programs import benchmark, limit, reproduce, sweep
 from ddct_controllers.check import program as check_controller
 from ddct_controllers.workflows import design_program
-from ddct_plant.identification import identify
 from ddct_plant.program.printed_table import MOST_NOTES, print_tables
 
 SHORT = ('--set', 'duration_s=1.2', '--set', 'score_window_s=[0.6, 1.1]')

@@ -10,7 +10,6 @@ from typing import Literal
 import numpy as np
 
 from ddct_plant.files.json_records import Inline
-from ddct_plant.identification.coefficients import SYMBOLS_AND_UNITS
 from ddct_plant.linear.cascade import Factor
 from ddct_plant.linear.lti import FactoredTransferFunction
 from ddct_plant.models import driveline_model
@@ -20,6 +19,7 @@ from ddct_plant.models.driveline_model import (
     engine_to_slip,
     load_to_slip,
 )
+from ddct_plant.models.parameters import SYMBOLS_AND_UNITS
 from ddct_plant.models.static_torque import StaticTorque
 from ddct_plant.scenario.scenario import Scenario
 

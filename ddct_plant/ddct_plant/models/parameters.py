@@ -23,6 +23,17 @@ _VEHICLE_INERTIA = Option(
     source='`identify`',
     above=0.0,
 )
+SYMBOLS_AND_UNITS = {
+    'engine_inertia': ('J_m', 'kg m^2'),
+    'engine_damping': ('c_m', 'N m s/rad'),
+    'shaft_inertia': ('J_p', 'kg m^2'),
+    'shaft_damping': ('c_prim', 'N m s/rad'),
+    'halfshaft_damping': ('c_sa', 'N m s/rad'),
+    'halfshaft_stiffness': ('k_sa', 'N m/rad'),
+    'total_ratio': ('tau', '1'),
+    'vehicle_inertia': ('J_v', 'kg m^2'),
+}
+"""Symbol and unit of every number of `DrivelineParameters.values`, for tables."""
 
 
 @dataclass(frozen=True)

@@ -18,9 +18,9 @@ from support.logs import (
 )
 from support.other_car import SPEEDS, TRUE, drive, late_log
 
-from ddct_plant.identification.from_log.fit import fit_log
-from ddct_plant.identification.from_log.result import LogFit
-from ddct_plant.measured.log import MeasuredLog
+from ddct_bringup.identification.from_log.fit import fit_log
+from ddct_bringup.identification.from_log.result import LogFit
+from ddct_bringup.logs.log import MeasuredLog
 from ddct_plant.models.parameters import DrivelineParameters
 
 START = DrivelineParameters()

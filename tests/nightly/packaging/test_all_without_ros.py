@@ -15,7 +15,7 @@ ALL = """
 import contextlib, importlib, io, json, pkgutil, sys
 from ddct_bringup.programs import compare, reproduce, score
 from ddct_controllers.workflows import design_program
-from ddct_plant.identification import identify
+from ddct_bringup.identification import identify
 codes, refused = {}, {}
 for name, main, arguments in (
     ('compare', compare.main, '--controllers pi --headless --duration 1 --out runs'),

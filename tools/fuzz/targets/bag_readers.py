@@ -10,11 +10,11 @@ from support.runs import plan
 from support.sensors import ALL_ON
 
 from ddct_bringup.bag.reader import read_bag
+from ddct_bringup.logs.columns import own_columns
+from ddct_bringup.logs.log import read_log
 from ddct_bringup.run.execution import execute
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.scores.csv_text import signals_csv
-from ddct_plant.measured.columns import own_columns
-from ddct_plant.measured.log import read_log
 from fuzz.reader import Reader
 
 NAME = 'pi.mcap'

@@ -10,6 +10,7 @@ from pathlib import Path
 from rich.console import Console
 
 from ddct_bringup.api import shell
+from ddct_bringup.logs.columns import load_columns
 from ddct_bringup.manifest.manifest import keep_digests
 from ddct_bringup.report.evidence import evidence_of
 from ddct_bringup.report.page_parts import MARKER
@@ -21,7 +22,6 @@ from ddct_bringup.scores.scored_recording import ScoredRecording, score_any_bag
 from ddct_bringup.verdict.limits import Limits
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.output_file import STDOUT, require_place, write_text
-from ddct_plant.measured.columns import load_columns
 from ddct_plant.program.progress import with_progress
 
 REPORT_FILE = 'report.html'

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from ddct_bringup.bag.measured_run import read_recording
 from ddct_bringup.bag.recording import Recording
+from ddct_bringup.logs.columns import load_columns
 from ddct_bringup.manifest.manifest import keep_digests
 from ddct_bringup.run.output_folder import is_ours, locked_folders
 from ddct_bringup.scores.bags import bag_name, bags_in
@@ -22,7 +23,6 @@ from ddct_bringup.verdict.limits import Limits
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.json_records import write_json
 from ddct_plant.files.output_file import STDOUT, write_text
-from ddct_plant.measured.columns import load_columns
 from ddct_plant.program.progress import with_progress
 
 Bag = tuple[Path, Path | None]

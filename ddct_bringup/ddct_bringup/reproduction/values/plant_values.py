@@ -8,11 +8,11 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from ddct_bringup.identification.coefficients import PrintedCoefficients
+from ddct_bringup.identification.fit import identify_driveline, predict_left_out
 from ddct_bringup.reproduction.numbers.thesis_number import Value
 from ddct_bringup.reproduction.study_run import THESIS_SCENARIO, thesis_run
 from ddct_bringup.reproduction.values.controller_values import numbers_of
-from ddct_plant.identification.coefficients import PrintedCoefficients
-from ddct_plant.identification.fit import identify_driveline, predict_left_out
 from ddct_plant.linear.lti import FactoredTransferFunction
 from ddct_plant.models.driveline_model import (
     STATES,
