@@ -9,7 +9,7 @@ from ddct_bringup.bag.measured_keys import MeasuredKeys
 from ddct_controllers.mpc.costs import BASIS
 from ddct_controllers.mpc.program.settings import program_options
 from ddct_controllers.registry import controller_spec
-from ddct_plant.base.option import OPTION_HEADERS, option_rows
+from ddct_plant.base.option import option_rows
 from ddct_plant.base.options import OptionGroup, Options, group_of, options_of
 from ddct_plant.program.scheduling import Scheduling
 from ddct_plant.program.table import Table
@@ -17,11 +17,14 @@ from ddct_plant.scenario.choices.settings import SETTINGS
 from ddct_plant.scenario.nouns.keys import CAR, DRIVE, SCENARIO, owner_of
 from ddct_plant.scenario.scenario import Scenario
 
+_HEADERS = ('key', 'unit', 'default', 'range', 'meaning', 'source')
+"""Headers of the rows that `option_rows` returns."""
+
 
 def _keys(owner: str) -> Table:
     """Return the keys of a scenario that belong to the car, the drive or the file itself."""
     rows = [_code(row) for row in _rows(Scenario) if owner_of(row[0]) == owner]
-    return Table('', OPTION_HEADERS, rows)
+    return Table('', _HEADERS, rows)
 
 
 def _rows(group: type[OptionGroup]) -> list[tuple[str, ...]]:
@@ -51,12 +54,12 @@ def _controllers(*names: str, without: Sequence[str] = ()) -> Table:
             texts = (f'{text} ({", ".join(those)})' for text, those in having.items())
             row = (*row[:2], ', '.join(texts), *row[3:])
         rows.append(_code(row)[:-1])
-    return Table('', OPTION_HEADERS[:-1], rows)
+    return Table('', _HEADERS[:-1], rows)
 
 
 def _without_source(options: Options, prefix: str = '') -> Table:
     rows = option_rows(options, prefix)
-    return Table('', OPTION_HEADERS[:-1], [_code(row)[:-1] for row in rows])
+    return Table('', _HEADERS[:-1], [_code(row)[:-1] for row in rows])
 
 
 def _code(row: Sequence[str]) -> tuple[str, ...]:

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from numbers import Real
 from typing import Self
 
-LONGEST_LINE = 4000
+_LONGEST_LINE = 4000
 """Largest length of an error text; a longer one loses its middle, as the beginning has the error
 and the end the advice."""
 _KEPT_AT_END = 1000
@@ -73,8 +73,8 @@ def printable(text: object) -> str:
     are written as an escape such as \x1b.
     """
     line = str(text)
-    if len(line) > LONGEST_LINE:
-        line = line[: LONGEST_LINE - _KEPT_AT_END] + _CUT + line[-_KEPT_AT_END:]
+    if len(line) > _LONGEST_LINE:
+        line = line[: _LONGEST_LINE - _KEPT_AT_END] + _CUT + line[-_KEPT_AT_END:]
     if line.isprintable():
         return line
     return ''.join(
@@ -129,15 +129,6 @@ def require_name(what: str, name: object) -> None:
             'dots, dashes and underscores, no dot or dash first',
             key=what,
         )
-
-
-def require_rising(name: str, times: Sequence[float]) -> None:
-    """Raise ParameterError unless `times`, called `name`, rise strictly."""
-    for earlier, later in zip(times, times[1:], strict=False):
-        if later <= earlier:
-            raise ParameterError(
-                f'{name} goes from {earlier:g} to {later:g}: it must rise', key=name
-            )
 
 
 def require_choice(name: str, value: str, choices: Sequence[str]) -> None:

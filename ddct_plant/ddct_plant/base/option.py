@@ -12,9 +12,10 @@ import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from typing import Any
 
-from ddct_plant.base.errors import ParameterError, require_choice, require_number, require_rising
+from ddct_plant.base.errors import ParameterError, require_choice, require_number
 from ddct_plant.base.timebase import steps_in
 
 REQUIRED: Any = dataclasses.MISSING
@@ -23,8 +24,6 @@ Options = Mapping[str, 'Option']
 """Options by name."""
 _GIVE = {bool: 'true or false', str: 'text'}
 """Accepted values of an option that is no number, by its kind, for errors."""
-OPTION_HEADERS = ('key', 'unit', 'default', 'range', 'meaning', 'source')
-"""Headers of the rows that `option_rows` returns."""
 
 
 @dataclass(frozen=True)
@@ -80,7 +79,7 @@ class Option:
             raise ParameterError(f'{name} is {value!r}: give a list, [...]', key=name)
         values = [self._checked_one(f'{name}[{i}]', item) for i, item in enumerate(value)]
         if self.rising:
-            require_rising(name, values)
+            _require_rising(name, values)
         return tuple(values)
 
     def _checked_one(self, name: str, value: Any) -> Any:
@@ -153,7 +152,7 @@ class Option:
 
 
 def option_rows(options: Options, prefix: str = '') -> list[tuple[str, ...]]:
-    """Return a row of text per option, in the columns OPTION_HEADERS."""
+    """Return a row of text per option: key, unit, default, range, meaning and source."""
     return [
         (
             f'{prefix}{name}',
@@ -165,6 +164,14 @@ def option_rows(options: Options, prefix: str = '') -> list[tuple[str, ...]]:
         )
         for name, described in options.items()
     ]
+
+
+def _require_rising(name: str, values: Sequence[float]) -> None:
+    for earlier, later in pairwise(values):
+        if later <= earlier:
+            raise ParameterError(
+                f'{name} goes from {earlier:g} to {later:g}: it must rise', key=name
+            )
 
 
 def _text(value: Any) -> str:

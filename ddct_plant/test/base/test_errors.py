@@ -12,10 +12,10 @@ from ddct_plant.base.errors import (
     require_choice,
     require_name,
     require_number,
-    require_rising,
     require_signal,
     without_folders,
 )
+from ddct_plant.base.option import Option
 from ddct_plant.base.timebase import steps_in
 from ddct_plant.files.input_file import located
 
@@ -63,7 +63,7 @@ def test_key_and_place_reach_another_process() -> None:
         lambda: require_number('gain', -1.0, at_least=0.0),
         lambda: require_number('gain', 2.0, at_most=1.0),
         lambda: require_name('gain', '../gain'),
-        lambda: require_rising('gain', [1.0, 1.0]),
+        lambda: Option((), '', many=True, rising=True).checked('gain', [1.0, 1.0]),
         lambda: require_choice('gain', 'high', ['low']),
         lambda: require_signal('gain', float('inf')),
         lambda: steps_in('gain', 0.005),
