@@ -14,8 +14,10 @@ from typing import Any
 
 import rclpy
 from rclpy.context import Context
+from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.parameter import Parameter
+from rclpy.qos import DurabilityPolicy
 from rclpy.signals import SignalHandlerOptions
 from rclpy.task import Future
 from stepped_time import SteppedTime
@@ -49,9 +51,9 @@ class InProcessGraph:
     """
     Nodes of one run on one executor; as a context manager it destroys them.
 
-    Time stands still while a message waits for its reader; then it goes on to the next timer. So a
-    run does not depend on how fast the machine is. With `wall_clock` it goes on by itself, for a
-    run with nodes in other processes.
+    Time stands still while a message is on its way or waits for its reader; then it goes on to the
+    next timer. So a run does not depend on how fast the machine is. With `wall_clock` it goes on
+    by itself, for a run with nodes in other processes.
     """
 
     def __init__(self, plan: RunPlan, folder: Path, *, wall_clock: bool = False) -> None:
@@ -71,6 +73,7 @@ class InProcessGraph:
         self._executor.add_node(self.watch)
         self._an_end = Future()
         self._mark_waits = False
+        self._has_new_nodes = False
 
     def __enter__(self) -> 'InProcessGraph':
         return self
@@ -123,6 +126,7 @@ class InProcessGraph:
         node.done.add_done_callback(lambda _: self._an_end.done() or self._an_end.set_result(None))
         self.nodes[key or path] = node
         self._executor.add_node(node)
+        self._has_new_nodes = True
         return node
 
     def steady_time(self) -> SteadyTime:
@@ -133,6 +137,7 @@ class InProcessGraph:
         """Add a node that is no part of the product, built with our `context`."""
         self._others.append(node)
         self._executor.add_node(node)
+        self._has_new_nodes = True
 
     def remove(self, name: str) -> None:
         """Remove a node in the middle of the run."""
@@ -162,7 +167,7 @@ class InProcessGraph:
         while not (condition() or self.failures()) and self._now() < deadline:
             if self.time is None:
                 self._executor.spin_once(CHECK_PERIOD_S)
-            elif not self._call_next() and not self.time.step():
+            elif not (self._call_next() or self._await_latched() or self.time.step()):
                 break
         assert not self.failures(), self.failures()
         assert condition(), f'{what}: not within {WITHIN_S:g} s'
@@ -200,6 +205,7 @@ class InProcessGraph:
     def pass_time(self, seconds: float) -> None:
         """Let time pass, and each message arrive when it is sent."""
         assert self.time is not None
+        self._await_latched()
         self._drain()
         self.time.advance(seconds, self._drain)
 
@@ -217,7 +223,7 @@ class InProcessGraph:
             if self.time is None:
                 self._an_end = Future()
                 self._executor.spin_until_future_complete(self._an_end, CHECK_PERIOD_S)
-            elif not self._drain() and not self.time.step():
+            elif not (self._drain() or self._await_latched() or self.time.step()):
                 break
         assert ended(), f'{what}: not within {within_s:g} s'
 
@@ -229,6 +235,19 @@ class InProcessGraph:
         self._an_end = Future()
         self._executor.spin_until_future_complete(self._an_end, 0.0)
         return self._an_end.done()
+
+    def _await_latched(self) -> bool:
+        """
+        Wait until new nodes have the latched messages of others; return False where none is new.
+
+        Fast DDS hands these on by its own timers, in tens of milliseconds of the wall clock.
+        """
+        waits, self._has_new_nodes = self._has_new_nodes, False
+        for node in [*self.nodes.values(), *self._others] if waits else ():
+            for publisher in node.publishers:
+                if publisher.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL:
+                    assert publisher.wait_for_all_acked(Duration(seconds=WITHIN_S))
+        return waits
 
     def _call_next(self) -> bool:
         """Make the next callback that waits; return False where none waits."""
