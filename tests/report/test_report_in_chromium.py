@@ -14,7 +14,7 @@ from ddct_bringup.bag.trajectory_bag import write_trajectory
 from ddct_bringup.programs.report import main
 from ddct_bringup.run.description import custom_data
 from ddct_bringup.run.headless import run_headless
-from ddct_controllers.design.drawing.line_looks import controller_look
+from ddct_controllers.design.drawing.line_looks import DARK_COLOURS, controller_look
 
 pytestmark = [
     pytest.mark.browser,
@@ -121,7 +121,7 @@ def test_a_yardstick_has_its_star_and_hollow_point_and_the_withheld_torque_its_s
     expected = [['ls8', False], ['torque_estimator', True]]
     assert sorted(visited.values[0]) == sorted(visited.values[1]) == expected
     order = [name for name, _ in visited.values[0]]
-    assert visited.values[2] == [controller_look(name).dark for name in order]
+    assert visited.values[2] == [DARK_COLOURS[controller_look(name).colour] for name in order]
     assert [most > 10.0 for most in visited.values[3]] == [n != 'ls8' for n in order]
     assert visited.values[4] <= PHONE_PX
     assert visited.values[5] == []

@@ -59,17 +59,6 @@ def run_batch(runs: Sequence[Run], limits: Limits) -> list[ScoredRun | None]:
     return results
 
 
-def trajectories(runs: Sequence[Run]) -> Trajectory:
-    """
-    Return the signals of runs as a stack, with the runs as the first axis of each.
-
-    They are those that scores need: joint speeds and efforts, slip, A_x, C_load, reference,
-    request and demand. All runs have one length, control start, architecture, equilibrium, kind of
-    reference, known delay of the actuator, and order of the controller.
-    """
-    return _stack(_linear(runs))
-
-
 def _linear(runs: Sequence[Run]) -> list[_Linear]:
     """Return the runs with the linear feedback of their controllers, one per controller."""
     controllers = {id(controller): controller for _, controller in runs}

@@ -205,12 +205,6 @@ def test_huge_multipliers_that_cancel_prove_nothing_by_rounding(seed):
     assert proven(WEAK_DUALITY, program, multipliers, np.zeros(0)) <= 1.0
 
 
-def test_the_residual_of_a_point_is_its_farthest_violation():
-    program = impossible_program()
-    assert program.residual(np.array([0.5, 0.5])) == pytest.approx(0.5)
-    assert program.residual(np.array([-2.0, 3.2])) == pytest.approx(2.0)
-
-
 @pytest.mark.parametrize('mirrored', [0, 3])
 def test_products_with_mirrored_rows_are_those_with_all_rows(mirrored):
     random = np.random.default_rng(5)

@@ -85,12 +85,6 @@ class ClutchHeat:
         self._above_ambient = [t - p.ambient_c for t in (p.plate_c, p.facing_c, p.housing_c)]
 
     @property
-    def temperatures_c(self) -> tuple[float, float, float]:
-        """Temperatures of plate, facing and housing in degrees Celsius."""
-        plate, facing, housing = self._above_ambient
-        return self._ambient_c + plate, self._ambient_c + facing, self._ambient_c + housing
-
-    @property
     def facing_c(self) -> float:
         """Temperature of the facing in degrees Celsius, on which the friction depends."""
         return self._ambient_c + self._above_ambient[1]

@@ -3,7 +3,6 @@
 """A scenario: everything about a run except the controller and the run settings."""
 
 import dataclasses
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -213,11 +212,6 @@ class Scenario(OptionGroup):
     def end_cause(self, engine_speed: float) -> str | None:
         """Return the cause of an early end with the engine at w_m in rad/s, None without one."""
         return self.engine_limits.end_cause(engine_speed) if self.engine_limits else None
-
-    @property
-    def cut_speed(self) -> float:
-        """Engine speed in rad/s at which the rev limiter cuts the fuel, infinite without one."""
-        return self.engine_limits.cut_rad_s if self.engine_limits else math.inf
 
     @property
     def of_stick_slip(self) -> tuple[str, ...]:

@@ -28,10 +28,9 @@ def test_the_work_of_a_period_counts_in_the_next_one():
     for step in range(1, 20):
         heat.advance(2000.0)
         reply = model.reply(step, TORQUES, 100.0, 2000.0)
-        _, facing_c, _ = heat.temperatures_c
-        assert reply.temperature_c == facing_c
+        assert reply.temperature_c == heat.facing_c
     assert reply.temperature_c > 255.0
-    assert reply.kinetic[0] == pytest.approx(100.0 * (1.0 - 0.2 * (facing_c - 250.0) / 50.0))
+    assert reply.kinetic[0] == pytest.approx(100.0 * (1.0 - 0.2 * (heat.facing_c - 250.0) / 50.0))
 
 
 def test_skipped_periods_count_with_the_work_of_the_one_after_them():

@@ -30,8 +30,6 @@ class Motion:
 
     start: int
     """Step from which metrics count: control start, also in a gear shift."""
-    lock_step: int | None
-    """Step that starts the period of the lock; None for a linear clutch, which does not lock."""
     sign: float
     """Sign of the slip at control start: 1 for an engine that is faster than the shaft."""
     columns: Columns
@@ -178,7 +176,6 @@ class _Builder:
         slipping = self._slipping_periods + (self._lock is None)
         return Motion(
             self._start.scored_from,
-            None if self._lock is None else start + self._lock[0],
             self._sign,
             self.columns,
             acceleration,

@@ -10,7 +10,7 @@ from ddct_plant.models.driveline_model import states_and_torques
 from ddct_plant.models.linear_driveline import step_matrix
 from ddct_plant.models.parameters import DrivelineParameters
 
-STATES = ENGINE, SHAFT, WHEEL, TWIST = (0, 1, 2, 3)
+ENGINE, SHAFT, WHEEL, TWIST = range(4)
 """Indices of w_m, w_p, w_r and theta_sr."""
 NODES = SUBSTEPS + 1
 """Number of nodes of C_f in a period."""

@@ -64,15 +64,6 @@ class LinearProgram:
         found[-1] += (first + second) @ self.rows[:count, -1]
         return np.asarray(found)
 
-    def residual(self, point: np.ndarray) -> float:
-        """Return the largest violation of a row, an equation or the box by a point (n,)."""
-        return max(
-            float(np.max(self.rows @ point - self.limits, initial=0.0)),
-            float(np.max(np.abs(self.equal_rows @ point - self.equal_values), initial=0.0)),
-            float(np.max(self.low - point, initial=0.0)),
-            float(np.max(point - self.high, initial=0.0)),
-        )
-
 
 @dataclass(frozen=True, eq=False)
 class Certificate:

@@ -70,11 +70,6 @@ class LineLook:
         """Colour on a light page, as #rrggbb."""
         return LIGHT_COLOURS[self.colour]
 
-    @property
-    def dark(self) -> str:
-        """Colour on a dark page, as #rrggbb."""
-        return DARK_COLOURS[self.colour]
-
 
 _FIXED = {
     name: LineLook(colour, dash)

@@ -83,11 +83,6 @@ def owner_of(key: str) -> str | None:
     return None
 
 
-def keys_of(owner: str) -> tuple[str, ...]:
-    """Return the keys and whole sections of the car, the drive or the scenario file."""
-    return _OF[owner]
-
-
 @cache
 def is_shared(section: str) -> bool:
     """Return whether a section has keys of both nouns."""
