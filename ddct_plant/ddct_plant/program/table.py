@@ -70,8 +70,6 @@ class Column(Generic[Row]):
     """Function from a row to its value; None, shown as a dash, where it is undefined."""
     number: bool = True
     """Whether the column is aligned to the right and its values are never wrapped."""
-    below: Callable[[Row], str] = lambda row: ''
-    """Function from a row to the second line beneath the value; empty for none."""
     undefined: Callable[[Row], str] = lambda row: ''
     """Function from a row to the reason for which its value is undefined."""
     remark: Callable[[Row], str] = lambda row: ''
@@ -83,9 +81,8 @@ class Column(Generic[Row]):
         return text_or_dash(self.value(row), self.form)
 
     def cell(self, row: Row) -> str:
-        """Return the text of a row's cell, of one line or two."""
-        lines = (self.text(row), self.below(row))
-        return '\n'.join(printable(line) for line in lines if line)
+        """Return the text of a row's cell."""
+        return printable(self.text(row))
 
     def reason(self, row: Row) -> str:
         """Return the reason of a row's dash or star, empty for none."""

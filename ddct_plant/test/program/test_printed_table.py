@@ -14,7 +14,6 @@ from ddct_plant.program.printed_table import (
     REDIRECTED_WIDTH,
     print_note,
     print_table,
-    table_lines,
 )
 from ddct_plant.program.table import Column, Table, Weight, table_of, with_reasons
 
@@ -40,6 +39,23 @@ def tables(draw: st.DrawFn) -> Table:
         for line in range(draw(st.integers(1, 3)))
     ]
     return Table('', headers, rows, numbers=kinds, weights=weights)
+
+
+class Terminal(io.StringIO):
+    def isatty(self) -> bool:
+        return True
+
+
+def table_lines(table: Table, width: int) -> list[tuple[str, bool]]:
+    """Return the lines on a terminal of that width, and whether each is a bold heading."""
+    stream = Terminal()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv('COLUMNS', str(width))
+        patch.setenv('TERM', 'xterm-256color')
+        print_table(table, stream)
+    *lines, last, behind = stream.getvalue().split('\n')
+    assert (last, behind) == ('', ''), 'an empty line is behind a table'
+    return [(re.sub(r'\x1b\[[0-9;]*m', '', line).rstrip(), '\x1b[1m' in line) for line in lines]
 
 
 @given(tables(), st.integers(40, 200))
@@ -155,23 +171,23 @@ def test_a_column_that_is_left_out_has_no_reason_below() -> None:
     assert not any('none' in line for line in texts(narrow, 40))
 
 
-def _yes() -> bool:
-    return True
-
-
-def _no() -> bool:
-    return False
-
-
 @pytest.mark.parametrize('width', [80, 100, REDIRECTED_WIDTH])
 def test_a_terminal_gives_the_width_and_a_file_is_at_most_120_wide(
     width: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv('COLUMNS', str(width))
-    for is_terminal, most in ((True, width), (False, REDIRECTED_WIDTH)):
-        stream = io.StringIO()
-        monkeypatch.setattr(stream, 'isatty', {True: _yes, False: _no}[is_terminal])
+    for stream, most in ((Terminal(), width), (io.StringIO(), REDIRECTED_WIDTH)):
         print_table(Table('title ' * 40, ('text',), [('word ' * 60,)]), stream)
         print_note('note ' * 60, stream)
         lines = re.sub(r'\x1b\[[0-9;]*m', '', stream.getvalue()).splitlines()
         assert most - 8 <= max(map(len, lines)) <= most
+
+
+def test_a_file_has_neither_codes_of_a_terminal_nor_spaces_at_ends_of_lines(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setenv('FORCE_COLOR', '1')
+    stream = io.StringIO()
+    print_table(WIDE, stream)
+    assert '\x1b' not in stream.getvalue()
+    assert [line for line in stream.getvalue().split('\n') if line != line.rstrip()] == []
