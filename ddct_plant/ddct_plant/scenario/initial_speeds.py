@@ -88,7 +88,8 @@ class InitialSection(OptionGroup, prefix='initial.'):
         if self.speed_km_h is not None and self.shaft_speed_rad_s is not None:
             raise ParameterError(
                 f'initial.speed_km_h is {self.speed_km_h:g} and initial.shaft_speed_rad_s is '
-                f'{self.shaft_speed_rad_s:g}: give one of them, as the other follows',
+                f'{self.shaft_speed_rad_s:g}: give one, from which the other follows, and null in '
+                'place of the other, such as initial.speed_km_h=null',
                 key='initial.speed_km_h',
             )
 
