@@ -14,7 +14,7 @@ from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import REQUIRED, Options
 from ddct_plant.graph.node_reports import CONTROLLER, TWO_INPUT, flag
 from ddct_plant.linear.lti import StateSpace
-from ddct_plant.scenario.settings import KnownSettings
+from ddct_plant.scenario.settings import KnownSettings, require_known
 
 Status = tuple[tuple[str, str], ...]
 """Pairs (key, value) for `controller/status`; deterministic, so no wall time in them."""
@@ -120,6 +120,10 @@ class ControllerContext:
     A controller gets every one of the `options` that it declares, checked, the default where the
     scenario gives none. Others are refused.
     """
+
+    def __post_init__(self) -> None:
+        """Raise ParameterError for settings that are not the known ones."""
+        require_known(self.settings)
 
 
 @dataclass(frozen=True)

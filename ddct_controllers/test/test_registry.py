@@ -253,3 +253,10 @@ def test_options_that_are_no_declaration_name_the_controller(
     add_entry_point('third', f'{__name__}:Third')
     with refused(DdctError, key='options', place="controller 'third'"):
         make_controller('third', SETTINGS.known)
+
+
+def test_a_controller_is_not_made_from_the_true_settings_of_a_run() -> None:
+    true: Any = SETTINGS
+    with refused(ParameterError, 'settings') as caught:
+        make_controller('pi', true)
+    assert 'give settings.known' in str(caught.value)

@@ -14,7 +14,7 @@ from ddct_controllers.handover.interface import (
 from ddct_controllers.handover.third_party import third_party_handover
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.scenario.rules.shift import shift_of
-from ddct_plant.scenario.settings import KnownSettings
+from ddct_plant.scenario.settings import KnownSettings, require_known
 
 PROPORTIONAL, INTEGRAL = 0.0516, 0.044376
 """
@@ -160,7 +160,9 @@ def make_handover(settings: KnownSettings) -> Handover:
     """
     Return the handover of a run, from its known settings: one of ours by name, or a third party's.
 
-    Raise ParameterError for an unknown name, DdctError for code of others that fails.
+    Raise ParameterError for an unknown name and for other settings, DdctError for code of others
+    that fails.
     """
+    require_known(settings)
     made = HANDOVERS.get(settings.handover)
     return made(settings) if made else third_party_handover(settings, HANDOVERS)

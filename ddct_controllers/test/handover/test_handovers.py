@@ -3,6 +3,7 @@
 """The handovers of a shift: ramps, the torque balance, slip under feedback, and the torque cut."""
 
 from dataclasses import replace
+from typing import Any
 
 import pytest
 from handed_over import flare, shift, tie_up_work
@@ -22,8 +23,10 @@ from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.models.actuator import PRINTED_ACTUATOR, Actuator
 from ddct_plant.models.driveline import LOCKED, PHASES
+from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.initial_state import initial_request
 from ddct_plant.scenario.rules.shift import gears_of
+from ddct_plant.scenario.settings import KnownSettings, RunSettings
 from ddct_plant.shift.balance import off_going_torque
 from ddct_plant.shift.roles import OFF_GOING
 
@@ -186,3 +189,9 @@ def test_a_handover_expects_what_the_locked_clutch_carries():
 def test_an_unknown_handover_is_refused():
     with refused(ParameterError, 'handover'):
         make_handover(replace(shift_settings('upshift').known, handover='quick'))
+
+
+def test_a_handover_is_not_made_from_the_true_settings_of_a_run() -> None:
+    true: Any = RunSettings(KnownSettings(load_scenario('upshift')))
+    with refused(ParameterError, 'settings'):
+        make_handover(true)

@@ -247,6 +247,20 @@ class RunSettings:
                 )
 
 
+def require_known(settings: object) -> None:
+    """
+    Raise ParameterError unless these are known settings.
+
+    What controls would learn the case of a run from its true ones.
+    """
+    if not isinstance(settings, KnownSettings):
+        raise ParameterError(
+            f'what controls is made from KnownSettings, not from {type(settings).__name__}: give '
+            'settings.known of a RunSettings',
+            key='settings',
+        )
+
+
 class AnySettings(Protocol):
     """Known or true settings, for models that are made of either."""
 
