@@ -14,7 +14,6 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from ddct_plant.base.clutch_kinds import LINEAR
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.files.input_file import SCHEMA_KEY, named_in
 from ddct_plant.models.gearbox import EngagedGear, Gearbox
@@ -22,7 +21,7 @@ from ddct_plant.models.parameters import VehicleParameters
 from ddct_plant.scenario.choices.scenarios import is_packaged
 from ddct_plant.scenario.csv_profiles import SECTIONS as PROFILES
 from ddct_plant.scenario.csv_profiles import file_of
-from ddct_plant.scenario.nouns.keys import CAR, SCENARIO, is_shared, owner_of
+from ddct_plant.scenario.nouns.keys import SCENARIO, is_shared, owner_of
 from ddct_plant.scenario.nouns.part import Text
 from ddct_plant.scenario.nouns.places import places_of
 from ddct_plant.scenario.nouns.written import texts_by_file
@@ -44,7 +43,7 @@ def converted(file: Path, target: Path, clutch: str) -> dict[Path, str]:
         if csv := file_of(content.get(name)):
             path = named_in(file.parent, str(csv)).absolute()
             content[name] = {**content[name], 'csv': os.path.relpath(path, target.parent)}
-    return texts_by_file(content, target, {CAR: _base(content)})
+    return texts_by_file(content, target)
 
 
 def _today(content: dict[str, Any], clutch: str) -> dict[str, Any]:
@@ -111,10 +110,3 @@ def _start(content: Mapping[str, Any]) -> dict[str, Any]:
     if not content.get('shift'):  # else that of the off-going shaft, which follows
         initial.setdefault('engine_speed_rad_s', _SPEED_RAD_S)
     return {'initial': initial}
-
-
-def _base(content: Mapping[str, Any]) -> str:
-    """Return the name of the packaged car that has the engine and the clutch of a content."""
-    if content.get('engine_limits') is not None:
-        return 'c635'
-    return 'c635_thesis' if content['clutch'] == LINEAR else 'c635_no_limits'

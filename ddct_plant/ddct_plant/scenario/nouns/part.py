@@ -17,11 +17,17 @@ from ddct_plant.files.input_file import (
     user_text,
 )
 from ddct_plant.files.yaml_text import parse_yaml_with_lines
-from ddct_plant.scenario.choices.scenarios import is_packaged, packaged_names, packaged_text
+from ddct_plant.models.body import BODY
+from ddct_plant.scenario.choices.scenarios import (
+    DEFAULT_CAR,
+    is_packaged,
+    packaged_names,
+    packaged_text,
+)
 from ddct_plant.scenario.content import flat
 from ddct_plant.scenario.csv_profiles import SECTIONS as PROFILES
 from ddct_plant.scenario.csv_profiles import file_of, with_file_in
-from ddct_plant.scenario.nouns.keys import require_keys_of
+from ddct_plant.scenario.nouns.keys import CAR, require_keys_of
 from ddct_plant.scenario.nouns.layers import layered
 from ddct_plant.scenario.nouns.places import Places, places_of
 from ddct_plant.scenario.rules.body import with_body
@@ -114,7 +120,8 @@ class Part:
         """
         Return the car or drive in a file, with the values of its bases below its own.
 
-        `above` are the files that have it as a base. Raise DdctError that names file and line.
+        `above` are the files that have it as a base. Raise DdctError that names file and line,
+        also for a car without a base that is not whole.
         """
         if text.name in above:
             circle = ' -> '.join((*above, text.name))
@@ -122,7 +129,11 @@ class Part:
         content, lines = text.content()
         places = places_of(text.label, lines)
         files = (text.path,) if text.path else ()
-        return cls.of(text, content, places, (*above, text.name), files)
+        part = cls.of(text, content, places, (*above, text.name), files)
+        if text.noun == CAR and content.get(BASE) is None:
+            with located(text.label):
+                _require_whole(content)
+        return part
 
     @classmethod
     def of(
@@ -153,4 +164,29 @@ class Part:
             content.get(DESCRIPTION) or base.description,
             {**base.places, **places.of_keys},
             (*files, *(each for each in profiles if each), *base.files),
+        )
+
+
+def _require_whole(content: Mapping[str, Any]) -> None:
+    """
+    Refuse a car without a base that lacks a key which the packaged car gives.
+
+    A section that is off, or that has its defaults, gives all its keys. Two of mass, wheel radius
+    and inertia give the third.
+    """
+    whole, _ = Text(CAR, DEFAULT_CAR).content()
+    lacking = []
+    for section, value in whole.items():
+        keys = [key for key in flat({section: value}) if key not in (*BODY, DESCRIPTION)]
+        if section not in content:
+            lacking += [section] if keys else []
+        elif content[section]:
+            lacking += [key for key in keys if key not in flat({section: content[section]})]
+    if len({*BODY} & {*flat(content)}) < 2:
+        lacking.append(f'two of {", ".join(BODY)}')
+    if lacking:
+        raise ParameterError(
+            f'it has no base and lacks {", ".join(lacking)}: give them, or write '
+            f'`{BASE}: {DEFAULT_CAR}` to take what is missing from that car',
+            key=BASE,
         )

@@ -4,9 +4,9 @@
 
 from collections.abc import Mapping
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any
 
+from ddct_plant.base.clutch_kinds import LINEAR
 from ddct_plant.files.input_file import SCHEMA_KEY
 from ddct_plant.files.yaml_text import dump_yaml
 from ddct_plant.scenario.nouns.keys import CAR, DRIVE, NOUNS, SCENARIO, by_noun
@@ -20,21 +20,19 @@ def whole_text(content: Mapping[str, Any]) -> str:
     return dump_yaml({**_own(content), CAR: parts[CAR], DRIVE: parts[DRIVE]})
 
 
-def texts_by_file(
-    content: Mapping[str, Any], target: Path, bases: Mapping[str, str] = MappingProxyType({})
-) -> dict[Path, str]:
+def texts_by_file(content: Mapping[str, Any], target: Path) -> dict[Path, str]:
     """
     Return the text of each file by its path: the scenario at `target`, its car and drive beside.
 
-    A noun with a packaged base has the values that differ from those of the base alone.
+    The car has a packaged base, and the values that differ from those of the base.
     """
-    parts, own = by_noun(content), _own(content)
+    parts, own = by_noun({'clutch': LINEAR, **content}), _own(content)
     found: dict[Path, str] = {}
     for noun, path in beside(target).items():
         part = parts[noun]
-        if noun in bases:
-            base = Part.read(Text(noun, bases[noun])).content
-            part = {BASE: bases[noun], **_different(part, base)}
+        if noun == CAR:
+            base = _base(part)
+            part = {BASE: base, **_different(part, Part.read(Text(CAR, base)).content)}
         if noun == DRIVE and DESCRIPTION in own:
             part = {DESCRIPTION: own.pop(DESCRIPTION), **part}
         own[noun] = path.name
@@ -52,6 +50,13 @@ def _own(content: Mapping[str, Any]) -> dict[str, Any]:
     own = by_noun(content)[SCENARIO]
     given = {name: value for name, value in own.items() if value not in ({}, [], '')}
     return {SCHEMA_KEY: SCHEMA_VERSION, **given}
+
+
+def _base(car: Mapping[str, Any]) -> str:
+    """Return the name of the packaged car that has the engine and the clutch of a car."""
+    if car.get('engine_limits') is not None:
+        return 'c635'
+    return 'c635_thesis' if car['clutch'] == LINEAR else 'c635_no_limits'
 
 
 def _different(own: Mapping[str, Any], base: Mapping[str, Any]) -> dict[str, Any]:

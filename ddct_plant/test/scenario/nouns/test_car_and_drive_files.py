@@ -8,7 +8,12 @@ import pytest
 from refusals import refused
 
 from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.scenario.choices.scenarios import Choice, packaged_names, scenario_names
+from ddct_plant.scenario.choices.scenarios import (
+    Choice,
+    packaged_names,
+    packaged_text,
+    scenario_names,
+)
 from ddct_plant.scenario.file import ScenarioFile, load_scenario
 
 LAUNCH = load_scenario('launch')
@@ -100,6 +105,46 @@ def test_a_section_that_is_null_is_off_and_an_empty_one_has_its_defaults(write) 
     assert (made.heat.plate_j_k, made.heat.facing_c) == (1000.0, 200.0)
     drive = write('drive.yaml', 'base: launch\nclosing: null\n')
     assert load_scenario(drive=drive).closing is None
+
+
+def test_a_car_without_a_base_is_whole(write) -> None:
+    text = packaged_text('car', 'city7')
+    usual = load_scenario(car='city7', drive='launch', overrides=['name=launch_whole'])
+    assert load_scenario(car=write('whole.yaml', text), drive='launch') == usual
+
+
+@pytest.mark.parametrize(
+    ('removed', 'lacking'),
+    [
+        ('  shaft_damping: 0.008\n', 'driveline.shaft_damping'),
+        ('  measured_gears: []\n', 'gearbox.measured_gears'),
+        ('clutch: stick_slip ', 'clutch'),
+        ('  wheel_radius_m: 0.29 ', 'two of vehicle.mass_kg, vehicle.wheel_radius_m, driveline.'),
+    ],
+)
+def test_a_car_without_a_base_that_is_not_whole_is_refused(write, removed, lacking) -> None:
+    text = packaged_text('car', 'city7')
+    assert removed in text
+    car = write('part.yaml', text.replace(removed, '#' if removed[-1] == ' ' else ''))
+    with refused(ParameterError, 'base', 'car part.yaml') as caught:
+        load_scenario(car=car, drive='launch')
+    assert f'lacks {lacking}' in str(caught.value)
+
+
+def test_a_car_without_a_base_may_have_sections_off_or_at_their_defaults(write) -> None:
+    text = packaged_text('car', 'city7').partition('engine_limits:')[0]
+    rest = 'engine_limits: null\nclutch: stick_slip\nfriction: {}\nactuator: {}\n'
+    made = load_scenario(
+        car=write('own.yaml', text + rest),
+        drive='launch',
+        overrides=['engine.torque_n_m=[0, 140]'],
+    )
+    assert (made.engine_limits, made.friction) == (None, LAUNCH.friction)
+    with refused(ParameterError, 'base') as caught:
+        load_scenario(car=write('empty.yaml', '{}'), drive='launch')
+    assert 'lacks load, driveline, gearbox, engine_limits, clutch, friction, actuator, two of' in (
+        str(caught.value)
+    )
 
 
 def test_points_and_a_file_with_a_profile_replace_each_other_and_a_factor_those_of_a_base(
