@@ -12,7 +12,7 @@ from ddct_plant.base.timebase import SUBSTEP_S, SUBSTEPS
 from ddct_plant.friction.engagements import OFF_GOING, ON_COMING, SHIFT_STATES, EngagedGears
 from ddct_plant.hybrid.interval_map import Interval
 from ddct_plant.hybrid.mode_flow import Course
-from ddct_plant.hybrid.polynomials import roots, value_at
+from ddct_plant.hybrid.polynomials import sign_changes, value_at
 
 _SHAFT, _OTHER = SHIFT_STATES.places('shaft_speed', 'off_going_speed')
 _CLUTCHES = slice(ON_COMING, OFF_GOING + 1)
@@ -69,7 +69,9 @@ class TieUp:
         one, other = torques = course.friction()[_CLUTCHES].tolist()
         difference = course.states.dot(self._difference).tolist()
         changing = *torques, list(map(add, one, other)), difference
-        ends = sorted({0.0, part, *(root for each in changing for root in roots(each, part))})
+        nodes = course.nodes(part)
+        roots = (root for each in changing for root in sign_changes(each, nodes))
+        ends = sorted({0.0, part, *roots})
         return sum(_opposing(torques, difference, *span) for span in pairwise(ends))
 
 

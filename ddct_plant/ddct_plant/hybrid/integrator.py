@@ -31,11 +31,11 @@ class HybridIntegrator:
     Integrator of a FrictionSystem over intervals of equal pieces, in which inputs are linear.
 
     Between events a mode's flow is a matrix exponential, taken by its series, which is exact to
-    rounding over one piece. Slips and margins are then polynomials in time. One product gives
-    the new state together with lower bounds of their Bernstein coefficients; if none is negative
-    there is no event. Otherwise another gives the coefficients themselves, piece by piece. In the
-    first piece that has a negative one the first root is found on the polynomial, and the motion
-    goes on from there in the mode that `choose_mode` gives.
+    rounding over one piece. Slips and margins are then polynomials in time, the guards. One
+    product gives the new state together with the guards and their tangents at nodes of the
+    interval; if none is negative there is no event. Otherwise another gives them with the state
+    after each piece. In the first piece that has a negative one the first root is found on the
+    polynomials, and the motion goes on from there in the mode that `choose_mode` gives.
 
     It has no state of a motion, so that threads and runs may share it.
     """
@@ -161,7 +161,7 @@ class _Motion:
             nodes = values[layout.nodes[first : first + count + 1]]
             for place, element in enumerate(self._integrator.flows[self._signs].slipping):
                 capacities = nodes[:, element - len(self._signs)]
-                before, after = slips[:count, place].T
+                before, after = slips[:count, :, place].T
                 self._work[element] += float(
                     before.dot(capacities[:-1]) + after.dot(capacities[1:])
                 )
@@ -186,8 +186,9 @@ class _Motion:
                 raise DdctError(
                     'friction: a state, an input or a capacity is not finite or far too large'
                 )
-            part, guard, guards = course.first_event(orders, 1.0 - done)
-            self._add_work(course, guards, part)
+            part, guard = course.first_event(orders, 1.0 - done)
+            for element, work in zip(course.flow.slipping, course.work(part), strict=True):
+                self._work[element] += piece_s * work
             if self._keep:
                 self.courses.append((course, part))
             self._state = course.at(part)
@@ -208,15 +209,6 @@ class _Motion:
             f'friction: more than {MOST_EVENTS} events in {piece_s:g} s: '
             'look for values that are far too large'
         )
-
-    def _add_work(self, course: Course, guards: np.ndarray, part: float) -> None:
-        """Add the friction work over a part of a piece; `guards` are in Bernstein form on it."""
-        flow = course.flow
-        capacities, changes = course.capacities()
-        integrals = flow.slip_integrals(guards).tolist()
-        for element, (before, after) in zip(flow.slipping, integrals, strict=True):
-            work = (before + after) * capacities[element] + after * part * changes[element]
-            self._work[element] += part * self._integrator.piece_s * work
 
     def _note_change(self, time_s: float, before: Course, part: float, after: Course) -> None:
         """Set the mode after an event at `part` of the course before it, and append the events."""

@@ -11,14 +11,10 @@ import numpy as np
 
 from ddct_plant.hybrid.friction_system import IntervalLayout, Signs, Values
 from ddct_plant.hybrid.mode_flow import ModeFlow
-from ddct_plant.hybrid.polynomials import linear_weights
 
 BLOCK = 9000
 """Most elements of a matrix in one product: from 9216 OpenBLAS uses threads, with other
 rounding."""
-
-ROUNDING = 2.0**-52
-"""Singular value that counts as zero, over the largest one."""
 
 
 class Event(NamedTuple):
@@ -54,72 +50,78 @@ class IntervalMap:
     """
     Linear map of one mode over an interval from v = [x, *u, *c], see `IntervalLayout`, to its end.
 
-    Between two nodes a guard's Bernstein coefficients may be below the straight line. This
-    shortfall is a matrix times v. Its singular value decomposition reduces it to few numbers
-    z = W v, without cancellation of large terms; no shortfall is larger, in units of its guard,
-    than the sum of |z|.
+    It also gives what must not be negative in an interval without an event, see `guard_checks`.
     """
 
     def __init__(self, flow: ModeFlow, piece_s: float, layout: IntervalLayout) -> None:
         self._pieces, self._states, self._signs = layout.pieces, flow.states, flow.signs
-        starts = _piece_starts(flow, layout)
-        ends = flow.end @ starts
-        guards = _over_pieces(flow.guards, starts)
-        slips = piece_s * linear_weights(flow.degree) @ guards[:, flow.slip_guards]
         self._slipping = len(flow.slipping)
         self._sticking = [
             (i, flow.guarded.index(i)) for i, sign in enumerate(flow.signs) if not sign
         ]
         """Index of each sticking element and of its first guard."""
-        flat = [part.reshape(layout.pieces, -1, starts.shape[2]) for part in (slips, guards)]
+        starts = _piece_starts(flow, layout)
+        ends = flow.end @ starts
+        slips = piece_s * _over_pieces(flow.slip_integrals(), starts)
+        checks = _over_pieces(flow.guard_checks(), starts)
+        flat = [part.reshape(layout.pieces, -1, starts.shape[2]) for part in (slips, checks)]
         by_piece = np.concatenate([ends, *flat], axis=1)
         self._by_piece = _product(by_piece.reshape(-1, by_piece.shape[2]))
         last = starts[-1, flow.states :]
         driven = np.vstack([ends[-1], last[: flow.inputs] + last[flow.inputs :]])
-        rows = [ends[-1], flow.force @ driven]
+        results = [ends[-1], flow.force @ driven]
         self._friction = slice(flow.states, flow.states + len(flow.force))
+        results += self._work_rows(slips, flow.slipping, layout)
+        self._results = sum(map(len, results))
+        """Number of values before the checks."""
+        # The end of a piece is the start of the next one.
+        within, at_end = checks[:, :-1], checks[-1, -1]
+        self._whole = _product(np.vstack([*results, within.reshape(-1, within.shape[3]), at_end]))
+
+    def _work_rows(
+        self, slips: np.ndarray, slipping: list[int], layout: IntervalLayout
+    ) -> list[np.ndarray]:
+        """Return the rows on v of the slip integrals for the work, and set where they are."""
         self._work: list[tuple[int, slice, slice]] = []
         """Index, slice of the integrals and slice of the capacities of each slipping element."""
         self._held_work: list[tuple[int, int, int]] = []
         """Indices of the element, its integral and its capacity, for each slipping element with a
         held capacity; a sum would take longer."""
+        rows: list[np.ndarray] = []
         first = self._friction.stop
-        for place, element in enumerate(flow.slipping):
+        for place, element in enumerate(slipping):
             where = layout.capacities[element]
             held = where.stop - where.start == 1
-            rows.append(_by_value(slips[:, place], held=held))
+            rows.append(_by_value(slips[:, :, place], held=held))
             integrals = slice(first, first + len(rows[-1]))
             if held:
                 self._held_work.append((element, first, where.start))
             else:
                 self._work.append((element, integrals, where))
             first = integrals.stop
-        units, directions = _shortfalls(flow.guards, starts)
-        nodes = np.concatenate([guards[:, :, 0], guards[-1:, :, -1]]) / units[:, None]
-        rows += [nodes.reshape(-1, nodes.shape[2]), directions]
-        self._guards = slice(first, first + len(rows[-2]))
-        self._shortfalls = slice(self._guards.stop, None)
-        self._whole = _product(np.vstack(rows))
+        return rows
 
     def whole(self, v: np.ndarray, capacities: Values) -> Interval | None:
         """Return the result of the interval, or None if an event in it is possible."""
-        values = self._whole(v).tolist()
+        values = self._whole(v)
+        checks = values[self._results :]
         # Not `<`: a value that is not a number must not pass either.
-        if not min(values[self._guards]) >= sum(map(abs, values[self._shortfalls])):
+        if not checks[checks.argmin()] >= 0.0:
             return None
+        results = values[: self._results].tolist()
         work = [0.0] * len(self._signs)
         for element, integrals, where in self._work:
-            work[element] = sum(map(mul, values[integrals], capacities[where]))
+            work[element] = sum(map(mul, results[integrals], capacities[where]))
         for element, integral, place in self._held_work:
-            work[element] = values[integral] * capacities[place]
-        return Interval(values[: self._states], self._signs, [], work, values[self._friction])
+            work[element] = results[integral] * capacities[place]
+        return Interval(results[: self._states], self._signs, [], work, results[self._friction])
 
     def by_piece(self, v: np.ndarray) -> tuple[np.ndarray, np.ndarray, int]:
         """
         Return states, slip integrals and event-free pieces, as if the mode lasted for all pieces.
 
         The states are those after each piece, (P, n). The integrals are those of |s| (1 - t) and
-        |s| t, t from 0 to 1 in a piece, (P, slipping elements, 2). The last result is the number
+        |s| t, t from 0 to 1 in a piece, (P, 2, slipping elements). The last result is the number
         of pieces before the first in which a guard may become negative.
         """
         values = self._by_piece(v).reshape(self._pieces, -1)
@@ -128,17 +130,14 @@ class IntervalMap:
         safe = values[:, slips:] >= 0.0
         first = int(safe.argmin())
         lasts = self._pieces if safe.flat[first] else first // safe.shape[1]
-        integrals = values[:, self._states : slips].reshape(self._pieces, self._slipping, 2)
+        integrals = values[:, self._states : slips].reshape(self._pieces, 2, self._slipping)
         return values[:, : self._states], integrals, lasts
 
     def friction_signs(self, v: np.ndarray) -> list[int]:
         """Return the sign of each friction torque while the mode lasts, 0 where it may change."""
         signs = list(self._signs)
         if self._sticking:
-            slips = self._states + 2 * self._slipping
-            values = self._by_piece(v).reshape(self._pieces, -1)[:, slips:]
-            # Bernstein coefficients: no torque lies outside of theirs.
-            guards = values.reshape(self._pieces, len(signs) + len(self._sticking), -1)
+            guards = self._whole(v)[self._results :].reshape(-1, len(signs) + len(self._sticking))
             for element, first in self._sticking:
                 twice = guards[:, first + 1] - guards[:, first]
                 signs[element] = int(twice.min() > 0.0) - int(twice.max() < 0.0)
@@ -172,7 +171,7 @@ def _piece_starts(flow: ModeFlow, layout: IntervalLayout) -> np.ndarray:
 def _over_pieces(rows: np.ndarray, starts: np.ndarray) -> np.ndarray:
     """Convert rows (i, j, y) on the start of each piece to rows (P, i, j, v) on v."""
     flat = rows.reshape(-1, rows.shape[2]) @ starts
-    return flat.reshape(len(starts), *rows.shape[:2], -1)
+    return flat.reshape(len(starts), *rows.shape[:2], starts.shape[2])
 
 
 def _by_value(slips: np.ndarray, held: bool) -> np.ndarray:
@@ -181,24 +180,3 @@ def _by_value(slips: np.ndarray, held: bool) -> np.ndarray:
         return slips.sum(axis=(0, 1))[None]
     none = np.zeros_like(slips[:1, 0])
     return np.vstack([slips[:, 0], none]) + np.vstack([none, slips[:, 1]])
-
-
-def _shortfalls(guards: np.ndarray, starts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return units of the guards and W (r, v): in these units no shortfall is above sum |W v|."""
-    part = np.linspace(0.0, 1.0, guards.shape[1])[:, None]
-    off = guards - (1.0 - part) * guards[:, :1] - part * guards[:, -1:]
-    units = np.abs(off).max(axis=(1, 2))
-    units[units == 0.0] = 1.0
-    off /= units[:, None, None]
-    in_a_piece = _directions(off.reshape(-1, off.shape[2]))
-    directions = _directions((in_a_piece @ starts).reshape(-1, starts.shape[2]))
-    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
-    parts = np.abs(_over_pieces(off, starts @ directions.T))
-    return units, parts.max(axis=(0, 1, 2))[:, None] * directions
-
-
-def _directions(matrix: np.ndarray) -> np.ndarray:
-    """Return the right singular vectors (r, v), times their singular values."""
-    _, values, rows = np.linalg.svd(matrix, full_matrices=False)
-    kept = values > ROUNDING * values.max(initial=0.0)
-    return values[kept, None] * rows[kept]

@@ -2,18 +2,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """The exact flow of one mode, that is of a set of sticking and slipping elements."""
 
+from math import ceil
 from typing import NamedTuple
 
 import numpy as np
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.hybrid.friction_system import FrictionSystem, Signs
-from ddct_plant.hybrid.polynomials import (
-    bernstein_of_powers,
-    first_negative,
-    linear_weights,
-    on_interval,
-)
+from ddct_plant.hybrid.polynomials import first_negative, integral_with
 
 LONGEST = 4.0
 """Longest piece, in units of 1 / (the balanced norm of a)."""
@@ -21,6 +17,8 @@ ROUNDING = 2.0**-53
 """Term of a series that counts as zero, over the sum."""
 CANCELLED = 2.0**-40
 """Entry of a projection that counts as zero, over its terms."""
+NODE_ANGLE = 0.3
+"""Angle in rad by which the fastest undamped mode turns from node to node at most."""
 
 
 def _projection(system: FrictionSystem, signs: Signs) -> tuple[np.ndarray, np.ndarray]:
@@ -54,7 +52,12 @@ class ModeFlow:
         states, inputs = system.b.shape
         self.states, self.inputs = states, inputs + system.elements
         self.projection, hold = _projection(system, signs)
-        self.degree = _series_degree(self.projection @ system.a, piece_s)
+        rates = self.projection @ system.a
+        self.degree = _series_degree(rates, piece_s)
+        # The magnitude of a damped eigenvalue is the frequency without its damping.
+        fastest = float(np.abs(np.linalg.eigvals(rates)).max())
+        self.steps = max(1, ceil(piece_s * fastest / NODE_ANGLE))
+        """Number of equal steps of a piece, at whose ends, the nodes, guards are evaluated."""
         driven = np.hstack([system.b, system.g * signs])
         moved = np.hstack([system.a, driven])
         self.stuck = np.array(signs) == 0
@@ -83,10 +86,6 @@ class ModeFlow:
         # Instants are known to rounding of a piece, so y to that of how much it changes in one.
         within = np.eye(size) + np.abs(generator)
         self.sizes = np.abs(self.series[:, states:]).reshape(-1, size) @ within
-        powers_of_guards = np.moveaxis(self.series[:, states:], 0, 1)
-        self.guards = bernstein_of_powers(self.degree) @ powers_of_guards
-        """Bernstein coefficients of the guards over a whole piece, as rows on y, (guards, d+1,
-        y)."""
         self.end = self.series[:, :states].sum(axis=0)
         """State after a piece, as rows on y, (n, y)."""
 
@@ -105,13 +104,34 @@ class ModeFlow:
             guarded += [i] * (len(rows) - len(guarded))
         return np.array(rows), guarded
 
-    def slip_integrals(self, guards: np.ndarray) -> np.ndarray:
+    def guard_checks(self) -> np.ndarray:
         """
-        Return the integrals of |s| (1 - t) and |s| t over [0, 1], (slipping elements, 2).
+        Return what is not negative in a piece without an event, as rows on y, (c, guards, y).
 
-        `guards` (guards, d+1) are in Bernstein form.
+        For each step these are the guards at its start, then the tangents at its start and at its
+        end, both halfway between them. The guards at the end of the piece come last. A cubic with
+        such values and slopes is positive within the step too, with a margin of a quarter of the
+        values. In 0.3 rad a guard differs from a cubic by 0.3^4 / 384 = 2e-5 of its oscillation.
         """
-        return guards[self.slip_guards].dot(linear_weights(self.degree).T)
+        guards = self.series[:, self.states :]
+        nodes = np.arange(self.steps + 1) / self.steps
+        orders = np.arange(1, self.degree + 1)
+        values = np.tensordot(nodes[:, None] ** self.powers, guards, 1)
+        slopes = np.tensordot(orders * nodes[:, None] ** self.powers[:-1], guards[1:], 1)
+        halfway = slopes / (2.0 * self.steps)
+        steps = [values[:-1], values[:-1] + halfway[:-1], values[1:] - halfway[1:]]
+        return np.concatenate([*np.stack(steps, axis=1), values[-1:]])
+
+    def slip_integrals(self) -> np.ndarray:
+        """
+        Return the integrals of |s| (1 - t) and |s| t over a piece, as rows on y.
+
+        Their shape is (2, slipping elements, y).
+        """
+        orders = self.powers[:, None, None]
+        slips = self.series[:, self.states :][:, self.slip_guards]
+        rising = (slips / (orders + 2)).sum(axis=0)
+        return np.stack([(slips / (orders + 1)).sum(axis=0) - rising, rising])
 
     def course(self, state: np.ndarray, forcing: np.ndarray) -> 'Course':
         """Return the motion from a state (n,) on, with the inputs [w, dw], (2 w,)."""
@@ -164,27 +184,35 @@ class Course(NamedTuple):
         sizes = self.flow.sizes.dot(np.abs(self.y))
         return sizes.reshape(self.guards.shape[1], -1).T
 
-    def first_event(
-        self, orders: list[int] | None, end: float
-    ) -> tuple[float, int | None, np.ndarray]:
+    def nodes(self, end: float) -> list[float]:
+        """Return nodes in (0, end], the last of them `end`, no farther apart than a step."""
+        count = ceil(end * self.flow.steps)
+        return [*(end * step / count for step in range(1, count)), end]
+
+    def first_event(self, orders: list[int] | None, end: float) -> tuple[float, int | None]:
         """
         Return the time in [0, end] of the first guard that becomes negative, and its index.
 
-        Without one the result is `end` and None. The third result has the guards in Bernstein
-        form up to that time. A guard of order k is zero at 0 with
-        k - 1 derivatives, so that its next root is that of the guard divided by t^k.
+        Without one the result is `end` and None. A guard of order k is zero at 0 with k - 1
+        derivatives, so that its next root is that of the guard divided by t^k.
         """
         first, which = end, None
-        coefficients = on_interval(self.guards, end)
-        for guard, least in enumerate(coefficients.min(axis=1).tolist()):
-            if least < 0.0:
-                order = orders[guard] if orders else 0
-                at = first_negative(self.guards[guard, order:], end)
-                if at is not None and (which is None or at < first):
-                    first, which = at, guard
-        if which is not None:
-            coefficients = on_interval(self.guards, first)
-        return first, which, coefficients
+        nodes = self.nodes(end)
+        for guard, powers in enumerate(self.guards.tolist()):
+            at = first_negative(powers[orders[guard] :] if orders else powers, nodes)
+            if at is not None and (which is None or at < first):
+                first, which = at, guard
+        return first, which
+
+    def work(self, end: float) -> list[float]:
+        """Return the integrals of c |s| over t from 0 to `end` of the slipping elements."""
+        flow = self.flow
+        capacities, changes = self.capacities()
+        slips = self.guards[flow.slip_guards].tolist()
+        return [
+            integral_with(slip, (capacities[i], changes[i]), end)
+            for i, slip in zip(flow.slipping, slips, strict=True)
+        ]
 
 
 def _series_degree(a: np.ndarray, piece_s: float) -> int:

@@ -1,77 +1,11 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""
-Polynomials on an interval in Bernstein form: where one turns negative, and exact integrals.
+"""Polynomials by their coefficients of t^k: values, integrals, and where the sign changes."""
 
-A polynomial lies within the hull of its Bernstein coefficients. Without a negative coefficient it
-is nowhere negative, so an interior extremum cannot be missed; with one change of sign among the
-coefficients it has exactly one root.
-"""
+from collections.abc import Iterator, Sequence
 
-from collections.abc import Sequence
-from functools import lru_cache
-from math import comb
-
-import numpy as np
-
-ROUNDING = 2.0**-50
-"""Coefficient that counts as zero, over the largest one."""
 _STEPS = 200
 """Most steps of Newton's rule; bisection alone needs about 60."""
-
-
-@lru_cache
-def bernstein_of_powers(degree: int) -> np.ndarray:
-    """Return the matrix (d+1, d+1) from coefficients of t^k to those of Bernstein on [0, 1]."""
-    size = range(degree + 1)
-    return np.array([[comb(j, k) / comb(degree, k) for k in size] for j in size])
-
-
-@lru_cache
-def _from_powers(degree: int) -> np.ndarray:
-    """Return the matrix from rows of coefficients of t^k."""
-    return bernstein_of_powers(degree).T.copy()
-
-
-@lru_cache
-def linear_weights(degree: int) -> np.ndarray:
-    """Return the weights (2, d+1) of coefficients in the integrals of p (1 - t) and p t."""
-    rising = np.arange(1.0, degree + 2.0) / ((degree + 1.0) * (degree + 2.0))
-    return np.stack([rising[::-1], rising])
-
-
-@lru_cache
-def _left_half(degree: int) -> np.ndarray:
-    size = range(degree + 1)
-    return np.array([[comb(j, k) / 2.0**j for k in size] for j in size])
-
-
-def on_interval(powers: np.ndarray, end: float) -> np.ndarray:
-    """Return the Bernstein coefficients on [0, end] of polynomials (..., d+1) in t^k."""
-    # Products, not numpy's power, whose rounding depends on the processor.
-    ends = np.full(powers.shape[-1], end)
-    ends[0] = 1.0
-    return (powers * np.multiply.accumulate(ends)).dot(_from_powers(powers.shape[-1] - 1))
-
-
-def first_negative(powers: np.ndarray, end: float) -> float | None:
-    """Return the first t in [0, end] at which the polynomial (d+1,) becomes negative, or None."""
-    coefficients = on_interval(powers, end)
-    zero = ROUNDING * max(map(abs, coefficients.tolist()))
-    pending = [(0.0, end, coefficients)]
-    while pending:
-        low, high, coefficients = pending.pop()
-        negative = [coefficient < -zero for coefficient in coefficients.tolist()]
-        if True not in negative:
-            continue
-        if negative[0]:
-            return low
-        if False not in negative[negative.index(True) :]:
-            return _root(powers, low, high)
-        left, middle = _left_half(len(powers) - 1), 0.5 * (low + high)
-        pending.append((middle, high, (left @ coefficients[::-1])[::-1]))
-        pending.append((low, middle, left @ coefficients))
-    return None
 
 
 def value_at(powers: Sequence[float], at: float) -> float:
@@ -82,32 +16,57 @@ def value_at(powers: Sequence[float], at: float) -> float:
     return value
 
 
-def roots(powers: Sequence[float], end: float) -> list[float]:
+def integral_with(powers: Sequence[float], line: tuple[float, float], end: float) -> float:
+    """Return the integral over t from 0 to `end` of a polynomial times line[0] + line[1] t."""
+    constant = rising = 0.0
+    for order in range(len(powers), 0, -1):
+        constant = constant * end + powers[order - 1] / order
+        rising = rising * end + powers[order - 1] / (order + 1)
+    return end * (line[0] * constant + line[1] * end * rising)
+
+
+def first_negative(powers: Sequence[float], nodes: Sequence[float]) -> float | None:
     """
-    Return where in (0, end) a polynomial with these coefficients of t^k may change its sign.
+    Return the first t from 0 to the last of `nodes` at which the value becomes negative, or None.
 
-    `end` is at most 1. They are the real parts of all roots there: two equal ones may be complex
-    by rounding.
+    A constant never does. The nodes are those of `sign_changes`.
     """
-    if sum(map(abs, powers)) < 2.0 * abs(powers[0]):
-        return []  # the first coefficient outweighs all others
-    sizes = [abs(coefficient) * end**order for order, coefficient in enumerate(powers)]
-    kept = [order for order, size in enumerate(sizes) if size > 2.0**-60 * max(sizes)]
-    found = np.polynomial.polynomial.polyroots(powers[: max(kept, default=0) + 1])
-    return [root.real for root in found.tolist() if 0.0 < root.real < end]
+    if len(powers) < 2:
+        return None
+    return 0.0 if powers[0] < 0.0 else next(sign_changes(powers, nodes), None)
 
 
-def _root(powers: np.ndarray, low: float, high: float) -> float:
-    """Return the one root in [low, high], by Newton's rule kept within its bracket."""
-    falling = powers[::-1].tolist()
+def sign_changes(powers: Sequence[float], nodes: Sequence[float]) -> Iterator[float]:
+    """
+    Yield each t from 0 to the last of `nodes` at which the value becomes negative or ceases to be.
+
+    The nodes are so close that the slope changes its sign at most once from one to the next. So a
+    value with the same sign at two of them changes it between them only if it goes towards zero at
+    the first and away from it at the second: then it is checked at its extremum too.
+    """
+    low, value, slope = 0.0, *powers[:2]
+    for high in nodes:
+        negative, towards = value < 0.0, slope
+        value, slope = _value_and_slope(powers, high)
+        if (value < 0.0) != negative:
+            yield _sign_change(powers, low, high)
+        elif towards > 0.0 > slope if negative else towards < 0.0 < slope:
+            slopes = [order * powers[order] for order in range(1, len(powers))]
+            extremum = _sign_change(slopes, low, high)
+            if (value_at(powers, extremum) < 0.0) != negative:
+                yield _sign_change(powers, low, extremum)
+                yield _sign_change(powers, extremum, high)
+        low = high
+
+
+def _sign_change(powers: Sequence[float], low: float, high: float) -> float:
+    """Return the one sign change from `low` to `high`, by Newton's rule kept within them."""
+    negative = value_at(powers, low) < 0.0
     close = 2.0**-52 * high
     at = 0.5 * (low + high)
     for _ in range(_STEPS):
-        value = slope = 0.0
-        for coefficient in falling:
-            slope = slope * at + value
-            value = value * at + coefficient
-        if value >= 0.0:
+        value, slope = _value_and_slope(powers, at)
+        if (value < 0.0) == negative:
             low = at
         else:
             high = at
@@ -119,3 +78,11 @@ def _root(powers: np.ndarray, low: float, high: float) -> float:
             following = 0.5 * (low + high)
         at = following
     return min(max(following, low), high)
+
+
+def _value_and_slope(powers: Sequence[float], at: float) -> tuple[float, float]:
+    value = slope = 0.0
+    for coefficient in reversed(powers):
+        slope = slope * at + value
+        value = value * at + coefficient
+    return value, slope
