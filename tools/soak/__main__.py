@@ -10,8 +10,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from ddct_plant.base.timebase import PERIOD_S
-from ddct_plant.ticks.durations import checked
 from soak.conditions import CONDITIONS, measure
 from soak.sides import SoakError
 
@@ -48,11 +49,16 @@ def _lines(found: dict[str, Any]) -> Iterator[str]:
     yield f'{"":28}' + ''.join(f'{f"p{percent:g}":>9}' for percent in PERCENTS)
     for name, side in found['sides'].items():
         yield f'{name}: {side["missed_steps"]} of {side["steps"]} steps missed'
-        for duration, values in side['durations'].items():
-            counts = {int(place): count for place, count in values['counts'].items()}
-            histogram = checked(values['largest_us'], counts)
-            tail = (histogram.percentile_us(percent) or 0.0 for percent in PERCENTS)
-            yield f'{f"  {duration} in ms":28}' + ''.join(f'{us / 1e3:9.2f}' for us in tail)
+        # A tick is late by the time since it was due: the differences are those of the periods.
+        jitter_us = np.abs(np.diff(side['lateness_us']))
+        rows = {
+            'lateness': side['lateness_us'],
+            'jitter': jitter_us,
+            'latency': side['latency_us'],
+        }
+        for duration, samples_us in rows.items():
+            tail_ms = np.percentile(samples_us, PERCENTS) / 1e3
+            yield f'{f"  {duration} in ms":28}' + ''.join(f'{ms:9.2f}' for ms in tail_ms)
     for name, use in found['processes'].items():
         yield (
             f'{name:28}{100.0 * use["core_share"]:7.1f} % of a core, {use["memory_mb"]:.0f} MB, '

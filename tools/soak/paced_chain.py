@@ -39,7 +39,7 @@ class PacedDriveline(BareDriveline):
         """Take the number of ticks."""
         self._answers = dict.fromkeys(WIRING['driveline'][0], 0)
         super().__init__(steps)
-        self.durations = TickDurations(time.monotonic, PACE_S)
+        self.durations = TickDurations(time.monotonic)
         self.missed = 0
         self._sent = 0
         self._grid_from: float | None = None
@@ -74,7 +74,7 @@ class PacedDriveline(BareDriveline):
             outstanding = self._sent - self._answered()
             self.missed += outstanding > 0
             if outstanding <= MOST_OUTSTANDING:
-                self.durations.publish(self._sent, late_s)
+                self.durations.publish(late_s)
                 self.send()
         if not self.done.done():
             self.done.set_result(None)
@@ -84,10 +84,8 @@ class PacedDriveline(BareDriveline):
         return {
             'steps': self._steps,
             'missed_steps': self.missed,
-            'durations': {
-                name: {'largest_us': each.largest_us, 'counts': each.counts}
-                for name, each in self.durations.histograms.items()
-            },
+            'lateness_us': [1e6 * each for each in self.durations.lateness],
+            'latency_us': [1e6 * each for each in self.durations.latency],
         }
 
 

@@ -8,7 +8,6 @@ from dataclasses import dataclass, field
 from ddct_bringup.bag.run_info import DRIVELINE_NODE
 from ddct_plant.graph.node_names import StatusName
 from ddct_plant.graph.node_reports import SAFE_STATE, TICKS, TickCounts, safe_state_since
-from ddct_plant.ticks.durations import DurationHistogram
 
 
 @dataclass
@@ -25,8 +24,11 @@ class RealtimeCounts:
     """Largest lateness of a step of the driveline, us; None in lock-step."""
     safe_states: dict[str, int] = field(default_factory=dict)
     """Stamp in ns at which a node entered its safe state, by full node name."""
-    durations: dict[str, DurationHistogram] = field(default_factory=dict)
-    """Histograms of lateness, jitter and latency of the ticks, by name; empty in lock-step."""
+    lateness_us: list[float] = field(default_factory=list)
+    """Time by which each tick after t_0 was published too late, us; empty in lock-step."""
+    latency_us: list[float] = field(default_factory=list)
+    """Time from the publication of a tick to each torque of a clutch that answers it, us; empty in
+    lock-step."""
 
 
 @dataclass
@@ -51,5 +53,6 @@ class RealtimeFacts(RealtimeCounts):
         self.missed_steps, self.late_messages = counts.missed_steps, counts.late_messages
         if counts.worst_lateness_us is not None:
             self.worst_lateness_us = counts.worst_lateness_us
-            self.durations = dict(counts.durations)
+        self.lateness_us += counts.lateness_us
+        self.latency_us += counts.latency_us
         return True

@@ -9,7 +9,6 @@ import pytest
 from ddct_bringup.run.timing_and_failure import RunTiming, read_timing
 from ddct_plant.base.errors import DdctError
 from ddct_plant.files.json_records import to_json
-from ddct_plant.ticks.durations import DurationHistogram
 
 
 def test_what_the_recorder_wrote_is_read_back(tmp_path):
@@ -21,7 +20,8 @@ def test_what_the_recorder_wrote_is_read_back(tmp_path):
         refused_messages=4,
         worst_lateness_us=5.5,
         safe_states={'/actuator': 1870000000},
-        durations={'latency': DurationHistogram(812.5, {100: 3, 154: 1})},
+        lateness_us=[12.5, 0.0],
+        latency_us=[812.5, 2500.0, 30.25],
         steps=300,
     )
     timing.write(tmp_path)
@@ -51,9 +51,10 @@ def changed(**values):
         changed(missed_steps=-1),
         changed(missed_steps='many'),
         changed(steps=None),
-        changed(durations={'latency': 3}),
-        changed(durations={'latency': {'largest_us': 1.0, 'counts': {'-1': 2}}}),
-        changed(durations={'latency': {'largest_us': 1.0, 'counts': {'1': -2}}}),
+        changed(latency_us={'latency': 3}),
+        changed(latency_us=[1.0, -1.0]),
+        changed(lateness_us=[-1.0]),
+        changed(lateness_us=[float('nan')]),
         changed(steps=1)[:-1] + ', "steps": 2}',
     ],
 )

@@ -8,10 +8,10 @@ states and update times exist in graphs only. No ROS is needed here.
 """
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from ddct_plant.base.errors import DdctError, require_number
+from ddct_plant.base.errors import ParameterError, require_number
 from ddct_plant.fail_safe.request_watch import (
     CLUTCH_TIMEOUT_S,
     REQUEST_TIMEOUT_S,
@@ -21,7 +21,6 @@ from ddct_plant.program.command_line import package_version
 from ddct_plant.scenario.settings import KnownSettings
 from ddct_plant.shift.roles import OFF_GOING, ON_COMING
 from ddct_plant.signals.topics import CONTROLLER_TIMING
-from ddct_plant.ticks.durations import DurationHistogram
 
 Pairs = dict[str, str]
 """Texts by key."""
@@ -46,7 +45,7 @@ SAFE_STATE = ': safe state'
 _SINCE = 'since_ns'
 _UPDATE_TIMES = 'update_times_us'
 _LATENESS = 'worst_tick_lateness_us'
-_HISTOGRAM = 'histogram '
+_LATENESS_SAMPLES, _LATENCY_SAMPLES = 'tick_lateness_us', 'latency_us'
 
 
 _ABOUT = {
@@ -159,8 +158,10 @@ class TickCounts:
     """Largest lateness of a step, us; None in lock-step."""
     missed_replies: Mapping[str, int] = field(default_factory=dict)
     """Number of missing replies by topic; empty in lock-step."""
-    durations: Mapping[str, DurationHistogram] = field(default_factory=dict)
-    """Histograms of `TickDurations` by name; empty in lock-step."""
+    lateness_us: Sequence[float] = field(default_factory=list)
+    """Lateness of each tick since the counts before, us; empty in lock-step."""
+    latency_us: Sequence[float] = field(default_factory=list)
+    """Latency of each torque of a clutch since the counts before, us; empty in lock-step."""
 
     def pairs(self) -> list[tuple[str, str]]:
         """Return the pairs of the status."""
@@ -169,7 +170,8 @@ class TickCounts:
         pairs = [(key, str(count)) for key, count in counts.items()]
         if self.worst_lateness_us is not None:
             pairs.append((_LATENESS, f'{self.worst_lateness_us:.0f}'))
-        pairs += [(_HISTOGRAM + name, each.text()) for name, each in self.durations.items()]
+        samples = {_LATENESS_SAMPLES: self.lateness_us, _LATENCY_SAMPLES: self.latency_us}
+        pairs += [(key, _samples_text(times)) for key, times in samples.items() if times]
         return pairs
 
     @classmethod
@@ -179,12 +181,11 @@ class TickCounts:
         if lateness is not None and not 0.0 <= lateness < math.inf:
             raise ValueError(f'{_LATENESS} is {lateness}')
         steps, resends, missed_steps, late_messages = (_count(pairs, key) for key in _COUNTS)
-        durations = {
-            key.removeprefix(_HISTOGRAM): DurationHistogram.of(text)
-            for key, text in pairs.items()
-            if key.startswith(_HISTOGRAM)
-        }
-        return cls(steps, resends, missed_steps, late_messages, lateness, durations=durations)
+        return cls(
+            *(steps, resends, missed_steps, late_messages, lateness),
+            lateness_us=_samples('ticks', pairs, _LATENESS_SAMPLES),
+            latency_us=_samples('ticks', pairs, _LATENCY_SAMPLES),
+        )
 
 
 _COUNTS = ('steps', 'resends', 'missed_steps', 'late_messages')
@@ -210,21 +211,30 @@ def _count(pairs: Mapping[str, str], key: str) -> int:
 
 def timing_pairs(update_times_us: Iterable[float]) -> list[tuple[str, str]]:
     """Return the pairs of `controller/timing`, for update times in us."""
-    return [(_UPDATE_TIMES, ' '.join(f'{time:.3f}' for time in update_times_us))]
+    return [(_UPDATE_TIMES, _samples_text(update_times_us))]
 
 
 def update_times(pairs: Mapping[str, str]) -> list[float]:
     """
     Return the update times in us in the pairs of `controller/timing`.
 
-    Raise DdctError for one that is no number, not finite or below zero.
+    Raise ParameterError for one that is no number, not finite or below zero.
     """
-    name = f'{CONTROLLER_TIMING.name} {_UPDATE_TIMES}'
+    return _samples(CONTROLLER_TIMING.name, pairs, _UPDATE_TIMES)
+
+
+def _samples_text(times_us: Iterable[float]) -> str:
+    return ' '.join(f'{time:.3f}' for time in times_us)
+
+
+def _samples(source: str, pairs: Mapping[str, str], key: str) -> list[float]:
+    """Return times in us; raise ParameterError for one that is no number, or below zero."""
+    name = f'{source} {key}'
     times = []
-    for text in pairs.get(_UPDATE_TIMES, '').split():
+    for text in pairs.get(key, '').split():
         try:
             time = float(text)
         except ValueError:
-            raise DdctError(f'{name} has {text!r}: give numbers in us', key=name) from None
+            raise ParameterError(f'{name} has {text!r}: give numbers in us', key=name) from None
         times.append(require_number(name, time, unit='us', at_least=0.0))
     return times

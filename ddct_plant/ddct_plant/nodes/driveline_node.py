@@ -169,12 +169,13 @@ class DrivelineNode(GraphNode):
         counts = TickCounts(owner.step, owner.resends, owner.missed_steps, owner.late)
         if not isinstance(owner, RealtimeOwner):
             return counts
-        lateness_us = 1e6 * owner.worst_lateness_s
+        lateness_s, latency_s = owner.durations.take()
         return replace(
             counts,
-            worst_lateness_us=lateness_us,
+            worst_lateness_us=1e6 * owner.worst_lateness_s,
             missed_replies=owner.missed_replies,
-            durations=owner.durations.histograms,
+            lateness_us=[1e6 * each for each in lateness_s],
+            latency_us=[1e6 * each for each in latency_s],
         )
 
 

@@ -79,7 +79,7 @@ class RealtimeOwner(TickOwner):
 
     def _open(self, step: int) -> None:
         if self._started_at is not None:
-            self.durations.publish(step, self._clock() - self._due)
+            self.durations.publish(self._clock() - self._due)
         super()._open(step)
 
     def _awaited_at(self, step: int) -> tuple[str, ...]:
