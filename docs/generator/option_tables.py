@@ -11,7 +11,6 @@ from ddct_controllers.mpc.program.settings import program_options
 from ddct_controllers.registry import controller_spec
 from ddct_plant.base.option import option_rows
 from ddct_plant.base.options import OptionGroup, Options, group_of, options_of
-from ddct_plant.program.scheduling import Scheduling
 from ddct_plant.program.table import Table
 from ddct_plant.scenario.choices.settings import SETTINGS
 from ddct_plant.scenario.nouns.keys import CAR, DRIVE, SCENARIO, owner_of
@@ -70,7 +69,6 @@ _OF_EVERY_MPC = tuple(program_options(BASIS.settings()))
 TABLES = {
     **{owner: _keys(owner) for owner in (SCENARIO, CAR, DRIVE)},
     'run': _without_source(SETTINGS),
-    'scheduling': _without_source(options_of(Scheduling)),
     'measured_run': _without_source(options_of(MeasuredKeys), MeasuredKeys.prefix),
     'pi': _controllers('pi'),
     'mpc': _controllers('mpc1', 'mpc2', 'mpc3', 'mpc_preview'),

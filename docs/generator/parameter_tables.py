@@ -9,20 +9,14 @@ from unittest.mock import patch
 from rclpy.context import Context
 
 from ddct_bringup.processes.graph_nodes import NODE_PROGRAMS
-from ddct_plant.base.options import options_of
 from ddct_plant.graph.arguments import init_ros
 from ddct_plant.graph.node import GraphNode
-from ddct_plant.program.scheduling import Scheduling
 from ddct_plant.program.table import Table
 from ddct_plant.scenario.choices.scenarios import CHOICES
 from ddct_plant.scenario.choices.settings import SETTINGS
 
 HEADERS = ('parameter', 'default', 'meaning')
-SHARED = {
-    *('known', 'case', *CHOICES),
-    *SETTINGS,
-    *options_of(Scheduling),
-}
+SHARED = {'known', 'case', *CHOICES, *SETTINGS}
 """Names of the parameters that every node has."""
 OF_CONTROLLER = 'gains.'
 """Prefix of the parameters that differ with the chosen controller."""

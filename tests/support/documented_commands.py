@@ -29,9 +29,6 @@ NOT_RUN_HERE = {
     'ddct bringup --mode realtime --controller ls8 --live': (
         'waits for a viewer; tests/live gives it one'
     ),
-    'ddct bringup --mode realtime --realtime-priority': (
-        'needs a permission; tests/graph/test_scheduling_of_nodes.py does it where there is one'
-    ),
     'ddct clutch --ros-args -p qos_overrides': (
         'serves until Ctrl-C; tests/graph/test_qos_overrides.py stops it'
     ),

@@ -22,14 +22,14 @@ SAMPLE_S = 5.0
 
 @dataclass(frozen=True)
 class Condition:
-    """What is different from an idle machine, and the options that the graph gets."""
+    """What is different from an idle machine, and how the graph is started."""
 
     what: str
     """Description for tables."""
     busy: bool = False
     """Whether another program keeps one core busy all the time."""
-    options: Sequence[str] = ()
-    """Further options of `bringup`."""
+    prefix: Sequence[str] = ()
+    """Command that runs `bringup`."""
 
 
 CONDITIONS: Mapping[str, Condition] = {
@@ -38,7 +38,7 @@ CONDITIONS: Mapping[str, Condition] = {
     'preferred': Condition(
         'one core busy, the graph preferred',
         busy=True,
-        options=('--realtime-priority', '20', '--lock-memory'),
+        prefix=('chrt', '--fifo', '20'),
     ),
 }
 
@@ -48,7 +48,7 @@ def measure(name: str, steps: int) -> dict[str, Any]:
     condition, load = CONDITIONS[name], os.getloadavg()[0]
     with (
         busy_cores(1) if condition.busy else nullcontext(),
-        graph(steps, condition.options) as ours,
+        graph(steps, condition.prefix) as ours,
         chain(steps) as bare,
     ):
         processes = _watch(ours)

@@ -50,8 +50,8 @@ class Graph:
 
 
 @contextmanager
-def graph(steps: int, options: Sequence[str]) -> Iterator[Graph]:
-    """Start a run of PI with further options of `bringup`; end what is left of it."""
+def graph(steps: int, prefix: Sequence[str]) -> Iterator[Graph]:
+    """Start a run of PI by a command before `bringup`; end what is left of it."""
     # It finds a domain of its own, beside that of the chain.
     environment = {key: text for key, text in environment_of(ROOT).items() if key != _DOMAIN}
     with (
@@ -60,9 +60,9 @@ def graph(steps: int, options: Sequence[str]) -> Iterator[Graph]:
         tempfile.TemporaryFile() as errors,
     ):
         out = Path(folder) / 'run'
-        command = ['ddct', 'bringup', '--controller', 'pi', '--mode', 'realtime']
+        command = [*prefix, 'ddct', 'bringup', '--controller', 'pi', '--mode', 'realtime']
         command += ['--floors', 'none', '--set', f'duration_s={steps * PERIOD_S}']
-        command += [*options, '--out', str(out)]
+        command += ['--out', str(out)]
         with started(command, environment, output, errors) as process:
             yield Graph(process, out, errors)
 

@@ -20,7 +20,6 @@ from ddct_controllers.registry import (
 )
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import require_known
-from ddct_plant.program.scheduling import Scheduling
 from ddct_plant.scenario.choices.scenarios import Choice
 from ddct_plant.scenario.choices.settings import SETTINGS
 from ddct_plant.scenario.content import flat
@@ -50,7 +49,6 @@ def planned(
     controllers: Iterable[Any] | Mapping[str, Any] | str | None,
     layout: str,
     complain: Callable[[str], None],
-    scheduling: Scheduling | None = None,
     **options: Any,
 ) -> list[RunPlan]:
     """
@@ -62,7 +60,7 @@ def planned(
     settings = run_settings([controller_label(each) for each in chosen], **options)
     if controllers is None:
         chosen = [*working_controllers(settings.known, complain)]
-    return [RunPlan(settings, each, layout, scheduling or Scheduling()) for each in chosen]
+    return [RunPlan(settings, each, layout) for each in chosen]
 
 
 def run_settings(labels: Iterable[str], *options: Any, **given: Any) -> RunSettings:

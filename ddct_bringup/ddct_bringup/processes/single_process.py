@@ -19,7 +19,6 @@ from ddct_plant.graph.arguments import init_ros
 from ddct_plant.graph.node import GraphNode
 from ddct_plant.graph.spin import end_of, finish_node, make_executor, spin_until, watched_stops
 from ddct_plant.program.command_line import run_program
-from ddct_plant.program.scheduling import scheduling_restored
 from ddct_plant.program.supervision import announce_exit
 
 
@@ -52,12 +51,11 @@ def run_single_process(
     init_ros(arguments, context)
     nodes: list[GraphNode] = []
     try:
-        with scheduling_restored():
-            for spec in specs:
-                if stopped():  # it beats too
-                    raise KeyboardInterrupt
-                nodes.append(_build(spec, context))
-            _spin(nodes, context, stopped)
+        for spec in specs:
+            if stopped():  # it beats too
+                raise KeyboardInterrupt
+            nodes.append(_build(spec, context))
+        _spin(nodes, context, stopped)
     finally:
         while nodes:
             nodes.pop(0).destroy_node()

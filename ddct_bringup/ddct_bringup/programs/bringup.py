@@ -13,7 +13,6 @@ from ddct_bringup.programs.options.of_runs import (
     add_floors_option,
     add_limits_option,
     add_run_options,
-    scheduling_of,
     settings_given,
     wants_floors,
 )
@@ -58,7 +57,6 @@ def _bringup(argv: list[str]) -> int:
         [options.controller],
         options.layout,
         _complain,
-        scheduling_of(options),
         **settings_given(options),
     )
     shell.print_adjusted(plan.settings.scenario)

@@ -15,7 +15,6 @@ from ddct_bringup.programs.options.of_runs import (
     add_floors_option,
     add_limits_option,
     add_run_options,
-    scheduling_of,
     settings_given,
     wants_floors,
 )
@@ -63,7 +62,6 @@ def _compare(argv: list[str]) -> int:
         None if everyone else shell.controllers_of(options.controllers),
         options.layout,
         _complain,
-        scheduling_of(options),
         **settings_given(options),
     )
     shell.print_adjusted(plans[0].settings.scenario)

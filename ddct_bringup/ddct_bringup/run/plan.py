@@ -3,7 +3,7 @@
 """Plan of one run: settings, controller, process layout and node parameters."""
 
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 from ddct_bringup.processes.graph_nodes import ANSWER_TIMEOUT_S, ParameterFiles, nodes_of
@@ -18,7 +18,6 @@ from ddct_plant.graph.domain import require_domain, require_ros
 from ddct_plant.graph.node_names import name_in_graph
 from ddct_plant.graph.node_reports import CONTROL_NODES
 from ddct_plant.program.own_process import ProcessEndedError
-from ddct_plant.program.scheduling import Scheduling
 from ddct_plant.scenario.recorded_settings import RecordedSettings
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.shift.roles import OFF_GOING
@@ -38,13 +37,9 @@ class RunPlan:
     """Controller to run; in a graph a name of the registry or the path of a controller file."""
     layout: str = 'processes'
     """Process layout, one of LAYOUTS."""
-    scheduling: Scheduling = field(default_factory=Scheduling)
-    """How the kernel treats the nodes of a real-time run."""
 
     def __post_init__(self) -> None:
         """Raise DdctError for a plan that would fail in the graph."""
-        self.scheduling.require_mode(lockstep=self.settings.known.lockstep)
-        self.scheduling.require_permitted()
         # The run of compiled code that crashes fails by that, and others go on.
         with suppress(ProcessEndedError):
             loop_needs(self.controller, self.settings.known)
@@ -82,14 +77,8 @@ class RunPlan:
         two_input, preview_steps = loop_needs(self.controller, self.settings.known)
         known, case = self._write_settings(work)
         parameters: dict[str, dict[str, object]] = {
-            # Only the chosen ones: an empty text is no value on the command line of a node.
-            '*': {'known': known, **self.scheduling.chosen},
-            'recorder': {
-                **{'out': str(folder), 'name': self.name, 'two_input': two_input},
-                # No step waits for it, so it comes after the others; but before usual programs, as
-                # it has locks of the middleware for which the others wait.
-                'realtime_priority': max(self.scheduling.realtime_priority - 1, 0),
-            },
+            '*': {'known': known},
+            'recorder': {'out': str(folder), 'name': self.name, 'two_input': two_input},
             'engine': {'two_input': two_input},
             'reference': {'preview_steps': preview_steps},
             'controller': {'controller': self.controller},

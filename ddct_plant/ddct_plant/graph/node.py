@@ -32,7 +32,6 @@ from ddct_plant.graph.settings import (
     as_declared,
     declare_case,
     declare_known,
-    declare_scheduling,
     full_name,
     has_files,
 )
@@ -80,8 +79,6 @@ class GraphNode(Node):
         """Settings of the run that every node has, and every controller knows."""
         self._true = None if self.KNOWN_ONLY else declare_case(self, self.known, self.DEFAULTS)
         self.add_pre_set_parameters_callback(self._as_declared)
-        # Before anything is made that may start a process, which then has the same.
-        declare_scheduling(self, lockstep=self.known.lockstep).apply()
         self._warnings = RareWarnings(self, self.steady_time.monotonic)
         if not self.known.lockstep:
             find_sources()

@@ -25,7 +25,6 @@ from ddct_plant.base.options import Option, options_of
 from ddct_plant.fail_safe.request_watch import FailSafeSettings
 from ddct_plant.files.input_file import located
 from ddct_plant.graph.node_names import name_in_graph
-from ddct_plant.program.scheduling import Scheduling
 from ddct_plant.scenario.case import case_of_file, with_case
 from ddct_plant.scenario.choices.scenarios import (
     CHOICES,
@@ -177,18 +176,6 @@ def _chosen(node: Node, values: dict[str, Any]) -> ScenarioFile:
 def full_name(node: Node) -> str:
     """Return the full name of a node."""
     return name_in_graph(node.get_fully_qualified_name())
-
-
-def declare_scheduling(node: Node, *, lockstep: bool) -> Scheduling:
-    """
-    Declare how the kernel treats the process of a node in real time, and return it.
-
-    Raise ParameterError for a bad value, and for one that is given in lock-step.
-    """
-    options = options_of(Scheduling).items()
-    scheduling = Scheduling(**{name: declare(node, name, each) for name, each in options})
-    scheduling.require_mode(lockstep=lockstep)
-    return scheduling
 
 
 def declare_role(node: Node, known: KnownSettings) -> str:

@@ -7,8 +7,6 @@ from pathlib import Path
 from typing import Any
 
 from ddct_bringup.api import shell
-from ddct_plant.base.options import options_of
-from ddct_plant.program.scheduling import Scheduling
 from ddct_plant.scenario.choices.command_line import (
     add_case_option,
     add_option,
@@ -41,7 +39,6 @@ def add_run_options(parser: argparse.ArgumentParser) -> None:
     """Add the options that describe a run and its process layout to a program's parser."""
     add_settings_options(parser)
     add_layout_options(parser)
-    add_scheduling_options(parser)
     parser.add_argument('--overwrite', action='store_true', help='replace an earlier result')
 
 
@@ -66,21 +63,6 @@ def add_workers_option(parser: argparse._ActionsContainer) -> None:
     parser.add_argument(
         '--workers', type=int, metavar='N', help='processes here; default: one for each core'
     )
-
-
-def add_scheduling_options(parser: argparse.ArgumentParser) -> None:
-    """Add the options of `Scheduling` to a program's parser; `scheduling_of` reads them."""
-    described = options_of(Scheduling)
-    add_option(parser, 'realtime_priority', described['realtime_priority'])
-    parser.add_argument(
-        '--lock-memory', action='store_true', help=described['lock_memory'].meaning
-    )
-    parser.add_argument('--cpus', default='', metavar='LIST', help=described['cpus'].meaning)
-
-
-def scheduling_of(options: argparse.Namespace) -> Scheduling:
-    """Return what the options of `add_scheduling_options` ask for; raise ParameterError."""
-    return Scheduling(**{name: getattr(options, name) for name in options_of(Scheduling)})
 
 
 def add_controllers_option(parser: argparse.ArgumentParser) -> None:
