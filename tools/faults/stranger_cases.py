@@ -24,7 +24,7 @@ from ddct_plant.signals.signal import RunKind
 from ddct_plant.signals.topics import recorded_topics
 from faults.case import Case, Where, places
 from faults.graph_runs import graph_run
-from faults.outcome import RUNS_ON, SAME, Observed, Stated, either, named
+from faults.outcome import NO_REPLY, REFUSED, RUNS_ON, SAME, Observed, Stated, either, named
 
 SHIFTS = {
     'stamp in the past': -30 * PERIOD_NS,
@@ -32,8 +32,6 @@ SHIFTS = {
     'stamp off the grid': 1,
 }
 """By fault the change of a stamp in ns."""
-FAR = 3000
-"""Factor on these in real time, where the limit of stamps goes with the wall clock: minutes."""
 REPEAT_S = 0.02
 FALSELY_STAMPED: dict[str, Where] = {
     'stamp in the past': {('middle', 'lockstep', 1): ('/clock', 'clutch/torque')},
@@ -102,19 +100,24 @@ def other_type(topic: str, case: Case, folder: Path) -> Observed:
     return seen
 
 
-def topics_of_a_tick() -> list[str]:
-    """Return the topics of each tick of a run with one clutch."""
-    return [topic.name for topic in recorded_topics(RunKind()) if topic.every_tick]
+def topics_of_a_tick(*, ticks: bool) -> list[str]:
+    """Return the topics of a run with one clutch that carry ticks, or replies to them."""
+    every_tick = [topic for topic in recorded_topics(RunKind()) if topic.every_tick]
+    return [topic.name for topic in every_tick if topic.is_tick == ticks]
 
 
 def cases() -> Iterator[Case]:
-    """Yield each fault of each of its topics; false stamps in real time for all at once."""
+    """Yield each fault of each of its topics; false stamps in real time for many at once."""
     for fault, by_ns in SHIFTS.items():
         for name, instant, mode, clutches in places(FALSELY_STAMPED[fault]):
             attempt = partial(false_stamp, by_ns, [name])
             yield _case(fault, name, instant, mode, clutches, either(SAME, named(name)), attempt)
-        attempt = partial(false_stamp, FAR * by_ns, topics_of_a_tick())
-        yield _case(fault, 'each topic', 'middle', 'realtime', 1, SAME, attempt)
+        for target, ticks in (('each reply', False), ('each tick', True)):
+            # Nodes go on from a tick in the future, and do not answer those before it.
+            ahead = ticks and fault == 'stamp in the future'
+            attempt = partial(false_stamp, by_ns, topics_of_a_tick(ticks=ticks))
+            stated = either(RUNS_ON, REFUSED, NO_REPLY) if ahead else SAME
+            yield _case(fault, target, 'middle', 'realtime', 1, stated, attempt)
     for name, instant, mode, clutches in places(TWICE_PUBLISHED):
         attempt = partial(second_publisher, name)
         stated = named(name, '/stranger')

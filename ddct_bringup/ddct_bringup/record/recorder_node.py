@@ -40,7 +40,7 @@ from ddct_plant.signals.topics import (
     recorded_topics,
     tick_names,
 )
-from ddct_plant.ticks.stamp_limit import StampLimit
+from ddct_plant.ticks.reply_limit import ReplyLimit
 
 REPEATED_UNTIL_ACK = JOINT_STATES
 """Topic that is repeated until the acknowledgement arrives; a repetition means one was lost."""
@@ -81,8 +81,7 @@ class RecorderNode(GraphNode):
             self._acknowledge,
         )
         if not self.known.lockstep:
-            clock_ns = self.steady_time.monotonic_ns
-            self.limit = StampLimit(tick_names(), clock_ns, from_t0=True)
+            self.limit = ReplyLimit(tick_names())
         self._wall_clock = WallClockFacts()
         self._ack = create_publisher(self, RECORDER_ACK)
         self._serialise_ack = serialiser(RECORDER_ACK)

@@ -58,6 +58,10 @@ class TickBuffer:
             raise DdctError(f'{topic}: {error}', key=topic) from error
         if topic not in self.topics:
             return []
+        begun = self.wait_for_all or self._next_step or self._pending
+        if not begun and step > GIVE_UP_AFTER_STEPS:
+            self.dropped += 1  # the recorder missed the start
+            return []
         if step < self._next_step:
             self._check_repeat(step, topic, cdr)
             return []

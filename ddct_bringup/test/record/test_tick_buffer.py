@@ -209,3 +209,10 @@ def test_ticks_without_an_undecided_topic_are_no_sign_of_a_missed_start():
     for step in range(last + 1):
         assert buffer.whole(step) == []
     assert buffer.decide('') == [(step, 'ab') for step in range(last + 1)]
+
+
+def test_a_recorder_that_missed_the_start_of_a_real_time_run_has_no_tick(realtime):
+    for step in range(GIVE_UP_AFTER_STEPS + 1, 3 * LAG_LIMIT_STEPS):
+        assert realtime.whole(step) == []
+    assert realtime.drain() == []
+    assert realtime.buffer.dropped == 2 * (3 * LAG_LIMIT_STEPS - GIVE_UP_AFTER_STEPS - 1)

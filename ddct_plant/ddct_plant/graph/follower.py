@@ -16,7 +16,7 @@ from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import CLOCK, tick_names
 from ddct_plant.ticks.join import StampJoin
 from ddct_plant.ticks.replies import StampReplies
-from ddct_plant.ticks.stamp_limit import StampLimit
+from ddct_plant.ticks.reply_limit import ReplyLimit
 
 Reply = Sequence[Output]
 """Outputs with filled messages, in the order of publication."""
@@ -30,8 +30,8 @@ class FollowerNode(GraphNode):
 
     A subclass gives its inputs to `follow` and computes the reply in `answer`. Nothing in the
     trajectory reads a clock, so it does not depend on when messages arrive. In lock-step a bad
-    message ends the node; in real time it counts as a missing one, and so does a stamp that
-    `StampLimit` refuses.
+    message ends the node; in real time it counts as a missing one, and so does one that
+    `ReplyLimit` refuses.
     """
 
     def follow(self, *inputs: Topic, readers: Mapping[Topic, Read] | None = None) -> None:
@@ -44,8 +44,7 @@ class FollowerNode(GraphNode):
         names = [topic.name for topic in inputs]
         self.join = StampJoin(names, allow_gaps=not lockstep, shown=self.shown)
         if not lockstep:
-            clock_ns = self.steady_time.monotonic_ns
-            self.limit = StampLimit(tick_names(), clock_ns, shown=self.shown)
+            self.limit = ReplyLimit(tick_names(), self.shown)
         self.replies = StampReplies(
             self.join, self._answer, self.publish_reply, self._on_second_publisher
         )

@@ -46,7 +46,7 @@ from ddct_plant.scenario.recorded_settings import (
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.signals.tables.run import RUN_INFO, RUN_SETTINGS
 from ddct_plant.signals.topic import Topic
-from ddct_plant.ticks.stamp_limit import StampLimit
+from ddct_plant.ticks.reply_limit import ReplyLimit
 
 _FOREIGN = ('use_sim_time', 'start_type_description_service', QOS_OVERRIDES)
 """Prefixes of the parameters that rclpy declares itself."""
@@ -82,8 +82,8 @@ class GraphNode(Node):
         self._warnings = RareWarnings(self, self.steady_time.monotonic)
         if not self.known.lockstep:
             find_sources()
-        self.limit: StampLimit | None = None
-        """Limit of plausible stamps in real time; None in lock-step."""
+        self.limit: ReplyLimit | None = None
+        """Limit of the stamps of replies in real time; None in lock-step and in the driveline."""
         self.refused = 0
         """Number of refused messages, which count as missing."""
         self.done = Future()
@@ -161,7 +161,7 @@ class GraphNode(Node):
         self.subscribe_messages(topic, receive, raw=True)
 
     def admits(self, topic: str, stamp: int) -> bool:
-        """Return whether a stamp is plausible; a refused message counts as missing."""
+        """Return whether a stamp can be true; a refused message counts as missing."""
         reason = self.limit.why_refused(topic, stamp) if self.limit else ''
         if reason:
             self._refuse(reason)

@@ -5,6 +5,7 @@
 from typing import Any, ClassVar
 
 from ddct_plant.base.errors import DdctError
+from ddct_plant.base.timebase import START_NS
 from ddct_plant.fail_safe.guarded import GuardedActuator
 from ddct_plant.fail_safe.request_watch import REQUEST_TIMEOUT_S
 from ddct_plant.graph.follower import FollowerNode, Reply
@@ -60,21 +61,24 @@ class ActuatorNode(FollowerNode):
 
     def publish_reply(self) -> None:
         """Publish the torque; in real time only after a tick, by which the fail-safe runs."""
-        if self.limit is None or self.limit.tick_received:
+        if self._has_ticks:
             super().publish_reply()
 
     def admits(self, topic: str, stamp: int) -> bool:
-        """Return whether a stamp is plausible; raise DdctError for requests without ticks."""
-        true = super().admits(topic, stamp)
-        if not true and self.limit and not self.limit.tick_received:
+        """Return whether a stamp can be true; raise DdctError for requests without ticks."""
+        if not self._has_ticks and topic != CLOCK.name and stamp > START_NS:
             self._requests_without_clock += 1
-            if self._actuator.watch.too_long(0, 1 + self._requests_without_clock):
+            if self._actuator.watch.too_long(0, self._requests_without_clock):
                 raise DdctError(
                     f'at stamp {stamp} ns: {self._request} comes without {CLOCK.name}, by '
                     f'which the fail-safe sees that requests stop: publish {CLOCK.name} '
                     '(rosgraph_msgs/Clock) with the stamp of every tick'
                 )
-        return true
+        return super().admits(topic, stamp)
+
+    @property
+    def _has_ticks(self) -> bool:
+        return self.limit is None or self.limit.newest is not None
 
     def on_tick(self, step: int, stamp: int) -> None:
         """Open the clutch while requests have stopped."""

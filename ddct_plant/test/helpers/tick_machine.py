@@ -145,8 +145,8 @@ class TickMachine(RuleBasedStateMachine):
         """
         One topic of a node with several inputs carries stamps that this run never comes to.
 
-        On all of its inputs they would be complete: `StampLimit`, which is no part of this model,
-        refuses them in real time.
+        On all of its inputs they would be complete: `ReplyLimit`, which is no part of this model,
+        refuses those of replies in real time.
         """
         name = self.node_at(pick)
         inputs = self.wiring.nodes[name].inputs
