@@ -40,8 +40,8 @@ def init_ros(arguments: Sequence[str] | None, context: Context | None = None) ->
     """
     Initialise rclpy, or one context of it, with the arguments; None takes the command line's.
 
-    Raise DdctError for an argument or environment variable that rclpy refuses, and for a request
-    of security that the middleware does not have.
+    Raise DdctError for an argument or environment variable that rclpy refuses, and the errors of
+    `require_ros`.
     """
     require_ros()
     require_domain()

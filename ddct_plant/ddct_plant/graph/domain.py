@@ -10,8 +10,9 @@ from contextlib import contextmanager
 from hashlib import sha256
 
 from ddct_plant.base.errors import DdctError
-from ddct_plant.graph.security import require_security_if_asked
 
+SECURITY, STRATEGY = 'ROS_SECURITY_ENABLE', 'ROS_SECURITY_STRATEGY'
+"""Environment variables: `true` asks for DDS security, without which `Enforce` starts no node."""
 LAST_DOMAIN = 232
 """Highest ROS_DOMAIN_ID: beyond it DDS has no ports, and ends the process without a message."""
 _DOMAINS = range(1, 100)
@@ -25,7 +26,7 @@ so the last domain is not used again at once."""
 
 def require_ros() -> None:
     """
-    Raise DdctError where ROS is not installed, or lacks the security that is requested.
+    Raise DdctError where ROS is not installed, or might run without the requested security.
 
     Headless runs and scores do not need it.
     """
@@ -34,7 +35,12 @@ def require_ros() -> None:
             'the graph and its nodes need ROS 2, and its package rclpy is not installed: run '
             'headless, or set ROS up as docs/use/setup.md tells'
         )
-    require_security_if_asked()
+    if os.environ.get(SECURITY) == 'true' and os.environ.get(STRATEGY) != 'Enforce':
+        raise DdctError(
+            f'{SECURITY} is true without {STRATEGY}=Enforce, so a node that lacks keys, or a '
+            f'middleware without security, would run unsecured: set it, or unset {SECURITY}',
+            key=SECURITY,
+        )
 
 
 def require_domain() -> int | None:

@@ -71,7 +71,11 @@ class GraphNode(Node):
 
     def __init__(self, name: str, *, steady_time: SteadyTime | None = None, **kwargs: Any) -> None:
         """Declare the shared parameters; raise ParameterError when one cannot be used."""
-        super().__init__(name, **kwargs)
+        try:
+            super().__init__(name, **kwargs)
+        except RuntimeError as error:  # so rcl refuses security that the middleware lacks
+            reason = ' '.join(str(error).split(', at /')[0].split())
+            raise DdctError(f'{reason}: mend what stands in ROS_*') from error
         self._kind = name
         self.steady_time = steady_time or SteadyTime()
         """Time by which the node waits."""
