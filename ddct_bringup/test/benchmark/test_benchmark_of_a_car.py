@@ -103,8 +103,8 @@ def test_the_same_command_goes_on_and_that_with_another_car_is_refused(
     ('text', 'words'),
     [
         (None, 'cannot be read'),
-        ('vehicle: {mass_kg: -1}\n', 'vehicle.mass_kg is -1'),
-        ('clutch: linear\n', 'can drive no scenario of the benchmark; launch: '),
+        ('base: c635\nvehicle: {mass_kg: -1}\n', 'vehicle.mass_kg is -1'),
+        ('base: c635\nclutch: linear\n', 'can drive no scenario of the benchmark; launch: '),
     ],
 )
 @pytest.mark.usefixtures('place')
