@@ -17,22 +17,19 @@ from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.conduct import RESUME, carry_out_part
 from ddct_bringup.campaign.plan import CampaignPlan, RecordedCampaign
 from ddct_bringup.campaign_report.reading import read_table
+from ddct_bringup.manifest.begun import begun_manifest
 from ddct_bringup.manifest.file_states import require_unaltered
-from ddct_bringup.manifest.inputs import INPUTS, InputFiles
+from ddct_bringup.manifest.inputs import InputFiles
 from ddct_bringup.manifest.limits import NamedLimits
 from ddct_bringup.manifest.manifest import (
     BENCHMARK,
-    MANIFEST,
     begin_manifest,
-    read_manifest,
     require_same_inputs,
     resume_manifest,
 )
 from ddct_bringup.run.output_folder import (
-    MARKER,
     locked_folders,
     mark_folder,
-    require_ours_or_empty,
 )
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.base.errors import DdctError
@@ -107,17 +104,12 @@ def carry_out_benchmark(
 
 def _begin(plan: BenchmarkPlan, inputs: InputFiles, rows: Traversable | None, out: Path) -> None:
     """Write the manifest, or require the same one in the folder."""
-    require_ours_or_empty(out)
-    if (out / MANIFEST).exists():
-        known = read_manifest(out)
+    if known := begun_manifest(out, 'benchmark', ROWS):
         RecordedBenchmark.of(known, out).require_same(plan, out)
         require_same_inputs(out, known, inputs)
         require_unaltered(out, list(inputs.files))
         resume_manifest(out, known)
         return
-    begun = {MARKER, ROWS, INPUTS}  # what a start that was killed may leave
-    if out.is_dir() and {each.name for each in out.iterdir()} - begun:
-        raise DdctError(f'{out} holds other results: choose another --out')
     mark_folder(out)
     if rows is not None:
         copy_release_rows(rows, out)

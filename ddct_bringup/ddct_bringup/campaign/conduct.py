@@ -4,7 +4,6 @@
 
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Future, wait
-from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
@@ -20,13 +19,13 @@ from ddct_bringup.campaign.shards import (
     timed_shard,
 )
 from ddct_bringup.campaign.spec import spec_of
+from ddct_bringup.manifest.begun import begun_manifest
 from ddct_bringup.manifest.file_states import altered_files, require_unaltered
 from ddct_bringup.manifest.inputs import INPUTS, InputFiles, full_path
 from ddct_bringup.manifest.limits import NamedLimits
 from ddct_bringup.manifest.manifest import (
     CAMPAIGN,
     ITSELF,
-    MANIFEST,
     Manifest,
     begin_manifest,
     keep_digests,
@@ -35,10 +34,8 @@ from ddct_bringup.manifest.manifest import (
     resume_manifest,
 )
 from ddct_bringup.run.output_folder import (
-    MARKER,
     locked_folders,
     mark_folder,
-    require_ours_or_empty,
 )
 from ddct_bringup.verdict.limits import Limits
 from ddct_plant.base.errors import DdctError
@@ -96,9 +93,7 @@ def carry_out_part(
     Raise as `carry_out`.
     """
     with locked_folders(out), workers_of(workers, None) as ready:
-        mark_folder(out)
-        with _written(out):
-            (out / SHARDS).mkdir(exist_ok=True)
+        begin_folder(out)
         manifest = read_manifest(recorded.result)
         carry_out_recorded(recorded, manifest, limits, out, ready, stopped)
 
@@ -160,31 +155,20 @@ def _begin(
     one_machine: bool,
 ) -> tuple[RecordedCampaign, Manifest]:
     """Return campaign and manifest of the result; write it first unless it is resumed."""
-    require_ours_or_empty(out)
+    known = begun_manifest(out, 'campaign', SHARDS, resume=resume)
     inputs = InputFiles(campaign.spec.folder)
     content = carried(campaign.spec, inputs)
     named = NamedLimits.of(limits, inputs)
-    if (out / MANIFEST).exists():
-        recorded, known = RecordedCampaign.read(out), read_manifest(out)
-        if not resume:
-            raise DdctError(
-                f'{out} holds a campaign: go on with --resume, or choose another --out',
-                key='--resume',
-            )
+    if known:
+        recorded = RecordedCampaign.read(out)
         require_unaltered(out, list(inputs.files))
         require_same_inputs(out, known, inputs)
         spec = spec_of(content, out / INPUTS)
         recorded.require_same(CampaignPlan.of(Campaign(spec), named, out))
         return recorded, resume_manifest(out, known, one_machine=one_machine)
-    if resume:
-        raise DdctError('there is nothing to go on with: leave --resume out', place=out)
-    if out.is_dir() and {each.name for each in out.iterdir()} - {MARKER, SHARDS, INPUTS}:
-        raise DdctError(f'{out} holds other results: choose another --out', key='--out')
     campaign.require_sound()
     require_going_on(stopped)
-    mark_folder(out)
-    with _written(out):
-        (out / SHARDS).mkdir(exist_ok=True)
+    begin_folder(out)
     inputs.copy(out)
     plan = CampaignPlan.of(Campaign(spec_of(content, out / INPUTS)), named, out)
     begin_manifest(out, CAMPAIGN, {}, inputs, {ITSELF: plan})
@@ -192,13 +176,13 @@ def _begin(
     return RecordedCampaign.read(out), manifest
 
 
-@contextmanager
-def _written(folder: Path) -> Iterator[None]:
-    """Raise DdctError where the operating system refuses to write into a folder."""
+def begin_folder(out: Path) -> None:
+    """Make the folder of a result, marked as ours, with that of its shards; raise DdctError."""
+    mark_folder(out)
     try:
-        yield
+        (out / SHARDS).mkdir(exist_ok=True)
     except OSError as error:
-        raise DdctError(f'cannot be written ({error.strerror})', place=folder) from error
+        raise DdctError(f'cannot be written ({error.strerror})', place=out) from error
 
 
 def _shards(

@@ -6,24 +6,20 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from ddct_bringup.campaign.conduct import RESUME, SHARDS, require_going_on
+from ddct_bringup.campaign.conduct import RESUME, SHARDS, begin_folder, require_going_on
+from ddct_bringup.manifest.begun import begun_manifest
 from ddct_bringup.manifest.file_states import altered_files, require_unaltered
-from ddct_bringup.manifest.inputs import INPUTS, InputFiles
+from ddct_bringup.manifest.inputs import InputFiles
 from ddct_bringup.manifest.manifest import (
-    MANIFEST,
     TUNING,
     Manifest,
     begin_manifest,
     keep_digests,
-    read_manifest,
     require_same_inputs,
     resume_manifest,
 )
 from ddct_bringup.run.output_folder import (
-    MARKER,
     locked_folders,
-    mark_folder,
-    require_ours_or_empty,
 )
 from ddct_bringup.tuning.evaluation import TrialRuns, evaluation
 from ddct_bringup.tuning.front import dominates, why_all_invalid
@@ -77,29 +73,14 @@ def _begin(tuning: Tuning, out: Path, *, resume: bool) -> tuple[Tuning, Manifest
     """
     inputs = InputFiles(tuning.spec.folder)
     plan = TuningPlan.of(tuning, require_optuna(), inputs)
-    require_ours_or_empty(out)
-    if (out / MANIFEST).exists():
-        if not resume:
-            raise DdctError(
-                f'{out} holds a tuning: go on with --resume, or choose another --out',
-                key='--resume',
-            )
-        known = read_manifest(out)
+    if known := begun_manifest(out, 'tuning', SHARDS, resume=resume):
         recorded = RecordedTuning.of(known, out)
         recorded.require_same(plan, out)
         require_same_inputs(out, known, inputs)
         require_unaltered(out, list(inputs.files))
         return recorded.tuning(out), resume_manifest(out, known)
-    if resume:
-        raise DdctError('there is nothing to go on with: leave --resume out', place=out)
-    if out.is_dir() and {each.name for each in out.iterdir()} - {MARKER, SHARDS, INPUTS}:
-        raise DdctError(f'{out} holds other results: choose another --out', key='--out')
     tuning.require_sound()
-    mark_folder(out)
-    try:
-        (out / SHARDS).mkdir(exist_ok=True)
-    except OSError as error:
-        raise DdctError(f'cannot be written ({error.strerror})', place=out) from error
+    begin_folder(out)
     manifest = begin_manifest(out, TUNING, plan, inputs)
     return RecordedTuning.of(manifest, out).tuning(out), manifest
 
