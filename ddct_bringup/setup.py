@@ -73,7 +73,6 @@ setup(
         'pyarrow',
         'rich',
         'scipy',
-        'threadpoolctl',
     ],
     extras_require={
         'dask': ['distributed'],

@@ -2,6 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Plant of the dual dry clutch transmission: engine, load, clutch, driveline, actuator."""
 
-from ddct_plant.program.kernel import choose_kernel
+from ddct_plant.program.arithmetic import choose_kernel
 
 choose_kernel()

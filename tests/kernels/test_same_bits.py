@@ -5,11 +5,11 @@
 import pytest
 from support.trajectory_hashes import FEATURES, Hashes, hashes_with
 
-from ddct_plant.program.kernel import HASWELL, KERNEL, _kernel_of_processor
+from ddct_plant.program.arithmetic import HASWELL, KERNEL, kernel_of_processor
 
 pytestmark = [
     pytest.mark.process,
-    pytest.mark.skipif(_kernel_of_processor() is None, reason='needs x86-64 with AVX2'),
+    pytest.mark.skipif(kernel_of_processor() is None, reason='needs x86-64 with AVX2'),
 ]
 SAMPLE = ('pi', 'hinf_thesis', 'mpc_wear', 'least_jerk')
 

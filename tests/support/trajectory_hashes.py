@@ -20,8 +20,7 @@ from pathlib import Path
 
 from ddct_bringup.run.headless import run_headless
 from ddct_controllers.registry import own_controller_names
-from ddct_plant.program.arithmetic import Arithmetic, arithmetic
-from ddct_plant.program.kernel import KERNEL, THREADS
+from ddct_plant.program.arithmetic import KERNEL, THREADS, Arithmetic, arithmetic
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import KnownSettings, RunSettings
 

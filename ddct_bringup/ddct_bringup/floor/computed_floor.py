@@ -4,8 +4,6 @@
 
 from dataclasses import dataclass, replace
 
-from threadpoolctl import threadpool_limits
-
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.floor.bound import bound_of
 from ddct_bringup.floor.cache import KnownFloor, cached, digest_of, store
@@ -18,7 +16,7 @@ from ddct_bringup.floor.program.linear_program import CLOSED_FORM, RAY
 from ddct_bringup.floor.replays.attained import Replays, replays_of
 from ddct_bringup.floor.values import Floor, Proof, objective_of
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.program.kernel import threads
+from ddct_plant.program.arithmetic import limit_threads, named_threads
 
 DEMAND, LIMITS = (
     'runs in which the engine gives the demand',
@@ -51,8 +49,8 @@ def computed_floor(
     if known is not None:
         return ComputedFloor(known.floor, known.limited)
     closed = metric == FRICTION
-    # Also where numpy was loaded before our package: more threads take several times as long.
-    with threadpool_limits(threads(), user_api='blas'):
+    # More threads take several times as long.
+    with limit_threads(named_threads()):
         found = _closed_form(case) if closed else _computed(case, metric, begin, attain)
     store(digest, KnownFloor(found.floor, found.limited))
     return found

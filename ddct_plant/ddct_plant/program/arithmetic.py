@@ -1,19 +1,32 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
 """
-The arithmetic of a run: libraries, their kernel, and versions, which decide its last bits.
+The arithmetic of a run: libraries, their kernel and threads, and versions decide its last bits.
 
-Two runs with the same settings and code have the same bits where `differences` finds nothing.
+OpenBLAS picks its kernel by processor when numpy or scipy loads it, and kernels round differently:
+every process names one kernel and one thread before it imports numpy. Two runs with the same
+settings and code have the same bits where `differences` finds nothing.
 """
 
-import platform
+import os
+import sys
 from collections.abc import Mapping
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
+from typing import Any
 
-from threadpoolctl import threadpool_info
+KERNEL = 'OPENBLAS_CORETYPE'
+"""Environment variable with the name of OpenBLAS's kernel."""
+THREADS = 'OPENBLAS_NUM_THREADS'
+"""Environment variable with the number of OpenBLAS's threads."""
+HASWELL = 'Haswell'
+"""Kernel for all processors of x86-64 with AVX2, of Intel since 2013 and of AMD since 2017."""
+_NEEDED = {'avx2', 'fma'}
+"""Features of a processor that this kernel uses, by their names in Linux."""
+_PROCESSOR = Path('/proc/cpuinfo')
 
 _PACKAGES = (
     *('numpy', 'scipy', 'control', 'daqp', 'osqp', 'slycot', 'optuna'),
@@ -26,6 +39,50 @@ _WHEELS = {'numpy.libs': 'numpy', 'scipy.libs': 'scipy'}
 _OTHER_WHEEL = '.libs'
 """End of the name of that folder in another wheel, whose library no run uses."""
 _SYSTEM = 'system'
+
+
+def choose_kernel() -> None:
+    """
+    Name kernel and threads in the environment of this process, unless they are named there.
+
+    Processes that this one starts inherit them. Where numpy is loaded already, as in a notebook,
+    its kernel is the one that is named: it stays, and those processes use it too.
+    """
+    # Matrices are small: more threads only wait for one another.
+    os.environ.setdefault(THREADS, '1')
+    if KERNEL not in os.environ:
+        kernel = _kernel_of_numpy() if 'numpy' in sys.modules else kernel_of_processor()
+        if kernel:
+            os.environ[KERNEL] = kernel
+
+
+def kernel_of_processor() -> str | None:
+    """Return the kernel that every process of this machine uses; None where OpenBLAS picks it."""
+    if os.uname().machine != 'x86_64':
+        return None
+    return HASWELL if {*_processor_line('flags').split()} >= _NEEDED else None
+
+
+def _kernel_of_numpy() -> str | None:
+    return next((each.kernel for each in blas_libraries() if each.kernel), None)
+
+
+def named_threads() -> int:
+    """Return the number of threads that the environment names, 1 where it names none."""
+    named = os.environ.get(THREADS, '')
+    return max(1, int(named)) if named.isdecimal() else 1
+
+
+def limit_threads(count: int) -> AbstractContextManager[Any]:
+    """
+    Let the loaded libraries use `count` threads from now on; as a context manager until its end.
+
+    They may have been loaded before our package, with as many threads as the machine has cores.
+    """
+    from threadpoolctl import threadpool_limits
+
+    limits: AbstractContextManager[Any] = threadpool_limits(count, user_api='blas')
+    return limits
 
 
 @dataclass(frozen=True)
@@ -83,6 +140,8 @@ class Arithmetic:
 @cache
 def arithmetic() -> Arithmetic:
     """Return the arithmetic of this process."""
+    import platform
+
     # Only here: it loads the OpenBLAS of scipy, which takes some tenths of a second.
     import scipy.linalg  # noqa: F401
 
@@ -92,14 +151,16 @@ def arithmetic() -> Arithmetic:
         kernel=_joined({each.user: each.kernel for each in found}),
         threads=_joined({each.user: str(each.threads) for each in found}),
         libc=' '.join(platform.libc_ver()),
-        versions=_versions(),
+        versions={'python': platform.python_version(), **_versions()},
         machine=platform.machine(),
-        processor=_processor_name(),
+        processor=_processor_line('model name') or platform.machine(),
     )
 
 
 def blas_libraries() -> list[Blas]:
     """Return the libraries for linear algebra of numpy and scipy, as far as they are loaded."""
+    from threadpoolctl import threadpool_info
+
     found = []
     for each in threadpool_info():
         folder = Path(each['filepath']).parent.name
@@ -127,7 +188,7 @@ def _joined(by_user: Mapping[str, str]) -> str:
 
 
 def _versions() -> Mapping[str, str]:
-    found = {'python': platform.python_version()}
+    found = {}
     for name in _PACKAGES:
         try:
             found[name] = version(name)
@@ -136,7 +197,8 @@ def _versions() -> Mapping[str, str]:
     return found
 
 
-def _processor_name() -> str:
-    with Path('/proc/cpuinfo').open(encoding='utf-8', errors='replace') as lines:
-        names = (line.partition(':')[2] for line in lines if line.startswith('model name'))
-        return next(names, platform.machine()).strip()
+def _processor_line(name: str) -> str:
+    """Return what Linux says of the first processor under that name, '' for nothing."""
+    with _PROCESSOR.open(encoding='utf-8', errors='replace') as lines:
+        values = (line.partition(':')[2] for line in lines if line.startswith(name))
+        return next(values, '').strip()

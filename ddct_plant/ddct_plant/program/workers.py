@@ -17,9 +17,8 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import closing, contextmanager
 from typing import Any, TypeVar
 
-from threadpoolctl import threadpool_limits
-
 from ddct_plant.base.errors import DdctError, ParameterError
+from ddct_plant.program.arithmetic import limit_threads
 from ddct_plant.program.supervision import deferred_signals, end_with_parent
 
 _LARGEST_CHUNK = 16
@@ -137,8 +136,7 @@ def _begin(parent: int, work: Callable[[Any], Any] | None) -> None:
     end_with_parent(parent, signal.SIGKILL)
     # Collecting what the program has imported would take as long as many runs, and copy it.
     gc.freeze()
-    # Also where numpy was loaded before our package, with threads.
-    threadpool_limits(1, user_api='blas')
+    limit_threads(1)
 
 
 def _result(argument: Any) -> Any:

@@ -11,11 +11,19 @@ from dataclasses import replace
 from typing import Any
 
 import pytest
+import threadpoolctl
 
 from ddct_plant.program import arithmetic as module
-from ddct_plant.program import kernel
-from ddct_plant.program.arithmetic import Arithmetic, arithmetic
-from ddct_plant.program.kernel import HASWELL, KERNEL, THREADS, choose_kernel
+from ddct_plant.program.arithmetic import (
+    HASWELL,
+    KERNEL,
+    THREADS,
+    Arithmetic,
+    arithmetic,
+    choose_kernel,
+    kernel_of_processor,
+    named_threads,
+)
 
 PRINTED = (
     'import os\n'
@@ -27,7 +35,7 @@ PRINTED = (
 FIRST_NUMPY = 'import numpy\n'
 PACKAGES = ('ddct_plant', 'ddct_reference', 'ddct_controllers', 'ddct_bringup')
 openblas = pytest.mark.skipif(
-    'OpenBLAS' not in arithmetic().blas or kernel._kernel_of_processor() is None,
+    'OpenBLAS' not in arithmetic().blas or kernel_of_processor() is None,
     reason='needs OpenBLAS on x86-64 with AVX2',
 )
 
@@ -73,7 +81,7 @@ def test_every_package_names_a_kernel_before_it_imports_numpy(package):
         f'import os, sys, {package}\n'
         f'print({KERNEL!r} in os.environ, "numpy" in sys.modules, sep="|")'
     )
-    assert printed(code) == [str(kernel._kernel_of_processor() is not None), 'False']
+    assert printed(code) == [str(kernel_of_processor() is not None), 'False']
 
 
 @pytest.mark.parametrize(
@@ -90,7 +98,7 @@ def test_the_kernel_is_chosen_by_the_features_of_the_processor(
 ):
     processor = tmp_path / 'cpuinfo'
     processor.write_text(f'processor\t: 0\nflags\t\t: {flags}\n\nprocessor\t: 1\n')
-    monkeypatch.setattr(kernel, '_PROCESSOR', processor)
+    monkeypatch.setattr(module, '_PROCESSOR', processor)
     monkeypatch.setattr(os, 'uname', lambda: os.uname_result(('Linux', 'here', '6', '1', machine)))
     monkeypatch.delitem(sys.modules, 'numpy')
     monkeypatch.delenv(KERNEL, raising=False)
@@ -106,7 +114,7 @@ def test_the_number_of_threads_is_that_of_the_environment_or_one(monkeypatch, na
     monkeypatch.delenv(THREADS, raising=False)
     if named is not None:
         monkeypatch.setenv(THREADS, named)
-    assert kernel.threads() == number
+    assert named_threads() == number
 
 
 @openblas
@@ -159,7 +167,7 @@ def found_here(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[..., Arithm
     """Yield a function that returns the arithmetic with these libraries loaded."""
 
     def found(*libraries: dict[str, Any]) -> Arithmetic:
-        monkeypatch.setattr(module, 'threadpool_info', lambda: list(libraries))
+        monkeypatch.setattr(threadpoolctl, 'threadpool_info', lambda: list(libraries))
         return arithmetic.__wrapped__()
 
     yield found

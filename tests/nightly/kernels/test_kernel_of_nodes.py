@@ -8,7 +8,7 @@ import sys
 
 import pytest
 
-from ddct_plant.program.kernel import KERNEL, THREADS
+from ddct_plant.program.arithmetic import KERNEL, THREADS
 
 RUNS = """
 import ddct_bringup.api as api
