@@ -27,7 +27,7 @@ PROGRAMS = [
     'verify = ddct_bringup.programs.verify:main',
 ]
 DDCT = 'ddct = ddct_bringup.programs.ddct:main'
-SCRIPTS = [f'{program.split()[0]} = ddct_plant.program.start:main' for program in PROGRAMS]
+SCRIPTS = [f'{program.split()[0]} = ddct_plant.program.command_line:main' for program in PROGRAMS]
 """The same programs as scripts, whose imports can be interrupted."""
 WHEEL = not {'bdist_wheel', 'dist_info', 'editable_wheel'}.isdisjoint(sys.argv)
 """

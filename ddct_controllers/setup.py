@@ -17,7 +17,7 @@ PROGRAMS = [
     'handover = ddct_controllers.handover.handover_node:main',
     'new-controller = ddct_controllers.template.new_controller:main',
 ]
-SCRIPTS = [f'{program.split()[0]} = ddct_plant.program.start:main' for program in PROGRAMS]
+SCRIPTS = [f'{program.split()[0]} = ddct_plant.program.command_line:main' for program in PROGRAMS]
 """The same programs as scripts, whose imports can be interrupted."""
 WHEEL = not {'bdist_wheel', 'dist_info', 'editable_wheel'}.isdisjoint(sys.argv)
 """Whether pip builds a wheel, which would put scripts into bin/ that `ros2 run` does not find."""

@@ -17,7 +17,7 @@ PROGRAMS = [
     'engine = ddct_plant.nodes.engine_node:main',
     'load = ddct_plant.nodes.load_node:main',
 ]
-SCRIPTS = [f'{program.split()[0]} = ddct_plant.program.start:main' for program in PROGRAMS]
+SCRIPTS = [f'{program.split()[0]} = ddct_plant.program.command_line:main' for program in PROGRAMS]
 """The same programs as scripts, whose imports can be interrupted."""
 WHEEL = not {'bdist_wheel', 'dist_info', 'editable_wheel'}.isdisjoint(sys.argv)
 """Whether pip builds a wheel, which would put scripts into bin/ that `ros2 run` does not find."""

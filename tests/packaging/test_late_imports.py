@@ -14,7 +14,7 @@ import pytest
 from ddct_bringup import api, processes, verification
 from ddct_bringup.api import shell
 from ddct_controllers import workflows
-from ddct_plant.program.start import programs
+from ddct_plant.program.command_line import programs
 
 ROOT = Path(__file__).resolve().parents[2]
 

@@ -16,8 +16,8 @@ from support.processes import Programs, processes_left
 
 from ddct_bringup import processes
 from ddct_bringup.programs import ddct
-from ddct_plant.program import start
-from ddct_plant.program.start import programs
+from ddct_plant.program import command_line
+from ddct_plant.program.command_line import programs
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = ('ddct_bringup', 'ddct_controllers', 'ddct_plant', 'ddct_reference')
@@ -168,7 +168,7 @@ def test_a_signal_during_imports_ends_a_program_as_any_other(
     monkeypatch.syspath_prepend(tmp_path)
     monkeypatch.delitem(sys.modules, 'extra_program', raising=False)
     monkeypatch.setattr(sys, 'argv', [f'/lib/{script}', 'extra'])
-    assert (ddct if script == 'ddct' else start).main() == 128 + number
+    assert (ddct if script == 'ddct' else command_line).main() == 128 + number
     assert capsys.readouterr().err == f'{script}: interrupted\n'
 
 

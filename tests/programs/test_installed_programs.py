@@ -8,7 +8,7 @@ import pytest
 from support.installed import installed
 from support.processes import Programs
 
-from ddct_plant.program.start import programs as installed_programs
+from ddct_plant.program.command_line import programs as installed_programs
 
 PROGRAMS = sorted(
     (point.module.partition('.')[0], name) for name, point in installed_programs().items()

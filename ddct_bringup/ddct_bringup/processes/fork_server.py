@@ -24,7 +24,7 @@ from pathlib import Path
 
 from ddct_bringup.processes.preloaded import MARK
 from ddct_plant.base.errors import DdctError
-from ddct_plant.program.supervision import deferred_signals
+from ddct_plant.program.signals import deferred_signals, held_back
 
 CONTEXT = multiprocessing.get_context('forkserver')
 START_S = 60.0
@@ -44,14 +44,11 @@ def start_server() -> None:
     with deferred_signals(), _own_modules_alone(), _environment(given):
         # The library starts this one first, and lets signals through afterwards.
         resource_tracker.ensure_running()
-        # Until the server has its own group: Ctrl-C in a terminal is not for it.
-        before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
         try:
-            forkserver.ensure_running()
+            with held_back():  # until it has its own group: Ctrl-C in a terminal is not for it
+                forkserver.ensure_running()
         except OSError as error:
             raise _cannot_start(error) from error
-        finally:
-            signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def stop_server() -> None:

@@ -19,6 +19,7 @@ from pathlib import Path
 from ddct_bringup.processes.fork_server import CONTEXT, server_ends
 from ddct_bringup.processes.preloaded import remove_socket
 from ddct_plant.program.own_process import NOTE_BYTES, note_calls
+from ddct_plant.program.signals import obey_interrupts
 from ddct_plant.program.supervision import Patience, end_after, supervise
 
 _ENDED_BY = (signal.SIGINT, signal.SIGTERM, signal.SIGKILL, signal.SIGALRM)
@@ -165,7 +166,7 @@ def _run(
     sys.argv = [module, *arguments]
     with contextlib.suppress(OSError):
         Path('/proc/self/comm').write_text(module.rpartition('.')[2], encoding='ascii')
-    signal.signal(signal.SIGINT, signal.default_int_handler)
+    obey_interrupts()
     threading.Thread(target=_end_with_program, daemon=True).start()
     if patience:
         supervise(patience, lambda code: announced.send_bytes(b'%d' % code))

@@ -20,6 +20,7 @@ from pathlib import Path
 
 from ddct_bringup.processes.graph_nodes import NODE_PROGRAMS
 from ddct_bringup.processes.shared_memory import remove_dead_segments
+from ddct_plant.program.signals import ignore_interrupts
 
 MARK = 'DDCT_FORK_SERVER'
 """
@@ -53,9 +54,7 @@ def serve(program: int) -> None:
     """Prepare this process, the fork server of `program`, before it forks."""
     # A group of its own, which its nodes share: Ctrl-C in a terminal reaches the program alone.
     os.setpgrp()
-    # One that came before this group, and waits until it is let through, is not for the server.
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+    ignore_interrupts()
     # When the program is killed while a node is paused, the kernel sends this to the whole group
     # before it resumes that node, which shall then end as the others do.
     signal.signal(signal.SIGHUP, signal.SIG_IGN)

@@ -18,7 +18,7 @@ from ddct_plant.program.command_line import (
     run_program,
     show_and_write,
 )
-from ddct_plant.program.supervision import stop_signals
+from ddct_plant.program.signals import stop_signals
 
 PROGRAM = 'ddct benchmark'
 _SECONDS_A_RUN = 0.1

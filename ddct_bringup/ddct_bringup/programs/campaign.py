@@ -4,14 +4,14 @@
 
 import argparse
 import sys
+from functools import partial
 from pathlib import Path
 
 from ddct_bringup.api import shell
 from ddct_bringup.programs import campaign_folder
 from ddct_bringup.programs.options.of_runs import add_limits_option, add_workers_option
 from ddct_plant.program.command_line import ProgramParser, run_program
-from ddct_plant.program.subcommands import run_subcommands
-from ddct_plant.program.supervision import stop_signals
+from ddct_plant.program.signals import stop_signals
 
 PROGRAM = 'ddct campaign'
 _COMMANDS = ('replay', 'show')
@@ -37,8 +37,14 @@ def main(argv: list[str] | None = None) -> int:
     given = sys.argv[1:] if argv is None else argv
     if given and given[0] in _COMMANDS:
         parser = ProgramParser(prog=PROGRAM, description='What else can be done with a campaign.')
-        return run_subcommands(parser, [campaign_folder], argv, metavar='WHAT')
+        campaign_folder.add_parsers(parser.add_subparsers(required=True, metavar='WHAT'))
+        return run_program(PROGRAM, partial(_folder, parser), argv)
     return run_program(PROGRAM, _campaign, argv)
+
+
+def _folder(parser: ProgramParser, argv: list[str]) -> int:
+    options = parser.parse_args(argv)
+    return options.run(options)
 
 
 def _campaign(argv: list[str]) -> int:

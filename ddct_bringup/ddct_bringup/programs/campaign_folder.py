@@ -29,7 +29,7 @@ are those of the row: of a serial row to the last bit, of a vectorised one to 1e
 """
 
 
-def add_parser(subparsers: 'argparse._SubParsersAction[ProgramParser]') -> None:
+def add_parsers(subparsers: 'argparse._SubParsersAction[ProgramParser]') -> None:
     """Add `replay` and `show` to the subcommands of `campaign`."""
     replay = subparsers.add_parser(
         'replay',

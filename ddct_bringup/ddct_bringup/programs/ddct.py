@@ -14,8 +14,7 @@ from ddct_bringup import processes
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.options import close_name
 from ddct_plant.graph.domain import require_ros
-from ddct_plant.program.command_line import ProgramParser, run_program
-from ddct_plant.program.start import load_program, programs
+from ddct_plant.program.command_line import ProgramParser, load_program, programs, run_program
 
 PROGRAM = 'ddct'
 _FIRST_OF_ROS = ('rclpy', 'rcl_interfaces')

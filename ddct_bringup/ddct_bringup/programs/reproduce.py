@@ -3,8 +3,7 @@
 """Program `reproduce`: the thesis's numbers, figures, studies and calibration, made again."""
 
 from ddct_bringup.api import shell
-from ddct_plant.program.command_line import ProgramParser
-from ddct_plant.program.subcommands import LateSubcommand, run_late_subcommands
+from ddct_plant.program.command_line import LateSubcommand, ProgramParser, run_subcommands
 
 PROGRAM = 'ddct reproduce'
 _COMMANDS = {
@@ -34,7 +33,7 @@ Each of them has its own --help."""
 def main(argv: list[str] | None = None) -> int:
     """Run the program and return its exit code."""
     parser = ProgramParser(prog=PROGRAM, description=_DESCRIPTION, epilog=_EPILOG)
-    return run_late_subcommands(parser, _COMMANDS, argv, metavar='WHAT')
+    return run_subcommands(parser, _COMMANDS, argv, metavar='WHAT')
 
 
 if __name__ == '__main__':

@@ -12,7 +12,7 @@ from ddct_bringup.tuning.specification.packaged_specs import packaged_specs
 from ddct_bringup.tuning.tuned_names import BEST, PAGE, RESULT
 from ddct_plant.files.output_file import require_place
 from ddct_plant.program.command_line import ProgramParser, run_program, show_and_write
-from ddct_plant.program.supervision import stop_signals
+from ddct_plant.program.signals import stop_signals
 
 PROGRAM = 'ddct tune'
 _EPILOG = f"""\

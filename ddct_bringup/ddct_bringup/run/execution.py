@@ -35,7 +35,7 @@ from ddct_controllers.from_file.fmu.unpacked import remove_left_folders
 from ddct_controllers.registry import Chosen, compiled_code, make_controller
 from ddct_plant.base.errors import DdctError
 from ddct_plant.graph.domain import own_domain, sole_graph
-from ddct_plant.program.supervision import interrupted_by, stop_signals
+from ddct_plant.program.signals import interrupted_by, stop_signals
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.signals.gain_changes import GainChange
 from ddct_plant.signals.topics import CLOCK

@@ -3,8 +3,7 @@
 """Program `design`: from specifications to a verified controller and its margins."""
 
 from ddct_controllers import workflows
-from ddct_plant.program.command_line import ProgramParser
-from ddct_plant.program.subcommands import LateSubcommand, run_late_subcommands
+from ddct_plant.program.command_line import LateSubcommand, ProgramParser, run_subcommands
 
 PROGRAM = 'ddct design'
 _COMMANDS = {
@@ -44,7 +43,7 @@ Each workflow has its own --help. The thesis's numbers, figures and studies: rep
 def main(argv: list[str] | None = None) -> int:
     """Run the program and return its exit code."""
     parser = ProgramParser(prog=PROGRAM, description=_DESCRIPTION, epilog=_EPILOG)
-    return run_late_subcommands(parser, _COMMANDS, argv, metavar='WORKFLOW')
+    return run_subcommands(parser, _COMMANDS, argv, metavar='WORKFLOW')
 
 
 if __name__ == '__main__':

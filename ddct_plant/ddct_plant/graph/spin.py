@@ -24,7 +24,8 @@ from ddct_plant.graph.arguments import (
 )
 from ddct_plant.graph.node import GraphNode
 from ddct_plant.program.command_line import run_program
-from ddct_plant.program.supervision import announce_exit, beat, ends_at_once, stop_signals
+from ddct_plant.program.signals import ends_at_once, stop_signals
+from ddct_plant.program.supervision import announce_exit, beat
 
 SLICE_S = 0.1
 """Period in s at which signals are checked, and the longest spin of the executor."""

@@ -1,27 +1,31 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Common command-line parts of all programs: parser, one-line errors, exit codes."""
+"""Common parts of all programs: start by name, parser, subcommands, errors, exit codes."""
 
 import argparse
 import contextlib
 import errno
 import gc
-import importlib.metadata
 import os
 import sys
-from collections.abc import Callable, Iterator
-from typing import Any, NoReturn
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from importlib.metadata import EntryPoint, PackageNotFoundError, entry_points, version
+from pathlib import Path
+from typing import Any, NoReturn, Protocol
 
 from ddct_plant.base.errors import DdctError, printable
 from ddct_plant.files.json_records import write_json
 from ddct_plant.files.output_file import STDOUT
-from ddct_plant.program.supervision import (
+from ddct_plant.program.signals import (
     interrupted_by,
     interruptible,
     is_first_report,
     stems_from_interrupt,
 )
 
+GROUP = 'ddct.programs'
+"""Group of the programs' entry points, which the packages' setup.py declare."""
 USAGE = 2
 """Exit code after invalid options, as in argparse."""
 INTERRUPTED = 130
@@ -40,9 +44,44 @@ _ADVICE = {
 def package_version() -> str:
     """Return the version of the installed packages, or 'unknown' in a bare source tree."""
     try:
-        return importlib.metadata.version('ddct_plant')
-    except importlib.metadata.PackageNotFoundError:
+        return version('ddct_plant')
+    except PackageNotFoundError:
         return 'unknown'
+
+
+def main() -> int:
+    """
+    Run the program that has the name of this script, and return its exit code.
+
+    An interruption of its imports ends it as any other.
+    """
+    name = Path(sys.argv[0]).name
+
+    def start(_argv: list[str]) -> int:
+        known = programs()
+        if name not in known:
+            raise DdctError(f'no program has this name: choose from {", ".join(sorted(known))}')
+        return load_program(known[name])()
+
+    return run_program(name, start, None)
+
+
+def programs() -> dict[str, EntryPoint]:
+    """Return the programs by name; of two with the same name the first on Python's path."""
+    return {point.name: point for point in reversed(tuple(entry_points(group=GROUP)))}
+
+
+def load_program(point: EntryPoint) -> Callable[[], int]:
+    """Import a program; raise DdctError where a package that it needs is not installed."""
+    try:
+        loaded: Callable[[], int] = point.load()
+    except ImportError as error:
+        if interrupted_by():  # some modules report any failure in them as one of an import
+            raise
+        raise DdctError(f'{point.name} cannot start: {error}: install what it needs') from error
+    if interrupted_by():  # a module has dropped it
+        raise KeyboardInterrupt
+    return loaded
 
 
 class ProgramParser(argparse.ArgumentParser):
@@ -52,8 +91,9 @@ class ProgramParser(argparse.ArgumentParser):
         """Accept the options of ArgumentParser."""
         options.setdefault('formatter_class', argparse.RawDescriptionHelpFormatter)
         super().__init__(**options)
-        version = package_version()
-        self.add_argument('--version', action='version', version=version, help='print it, and end')
+        self.add_argument(
+            '--version', action='version', version=package_version(), help='print it, and end'
+        )
 
     def error(self, message: str) -> NoReturn:
         """End the program with the exit code USAGE and one line on standard error."""
@@ -64,6 +104,49 @@ class ProgramParser(argparse.ArgumentParser):
         stream = file or sys.stderr
         if message and stream is not None:
             stream.write(message)
+
+
+class Subcommand(Protocol):
+    """A module, or an object, that adds a subcommand to a program."""
+
+    def add_parser(self, subparsers: Any, /) -> None:
+        """Add its parser, whose default `run` takes the options and returns the exit code."""
+
+
+@dataclass(frozen=True)
+class LateSubcommand:
+    """A subcommand whose module is imported only where it is chosen."""
+
+    help: str
+    """What it does, in the program's own --help."""
+    load: Callable[[], Subcommand]
+    """Import its module."""
+
+
+def run_subcommands(
+    parser: ProgramParser,
+    commands: Mapping[str, LateSubcommand],
+    argv: list[str] | None,
+    *,
+    metavar: str,
+) -> int:
+    """
+    Run the subcommand that `argv` names first, by `run_program`, and return the exit code.
+
+    The others are in the program's --help alone.
+    """
+
+    def chosen(argv: list[str]) -> int:
+        subparsers = parser.add_subparsers(required=True, metavar=metavar)
+        for name, command in commands.items():
+            if argv[:1] == [name]:
+                command.load().add_parser(subparsers)
+            else:
+                subparsers.add_parser(name, help=command.help)
+        options = parser.parse_args(argv)
+        return options.run(options)
+
+    return run_program(parser.prog, chosen, argv)
 
 
 def run_program(

@@ -22,7 +22,7 @@ from contextlib import suppress
 from typing import NoReturn, TypeVar
 
 from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError
-from ddct_plant.program.supervision import end_with_parent
+from ddct_plant.program.signals import obey_parent
 
 MOST_SECONDS = 10.0
 """Longest time in s from one call of foreign code to the next; then the process is killed."""
@@ -161,9 +161,7 @@ def _compute(work: Callable[[], object], shared: mmap.mmap, result: int, parent:
     global _own
     code = 1
     try:
-        signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the program
-        signal.signal(signal.SIGTERM, signal.SIG_DFL)
-        end_with_parent(parent, signal.SIGKILL)
+        obey_parent(parent)
         faulthandler.disable()  # a crash becomes the reason of a run, in one line
         with suppress(OSError):
             os.dup2(2, 1)  # what the code prints is no result of the program

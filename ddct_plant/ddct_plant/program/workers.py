@@ -10,7 +10,6 @@ refer to any object. It uses one thread for numerics.
 import gc
 import multiprocessing
 import os
-import signal
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
@@ -19,7 +18,7 @@ from typing import Any, TypeVar
 
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.program.arithmetic import limit_threads
-from ddct_plant.program.supervision import deferred_signals, end_with_parent
+from ddct_plant.program.signals import deferred_signals, obey_parent
 
 _LARGEST_CHUNK = 16
 """Largest number of results that a worker sends at once."""
@@ -128,12 +127,10 @@ _work: Callable[[Any], Any] | None = None
 
 
 def _begin(parent: int, work: Callable[[Any], Any] | None) -> None:
-    """Prepare a worker: it ignores Ctrl-C, and is killed when the program `parent` ends."""
+    """Prepare a worker of the program `parent`."""
     global _work
     _work = work
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    signal.signal(signal.SIGTERM, signal.SIG_DFL)
-    end_with_parent(parent, signal.SIGKILL)
+    obey_parent(parent)
     # Collecting what the program has imported would take as long as many runs, and copy it.
     gc.freeze()
     limit_threads(1)

@@ -13,7 +13,7 @@ import pytest
 
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.program.command_line import ProgramParser, run_program
-from ddct_plant.program.supervision import stop_signals
+from ddct_plant.program.signals import stop_signals
 
 
 def raising(error):

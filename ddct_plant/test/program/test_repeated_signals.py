@@ -10,10 +10,10 @@ import threading
 
 import pytest
 
-from ddct_plant.program import command_line, supervision
+from ddct_plant.program import command_line, signals
 from ddct_plant.program.command_line import run_program
 
-_OURS = {command_line.__file__, supervision.__file__}
+_OURS = {command_line.__file__, signals.__file__}
 
 
 class _SecondSignal:

@@ -7,11 +7,11 @@ import signal
 
 import pytest
 
-from ddct_plant.program.supervision import (
+from ddct_plant.program.signals import (
     deferred_signals,
-    end_with_parent,
     interrupted_by,
     interruptible,
+    obey_parent,
     stop_signals,
 )
 
@@ -67,7 +67,7 @@ def test_a_process_whose_parent_has_ended_before_ends_too():
         if not os.fork():
             while os.getppid() == ours:
                 pass
-            end_with_parent(ours, signal.SIGKILL)
+            obey_parent(ours)
             os.write(writer, b'alive')
         os._exit(0)
     os.close(writer)
