@@ -25,8 +25,8 @@ from ddct_plant.base.timebase import time_of_step
 from ddct_plant.models.load import RoadLoad
 from ddct_plant.models.static_torque import StaticTorque
 from ddct_plant.scenario.settings import KnownSettings
+from ddct_plant.shift.balance import WHOLE, OnComingShare
 from ddct_plant.signals.gain_changes import GainRecord
-from ddct_plant.signals.handover_share import WHOLE, OnComingShare
 
 _FEEDBACK_OFF = Command(0.0)
 

@@ -19,9 +19,9 @@ from ddct_controllers.handover.laws import make_handover
 from ddct_controllers.interface import Controller, Measurement
 from ddct_plant.plant import Observation, Plant, PlantReply
 from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.shift.balance import WHOLE, OnComingShare
 from ddct_plant.signals.gain_changes import GainChange
-from ddct_plant.signals.handover_share import WHOLE, OnComingShare
-from ddct_plant.signals.signal import SignalValue
+from ddct_plant.signals.topic import SignalValue
 from ddct_reference.factory import make_reference
 from ddct_reference.slip_reference import SlipReference
 

@@ -22,7 +22,7 @@ from ddct_plant.scenario.rules.shift import gears_of
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.sensors.sensed import MeasuredSpeeds
 from ddct_plant.shift.roles import OFF_GOING, ROLES
-from ddct_plant.signals.signal import SignalValue
+from ddct_plant.signals.topic import SignalValue
 
 _OF_SIDE = (
     'torque_request',

@@ -11,7 +11,7 @@ from ddct_plant.graph.node_reports import reference_info
 from ddct_plant.graph.output import Output
 from ddct_plant.graph.settings import declare
 from ddct_plant.graph.spin import run_node
-from ddct_plant.signals.handover_share import WHOLE
+from ddct_plant.shift.balance import WHOLE
 from ddct_plant.signals.topics import HANDOVER_SHARE, SLIP_REFERENCE, measurement_topics
 from ddct_reference.factory import make_reference
 

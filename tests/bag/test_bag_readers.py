@@ -13,7 +13,7 @@ from mcap_ros2.decoder import DecoderFactory
 
 from ddct_bringup.bag.reader import mcap_of, read_bag
 from ddct_plant.signals.message_kind import stamp_ns
-from ddct_plant.signals.signal import RunKind
+from ddct_plant.signals.topic import RunKind
 from ddct_plant.signals.topics import recorded_topics
 
 # Keys that rosbag2's decoder of version 9 requires, in its order.

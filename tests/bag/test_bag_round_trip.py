@@ -15,9 +15,8 @@ from ddct_bringup.bag.writer import BagWriter
 from ddct_plant.bag_file.records import read_records
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import START_NS, stamp_of_step
-from ddct_plant.signals.message_kind import MessageKind
-from ddct_plant.signals.signal import RunKind
-from ddct_plant.signals.topic import Topic
+from ddct_plant.signals.message_kind import Numbers
+from ddct_plant.signals.topic import RunKind, Topic
 from ddct_plant.signals.topics import recorded_topics
 
 
@@ -132,7 +131,7 @@ def test_a_topic_the_bag_was_opened_without_is_refused(tmp_path):
 
 
 def test_an_unknown_message_type_is_an_error_that_names_where_to_define_it(tmp_path):
-    topic = Topic('x', MessageKind('no_such_msgs/msg/Thing'), 'nobody')
+    topic = Topic('x', Numbers('no_such_msgs/msg/Thing'), 'nobody')
     with refused(DdctError, 'no_such_msgs/msg/Thing'):
         BagWriter(tmp_path, 'x', [topic], {})
 

@@ -13,7 +13,7 @@ from ddct_bringup.bag.writer import BagWriter
 from ddct_plant.bag_file.records import read_records
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import stamp_of_step
-from ddct_plant.signals.signal import RunKind
+from ddct_plant.signals.topic import RunKind
 from ddct_plant.signals.topics import recorded_topics
 
 

@@ -22,9 +22,8 @@ from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import step_of_stamp
 from ddct_plant.plant import PlantReply
 from ddct_plant.signals import topics
-from ddct_plant.signals.message_kind import Scalar, stamp_ns
-from ddct_plant.signals.signal import RunKind, Signal
-from ddct_plant.signals.topic import Topic
+from ddct_plant.signals.message_kind import Number, Numbers, stamp_ns
+from ddct_plant.signals.topic import RunKind, Signal, Topic
 
 RUN = plan('pi', 'single-process', duration_s=0.3)
 
@@ -34,7 +33,7 @@ def _stick_slip(run: RunKind) -> bool:
 
 
 def entry(**options: Any) -> Topic:
-    kind = Scalar('geometry_msgs/msg/WrenchStamped', 'wrench.torque.x')
+    kind = Numbers('geometry_msgs/msg/WrenchStamped', (Number('wrench.torque.x'),))
     signal = Signal('made_up_torque', 'N m', 'made up')
     return Topic('load/made_up', kind, 'load', (signal,), **options)
 

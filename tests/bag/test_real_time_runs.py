@@ -14,7 +14,7 @@ from ddct_bringup.programs import bringup, compare, score
 from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_plant.bag_file.records import read_records
 from ddct_plant.base.timebase import stamp_of_step
-from ddct_plant.signals.signal import RunKind
+from ddct_plant.signals.topic import RunKind
 from ddct_plant.signals.topics import DIAGNOSTICS, recorded_topics
 
 STEPS = 60

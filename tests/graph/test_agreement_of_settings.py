@@ -20,7 +20,7 @@ from ddct_plant.base.errors import DdctError
 from ddct_plant.graph.qos import RECORDER_LATCHED_QOS
 from ddct_plant.scenario.case import with_case
 from ddct_plant.scenario.file import scenario_to_yaml
-from ddct_plant.signals.tables.run import RUN_SETTINGS
+from ddct_plant.signals.topics import RUN_SETTINGS
 
 CLUTCH, RECORDER = 'ddct_plant.nodes.clutch_node', 'ddct_bringup.record.recorder_node'
 SHIFT = plan('pi', scenario='upshift', duration_s=1.0)

@@ -16,7 +16,7 @@ from viewer import Viewer, address_in
 from ddct_plant.bag_file.message_definitions import load_definition
 from ddct_plant.base.timebase import START_NS
 from ddct_plant.signals.message_kind import stamp_ns
-from ddct_plant.signals.signal import RunKind
+from ddct_plant.signals.topic import RunKind
 from ddct_plant.signals.topics import TOPICS, recorded_topics
 
 Start = Callable[..., tuple[Program, str]]

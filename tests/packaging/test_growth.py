@@ -9,7 +9,7 @@ from support.grown import SENSOR, SETTINGS, apply, output_of
 
 
 @pytest.mark.graph
-def test_a_sensor_is_one_line_for_the_graph_its_bag_and_the_columns(tmp_path: Path) -> None:
+def test_a_sensor_is_in_the_graph_its_bag_and_the_columns(tmp_path: Path) -> None:
     pytest.importorskip('rclpy', reason='a graph')
     code = f"""{SETTINGS}
 from ddct_bringup.bag.reader import read_bag

@@ -7,9 +7,7 @@ from collections import defaultdict
 from pathlib import Path
 
 from ddct_bringup.processes.graph_nodes import GRAPH_NODES, SHIFT_NODES
-from ddct_plant.signals.tables.off_going import OFF_GOING_RUN_SETTINGS
-from ddct_plant.signals.tables.run import RUN_SETTINGS
-from ddct_plant.signals.topics import all_topics
+from ddct_plant.signals.topics import OFF_GOING_RUN_SETTINGS, RUN_SETTINGS, all_topics
 
 TOPICS = (*all_topics(), RUN_SETTINGS, OFF_GOING_RUN_SETTINGS)
 ROOT = Path(__file__).parents[2]

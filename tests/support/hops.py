@@ -3,7 +3,7 @@
 """Every message of the loop on its way to a node."""
 
 from ddct_bringup.run.plan import RunPlan
-from ddct_plant.signals.signal import RunKind
+from ddct_plant.signals.topic import RunKind
 from ddct_plant.signals.topics import recorded_topics
 
 INPUTS = {

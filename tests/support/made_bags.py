@@ -18,7 +18,7 @@ from ddct_plant.models.driveline import PhaseEvent
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.recorded_settings import SETTINGS, RecordedSettings
 from ddct_plant.scenario.settings import RunSettings
-from ddct_plant.signals.signal import RunKind
+from ddct_plant.signals.topic import RunKind
 from ddct_plant.signals.topics import all_topics, recorded_topics
 
 RUN_INFO = {'/load': {'version': '1.0'}, '/engine': {'version': '1.0', 'two_input': 'false'}}

@@ -3,8 +3,7 @@
 """Second publishers of a topic of the loop, and what the driveline says of them."""
 
 from ddct_bringup.processes.graph_nodes import GRAPH_NODES
-from ddct_plant.signals.signal import RunKind
-from ddct_plant.signals.topic import Topic
+from ddct_plant.signals.topic import RunKind, Topic
 from ddct_plant.signals.topics import SHIFT_TOPICS, TOPICS
 from support.altering import Repeating, add_altering
 from support.in_process_graph import GraphOf, InProcessGraph

@@ -28,9 +28,7 @@ from ddct_plant.base.timebase import START_NS
 from ddct_plant.graph.domain import own_domain
 from ddct_plant.graph.qos import LOOP_QOS, RECORDER_QOS
 from ddct_plant.graph.spin import SLICE_S, make_executor
-from ddct_plant.signals.points import TorqueRows
-from ddct_plant.signals.signal import RunKind
-from ddct_plant.signals.topic import Topic
+from ddct_plant.signals.topic import RunKind, Topic
 from ddct_plant.signals.topics import recorded_topics
 
 VALUES: dict[str, tuple[Any, ...]] = {
@@ -42,8 +40,8 @@ VALUES: dict[str, tuple[Any, ...]] = {
 
 
 def _example(topic: Topic) -> Any:
-    number = [1.0] * 11 if isinstance(topic.kind, TorqueRows) else 1.0
-    values = [number] * len(topic.signals_in(RunKind()))
+    signals = topic.signals_in(RunKind())
+    values = [1.0 if signal.size == 1 else [1.0] * (signal.size or 1) for signal in signals]
     return topic.message(START_NS, *VALUES.get(topic.name, values))
 
 

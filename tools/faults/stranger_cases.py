@@ -20,7 +20,7 @@ from ddct_plant.base.timebase import PERIOD_NS
 from ddct_plant.graph.qos import LOOP_QOS
 from ddct_plant.graph.sole_publishers import publishers_of
 from ddct_plant.signals.message_kind import set_time, stamp_ns
-from ddct_plant.signals.signal import RunKind
+from ddct_plant.signals.topic import RunKind
 from ddct_plant.signals.topics import recorded_topics
 from faults.case import Case, Where, places
 from faults.graph_runs import graph_run

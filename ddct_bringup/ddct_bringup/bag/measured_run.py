@@ -20,7 +20,7 @@ from ddct_plant.base.errors import DdctError
 from ddct_plant.base.options import options_of, require_known
 from ddct_plant.base.timebase import PERIOD_S, time_of_step
 from ddct_plant.files.input_file import located
-from ddct_plant.signals.signal import RunKind, Signal
+from ddct_plant.signals.topic import RunKind, Signal
 from ddct_plant.signals.topics import recorded_topics
 
 NEEDED = ('engine_speed', 'shaft_speed')

@@ -21,8 +21,7 @@ from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import PERIOD_NS, START_NS, time_of_step
 from ddct_plant.files.input_file import located, mcap_of
 from ddct_plant.graph.node_names import StatusName, name_in_graph
-from ddct_plant.signals.signal import RunKind
-from ddct_plant.signals.topic import Topic
+from ddct_plant.signals.topic import RunKind, Topic
 from ddct_plant.signals.topics import DIAGNOSTICS, JOINT_STATES, recorded_topics
 
 

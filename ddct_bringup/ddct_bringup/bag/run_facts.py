@@ -10,8 +10,7 @@ from ddct_plant.base.timebase import steps_in, time_of_step
 from ddct_plant.files.input_file import located
 from ddct_plant.scenario.recorded_settings import run_settings, settings_of_bag
 from ddct_plant.scenario.settings import RunSettings
-from ddct_plant.signals.signal import RunKind
-from ddct_plant.signals.topic import Topic
+from ddct_plant.signals.topic import RunKind, Topic
 from ddct_plant.signals.topics import (
     ENGINE_REQUEST,
     SENSED_TOPICS,

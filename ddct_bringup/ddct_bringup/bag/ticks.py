@@ -8,7 +8,7 @@ from itertools import count
 
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import stamp_of_step, step_of_stamp, time_of_step
-from ddct_plant.signals.signal import RunKind
+from ddct_plant.signals.topic import RunKind
 from ddct_plant.signals.topics import JOINT_STATES, recorded_topics
 
 Stamps = Mapping[str, Sequence[int]]

@@ -11,8 +11,7 @@ from typing import Any
 import numpy as np
 
 from ddct_plant.base.errors import DdctError
-from ddct_plant.signals.signal import RunKind, Signal, SignalValue
-from ddct_plant.signals.topic import Topic
+from ddct_plant.signals.topic import RunKind, Signal, SignalValue, Topic
 from ddct_plant.signals.topics import (
     ENGINE_REQUEST,
     OFF_GOING_SLIP,

@@ -19,8 +19,7 @@ from ddct_plant.bag_file.message_definitions import encode, message_class
 from ddct_plant.bag_file.number_columns import NumberColumns
 from ddct_plant.base.timebase import START_NS, stamp_of_step
 from ddct_plant.scenario.recorded_settings import settings_of_bag
-from ddct_plant.signals.signal import RunKind
-from ddct_plant.signals.topic import Topic
+from ddct_plant.signals.topic import RunKind, Topic
 from ddct_plant.signals.topics import RUN_INFO, recorded_topics
 
 _TOGETHER = 512

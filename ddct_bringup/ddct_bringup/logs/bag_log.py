@@ -14,8 +14,7 @@ from ddct_plant.base.clutch_kinds import LINEAR, STICK_SLIP
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import PERIOD_NS, START_NS, SUBSTEP_NS, SUBSTEPS
 from ddct_plant.files.input_file import located
-from ddct_plant.signals.signal import RunKind
-from ddct_plant.signals.topic import Topic
+from ddct_plant.signals.topic import RunKind, Topic
 from ddct_plant.signals.topics import (
     CLUTCH_PHASE,
     CLUTCH_TORQUE,

@@ -14,7 +14,7 @@ from ddct_plant.base.options import close_name, require_known
 from ddct_plant.base.units import si_values
 from ddct_plant.files.input_file import located, user_text
 from ddct_plant.files.yaml_text import parse_yaml
-from ddct_plant.signals.signal import column_name
+from ddct_plant.signals.topic import column_name
 from ddct_plant.signals.topics import quantities
 
 TIME = 'time'

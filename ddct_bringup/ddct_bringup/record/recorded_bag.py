@@ -19,8 +19,7 @@ from ddct_plant.bag_file.message_definitions import load_definition
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import START_NS, stamp_of_step
 from ddct_plant.scenario.settings import RunSettings
-from ddct_plant.signals.signal import RunKind
-from ddct_plant.signals.topic import Topic
+from ddct_plant.signals.topic import RunKind, Topic
 from ddct_plant.signals.topics import RECORDER_ACK, RUN_INFO, recorded_topics
 
 

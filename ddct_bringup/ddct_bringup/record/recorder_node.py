@@ -26,15 +26,15 @@ from ddct_plant.graph.sole_publishers import publishers_of
 from ddct_plant.graph.spin import run_node
 from ddct_plant.graph.wire import serialiser
 from ddct_plant.scenario.recorded_settings import known_values, values_of, values_text
-from ddct_plant.signals.tables.off_going import OFF_GOING_RUN_SETTINGS
-from ddct_plant.signals.tables.run import RUN_SETTINGS
 from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import (
     CONTROLLER_TIMING,
     DIAGNOSTICS,
     JOINT_STATES,
+    OFF_GOING_RUN_SETTINGS,
     RECORDER_ACK,
     RUN_INFO,
+    RUN_SETTINGS,
     TORQUE_PARTS,
     all_topics,
     recorded_topics,

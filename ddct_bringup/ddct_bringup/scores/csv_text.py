@@ -12,7 +12,7 @@ from ddct_bringup.scores.document import FACTS
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_plant.base.errors import printable
 from ddct_plant.files.csv_table import csv_text
-from ddct_plant.signals.signal import Signal, column_name
+from ddct_plant.signals.topic import Signal, column_name
 from ddct_plant.signals.topics import (
     JOINT_STATES,
     SENSED_JOINT_STATES,

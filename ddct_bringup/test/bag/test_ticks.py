@@ -9,7 +9,7 @@ from refusals import refused
 from ddct_bringup.bag.ticks import check_ticks, last_whole_tick, tick_topics
 from ddct_plant.base.errors import DdctError
 from ddct_plant.base.timebase import stamp_of_step
-from ddct_plant.signals.signal import RunKind
+from ddct_plant.signals.topic import RunKind
 from ddct_plant.signals.topics import (
     CLOCK,
     SENSED_TOPICS,

@@ -16,7 +16,7 @@ from ddct_plant.base.timebase import stamp_of_step  # noqa: E402
 from ddct_plant.scenario.file import load_scenario  # noqa: E402
 from ddct_plant.scenario.settings import KnownSettings, RunSettings
 from ddct_plant.signals import topics  # noqa: E402
-from ddct_plant.signals.signal import RunKind  # noqa: E402
+from ddct_plant.signals.topic import RunKind  # noqa: E402
 
 SLIP = topics.SLIP
 

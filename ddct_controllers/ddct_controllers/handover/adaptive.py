@@ -15,7 +15,7 @@ from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.models.engine_limits import LimitedEngine
 from ddct_plant.scenario.rules.shift import gears_of
 from ddct_plant.scenario.settings import KnownSettings
-from ddct_plant.signals.handover_share import OnComingShare
+from ddct_plant.shift.balance import OnComingShare
 
 SLIPS_RAD_S = 1.0
 """
@@ -24,7 +24,6 @@ Measured slip of the off-going clutch from which its speeds are not used.
 It slips, or a sensor has lost a sample: the engine gains 1.5 to 3 rad/s in a period before a
 shift. The noise of both speeds makes 0.2 rad/s.
 """
-_SPEEDS = 'engine_speed', 'vehicle_speed'
 RESERVE = 0.08
 """
 Share by which the on-coming clutch is to carry more than C_fOL while the other one opens.
@@ -50,7 +49,8 @@ class AdaptiveHandover(Handover):
         super().__init__(settings)
         self._model = HandoverModel(settings)
         sensors = settings.scenario.sensors
-        delays = [sensors.of(name).delay_s if sensors else 0.0 for name in _SPEEDS]
+        speeds = (sensors.engine_speed, sensors.vehicle_speed) if sensors else ()
+        delays = [speed.delay_s for speed in speeds] or [0.0, 0.0]
         self._estimate = OnComingEstimate(
             gears_of(settings.scenario), settings.scenario.actuator, *delays
         )

@@ -12,8 +12,7 @@ from ddct_plant.plant import Tick
 from ddct_plant.scenario.initial_state import locked_request
 from ddct_plant.scenario.rules.shift import gears_of, shift_of
 from ddct_plant.scenario.settings import KnownSettings
-from ddct_plant.shift.balance import off_going_torque
-from ddct_plant.signals.handover_share import OnComingShare
+from ddct_plant.shift.balance import OnComingShare, off_going_torque
 
 MARGIN = 1.7
 """

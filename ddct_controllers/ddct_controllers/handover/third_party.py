@@ -18,7 +18,7 @@ from ddct_plant.base.errors import (
     require_number,
 )
 from ddct_plant.scenario.settings import KnownSettings, is_handover_file
-from ddct_plant.signals.handover_share import LEAST_DEVIATION
+from ddct_plant.shift.balance import LEAST_DEVIATION
 
 _PAGE = 'docs/develop/gear_shift.md'
 

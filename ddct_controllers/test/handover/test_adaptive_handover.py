@@ -19,7 +19,7 @@ from ddct_controllers.handover.on_coming_estimate import MOST_GAIN
 from ddct_plant.base.timebase import steps_in
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import CaseSettings, RunSettings
-from ddct_plant.signals.handover_share import WHOLE, OnComingShare
+from ddct_plant.shift.balance import WHOLE, OnComingShare
 
 WEAR = (0.7, 1.0, 1.3)
 SHIFTS = ('upshift', 'upshift_light', 'upshift_full', 'upshift_2_3')

@@ -15,8 +15,7 @@ from ddct_plant.bag_file.number_columns import NumberColumns
 from ddct_plant.bag_file.records import BagRecords
 from ddct_plant.base.errors import DdctError
 from ddct_plant.signals.message_kind import stamp_ns
-from ddct_plant.signals.signal import Signal
-from ddct_plant.signals.topic import Topic
+from ddct_plant.signals.topic import Signal, Topic
 
 Column = np.ndarray | tuple[object, ...]
 """Values of a signal: (n,) or (n, size) numbers, or n texts or events."""

@@ -44,8 +44,8 @@ from ddct_plant.scenario.recorded_settings import (
     values_of,
 )
 from ddct_plant.scenario.settings import RunSettings
-from ddct_plant.signals.tables.run import RUN_INFO, RUN_SETTINGS
 from ddct_plant.signals.topic import Topic
+from ddct_plant.signals.topics import RUN_INFO, RUN_SETTINGS
 from ddct_plant.ticks.reply_limit import ReplyLimit
 
 _FOREIGN = ('use_sim_time', 'start_type_description_service', QOS_OVERRIDES)

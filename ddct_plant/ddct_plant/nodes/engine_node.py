@@ -15,12 +15,12 @@ from ddct_plant.graph.output import Output, SafeStateReport
 from ddct_plant.graph.settings import declare, declare_timeout
 from ddct_plant.graph.spin import run_node
 from ddct_plant.scenario.plant import make_engine, torque_estimate
-from ddct_plant.sensors.sensed import TorqueEstimate
 from ddct_plant.signals.topics import (
     ENGINE_REQUEST,
+    ENGINE_SENSOR_STATUS,
     ENGINE_TORQUE,
     JOINT_STATES,
-    SENSED_TOPICS,
+    SENSED_ENGINE_TORQUE,
     TORQUE_CUT,
     TORQUE_DEMAND,
 )
@@ -69,8 +69,7 @@ class EngineNode(FollowerNode):
         if self._estimate is not None:
             self._estimated = [
                 (Output(self, topic), [signal.name for signal in topic.signals])
-                for topic in SENSED_TOPICS
-                if topic.publisher == TorqueEstimate.publisher
+                for topic in (SENSED_ENGINE_TORQUE, ENGINE_SENSOR_STATUS)
             ]
         self.publish_run_info(engine_info(self._two_input, timeout_s))
         readers = {JOINT_STATES: self._speed}

@@ -20,7 +20,7 @@ from ddct_plant.scenario.control import ENGINE_SPEED_TARGET, PROFILE
 from ddct_plant.scenario.rules.capability import require_able
 from ddct_plant.scenario.rules.shift import require_shift
 from ddct_plant.scenario.scenario import Scenario
-from ddct_plant.signals.signal import RunKind
+from ddct_plant.signals.topic import RunKind
 
 _PYTHON = '.py'
 

@@ -2,53 +2,46 @@
 # SPDX-License-Identifier: Apache-2.0
 """Errors of the sensors of a run, as options of a scenario; by default there are none."""
 
-import types
+import dataclasses
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import TypeVar
+from typing import Any, NamedTuple
 
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.base.options import (
-    Option,
-    OptionGroup,
-    option,
-    option_field,
-    options_of,
-    section,
-)
+from ddct_plant.base.options import OptionGroup, option, options_of, section
 from ddct_plant.base.timebase import PERIOD_S, steps_in
-from ddct_plant.signals.sensed import SensedQuantity
-from ddct_plant.signals.signal import column_name
-from ddct_plant.signals.topics import quantities, sensed_quantities
 
 _MOST = 1e6
-_ERRORS = (
-    ('noise', 'standard deviation of white Gaussian noise, one draw per sample', 0.0),
-    ('quantum', 'resolution: the value is rounded to the nearest multiple; 0: none', 0.0),
-    ('bias', 'constant offset, added to the true value', -_MOST),
-)
-"""Name, meaning and lower bound of each error in the unit of the quantity."""
-_COUNTING = {
-    'teeth': Option(
-        0,
-        'teeth of the encoder wheel: the speed then has the resolution '
-        '2π / (`teeth` × `count_s`); 0: the speed is measured directly',
-        at_least=0,
-        at_most=100000,
-    ),
-    'count_s': Option(
-        PERIOD_S,
-        'counting time of the teeth, a multiple of 10 ms; the speed is the mean over that time',
-        's',
-        above=0.0,
-        at_most=10.0,
-        whole_periods=True,
-    ),
-}
-"""Options of a sensor that may count teeth."""
+
+
+def _noise(unit: str) -> Any:
+    meaning = 'standard deviation of white Gaussian noise, one draw per sample'
+    return option(0.0, meaning, unit, at_least=0.0, at_most=_MOST, left_out=True)
+
+
+def _quantum(unit: str) -> Any:
+    meaning = 'resolution: the value is rounded to the nearest multiple; 0: none'
+    return option(0.0, meaning, unit, at_least=0.0, at_most=_MOST, left_out=True)
+
+
+def _bias(unit: str) -> Any:
+    meaning = 'constant offset, added to the true value'
+    return option(0.0, meaning, unit, at_least=-_MOST, at_most=_MOST, left_out=True)
+
+
+class Errors(NamedTuple):
+    """Errors of a sensor in the unit of its quantity."""
+
+    noise: float
+    """Standard deviation of the noise."""
+    quantum: float
+    """Resolution; 0 for none."""
+    bias: float
+    """Constant offset."""
 
 
 @dataclass(frozen=True)
-class SensorOptions(OptionGroup):
+class SensorOptions(OptionGroup, ABC):
     """Options that every sensor has."""
 
     gain: float = option(
@@ -94,10 +87,10 @@ class SensorOptions(OptionGroup):
                 key=f'{self.prefix}dropout_burst',
             )
 
-    def error(self, kind: str) -> float:
-        """Return the option `noise`, `quantum` or `bias`, in the unit of the sensor."""
-        (name,) = (name for name in options_of(type(self)) if name.startswith(f'{kind}_'))
-        return float(getattr(self, name))
+    @property
+    @abstractmethod
+    def errors(self) -> Errors:
+        """Errors of the sensor, whose options have its unit in their names."""
 
     @property
     def delay_steps(self) -> int:
@@ -114,11 +107,35 @@ class SensorOptions(OptionGroup):
         )
 
 
+@dataclass(frozen=True)
 class SpeedSensor(SensorOptions):
     """Options of a sensor of a shaft's speed, which may count teeth."""
 
-    teeth: int
-    count_s: float
+    noise_rad_s: float = _noise('rad/s')
+    quantum_rad_s: float = _quantum('rad/s')
+    bias_rad_s: float = _bias('rad/s')
+    teeth: int = option(
+        0,
+        'teeth of the encoder wheel: the speed then has the resolution '
+        '2π / (`teeth` × `count_s`); 0: the speed is measured directly',
+        at_least=0,
+        at_most=100000,
+        left_out=True,
+    )
+    count_s: float = option(
+        PERIOD_S,
+        'counting time of the teeth, a multiple of 10 ms; the speed is the mean over that time',
+        's',
+        above=0.0,
+        at_most=10.0,
+        whole_periods=True,
+        left_out=True,
+    )
+
+    @property
+    def errors(self) -> Errors:
+        """Errors of the sensor in rad/s."""
+        return Errors(self.noise_rad_s, self.quantum_rad_s, self.bias_rad_s)
 
     @property
     def count_steps(self) -> int:
@@ -126,61 +143,59 @@ class SpeedSensor(SensorOptions):
         return steps_in(f'{self.prefix}count_s', self.count_s)
 
 
-def _options(quantity: SensedQuantity) -> dict[str, Option]:
-    """Return the options of the sensor of a quantity, besides those that every sensor has."""
-    unit = quantities()[quantity.true][0].unit
-    options = {
-        column_name(error, unit): Option(0.0, meaning, unit, at_least=least, at_most=_MOST)
-        for error, meaning, least in _ERRORS
-    }
-    return options | _COUNTING if quantity.angle else options
+class EngineSpeedSensor(SpeedSensor, prefix='sensors.engine_speed.'):
+    """Options of the sensor of w_m."""
 
 
-def _group(quantity: SensedQuantity) -> type[SensorOptions]:
-    """Return the class with the options of the sensor of a quantity."""
-    options = _options(quantity)
-    content = {
-        '__module__': __name__,
-        '__doc__': f'Options of the sensor of {quantity.true}.',
-        '__annotations__': {name: each.kind for name, each in options.items()},
-        **{name: option_field(each, left_out=True) for name, each in options.items()},
-    }
-    name = ''.join(map(str.capitalize, quantity.sensor.split('_'))) + 'Sensor'
-    base = SpeedSensor if quantity.angle else SensorOptions
-    prefix = {'prefix': f'sensors.{quantity.sensor}.'}
-    return dataclass(frozen=True)(
-        types.new_class(name, (base,), prefix, lambda ns: ns.update(content))
-    )
+class ShaftSpeedSensor(SpeedSensor, prefix='sensors.shaft_speed.'):
+    """Options of the sensor of w_p."""
 
 
-OPTIONS = {each.sensor: _group(each) for each in sensed_quantities()}
-"""Class with the options of each sensor, by its name."""
-# Workers receive scenarios pickled, which finds a class as an attribute of its module.
-globals().update({group.__name__: group for group in OPTIONS.values()})
-
-Sections = TypeVar('Sections')
+class WheelSpeedSensor(SpeedSensor, prefix='sensors.wheel_speed.'):
+    """Options of the sensor of w_r."""
 
 
-def _with_sensors(group: type[Sections]) -> type[Sections]:
-    """Give a class a section with the options of each sensor, by its name, exact by default."""
-    for name, options in OPTIONS.items():
-        group.__annotations__[name] = options
-        setattr(group, name, section(options(), left_out=True))
-    return dataclass(frozen=True)(group)
+@dataclass(frozen=True)
+class VehicleSpeedSensor(SensorOptions, prefix='sensors.vehicle_speed.'):
+    """Options of the sensor of V_x."""
+
+    noise_m_s: float = _noise('m/s')
+    quantum_m_s: float = _quantum('m/s')
+    bias_m_s: float = _bias('m/s')
+
+    @property
+    def errors(self) -> Errors:
+        """Errors of the sensor in m/s."""
+        return Errors(self.noise_m_s, self.quantum_m_s, self.bias_m_s)
 
 
-@_with_sensors
+@dataclass(frozen=True)
+class EngineTorqueSensor(SensorOptions, prefix='sensors.engine_torque.'):
+    """Options of the estimate of C_m."""
+
+    noise_n_m: float = _noise('N m')
+    quantum_n_m: float = _quantum('N m')
+    bias_n_m: float = _bias('N m')
+
+    @property
+    def errors(self) -> Errors:
+        """Errors of the estimate in N m."""
+        return Errors(self.noise_n_m, self.quantum_n_m, self.bias_n_m)
+
+
+@dataclass(frozen=True)
 class SensorParameters(OptionGroup, prefix='sensors.'):
     """Options of all sensors that controller and reference read; by default each is exact."""
 
-    def of(self, sensor: str) -> SensorOptions:
-        """Return the options of a sensor by its name."""
-        options: SensorOptions = getattr(self, sensor)
-        return options
+    engine_speed: EngineSpeedSensor = section(EngineSpeedSensor(), left_out=True)
+    shaft_speed: ShaftSpeedSensor = section(ShaftSpeedSensor(), left_out=True)
+    wheel_speed: WheelSpeedSensor = section(WheelSpeedSensor(), left_out=True)
+    vehicle_speed: VehicleSpeedSensor = section(VehicleSpeedSensor(), left_out=True)
+    engine_torque: EngineTorqueSensor = section(EngineTorqueSensor(), left_out=True)
 
     @property
     def text(self) -> str:
         """Options of each sensor that differ from their defaults, in one line."""
-        given = {name: self.of(name).given for name in OPTIONS}
+        given = {each.name: getattr(self, each.name).given for each in dataclasses.fields(self)}
         lines = [f'{name}: {", ".join(each)}' for name, each in given.items() if each]
         return '; '.join(lines) or 'each of them is exact'

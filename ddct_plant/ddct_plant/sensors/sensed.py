@@ -4,15 +4,11 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
-from operator import itemgetter
-from typing import Any, Generic, NamedTuple, Protocol, TypeVar
+from typing import Generic, NamedTuple, Protocol, TypeVar
 
 from ddct_plant.models.driveline import DrivelineOutputs
-from ddct_plant.sensors.parameters import SensorParameters, SpeedSensor
-from ddct_plant.sensors.sensor import Sample, Sensor, ShaftSensor
-from ddct_plant.signals.sensed import SensedQuantity
-from ddct_plant.signals.signal import SignalValue
-from ddct_plant.signals.topics import quantities, sensed_quantities, sensed_signals
+from ddct_plant.sensors.parameters import SensorParameters
+from ddct_plant.sensors.sensor import Sensor, ShaftSensor
 
 
 class MeasuredSpeeds(Protocol):
@@ -73,47 +69,11 @@ Truth = TypeVar('Truth', contravariant=True)
 Measured = TypeVar('Measured')
 
 
-class _Model:
-    """Model of the sensor of one quantity, which takes its true value out of the signals."""
-
-    def __init__(self, quantity: SensedQuantity, parameters: SensorParameters, seed: int) -> None:
-        self.measured, self.flag = quantity.measured, quantity.flag
-        options = parameters.of(quantity.sensor)
-        self._true = _getter(quantity.true)
-        self._shaft: ShaftSensor | None = None
-        if isinstance(options, SpeedSensor):
-            self._shaft = ShaftSensor(options, quantity.sensor, seed)
-            self._angle = _getter(quantity.angle)
-        else:
-            self._sensor = Sensor(options, quantity.sensor, seed)
-
-    def take(self, true: Mapping[str, SignalValue]) -> Sample:
-        """Return the measurement at the next step, for the true signals of that step."""
-        if self._shaft is None:
-            return self._sensor.take(self._true(true))
-        return self._shaft.take(self._angle(true), self._true(true))
-
-
-def _getter(quantity: str) -> Any:
-    """Return a function that takes a quantity out of signals by name."""
-    signal, index = quantities()[quantity]
-    if index is None:
-        return itemgetter(signal.name)
-    return lambda true: true[signal.name][index]
-
-
 class Sensors(ABC, Generic[Truth, Measured]):
     """Base of the sensors of one node, which are sampled once per step of a run."""
 
-    publisher = ''
-    """Name of the node that publishes their measurements."""
-
-    def __init__(self, parameters: SensorParameters, seed: int) -> None:
-        """Make the sensors; their random numbers follow from the seed of the run."""
-        self._models = [
-            _Model(each, parameters, seed) for each in sensed_quantities(self.publisher)
-        ]
-        self._signals = sensed_signals(self.publisher)
+    def __init__(self) -> None:
+        """Start before the first step."""
         self._step = -1
         self._measured: Measured
 
@@ -137,49 +97,51 @@ class Sensors(ABC, Generic[Truth, Measured]):
     def _take(self, truth: Truth) -> Measured:
         """Return the measurement of the next step."""
 
-    def _samples(self, true: Mapping[str, SignalValue]) -> dict[str, float]:
-        """Return measurements and flags of the next step by quantity, for the true signals."""
-        values: dict[str, float] = {}
-        for model in self._models:
-            sample = model.take(true)
-            values[model.measured], values[model.flag] = sample.value, float(sample.held)
-        return values
-
-    def _by_signal(self, values: Mapping[str, float]) -> SensorSignals:
-        """Return the signals of measurements and flags by quantity."""
-        return {
-            signal.name: [values[name] for name in signal.parts]
-            if signal.parts
-            else values[signal.name]
-            for signal in self._signals
-        }
-
 
 class DrivelineSensors(Sensors[DrivelineOutputs, SpeedMeasurements]):
-    """The sensors of w_m, w_p, w_r, V_x and of any other output of the driveline."""
+    """The sensors of w_m, w_p, w_r and V_x."""
 
-    publisher = 'driveline'
+    def __init__(self, parameters: SensorParameters, seed: int) -> None:
+        """Make the sensors; their random numbers follow from the seed of the run."""
+        super().__init__()
+        self._engine = ShaftSensor(parameters.engine_speed, 'engine_speed', seed)
+        self._shaft = ShaftSensor(parameters.shaft_speed, 'shaft_speed', seed)
+        self._wheel = ShaftSensor(parameters.wheel_speed, 'wheel_speed', seed)
+        self._vehicle = Sensor(parameters.vehicle_speed, 'vehicle_speed', seed)
 
     def _take(self, truth: DrivelineOutputs) -> SpeedMeasurements:
-        values = self._samples(truth._asdict())
-        engine, shaft = values['sensed_engine_speed'], values['sensed_primary_shaft_speed']
-        flags = values['sensed_engine_held'], values['sensed_primary_shaft_held']
-        values['sensed_slip_speed'], values['sensed_slip_held'] = engine - shaft, max(flags)
+        angles, speeds = truth.joint_position, truth.joint_speed
+        engine = self._engine.take(angles.engine, speeds.engine)
+        shaft = self._shaft.take(angles.primary_shaft, speeds.primary_shaft)
+        wheel = self._wheel.take(angles.wheel, speeds.wheel)
+        vehicle = self._vehicle.take(truth.vehicle_speed)
+        slip_speed = engine.value - shaft.value
         return SpeedMeasurements(
-            engine_speed=engine,
-            shaft_speed=shaft,
-            wheel_speed=values['sensed_wheel_speed'],
-            slip_speed=values['sensed_slip_speed'],
-            vehicle_speed=values['sensed_vehicle_speed'],
-            signals=self._by_signal(values),
+            engine_speed=engine.value,
+            shaft_speed=shaft.value,
+            wheel_speed=wheel.value,
+            slip_speed=slip_speed,
+            vehicle_speed=vehicle.value,
+            signals={
+                'sensed_joint_speed': [engine.value, shaft.value, wheel.value],
+                'sensed_joint_held': [float(each.held) for each in (engine, shaft, wheel)],
+                'sensed_slip_speed': slip_speed,
+                'sensed_slip_held': float(engine.held or shaft.held),
+                'sensed_vehicle_speed': vehicle.value,
+                'sensed_vehicle_held': float(vehicle.held),
+            },
         )
 
 
 class TorqueEstimate(Sensors[float, TorqueMeasurement]):
     """The estimate of the engine torque C_m."""
 
-    publisher = 'engine'
+    def __init__(self, parameters: SensorParameters, seed: int) -> None:
+        """Make the estimate; its random numbers follow from the seed of the run."""
+        super().__init__()
+        self._torque = Sensor(parameters.engine_torque, 'engine_torque', seed)
 
     def _take(self, truth: float) -> TorqueMeasurement:
-        values = self._samples({'engine_torque': truth})
-        return TorqueMeasurement(values['sensed_engine_torque'], self._by_signal(values))
+        value, held = self._torque.take(truth)
+        signals = {'sensed_engine_torque': value, 'sensed_torque_held': float(held)}
+        return TorqueMeasurement(value, signals)

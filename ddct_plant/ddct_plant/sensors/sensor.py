@@ -41,9 +41,7 @@ class Sensor:
     def __init__(self, options: SensorOptions, quantity: str, seed: int) -> None:
         """Make the sensor; its random numbers follow from seed and name of the quantity."""
         self._gain = options.gain
-        self._noise = options.error('noise')
-        self._bias = options.error('bias')
-        self._quantum = options.error('quantum')
+        self._noise, self._quantum, self._bias = options.errors
         self._normal = gaussian(seed, quantity) if self._noise else None
         self._losses = losses(seed, quantity, options) if options.dropout else None
         self._places = 1 + options.delay_steps

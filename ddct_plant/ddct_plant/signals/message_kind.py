@@ -10,6 +10,7 @@ one far below 1 us, so a writer keeps one message and fills it anew for every ti
 
 import importlib
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -47,9 +48,8 @@ def _time_of(message: Any) -> Any:
     return getattr(header, 'stamp', None) or getattr(message, 'clock', message)
 
 
-@dataclass(frozen=True)
-class MessageKind:
-    """Adapter for one message type; this base carries the stamp only."""
+class MessageKind(ABC):
+    """Adapter for the messages of one kind of content."""
 
     numbers_alone: ClassVar[bool] = True
     """Whether the values are numbers, or rows of them: always as many, and all float64."""
@@ -65,7 +65,7 @@ class MessageKind:
         message = class_of(self.type)()
         if frame:
             message.header.frame_id = frame
-        time, fill = _time_of(message), self._filler(message, class_of)
+        time, fill = _time_of(message), self.filler(message, class_of)
 
         def write(stamp: int, *values: Any, **options: Any) -> Any:
             set_time(time, stamp)
@@ -74,53 +74,81 @@ class MessageKind:
 
         return write
 
-    def _filler(self, message: Any, class_of: ClassOf) -> Callable[..., None]:
+    @abstractmethod
+    def filler(self, message: Any, class_of: ClassOf) -> Callable[..., None]:
         """Return a function that sets the values of the new `message` and of its parts."""
-        return lambda: None
 
+    @abstractmethod
     def values(self, message: Any) -> tuple[Any, ...]:
         """Return the values in a message, unchecked."""
-        return ()
 
+    @abstractmethod
     def read(self, topic: str, message: Any) -> Any:
         """Return the values for a node; raise DdctError for values unfit for the loop."""
 
 
 @dataclass(frozen=True)
-class Scalar(MessageKind):
-    """Adapter for one number."""
+class Number:
+    """A number in a message, and the values of it that a node accepts."""
 
     path: str
     """Path of the number in the message, such as 'twist.angular.x'."""
     at_least: float | None = None
-    """Lowest value that a node accepts, None for -MOST_SIGNAL."""
+    """Lowest accepted value, None for -MOST_SIGNAL."""
     at_most: float = MOST_SIGNAL
-    """Highest value that a node accepts."""
+    """Highest accepted value."""
 
-    def _filler(self, message: Any, class_of: ClassOf) -> Callable[..., None]:
-        parent, _, field = self.path.rpartition('.')
-        holder = attrgetter(parent)(message) if parent else message
+    def checked(self, topic: str, value: float) -> float:
+        """Return a value; raise DdctError unless it is that of a signal, within the bounds."""
+        if self.at_least is None:
+            return require_signal(topic, value)
+        return require_number(topic, value, at_least=self.at_least, at_most=self.at_most)
 
-        def fill(value: float) -> None:
-            setattr(holder, field, value)
+
+@dataclass(frozen=True)
+class Numbers(MessageKind):
+    """Adapter for a message with a few numbers, or with its stamp alone."""
+
+    type: str
+    numbers: tuple[Number, ...] = ()
+    of: Callable[..., Any] | None = None
+    """What a node makes of several numbers; None for one number or none."""
+
+    def filler(self, message: Any, class_of: ClassOf) -> Callable[..., None]:
+        """Return a function that sets the numbers of the new `message`."""
+        paths = [number.path.rpartition('.') for number in self.numbers]
+        places = [
+            (attrgetter(parent)(message) if parent else message, field)
+            for parent, _, field in paths
+        ]
+
+        def fill(*values: float) -> None:
+            for (holder, field), value in zip(places, values, strict=True):
+                setattr(holder, field, value)
 
         return fill
 
     @cached_property
-    def _get(self) -> Callable[[Any], float]:
-        return attrgetter(self.path)
+    def _getters(self) -> tuple[Callable[[Any], float], ...]:
+        return tuple(attrgetter(number.path) for number in self.numbers)
 
-    def values(self, message: Any) -> tuple[float]:
-        """Return the number."""
-        return (self._get(message),)
+    def values(self, message: Any) -> tuple[float, ...]:
+        """Return the numbers."""
+        return tuple(get(message) for get in self._getters)
 
-    def read(self, topic: str, message: Any) -> float:
-        """Return the number; raise DdctError unless it is that of a signal, within its bounds."""
-        if self.at_least is None:
-            return require_signal(topic, self._get(message))
-        return require_number(
-            topic, self._get(message), at_least=self.at_least, at_most=self.at_most
-        )
+    def read(self, topic: str, message: Any) -> Any:
+        """
+        Return the number, what `of` makes of several, or None for a stamp alone.
+
+        Raise DdctError for a number that is not that of a signal, or beyond its bounds.
+        """
+        checked = [
+            number.checked(topic, get(message))
+            for number, get in zip(self.numbers, self._getters, strict=True)
+        ]
+        if self.of is not None:
+            return self.of(*checked)
+        return checked[0] if checked else None
 
 
 def signal_values(topic: str, values: Sequence[float]) -> list[float]:

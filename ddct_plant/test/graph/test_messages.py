@@ -15,11 +15,10 @@ import diagnostic_msgs.msg as rclpy_diagnostics  # noqa: E402
 
 from ddct_plant.base.errors import MOST_SIGNAL, DdctError  # noqa: E402
 from ddct_plant.base.timebase import stamp_of_step  # noqa: E402
+from ddct_plant.models.driveline import JointValues  # noqa: E402
+from ddct_plant.shift.balance import WHOLE  # noqa: E402
 from ddct_plant.signals import topics  # noqa: E402
-from ddct_plant.signals.handover_share import WHOLE  # noqa: E402
-from ddct_plant.signals.message_kind import NS_PER_S, Scalar, stamp_ns  # noqa: E402
-from ddct_plant.signals.tables import sensors  # noqa: E402
-from ddct_plant.signals.tables.rows import JOINTS  # noqa: E402
+from ddct_plant.signals.message_kind import NS_PER_S, Numbers, stamp_ns  # noqa: E402
 
 STAMP = stamp_of_step(123)
 LATER = stamp_of_step(124)
@@ -47,7 +46,11 @@ def values_of(topic):
     return VALUES.get(topic.name, same)
 
 
-SCALARS = [topic for topic in topics.TOPICS if isinstance(topic.kind, Scalar)]
+SCALARS = [
+    topic
+    for topic in topics.TOPICS
+    if isinstance(topic.kind, Numbers) and len(topic.kind.numbers) == 1
+]
 WITHOUT_FRAME = {'Clock', 'Header', 'DiagnosticArray'}
 """Types whose values have no coordinate frame."""
 
@@ -64,7 +67,7 @@ def test_single_values_come_back_to_the_last_bit(topic):
     write = topic.writer()
     first = write(STAMP, 0.1)
     assert (topic.read(first), topic.values(first)) == (0.1, (0.1,))
-    value = -1.0 / 3.0 if topic.kind.at_least is None else 1.0 / 3.0
+    value = -1.0 / 3.0 if topic.kind.numbers[0].at_least is None else 1.0 / 3.0
     again = write(LATER, value)
     assert again is first
     assert (topic.read(again), stamp_ns(again)) == (value, LATER)
@@ -165,20 +168,20 @@ def test_a_share_alone_corrects_no_request():
 
 
 def test_a_lost_sample_is_a_stale_status_of_its_name():
-    write = sensors.SENSOR_STATUS.writer()
+    write = topics.SENSOR_STATUS.writer()
     some = write(STAMP, [0.0, 1.0, 0.0], 1.0, 0.0)
     names = ['engine', 'primary_shaft', 'wheel', 'slip', 'vehicle']
     assert [each.name for each in some.status] == names
     stale = rclpy_diagnostics.DiagnosticStatus.STALE
     assert [each.level == stale for each in some.status] == [False, True, False, True, False]
-    assert sensors.SENSOR_STATUS.values(some) == ([0.0, 1.0, 0.0], 1.0, 0.0)
+    assert topics.SENSOR_STATUS.values(some) == ([0.0, 1.0, 0.0], 1.0, 0.0)
     none = write(LATER, [0.0] * 3, 0.0, 0.0)
-    assert sensors.SENSOR_STATUS.values(none) == ([0.0] * 3, 0.0, 0.0)
-    estimate = sensors.ENGINE_SENSOR_STATUS
+    assert topics.SENSOR_STATUS.values(none) == ([0.0] * 3, 0.0, 0.0)
+    estimate = topics.ENGINE_SENSOR_STATUS
     assert estimate.values(estimate.message(STAMP, 1.0)) == (1.0,)
     none.status = none.status[:-1]
     with pytest.raises(LookupError, match='vehicle'):
-        sensors.SENSOR_STATUS.values(none)
+        topics.SENSOR_STATUS.values(none)
 
 
 def test_sensed_joints_have_speeds_alone_and_leave_no_array_empty_at_the_end():
@@ -209,7 +212,7 @@ def test_the_parts_of_the_request_are_numbers_by_name():
     message.name = ['closing', 'open_loop', 'closed_loop']
     assert topic.values(message) == (-1.0 / 3.0, 0.0, 0.1)
     message.name, message.effort = ['closing', 'open_loop'], [0.1, 0.0]
-    with pytest.raises(LookupError, match='closed_loop'):
+    with pytest.raises(DdctError, match='closing, open_loop, not open_loop, closed_loop'):
         topic.values(message)
 
 
@@ -229,7 +232,7 @@ def test_single_values_are_in_the_field_of_the_interfaces_page(topic, field):
 def test_joint_states_are_named_and_never_leave_an_array_empty():
     write = topics.JOINT_STATES.writer()
     first = write(STAMP, [1.0, 2, 3, 4], (5, 6, 7, 8), [9, 10, 11, 12])
-    assert tuple(first.name) == JOINTS
+    assert tuple(first.name) == JointValues._fields
     assert list(first.position) == [1.0, 2.0, 3.0, 4.0]
     assert list(first.velocity) == [5.0, 6.0, 7.0, 8.0]
     assert list(first.effort) == [9.0, 10.0, 11.0, 12.0]
@@ -261,7 +264,7 @@ def test_torque_points_are_filled_anew():
     write = topics.CLUTCH_TORQUE.writer()
     first = write(STAMP, POINTS)
     assert write(LATER, POINTS[::-1]) is first
-    assert topics.CLUTCH_TORQUE.read(first) == [POINTS[::-1]]
+    assert topics.CLUTCH_TORQUE.read(first) == (POINTS[::-1],)
     assert stamp_ns(first) == LATER
 
 

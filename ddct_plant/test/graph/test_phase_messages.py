@@ -10,7 +10,7 @@ pytest.importorskip('trajectory_msgs.msg', reason='needs the ROS message types')
 from ddct_plant.base.errors import DdctError  # noqa: E402
 from ddct_plant.base.timebase import stamp_of_step  # noqa: E402
 from ddct_plant.models.driveline import PhaseEvent  # noqa: E402
-from ddct_plant.signals.signal import RunKind
+from ddct_plant.signals.topic import RunKind
 from ddct_plant.signals.topics import (
     CLUTCH_PHASE,
     CLUTCH_TEMPERATURE,
@@ -98,7 +98,7 @@ def test_the_two_capacities_are_two_joints():
         [low, high] for low, high in zip(LOW, HIGH, strict=True)
     ]
     assert CLUTCH_TORQUE.values(message) == (LOW, HIGH)
-    assert CLUTCH_TORQUE.read(message, joints=2) == [LOW, HIGH]
+    assert CLUTCH_TORQUE.read(message, joints=2) == (LOW, HIGH)
 
 
 def test_a_clutch_of_another_kind_of_run_is_refused():

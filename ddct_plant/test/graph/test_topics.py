@@ -4,7 +4,7 @@
 
 import pytest
 
-from ddct_plant.signals.signal import Signal
+from ddct_plant.signals.topic import Signal
 from ddct_plant.signals.topics import all_signals
 
 

@@ -11,7 +11,7 @@ from ddct_plant.files.yaml_text import dump_yaml, parse_yaml
 from ddct_plant.scenario.content import scenario_content, scenario_from_mapping
 from ddct_plant.scenario.file import load_scenario, scenario_digest, scenario_to_yaml
 from ddct_plant.scenario.settings import KnownSettings, RunSettings
-from ddct_plant.signals.signal import RunKind
+from ddct_plant.signals.topic import RunKind
 
 
 def settings(*overrides, **values):

@@ -13,7 +13,7 @@ from ddct_plant.scenario.differences import changed_values
 from ddct_plant.scenario.file import load_scenario, scenario_digest, scenario_to_yaml
 from ddct_plant.scenario.plant import driveline_sensors, torque_estimate
 from ddct_plant.scenario.settings import KnownSettings, RunSettings
-from ddct_plant.sensors.parameters import OPTIONS, SensorParameters
+from ddct_plant.sensors.parameters import SensorParameters, ShaftSpeedSensor
 from ddct_plant.sensors.sensed import DrivelineSensors, TorqueEstimate
 
 NOISY: Any = load_scenario(
@@ -75,9 +75,7 @@ def test_no_sensor_draws_from_the_numbers_of_another():
     made: Any = SensorParameters
     shaft = made(shaft_speed=NOISY.shaft_speed)
     alone = run(DrivelineSensors(shaft, 3))
-    other = run(
-        DrivelineSensors(dataclasses.replace(NOISY, shaft_speed=OPTIONS['shaft_speed']()), 3)
-    )
+    other = run(DrivelineSensors(dataclasses.replace(NOISY, shaft_speed=ShaftSpeedSensor()), 3))
     for every, one, rest in zip(all_of_them, alone, other, strict=True):
         assert every.shaft_speed == one.shaft_speed
         assert every.engine_speed == rest.engine_speed

@@ -5,18 +5,15 @@
 import dataclasses
 import itertools
 import math
-from typing import Any
 
 import numpy as np
 import pytest
 from refusals import refused
 
 from ddct_plant.base.errors import ParameterError
-from ddct_plant.sensors.parameters import OPTIONS, SensorOptions
+from ddct_plant.sensors.parameters import EngineSpeedSensor, EngineTorqueSensor, SensorOptions
 from ddct_plant.sensors.sensor import Sensor, ShaftSensor, ToothCount, gaussian, losses
 
-EngineSpeedSensor: Any = OPTIONS['engine_speed']
-EngineTorqueEstimate: Any = OPTIONS['engine_torque']
 Z = 4.5
 """Standard errors that an estimate may be off: by chance once in 150 000 tests."""
 N = 40_000
@@ -50,7 +47,7 @@ def test_noise_has_its_mean_deviation_and_shape_and_no_memory():
 
 
 def test_the_gain_multiplies_and_the_bias_adds():
-    values, _ = measured(EngineTorqueEstimate(gain=1.5, bias_n_m=-2.0), [10.0, 0.0, -4.0])
+    values, _ = measured(EngineTorqueSensor(gain=1.5, bias_n_m=-2.0), [10.0, 0.0, -4.0])
     assert values.tolist() == [13.0, -2.0, -8.0]
 
 

@@ -7,13 +7,13 @@ from pathlib import Path
 from support.grown import SETTINGS, apply, output_of
 
 
-def test_a_sensor_is_one_line_for_options_and_headless_runs(tmp_path: Path) -> None:
+def test_a_sensor_has_options_and_is_in_headless_runs(tmp_path: Path) -> None:
     code = f"""{SETTINGS}
 import pickle
 from ddct_plant.base.options import options_of
-from ddct_plant.sensors.parameters import OPTIONS
+from ddct_plant.sensors.parameters import VehicleAccelSensor
 
-print(*options_of(OPTIONS['vehicle_accel']))
+print(*options_of(VehicleAccelSensor))
 assert pickle.loads(pickle.dumps(scenario)) == scenario
 received = run.sensed_vehicle_accel_held == 0.0
 assert 30 < np.count_nonzero(received) < 80

@@ -13,7 +13,7 @@ from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.models.static_torque import StaticTorque
 from ddct_plant.plant import Observation
 from ddct_plant.scenario.settings import RunSettings
-from ddct_plant.signals.handover_share import OnComingShare
+from ddct_plant.shift.balance import OnComingShare
 
 CLOSING_SHARE = 1.1
 """Request over C_fOL from the lock on."""
