@@ -113,8 +113,8 @@ def carry_out_recorded(
     missing = {file: job for file, job in shards.items() if not done_before.has(file)}
     runs = campaign.runs
     done = runs - sum(job.last - job.first for job in missing.values())
-    progress = Progress('runs', runs, done=done)
-    _Conduct(workers, progress, stopped, TimeLeft(campaign.cases)).compute(missing, done)
+    with Progress('runs', runs, done=done) as progress:
+        _Conduct(workers, progress, stopped, TimeLeft(campaign.cases)).compute(missing, done)
     require_unaltered(out, [file.relative_to(out).as_posix() for file in shards])
     schema = schema_of(campaign.spec)
     rows = {file: job.last - job.first for file, job in shards.items()}
@@ -232,7 +232,6 @@ class _Conduct:
                         f'workers died {deaths} times one after the other: free some memory or '
                         f'take fewer of them; {RESUME}'
                     ) from error
-        self.progress.end()
 
     def _written(self, shards: Mapping[Path, ShardJob]) -> Iterator[Path]:
         """Yield the file of each shard after it is written; raise an error of the executor."""

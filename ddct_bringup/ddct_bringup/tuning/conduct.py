@@ -100,9 +100,12 @@ class _Search:
 
     def trials(self) -> list[Trial]:
         """Return all trials."""
+        with Progress('trials', self.tuning.spec.trials) as progress:
+            return self._trials(progress)
+
+    def _trials(self, progress: Progress) -> list[Trial]:
         spec = self.tuning.spec
         found: list[Trial] = []
-        progress = Progress('trials', spec.trials)
         for batch, size in enumerate(batches_of(spec.trials)):
             require_going_on(self.computed.stopped)
             suggested = self.search.ask(size)
@@ -122,7 +125,6 @@ class _Search:
             progress.update(len(found))
             if len(found) >= _HOPELESS and (why := why_all_invalid(found)):
                 raise DdctError(f'{why}: mend the controller, or its ranges; {RESUME}')
-        progress.end()
         return found
 
     def _recorded(self, batch: int) -> list[Trial] | None:

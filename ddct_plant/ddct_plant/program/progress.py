@@ -8,7 +8,9 @@ from collections.abc import Callable, Iterable
 from typing import TextIO, TypeVar
 
 from rich.console import Console
+from rich.live import Live
 from rich.progress import track
+from rich.text import Text
 
 QUIET_S = 2.0
 """Time in s before the first line; shorter work prints none."""
@@ -18,7 +20,7 @@ Step = TypeVar('Step')
 
 
 class Progress:
-    """Progress line of work that is done in steps."""
+    """Progress line of work that is done in steps; as a context manager it clears the line."""
 
     def __init__(
         self,
@@ -37,21 +39,32 @@ class Progress:
         self._what = what
         self._total = total
         self._before = done
-        self._stream = stream or sys.stderr
+        self._console = Console(file=stream or sys.stderr, highlight=False)
+        # Without a thread of its own: the program may fork.
+        self._live = Live(console=self._console, auto_refresh=False, transient=True)
         self._clock = clock
         self._started = clock()
-        self._terminal = self._stream.isatty()
         self._next = self._started + QUIET_S
+
+    def __enter__(self) -> 'Progress':
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._live.stop()
 
     def update(self, done: int, left_s: float | None = None) -> None:
         """Print the line for `done` steps if it is due; `left_s` as in `line`."""
         now = self._clock()
         if now < self._next:
             return
-        self._next = now + _EVERY_S[self._terminal]
-        start, end = ('\r\x1b[K', '') if self._terminal else ('', '\n')
-        self._stream.write(f'{start}{self.line(done, left_s)}{end}')
-        self._stream.flush()
+        is_terminal = self._console.is_terminal
+        self._next = now + _EVERY_S[is_terminal]
+        line = self.line(done, left_s)
+        if is_terminal:
+            self._live.start()
+            self._live.update(Text(line), refresh=True)
+        else:
+            print(line, file=self._console.file, flush=True)
 
     def line(self, done: int, left_s: float | None = None) -> str:
         """
@@ -72,12 +85,6 @@ class Progress:
             return text
         left_s = (self._total - done) / rate if left_s is None else left_s
         return f'{text}, {_duration(left_s)} left'
-
-    def end(self) -> None:
-        """Clear the line on a terminal."""
-        if self._terminal and self._next > self._started + QUIET_S:
-            self._stream.write('\r\x1b[K')
-            self._stream.flush()
 
 
 def with_progress(steps: Iterable[Step], total: int, description: str) -> Iterable[Step]:

@@ -4,7 +4,13 @@
 
 import io
 
+import pytest
+
 from ddct_plant.program.progress import Progress
+
+HIDE_CURSOR, SHOW_CURSOR, UP, CLEAR = '\x1b[?25l', '\x1b[?25h', '\x1b[1A', '\x1b[2K'
+LINES = ((30, 7), (40, 6))
+"""Steps done and seconds left of the lines that are shown."""
 
 
 class Terminal(io.StringIO):
@@ -33,18 +39,17 @@ def test_the_rate_and_the_time_that_remains_are_printed_after_two_seconds() -> N
     assert progress.line(5000, 90.0).endswith('1 min 30 s left')
 
 
-def test_a_terminal_has_one_line_that_goes_in_the_end() -> None:
+def test_a_terminal_has_one_line_that_goes_in_the_end(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv('TERM', 'xterm-256color')
     times = iter([0.0, 3.0, 3.0, 3.1, 4.0, 4.0])
     stream = Terminal()
-    progress = Progress('runs', 100, stream=stream, clock=lambda: next(times))
-    for done in (30, 31, 40):
-        progress.update(done)
-    progress.end()
-    clear = '\r\x1b[K'
-    assert stream.getvalue() == (
-        f'{clear}runs: 30 of 100, 10 a second, 7 s left'
-        f'{clear}runs: 40 of 100, 10 a second, 6 s left{clear}'
-    )
+    with Progress('runs', 100, stream=stream, clock=lambda: next(times)) as progress:
+        for done in (30, 31, 40):
+            progress.update(done)
+    first, second = (f'runs: {done} of 100, 10 a second, {left} s left' for done, left in LINES)
+    shown = stream.getvalue()
+    assert shown.startswith(f'{HIDE_CURSOR}{first}\r{CLEAR}{second}')
+    assert shown.endswith(f'{second}\n{SHOW_CURSOR}\r{UP}{CLEAR}')
 
 
 def test_work_of_unknown_length_has_a_rate_and_no_end() -> None:

@@ -102,16 +102,16 @@ def identify_log(options: argparse.Namespace) -> int:
     known_load, known_delays = load_of(base), columns.known_delays
     # Before the fit, which takes long, because it raises the errors of the held-out data.
     predicted = stretches_of(held_out, known_load)
-    count, progress = itertools.count(1), Progress('fitting the driveline, evaluations')
-    fit = fit_log(
-        fitted,
-        start.driveline,
-        known_load,
-        options.fix,
-        known_delays,
-        lambda: progress.update(next(count)),
-    )
-    progress.end()
+    count = itertools.count(1)
+    with Progress('fitting the driveline, evaluations') as progress:
+        fit = fit_log(
+            fitted,
+            start.driveline,
+            known_load,
+            options.fix,
+            known_delays,
+            lambda: progress.update(next(count)),
+        )
     predictions = predict(fit, predicted)
     reasons = reasons_against(fit, predictions, stretches_of(fitted, known_load))
     report = LogFitReport(fit, radius, start.name, predictions, reasons, fitted, held_out)
