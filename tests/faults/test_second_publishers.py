@@ -13,7 +13,7 @@ from support.runs import expected, plan
 from support.second_publishers import LOOP, REPEAT_S, require_named_copy, require_named_echo
 
 from ddct_bringup.bag.reader import read_bag
-from ddct_plant.base.timebase import LONGEST_S
+from ddct_plant.base.timebase import LONGEST_S, PERIOD_S
 from ddct_plant.graph import sole_publishers
 from ddct_plant.graph.qos import RECORDER_QOS
 from ddct_plant.models.driveline import DrivelineOutputs
@@ -23,11 +23,13 @@ from ddct_plant.signals.topics import (
     CLUTCH_TORQUE,
     ENGINE_REQUEST,
     ENGINE_TORQUE,
+    LOAD_TORQUE,
     OFF_GOING_CLUTCH_TORQUE,
     RECORDER_ACK,
     SENSED_SLIP,
     VEHICLE_ACCEL,
 )
+from ddct_plant.ticks.realtime_owner import RealtimeOwner
 
 ECHOED = [
     *(CLOCK, ENGINE_TORQUE, CLUTCH_TORQUE, RECORDER_ACK),
@@ -35,6 +37,7 @@ ECHOED = [
 ]
 """A tick, replies with and without a recorder, and a topic of each other kind of run."""
 COPIED = ['controller', 'off_going/actuator']
+FROM_STEP = 20
 
 
 def _clutch_torque(graph: InProcessGraph) -> float:
@@ -115,6 +118,28 @@ def test_a_killed_node_that_is_still_in_the_graph_is_no_second_publisher(
     graph.run()
     assert graph.nodes['driveline'].count_publishers('load/torque') == 2, 'it was forgotten'
     assert read_bag(graph.folder).trajectory.sha256() == expected(run).sha256()
+
+
+@pytest.mark.parametrize('away_s', [0.03, 1.5, 4.9])
+def test_a_node_that_is_killed_and_started_again_in_real_time_is_no_second_publisher(
+    graph_of: GraphOf, away_s: float
+) -> None:
+    """It answers again, though the graph lists it twice, and the run goes on to its end."""
+    run = plan(mode='realtime', duration_s=away_s + 2.0)
+    graph = graph_of(run)
+    graph.add_all()
+    owner = graph.driveline.owner
+    assert isinstance(owner, RealtimeOwner)
+    graph.spin_until(lambda: owner.step >= FROM_STEP and not owner.missing(), 'a whole tick')
+    graph.kill('load')
+    graph.pass_time(away_s)
+    missed = owner.missed_replies[LOAD_TORQUE.name]
+    graph.add('load')
+    graph.run()
+    assert graph.driveline.count_publishers(LOAD_TORQUE.name) == 2, 'it was forgotten'
+    assert missed == pytest.approx(away_s / PERIOD_S, abs=2)
+    assert owner.missed_replies[LOAD_TORQUE.name] <= missed + 2
+    assert (owner.step, owner.safe_clutches) == (run.steps, [])
 
 
 def test_a_driveline_that_is_closed_in_doubt_ends_its_check_quietly(graph_of: GraphOf) -> None:

@@ -146,6 +146,13 @@ class InProcessGraph:
         self._executor.remove_node(node)
         node.destroy_node()
 
+    def kill(self, name: str) -> None:
+        """Let a node do no more, as one that is killed; the graph still lists it."""
+        node = self.nodes.pop(name)
+        self._executor.remove_node(node)
+        node.finish()
+        self._others.append(node)
+
     def wait_for_publishers(self, topic: str, number: int = 1) -> None:
         """Wait by the wall clock until a topic has publishers, perhaps in another process."""
         wait_until(lambda: self.watch.count_publishers(topic) >= number, topic)

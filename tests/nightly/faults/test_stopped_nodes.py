@@ -1,7 +1,7 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
 """
-A process of a node that is stopped for a while, or for good.
+A process of a node that is stopped for a while or for good, or started again.
 
 No claim is about how fast the machine is: what the driveline counts says when a test goes on.
 """
@@ -15,6 +15,8 @@ from support.processes import Program, Programs
 from support.runs import expected, plan
 
 from ddct_bringup.bag.reader import read_bag
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.graph.sole_publishers import PROOF_S
 from ddct_plant.graph.steady_time import SteadyTime
 from ddct_plant.signals.topics import CLUTCH_TORQUE, LOAD_TORQUE
 from ddct_plant.ticks.realtime_owner import RealtimeOwner
@@ -109,3 +111,28 @@ def test_a_node_that_was_stopped_in_real_time_answers_again_when_it_goes_on(
         node.send(signal.SIGCONT)
         so_far = owner.missed_replies[topic], owner.step
         graph.spin_until(partial(answered, *so_far), f'{topic} in time once more')
+
+
+def test_a_node_that_is_killed_and_started_again_answers_and_is_no_second_publisher(
+    graph_of: GraphOf, programs: Programs
+) -> None:
+    graph = graph_of(plan(mode='realtime', duration_s=600.0), wall_clock=True)
+    load = programs.start_node('ddct_plant.nodes.load_node', graph.parameters_of('load'))
+    graph.wait_for_publishers(LOAD_TORQUE.name)
+    graph.add_all(without=['load'])
+    owner = graph.driveline.owner
+    assert isinstance(owner, RealtimeOwner)
+    graph.spin_until(lambda: owner.step >= 50, 'half a second')
+    load.process.kill()
+    load.wait()
+    programs.start_node('ddct_plant.nodes.load_node', graph.parameters_of('load'))
+    listed = graph.driveline.count_publishers
+    graph.spin_until(lambda: listed(LOAD_TORQUE.name) == 2, 'the killed load and the new one')
+    missed, start = owner.missed_replies[LOAD_TORQUE.name], owner.step
+    graph.spin_until(
+        lambda: owner.missed_replies[LOAD_TORQUE.name] - missed < owner.step - start,
+        'the load in time once more',
+    )
+    checked = owner.step + round(2.0 * PROOF_S / PERIOD_S)
+    graph.spin_until(lambda: owner.step >= checked, 'a proof of two')
+    assert listed(LOAD_TORQUE.name) == 2, 'it was forgotten'
