@@ -18,7 +18,7 @@ from ddct_plant.signals.topic import RunKind
 from ddct_plant.signals.topics import DIAGNOSTICS, recorded_topics
 
 STEPS = 60
-COUNTS = {'steps': STEPS, 'resends': 0, 'late_messages': 0, 'worst_tick_lateness_us': 1234}
+COUNTS = {'steps': STEPS, 'resends': 0, 'late_messages': 0, 'tick_lateness_us': '17 1234'}
 SAFE = {'since_ns': stamp_of_step(40), 'why': 'no clutch/torque_request'}
 LOG = '[ERROR] [1.0] [actuator]: safe state\n'
 
@@ -45,7 +45,7 @@ def leave(bags, trajectory, monkeypatch):
             bag.write(*diagnostics('/driveline: ticks', {**COUNTS, 'missed_steps': missed}))
             if safe:
                 bag.write(*diagnostics('/actuator: safe state', SAFE))
-        RunTiming(missed_steps=missed, worst_lateness_us=1234.0).write(folder)
+        RunTiming(missed_steps=missed, lateness_us=[17.0, 1234.0]).write(folder)
 
     def leave_behind(missed=0, *, safe=False, log=''):
         def run(_plan, folder, *_, **__):

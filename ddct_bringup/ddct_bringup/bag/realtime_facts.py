@@ -20,15 +20,18 @@ class RealtimeCounts:
     """Number of ticks that were sent again."""
     late_messages: int = 0
     """Number of replies to a tick that was over."""
-    worst_lateness_us: float | None = None
-    """Largest lateness of a step of the driveline, us; None in lock-step."""
     safe_states: dict[str, int] = field(default_factory=dict)
     """Stamp in ns at which a node entered its safe state, by full node name."""
     lateness_us: list[float] = field(default_factory=list)
-    """Time by which each tick after t_0 was published too late, us; empty in lock-step."""
+    """Time by which each step of the driveline began too late, us; empty in lock-step."""
     latency_us: list[float] = field(default_factory=list)
     """Time from the publication of a tick to each torque of a clutch that answers it, us; empty in
     lock-step."""
+
+    @property
+    def worst_lateness_us(self) -> float | None:
+        """Largest lateness of a step of the driveline, us; None in lock-step."""
+        return max(self.lateness_us, default=None)
 
 
 @dataclass
@@ -51,8 +54,6 @@ class RealtimeFacts(RealtimeCounts):
             return False
         self.steps, self.resends = counts.steps, counts.resends
         self.missed_steps, self.late_messages = counts.missed_steps, counts.late_messages
-        if counts.worst_lateness_us is not None:
-            self.worst_lateness_us = counts.worst_lateness_us
         self.lateness_us += counts.lateness_us
         self.latency_us += counts.latency_us
         return True

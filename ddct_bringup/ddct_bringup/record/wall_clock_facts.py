@@ -38,7 +38,6 @@ class WallClockFacts:
             missed_steps=facts.missed_steps,
             resends=facts.resends,
             late_messages=facts.late_messages + late,
-            worst_lateness_us=facts.worst_lateness_us,
             safe_states=facts.safe_states,
             lateness_us=facts.lateness_us,
             latency_us=facts.latency_us,

@@ -43,10 +43,7 @@ class RunTiming(RealtimeCounts):
         for name in ('missed_steps', 'resends', 'late_messages', 'refused_messages', 'steps'):
             require_number(name, getattr(self, name), at_least=0.0)
         samples = (*self.update_times_us, *self.lateness_us, *self.latency_us)
-        times = (
-            *(self.wall_time_s, self.worst_lateness_us or 0.0),
-            *(*self.safe_states.values(), *samples),
-        )
+        times = (self.wall_time_s, *self.safe_states.values(), *samples)
         if min(times) < 0.0:
             raise ParameterError(f'a time is {min(times):g}: it must be at least 0')
 

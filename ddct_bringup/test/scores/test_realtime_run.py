@@ -28,7 +28,7 @@ TRAJECTORY = run_headless(SETTINGS, 'ls8')
 
 
 def facts(**values):
-    given = RealtimeFacts(steps=STEPS, worst_lateness_us=412.0)
+    given = RealtimeFacts(steps=STEPS, lateness_us=[3.5, 412.0, 80.0])
     return replace(given, **values)
 
 
@@ -100,7 +100,7 @@ def test_scores_have_the_safe_state_in_real_time_only():
 
 
 def test_scores_contain_the_worst_lateness_of_the_timing_file(tmp_path):
-    RunTiming(missed_steps=2, worst_lateness_us=1500.0).write(tmp_path)
+    RunTiming(missed_steps=2, lateness_us=[1500.0, 2.0]).write(tmp_path)
     metrics = scored(recording(path=tmp_path / 'x.mcap')).metrics
     assert (metrics['missed_steps'], metrics['worst_lateness_us']) == (2, 1500.0)
 
@@ -112,7 +112,7 @@ def test_the_summary_states_misses_lateness_and_safe_states_in_their_order():
         '2 of 300 steps missed, worst lateness 0.41 ms, '
         'safe state: /actuator at 0.9 s, /driveline at 0.95 s'
     )
-    assert realtime_summary(recording(facts(worst_lateness_us=None))) == (
+    assert realtime_summary(recording(facts(lateness_us=[]))) == (
         '0 of 300 steps missed, worst lateness unknown, safe state: none'
     )
 
@@ -120,10 +120,12 @@ def test_the_summary_states_misses_lateness_and_safe_states_in_their_order():
 def test_diagnostics_of_nodes_are_parsed():
     received = RealtimeFacts()
     assert received.receive(
-        StatusName('/driveline', ': ticks'), {**COUNTS, 'worst_tick_lateness_us': '700'}
+        StatusName('/driveline', ': ticks'), {**COUNTS, 'tick_lateness_us': '12.5 700'}
     )
     assert received.receive(StatusName.of('actuator: safe state'), {'since_ns': '1870000000'})
-    assert received == RealtimeFacts(4, 5, 6, 700.0, {'/actuator': 1870000000}, steps=300)
+    assert received == RealtimeFacts(
+        *(4, 5, 6, {'/actuator': 1870000000}), lateness_us=[12.5, 700.0], steps=300
+    )
 
 
 @pytest.mark.parametrize(

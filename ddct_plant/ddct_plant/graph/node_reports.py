@@ -7,7 +7,6 @@ Reports of nodes about themselves and about a run: pairs of key and text, and th
 states and update times exist in graphs only. No ROS is needed here.
 """
 
-import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
@@ -44,7 +43,6 @@ SAFE_STATE = ': safe state'
 """Ending, after the node's name, of the name of the status of a node in its safe state."""
 _SINCE = 'since_ns'
 _UPDATE_TIMES = 'update_times_us'
-_LATENESS = 'worst_tick_lateness_us'
 _LATENESS_SAMPLES, _LATENCY_SAMPLES = 'tick_lateness_us', 'latency_us'
 
 
@@ -154,12 +152,10 @@ class TickCounts:
     """Number of steps that held the last torque because a reply was missing."""
     late_messages: int
     """Number of replies to a tick that was over."""
-    worst_lateness_us: float | None = None
-    """Largest lateness of a step, us; None in lock-step."""
     missed_replies: Mapping[str, int] = field(default_factory=dict)
     """Number of missing replies by topic; empty in lock-step."""
     lateness_us: Sequence[float] = field(default_factory=list)
-    """Lateness of each tick since the counts before, us; empty in lock-step."""
+    """Lateness of each step since the counts before, us; empty in lock-step."""
     latency_us: Sequence[float] = field(default_factory=list)
     """Latency of each torque of a clutch since the counts before, us; empty in lock-step."""
 
@@ -168,8 +164,6 @@ class TickCounts:
         counts = {key: getattr(self, key) for key in _COUNTS}
         counts |= {f'missed {topic}': count for topic, count in self.missed_replies.items()}
         pairs = [(key, str(count)) for key, count in counts.items()]
-        if self.worst_lateness_us is not None:
-            pairs.append((_LATENESS, f'{self.worst_lateness_us:.0f}'))
         samples = {_LATENESS_SAMPLES: self.lateness_us, _LATENCY_SAMPLES: self.latency_us}
         pairs += [(key, _samples_text(times)) for key, times in samples.items() if times]
         return pairs
@@ -177,12 +171,9 @@ class TickCounts:
     @classmethod
     def of(cls, pairs: Mapping[str, str]) -> 'TickCounts':
         """Return the counts in the pairs of a status; raise KeyError or ValueError."""
-        lateness = float(pairs[_LATENESS]) if _LATENESS in pairs else None
-        if lateness is not None and not 0.0 <= lateness < math.inf:
-            raise ValueError(f'{_LATENESS} is {lateness}')
         steps, resends, missed_steps, late_messages = (_count(pairs, key) for key in _COUNTS)
         return cls(
-            *(steps, resends, missed_steps, late_messages, lateness),
+            *(steps, resends, missed_steps, late_messages),
             lateness_us=_samples('ticks', pairs, _LATENESS_SAMPLES),
             latency_us=_samples('ticks', pairs, _LATENCY_SAMPLES),
         )

@@ -172,7 +172,6 @@ class DrivelineNode(GraphNode):
         lateness_s, latency_s = owner.durations.take()
         return replace(
             counts,
-            worst_lateness_us=1e6 * owner.worst_lateness_s,
             missed_replies=owner.missed_replies,
             lateness_us=[1e6 * each for each in lateness_s],
             latency_us=[1e6 * each for each in latency_s],

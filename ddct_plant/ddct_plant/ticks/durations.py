@@ -11,7 +11,7 @@ class TickDurations:
     def __init__(self, clock: Callable[[], float]) -> None:
         """Measure by a steady clock in s."""
         self.lateness: list[float] = []
-        """Time by which each tick was published after it was due."""
+        """Time by which each step began after it was due."""
         self.latency: list[float] = []
         """Time from the publication of a tick to each torque of a clutch that answers it,
         however late."""
@@ -19,7 +19,7 @@ class TickDurations:
         self._sent_at: list[float] = []
 
     def publish(self, late_s: float) -> None:
-        """Note that the next tick, the first one with step 1, is published late by this time."""
+        """Note that the next tick, the first one with step 1, is published; its step was late."""
         self.lateness.append(late_s)
         self._sent_at.append(self._clock())
 

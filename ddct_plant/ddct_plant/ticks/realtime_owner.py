@@ -32,7 +32,6 @@ class RealtimeOwner(TickOwner):
         super().__init__(*arguments, **options)
         self._on_started = on_started
         self.missed_replies = dict.fromkeys(self._plan.torques, 0)
-        self.worst_lateness_s = 0.0
         self.durations = TickDurations(self._clock)
         self._held: dict[str, Reply] = {}
         self._silent_since: dict[str, int] = dict.fromkeys(self._plan.torques, 0)
@@ -40,7 +39,7 @@ class RealtimeOwner(TickOwner):
             topic: GuardedClutch(self._plan.fail_safe) for topic in self._plan.clutches
         }
         self._started_at: float | None = None
-        self._due = 0.0
+        self._late_s = 0.0
 
     @property
     def safe_clutches(self) -> list[str]:
@@ -56,8 +55,7 @@ class RealtimeOwner(TickOwner):
             now = self._clock()
             if now < due:
                 return
-            self.worst_lateness_s = max(self.worst_lateness_s, now - due)
-            self._due = due
+            self._late_s = now - due
             self._take_step()
 
     def offer(self, topic: str, stamp_ns: int, reply: Reply) -> None:
@@ -79,7 +77,7 @@ class RealtimeOwner(TickOwner):
 
     def _open(self, step: int) -> None:
         if self._started_at is not None:
-            self.durations.publish(self._clock() - self._due)
+            self.durations.publish(self._late_s)
         super()._open(step)
 
     def _awaited_at(self, step: int) -> tuple[str, ...]:

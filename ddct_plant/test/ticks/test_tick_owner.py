@@ -202,7 +202,7 @@ def test_realtime_catches_up_after_a_late_timer(realtime):
     realtime.now = 0.0251
     realtime.owner.tick()
     assert realtime.published == [0, 1, 2]
-    assert realtime.owner.worst_lateness_s == pytest.approx(0.0151)
+    assert realtime.owner.durations.lateness == pytest.approx([0.0151, 0.0051])
 
 
 def test_realtime_measures_lateness_and_the_latency_of_late_replies_too(realtime):
