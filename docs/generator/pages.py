@@ -13,7 +13,7 @@ from pathlib import Path
 
 from ddct_plant.base.errors import DdctError
 from ddct_plant.program.table import Table
-from ddct_plant.program.table import as_markdown as markdown_of
+from generator.markdown import as_markdown as markdown_of
 
 DOCS = Path(__file__).resolve().parents[1]
 

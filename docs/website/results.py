@@ -15,8 +15,10 @@ from functools import cache
 from pathlib import Path
 from typing import TypedDict
 
+from generator.markdown import as_markdown
+
 from ddct_plant.base.errors import DdctError
-from ddct_plant.program.table import Table, as_markdown
+from ddct_plant.program.table import Table
 
 FILES = ('numbers', 'benchmark', 'studies')
 """Names of the files, each with `.json`."""

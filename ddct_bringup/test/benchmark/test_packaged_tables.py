@@ -67,7 +67,7 @@ def test_the_program_prints_the_tables_what_counts_and_what_stays_open() -> None
 
 @pytest.mark.usefixtures('small')
 def test_nothing_is_wider_than_80_columns(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(printed_table, 'REDIRECTED_WIDTH', 80)
+    monkeypatch.setattr(printed_table, '_REDIRECTED_WIDTH', 80)
     lines = printed_packaged().splitlines()
     assert [line for line in lines if len(line) > 80] == []
 

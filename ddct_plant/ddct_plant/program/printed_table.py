@@ -22,11 +22,11 @@ from rich.text import Text
 from ddct_plant.base.errors import printable
 from ddct_plant.program.table import UNDEFINED, Table, Weight
 
-REDIRECTED_WIDTH = 120
+_REDIRECTED_WIDTH = 120
 """Width in characters of a table in a file or a pipe."""
-MOST_NOTES = 6
+_MOST_NOTES = 6
 """Largest number of notes below a table."""
-STAR = '*'
+_STAR = '*'
 """Mark of a value with a reservation."""
 _LEAST_WIDTH = 40
 """Narrower terminals wrap the lines themselves."""
@@ -75,9 +75,9 @@ def print_note(text: str, stream: TextIO | None = None) -> None:
 
 
 def _console(stream: TextIO) -> Console:
-    """Return the console of a stream, as wide as its terminal or REDIRECTED_WIDTH."""
+    """Return the console of a stream, as wide as its terminal or _REDIRECTED_WIDTH."""
     is_terminal = stream.isatty()
-    width = None if is_terminal else REDIRECTED_WIDTH
+    width = None if is_terminal else _REDIRECTED_WIDTH
     console = Console(file=stream, force_terminal=is_terminal, width=width, highlight=False)
     console.width = max(console.width, _LEAST_WIDTH)
     return console
@@ -123,7 +123,7 @@ def _marked(table: Table, places: Sequence[int]) -> tuple[list[_Column], dict[st
         for place in places:
             text = printable(row[place])
             if reason := table.reasons.get((line, place)):
-                sign = UNDEFINED if text == UNDEFINED else STAR
+                sign = UNDEFINED if text == UNDEFINED else _STAR
                 # The n-th reason has its sign n times.
                 same = sum(kind == sign for kind, _ in marks)
                 mark = marks.setdefault((sign, reason), sign * (same + 1))
@@ -141,7 +141,7 @@ def _column(table: Table, place: int, cells: Sequence[str]) -> _Column:
     else:
         number = all(_is_number(row[place]) for row in table.rows)
     if number:
-        stars = [len(cell) - len(cell.rstrip(STAR)) for cell in cells]
+        stars = [len(cell) - len(cell.rstrip(_STAR)) for cell in cells]
         longest = max(stars, default=0)
         cells = [cell + ' ' * (longest - own) for cell, own in zip(cells, stars, strict=True)]
     return _Column(place, table.headers[place], cells, number, weight)
@@ -228,9 +228,9 @@ def _notes(
         names = ', '.join(' '.join(column.heading.split()) for column in left_out)
         where = f'with {table.complete}' if table.complete else f'on a terminal of {width} columns'
         notes.insert(0, f'not shown: {names}; all {where}')
-    if len(notes) > MOST_NOTES:
+    if len(notes) > _MOST_NOTES:
         where = f', with {table.complete}' if table.complete else ''
-        notes[MOST_NOTES - 1 :] = [f'{len(notes) - MOST_NOTES + 1} more notes{where}']
+        notes[_MOST_NOTES - 1 :] = [f'{len(notes) - _MOST_NOTES + 1} more notes{where}']
     return notes
 
 

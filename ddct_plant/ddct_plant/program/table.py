@@ -161,14 +161,3 @@ def with_reasons(table: AnyTable, reason: Callable[[str, Sequence[str]], str]) -
 def text_or_dash(value: object, form: str) -> str:
     """Return a value in a format, or a dash for None: an undefined value or no limit."""
     return UNDEFINED if value is None else format(value, form)
-
-
-def as_markdown(table: Table) -> str:
-    """Return a table as Markdown, with a final line end."""
-    separator = ['---'] * len(table.headers)
-    return ''.join(f'{_line(cells)}\n' for cells in (table.headers, separator, *table.rows))
-
-
-def _line(cells: Sequence[str]) -> str:
-    escaped = (cell.replace('|', r'\|') for cell in cells)
-    return f'| {" | ".join(escaped)} |'

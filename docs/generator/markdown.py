@@ -1,0 +1,18 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Tables as Markdown."""
+
+from collections.abc import Sequence
+
+from ddct_plant.program.table import Table
+
+
+def as_markdown(table: Table) -> str:
+    """Return a table as Markdown, with a final line end."""
+    separator = ['---'] * len(table.headers)
+    return ''.join(f'{_line(cells)}\n' for cells in (table.headers, separator, *table.rows))
+
+
+def _line(cells: Sequence[str]) -> str:
+    escaped = (cell.replace('|', r'\|') for cell in cells)
+    return f'| {" | ".join(escaped)} |'
