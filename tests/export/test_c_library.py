@@ -277,7 +277,7 @@ def test_outputs_that_c_does_not_write_are_nan(library, source):
 
 
 def test_a_loop_without_end_is_ended(library, monkeypatch):
-    monkeypatch.setattr(own_process, 'MOST_SECONDS', 0.5)
+    monkeypatch.setattr(own_process, '_MOST_SECONDS', 0.5)
     file = library(command('for (;;) {}'))
     with refused(DdctError, 'c_library.file', place=f'{file}: line 2') as raised:
         run_headless(SETTINGS, file)

@@ -57,7 +57,7 @@ def harm(folder: Path) -> str:
 @pytest.fixture(autouse=True)
 def soon(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let a library that never answers be ended soon."""
-    monkeypatch.setattr(own_process, 'MOST_SECONDS', 1)
+    monkeypatch.setattr(own_process, '_MOST_SECONDS', 1)
 
 
 def torques(run: api.Run) -> list[float]:

@@ -43,7 +43,7 @@ PLACE = 'controller file mine.yaml: line 3'
 @pytest.fixture(autouse=True)
 def soon(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let an FMU that never answers be ended soon."""
-    monkeypatch.setattr(own_process, 'MOST_SECONDS', 1)
+    monkeypatch.setattr(own_process, '_MOST_SECONDS', 1)
 
 
 @pytest.mark.parametrize(('version', 'fault'), [(2, EXIT), (3, ABORT), (2, LOOP), (3, CRASH)])

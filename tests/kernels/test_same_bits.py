@@ -3,13 +3,18 @@
 """Trajectories have the same bits on each processor whose kernel is the same."""
 
 import pytest
-from support.trajectory_hashes import FEATURES, Hashes, hashes_with
-
-from ddct_plant.program.arithmetic import HASWELL, KERNEL, kernel_of_processor
+from support.trajectory_hashes import (
+    FEATURES,
+    HAS_HASWELL,
+    HASWELL,
+    KERNEL,
+    Hashes,
+    hashes_with,
+)
 
 pytestmark = [
     pytest.mark.process,
-    pytest.mark.skipif(kernel_of_processor() is None, reason='needs x86-64 with AVX2'),
+    pytest.mark.skipif(not HAS_HASWELL, reason='needs x86-64 with AVX2'),
 ]
 SAMPLE = ('pi', 'hinf_thesis', 'mpc_wear', 'least_jerk')
 

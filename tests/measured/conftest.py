@@ -14,7 +14,7 @@ from ddct_plant.program import progress
 @pytest.fixture(autouse=True)
 def no_progress(monkeypatch: pytest.MonkeyPatch) -> None:
     """Have no progress printed: on a busy machine a fit takes long enough for it."""
-    monkeypatch.setattr(progress, 'QUIET_S', math.inf)
+    monkeypatch.setattr(progress, '_QUIET_S', math.inf)
 
 
 @pytest.fixture

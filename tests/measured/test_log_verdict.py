@@ -22,7 +22,7 @@ pytestmark = pytest.mark.slow
 def test_a_fit_prints_its_progress(
     folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(progress, 'QUIET_S', 0.0)
+    monkeypatch.setattr(progress, '_QUIET_S', 0.0)
     assert identify(folder) == 0
     assert capsys.readouterr().err.startswith('fitting the driveline, evaluations: 1')
 

@@ -20,12 +20,18 @@ from pathlib import Path
 
 from ddct_bringup.run.headless import run_headless
 from ddct_controllers.registry import own_controller_names
-from ddct_plant.program.arithmetic import KERNEL, THREADS, Arithmetic, arithmetic
+from ddct_plant.program.arithmetic import Arithmetic, arithmetic
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 SCENARIOS = ('thesis', 'launch', 'upshift_light')
-FEATURES = tuple(import_module('numpy._core._multiarray_umath').__cpu_dispatch__)
+KERNEL, THREADS = 'OPENBLAS_CORETYPE', 'OPENBLAS_NUM_THREADS'
+"""Environment variables of OpenBLAS."""
+HASWELL = 'Haswell'
+"""Kernel that every process uses where the processor has it."""
+_numpy = import_module('numpy._core._multiarray_umath')
+HAS_HASWELL = bool(_numpy.__cpu_features__.get('AVX2'))
+FEATURES = tuple(_numpy.__cpu_dispatch__)
 """Features of processors that numpy has code for, the oldest first."""
 STORED = Path(__file__).with_suffix('.json')
 _COMPUTING = ('python', 'numpy', 'scipy', 'control', 'daqp', 'osqp')

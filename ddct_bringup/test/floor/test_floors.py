@@ -9,7 +9,7 @@ import pytest
 from made_run import made_run
 from refusals import refused
 from scored_metrics import SCORED
-from threadpoolctl import threadpool_limits
+from threadpoolctl import threadpool_info, threadpool_limits
 
 from ddct_bringup.floor import computed_floor
 from ddct_bringup.floor.case import case_at, case_of_run
@@ -31,7 +31,6 @@ from ddct_bringup.scores.scoring import score_run
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import PERIOD_S
-from ddct_plant.program.arithmetic import blas_libraries
 from ddct_plant.scenario.file import ScenarioFile, load_scenario
 from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
@@ -207,7 +206,7 @@ def test_a_floor_is_computed_by_one_thread_unless_the_user_wants_more(
 
 
 def thread_numbers():
-    return [library.threads for library in blas_libraries()]
+    return [each['num_threads'] for each in threadpool_info() if each['user_api'] == 'blas']
 
 
 def test_a_lock_at_once_is_impossible_and_has_its_ray():

@@ -18,11 +18,11 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
-KERNEL = 'OPENBLAS_CORETYPE'
+_KERNEL = 'OPENBLAS_CORETYPE'
 """Environment variable with the name of OpenBLAS's kernel."""
-THREADS = 'OPENBLAS_NUM_THREADS'
+_THREADS = 'OPENBLAS_NUM_THREADS'
 """Environment variable with the number of OpenBLAS's threads."""
-HASWELL = 'Haswell'
+_HASWELL = 'Haswell'
 """Kernel for all processors of x86-64 with AVX2, of Intel since 2013 and of AMD since 2017."""
 _NEEDED = {'avx2', 'fma'}
 """Features of a processor that this kernel uses, by their names in Linux."""
@@ -49,27 +49,27 @@ def choose_kernel() -> None:
     its kernel is the one that is named: it stays, and those processes use it too.
     """
     # Matrices are small: more threads only wait for one another.
-    os.environ.setdefault(THREADS, '1')
-    if KERNEL not in os.environ:
-        kernel = _kernel_of_numpy() if 'numpy' in sys.modules else kernel_of_processor()
+    os.environ.setdefault(_THREADS, '1')
+    if _KERNEL not in os.environ:
+        kernel = _kernel_of_numpy() if 'numpy' in sys.modules else _kernel_of_processor()
         if kernel:
-            os.environ[KERNEL] = kernel
+            os.environ[_KERNEL] = kernel
 
 
-def kernel_of_processor() -> str | None:
+def _kernel_of_processor() -> str | None:
     """Return the kernel that every process of this machine uses; None where OpenBLAS picks it."""
     if os.uname().machine != 'x86_64':
         return None
-    return HASWELL if {*_processor_line('flags').split()} >= _NEEDED else None
+    return _HASWELL if {*_processor_line('flags').split()} >= _NEEDED else None
 
 
 def _kernel_of_numpy() -> str | None:
-    return next((each.kernel for each in blas_libraries() if each.kernel), None)
+    return next((each.kernel for each in _blas_libraries() if each.kernel), None)
 
 
 def named_threads() -> int:
     """Return the number of threads that the environment names, 1 where it names none."""
-    named = os.environ.get(THREADS, '')
+    named = os.environ.get(_THREADS, '')
     return max(1, int(named)) if named.isdecimal() else 1
 
 
@@ -86,7 +86,7 @@ def limit_threads(count: int) -> AbstractContextManager[Any]:
 
 
 @dataclass(frozen=True)
-class Blas:
+class _Blas:
     """A library for linear algebra that this process has loaded."""
 
     user: str
@@ -145,7 +145,7 @@ def arithmetic() -> Arithmetic:
     # Only here: it loads the OpenBLAS of scipy, which takes some tenths of a second.
     import scipy.linalg  # noqa: F401
 
-    found = blas_libraries()
+    found = _blas_libraries()
     return Arithmetic(
         blas=_joined({each.user: each.name for each in found}),
         kernel=_joined({each.user: each.kernel for each in found}),
@@ -157,7 +157,7 @@ def arithmetic() -> Arithmetic:
     )
 
 
-def blas_libraries() -> list[Blas]:
+def _blas_libraries() -> list[_Blas]:
     """Return the libraries for linear algebra of numpy and scipy, as far as they are loaded."""
     from threadpoolctl import threadpool_info
 
@@ -169,7 +169,7 @@ def blas_libraries() -> list[Blas]:
             continue
         name = _NAMES.get(each['internal_api'], each['internal_api'])
         found.append(
-            Blas(
+            _Blas(
                 user=user,
                 name=f'{name} {each["version"] or "of unknown version"}',
                 kernel=each.get('architecture') or '',

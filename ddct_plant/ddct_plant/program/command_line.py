@@ -24,13 +24,13 @@ from ddct_plant.program.signals import (
     stems_from_interrupt,
 )
 
-GROUP = 'ddct.programs'
+_GROUP = 'ddct.programs'
 """Group of the programs' entry points, which the packages' setup.py declare."""
-USAGE = 2
+_USAGE = 2
 """Exit code after invalid options, as in argparse."""
-INTERRUPTED = 130
+_INTERRUPTED = 130
 """Exit code after SIGINT, as in shells; after another signal n it is 128 + n."""
-PIPE_CLOSED = 141
+_PIPE_CLOSED = 141
 """Exit code after the reader of standard output has closed it, as in shells for SIGPIPE."""
 _NEW_OBJECTS = 50_000
 """Number of new objects after which garbage is searched for; Python's default is 700."""
@@ -68,7 +68,7 @@ def main() -> int:
 
 def programs() -> dict[str, EntryPoint]:
     """Return the programs by name; of two with the same name the first on Python's path."""
-    return {point.name: point for point in reversed(tuple(entry_points(group=GROUP)))}
+    return {point.name: point for point in reversed(tuple(entry_points(group=_GROUP)))}
 
 
 def load_program(point: EntryPoint) -> Callable[[], int]:
@@ -96,8 +96,8 @@ class ProgramParser(argparse.ArgumentParser):
         )
 
     def error(self, message: str) -> NoReturn:
-        """End the program with the exit code USAGE and one line on standard error."""
-        self.exit(USAGE, f'{self.prog}: {printable(message)}: see {self.prog} --help\n')
+        """End the program with the exit code 2 and one line on standard error."""
+        self.exit(_USAGE, f'{self.prog}: {printable(message)}: see {self.prog} --help\n')
 
     def _print_message(self, message: str, file: Any = None) -> None:
         """Write help or version; raise OSError where it fails, which argparse would ignore."""
@@ -106,7 +106,7 @@ class ProgramParser(argparse.ArgumentParser):
             stream.write(message)
 
 
-class Subcommand(Protocol):
+class _Subcommand(Protocol):
     """A module, or an object, that adds a subcommand to a program."""
 
     def add_parser(self, subparsers: Any, /) -> None:
@@ -119,7 +119,7 @@ class LateSubcommand:
 
     help: str
     """What it does, in the program's own --help."""
-    load: Callable[[], Subcommand]
+    load: Callable[[], _Subcommand]
     """Import its module."""
 
 
@@ -192,7 +192,7 @@ def _run_program(name: str, work: Callable[[], int]) -> int:
         return _interrupted(name, str(error))
     except BrokenPipeError:
         _drop_output()
-        return PIPE_CLOSED
+        return _PIPE_CLOSED
     except (DdctError, OSError) as error:
         # Its context does not count: what failed after an interruption has to be reported.
         if stems_from_interrupt(error.__cause__):
@@ -215,7 +215,7 @@ def _interrupted(name: str, text: str = '') -> int:
     """Report an interruption, unless a program within has done so; return the exit code."""
     if is_first_report():
         complain(name, text or 'interrupted')
-    return 128 + interrupted_by() if interrupted_by() else INTERRUPTED
+    return 128 + interrupted_by() if interrupted_by() else _INTERRUPTED
 
 
 def show_and_write(target: str | None, content: Any, show: Callable[[], None]) -> None:

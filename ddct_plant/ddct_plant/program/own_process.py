@@ -24,7 +24,7 @@ from typing import NoReturn, TypeVar
 from ddct_plant.base.errors import FOREIGN_FAILURES, DdctError
 from ddct_plant.program.signals import obey_parent
 
-MOST_SECONDS = 10.0
+_MOST_SECONDS = 10.0
 """Longest time in s from one call of foreign code to the next; then the process is killed."""
 _POLL_S = 0.25
 """Time in s between two looks at the process. Only these count: while this one is stopped, so may
@@ -92,7 +92,7 @@ def in_own_process(work: Callable[[], Result]) -> Result:
     Return `work()`, computed in a fork of this process; what it prints goes to standard error.
 
     Raise the exception of `work`, or ProcessEndedError when the process crashes, ends itself, or
-    makes no call within `MOST_SECONDS` after the last one. Result and exception are pickled.
+    makes no call within `_MOST_SECONDS` after the last one. Result and exception are pickled.
     """
     if _own:
         return work()  # this is such a process
@@ -127,7 +127,7 @@ def _wait(process: int, shared: mmap.mmap) -> int | None:
         while not poller.poll(1e3 * _POLL_S):
             unchanged_s = unchanged_s + _POLL_S if shared[:] == last else 0.0
             last = shared[:]
-            if unchanged_s >= MOST_SECONDS:
+            if unchanged_s >= _MOST_SECONDS:
                 _kill(process)
                 return None
         return os.waitstatus_to_exitcode(os.waitpid(process, 0)[1])
@@ -147,7 +147,7 @@ def _kill(process: int) -> None:
 def _reason(code: int | None, shared: mmap.mmap) -> str:
     """Return how the process has ended, and in which call."""
     if code is None:
-        how = f'it gave no answer within {MOST_SECONDS:g} s'
+        how = f'it gave no answer within {_MOST_SECONDS:g} s'
     elif code < 0:
         names = {each.value: each.name for each in signal.Signals}
         how = f'it crashed ({names.get(-code, f"signal {-code}")})'

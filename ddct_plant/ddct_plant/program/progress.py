@@ -12,7 +12,7 @@ from rich.live import Live
 from rich.progress import track
 from rich.text import Text
 
-QUIET_S = 2.0
+_QUIET_S = 2.0
 """Time in s before the first line; shorter work prints none."""
 _EVERY_S = {True: 0.5, False: 10.0}
 """Time in s between two lines, on a terminal (True) and elsewhere."""
@@ -44,7 +44,7 @@ class Progress:
         self._live = Live(console=self._console, auto_refresh=False, transient=True)
         self._clock = clock
         self._started = clock()
-        self._next = self._started + QUIET_S
+        self._next = self._started + _QUIET_S
 
     def __enter__(self) -> 'Progress':
         return self

@@ -111,7 +111,7 @@ ENDS: list[tuple[Callable[[], object], str]] = [
 def test_the_reason_has_how_it_ended_and_in_which_call(
     end: Callable[[], object], reason: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(own_process, 'MOST_SECONDS', 0.5)
+    monkeypatch.setattr(own_process, '_MOST_SECONDS', 0.5)
     with refused(ProcessEndedError) as raised:
         in_own_process(called('update', 7, end))
     assert str(raised.value).startswith(reason)
@@ -147,7 +147,7 @@ def test_exit_in_c_prints_and_leaves_out_what_libraries_do_at_the_end() -> None:
 def test_work_that_goes_on_calling_may_take_longer_than_the_limit(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(own_process, 'MOST_SECONDS', 0.5)
+    monkeypatch.setattr(own_process, '_MOST_SECONDS', 0.5)
 
     def work() -> int:
         for _ in range(8):

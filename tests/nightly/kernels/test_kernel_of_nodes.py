@@ -7,8 +7,7 @@ import subprocess
 import sys
 
 import pytest
-
-from ddct_plant.program.arithmetic import KERNEL, THREADS
+from support.trajectory_hashes import KERNEL, THREADS
 
 RUNS = """
 import ddct_bringup.api as api

@@ -3,12 +3,18 @@
 """Trajectories of all controllers have the same bits with the kernel of every process."""
 
 import pytest
-from support.trajectory_hashes import FEATURES, Hashes, hashes_with
+from support.trajectory_hashes import (
+    FEATURES,
+    HAS_HASWELL,
+    HASWELL,
+    KERNEL,
+    Hashes,
+    hashes_with,
+)
 
 from ddct_controllers.registry import own_controller_names
-from ddct_plant.program.arithmetic import HASWELL, KERNEL, kernel_of_processor
 
-pytestmark = pytest.mark.skipif(kernel_of_processor() is None, reason='needs x86-64 with AVX2')
+pytestmark = pytest.mark.skipif(not HAS_HASWELL, reason='needs x86-64 with AVX2')
 
 
 @pytest.fixture(scope='module')
