@@ -8,8 +8,6 @@ from collections.abc import Callable, Iterable
 from typing import TextIO, TypeVar
 
 from rich.console import Console
-from rich.live import Live
-from rich.progress import track
 from rich.text import Text
 
 _QUIET_S = 2.0
@@ -36,6 +34,9 @@ class Progress:
 
         The total is None where nobody knows it before the end.
         """
+        # Here, and not for each program that may show progress.
+        from rich.live import Live
+
         self._what = what
         self._total = total
         self._before = done
@@ -90,8 +91,11 @@ class Progress:
 def with_progress(steps: Iterable[Step], total: int, description: str) -> Iterable[Step]:
     """Return the steps; a terminal has a progress bar on standard error while they are taken."""
     console = Console(stderr=True)
-    hidden = not console.is_terminal or total < 2
-    return track(steps, description, total, console=console, transient=True, disable=hidden)
+    if not console.is_terminal or total < 2:
+        return steps
+    from rich.progress import track
+
+    return track(steps, description, total, console=console, transient=True)
 
 
 def _duration(seconds: float) -> str:
