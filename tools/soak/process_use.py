@@ -28,7 +28,7 @@ class Sample:
 
 
 def samples_below(ancestor: int) -> dict[str, Sample]:
-    """Return a sample of a process and each descendant, by the end of its module or program."""
+    """Return a sample of a process and each descendant, by the name of its node or program."""
     parents, samples = {}, {}
     for folder in Path('/proc').iterdir():
         if not folder.name.isdecimal():
@@ -50,8 +50,8 @@ def samples_below(ancestor: int) -> dict[str, Sample]:
 
 def _name(folder: Path) -> str:
     words = (folder / 'cmdline').read_text(errors='replace').split('\0')
-    if '-m' in words:
-        return words[words.index('-m') + 1].rpartition('.')[2].removesuffix('_node')
+    if '-c' in words:  # a fork has the words of its server, and a name of its own
+        return (folder / 'comm').read_text(errors='replace').strip().removesuffix('_node')
     return Path(words[1] or words[0]).name
 
 
