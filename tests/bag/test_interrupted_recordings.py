@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from mcap.reader import make_reader
 from support.made_bags import Bags, random_trajectory
+from waiting import WITHIN_S
 
 from ddct_bringup import api
 from ddct_bringup.bag.reader import mcap_of, read_bag
@@ -80,7 +81,7 @@ def recorded(tmp_path_factory):
         line = process.stdout.readline()
         process.send_signal(signal.SIGKILL)
         assert line == 'waiting to be killed\n', process.stderr.read()
-        assert process.wait(timeout=30.0) == -signal.SIGKILL
+        assert process.wait(timeout=WITHIN_S) == -signal.SIGKILL
     return source, folder
 
 
@@ -209,7 +210,7 @@ def test_a_file_size_limit_ends_recording_with_the_name_of_the_file(source, tmp_
     limit = mcap_of(source).stat().st_size // 2
     folder = tmp_path / 'limited'
     with copy_bag(source, folder, last_step=200, limit=limit) as process:
-        output, errors = process.communicate(timeout=30.0)
+        output, errors = process.communicate(timeout=WITHIN_S)
     assert (process.returncode, output) == (1, '')
     assert f'{folder}/copy_0.mcap: cannot write the recording (File too large)' in errors
     assert 'Traceback' not in errors
@@ -223,7 +224,7 @@ def test_a_disk_that_is_full_at_the_end_leaves_no_whole_bag(source, tmp_path):
     limit = mcap_of(source).stat().st_size - 100
     folder = tmp_path / 'limited'
     with copy_bag(source, folder, last_step=200, limit=limit) as process:
-        _, errors = process.communicate(timeout=30.0)
+        _, errors = process.communicate(timeout=WITHIN_S)
     assert process.returncode == 1
     assert 'copy_0.mcap: cannot write the recording (File too large)' in errors
     assert not (folder / 'metadata.yaml').exists()
@@ -250,6 +251,6 @@ def small_disk(tmp_path):
 def test_a_full_disk_is_named_as_such(source, small_disk):
     assert mcap_of(source).stat().st_size > 128 * 1024
     with copy_bag(source, small_disk / 'bag', last_step=200) as process:
-        _, errors = process.communicate(timeout=30.0)
+        _, errors = process.communicate(timeout=WITHIN_S)
     assert process.returncode == 1
     assert 'copy_0.mcap: cannot write the recording (No space left on device)' in errors

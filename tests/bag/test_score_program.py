@@ -13,6 +13,7 @@ from importlib.resources import files
 
 import numpy as np
 import pytest
+from waiting import WITHIN_S
 
 from ddct_bringup.bag.reader import mcap_of
 from ddct_bringup.bag.trajectory import Trajectory
@@ -287,6 +288,6 @@ def test_scoring_needs_no_ros(bags, trajectory):
         env=environment,
         capture_output=True,
         text=True,
-        timeout=60.0,
+        timeout=WITHIN_S,
     )
     assert result.returncode == 0, result.stderr

@@ -16,7 +16,7 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 from support.in_process_graph import GraphOf, InProcessGraph, node_class
 from support.runs import plan
-from support.waiting import wait_until
+from waiting import wait_until
 
 from ddct_bringup.processes.graph_nodes import GRAPH_NODES
 from ddct_bringup.record.recorder_node import PATIENCE_S

@@ -15,7 +15,7 @@ from support.complaints import assert_one_line
 from support.processes import Program, Programs, fork_server_of, node_of, processes_left
 from support.runs import expected, plan
 from support.shared_memory import has_owner, segments_of
-from support.waiting import wait_until
+from waiting import wait_until
 
 from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.processes.shared_memory import SHARED_MEMORY

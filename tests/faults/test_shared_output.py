@@ -10,7 +10,7 @@ import pytest
 from refusals import refused
 from support.complaints import assert_one_line
 from support.processes import Programs
-from support.waiting import wait_until
+from waiting import wait_until
 
 from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.programs import bringup, compare, report, score

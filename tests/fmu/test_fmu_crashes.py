@@ -20,6 +20,7 @@ from support.fmu import (
     faulty,
     unpacked,
 )
+from waiting import WITHIN_S
 
 from ddct_bringup.run.headless import run_headless
 from ddct_controllers.from_file.fmu import instance
@@ -95,7 +96,7 @@ def test_a_killed_program_leaves_no_process_and_the_next_run_removes_its_folder(
     environment = {**os.environ, 'PYTHONPATH': os.pathsep.join(sys.path)}
     command = [sys.executable, '-c', KILLED, controller_file(2)]
     done = subprocess.run(
-        command, env=environment, capture_output=True, text=True, check=False, timeout=30
+        command, env=environment, capture_output=True, text=True, check=False, timeout=WITHIN_S
     )
     # The pipe of standard error ends with the last process that has it, so all have ended.
     assert done.returncode == -signal.SIGKILL, done.stderr

@@ -9,7 +9,7 @@ from support.nodes_by_hand import MODULES, RUN, finish_nodes, start_nodes
 from support.observer import Observing
 from support.processes import Programs
 from support.runs import expected
-from support.waiting import wait_until
+from waiting import wait_until
 
 from ddct_bringup.bag.reader import read_bag
 

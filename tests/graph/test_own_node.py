@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from support.documented import ROOT, blocks
-from support.waiting import WITHIN_S
+from waiting import WITHIN_S
 
 from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.run.headless import run_headless

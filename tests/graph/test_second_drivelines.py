@@ -10,7 +10,7 @@ from support.complaints import assert_one_line
 from support.nodes_by_hand import MODULES, RUN, finish_nodes, start_nodes
 from support.processes import Program, Programs, ros_arguments
 from support.runs import expected, plan
-from support.waiting import wait_until
+from waiting import wait_until
 
 from ddct_bringup.bag.reader import read_bag
 from ddct_plant.base.errors import DdctError

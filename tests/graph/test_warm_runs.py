@@ -10,7 +10,7 @@ import pytest
 from support.processes import Programs, processes_left
 from support.runs import bag_bytes, plan
 from support.shared_memory import segments_of
-from support.waiting import wait_until
+from waiting import wait_until
 
 from ddct_bringup.processes.fork_server import server_pid
 from ddct_bringup.run.execution import execute

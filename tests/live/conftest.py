@@ -6,8 +6,8 @@ from collections.abc import Callable
 
 import pytest
 from support.processes import Program, Programs
-from support.waiting import wait_until
 from viewer import address_in
+from waiting import wait_until
 
 
 @pytest.fixture

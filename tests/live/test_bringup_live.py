@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from support.complaints import assert_one_line
 from support.processes import Programs
-from support.waiting import wait_until
+from waiting import wait_until
 
 from ddct_bringup.programs import bringup
 

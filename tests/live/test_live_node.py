@@ -15,8 +15,8 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 from rclpy.task import Future
 from rosgraph_msgs.msg import Clock
-from support.waiting import wait_until
 from viewer import Viewer
+from waiting import wait_until
 
 from ddct_bringup.live import live_node
 from ddct_plant.base.timebase import START_NS, stamp_of_step

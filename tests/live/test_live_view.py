@@ -10,8 +10,8 @@ from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 from support.processes import Program, Programs
 from support.runs import SHORT_S, bag_bytes, plan, record
-from support.waiting import wait_until
 from viewer import Viewer, address_in
+from waiting import wait_until
 
 from ddct_plant.bag_file.message_definitions import load_definition
 from ddct_plant.base.timebase import START_NS

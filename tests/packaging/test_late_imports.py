@@ -10,6 +10,7 @@ from pathlib import Path
 from types import ModuleType
 
 import pytest
+from waiting import WITHIN_S
 
 from ddct_bringup import api, processes, verification
 from ddct_bringup.api import shell
@@ -33,7 +34,7 @@ def heavy_after(code: str) -> set[str]:
         [sys.executable, '-c', f'{code}\n{shown}'],
         capture_output=True,
         text=True,
-        timeout=60.0,
+        timeout=WITHIN_S,
         check=True,
     )
     return HEAVY & set(done.stdout.rpartition('\n ')[2].split())

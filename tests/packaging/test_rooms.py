@@ -12,6 +12,7 @@ from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
+from waiting import WITHIN_S
 
 pytestmark = pytest.mark.slow
 
@@ -141,7 +142,7 @@ def test_controllers_load_no_design_code_before_they_need_it(module: str) -> Non
         "print(*(name for name in sys.modules if name.startswith('ddct_controllers.design.')))"
     )
     done = subprocess.run(
-        [sys.executable, '-c', code], capture_output=True, text=True, timeout=60.0, check=True
+        [sys.executable, '-c', code], capture_output=True, text=True, timeout=WITHIN_S, check=True
     )
     assert done.stdout.split() == []
 
@@ -162,7 +163,7 @@ def test_no_controller_or_architecture_loads_python_control_to_run():
         "print('control' in sys.modules)"
     )
     done = subprocess.run(
-        [sys.executable, '-c', code], capture_output=True, text=True, timeout=60.0, check=True
+        [sys.executable, '-c', code], capture_output=True, text=True, timeout=WITHIN_S, check=True
     )
     assert done.stdout.split() == ['False']
 

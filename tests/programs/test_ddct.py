@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 from support.complaints import assert_one_line
 from support.processes import Programs, processes_left
+from waiting import WITHIN_S
 
 from ddct_bringup import processes
 from ddct_bringup.programs import ddct
@@ -195,7 +196,7 @@ def test_it_imports_nothing_heavy_itself() -> None:
         'except SystemExit: print(sorted({"numpy", "rclpy", "scipy", "yaml"} & set(sys.modules)))'
     )
     done = subprocess.run(
-        [sys.executable, '-c', code], capture_output=True, text=True, timeout=60.0, check=True
+        [sys.executable, '-c', code], capture_output=True, text=True, timeout=WITHIN_S, check=True
     )
     assert done.stdout.splitlines()[-1] == '[]'
 
@@ -209,7 +210,7 @@ def test_a_sourced_workspace_has_it_on_the_path() -> None:
         env={'PATH': os.defpath, 'HOME': os.environ.get('HOME', '/')},
         capture_output=True,
         text=True,
-        timeout=60.0,
+        timeout=WITHIN_S,
         check=False,
     )
     assert done.returncode == 0, done.stderr

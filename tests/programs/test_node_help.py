@@ -10,6 +10,7 @@ from collections.abc import Callable
 
 import pytest
 from support.in_process_graph import node_class
+from waiting import WITHIN_S
 
 from ddct_bringup.processes.graph_nodes import NODE_PROGRAMS
 
@@ -36,7 +37,7 @@ def test_a_process_of_a_node_prints_the_same_help(help_of):
         [sys.executable, '-m', module, '--help'],
         capture_output=True,
         text=True,
-        timeout=60.0,
+        timeout=WITHIN_S,
         check=True,
     )
     assert (done.stdout, done.stderr) == (help_of(module, '--help'), '')

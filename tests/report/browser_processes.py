@@ -6,14 +6,13 @@ import contextlib
 import time
 from pathlib import Path
 
-HELPERS_S = 10.0
-"""Longest time in s for its helper processes to end after it."""
+from waiting import WITHIN_S
 
 MARK = 'DDCT_BROWSER'
 """Environment variable that marks a browser and every process that it starts."""
 
 
-def wait_for_helpers(mark: str, within_s: float = HELPERS_S) -> list[int]:
+def wait_for_helpers(mark: str, within_s: float = WITHIN_S) -> list[int]:
     """
     Wait until every process with this mark has ended; return those that still run, by id.
 

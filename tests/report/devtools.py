@@ -7,8 +7,7 @@ import itertools
 import json
 from typing import Any
 
-WITHIN_S = 60.0
-"""Longest time in s for one operation of the browser on a loaded machine."""
+from waiting import WITHIN_S
 
 
 class Connection:

@@ -17,7 +17,8 @@ from pathlib import Path
 from typing import Any
 
 from report.browser_processes import MARK, wait_for_helpers
-from report.devtools import WITHIN_S, Connection, connected
+from report.devtools import Connection, connected
+from waiting import WITHIN_S
 
 CLOSES_S = 20.0
 """Longest time in s for the browser to close before it is killed."""

@@ -5,7 +5,6 @@
 import os
 import subprocess
 import sys
-import time
 import uuid
 from collections.abc import Iterator
 
@@ -56,15 +55,13 @@ def test_a_helper_that_ends_a_little_after_the_browser_is_waited_for(
     (browser,) = (helper.stdin for helper in helpers)
     assert browser is not None
     browser.close()
-    assert wait_for_helpers(mark, 20.0) == []
+    assert wait_for_helpers(mark) == []
     assert pid not in processes_left(), 'what each test is asked at its end'
 
 
 def test_a_helper_that_stays_is_not_passed_over(helpers: Helpers, mark: str) -> None:
     pid = start(helpers, mark, 'import sys; sys.stdin.read()')
-    started = time.monotonic()
     assert wait_for_helpers(mark, 0.2) == [pid]
-    assert time.monotonic() - started < 10.0
     assert pid in processes_left(), 'so the test that started it fails'
 
 

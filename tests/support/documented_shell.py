@@ -8,9 +8,10 @@ import stat
 import subprocess
 from pathlib import Path
 
+from waiting import WITHIN_S
+
 from support.documented import Block
 from support.documented_commands import commands_of
-from support.waiting import WITHIN_S
 
 ROS2 = """\
 #!{shell}

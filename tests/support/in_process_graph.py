@@ -21,6 +21,7 @@ from rclpy.qos import DurabilityPolicy
 from rclpy.signals import SignalHandlerOptions
 from rclpy.task import Future
 from stepped_time import SteppedTime
+from waiting import WITHIN_S, wait_until
 
 from ddct_bringup.processes.graph_nodes import NodeSpec, nodes_of
 from ddct_bringup.run.plan import RunPlan
@@ -30,7 +31,6 @@ from ddct_plant.graph.spin import finish_node, make_executor
 from ddct_plant.graph.steady_time import SteadyTime
 from ddct_plant.nodes.driveline_node import DrivelineNode
 from ddct_plant.scenario.case import OF_CASE
-from support.waiting import WITHIN_S, wait_until
 
 CHECK_PERIOD_S = 0.001
 """Period of the checks of a condition while a graph with the wall clock spins, s."""

@@ -12,10 +12,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from waiting import WITHIN_S, wait_until
+
 from ddct_bringup.processes.fork_server import server_pid, start_processes
 from ddct_bringup.processes.forked import Forked
 from ddct_bringup.processes.graph_nodes import NodeSpec
-from support.waiting import WITHIN_S, wait_until
 
 TEST_ID = 'DDCT_TEST_ID'
 """Environment variable that marks every process which a test starts, directly or not."""

@@ -5,8 +5,9 @@
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+from waiting import wait_until
+
 from ddct_bringup.campaign.conduct import SHARDS
-from support.waiting import wait_until
 
 RUNS = 10
 SPEC = f"""\

@@ -9,7 +9,7 @@ from contextlib import contextmanager
 
 from support.processes import TEST_ID, processes_left
 from support.shared_memory import has_owner, segments_of
-from support.waiting import wait_until
+from waiting import wait_until
 
 from ddct_bringup.processes.shared_memory import SHARED_MEMORY
 from ddct_plant.graph.domain import own_domain

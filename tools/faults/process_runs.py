@@ -17,7 +17,7 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 from rosgraph_msgs.msg import Clock
-from support.waiting import wait_until
+from waiting import wait_until
 
 from ddct_bringup.processes import supervisor
 from ddct_bringup.processes.graph_nodes import NodeSpec

@@ -14,7 +14,7 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 from support.altering import Repeating, add_altering, once_more, topic_named
 from support.in_process_graph import InProcessGraph
-from support.waiting import wait_until
+from waiting import wait_until
 
 from ddct_plant.base.timebase import PERIOD_NS
 from ddct_plant.graph.qos import LOOP_QOS

@@ -13,7 +13,8 @@ from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
-from stub_programs import WITHIN_S, gone, wait_until
+from stub_programs import gone
+from waiting import WITHIN_S, wait_until
 
 from ddct_bringup.processes import fork_server
 from ddct_bringup.processes.fork_server import server_pid, start_processes, stop_server
@@ -172,18 +173,19 @@ def test_the_fork_server_has_imported_the_nodes_and_no_thread_of_python(run: Sta
 
 
 HANGS = {
-    'without the lock of the interpreter': 'import time\ndef hang(): time.sleep(600)\n',
-    'with the lock of the interpreter': 'def hang(): sum(range(10**15))\n',
+    'without the lock of the interpreter': 'time.sleep(600)',
+    'with the lock of the interpreter': 'sum(range(10**15))',
 }
-WATCHED = (
-    'from ddct_plant.program.supervision import announce_exit, beat\n'
-    'def main():\n    beat()\n    hang()\n'
+HANGING = (
+    'import time\nfrom ddct_plant.program.supervision import beat\n'
+    'def hang():\n    beat()\n    {}\n'
+    'def main():\n    hang()\n'
 )
 
 
-@pytest.mark.parametrize('text', HANGS.values(), ids=HANGS)
-def test_a_node_that_hangs_ends_itself_and_prints_where(start: Start, text: str) -> None:
-    forked = start(text + WATCHED, patience=Patience(silent_s=0.1))
+@pytest.mark.parametrize('work', HANGS.values(), ids=HANGS)
+def test_a_node_that_hangs_ends_itself_and_prints_where(start: Start, work: str) -> None:
+    forked = start(HANGING.format(work), patience=Patience(silent_s=0.1))
     assert forked.wait(WITHIN_S)
     assert forked.code() == 1
     first, *stacks = forked.lines()
@@ -195,18 +197,6 @@ def test_a_node_that_never_begins_ends_itself_too(start: Start) -> None:
     forked = start('import time\ndef main(): time.sleep(600)\n', patience=Patience(start_s=0.1))
     assert forked.wait(WITHIN_S)
     assert forked.code() == 1
-
-
-def test_a_node_that_beats_goes_on(start: Start) -> None:
-    text = (
-        'import time\nfrom ddct_plant.program.supervision import announce_exit, beat\n'
-        'def main():\n'
-        '    for _ in range(60):\n        beat()\n        time.sleep(0.02)\n'
-        '    announce_exit(0)\n'
-    )
-    forked = start(text, patience=Patience(start_s=0.6, silent_s=0.6))
-    assert forked.wait(WITHIN_S)
-    assert (forked.code(), forked.lines()) == (0, [])
 
 
 LEAVING = (
@@ -238,17 +228,18 @@ def test_a_node_that_dies_otherwise_while_it_leaves_has_not_ended_well(start: St
 
 @pytest.mark.parametrize('announced', [0, None])
 def test_without_its_fork_server_the_announced_code_of_a_node_is_known_and_no_other(
-    start: Start, announced: int | None
+    start: Start, tmp_path: Path, announced: int | None
 ) -> None:
+    go_on = tmp_path / 'go_on'
     text = (
-        'import time\nfrom ddct_plant.program.supervision import announce_exit\n'
-        'def main():\n    input()\n'
+        'import pathlib, time\nfrom ddct_plant.program.supervision import announce_exit\n'
+        f'def main():\n    while not pathlib.Path({str(go_on)!r}).exists(): time.sleep(0.01)\n'
     )
-    text = text.replace('input()', 'time.sleep(0.5)')
     text += '    announce_exit(0)\n' if announced == 0 else '    raise SystemExit(1)\n'
     forked = start(text, patience=Patience())
     stop_server()
     assert forked.running, 'it goes on'
+    go_on.touch()
     assert forked.wait(WITHIN_S)
     assert forked.code() == announced
 
@@ -365,7 +356,7 @@ def test_a_program_that_is_killed_while_its_server_imports_leaves_nothing(tmp_pa
         'start_server()\nos.kill(os.getpid(), 9)\n'
     )
     subprocess.run([sys.executable, '-c', text], env=_temporary(tmp_path), check=False)
-    wait_until(lambda: _nothing_left(tmp_path))
+    wait_until(lambda: _nothing_left(tmp_path), 'an empty folder')
 
 
 def test_a_program_that_is_killed_after_its_server_leaves_nothing(
@@ -388,7 +379,7 @@ def test_a_program_that_is_killed_after_its_server_leaves_nothing(
     os.kill(server, signal.SIGKILL)
     program.kill()
     program.communicate()
-    wait_until(lambda: gone(node) and _nothing_left(tmp_path))
+    wait_until(lambda: gone(node) and _nothing_left(tmp_path), 'the end')
 
 
 PROGRAM = """
@@ -448,7 +439,7 @@ def test_after_a_killed_program_every_node_ends_even_a_paused_one(
         os.kill(pid, signal.SIGSTOP)
     program.kill()
     program.communicate()
-    wait_until(lambda: all(map(gone, [server, *nodes])))
+    wait_until(lambda: all(map(gone, [server, *nodes])), 'the end of all')
     assert whole.exists(), 'the recorder could not finish'
     assert _nothing_left(tmp_path)
 
@@ -466,4 +457,4 @@ def test_a_node_that_ignores_the_end_of_its_program_is_ended(
     pids = [*map(int, program.stdout.readline().split())]
     program.kill()
     program.communicate()
-    wait_until(lambda: all(map(gone, pids)))
+    wait_until(lambda: all(map(gone, pids)), 'the end of all')

@@ -14,19 +14,19 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
-from stub_programs import WITHIN_S, wait_until
+from waiting import WITHIN_S, wait_until
 
 from ddct_bringup.processes import forked, shared_memory, supervisor
 from ddct_bringup.processes.fork_server import server_pid, stop_server
 from ddct_bringup.processes.graph_nodes import NodeSpec
-from ddct_bringup.processes.supervisor import STOP_LADDER, Node, Supervisor
+from ddct_bringup.processes.supervisor import Node, Supervisor
 from ddct_plant.base.errors import DdctError
 from ddct_plant.program.supervision import Patience
 
 pytestmark = pytest.mark.process
 
 LIVE = """
-import os, signal, sys, time
+import faulthandler, os, signal, sys, time
 from ddct_plant.program.own_process import calling
 from ddct_plant.program.supervision import announce_exit, beat
 def leave(*_):
@@ -42,6 +42,11 @@ def main():
         time.sleep(0.01)
 """
 OBEDIENT = 'signal.signal(signal.SIGINT, leave)', 'pass'
+UNWATCHED = (
+    f'global beat; beat = int; faulthandler.cancel_dump_traceback_later(); {OBEDIENT[0]}',
+    'pass',
+)
+"""As OBEDIENT, but no short patience ends it on a busy machine."""
 FAILING = 'signal.signal(signal.SIGINT, lambda *_: sys.exit(1))', 'pass'
 DEAF = (
     '[signal.signal(each, signal.SIG_IGN) for each in (signal.SIGINT, signal.SIGTERM)]',
@@ -58,7 +63,6 @@ def processes(
     tmp_path: Path, module: Callable[[str], str], monkeypatch: pytest.MonkeyPatch
 ) -> Iterator[Make]:
     """Return a function that makes a supervisor of programs with these lines, by node name."""
-    monkeypatch.setattr(supervisor, 'STOP_LADDER', [(number, 1.0) for number, _ in STOP_LADDER])
     monkeypatch.setattr(supervisor, 'CHECK_PERIOD_S', 0.05)
     made = Supervisor(tmp_path, lambda node: ())
 
@@ -69,7 +73,10 @@ def processes(
         }
         made.start([NodeSpec(name, each, namespace) for name, each in programs.items()])
         for node in made._nodes:
-            wait_until(lambda node=node: 'ready' in node.printed_text() or not node.running)
+            wait_until(
+                lambda node=node: 'ready' in node.printed_text() or not node.running,
+                f'the start of {node.name}',
+            )
         return made
 
     with made:
@@ -85,6 +92,22 @@ def reason(nodes: Supervisor) -> str:
 
 def node_named(nodes: Supervisor, name: str) -> Node:
     return next(node for node in nodes._nodes if node.name == name)
+
+
+def let_time_pass(monkeypatch: pytest.MonkeyPatch, deaf: str) -> None:
+    """Let time pass as soon as the deaf node alone goes on: each wait for the others is over."""
+    now_s = 0.0
+    any_ends = supervisor._any_ends
+
+    def wait(nodes: list[Node], within_s: float) -> None:
+        nonlocal now_s
+        if all(node.name == deaf and not node.killed for node in nodes):
+            now_s += within_s
+        else:
+            any_ends(nodes, WITHIN_S)
+
+    monkeypatch.setattr(supervisor, 'time', SimpleNamespace(monotonic=lambda: now_s))
+    monkeypatch.setattr(supervisor, '_any_ends', wait)
 
 
 def test_a_wait_ends_with_the_node_with_its_condition_or_with_its_time(processes: Make) -> None:
@@ -115,14 +138,14 @@ def test_a_node_that_was_paused_for_a_while_and_time_without_checks_end_no_run(
     nodes = processes(driveline=OBEDIENT)
     (node,) = nodes._nodes
     node.send(signal.SIGSTOP)
-    wait_until(lambda: supervisor.state_of(node.pid) == 'T')
+    wait_until(lambda: supervisor.state_of(node.pid) == 'T', 'a pause')
     for _ in range(14):
         node.check(3600.0)
     node.send(signal.SIGCONT)
-    wait_until(lambda: supervisor.state_of(node.pid) != 'T')
+    wait_until(lambda: supervisor.state_of(node.pid) != 'T', 'the end of a pause')
     node.check(1.0)
     node.send(signal.SIGSTOP)
-    wait_until(lambda: supervisor.state_of(node.pid) == 'T')
+    wait_until(lambda: supervisor.state_of(node.pid) == 'T', 'a pause')
     node.check(14.0)
 
 
@@ -130,7 +153,7 @@ def test_a_node_that_hangs_is_named_with_its_stacks_in_its_log(
     processes: Make, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(supervisor, 'PATIENCE', Patience(silent_s=0.3))
-    nodes = processes(driveline=OBEDIENT, controller=HANGING)
+    nodes = processes(driveline=UNWATCHED, controller=HANGING)
     log = node_named(nodes, 'controller').log
     assert reason(nodes) == (
         f'node controller hung and ended itself, its stacks are in its log; its log is {log}'
@@ -141,9 +164,10 @@ def test_a_node_that_hangs_is_named_with_its_stacks_in_its_log(
 
 
 def test_a_node_that_ignores_signals_is_killed_at_the_end_of_the_ladder_and_named(
-    processes: Make,
+    processes: Make, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     nodes = processes(driveline=OBEDIENT, load=DEAF)
+    let_time_pass(monkeypatch, 'load')
     nodes.stop(lambda name: True)
     assert [node.code() for node in nodes._nodes] == [0, -signal.SIGKILL]
     with pytest.raises(DdctError, match='node load did not stop on signals and was killed; its'):
@@ -222,14 +246,15 @@ def test_the_last_call_of_foreign_code_is_in_the_reason_unless_the_node_ended_in
     processes: Make, monkeypatch: pytest.MonkeyPatch, then: str, expected: str
 ) -> None:
     monkeypatch.setattr(supervisor, 'PATIENCE', Patience(silent_s=0.3))
-    nodes = processes(clutch=(CALL, then), driveline=OBEDIENT)
+    nodes = processes(clutch=(CALL, then), driveline=UNWATCHED)
     assert reason(nodes).startswith(f'node clutch {expected}')
 
 
 def test_a_node_killed_at_the_end_of_the_ladder_has_its_last_call_in_the_reason(
-    processes: Make,
+    processes: Make, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     nodes = processes(load=(f'{DEAF[0]}; {CALL}', DEAF[1]))
+    let_time_pass(monkeypatch, 'load')
     nodes.stop(lambda name: True)
     with pytest.raises(DdctError, match='signals when update was called at step 65 and was kill'):
         nodes.require_clean_end()

@@ -10,6 +10,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from waiting import WITHIN_S
 
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.program.command_line import ProgramParser, run_program
@@ -158,7 +159,7 @@ def test_a_reader_that_has_gone_ends_the_program_quietly():
         process.stdout.close()
         process.stdin.write('go\n')
         process.stdin.close()
-        assert process.wait(timeout=30.0) == 141
+        assert process.wait(timeout=WITHIN_S) == 141
         assert process.stderr.read() == ''
 
 

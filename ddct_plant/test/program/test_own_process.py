@@ -6,18 +6,19 @@ import copyreg
 import ctypes
 import faulthandler
 import os
+import select
 import signal
 import subprocess
 import sys
-import threading
 import time
-from collections.abc import Callable
-from contextlib import nullcontext
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, closing, nullcontext
 from pathlib import Path
 
 import pytest
 from refusals import refused
 from tblib.pickling_support import pickle_exception
+from waiting import WITHIN_S
 
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.program import own_process
@@ -103,15 +104,13 @@ ENDS: list[tuple[Callable[[], object], str]] = [
     (os.abort, 'it crashed (SIGABRT) when update was called at step 7'),
     (lambda: ctypes.string_at(0), 'it crashed (SIGSEGV) when update was called at step 7'),
     (lambda: os.kill(os.getpid(), signal.SIGKILL), 'it crashed (SIGKILL) when update was'),
-    (lambda: time.sleep(60), 'it gave no answer within 0.5 s when update was called at step 7'),
 ]
 
 
 @pytest.mark.parametrize(('end', 'reason'), ENDS)
 def test_the_reason_has_how_it_ended_and_in_which_call(
-    end: Callable[[], object], reason: str, monkeypatch: pytest.MonkeyPatch
+    end: Callable[[], object], reason: str
 ) -> None:
-    monkeypatch.setattr(own_process, '_MOST_SECONDS', 0.5)
     with refused(ProcessEndedError) as raised:
         in_own_process(called('update', 7, end))
     assert str(raised.value).startswith(reason)
@@ -140,19 +139,80 @@ def test_exit_in_c_prints_and_leaves_out_what_libraries_do_at_the_end() -> None:
         '    os.write(2, str(error).encode())\n'
         'os._exit(0)\n'
     )
-    done = subprocess.run([sys.executable, '-c', program], capture_output=True, timeout=30)
+    done = subprocess.run([sys.executable, '-c', program], capture_output=True, timeout=WITHIN_S)
     assert done.stderr == b'printed\nit ended with exit code 3 when it was loaded'
 
 
-def test_work_that_goes_on_calling_may_take_longer_than_the_limit(
-    monkeypatch: pytest.MonkeyPatch,
+class Turns:
+    """The caller and the work take turns, in place of the time between two looks at the work."""
+
+    def __init__(self, number: int, then_ms: float | None) -> None:
+        """Take a number of turns; then a look waits `then_ms` for the end, or until it comes."""
+        self._left, self._then_ms = number, then_ms
+        self._given, self._taken = os.pipe(), os.pipe()
+        self._poller = select.poll()
+
+    def register(self, process: int, events: int) -> None:
+        """Register the process as that of the library would."""
+        self._poller.register(process, events)
+
+    def poll(self, _: float) -> list[tuple[int, int]]:
+        """Let the work take a turn and find that it goes on; afterwards look whether it does."""
+        if not self._left:
+            return self._poller.poll(self._then_ms)
+        self._left -= 1
+        os.write(self._given[1], b' ')
+        os.read(self._taken[0], 1)
+        return []
+
+    def take(self, turn: Callable[[], object]) -> None:
+        """Take a turn, in the work."""
+        os.read(self._given[0], 1)
+        turn()
+        os.write(self._taken[1], b' ')
+
+    def close(self) -> None:
+        """Close the pipes."""
+        for descriptor in (*self._given, *self._taken):
+            os.close(descriptor)
+
+
+@pytest.fixture
+def turns_of(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[..., Turns]]:
+    """Return a function that makes the turns of the caller and the next work."""
+    with ExitStack() as made:
+
+        def make(number: int, *, then_ms: float | None) -> Turns:
+            turns = made.enter_context(closing(Turns(number, then_ms)))
+            monkeypatch.setattr(select, 'poll', lambda: turns)
+            return turns
+
+        yield make
+
+
+def test_work_that_makes_no_call_for_long_is_ended_with_the_last_call(
+    turns_of: Callable[..., Turns],
 ) -> None:
-    monkeypatch.setattr(own_process, '_MOST_SECONDS', 0.5)
+    turns = turns_of(1, then_ms=0.0)
+
+    def work() -> None:
+        turns.take(lambda: calling('update', 7))
+        time.sleep(600)
+
+    words = '^it gave no answer within 10 s when update was called at step 7'
+    with pytest.raises(ProcessEndedError, match=words):
+        in_own_process(work)
+
+
+def test_work_that_goes_on_calling_may_take_longer_than_the_limit(
+    turns_of: Callable[..., Turns],
+) -> None:
+    number = round(2.0 * own_process._MOST_SECONDS / own_process._POLL_S)
+    turns = turns_of(number, then_ms=None)
 
     def work() -> int:
-        for _ in range(8):
-            calling('reset')
-            time.sleep(0.1)
+        for _ in range(number):
+            turns.take(lambda: calling('reset'))
         return 5
 
     assert in_own_process(work) == 5
@@ -238,24 +298,24 @@ def test_an_interruption_of_the_caller_ends_it(monkeypatch: pytest.MonkeyPatch) 
         forked.append(fork())
         return forked[-1]
 
-    def interrupt() -> None:
-        os.kill(os.getpid(), signal.SIGINT)
+    class Interrupted:
+        register = staticmethod(lambda *_: None)
+        poll = staticmethod(lambda _: signal.raise_signal(signal.SIGINT))
 
     monkeypatch.setattr(os, 'fork', noted)
-    timer = threading.Timer(0.3, interrupt)
-    timer.start()
+    monkeypatch.setattr(select, 'poll', Interrupted)
     with pytest.raises(KeyboardInterrupt):
-        in_own_process(lambda: time.sleep(60))
+        in_own_process(lambda: time.sleep(2 * WITHIN_S))
     assert not Path(f'/proc/{forked[0]}').exists()
 
 
 def test_it_ends_with_a_caller_that_is_killed() -> None:
     program = (
         'import os, time; from ddct_plant.program.own_process import in_own_process\n'
-        'in_own_process(lambda: (os.kill(os.getppid(), 9), time.sleep(60)))\n'
+        'in_own_process(lambda: (os.kill(os.getppid(), 9), time.sleep(600)))\n'
     )
     # The pipe of standard error ends with the last process that has it.
     done = subprocess.run(
-        [sys.executable, '-c', program], stderr=subprocess.PIPE, check=False, timeout=30
+        [sys.executable, '-c', program], stderr=subprocess.PIPE, check=False, timeout=WITHIN_S
     )
     assert done.returncode == -signal.SIGKILL

@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
-from support.waiting import WITHIN_S
+from waiting import WITHIN_S
 
 from ddct_bringup.bag.reader import mcap_of
 

@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from support.waiting import WITHIN_S
+from waiting import WITHIN_S
 
 from ddct_controllers.template import new_controller
 

@@ -7,7 +7,7 @@ import subprocess
 import sys
 
 import pytest
-from support.waiting import WITHIN_S
+from waiting import WITHIN_S
 from written_hinf import require_written_as_designed
 
 from ddct_controllers.synthesised import SYNTHESISED, synthesised_design

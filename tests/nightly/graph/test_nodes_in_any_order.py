@@ -11,7 +11,7 @@ from support.nodes_by_hand import MODULES, RUN, finish_nodes, start_nodes
 from support.observer import Observing
 from support.processes import Program, Programs, ros_arguments
 from support.runs import bag_bytes, expected, record
-from support.waiting import wait_until
+from waiting import wait_until
 
 pytestmark = pytest.mark.slow
 

@@ -11,7 +11,7 @@ import sysconfig
 from pathlib import Path
 
 import pytest
-from support.waiting import WITHIN_S
+from waiting import WITHIN_S
 
 pytestmark = pytest.mark.slow
 

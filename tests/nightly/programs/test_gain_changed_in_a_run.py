@@ -13,7 +13,7 @@ from rcl_interfaces.srv import SetParameters
 from rclpy.parameter import Parameter
 from support.observer import Observing
 from support.processes import Programs
-from support.waiting import wait_until
+from waiting import wait_until
 
 from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.programs import report, score, verify

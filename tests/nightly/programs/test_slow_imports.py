@@ -7,7 +7,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from support.waiting import WITHIN_S
+from waiting import WITHIN_S
 
 SCORED = """
 import sys

@@ -9,6 +9,7 @@ import sys
 import numpy as np
 import pytest
 from refusals import refused
+from waiting import WITHIN_S
 
 from ddct_controllers.mpc.qp.backend import BACKENDS, DEFAULT_BACKEND, make_backend
 from ddct_controllers.mpc.qp.problem import QpStructure
@@ -117,4 +118,4 @@ def test_a_solver_is_imported_only_when_it_is_chosen():
         'make_backend("daqp", QpStructure(numpy.eye(1), numpy.eye(1)), 10)\n'
         'assert "osqp" not in sys.modules\n'
     )
-    subprocess.run([sys.executable, '-c', program], check=True, timeout=60)
+    subprocess.run([sys.executable, '-c', program], check=True, timeout=WITHIN_S)

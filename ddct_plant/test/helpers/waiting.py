@@ -9,7 +9,7 @@ WITHIN_S = 300.0
 """Bound of a wait, s: it ends a test that hangs, and is no claim about the speed of anything."""
 
 
-def wait_until(condition: Callable[[], bool], what: str, within_s: float = WITHIN_S) -> None:
+def wait_until(condition: Callable[[], object], what: str, within_s: float = WITHIN_S) -> None:
     """Wait until `condition()` holds; fail with `what` when it does not in time."""
     deadline = time.monotonic() + within_s
     while not condition():
