@@ -4,8 +4,8 @@
 
 import sys
 import time
-from collections.abc import Callable, Iterable
-from typing import TextIO, TypeVar
+from collections.abc import Iterable
+from typing import TypeVar
 
 from rich.console import Console
 from rich.text import Text
@@ -20,15 +20,7 @@ Step = TypeVar('Step')
 class Progress:
     """Progress line of work that is done in steps; as a context manager it clears the line."""
 
-    def __init__(
-        self,
-        what: str,
-        total: int | None = None,
-        *,
-        done: int = 0,
-        stream: TextIO | None = None,
-        clock: Callable[[], float] = time.perf_counter,
-    ) -> None:
+    def __init__(self, what: str, total: int | None = None, *, done: int = 0) -> None:
         """
         Start the clock; `done` of `total` steps are from before and not in the rate.
 
@@ -40,11 +32,10 @@ class Progress:
         self._what = what
         self._total = total
         self._before = done
-        self._console = Console(file=stream or sys.stderr, highlight=False)
+        self._console = Console(file=sys.stderr, highlight=False)
         # Without a thread of its own: the program may fork.
         self._live = Live(console=self._console, auto_refresh=False, transient=True)
-        self._clock = clock
-        self._started = clock()
+        self._started = time.perf_counter()
         self._next = self._started + _QUIET_S
 
     def __enter__(self) -> 'Progress':
@@ -54,27 +45,25 @@ class Progress:
         self._live.stop()
 
     def update(self, done: int, left_s: float | None = None) -> None:
-        """Print the line for `done` steps if it is due; `left_s` as in `line`."""
-        now = self._clock()
+        """
+        Print the line for `done` steps if it is due: steps and their total, rate, remaining time.
+
+        That time follows from the rate, unless `left_s` in s is given, for steps of unequal
+        length.
+        """
+        now = time.perf_counter()
         if now < self._next:
             return
         is_terminal = self._console.is_terminal
         self._next = now + _EVERY_S[is_terminal]
-        line = self.line(done, left_s)
+        line = self._line(done, now - self._started, left_s)
         if is_terminal:
             self._live.start()
             self._live.update(Text(line), refresh=True)
         else:
             print(line, file=self._console.file, flush=True)
 
-    def line(self, done: int, left_s: float | None = None) -> str:
-        """
-        Return the line: steps done and their total, the rate, the remaining time.
-
-        That time follows from the rate, unless `left_s` in s is given, for steps of unequal
-        length.
-        """
-        elapsed = self._clock() - self._started
+    def _line(self, done: int, elapsed: float, left_s: float | None) -> str:
         rate = (done - self._before) / elapsed if elapsed else 0.0
         text = f'{self._what}: {done}'
         if self._total is not None:
