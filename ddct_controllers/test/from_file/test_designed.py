@@ -87,7 +87,6 @@ def test_it_may_not_take_the_name_of_another_controller(write):
         ('name: mine', 'name: mine\nname: yours', '', 'line 3'),
         ('method: by hand', 'a: &a [*a]', '', 'line 12'),
         ('method: by hand', 'a: !!python/object/apply:os.getcwd []', '', 'line 12'),
-        ('method: by hand', 'a: ' + '9' * 5000, '', 'line 12'),
     ],
 )
 def test_an_unusable_content_is_named_with_its_file(write, old, new, key, place):
