@@ -36,6 +36,7 @@ setup(
         'setuptools',
         'mcap',
         'numpy',
+        'pandas',
         'pyyaml',
         'rich',
         'rosbags',

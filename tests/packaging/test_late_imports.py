@@ -73,6 +73,17 @@ def test_a_run_imports_nothing_that_draws_tunes_or_makes_tables() -> None:
     )
 
 
+@pytest.mark.process
+@pytest.mark.slow
+def test_pandas_is_imported_where_a_csv_file_is_read_alone(tmp_path: Path) -> None:
+    (tmp_path / 'a.csv').write_text('t,v\n0,100\n', encoding='utf-8')
+    run = "from ddct_bringup.api import run\nrun('pi', duration=0.8"
+    profile = {'csv': str(tmp_path / 'a.csv'), 'time': 't', 'value': 'v', 'unit': 'N m'}
+    assert 'pandas' not in heavy_after('import ddct_plant')
+    assert 'pandas' not in heavy_after(f'{run})')
+    assert 'pandas' in heavy_after(f'{run}, set={{"engine": {profile}}})')
+
+
 @pytest.mark.parametrize('package', [api, shell, processes, verification, workflows])
 def test_every_name_of_a_package_with_late_imports_is_there(package: ModuleType) -> None:
     assert len(package.__all__) > 2

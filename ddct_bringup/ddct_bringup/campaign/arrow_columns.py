@@ -14,8 +14,6 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as parquet
 
-from ddct_plant.files.input_file import open_file
-
 _NUMBERS = {pa.int64(): np.int64, pa.float64(): np.float64}
 _TYPES = (*_NUMBERS, pa.bool_(), pa.string())
 _BATCH_ROWS = 65536
@@ -29,7 +27,7 @@ def read_parquet(path: Path, most_rows: int | None = None) -> pa.Table:
     Raise OSError or ArrowException where that fails, ArrowException also for texts that are none.
     """
     try:
-        with open_file(path) as opened, parquet.ParquetFile(opened) as file:
+        with path.open('rb') as opened, parquet.ParquetFile(opened) as file:
             rows = file.metadata.num_rows
             if most_rows is not None and rows > most_rows:
                 raise pa.ArrowInvalid(f'it has {rows} rows, not {most_rows}')

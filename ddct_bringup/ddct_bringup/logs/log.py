@@ -23,10 +23,6 @@ from ddct_plant.base.units import si_values
 from ddct_plant.files.csv_table import CsvTable, read_csv
 from ddct_plant.files.input_file import mcap_of
 
-MOST_BYTES = 200_000_000
-"""Largest size of a CSV log in bytes."""
-MOST_ROWS = 1_000_000
-"""Most rows of a CSV log."""
 HIGHEST_SPEED = 1000.0
 """Highest speed in rad/s of an engine, shaft or wheel of a car; 3000 rpm read as rad/s is
 higher."""
@@ -119,8 +115,6 @@ def _read_csv_log(path: Path, columns: ColumnMap, needed: Sequence[str]) -> Meas
     table = read_csv(
         path,
         names,
-        most_bytes=MOST_BYTES,
-        most_rows=MOST_ROWS,
         date_times=dated,
         optional=[columns.columns[name].column for name in columns.optional],
     )

@@ -17,7 +17,6 @@ from ddct_bringup.manifest.inputs import InputFiles, full_path
 from ddct_bringup.manifest.origin import CodeOrigin
 from ddct_bringup.run.output_folder import SUFFIX, is_ours
 from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.files.input_file import open_file
 from ddct_plant.files.json_records import json_text, read_json, to_json
 from ddct_plant.files.output_file import write_text
 from ddct_plant.program.arithmetic import Arithmetic, arithmetic
@@ -31,8 +30,6 @@ BENCHMARK: Kind = 'benchmark'
 TUNING: Kind = 'tuning'
 ITSELF = '.'
 """Name of a run or a campaign whose folder is that of the result."""
-_MOST_BYTES = 50_000_000
-"""Largest size of the file in bytes; a campaign has a thousandth of that."""
 _RESTORE = 'put the original back'
 
 
@@ -80,7 +77,7 @@ def read_manifest(result: Path) -> Manifest:
     if not path.exists():
         raise DdctError(f'no {MANIFEST} in it: give the folder of a result', place=result)
     try:
-        found = read_json(Manifest, path, newest=SCHEMA_VERSION, most_bytes=_MOST_BYTES)
+        found = read_json(Manifest, path, newest=SCHEMA_VERSION)
         if found.text() != path.read_text(encoding='utf-8'):
             raise ParameterError('its own digest does not match its content', place=path)
     except (ParameterError, OSError, ValueError) as error:
@@ -220,7 +217,7 @@ def _files(folder: Path, counts: Callable[[Path], bool]) -> Iterator[tuple[str, 
 def file_digest(path: Path) -> str:
     """Return the SHA-256 of a file; raise DdctError when it cannot be read."""
     try:
-        with open_file(path) as file:
+        with path.open('rb') as file:
             return hashlib.file_digest(file, 'sha256').hexdigest()
     except OSError as error:
         raise DdctError(f'cannot be read ({error.strerror})', place=path) from error

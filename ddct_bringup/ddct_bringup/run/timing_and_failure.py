@@ -22,8 +22,6 @@ from ddct_plant.files.output_file import write_text
 TIMING_FILE = 'timing.json'
 NOTE_FILE = 'failed_run.json'
 _ADVICE = 'choose another output folder'
-MOST_BYTES = 30_000_000
-"""Largest size of `timing.json` in bytes; a run of one hour has at most half of that."""
 
 
 @dataclass
@@ -57,7 +55,7 @@ def read_timing(folder: Path) -> RunTiming | None:
     path = folder / TIMING_FILE
     if not path.exists():
         return None
-    return read_json(RunTiming, path, most_bytes=MOST_BYTES, advice='delete it to score without')
+    return read_json(RunTiming, path, advice='delete it to score without')
 
 
 @dataclass(frozen=True)

@@ -19,8 +19,6 @@ FACTS = tuple(each.name for each in fields(RunConditions))
 """Conditions of a run in its entry, in order."""
 LEAST_IS_BOUND = 'least_is_bound'
 """Key among the figures that is no number."""
-_MOST_BYTES = 100_000_000
-"""Largest size of the file in bytes; a run takes some thousands."""
 
 
 @dataclass(frozen=True)
@@ -156,7 +154,7 @@ def figures_entry(run: ScoredRun) -> Mapping[str, float | bool | None]:
 def read_scores(path: str | Path) -> list[ScoredRun]:
     """Return the runs in a `scores.json`; raise DdctError for a file that is none."""
     advice = 'score the bags again with ddct score'
-    content = read_json(ScoresDocument, Path(path), most_bytes=_MOST_BYTES, advice=advice)
+    content = read_json(ScoresDocument, Path(path), advice=advice)
     return [_run_of(entry) for entry in content.runs]
 
 

@@ -22,8 +22,6 @@ TRIAL = 'trial'
 """Column of the number of the trial, before those of a campaign."""
 RUNS, TRIALS = 'runs.parquet', 'trials.json'
 """Files with the rows of all runs, and with the entries of all trials."""
-_MOST_BYTES = 100_000_000
-"""Largest size of a file of JSON in bytes."""
 ANEW = 'start the tuning anew'
 """What to do where the record of a tuning cannot be read."""
 
@@ -65,7 +63,7 @@ def read_batch(out: Path, batch: int) -> list[Trial] | None:
 
 def read_entries(path: Path) -> list[TrialEntry]:
     """Return the entries of trials in a file; raise DdctError where it cannot be read."""
-    return read_json(list[TrialEntry], path, most_bytes=_MOST_BYTES, advice=ANEW)
+    return read_json(list[TrialEntry], path, advice=ANEW)
 
 
 def trials_of(entries: Sequence[TrialEntry], rows: Path) -> list[Trial]:

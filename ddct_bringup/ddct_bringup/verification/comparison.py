@@ -18,14 +18,11 @@ from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.metrics.catalogue import JERK_OVER_LEAST
 from ddct_bringup.verification.deviation import deviation_of, deviations_of
 from ddct_bringup.verification.states import BOUND, DIFFERENT, SAME_BITS, SAME_WITHIN
-from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.files.input_file import read_text_file
+from ddct_plant.files.input_file import located, user_text
 from ddct_plant.files.json_records import json_text, parse_json
 
 OF_PROGRAM = (JERK_OVER_LEAST.key, 1e-6)
 """Figure that a convex program gives, and its own bound: solvers end at about 1e-9."""
-_MOST_BYTES = 100_000_000
-"""Largest size of a file of JSON in bytes."""
 Place = Mapping[str, Any]
 """Place of a value, such as its signal and step, or its key."""
 
@@ -161,9 +158,5 @@ def plain_json(value: Any) -> Any:
 
 def recorded_json(path: Path) -> Any:
     """Return the content of a file of JSON; raise DdctError that names it when that fails."""
-    try:
-        return parse_json(read_text_file(path, _MOST_BYTES))
-    except OSError as error:
-        raise DdctError(f'cannot be read ({error.strerror})', place=path) from error
-    except ParameterError as error:
-        raise error.at(path) from error
+    with located(str(path)):
+        return parse_json(user_text(path))

@@ -11,13 +11,11 @@ from pathlib import Path
 from typing import Any
 
 from ddct_controllers.interface import CompiledCode
-from ddct_plant.base.errors import ParameterError
+from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.base.options import close_name
-from ddct_plant.files.input_file import located, named_in, read_file, user_text
+from ddct_plant.files.input_file import located, named_in, user_bytes, user_text
 from ddct_plant.files.yaml_text import parse_yaml_with_lines
 
-MOST_BINARY_BYTES = 1 << 30
-"""Largest size in bytes of a library or an FMU that a controller file names."""
 YAML_SUFFIXES = ('.yaml', '.yml')
 SUFFIXES = (*YAML_SUFFIXES, '.py')
 FORMAT = 'ddct-linear-controller-1'
@@ -88,11 +86,10 @@ class ControllerFile:
             )
         path = named_in(self.path.parent, value)
         try:
-            data = read_file(path, MOST_BINARY_BYTES)
-        except OSError as error:
+            data = user_bytes(path)
+        except DdctError as error:
             raise ParameterError(
-                f'{kind}.file: {path} cannot be read ({error.strerror}): give {what}',
-                key=f'{kind}.file',
+                f'{kind}.file: {path} {error}: give {what}', key=f'{kind}.file'
             ) from error
         self.digests[f'{kind}_sha256'] = hashlib.sha256(data).hexdigest()
         return path

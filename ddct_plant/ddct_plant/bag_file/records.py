@@ -24,7 +24,6 @@ from zstandard import ZstdError
 
 from ddct_plant.bag_file.metadata import RECORD_NAME, information_of
 from ddct_plant.base.errors import DdctError
-from ddct_plant.files.input_file import open_file
 
 MAGIC = b'\x89MCAP0\r\n'
 """First and last bytes of an MCAP file."""
@@ -182,8 +181,7 @@ def _damaged(path: Path, error: BaseException) -> DdctError:
 
 def _bytes_of(path: Path) -> bytes:
     try:
-        with open_file(path) as file:
-            data = file.read()
+        data = path.read_bytes()
     except OSError as error:
         raise DdctError(f'cannot read the bag: {error.strerror}', place=path) from error
     if not data.startswith(MAGIC):

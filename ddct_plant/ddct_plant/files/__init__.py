@@ -1,3 +1,3 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Read and write files of users: bounded in size, written completely or not at all."""
+"""Read and write files of users: CSV, YAML and JSON, written completely or not at all."""

@@ -2,30 +2,40 @@
 # SPDX-License-Identifier: Apache-2.0
 """CSV: read columns of numbers of any tool, with the line of an error; write text."""
 
+import codecs
 import csv
 import io
 import math
 import re
-from collections.abc import Collection, Iterable, Iterator, Sequence
+import reprlib
+import warnings
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
+from itertools import islice
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import close_name
-from ddct_plant.files.date_times import Instant, instant, is_date_time, seconds_since_first
-from ddct_plant.files.input_file import any_text, read_file
+from ddct_plant.files.date_times import is_date_time, seconds_since_first
+from ddct_plant.files.input_file import located, user_bytes
 
-COMMENT = '#'
-"""First character of a comment line."""
+if TYPE_CHECKING:
+    import pandas
+
 _DELIMITERS = ',;\t'
 _FORMULA = ('=', '@', '+', '-', '\t', '\r')
 """First characters of a formula in a spreadsheet."""
 _NUMBER = re.compile(r'[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?')
-_BLOCK_CHARACTERS = 1_000_000
-_EMPTY = ('', 'nan')
+_LINE = re.compile(r'[^\n]*\n|[^\n]+')
+_QUOTED = re.compile(r'(?<![^\n,;\t ])"[^"]*(?:""[^"]*)*"')
+_QUOTED_OR_COMMENT = re.compile(rf'({_QUOTED.pattern})|^[^\S\n]*#.*', re.MULTILINE)
+_QUOTED_COMMA = re.compile(r'"\s*[-+]?\d*,\d')
+_EMPTY = ('', 'nan', 'NaN', 'NAN')
+"""Cells without a value."""
 
 
 def csv_text(names: Iterable[str], rows: Iterable[Sequence[Any]]) -> str:
@@ -49,40 +59,86 @@ def plain_cell(cell: Any) -> Any:
 
 
 @dataclass(frozen=True)
-class CsvTable:
-    """Columns of a CSV file by name, with their lines."""
+class _CsvText:
+    """Text of a CSV file, its comments left out."""
 
     path: Path
-    """Path of the file."""
-    lines: np.ndarray
-    """Line number of each row, (n,), from 1."""
-    columns: dict[str, np.ndarray]
+    text: str
+    delimiter: str
+
+    @classmethod
+    def of(cls, path: Path) -> '_CsvText':
+        """Read a file; its delimiter is that which makes the most cells of the header."""
+        with located(str(path)):
+            text = _text_of(user_bytes(path))
+        if '#' in text:
+            text = _QUOTED_OR_COMMENT.sub(r'\1', text)
+        found = (cls(path, text, each) for each in _DELIMITERS)
+        return max(found, key=lambda each: len(each.header_and_below()[0]))
+
+    def header_and_below(self) -> tuple[list[str], int]:
+        """Return the cells of the header, none without one, and the place of the text below it."""
+        lines, header = next(self._rows(), (range(1), []))
+        return header, sum(map(len, islice(self._lines(), lines.stop - 1)))
+
+    def rows(self) -> Iterator[tuple[int, list[str]]]:
+        """Yield the first line, from 1, and the cells of each row below the header."""
+        return ((lines.start, cells) for lines, cells in islice(self._rows(), 1, None))
+
+    def _rows(self) -> Iterator[tuple[range, list[str]]]:
+        """Yield the lines and the cells of each row that is not blank."""
+        reader = csv.reader(self._lines(), delimiter=self.delimiter, skipinitialspace=True)
+        start = 1
+        try:
+            for row in reader:
+                cells = [cell.strip() for cell in row]
+                if cells not in ([], ['']):
+                    yield range(start, reader.line_num + 1), cells
+                start = reader.line_num + 1
+        except csv.Error as error:
+            place = f'{self.path}: line {start}'
+            raise ParameterError(
+                f'it is no row of CSV ({error}): mend its quotes', place=place
+            ) from error
+
+    def _lines(self) -> Iterator[str]:
+        return (found[0] for found in _LINE.finditer(self.text))
+
+
+@dataclass(frozen=True)
+class CsvTable:
+    """Columns of a CSV file by name."""
+
+    columns: Mapping[str, np.ndarray]
     """Values of each column, (n,), by name; NaN where a cell is empty or `nan`."""
+    _source: _CsvText
+
+    @cached_property
+    def _lines(self) -> list[int]:
+        return [line for line, _ in self._source.rows()]
 
     def place(self, row: int, column: str) -> str:
         """Return the place of a cell for an error: file, line and column."""
-        return _place(self.path, int(self.lines[row]), column)
+        return f'{self._source.path}: line {self._lines[row]}, column {column}'
 
 
 def read_csv(
     path: Path,
     names: Iterable[str],
     *,
-    most_bytes: int,
-    most_rows: int,
     date_times: Collection[str] = (),
     optional: Collection[str] = (),
 ) -> CsvTable:
     """
     Return the columns called `names`, each once; those in `optional` may be missing.
 
-    The first line that is neither empty nor a comment (#) is the header. The delimiter is comma,
-    semicolon or tab, whichever is most frequent in it; with the latter two a comma may be the
-    decimal mark. Columns in `date_times` have dates with times, which become s since the first
-    row. Raise ParameterError that names the file, and line and column where possible.
+    The first line that is neither empty nor a comment (#) is the header. Commas, semicolons or
+    tabs part the cells; a comma in a cell is the decimal mark. Columns in `date_times` have dates
+    with times, which become s since the first row. Raise ParameterError that names the file, and
+    line and column where possible.
     """
-    blocks = _blocks(path, _text(path, most_bytes))
-    _, (header,) = next(blocks, ([0], [[]]))
+    source = _CsvText.of(path)
+    header, start = source.header_and_below()
     if not header:
         raise ParameterError('it is empty: give a header and rows of numbers', place=path)
     places = {
@@ -90,101 +146,81 @@ def read_csv(
         for name in names
         if name in header or name not in optional
     }
-    parts: dict[str, list[np.ndarray]] = {name: [] for name in places}
-    instants: dict[str, list[Instant | None]] = {name: [] for name in date_times}
-    lines: list[int] = []
-    for numbers, rows in blocks:
-        _require_rows(path, numbers, rows, len(header), most_rows - len(lines))
-        lines += numbers
-        columns = list(zip(*rows, strict=True))
-        for name, place in places.items():
-            if name in instants:
-                found = zip(numbers, columns[place], strict=True)
-                instants[name] += [_instant(path, line, name, cell) for line, cell in found]
-            else:
-                parts[name].append(_numbers(path, numbers, name, columns[place]))
-    if not lines:
+    numbers = {name: place for name, place in places.items() if name not in date_times}
+    dates = {name: place for name, place in places.items() if name in date_times}
+    frame = _by_pandas(
+        source.text[start:], source.delimiter, len(header), numbers.values(), dates.values()
+    )
+    if frame is None:
+        cells = _by_hand(source, len(header), numbers, dates)
+    else:
+        cells = {name: frame[place].to_numpy() for name, place in places.items()}
+    if not len(next(iter(cells.values()))):
         raise ParameterError('no row of numbers below the header: give at least one', place=path)
-    values = {
-        name: np.array(_seconds(path, lines, name, instants[name]))
-        if name in instants
-        else np.concatenate(parts[name])
-        for name in places
+    table = CsvTable(cells, source)
+    seconds = {
+        name: seconds_since_first(cells[name], lambda row: table.place(row, name))  # noqa: B023
+        for name in dates
     }
-    return CsvTable(path, np.array(lines), values)
+    return CsvTable({**cells, **seconds}, source)
 
 
-def _require_rows(
-    path: Path, numbers: Sequence[int], rows: Sequence[Sequence[str]], width: int, most: int
-) -> None:
-    """Raise ParameterError for more than `most` rows, or one of another width than the header."""
-    if len(rows) > most:
-        raise ParameterError(
-            'it has too many rows: give fewer', place=f'{path}: line {numbers[most]}'
-        )
-    for line, row in zip(numbers, rows, strict=True):
-        if len(row) != width:
-            raise ParameterError(
-                f'{len(row)} cells, while the header has {width}: mend the row',
-                place=f'{path}: line {line}',
+def _by_pandas(
+    text: str, delimiter: str, width: int, numbers: Collection[int], dates: Collection[int]
+) -> 'pandas.DataFrame | None':
+    """Return finite numbers, NaN and texts of dates by place; None if a cell is none of them."""
+    import pandas  # late: a run without a CSV file does not need it
+
+    # From 3.1 on pandas reads every number to the last bit, and warns of this argument.
+    version = tuple(int(part) for part in pandas.__version__.split('.')[:2])
+    exact: Any = {} if version >= (3, 1) else {'float_precision': 'round_trip'}
+    decimal_comma = _QUOTED_COMMA.search(text) if delimiter == ',' else ',' in text
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter('error', pandas.errors.ParserWarning)  # a row is too long
+            frame = pandas.read_csv(
+                io.BytesIO(text.encode()),
+                sep=delimiter,
+                header=None,
+                names=range(width),
+                index_col=False,
+                dtype=dict.fromkeys(dates, str),
+                decimal=',' if decimal_comma else '.',
+                keep_default_na=False,
+                na_values=_EMPTY,
+                skipinitialspace=True,
+                low_memory=False,
+                **exact,
             )
+    except (ValueError, pandas.errors.ParserWarning):
+        return None
+    parted = _QUOTED.sub('', text) if '"' in text else text
+    complete = parted.count(delimiter) == len(frame) * (width - 1)  # pandas fills a row up
+    if not complete or any(frame[place].dtype.kind not in 'iuf' for place in numbers):
+        return None
+    for place in numbers:
+        frame[place] = frame[place].astype(float)
+    for place in dates:
+        frame[place] = frame[place].fillna('').str.strip()
+    return None if np.isinf(frame[[*numbers]].to_numpy()).any() else frame
 
 
-def _text(path: Path, most_bytes: int) -> str:
-    try:
-        return any_text(read_file(path, most_bytes))
-    except OSError as error:
-        raise ParameterError(f'cannot be read ({error.strerror})', place=path) from error
-    except ParameterError as error:
-        raise error.at(path) from error
-
-
-def _blocks(path: Path, text: str) -> Iterator[tuple[list[int], list[list[str]]]]:
-    """
-    Yield line numbers and cells of many rows at once, decimal commas as dots.
-
-    The first block is the header alone.
-    """
-    delimiter = ''
-    for number, content in _lines(text):
-        kept = [
-            (line, each)
-            for line, each in enumerate(content, number)
-            if each.strip() and not each.lstrip().startswith(COMMENT)
-        ]
-        if kept and not delimiter:
-            line, first = kept.pop(0)
-            delimiter = max(_DELIMITERS, key=first.count)
-            yield [line], [_cells(path, line, first, delimiter)]
-        if kept:
-            decimal_comma = delimiter != ','
-            rows = [_cells(path, line, each, delimiter, decimal_comma) for line, each in kept]
-            yield [line for line, _ in kept], rows
-
-
-def _lines(text: str) -> Iterator[tuple[int, list[str]]]:
-    """Yield blocks of lines with the number of the first of each: all lines fill the memory."""
-    start, number = 0, 1
-    while start < len(text):
-        end = text.find('\n', start + _BLOCK_CHARACTERS) + 1 or len(text)
-        lines = text[start:end].splitlines()
-        yield number, lines
-        start, number = end, number + len(lines)
-
-
-def _cells(
-    path: Path, line: int, text: str, delimiter: str, decimal_comma: bool = False
-) -> list[str]:
-    if '"' not in text:
-        cells = (text.replace(',', '.') if decimal_comma else text).split(delimiter)
-        return [cell.strip() for cell in cells]
-    try:
-        cells = next(csv.reader([text], delimiter=delimiter))
-    except csv.Error as error:
-        raise ParameterError(
-            f'it is no row of CSV ({error})', place=f'{path}: line {line}'
-        ) from error
-    return [cell.strip().replace(',', '.') if decimal_comma else cell.strip() for cell in cells]
+def _by_hand(
+    source: _CsvText, width: int, numbers: Mapping[str, int], dates: Mapping[str, int]
+) -> dict[str, np.ndarray]:
+    """Return what `_by_pandas` does, also with both decimal marks; refuse a bad cell."""
+    columns: dict[str, list[Any]] = {name: [] for name in (*numbers, *dates)}
+    for line, cells in source.rows():
+        place = f'{source.path}: line {line}'
+        if len(cells) != width:
+            raise ParameterError(
+                f'{len(cells)} cells, while the header has {width}: mend the row', place=place
+            )
+        for name, column in numbers.items():
+            columns[name].append(_number(cells[column], f'{place}, column {name}'))
+        for name, column in dates.items():
+            columns[name].append('' if cells[column] in _EMPTY else cells[column])
+    return {name: np.array(each) for name, each in columns.items()}
 
 
 def _column(path: Path, header: list[str], name: str) -> int:
@@ -197,62 +233,41 @@ def _column(path: Path, header: list[str], name: str) -> int:
     return header.index(name)
 
 
-def _instant(path: Path, line: int, column: str, cell: str) -> Instant | None:
-    if cell.lower() in _EMPTY:
-        return None
-    try:
-        return instant(cell)
-    except ParameterError as error:
-        raise error.at(_place(path, line, column)) from None
-
-
-def _seconds(
-    path: Path, lines: Sequence[int], column: str, instants: Sequence[Instant | None]
-) -> list[float]:
-    """Return dates with times as s since the first; refuse a time zone in some of them only."""
-    zones = [(line, each[2]) for line, each in zip(lines, instants, strict=True) if each]
-    for line, zoned in zones:
-        if zoned != zones[0][1]:
-            raise ParameterError(
-                f'it has {"a" if zoned else "no"} time zone, unlike line {zones[0][0]}: give '
-                'every row one, or none',
-                place=_place(path, line, column),
-            )
-    return seconds_since_first(instants)
-
-
-def _numbers(path: Path, lines: Sequence[int], column: str, cells: Sequence[str]) -> np.ndarray:
-    """Return the numbers in cells, (n,), NaN for an empty one."""
-    try:
-        numbers = np.array([float(cell) for cell in cells])
-        if np.isfinite(numbers).all():
-            return numbers
-    except ValueError:
-        pass
-    found = zip(lines, cells, strict=True)
-    return np.array([_number(path, line, column, cell) for line, cell in found])
-
-
-def _number(path: Path, line: int, column: str, cell: str) -> float:
-    if cell.lower() in _EMPTY:
+def _number(cell: str, place: str) -> float:
+    if cell in _EMPTY:
         return math.nan
     try:
-        number = float(cell)
+        number = float(cell.replace(',', '.'))
     except ValueError:
+        advice = 'mend it, or put # before the line'
         if is_date_time(cell):
             raise ParameterError(
                 f'{cell!r} is a date and time: in the column map of a log give it the unit '
                 'iso8601, elsewhere write seconds',
-                place=_place(path, line, column),
+                place=place,
             ) from None
-        raise ParameterError(
-            f'{cell!r} is no number: mend it, or put # before the line',
-            place=_place(path, line, column),
-        ) from None
+        raise ParameterError(f'{reprlib.repr(cell)} is no number: {advice}', place=place) from None
     if not math.isfinite(number):
-        raise ParameterError(f'{cell} is not finite: mend it', place=_place(path, line, column))
+        raise ParameterError(f'{cell} is not finite: mend it', place=place)
     return number
 
 
-def _place(path: Path, line: int, column: str) -> str:
-    return f'{path}: line {line}, column {column}'
+def _text_of(data: bytes) -> str:
+    """
+    Return the text of bytes from another tool, in one of the usual encodings and ends of lines.
+
+    A byte order mark decides for UTF-8 or UTF-16. Without one the encoding is UTF-8 where that is
+    possible, else Windows-1252, else Latin-1. Raise ParameterError for bytes that are no text.
+    """
+    if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        encodings = ['utf-16']
+    else:
+        encodings = ['utf-8-sig', 'cp1252', 'latin-1']
+    for encoding in encodings:
+        try:
+            text = data.decode(encoding)
+        except UnicodeDecodeError:
+            continue
+        if '\0' not in text:
+            return text.replace('\r\n', '\n').replace('\r', '\n')
+    raise ParameterError('it is no text: give a file of text, best in UTF-8')

@@ -2,23 +2,25 @@
 # SPDX-License-Identifier: Apache-2.0
 """Convert dates with times of ISO 8601, as loggers write them, to seconds."""
 
-import math
 import re
-from collections.abc import Sequence
-from datetime import UTC, datetime
+from collections.abc import Callable, Sequence
+
+import numpy as np
 
 from ddct_plant.base.errors import ParameterError
 
 EXAMPLE = '2026-05-01T10:00:00.125'
 _DATE_TIME = re.compile(
-    r'(\d{4}-\d\d-\d\d|\d{8})[T ](\d\d:\d\d:\d\d|\d{6})(?:[.,](\d+))?(Z|[+-]\d\d(?::?\d\d)?)?'
+    r'(?:\d{4}-\d\d-\d\d|\d{8})[T ](?:\d\d:\d\d:\d\d|\d{6})(?:[.,]\d+)?(Z|[+-]\d\d(?::?\d\d)?)?'
 )
-_TIME_ALONE = re.compile(r'\d\d?:\d\d(:\d\d([.,]\d+)?)?')
-_DATE_ALONE = re.compile(r'\d{4}-\d\d-\d\d')
-_OTHER_DATE = re.compile(r'\d{1,4}[./-]\d{1,2}[./-]\d{1,4}\b.*')
-
-Instant = tuple[int, float, bool]
-"""Whole seconds since 1970, the fraction of a second, and whether the time zone is known."""
+_OTHERS = {
+    r'\d\d?:\d\d(:\d\d([.,]\d+)?)?': 'has no date, so that midnight is not known',
+    r'\d{4}-\d\d-\d\d': 'has no time of day',
+    r'\d{1,4}[./-]\d{1,2}[./-]\d{1,4}\b.*': 'can be read with the day or the month first, and is '
+    'not of ISO 8601',
+    '.*': 'is no date and time of ISO 8601',
+}
+"""Forms of other texts, with what is wrong."""
 
 
 def is_date_time(text: str) -> bool:
@@ -26,38 +28,38 @@ def is_date_time(text: str) -> bool:
     return _DATE_TIME.fullmatch(text) is not None
 
 
-def instant(text: str) -> Instant:
+def seconds_since_first(
+    cells: Sequence[str] | np.ndarray, place: Callable[[int], str]
+) -> np.ndarray:
     """
-    Return the instant of a date with a time; without a time zone it is in UTC.
+    Return the times in s since the first date with a time, (n,), exact to a nanosecond.
 
-    Raise ParameterError with the reason for any other text.
+    They are NaN for an empty cell. Without a time zone a date is in UTC. Raise ParameterError with
+    the `place` of the row for another text, and for a time zone in some of the rows alone.
     """
-    found = _DATE_TIME.fullmatch(text)
-    if found is None:
-        raise ParameterError(f'{text!r} {_why_none(text)}: write it as {EXAMPLE}')
-    date, time, digits, zone = found.groups()
-    try:
-        moment = datetime.fromisoformat(f'{date}T{time}{zone or ""}')
-    except ValueError as error:
-        raise ParameterError(f'{text!r} is no date and time that exists ({error})') from error
-    whole = moment if zone else moment.replace(tzinfo=UTC)
-    return int(whole.timestamp()), float(f'0.{digits or 0}'), zone is not None
+    import pandas  # late: a run without a CSV file does not need it
 
-
-def seconds_since_first(instants: Sequence[Instant | None]) -> list[float]:
-    """Return the time in s since the first instant, exact to a nanosecond; NaN for None."""
-    first = next((each for each in instants if each is not None), (0, 0.0, False))
-    return [
-        math.nan if each is None else (each[0] - first[0]) + (each[1] - first[1])
-        for each in instants
-    ]
-
-
-def _why_none(text: str) -> str:
-    if _TIME_ALONE.fullmatch(text):
-        return 'has no date, so that midnight is not known'
-    if _DATE_ALONE.fullmatch(text):
-        return 'has no time of day'
-    if _OTHER_DATE.fullmatch(text):
-        return 'can be read with the day or the month first, and is not of ISO 8601'
-    return 'is no date and time of ISO 8601'
+    zones: list[bool] = []
+    for row, cell in enumerate(cells):
+        if not cell:
+            continue
+        found = _DATE_TIME.fullmatch(cell)
+        if found is None:
+            why = next(why for form, why in _OTHERS.items() if re.fullmatch(form, cell, re.DOTALL))
+            raise ParameterError(f'{cell!r} {why}: write it as {EXAMPLE}', place=place(row))
+        zones.append(found[1] is not None)
+        if zones[-1] != zones[0]:
+            raise ParameterError(
+                f'it has {"a" if zones[-1] else "no"} time zone, unlike the first row: give every '
+                'row one, or none',
+                place=place(row),
+            )
+    given = pandas.Series(cells, dtype=str).str.replace(',', '.')
+    times = pandas.to_datetime(given, format='ISO8601', utc=True, errors='coerce')
+    if (unread := np.flatnonzero(times.isna() & (given != ''))).size:
+        row = int(unread[0])
+        raise ParameterError(
+            f'{cells[row]!r} is no date and time that exists: mend it', place=place(row)
+        )
+    nanoseconds = (times - times[times.first_valid_index() or 0]) / pandas.Timedelta(1, 'ns')
+    return (nanoseconds / 1e9).to_numpy()

@@ -6,86 +6,35 @@ Read files of users, and report the place of an error in them.
 JSON and YAML have their own modules.
 """
 
-import codecs
-import errno
 import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from functools import partial
 from glob import escape
-from io import BufferedReader
-from itertools import islice
 from pathlib import Path
 from typing import Any, TypeVar
 
 from ddct_plant.base.errors import DdctError, ParameterError
 
-MOST_TEXT_BYTES = 1_000_000
-"""Largest size in bytes of a scenario, controller or page: hundreds of times the usual one."""
-_BLOCK_BYTES = 1_000_000
 SCHEMA_KEY = 'schema_version'
 """Key of the schema version of a file."""
 _PATH = re.compile(r'[\w-]+(?:\.[\w-]+|\[\d+\])*')
 _PARENT = re.compile(r'(?:\.[\w-]+|\[\d+\])$')
 
 
-def open_file(path: Path) -> BufferedReader:
-    """
-    Open a file to read it; raise OSError where that fails, and for a pipe, which may never end.
-
-    The `strerror` of the error is a message for the user.
-    """
-    if path.is_fifo():
-        raise OSError(errno.EINVAL, 'it is a pipe: give a file', str(path))
-    return path.open('rb')
-
-
-def read_file(path: Path, most_bytes: int) -> bytes:
-    """Return the content of a file; raise OSError as `open_file`, and above `most_bytes`."""
-    with open_file(path) as file:
-        # In blocks: in one go Python would reserve memory for as many bytes as there may be.
-        blocks = iter(partial(file.read, _BLOCK_BYTES), b'')
-        data = b''.join(islice(blocks, most_bytes // _BLOCK_BYTES + 1))
-    if len(data) > most_bytes:
-        raise OSError(errno.EFBIG, f'it is larger than {most_bytes} bytes', str(path))
-    return data
-
-
-def read_text_file(path: Path, most_bytes: int = MOST_TEXT_BYTES) -> str:
-    """Return the text of a UTF-8 file; raise OSError as `read_file`, and for other bytes."""
+def user_bytes(path: Path) -> bytes:
+    """Return the content of a file; raise ParameterError without the path, for `located`."""
     try:
-        return read_file(path, most_bytes).decode('utf-8')
-    except UnicodeDecodeError as error:
-        raise OSError(errno.EILSEQ, 'it is not UTF-8 text', str(path)) from error
-
-
-def any_text(data: bytes) -> str:
-    """
-    Return the text of bytes from another tool, in one of the usual encodings.
-
-    A byte order mark decides for UTF-8 or UTF-16. Without one the encoding is UTF-8 where that is
-    possible, else Windows-1252, else Latin-1. Raise ParameterError for bytes that are no text.
-    """
-    if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
-        encodings = ['utf-16']
-    else:
-        encodings = ['utf-8-sig', 'cp1252', 'latin-1']
-    for encoding in encodings:
-        try:
-            text = data.decode(encoding)
-        except UnicodeDecodeError:
-            continue
-        if '\0' not in text:
-            return text
-    raise ParameterError('it is no text: give a file of text, best in UTF-8')
+        return path.read_bytes()
+    except OSError as error:
+        raise ParameterError(f'cannot be read ({error.strerror})') from error
 
 
 def user_text(path: Path) -> str:
-    """Return the text of `read_text_file`; raise DdctError without the path, for `located`."""
+    """Return the text of a file in UTF-8; raise ParameterError as `user_bytes`."""
     try:
-        return read_text_file(path)
-    except OSError as error:
-        raise DdctError(f'cannot be read ({error.strerror})') from error
+        return user_bytes(path).decode()
+    except UnicodeDecodeError as error:
+        raise ParameterError('cannot be read (it is not UTF-8 text)') from error
 
 
 @contextmanager

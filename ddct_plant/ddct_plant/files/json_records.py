@@ -24,7 +24,7 @@ from typing import Annotated, Any, NoReturn, TypeVar
 
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.base.options import close_name
-from ddct_plant.files.input_file import MOST_TEXT_BYTES, read_text_file, require_schema_version
+from ddct_plant.files.input_file import located, require_schema_version, user_text
 from ddct_plant.files.output_file import ANOTHER_FILE, write_text
 
 T = TypeVar('T')
@@ -91,7 +91,6 @@ def read_json(
     path: Path,
     *,
     newest: int | None = None,
-    most_bytes: int = MOST_TEXT_BYTES,
     advice: str = '',
 ) -> T:
     """
@@ -101,7 +100,7 @@ def read_json(
     advice, if any, at its end.
     """
     try:
-        return _record_in(kind, path, newest, most_bytes)
+        return _record_in(kind, path, newest)
     except DdctError as error:
         if not advice:
             raise
@@ -110,13 +109,9 @@ def read_json(
         raise found from error
 
 
-def _record_in(kind: type[T], path: Path, newest: int | None, most_bytes: int) -> T:
-    try:
-        data = parse_json(read_text_file(path, most_bytes))
-    except OSError as error:
-        raise DdctError(f'cannot be read ({error.strerror})', place=path) from error
-    except ParameterError as error:
-        raise error.at(path) from error
+def _record_in(kind: type[T], path: Path, newest: int | None) -> T:
+    with located(str(path)):
+        data = parse_json(user_text(path))
     return from_json(kind, data, path, newest=newest)
 
 

@@ -19,7 +19,7 @@ from ddct_plant.base.options import (
 from ddct_plant.base.profile import TIME, value_names
 from ddct_plant.base.units import si_unit_of, si_values
 from ddct_plant.files.csv_table import CsvTable, read_csv
-from ddct_plant.files.input_file import MOST_TEXT_BYTES, located, named_in
+from ddct_plant.files.input_file import located, named_in
 from ddct_plant.models.engine import TorqueProfile
 from ddct_plant.models.load import BrakeProfile, SlopeProfile
 from ddct_plant.scenario.control import EngineSpeedReference, SlipProfile
@@ -175,8 +175,13 @@ def _read(spec: Mapping[str, Any], group: type[OptionGroup]) -> dict[str, Any]:
     units = {options[name].unit: name for name in value_names(group)}
     unit = si_unit_of(spec['unit'], tuple(units))
     file = named_in(Path(), spec[_FILE])
-    table = read_csv(file, names, most_bytes=MOST_TEXT_BYTES, most_rows=MOST_ROWS)
+    table = read_csv(file, names)
     times, values = (table.columns[name] for name in names)
+    if len(times) > MOST_ROWS:
+        raise ParameterError(
+            f'it has {len(times)} rows: give at most {MOST_ROWS}',
+            place=table.place(MOST_ROWS, names[0]),
+        )
     times = si_values(times, spec['time_unit'], 's') - spec['start_s']
     values = si_values(values, spec['unit'], unit)
     points = {TIME: times.tolist(), units[unit]: values.tolist()}
@@ -195,8 +200,10 @@ def _check(
         described = options_of(group)[name]
         one = replace(described, many=False, default=REQUIRED)
         for row, number in enumerate(points[name]):
-            with located(table.place(row, columns[name])):
+            try:
                 one.checked(f'{group.prefix}{name}', number)
+            except ParameterError as error:
+                raise error.at(table.place(row, columns[name])) from error
     times = points[TIME]
     for row, (earlier, later) in enumerate(zip(times, times[1:], strict=False), 1):
         if later <= earlier:

@@ -15,7 +15,7 @@ TEXT = 'Zeit;Öl °C\n0,5;80,25\n1,5;81,5\n'
 
 def read(path, text, names, encoding='utf-8', date_times=()):
     path.write_bytes(text.encode(encoding))
-    return read_csv(path, names, most_bytes=10_000, most_rows=100, date_times=date_times).columns
+    return read_csv(path, names, date_times=date_times).columns
 
 
 @pytest.mark.parametrize('end', ['\n', '\r\n', '\r'])
@@ -37,7 +37,99 @@ def test_a_dash_of_windows_in_a_name_does_not_end_the_line(tmp_path):
 def test_what_is_no_text_is_refused_by_its_name(tmp_path):
     (tmp_path / 'a.csv').write_bytes(b'\x89PNG\0\0\1\xff')
     with pytest.raises(ParameterError, match=r'a\.csv: it is no text: give a file of text'):
-        read_csv(tmp_path / 'a.csv', ['t'], most_bytes=100, most_rows=10)
+        read_csv(tmp_path / 'a.csv', ['t'])
+
+
+@pytest.mark.parametrize('end', ['\n', '\r\n', '\r'])
+@pytest.mark.parametrize(
+    ('text', 'v'),
+    [
+        ('t,v\n1,2.5\n', 2.5),
+        ('t;v\n1;2,5\n', 2.5),
+        ('t\tv\n1\t2,5\n', 2.5),
+        ('t,v\n1,"2,5"\n', 2.5),
+        ('"t","v"\n"1,0","-,25e1"\n', -2.5),
+        ('t,text,v\n"1,0","a, b",2.5\n', 2.5),
+        ('t;a, b;v\n1,0;"x;y";2.5\n', 2.5),
+        ('"t";"v, [N m]";v\n1;2;2,5\n', 2.5),
+        ('t,"torque\n[N m]",v\n1,2,2.5\n', 2.5),
+        ('t,v\n1,2.5e-3\n', 2.5e-3),
+        (' t , v \n 1 , 2.5 \n', 2.5),
+        ('"t", "v"\n1, "2.5"\n', 2.5),
+        ('t,text,v\n1,a\u2028b\x85c\x0b,2.5\n', 2.5),
+        ('t,text,v\n1,"a\n# b\n",2.5\n', 2.5),
+        ('t,text,v\n1,True,2.5\n', 2.5),
+        ('\n# made, by "us\nt,#,v\n  # a row of units\n\n1,#2,2.5', 2.5),
+    ],
+)
+def test_separators_decimal_marks_quotes_and_comments_are_read_rightly(tmp_path, text, v, end):
+    columns = read(tmp_path / 'a.csv', text.replace('\n', end), ['t', 'v'])
+    assert (columns['t'][0], columns['v'][0]) == (1.0, v)
+
+
+@pytest.mark.parametrize('end', ['\n', '\r\n', '\r'])
+def test_a_row_that_begins_with_an_empty_cell_keeps_it_below_an_empty_line(tmp_path, end):
+    text = 't;v\n1;0.1\n\n;2,5\n# a\n;3\n'.replace('\n', end)
+    columns = read(tmp_path / 'a.csv', text, ['t', 'v'])
+    np.testing.assert_equal(columns['t'], [1.0, np.nan, np.nan])
+    assert columns['v'].tolist() == [0.1, 2.5, 3.0]
+
+
+def test_a_line_break_in_a_quoted_name_is_part_of_it(tmp_path):
+    text = 'time,"torque\n# [N m], ""filtered"""\n0.5,1e2\n'
+    columns = read(tmp_path / 'a.csv', text, ['torque\n# [N m], "filtered"'])
+    assert [each.tolist() for each in columns.values()] == [[100.0]]
+
+
+def test_empty_cells_and_nan_are_not_measured_and_other_words_are_no_numbers(tmp_path):
+    columns = read(tmp_path / 'a.csv', 't,v\n,1\nnan,2\nNaN,3\n  ,4\n', ['t', 'v'])
+    assert np.isnan(columns['t']).all()
+    assert columns['v'].tolist() == [1.0, 2.0, 3.0, 4.0]
+
+
+REFUSED = {
+    'a word': ('t,v\n1,2\n\n3,x\n', "line 4, column v: 'x' is no number"),
+    'not available': ('t,v\n1,NA\n', "line 2, column v: 'NA' is no number"),
+    'true': ('t,v\n1,True\n', "line 2, column v: 'True' is no number"),
+    'infinite': ('t,v\n1,2\n1,inf\n', 'line 3, column v: inf is not finite'),
+    'beyond doubles': ('t,v\n1,2\n1,1e400\n', 'line 3, column v: 1e400 is not finite'),
+    'two marks': ('t;v\n1;1.000,5\n', "line 2, column v: '1.000,5' is no number"),
+    'below a quoted break': ('t,"a\nb",v\n1,"c\nd",2\n3,4,x\n', 'line 5, column v: '),
+    'below a comment': ('# a\nt,v\n# b\n1,x\n', 'line 4, column v: '),
+    'cut off': ('t,text,v\n1,a,2\n3,b', 'line 3: 2 cells, while the header has 3'),
+    'too long': ('t,v\n1,2\n3,4,5\n', 'line 3: 3 cells, while the header has 2'),
+    'first too long': ('t,v\n1,2,3\n1\n', 'line 2: 3 cells, while the header has 2'),
+    'an open quote': ('t,v\n1,2\n"3,4\n5,6\n', 'line 3: 1 cells, while the header has 2'),
+    'a long open quote': ('t,v\n"3,4\n' + '5,6\n' * 50_000, 'line 2: it is no row of CSV'),
+    'no rows': ('t,v\n# 1,2\n', 'no row of numbers below the header'),
+    'no header': ('\n# t,v\n', 'it is empty: give a header and rows of numbers'),
+    'no column': ('t,w\n1,2\n', "no column 'v'"),
+    'two columns': ('t,v,v\n1,2,3\n', "the column 'v' is there 2 times: rename one"),
+}
+
+
+@pytest.mark.parametrize(('text', 'complaint'), REFUSED.values(), ids=REFUSED)
+def test_what_cannot_be_read_is_refused_in_one_line_with_its_place(tmp_path, text, complaint):
+    with pytest.raises(ParameterError) as error:
+        read(tmp_path / 'a.csv', text, ['t', 'v'])
+    assert f'a.csv: {complaint}' in str(error.value)
+    assert str(error.value).isprintable()
+    assert len(str(error.value)) < 400
+
+
+@pytest.mark.parametrize(('delimiter', 'mark'), [(',', '.'), (';', ',')])
+def test_every_number_is_read_to_the_last_bit(tmp_path, delimiter, mark):
+    bits = np.random.default_rng(1).integers(0, 2**64, 20_000, dtype=np.uint64)
+    numbers = bits.view(float)[np.isfinite(bits.view(float))]
+    rows = (f'{each!r}{delimiter}{each:.25g}\n' for each in numbers.tolist())
+    text = f'a{delimiter}b\n' + ''.join(rows).replace('.', mark)
+    columns = read(tmp_path / 'a.csv', text, ['a', 'b'])
+    assert columns['a'].tobytes() == columns['b'].tobytes() == numbers.tobytes()
+
+
+def test_both_decimal_marks_in_a_file_are_read_to_the_last_bit(tmp_path):
+    columns = read(tmp_path / 'a.csv', 't;v\n0,1;0.1\n0.3;0,7\n', ['t', 'v'])
+    assert [each.tolist() for each in columns.values()] == [[0.1, 0.3], [0.1, 0.7]]
 
 
 @pytest.mark.parametrize(
@@ -61,6 +153,12 @@ def test_a_nanosecond_between_two_rows_is_kept(tmp_path):
     assert times[1] == pytest.approx(1e-9, rel=1e-6)
 
 
+def test_a_row_without_a_date_is_not_measured_and_the_first_date_is_zero(tmp_path):
+    text = 't;v\n;1\n2026-05-01T10:00:00,5;2\nnan;3\n2026-05-01T10:00:02;0.4\n'
+    columns = read(tmp_path / 'a.csv', text, ['t', 'v'], date_times=['t'])
+    np.testing.assert_equal(columns['t'], [np.nan, 0.0, np.nan, 1.5])
+
+
 BAD = {
     'day or month': ('01.05.2026 10:00:00', 'can be read with the day or the month first'),
     'slashes': ('05/01/2026 10:00', 'can be read with the day or the month first'),
@@ -70,7 +168,7 @@ BAD = {
     'a number': ('17.25', 'is no date and time of ISO 8601: write it as 2026-05-01T10:00:00.125'),
     'a zone': (
         '2026-05-01T10:00:01Z',
-        'it has a time zone, unlike line 2: give every row one, or none',
+        'it has a time zone, unlike the first row: give every row one, or none',
     ),
 }
 

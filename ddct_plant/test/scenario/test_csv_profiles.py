@@ -164,7 +164,7 @@ def test_one_row_too_many_is_refused_and_the_most_are_the_same_after_writing_and
     scenario = load(folder)
     assert again(folder, scenario).engine == scenario.engine
     file.write_text('t,other,torque\n' + ''.join(rows))
-    with refused(ParameterError, place='pedal.csv: line 2002'):
+    with refused(ParameterError, place='pedal.csv: line 2002, column t'):
         load(folder)
 
 

@@ -16,7 +16,7 @@ from ddct_bringup.reproduction.figures.thesis_figure import ThesisFigure, figure
 from ddct_controllers.design.drawing.chart_style import chart_style, figure_files, save_figure
 from ddct_controllers.registry import controller_spec
 from ddct_plant.base.errors import DdctError, ParameterError
-from ddct_plant.files.input_file import read_text_file
+from ddct_plant.files.input_file import user_text
 from ddct_plant.files.output_file import write_text
 from ddct_plant.program.command_line import complain
 
@@ -145,6 +145,6 @@ def _make_room(folder: Path, files: list[Path], overwrite: bool) -> None:
 
 def _is_own_page(page: Path) -> bool:
     try:
-        return gallery.GENERATOR in read_text_file(page)
-    except OSError:
+        return gallery.GENERATOR in user_text(page)
+    except DdctError:
         return False

@@ -6,7 +6,6 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from ddct_plant.base.errors import DdctError
-from ddct_plant.files.input_file import MOST_TEXT_BYTES, read_file
 from ddct_plant.files.output_file import write_text
 
 
@@ -25,7 +24,7 @@ def require_free(folder: Path, files: Iterable[str], mark: str, *, overwrite: bo
                 key='--export',
             )
         for file in set(files) & set(present):
-            if mark not in read_file(folder / file, MOST_TEXT_BYTES).decode(errors='replace'):
+            if mark not in (folder / file).read_text(encoding='utf-8', errors='replace'):
                 raise DdctError(
                     f'--export {folder}: {file} is no such export; choose another folder',
                     key='--export',
