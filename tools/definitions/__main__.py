@@ -10,7 +10,7 @@ from ddct_plant.signals.topics import all_topics
 def main() -> int:
     """Write the file."""
     types = sorted({topic.type for topic in all_topics()})
-    write_json(str(KEPT), {each: definition_in(all_types(), each) for each in types}, ours=True)
+    write_json(str(KEPT), {each: definition_in(all_types(), each) for each in types})
     return 0
 
 

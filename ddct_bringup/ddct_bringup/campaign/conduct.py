@@ -251,7 +251,7 @@ class _Conduct:
             for future in finished:
                 file = running.pop(future)
                 rows, seconds = _result(future, shards[file])
-                write_bytes(str(file), rows, RESUME, ours=True)
+                write_bytes(str(file), rows, RESUME)
                 keep_digests([file])
                 self.time_left.add(shards[file], seconds)
                 yield file

@@ -56,8 +56,8 @@ def write_campaign_page(folder: Path) -> Summary:
     replay = texts.replay_command('.', 'INDEX')
     page = campaign_page(results, summary, replay, facts_of(recorded))
     with locked_folders(folder):
-        write_json(str(folder / SUMMARY), summary, ours=True)
-        write_text(str(folder / PAGE), page, ours=True)
+        write_json(str(folder / SUMMARY), summary)
+        write_text(str(folder / PAGE), page)
         keep_digests([folder / SUMMARY, folder / PAGE])
         if (folder / MANIFEST).exists():  # else it is a part of another result
             finish_manifest(folder)

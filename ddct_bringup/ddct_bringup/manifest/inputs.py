@@ -71,7 +71,7 @@ class InputFiles:
                 path.parent.mkdir(parents=True, exist_ok=True)
             except OSError as error:
                 raise DdctError(f'cannot be written ({error.strerror})', place=path) from error
-            write_bytes(str(path), content, ours=True)
+            write_bytes(str(path), content)
 
 
 def full_path(path: Path | str) -> Path:

@@ -60,7 +60,7 @@ class Manifest:
 
     def write(self, result: Path) -> None:
         """Write the manifest of a result, completely or not; raise DdctError when that fails."""
-        write_text(str(result / MANIFEST), self.text(), 'what was there stays', ours=True)
+        write_text(str(result / MANIFEST), self.text(), 'what was there stays')
 
     def with_files(self, files: Mapping[str, str]) -> 'Manifest':
         """Return the manifest with these digests, in place of those of the same path."""

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """A campaign's folder that was edited, with its digests removed, is refused in one line."""
 
-import os
 import shutil
 from dataclasses import replace
 from pathlib import Path
@@ -21,7 +20,6 @@ from ddct_bringup.campaign.columns import merge, read_row, schema_of
 from ddct_bringup.campaign.conduct import RESULTS, SHARDS, carry_out
 from ddct_bringup.campaign.plan import RecordedCampaign
 from ddct_bringup.campaign.spec import spec_of
-from ddct_bringup.campaign_report.folder import SUMMARY, write_campaign_page
 from ddct_bringup.campaign_report.reading import read_table
 from ddct_bringup.manifest.manifest import read_manifest
 from ddct_bringup.programs.campaign import main
@@ -125,45 +123,6 @@ def test_a_shard_with_another_number_of_rows_is_not_merged(out: Path, count: int
         merge(shards, schema, out / RESULTS, 'advice')
     assert (out / RESULTS).read_bytes() == before
     assert not list(out.glob('.*.partial'))
-
-
-SHARD, PARTIAL = f'{SHARDS}/00000002.parquet', f'.{RESULTS}.partial'
-
-
-@pytest.mark.parametrize(
-    ('name', 'kind'),
-    [(SHARD, 'pipe'), (SHARD, 'link'), (SUMMARY, 'pipe'), (SUMMARY, 'link'), (PARTIAL, 'link')],
-)
-def test_a_file_that_is_written_replaces_a_pipe_or_a_link(
-    whole: Path, tmp_path: Path, name: str, kind: str
-) -> None:
-    out, mine = shutil.copytree(whole, tmp_path / 'campaign'), tmp_path / 'mine.txt'
-    mine.write_text('mine', encoding='utf-8')
-    (out / name).unlink(missing_ok=True)
-    if kind == 'pipe':
-        os.mkfifo(out / name)
-        # With a reader, a program that opens it to write goes on: the test ends in any case.
-        reader = os.open(out / name, os.O_RDONLY | os.O_NONBLOCK)
-    else:
-        (out / name).symlink_to(mine)
-    if name == SUMMARY:
-        write_campaign_page(out)
-    else:
-        assert resumed(out) == [2] * (name == SHARD)
-    if kind == 'pipe':
-        assert os.read(reader, 1) == b''
-        os.close(reader)
-    assert mine.read_text(encoding='utf-8') == 'mine'
-    assert not (out / name).is_symlink()
-    assert (out / name).is_file() == (name != PARTIAL)
-    assert (out / RESULTS).read_bytes() == (whole / RESULTS).read_bytes()
-
-
-def test_a_pipe_that_is_not_written_is_named(out: Path) -> None:
-    os.mkfifo(out / 'notes.txt')
-    resumed(out)
-    with pytest.raises(DdctError, match=r'notes.txt: cannot be read \(it is a pipe: give a file'):
-        write_campaign_page(out)
 
 
 def test_results_without_a_digest_are_refused_until_they_are_computed_again(out: Path) -> None:

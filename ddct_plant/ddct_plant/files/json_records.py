@@ -68,9 +68,9 @@ def json_text(obj: Any) -> str:
     return json.dumps(to_json(obj), indent=2, allow_nan=False) + '\n'
 
 
-def write_json(target: str, obj: Any, advice: str = ANOTHER_FILE, *, ours: bool = False) -> None:
+def write_json(target: str, obj: Any, advice: str = ANOTHER_FILE) -> None:
     """Write a record by `write_text`; raise ValueError for NaN and infinity."""
-    write_text(target, json_text(obj), advice, ours=ours)
+    write_text(target, json_text(obj), advice)
 
 
 def parse_json(text: str) -> Any:

@@ -53,28 +53,25 @@ def require_one_for_stdout(json_target: str | None, csv_target: str | None) -> N
         raise DdctError('--json - and --csv - both want standard output: give one a file')
 
 
-def write_text(target: str, text: str, advice: str = ANOTHER_FILE, *, ours: bool = False) -> None:
+def write_text(target: str, text: str, advice: str = ANOTHER_FILE) -> None:
     """
     Write `text` to the file `target`, or to standard output for `-`.
 
-    A file is replaced completely or not at all. `ours` is one in a folder of results, which may
-    be from a stranger: there a pipe, a device or a symbolic link is replaced too, not written to.
-    Raise DdctError, with the advice, when it cannot be written.
+    A file is replaced completely or not at all; a device or pipe is written to. Raise DdctError,
+    with the advice, when it cannot be written.
     """
     if target == STDOUT:
         sys.stdout.write(text)
     else:
-        write_bytes(target, text.encode(), advice, ours=ours)
+        write_bytes(target, text.encode(), advice)
 
 
-def write_bytes(
-    target: str, content: bytes, advice: str = ANOTHER_FILE, *, ours: bool = False
-) -> None:
+def write_bytes(target: str, content: bytes, advice: str = ANOTHER_FILE) -> None:
     """Write bytes to the file `target`, with the guarantees of `write_text`."""
-    path = Path(target) if ours else Path(target).resolve()
+    path = Path(target).resolve()
     try:
-        if not ours and path.exists() and not path.is_file():
-            path.write_bytes(content)  # a device or pipe: nothing to replace
+        if path.exists() and not path.is_file():
+            path.write_bytes(content)
         else:
             _replace(path, content)
     except OSError as error:
