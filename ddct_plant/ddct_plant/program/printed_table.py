@@ -13,7 +13,6 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TextIO
 
-from rich.align import Align
 from rich.cells import cell_len
 from rich.console import Console
 from rich.table import Table as Grid
@@ -196,10 +195,9 @@ def _grid(block: Sequence[_Column], width: int) -> Grid:
         heading = Text(column.heading, justify='right' if column.number else 'left')
         grid.add_column(heading, width=each, overflow='fold')
     for cells in zip(*(column.cells for column in block), strict=True):
-        # The justification of texts to the right would drop the spaces behind digits.
-        texts = [Text(cell) for cell in cells]
-        aligned = zip(block, texts, strict=True)
-        grid.add_row(*(Align.right(text) if each.number else text for each, text in aligned))
+        # Rich's justification to the right would drop the spaces behind digits.
+        placed = zip(block, cells, widths, strict=True)
+        grid.add_row(*(Text(cell.rjust(w) if each.number else cell) for each, cell, w in placed))
     return grid
 
 
