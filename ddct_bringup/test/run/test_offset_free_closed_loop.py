@@ -50,7 +50,7 @@ def test_it_stays_there(name, wear_gain):
 @pytest.mark.parametrize('name', OWN)
 def test_an_unknown_load_step_leaves_no_slip(name):
     run = settings(0.7)
-    slip = slip_after_load_step(run, make_controller(name, run), LOAD_STEP_N_M, 150)
+    slip = slip_after_load_step(run, make_controller(name, run.known), LOAD_STEP_N_M, 150)
     assert abs(rpm_from_rad_s(slip[-1])) <= 1.0
 
 
@@ -58,7 +58,7 @@ def test_an_unknown_load_step_leaves_no_slip(name):
 def test_the_others_keep_an_error_of_each(name, least_rpm):
     assert abs(study_run(settings(0.85), name).metrics['slip_final_rpm']) > 100.0
     run = settings()
-    slip = slip_after_load_step(run, make_controller(name, run), LOAD_STEP_N_M, 150)
+    slip = slip_after_load_step(run, make_controller(name, run.known), LOAD_STEP_N_M, 150)
     assert abs(rpm_from_rad_s(slip[-1])) > least_rpm
 
 
@@ -145,7 +145,7 @@ def test_an_error_of_the_engine_torque_beyond_what_wear_explains_leaves_no_slip(
     weak = ['duration_s=4.0', 'engine.torque_n_m=[0, 60]', 'engine.time_s=[0, 0.4]']
     run = settings(scenario=load_scenario('thesis', weak))
     slip = run_headless(
-        run, WrongEngineTorque(make_controller('mpc_wear', run), error_n_m)
+        run, WrongEngineTorque(make_controller('mpc_wear', run.known), error_n_m)
     ).slip_speed
     assert rpm_from_rad_s(np.abs(slip[-50:]).max()) < 0.5
 
@@ -173,7 +173,7 @@ class ExactLoop(ClosedLoop):
 def test_with_no_error_at_all_the_commands_are_those_of_mpc_preview(name):
     run = settings()
     preview, own = (
-        run_loop(ExactLoop(run, make_controller(controller, run)), SCENARIO.steps)
+        run_loop(ExactLoop(run, make_controller(controller, run.known)), SCENARIO.steps)
         for controller in ('mpc_preview', name)
     )
     np.testing.assert_allclose(own.torque_request, preview.torque_request, atol=1e-8)
@@ -196,7 +196,7 @@ def test_limits_are_those_of_the_request_whatever_the_wear(wear_gain):
 @pytest.mark.parametrize('name', OWN)
 def test_a_controller_that_has_run_repeats_its_run_to_the_last_bit(name):
     run = settings(0.85)
-    controller = NoisySpeeds(make_controller(name, run), 0.05, seed=1)
+    controller = NoisySpeeds(make_controller(name, run.known), 0.05, seed=1)
     first = run_headless(run, controller).sha256()
     controller.reset()
     assert run_headless(run, controller).sha256() == first

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from message_counts import message_counts
 from refusals import refused
 
 from ddct_bringup.bag.reader import read_bag
@@ -144,14 +145,14 @@ def test_the_bag_of_a_shift_has_every_signal_setting_and_node(tmp_path: Path) ->
     off_going = {name: pairs for name, pairs in recording.run_info.items() if 'off' in name}
     assert list(off_going) == ['/off_going/actuator', '/off_going/clutch']
     assert all(pairs['role'] == 'off_going' for pairs in off_going.values())
-    counts = recording.counts
+    counts = message_counts(tmp_path)
     assert counts['/off_going/run_info'] == 2
     assert counts['/clutch/handover_share'] == counts['/clutch/slip'] == 251
 
 
 def test_a_shift_is_simulated_step_by_step_in_a_campaign():
     shift = settings()
-    assert why_not_batchable(shift, make_controller('pi', shift))
+    assert why_not_batchable(shift, make_controller('pi', shift.known))
     row = scored_headless(shift, 'pi', packaged_limits())
     assert row.valid
 

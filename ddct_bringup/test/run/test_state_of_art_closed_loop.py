@@ -139,7 +139,7 @@ def test_beyond_the_engines_authority_the_clutch_takes_over(name, wear_gain):
 @pytest.mark.parametrize('pedal', [0.0, 0.5, 1.0])
 def test_the_pedal_sets_when_the_slip_is_over(pedal):
     settings, run = trajectory('pedal_mpc', 1.0, f'pedal_position={pedal}')
-    expected = engagement_time_s(ControllerContext(settings, {}))
+    expected = engagement_time_s(ControllerContext(settings.known, {}))
     found = close_time_s(run, settings.scenario.control_start_step)
     assert expected <= found < 1.25 * expected
     assert np.array_equal(run.engine_torque, run.torque_demand)

@@ -38,7 +38,7 @@ def test_the_slip_ends_within_1_rpm_of_zero(name, wear_gain):
 @pytest.mark.parametrize('name', OWN)
 def test_an_unknown_load_step_leaves_no_slip(name, wear_gain):
     run = settings(wear_gain)
-    slip = slip_after_load_step(run, make_controller(name, run), LOAD_STEP_N_M, 150)
+    slip = slip_after_load_step(run, make_controller(name, run.known), LOAD_STEP_N_M, 150)
     assert abs(rpm_from_rad_s(slip[-1])) <= 1.0
 
 
@@ -71,5 +71,7 @@ def test_the_slip_ends_at_zero_far_beyond_that(name, wear_gain):
 def test_an_error_of_the_engine_torque_beyond_what_wear_explains_leaves_no_slip(name, error_n_m):
     weak = ['duration_s=4.0', 'engine.torque_n_m=[0, 60]', 'engine.time_s=[0, 0.4]']
     run = settings(scenario=load_scenario('thesis', weak))
-    slip = run_headless(run, WrongEngineTorque(make_controller(name, run), error_n_m)).slip_speed
+    slip = run_headless(
+        run, WrongEngineTorque(make_controller(name, run.known), error_n_m)
+    ).slip_speed
     assert rpm_from_rad_s(np.abs(slip[-50:]).max()) < 0.5
