@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from message_counts import message_counts
 from support.in_process_graph import InProcessGraph, node_class
 from support.runs import expected, plan
 
@@ -50,7 +51,7 @@ def test_a_run_without_the_parts_lacks_nothing_else(
         graph.add_all()
         graph.run()
     recording = read_bag(tmp_path / 'pi')
-    assert TORQUE_PARTS.resolved_name not in recording.counts
+    assert TORQUE_PARTS.resolved_name not in message_counts(tmp_path / 'pi')
     whole = expected(plan('pi', duration_s=0.8)).signals
     assert set(recording.trajectory.signals) == set(whole) - NAMES
     assert recording.trajectory.open_loop_torque is None

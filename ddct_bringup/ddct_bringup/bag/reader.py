@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Read a recorded bag into a trajectory, its facts and counts, without ROS."""
+"""Read a recorded bag into a trajectory and its facts, without ROS."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -72,7 +72,6 @@ def recording_of(records: BagRecords) -> Recording:
         facts=facts,
         custom_data=records.custom_data,
         run_info=_run_info(found),
-        counts={name: len(each.stamps) for name, each in found.items() if each.stamps.size},
         missed=missed,
         realtime=_realtime(found[DIAGNOSTICS.resolved_name].messages),
         absent=absent,

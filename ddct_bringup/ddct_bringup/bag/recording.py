@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""A recording: the signals of a run, its facts, settings and counts."""
+"""A recording: the signals of a run, its facts and settings."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -17,7 +17,7 @@ from ddct_plant.signals.gain_changes import GainChange, gain_changes
 
 @dataclass(frozen=True)
 class Recording:
-    """Contents of a bag: signals, facts of the run, run_info and message counts."""
+    """Contents of a bag: signals, facts of the run and run_info."""
 
     path: Path
     """Path of the MCAP file."""
@@ -26,8 +26,6 @@ class Recording:
     custom_data: dict[str, str] = field(default_factory=dict)
     run_info: RunInfoOfNodes = field(default_factory=dict)
     """Parameters and version of each node, by full node name."""
-    counts: dict[str, int] = field(default_factory=dict)
-    """Number of messages by resolved topic name."""
     missed: dict[str, int] = field(default_factory=dict)
     """Number of stamps without a reply, by reply topic; real time only."""
     realtime: RealtimeFacts = field(default_factory=RealtimeFacts)

@@ -189,7 +189,7 @@ def simulate(plan: RunPlan, changes: Sequence[GainChange] = ()) -> tuple[Recordi
 
     `changes` are gains that are changed in the run; raise DdctError for one that is not taken.
 
-    No file exists at the recording's path, and its message counts are empty.
+    No file exists at the recording's path.
     """
 
     def work(chosen: Chosen) -> tuple[RunInfoOfNodes, Trajectory, RunTiming]:

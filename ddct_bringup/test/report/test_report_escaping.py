@@ -73,7 +73,6 @@ def recording(text: str) -> Recording:
         facts=facts,
         custom_data={'commit': text, 'version': text},
         run_info={text: {text: text}},
-        counts={text: 1},
         missed={},
         realtime=RealtimeFacts(),
     )

@@ -28,7 +28,6 @@ def page(*changes: str) -> str:
         facts=RunFacts.of(settings, 'pi', settings.scenario.steps),
         settings=settings,
         run_info={},
-        counts={},
         missed={},
         realtime=RealtimeFacts(),
     )

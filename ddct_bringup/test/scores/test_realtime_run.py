@@ -41,7 +41,6 @@ def recording(
         facts=made_facts(mode=mode, duration_s=duration_s, score_window_s=(0.6, 3.0)),
         custom_data={},
         run_info={},
-        counts={},
         missed=missed or {},
         realtime=realtime or facts(),
     )
