@@ -34,7 +34,7 @@ def _stick_slip(run: RunKind) -> bool:
 
 
 def entry(**options: Any) -> Topic:
-    kind = Numbers('geometry_msgs/msg/WrenchStamped', (Number('wrench.torque.x'),))
+    kind = Numbers('geometry_msgs/msg/WrenchStamped', 'wrench.torque', (Number('x'),))
     signal = Signal('made_up_torque', 'N m', 'made up')
     return Topic('load/made_up', kind, 'load', (signal,), **options)
 

@@ -175,8 +175,9 @@ class Points(MessageKind):
                 + (hint if len(self.joints) > 1 else 'it needs {}').format(', '.join(needed)),
                 key=topic,
             )
-        self._require_count(topic, len(message.points), preview_steps)
-        columns = self._columns(message.points)
+        points = message.points
+        self._require_count(topic, len(points), preview_steps)
+        columns = self._columns(points)
         if not all(len(numbers) == joints for column in columns for numbers in column):
             raise DdctError(
                 f'{topic}: each point needs one number in {" and ".join(self.fields)} for each '

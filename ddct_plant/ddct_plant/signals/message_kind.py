@@ -13,9 +13,9 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from operator import attrgetter
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 from ddct_plant.base.errors import MOST_SIGNAL, require_number, require_signal
 
@@ -87,54 +87,66 @@ class MessageKind(ABC):
         """Return the values for a node; raise DdctError for values unfit for the loop."""
 
 
-@dataclass(frozen=True)
-class Number:
-    """A number in a message, and the values of it that a node accepts."""
+class Number(NamedTuple):
+    """A number of a message, and the values of it that a node accepts."""
 
-    path: str
-    """Path of the number in the message, such as 'twist.angular.x'."""
+    field: str
     at_least: float | None = None
     """Lowest accepted value, None for -MOST_SIGNAL."""
     at_most: float = MOST_SIGNAL
     """Highest accepted value."""
 
-    def checked(self, topic: str, value: float) -> float:
-        """Return a value; raise DdctError unless it is that of a signal, within the bounds."""
+    @property
+    def check(self) -> Callable[[str, float], float]:
+        """Function of a topic and a value that returns the value, or raises DdctError for it."""
         if self.at_least is None:
-            return require_signal(topic, value)
-        return require_number(topic, value, at_least=self.at_least, at_most=self.at_most)
+            return require_signal
+        return partial(require_number, at_least=self.at_least, at_most=self.at_most)
 
 
 @dataclass(frozen=True)
 class Numbers(MessageKind):
-    """Adapter for a message with a few numbers, or with its stamp alone."""
+    """Adapter for a message with a few numbers in one part of it, or with its stamp alone."""
 
     type: str
+    part: str = ''
+    """Path of the part with the numbers, such as 'twist.angular'; '' for the message itself."""
     numbers: tuple[Number, ...] = ()
     of: Callable[..., Any] | None = None
-    """What a node makes of several numbers; None for one number or none."""
+    """What a node makes of several numbers; None for one number, or none."""
 
     def filler(self, message: Any, class_of: ClassOf) -> Callable[..., None]:
         """Return a function that sets the numbers of the new `message`."""
-        paths = [number.path.rpartition('.') for number in self.numbers]
-        places = [
-            (attrgetter(parent)(message) if parent else message, field)
-            for parent, _, field in paths
-        ]
+        part = attrgetter(self.part)(message) if self.part else message
+        fields = [number.field for number in self.numbers]
 
         def fill(*values: float) -> None:
-            for (holder, field), value in zip(places, values, strict=True):
-                setattr(holder, field, value)
+            for field, value in zip(fields, values, strict=True):
+                setattr(part, field, value)
 
         return fill
 
     @cached_property
-    def _getters(self) -> tuple[Callable[[Any], float], ...]:
-        return tuple(attrgetter(number.path) for number in self.numbers)
+    def _get(self) -> Callable[[Any], Any]:
+        """Function that returns the number in a message, or a tuple of several."""
+        prefix = f'{self.part}.' if self.part else ''
+        fields = [number.field for number in self.numbers]
+        if len(fields) == 1:
+            return attrgetter(prefix + fields[0])
+        # A message decodes a part anew whenever it is asked for it.
+        part, numbers = attrgetter(self.part), attrgetter(*fields)
+        return lambda message: numbers(part(message))
+
+    @cached_property
+    def _checks(self) -> list[Callable[[str, float], float]]:
+        return [number.check for number in self.numbers]
 
     def values(self, message: Any) -> tuple[float, ...]:
         """Return the numbers."""
-        return tuple(get(message) for get in self._getters)
+        if not self.numbers:
+            return ()
+        found = self._get(message)
+        return found if len(self.numbers) > 1 else (found,)
 
     def read(self, topic: str, message: Any) -> Any:
         """
@@ -142,13 +154,12 @@ class Numbers(MessageKind):
 
         Raise DdctError for a number that is not that of a signal, or beyond its bounds.
         """
-        checked = [
-            number.checked(topic, get(message))
-            for number, get in zip(self.numbers, self._getters, strict=True)
-        ]
-        if self.of is not None:
-            return self.of(*checked)
-        return checked[0] if checked else None
+        if not self.numbers:
+            return None
+        if self.of is None:
+            return self._checks[0](topic, self._get(message))
+        values = zip(self._checks, self._get(message), strict=True)
+        return self.of(*[check(topic, value) for check, value in values])
 
 
 def signal_values(topic: str, values: Sequence[float]) -> list[float]:

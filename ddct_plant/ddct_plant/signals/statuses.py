@@ -6,7 +6,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import chain
-from typing import Any, ClassVar, NamedTuple
+from typing import Any, ClassVar
 
 from ddct_plant.base.errors import DdctError, require_number
 from ddct_plant.models.driveline import PHASE_EVENTS, PHASES, PhaseEvent
@@ -18,14 +18,6 @@ Pairs = Sequence[tuple[str, str]]
 """Keys and values of a status."""
 
 
-class Status(NamedTuple):
-    """One status of a message."""
-
-    name: str
-    level: int = OK
-    pairs: Pairs = ()
-
-
 class StatusForm(ABC):
     """What the statuses of a topic say: values as levels and pairs, and back."""
 
@@ -35,14 +27,14 @@ class StatusForm(ABC):
         """Names of the statuses; '' for one that a message names itself."""
 
     @abstractmethod
-    def statuses(self, *values: Any) -> Sequence[Status]:
-        """Return the status of each of `names` for values."""
+    def contents(self, *values: Any) -> Sequence[tuple[int, Pairs]]:
+        """Return level and pairs of each of `names` for values."""
 
     @abstractmethod
-    def values(self, statuses: Sequence[Status]) -> tuple[Any, ...]:
+    def values(self, statuses: Sequence[Any]) -> tuple[Any, ...]:
         """Return the values that statuses carry; raise LookupError for one that is missing."""
 
-    def read(self, topic: str, statuses: Sequence[Status]) -> Any:
+    def read(self, topic: str, statuses: Sequence[Any]) -> Any:
         """Return the values for a node; raise DdctError for values unfit for the loop."""
         return self.values(statuses)
 
@@ -61,40 +53,45 @@ class Statuses(MessageKind):
         new_pair = class_of('diagnostic_msgs/msg/KeyValue')
         made = message.status = [new_status(name=name) for name in self.form.names]
         # In rclpy a level is one byte, in the messages of the MCAP library a number.
-        as_bytes = bool(made) and isinstance(made[0].level, bytes)
+        as_bytes = isinstance(made[0].level, bytes)
+        levels = {each: bytes([each]) if as_bytes else each for each in (OK, ERROR, STALE)}
+        shown = [OK for _ in made]
+        filled: list[list[Any]] = [[] for _ in made]
 
         def fill(*values: Any, name: str = '', error: str = '') -> None:
-            for status, (_, level, pairs) in zip(made, self.form.statuses(*values), strict=True):
-                status.level = bytes([level]) if as_bytes else level
-                if len(status.values) != len(pairs):
-                    status.values = [new_pair() for _ in pairs]
-                for pair, (key, value) in zip(status.values, pairs, strict=True):
-                    pair.key, pair.value = key, value
+            for i, (level, pairs) in enumerate(self.form.contents(*values)):
+                if level != shown[i]:
+                    made[i].level, shown[i] = levels[level], level
+                if not pairs and not filled[i]:
+                    continue
+                if len(filled[i]) != len(pairs):
+                    filled[i] = made[i].values = [new_pair() for _ in pairs]
+                for pair, (key, value) in zip(filled[i], pairs, strict=True):
+                    pair.key = key
+                    pair.value = value
             if name:
                 made[0].name = name
             if error:
-                made[0].level, made[0].message = bytes([ERROR]) if as_bytes else ERROR, error
+                made[0].level, made[0].message = levels[ERROR], error
 
         return fill
 
     def values(self, message: Any) -> tuple[Any, ...]:
         """Return the values; raise LookupError where a status is missing."""
-        return self.form.values(_statuses(message))
+        return self.form.values(message.status)
 
     def read(self, topic: str, message: Any) -> Any:
         """Return the values for a node; raise DdctError for values unfit for the loop."""
-        return self.form.read(topic, _statuses(message))
+        return self.form.read(topic, message.status)
 
 
-def _statuses(message: Any) -> list[Status]:
-    return [
-        Status(
-            status.name,
-            status.level[0] if isinstance(status.level, bytes) else status.level,
-            [(pair.key, pair.value) for pair in status.values],
-        )
-        for status in message.status
-    ]
+def _level(status: Any) -> int:
+    level = status.level
+    return level[0] if isinstance(level, bytes) else level
+
+
+def _pairs(status: Any) -> tuple[tuple[str, str], ...]:
+    return tuple([(pair.key, pair.value) for pair in status.values])
 
 
 @dataclass(frozen=True)
@@ -103,19 +100,19 @@ class PairsForm(StatusForm):
 
     names: tuple[str, ...] = ('',)
 
-    def statuses(self, pairs: Pairs) -> Sequence[Status]:
-        """Return the status with these pairs."""
-        return (Status(self.names[0], OK, pairs),)
+    def contents(self, pairs: Pairs) -> Sequence[tuple[int, Pairs]]:
+        """Return these pairs of the one status."""
+        return ((OK, pairs),)
 
-    def values(self, statuses: Sequence[Status]) -> tuple[tuple[tuple[str, str], ...]]:
+    def values(self, statuses: Sequence[Any]) -> tuple[tuple[tuple[str, str], ...]]:
         """Return the pairs."""
-        return (tuple(statuses[0].pairs),)
+        return (_pairs(statuses[0]),)
 
-    def read(self, topic: str, statuses: Sequence[Status]) -> tuple[str, dict[str, str]]:
+    def read(self, topic: str, statuses: Sequence[Any]) -> tuple[str, dict[str, str]]:
         """Return the name of the status, and the pairs; raise DdctError without a status."""
         if not statuses:
             raise DdctError(f'{topic} has no status: it needs one, with pairs', key=topic)
-        return statuses[0].name, dict(statuses[0].pairs)
+        return statuses[0].name, dict(_pairs(statuses[0]))
 
 
 @dataclass(frozen=True)
@@ -134,19 +131,16 @@ class FlagsForm(StatusForm):
         """The names in their order."""
         return tuple(chain(*self.samples))
 
-    def statuses(self, *values: Any) -> Sequence[Status]:
-        """Return the statuses for flags."""
+    def contents(self, *values: Any) -> Sequence[tuple[int, Pairs]]:
+        """Return the level of each status for flags."""
         flags: list[float] = []
         for names, value in zip(self.samples, values, strict=True):
             flags.extend(value if len(names) > 1 else (value,))
-        return [
-            Status(name, STALE if flag else OK)
-            for name, flag in zip(self.names, flags, strict=True)
-        ]
+        return [(STALE if flag else OK, ()) for flag in flags]
 
-    def values(self, statuses: Sequence[Status]) -> tuple[Any, ...]:
+    def values(self, statuses: Sequence[Any]) -> tuple[Any, ...]:
         """Return the flags; raise LookupError where a status is missing."""
-        flags = {status.name: float(status.level == STALE) for status in statuses}
+        flags = {status.name: float(_level(status) == STALE) for status in statuses}
         return tuple(
             [flags[name] for name in names] if len(names) > 1 else flags[names[0]]
             for names in self.samples
@@ -170,8 +164,8 @@ class PhaseForm(StatusForm):
     """Keys of the works of which it has values; a message may have others too."""
     names: tuple[str, ...] = ('clutch',)
 
-    def statuses(self, phase: float, *works_and_events: Any) -> Sequence[Status]:
-        """Return the status for the number of a phase, works in J, and events."""
+    def contents(self, phase: float, *works_and_events: Any) -> Sequence[tuple[int, Pairs]]:
+        """Return the pairs for the number of a phase, works in J, and events."""
         *works, events = works_and_events
         pairs = [('phase', PHASES[int(phase)])]
         pairs += [(key, repr(float(work))) for key, work in zip(self.works, works, strict=True)]
@@ -179,11 +173,11 @@ class PhaseForm(StatusForm):
             pairs.append((event.kind, repr(event.time_s)))
             if event.slip_acceleration is not None:
                 pairs.append((_ACCELERATION, repr(event.slip_acceleration)))
-        return (Status(self.names[0], OK, pairs),)
+        return ((OK, pairs),)
 
-    def values(self, statuses: Sequence[Status]) -> tuple[Any, ...]:
+    def values(self, statuses: Sequence[Any]) -> tuple[Any, ...]:
         """Return phase number, works in J and events; raise LookupError for bad ones."""
-        pairs = statuses[0].pairs
+        pairs = _pairs(statuses[0])
         try:
             (_, phase), *rest = pairs
             works = {key: float(value) for key, value in rest[: len(_WORKS)] if key in _WORKS}
@@ -192,7 +186,7 @@ class PhaseForm(StatusForm):
         except (ValueError, KeyError):
             raise LookupError(f'its status holds {pairs}') from None
 
-    def read(self, topic: str, statuses: Sequence[Status]) -> float:
+    def read(self, topic: str, statuses: Sequence[Any]) -> float:
         """Return the friction work in J; raise DdctError unless finite and not negative."""
         try:
             _, work, *_ = self.values(statuses)

@@ -45,15 +45,16 @@ _JOINTS, _SENSED_JOINTS = JointValues._fields, SensedJoints._fields
 """Names of the joints in `driveline/joint_states`, and of those whose speed a sensor measures."""
 
 _TWIST, _WRENCH = 'geometry_msgs/msg/TwistStamped', 'geometry_msgs/msg/WrenchStamped'
-_SLIP = Numbers(_TWIST, (Number('twist.angular.x'),))
-_SPEED = Numbers(_TWIST, (Number('twist.linear.x'),))
-_ACCEL = Numbers('geometry_msgs/msg/AccelStamped', (Number('accel.linear.x'),))
-_TORQUE = Numbers(_WRENCH, (Number('wrench.torque.x'),))
-_POSITIVE = Numbers(_WRENCH, (Number('wrench.torque.x', at_least=0.0),))
-_TEMPERATURE = Numbers('sensor_msgs/msg/Temperature', (Number('temperature'),))
+_SLIP = Numbers(_TWIST, 'twist.angular', (Number('x'),))
+_SPEED = Numbers(_TWIST, 'twist.linear', (Number('x'),))
+_ACCEL = Numbers('geometry_msgs/msg/AccelStamped', 'accel.linear', (Number('x'),))
+_TORQUE = Numbers(_WRENCH, 'wrench.torque', (Number('x'),))
+_POSITIVE = Numbers(_WRENCH, 'wrench.torque', (Number('x', at_least=0.0),))
+_TEMPERATURE = Numbers('sensor_msgs/msg/Temperature', numbers=(Number('temperature'),))
 _SHARE = Numbers(
     'geometry_msgs/msg/Vector3Stamped',
-    (Number('vector.x', 0.0, 1.0), Number('vector.y', LEAST_DEVIATION), Number('vector.z')),
+    'vector',
+    (Number('x', 0.0, 1.0), Number('y', LEAST_DEVIATION), Number('z')),
     OnComingShare,
 )
 _STATES = Joints(_JOINTS, of=JointValues)
