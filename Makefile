@@ -85,11 +85,14 @@ TEST_FOLDERS := $(wildcard tests ddct_*/test)
 NIGHTLY := tests/nightly
 test: fmu tune-extra .venv/.site .venv/.test
 	@$(SOURCED) $(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder \
-	    --ignore=$(NIGHTLY) $(TEST_FOLDERS)
+	    -m 'not nightly' --ignore=$(NIGHTLY) $(TEST_FOLDERS)
 
 # What depends on the wall clock, whole gates and products of lists: before a release.
 test-nightly: fmu tune-extra .venv/.site .venv/.test
 	@$(SOURCED) $(BIN)/python -m pytest -n 2 --dist loadfile $(NIGHTLY)
+	@$(SOURCED) $(BIN)/python -m pytest -n 2 --dist loadfile -m nightly --ignore=$(NIGHTLY) $(TEST_FOLDERS)
+	@$(SOURCED) DDCT_SCHEDULES=1000 $(BIN)/python -m pytest -n 2 \
+	    ddct_plant/test/ticks ddct_plant/test/fail_safe
 
 # Rows of all packaged controllers on the benchmark's development cases, kept with a release: a quarter of an hour.
 # It goes on with what is in runs/benchmark_rows, unless the sources have changed since: then remove that first.

@@ -107,6 +107,7 @@ def test_two_of_a_comparison_count_from_one(counter: str, folder: Path, tmp_path
 
 
 @pytest.mark.slow
+@pytest.mark.nightly
 def test_the_rows_of_a_campaign_are_equal_with_one_worker_and_two(
     counter: str, tmp_path: Path
 ) -> None:

@@ -3,6 +3,7 @@
 """A sample of the fault campaign ends as stated, one fault of each kind of cause in one graph."""
 
 import pytest
+from samples import sampled
 
 from faults.__main__ import attempt
 from faults.all_cases import all_cases
@@ -19,7 +20,7 @@ SAMPLE = (
 )
 
 
-@pytest.mark.parametrize('name', SAMPLE)
+@pytest.mark.parametrize('name', sampled(SAMPLE, every=2))
 def test_a_fault_ends_as_stated_and_leaves_nothing(name: str) -> None:
     (case,) = [each for each in all_cases() if each.name == name]
     as_stated, seen = attempt(case)

@@ -9,6 +9,7 @@ That of many processes is in tests/nightly.
 from pathlib import Path
 
 import pytest
+from samples import sampled
 from support.runs import LAYOUTS, bag_bytes, expected, record
 
 from ddct_bringup.run.plan import RunPlan
@@ -38,7 +39,7 @@ def test_both_layouts_leave_the_same_bytes_and_the_headless_trajectory(
     assert bags[0] == bags[1]
 
 
-@pytest.mark.parametrize('name', ['launch', 'tip_in'])
+@pytest.mark.parametrize('name', sampled(['launch', 'tip_in'], every=2))
 @pytest.mark.parametrize('architecture', [name for name in ARCHITECTURES if name != 'detailed'])
 def test_a_clutch_that_sticks_has_the_same_stored_reference_in_the_graph_and_headless(
     tmp_path: Path, architecture: str, name: str

@@ -68,6 +68,7 @@ def test_exit_with_code_0_in_the_process_of_all_nodes_fails_the_run_with_its_rea
 
 @pytest.mark.compiler
 @pytest.mark.slow
+@pytest.mark.nightly
 def test_a_crash_of_all_nodes_ends_its_own_run_of_a_comparison(tmp_path: Path) -> None:
     given = ['--controllers', f'pi,{harmful(tmp_path)},ls8', '--single-process']
     given += ['--set', 'controllers.harmful.fault=3', '--duration', '0.7', '--floors', 'none']

@@ -32,9 +32,10 @@ CONTROL = ('controller', 'reference', 'handover')
 @pytest.mark.parametrize(
     ('scenario', 'varied'),
     [
-        (
+        pytest.param(
             'thesis',
             {'wear_gain': 2.0625, 'seed': 424243, 'vehicle.mass_kg': 1800.0, 'sensors': SENSORS},
+            marks=pytest.mark.nightly,
         ),
         ('upshift', {**UNKNOWN_IN_A_SHIFT, 'sensors': SENSORS}),
     ],

@@ -16,11 +16,12 @@ pytestmark = pytest.mark.slow
     [
         ('pi', 'adaptive', (), LAYOUTS),
         ('mpc4', 'slip', ('shift.torque_cut_n_m=30', 'sensors={}'), LAYOUTS[1:]),
-        (
+        pytest.param(
             'mpc_preview',
             'model',
             ('shift.torque_cut_n_m=30', 'shift.preselection_s=0.1', 'shift.disengagement_s=0.9'),
             LAYOUTS[1:],
+            marks=pytest.mark.nightly,
         ),
     ],
     ids=['one input', 'two inputs, sensors and a torque cut', 'preview and events of the gearbox'],

@@ -38,10 +38,11 @@ AWAY_STEPS = 20
     ('controller', 'changes', 'layouts'),
     [
         ('mpc4', (), LAYOUTS),
-        (
+        pytest.param(
             'mpc4_wear',
             ('engine_authority.slew_n_m_s=800.0', 'engine_authority.lag_s=0.03'),
             LAYOUTS[1:],
+            marks=pytest.mark.nightly,
         ),
     ],
     ids=['free', 'little authority'],

@@ -10,6 +10,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+import samples
+from tiers import MARKERS
 
 pytestmark = pytest.mark.process
 
@@ -115,3 +117,11 @@ def test_make_selects_no_nightly_test(target: str) -> None:
     recipe = ' '.join(lines[begin : begin + 3])
     assert 'pytest' in recipe
     assert '--ignore=$(NIGHTLY)' in recipe
+    assert f"-m 'not {samples.NIGHTLY}'" in recipe or '--fast-tier' in recipe
+
+
+def test_a_sample_of_many_cases_stays_and_the_others_are_nightly() -> None:
+    cases = samples.sampled([('a', 1), ('b', 2), 'c'], every=2)
+    assert [case.values for case in cases] == [('a', 1), ('b', 2), ('c',)]
+    assert [[mark.name for mark in case.marks] for case in cases] == [[], ['nightly'], []]
+    assert samples.NIGHTLY in MARKERS, 'the fast tier leaves them out'

@@ -20,7 +20,7 @@ from typing import Any
 import pytest
 
 OPTION = '--fast-tier'
-MARKERS = ('browser', 'compiler', 'graph', 'process', 'slow')
+MARKERS = ('browser', 'compiler', 'graph', 'nightly', 'process', 'slow')
 """Markers of what the fast tier leaves out."""
 NIGHTLY = Path('tests', 'nightly')
 """Folder of the tests that only `make test-nightly` runs."""

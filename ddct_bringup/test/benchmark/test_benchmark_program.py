@@ -60,6 +60,7 @@ class Fails(Controller):
 """
 
 
+@pytest.mark.nightly
 def test_a_controller_that_remembers_the_development_cases_is_worse_on_held_out_ones(
     place: Path,
 ) -> None:

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import scipy
+from samples import sampled
 
 from ddct_bringup.floor.program import solve as solve_module
 from ddct_bringup.floor.program.highs import highs
@@ -80,7 +81,7 @@ def random_program(random):
     )
 
 
-@pytest.mark.parametrize('seed', range(200))
+@pytest.mark.parametrize('seed', sampled(range(200), every=5))
 def test_any_multipliers_bound_the_optimum_and_those_of_the_solver_attain_it(seed):
     random = np.random.default_rng(seed)
     program = random_program(random)

@@ -8,6 +8,7 @@ import json
 import numpy as np
 import pytest
 from linear_controllers import LINEAR
+from samples import sampled
 
 from ddct_bringup.programs import compare
 from ddct_bringup.report.evidence import FREQUENCY_FILE
@@ -52,7 +53,7 @@ class SteppedError(Controller):
         return self._inner.update(measurement)
 
 
-@pytest.mark.parametrize('wear_gain', [0.7, 1.0, 1.3])
+@pytest.mark.parametrize('wear_gain', sampled([0.7, 1.0, 1.3], every=3))
 @pytest.mark.parametrize('name', LINEAR)
 def test_a_small_step_of_the_slip_error_has_the_response_of_the_sampled_loop(name, wear_gain):
     """

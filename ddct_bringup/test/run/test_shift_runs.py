@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from message_counts import message_counts
 from refusals import refused
+from samples import sampled
 
 from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.batch.batchable import why_not_batchable
@@ -73,7 +74,7 @@ def test_until_then_the_on_coming_clutch_gets_its_share_of_c_fol_from_zero_on():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize('controller', own_controller_names())
+@pytest.mark.parametrize('controller', sampled(own_controller_names(), every=2))
 def test_every_controller_shifts(controller):
     run = run_headless(settings(), controller)
     assert run.clutch_phase[-1] == PHASES.index(LOCKED)

