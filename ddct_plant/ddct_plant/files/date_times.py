@@ -9,7 +9,7 @@ import numpy as np
 
 from ddct_plant.base.errors import ParameterError
 
-EXAMPLE = '2026-05-01T10:00:00.125'
+_EXAMPLE = '2026-05-01T10:00:00.125'
 _DATE_TIME = re.compile(
     r'(?:\d{4}-\d\d-\d\d|\d{8})[T ](?:\d\d:\d\d:\d\d|\d{6})(?:[.,]\d+)?(Z|[+-]\d\d(?::?\d\d)?)?'
 )
@@ -46,7 +46,7 @@ def seconds_since_first(
         found = _DATE_TIME.fullmatch(cell)
         if found is None:
             why = next(why for form, why in _OTHERS.items() if re.fullmatch(form, cell, re.DOTALL))
-            raise ParameterError(f'{cell!r} {why}: write it as {EXAMPLE}', place=place(row))
+            raise ParameterError(f'{cell!r} {why}: write it as {_EXAMPLE}', place=place(row))
         zones.append(found[1] is not None)
         if zones[-1] != zones[0]:
             raise ParameterError(
