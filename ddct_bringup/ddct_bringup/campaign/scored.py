@@ -31,7 +31,7 @@ from ddct_controllers.registry import make_controller
 from ddct_plant.base.errors import FOREIGN_FAILURES
 from ddct_plant.program.workers import in_processes, worker_count
 
-_LARGEST_PART_AT_ONCE, _LARGEST_PART_STEP_BY_STEP = 200, 16
+_LARGEST_PART = 16
 """Largest number of runs that a worker hands over together."""
 _PARTS_EACH = 8
 """Least number of parts for each worker, so that all end together."""
@@ -132,24 +132,17 @@ def are_linear(campaign: Campaign) -> bool:
 
 @contextmanager
 def scored_runs(
-    runs: RunSet,
-    limits: Limits,
-    *,
-    workers: int | None = None,
-    at_once: bool = True,
-    floors: bool = False,
+    runs: RunSet, limits: Limits, *, workers: int | None = None
 ) -> Iterator[Iterator[ScoredRow]]:
     """
-    Yield an iterator over all runs with their scores, in the order of their indices.
+    Yield an iterator over all runs with their scores, step by step, in the order of their indices.
 
     They are computed while it is consumed, by `workers` processes, by default one per core; none
-    is kept. With `floors` peak jerks are compared with the least. Call `RunSet.require_sound`
-    before: here a run that cannot be built has its reason.
+    is kept. Call `RunSet.require_sound` before: here a run that cannot be built has its reason.
     """
-    scorer = Scorer(limits, at_once, floors)
+    scorer = Scorer(limits, at_once=False)
     count = worker_count(workers)
-    largest = _LARGEST_PART_AT_ONCE if at_once else _LARGEST_PART_STEP_BY_STEP
-    size = max(1, min(largest, runs.runs // (_PARTS_EACH * count)))
+    size = max(1, min(_LARGEST_PART, runs.runs // (_PARTS_EACH * count)))
     parts = -(-runs.runs // size)
 
     def part(number: int) -> list[ScoredRow]:

@@ -35,9 +35,7 @@ def controllers_of(text: str) -> list[str]:
     return names
 
 
-def metrics_of(
-    option: str, text: str, known: Iterable[str], advice: str = 'name at least one'
-) -> list[str]:
+def metrics_of(option: str, text: str, known: Iterable[str]) -> list[str]:
     """
     Return the metrics in the value of an option, each once.
 
@@ -47,7 +45,7 @@ def metrics_of(
     with located(option):
         require_known(names, known, 'metric')
     if not names:
-        raise ParameterError(f'{option} is empty: {advice}', key=option)
+        raise ParameterError(f'{option} is empty: name at least one', key=option)
     return list(dict.fromkeys(names))
 
 

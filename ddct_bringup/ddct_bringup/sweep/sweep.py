@@ -104,7 +104,7 @@ class Sweep:
 
         Those of the first controller come first.
         """
-        return scored_runs(self.run_set, self.limits, at_once=False)
+        return scored_runs(self.run_set, self.limits)
 
 
 def sweep_document(sweep: Sweep, runs: Sequence[ScoredRow]) -> Mapping[str, Any]:
