@@ -70,6 +70,7 @@ setup(
         'matplotlib',
         'mcap',
         'numpy',
+        'pandas',
         'pyarrow',
         'rich',
         'scipy',
@@ -77,7 +78,6 @@ setup(
     extras_require={
         'dask': ['distributed'],
         'live': ['foxglove-sdk'],
-        'pandas': ['pandas'],
         'test': ['pytest'],
         'tune': ['optuna'],
     },

@@ -5,7 +5,6 @@
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from ddct_bringup.api.result import pandas_module
 from ddct_bringup.api.shell.judging import judge_into, judged_of
 from ddct_bringup.benchmark.cases import Cases
 from ddct_bringup.benchmark.conduct import DEVELOPMENT, HELD_OUT
@@ -49,7 +48,8 @@ def benchmark(
     done stays in the folder, and another call goes on with it. Raise DdctError for a controller
     that cannot be judged.
     """
-    pandas = pandas_module()
+    import pandas
+
     cases, folder = Cases.packaged(quick=quick, car=car), Path(out)
     result, failed = judge_into(
         [judged_of(controller, cases)], cases, folder, seed, workers=workers

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from ddct_bringup.api.arguments import plain
-from ddct_bringup.api.result import pandas_module
 from ddct_bringup.api.shell.campaigns import carry_out_campaign
 from ddct_bringup.api.shell.sweeps import planned_sweep
 from ddct_bringup.campaign.campaign import Campaign
@@ -47,7 +46,6 @@ def campaign(
     `spec` is a file, or the content of one as a mapping; files that a mapping names are relative
     to the working directory.
     """
-    pandas_module()
     given = spec_of(spec, Path.cwd()) if isinstance(spec, Mapping) else read_spec(spec)
     judged_by = load_limits(limits)
     carry_out_campaign(
@@ -58,7 +56,6 @@ def campaign(
 
 def read_campaign(folder: str | Path) -> CampaignResults:
     """Return the rows and the summary of a finished campaign; raise DdctError without one."""
-    pandas_module()
     recorded = RecordedCampaign.read(Path(folder))
     table = read_table(Path(folder), recorded)
     summary = to_json(summary_of(results_of(recorded, table)))
@@ -80,10 +77,12 @@ def sweep(
     controller, the values under their keys, every figure and metric, `valid`, `reason`, `state`,
     `why` and `least_is_bound`.
     """
+    import pandas
+
     axes = [_axis(key, over[key]) for key in over]
     planned = planned_sweep(controllers, axes, load_limits(limits), warnings.warn, **options)
     with planned.runs() as runs:
-        return pandas_module().DataFrame([result_row(each.scores, each.varied) for each in runs])
+        return pandas.DataFrame([result_row(each.scores, each.varied) for each in runs])
 
 
 def _axis(key: str, values: str | Iterable[Any]) -> Axis:

@@ -123,7 +123,9 @@ class Run:
 
     def dataframe(self) -> Any:
         """Return the signals as a pandas DataFrame: a row per 10 ms, indexed by `time_s`."""
-        return pandas_module().DataFrame(signal_columns(self.trajectory)).set_index('time_s')
+        import pandas
+
+        return pandas.DataFrame(signal_columns(self.trajectory)).set_index('time_s')
 
     def with_least(self, limits: Limits) -> 'Run':
         """Return the run with its peak jerk over the least of its case."""
@@ -143,18 +145,11 @@ class Run:
 
 def table(runs: Run | Iterable[Run]) -> Any:
     """Return a pandas DataFrame with a row per run: its facts, metrics and state."""
-    return pandas_module().DataFrame([score_row(each.scores) for each in as_runs(runs)])
+    import pandas
+
+    return pandas.DataFrame([score_row(each.scores) for each in as_runs(runs)])
 
 
 def as_runs(runs: Run | Iterable[Run]) -> list[Run]:
     """Return a list of runs, also of a single run."""
     return [runs] if isinstance(runs, Run) else list(runs)
-
-
-def pandas_module() -> Any:
-    """Return pandas, which is an extra; raise DdctError without it."""
-    try:
-        import pandas
-    except ImportError as error:
-        raise DdctError(f'a DataFrame needs pandas ({error}): pip install pandas') from error
-    return pandas

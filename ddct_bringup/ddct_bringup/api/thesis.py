@@ -6,7 +6,9 @@ from collections.abc import Iterable
 from dataclasses import asdict
 from typing import Any, NamedTuple
 
-from ddct_bringup.api.result import Run, as_runs, pandas_module
+import pandas
+
+from ddct_bringup.api.result import Run, as_runs
 from ddct_bringup.reproduction.numbers.command import SOURCES, compute, require_all
 from ddct_bringup.reproduction.numbers.gate import OUTCOMES, judge
 from ddct_bringup.reproduction.numbers.gate_tables import count_facts
@@ -47,7 +49,6 @@ def thesis_numbers() -> ThesisNumbers:
     The outcomes are those of docs/thesis/thesis_gate.md. Raise DdctError when a claim of that
     page does not hold.
     """
-    pandas = pandas_module()
     rows = judge(listed_numbers(), compute(SOURCES))
     require_all(rows)
     table = pandas.DataFrame([{**row.as_dict(), 'outcome': row.outcome} for row in rows])
@@ -69,7 +70,7 @@ def beside_thesis(runs: Run | Iterable[Run]) -> Any:
     are None for a run without a row in the table, or of other conditions than the thesis's.
     """
     shown = as_runs(runs)
-    return pandas_module().DataFrame([_row(each) for each in shown], index=_labels(shown))
+    return pandas.DataFrame([_row(each) for each in shown], index=_labels(shown))
 
 
 def table_5_2(scenario: str = 'thesis') -> Any:
@@ -81,11 +82,11 @@ def table_5_2(scenario: str = 'thesis') -> Any:
     """
     require_known([scenario], SCENARIOS, 'scenario')
     rows = [asdict(row) for gain in WORN for row in rated_rows(scenario, gain)]
-    return pandas_module().DataFrame(rows).set_index(['wear_gain', 'controller'])
+    return pandas.DataFrame(rows).set_index(['wear_gain', 'controller'])
 
 
 def _labels(runs: list[Run]) -> Any:
-    return pandas_module().Index([each.controller for each in runs], name='controller')
+    return pandas.Index([each.controller for each in runs], name='controller')
 
 
 def _row(run: Run) -> dict[str, object]:

@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from ddct_bringup.api.result import pandas_module
 from ddct_bringup.api.shell.tunings import tune_into
 from ddct_bringup.tuning.record import TRIALS, read_entries
 from ddct_bringup.tuning.result import FrontEntry
@@ -46,7 +45,8 @@ def tune(
     `spec` is a file, the name of a packaged one, or its content as a mapping; files that a mapping
     names are relative to the working directory.
     """
-    pandas = pandas_module()
+    import pandas
+
     folder = Path(out)
     given = spec if isinstance(spec, Mapping) else str(spec)
     result = tune_into(controller, given, folder, workers=workers, resume=resume)

@@ -35,7 +35,6 @@ def test_a_figure_that_cannot_be_drawn_or_does_not_exist_is_refused(number: str,
 
 @pytest.mark.slow
 def test_the_figure_of_a_campaign_has_a_curve_of_each_controller(tmp_path: Path) -> None:
-    pytest.importorskip('pandas', reason='an extra')
     campaign(SPEC, tmp_path / 'out', workers=1)
     assert {'pi', 'ls8'} <= curves(campaign_figure(tmp_path / 'out'))
 

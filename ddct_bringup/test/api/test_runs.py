@@ -140,7 +140,6 @@ def test_the_bag_of_a_kept_run_names_the_controller_file(tmp_path):
 
 
 def test_a_dataframe_has_the_signals_by_time(worn):
-    pytest.importorskip('pandas', reason='the extra pandas')
     frame = worn.dataframe()
     assert frame.index.name == 'time_s'
     assert frame.index.tolist() == worn.trajectory.time_s.tolist()
@@ -149,18 +148,11 @@ def test_a_dataframe_has_the_signals_by_time(worn):
 
 
 def test_a_table_has_a_row_per_run_with_metrics_and_state(worn):
-    pytest.importorskip('pandas', reason='the extra pandas')
     assert len(api.table(worn)) == 1
     rows = api.table([worn, worn])
     assert rows['controller'].tolist() == ['ls8', 'ls8']
     assert rows['slip_final_rpm'].tolist() == 2 * [worn.metrics['slip_final_rpm']]
     assert rows['state'].tolist() == 2 * [worn.state]
-
-
-def test_without_pandas_an_error_names_what_to_install(worn, monkeypatch):
-    monkeypatch.setitem(__import__('sys').modules, 'pandas', None)
-    with pytest.raises(api.DdctError, match='pip install pandas'):
-        worn.dataframe()
 
 
 def test_a_figure_has_a_line_per_run_in_each_chart(worn):

@@ -21,12 +21,6 @@ from ddct_bringup.thesis.table_5_1 import THESIS_TABLE
 from ddct_bringup.thesis.table_metrics import TABLE_METRICS
 
 
-@pytest.fixture(autouse=True)
-def with_pandas() -> None:
-    """Skip where it is absent; it is loaded when a test runs."""
-    pytest.importorskip('pandas', reason='an extra')
-
-
 @pytest.mark.slow
 def test_each_row_of_table_5_1_has_our_values_and_the_printed_ones() -> None:
     runs = compare([row.controller for row in THESIS_TABLE])

@@ -15,7 +15,6 @@ pytestmark = pytest.mark.slow
 def test_the_front_and_the_trials_are_tables(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    pytest.importorskip('pandas', reason='an extra')
     leave_out_pictures(monkeypatch)
     found = tune('pi', {**CONTENT, 'trials': 10}, tmp_path / 'out', workers=1)
     assert list(found.trials.index) == list(range(10))

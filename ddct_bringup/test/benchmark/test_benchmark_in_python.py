@@ -23,7 +23,6 @@ discretisation: hold
 def test_the_table_has_the_shares_and_medians_of_the_result_in_its_folder(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    pytest.importorskip('pandas', reason='an extra')
     use_small_release(tmp_path, monkeypatch)
     (tmp_path / 'gain.yaml').write_text(GAIN, encoding='utf-8')
     found = benchmark(str(tmp_path / 'gain.yaml'), tmp_path / 'mine', workers=1)

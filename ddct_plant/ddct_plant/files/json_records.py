@@ -51,9 +51,9 @@ def to_json(obj: Any) -> Any:
             content |= value if inlined else {name: value}
         return content
     if isinstance(obj, Mapping):
-        if not all(isinstance(key, (str, int)) for key in obj):
+        if not all(isinstance(key, str) for key in obj):
             raise TypeError(f'keys of JSON are texts, not as in {obj!r}')
-        return {str(key): to_json(value) for key, value in obj.items()}
+        return {key: to_json(value) for key, value in obj.items()}
     if isinstance(obj, (list, tuple)):
         return [to_json(each) for each in obj]
     if isinstance(obj, enum.Enum):
@@ -120,9 +120,8 @@ def from_json(kind: type[T], data: Any, place: object, *, newest: int | None = N
     Return plain data, as `parse_json` gives it, as a record of this type.
 
     `kind` is a dataclass or another annotation: numbers, texts, booleans, None, literals, enums,
-    lists, tuples, sequences (read as tuples), unions, mappings whose keys are texts or whole
-    numbers from 0 up, which JSON has as texts. A number in place
-    of a float stays as it is. `newest` is the newest schema version that is supported.
+    lists, tuples, sequences (read as tuples), unions, mappings whose keys are texts. A number in
+    place of a float stays as it is. `newest` is the newest schema version that is supported.
 
     Raise ParameterError that names `place` and the path of the key, such as `runs[3].state`: for
     an unknown and a missing key, a wrong type, another schema version, and what the dataclass
@@ -212,8 +211,7 @@ def _reader(kind: Any) -> _Reader:
     if origin in _LISTS:
         return _list_reader(kind)
     if origin in _MAPPINGS:
-        read_key = _read_whole if arguments[0] is int else _reader(arguments[0])
-        return partial(_read_mapping, kind, read_key, _reader(arguments[1]))
+        return partial(_read_mapping, kind, *map(_reader, arguments))
     if _is_record(kind):
         return partial(_read_record, kind)
     raise TypeError(f'{kind} has no form in JSON')
@@ -310,12 +308,6 @@ def _read_mapping(kind: Any, read_key: _Reader, read_value: _Reader, data: Any) 
         except _RecordError as error:
             raise error.under(key) from error.__cause__
     return found
-
-
-def _read_whole(key: str) -> int:
-    if not key.isdecimal() or str(int(key)) != key:
-        raise _RecordError('the key {} is no whole number from 0 up')
-    return int(key)
 
 
 def _read_record(kind: Any, data: Any) -> Any:

@@ -157,14 +157,6 @@ def test_keys_of_an_inline_record_stand_among_those_around_it():
         from_json(Named, plain | {'limits': {}}, 'x.json')
 
 
-def test_whole_numbers_as_keys_are_texts_in_json():
-    assert to_json({3: 'a'}) == {'3': 'a'}
-    assert from_json(dict[int, str], {'3': 'a'}, 'x.json') == {3: 'a'}
-    for key in ('-3', '03', '1.0', 'a', '\u00b2'):
-        with pytest.raises(DdctError, match=f'^x.json: the key {key} is no whole number from 0'):
-            from_json(dict[int, str], {key: 'a'}, 'x.json')
-
-
 def test_numbers_of_numpy_are_written_as_those_of_python():
     values = {'a': np.float64(0.1), 'b': np.int64(3), 'c': np.bool_(True), 'd': np.eye(2)}
     plain = {'a': 0.1, 'b': 3, 'c': True, 'd': [[1.0, 0.0], [0.0, 1.0]]}
