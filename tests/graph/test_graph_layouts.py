@@ -3,7 +3,6 @@
 """One run, three layouts: separate processes, a single process and headless leave one bag."""
 
 import gc
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -50,14 +49,6 @@ def test_one_last_bit_changes_the_hash() -> None:
     assert first.sha256() == second.sha256()
     second.clutch_torque[50, 5] *= 1.0 + 2.0**-52
     assert first.sha256() != second.sha256()
-
-
-@pytest.fixture
-def nothing_frozen() -> Iterator[None]:
-    """Undo for a test what the suite's conftest.py has frozen."""
-    gc.unfreeze()
-    yield
-    gc.freeze()
 
 
 @pytest.mark.usefixtures('nothing_frozen')

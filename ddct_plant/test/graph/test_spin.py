@@ -42,8 +42,8 @@ class FakeExecutor:
 @pytest.mark.parametrize(
     ('fails', 'frozen'), sampled(itertools.product([False, True], repeat=2), every=3)
 )
+@pytest.mark.usefixtures('nothing_frozen')
 def test_the_garbage_collector_is_set_for_the_run_and_then_as_before(fails, frozen):
-    gc.unfreeze()
     if frozen:
         gc.freeze()
     before = gc.isenabled(), gc.get_freeze_count()
