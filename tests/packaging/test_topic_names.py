@@ -52,9 +52,9 @@ def test_no_two_entries_have_the_same_name_or_signal() -> None:
 
 
 def rows() -> dict[str, list[str]]:
-    """Return by topic the cells of its row on the page: type, who publishes it, content."""
+    """Return by topic the cells of its row on the page: type, publisher, frame, content."""
     table = PAGE.partition('## Topics\n')[2].partition('\n\n')[0]
-    lines = [line.strip('| ').split(' | ', 3) for line in table.splitlines()[2:]]
+    lines = [line.strip('| ').split(' | ', 4) for line in table.splitlines()[2:]]
     return {name.strip('`'): cells for name, *cells in lines}
 
 
@@ -64,9 +64,10 @@ def test_the_page_has_a_row_for_each_topic_in_the_order_of_the_table() -> None:
 
 @pytest.mark.parametrize('topic', TOPICS, ids=lambda topic: topic.name)
 def test_the_row_of_a_topic_agrees_with_the_table(topic: Topic) -> None:
-    kind, publisher, content = rows()[topic.name]
+    kind, publisher, frame, content = rows()[topic.name]
     assert kind == topic.type.replace('/msg/', '/')
     assert publisher == topic.publisher
+    assert frame == (topic.frame or '-')
     for signal in topic.signals:
         unit = signal.unit.replace('^2', '²')
         assert re.search(rf'\b{unit}(?!\S*[/²])', content), f'{signal.name} in {unit}'
