@@ -11,7 +11,7 @@ import numpy as np
 from ddct_bringup.batch.stacks import distinct, product, stacked
 from ddct_plant.base.timebase import STEPS_PER_S, SUBSTEPS
 from ddct_plant.models.actuator import ActuatorParameters, at_rest, lifted
-from ddct_plant.models.driveline import driveline_outputs
+from ddct_plant.models.driveline import DrivelineOutputs
 from ddct_plant.models.driveline_model import STATES
 from ddct_plant.models.linear_driveline import step_matrix
 from ddct_plant.models.load import resisting_torque
@@ -67,7 +67,9 @@ class Plants:
     def outputs(self) -> Any:
         """Return `DrivelineOutputs` at the current step, each value (R,); the angles are NaN."""
         states: Any = [*self._values[_STATES], *_NO_ANGLES]
-        return driveline_outputs(self._driveline, self._loads.wheel_radius, states, self._torques)
+        return DrivelineOutputs.of_state(
+            self._driveline, self._loads.wheel_radius, states, self._torques
+        )
 
     def load_torque(self, step: int) -> np.ndarray:
         """Return C_load in N m, (R,), at step `step` in the current state."""

@@ -26,13 +26,14 @@ from ddct_bringup.processes.graph_nodes import (
     nodes_of,
 )
 from ddct_bringup.run.description import custom_data, run_info_of
-from ddct_bringup.run.headless import run_headless, separate_run
+from ddct_bringup.run.headless import build_first, run_loop
 from ddct_bringup.run.plan import SIDES, RunPlan
 from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_controllers import workflows
 from ddct_controllers.from_file.controller_file import is_controller_file
 from ddct_controllers.from_file.fmu.unpacked import remove_left_folders
-from ddct_controllers.registry import Chosen, compiled_code, make_controller
+from ddct_controllers.loop import ClosedLoop
+from ddct_controllers.registry import Chosen, compiled_code, make_controller, separately
 from ddct_plant.base.errors import DdctError
 from ddct_plant.graph.domain import own_domain, sole_graph
 from ddct_plant.program.signals import interrupted_by, stop_signals
@@ -195,9 +196,11 @@ def simulate(plan: RunPlan, changes: Sequence[GainChange] = ()) -> tuple[Recordi
     def work(chosen: Chosen) -> tuple[RunInfoOfNodes, Trajectory, RunTiming]:
         controller, timing = make_controller(chosen, plan.settings.known), RunTiming()
         described = run_info_of(plan.settings, plan.name, controller, plan.steps)
-        return described, run_headless(plan.settings, controller, timing, changes), timing
+        loop = ClosedLoop(plan.settings, controller, changes=changes)
+        return described, run_loop(loop, plan.settings.scenario.steps, timing), timing
 
-    described, trajectory, timing = separate_run(plan.settings, plan.controller, work)
+    build_first(plan.settings, plan.controller)
+    described, trajectory, timing = separately(plan.controller, work)
     recording = replace(
         recording_in_memory(plan.settings, plan.name, trajectory),
         custom_data=custom_data(plan.settings, plan.name, plan.steps),

@@ -10,8 +10,7 @@ The result equals that of the graph, in any process layout, to the last bit.
 """
 
 import time
-from collections.abc import Callable, Sequence
-from typing import TypeVar
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -24,8 +23,6 @@ from ddct_controllers.registry import Chosen, compiled_code, make_controller, se
 from ddct_plant.scenario.settings import RunSettings
 from ddct_plant.signals.gain_changes import GainChange
 
-Result = TypeVar('Result')
-
 
 def run_headless(
     settings: RunSettings,
@@ -37,8 +34,8 @@ def run_headless(
     Simulate one run from t_0 to t_N and return every signal; fill `timing` if it is given.
 
     `controller` is a value that `make_controller` accepts, or an object; `changes` are gains that
-    are changed in the run. Compiled code has a process of its own (`separate_run`), unless it is
-    an object. Raise ParameterError for a loop that cannot be built, or for a gain that the
+    are changed in the run. Compiled code has a process of its own (`separately`), unless it is an
+    object. Raise ParameterError for a loop that cannot be built, or for a gain that the
     controller does not take, DdctError when it commands a value that is not finite.
     """
     if not isinstance(controller, Controller):
@@ -49,7 +46,8 @@ def run_headless(
                 settings, make_controller(chosen, settings.known), found, changes
             ), found
 
-        trajectory, found = separate_run(settings, controller, work)
+        build_first(settings, controller)
+        trajectory, found = separately(controller, work)
         if timing is not None:
             vars(timing).update(vars(found))
         return trajectory
@@ -57,14 +55,10 @@ def run_headless(
     return run_loop(loop, settings.scenario.steps, timing)
 
 
-def separate_run(
-    settings: RunSettings, chosen: Chosen, work: Callable[[Chosen], Result]
-) -> Result:
-    """Return `separately(chosen, work)`, where `work` makes the controller and its run."""
+def build_first(settings: RunSettings, chosen: Chosen) -> None:
+    """Build a loop, so that not every process of compiled code imports and computes the same."""
     if compiled_code(chosen):
-        # Built here once, so that not every process imports and computes the same again.
         ClosedLoop(settings, PiController(0.0, 0.0))
-    return separately(chosen, work)
 
 
 # What is not finite ends the run with a reason, so that numpy need not warn of it as well.

@@ -13,7 +13,6 @@ from ddct_plant.models.driveline import (
     DrivelineOutputs,
     OffGoingOutputs,
     PhaseEvent,
-    driveline_outputs,
 )
 from ddct_plant.models.driveline_model import STATES_AND_ANGLES
 from ddct_plant.models.initial_state import InitialState
@@ -82,7 +81,7 @@ class FrictionDriveline:
         values = engaged.to_values(now.state)
         engine_torque, load_torque = self._torques
         torques = engine_torque, now.friction[ON_COMING], load_torque + now.friction[WHEEL]
-        return driveline_outputs(
+        return DrivelineOutputs.of_state(
             self._parameters,
             self._wheel_radius,
             values[_OF_DRIVELINE],

@@ -92,6 +92,52 @@ class DrivelineOutputs(NamedTuple):
     tie_up_work: float | None = None
     """Exact work in J of the clutches against each other in the last period, see `TieUp`."""
 
+    @classmethod
+    def of_state(
+        cls,
+        parameters: DrivelineParameters,
+        wheel_radius: float,
+        state: Sequence[float],
+        torques: tuple[float, float, float],
+        clutch_sticks: bool = False,
+        wheels_stick: bool = False,
+        clutch_phase: float | None = None,
+        friction_work: float | None = None,
+        phase_events: tuple[PhaseEvent, ...] | None = None,
+        gear_speed: float | None = None,
+        off_going: OffGoingOutputs | None = None,
+        tie_up_work: float | None = None,
+    ) -> 'DrivelineOutputs':
+        """
+        Return the outputs in a state (7,), with the left limits of C_m, C_f and C_load in N m.
+
+        The fields `clutch_phase`, `friction_work` and `phase_events` are for a clutch that sticks,
+        `off_going` and `tie_up_work` for a shift. The slip is exactly 0 while the clutch sticks,
+        and the acceleration while the wheels stick. `gear_speed` is that of the driveshaft's inner
+        end in rad/s; by default the primary shaft turns it.
+        """
+        engine, shaft, wheel, twist, engine_angle, shaft_angle, wheel_angle = state
+        p = parameters
+        if gear_speed is None:
+            gear_speed = p.gear.wheel_speed(shaft)
+        twist_speed = gear_speed - wheel
+        shaft_torque = p.halfshaft_damping * twist_speed + p.halfshaft_stiffness * twist
+        engine_torque, clutch_torque, load_torque = torques
+        wheel_accel = 0.0 if wheels_stick else (shaft_torque - load_torque) / p.vehicle_inertia
+        return cls(
+            joint_position=JointValues(engine_angle, shaft_angle, wheel_angle, twist),
+            joint_speed=JointValues(engine, shaft, wheel, twist_speed),
+            joint_effort=JointValues(engine_torque, clutch_torque, load_torque, shaft_torque),
+            slip_speed=0.0 if clutch_sticks else engine - shaft,
+            vehicle_speed=wheel_radius * wheel,
+            vehicle_accel=wheel_radius * wheel_accel,
+            clutch_phase=clutch_phase,
+            friction_work=friction_work,
+            phase_events=phase_events,
+            off_going=off_going,
+            tie_up_work=tie_up_work,
+        )
+
     @property
     def signals(self) -> dict[str, Any]:
         """Signals of the tick by name; those of the off-going side have a prefix."""
@@ -122,48 +168,3 @@ class DrivelineOutputs(NamedTuple):
 
 
 _OFF_GOING_SIGNALS = tuple(f'off_going_{name}' for name in OffGoingOutputs._fields)
-
-
-def driveline_outputs(
-    parameters: DrivelineParameters,
-    wheel_radius: float,
-    state: Sequence[float],
-    torques: tuple[float, float, float],
-    clutch_sticks: bool = False,
-    wheels_stick: bool = False,
-    clutch_phase: float | None = None,
-    friction_work: float | None = None,
-    phase_events: tuple[PhaseEvent, ...] | None = None,
-    gear_speed: float | None = None,
-    off_going: OffGoingOutputs | None = None,
-    tie_up_work: float | None = None,
-) -> DrivelineOutputs:
-    """
-    Return the outputs in a state (7,), with the left limits of C_m, C_f and C_load in N m.
-
-    `clutch_phase`, `friction_work` and `phase_events` are the fields of `DrivelineOutputs` for a
-    stick-slip clutch, `off_going` and `tie_up_work` those for a shift. The slip is exactly 0 while
-    the clutch sticks, and the acceleration while the wheels stick. `gear_speed` is that of the
-    driveshaft's inner end in rad/s; by default the primary shaft turns it.
-    """
-    engine, shaft, wheel, twist, engine_angle, shaft_angle, wheel_angle = state
-    p = parameters
-    if gear_speed is None:
-        gear_speed = p.gear.wheel_speed(shaft)
-    twist_speed = gear_speed - wheel
-    shaft_torque = p.halfshaft_damping * twist_speed + p.halfshaft_stiffness * twist
-    engine_torque, clutch_torque, load_torque = torques
-    wheel_accel = 0.0 if wheels_stick else (shaft_torque - load_torque) / p.vehicle_inertia
-    return DrivelineOutputs(
-        joint_position=JointValues(engine_angle, shaft_angle, wheel_angle, twist),
-        joint_speed=JointValues(engine, shaft, wheel, twist_speed),
-        joint_effort=JointValues(engine_torque, clutch_torque, load_torque, shaft_torque),
-        slip_speed=0.0 if clutch_sticks else engine - shaft,
-        vehicle_speed=wheel_radius * wheel,
-        vehicle_accel=wheel_radius * wheel_accel,
-        clutch_phase=clutch_phase,
-        friction_work=friction_work,
-        phase_events=phase_events,
-        off_going=off_going,
-        tie_up_work=tie_up_work,
-    )

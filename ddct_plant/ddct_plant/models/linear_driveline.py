@@ -9,7 +9,7 @@ import numpy as np
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.timebase import PERIOD_S, SUBSTEPS
 from ddct_plant.linear.sampling import hold_inputs, lift_piecewise_linear
-from ddct_plant.models.driveline import DrivelineOutputs, driveline_outputs
+from ddct_plant.models.driveline import DrivelineOutputs
 from ddct_plant.models.driveline_model import (
     STATES,
     STATES_AND_ANGLES,
@@ -55,7 +55,9 @@ class Driveline:
     def outputs(self) -> DrivelineOutputs:
         """Return the outputs at the present step."""
         state = self._state_and_inputs[_STEPPED].tolist()
-        return driveline_outputs(self._parameters, self._wheel_radius, state, self._torques)
+        return DrivelineOutputs.of_state(
+            self._parameters, self._wheel_radius, state, self._torques
+        )
 
     def step(
         self, engine_torque: float, load_torque: float, clutch_torque: Sequence[float]
