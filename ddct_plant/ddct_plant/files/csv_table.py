@@ -11,10 +11,10 @@ import reprlib
 import warnings
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import islice
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -22,9 +22,6 @@ from ddct_plant.base.errors import ParameterError
 from ddct_plant.base.options import close_name
 from ddct_plant.files.date_times import is_date_time, seconds_since_first
 from ddct_plant.files.input_file import located, user_bytes
-
-if TYPE_CHECKING:
-    import pandas
 
 _DELIMITERS = ',;\t'
 _FORMULA = ('=', '@', '+', '-', '\t', '\r')
@@ -148,27 +145,29 @@ def read_csv(
     }
     numbers = {name: place for name, place in places.items() if name not in date_times}
     dates = {name: place for name, place in places.items() if name in date_times}
-    frame = _by_pandas(
-        source.text[start:], source.delimiter, len(header), numbers.values(), dates.values()
-    )
-    if frame is None:
+    cells = _by_pandas(source.text[start:], source.delimiter, len(header), numbers, dates)
+    if cells is None:
         cells = _by_hand(source, len(header), numbers, dates)
-    else:
-        cells = {name: frame[place].to_numpy() for name, place in places.items()}
     if not len(next(iter(cells.values()))):
         raise ParameterError('no row of numbers below the header: give at least one', place=path)
     table = CsvTable(cells, source)
-    seconds = {
-        name: seconds_since_first(cells[name], lambda row: table.place(row, name))  # noqa: B023
-        for name in dates
-    }
-    return CsvTable({**cells, **seconds}, source)
+    for name in dates:
+        cells[name] = seconds_since_first(cells[name], partial(table.place, column=name))
+    return table
 
 
 def _by_pandas(
-    text: str, delimiter: str, width: int, numbers: Collection[int], dates: Collection[int]
-) -> 'pandas.DataFrame | None':
-    """Return finite numbers, NaN and texts of dates by place; None if a cell is none of them."""
+    text: str,
+    delimiter: str,
+    width: int,
+    numbers: Mapping[str, int],
+    dates: Mapping[str, int],
+) -> dict[str, np.ndarray] | None:
+    """
+    Return numbers, and dates as texts, by name, of the text below a header of `width` cells.
+
+    The result is None where a row has another width, or a cell is no finite number.
+    """
     import pandas  # late: a run without a CSV file does not need it
 
     # From 3.1 on pandas reads every number to the last bit, and warns of this argument.
@@ -184,7 +183,7 @@ def _by_pandas(
                 header=None,
                 names=range(width),
                 index_col=False,
-                dtype=dict.fromkeys(dates, str),
+                dtype=dict.fromkeys(dates.values(), str),
                 decimal=',' if decimal_comma else '.',
                 keep_default_na=False,
                 na_values=_EMPTY,
@@ -195,14 +194,15 @@ def _by_pandas(
     except (ValueError, pandas.errors.ParserWarning):
         return None
     parted = _QUOTED.sub('', text) if '"' in text else text
-    complete = parted.count(delimiter) == len(frame) * (width - 1)  # pandas fills a row up
-    if not complete or any(frame[place].dtype.kind not in 'iuf' for place in numbers):
+    if parted.count(delimiter) != len(frame) * (width - 1):  # pandas fills up a short row
         return None
-    for place in numbers:
-        frame[place] = frame[place].astype(float)
-    for place in dates:
-        frame[place] = frame[place].fillna('').str.strip()
-    return None if np.isinf(frame[[*numbers]].to_numpy()).any() else frame
+    if any(frame[place].dtype.kind not in 'iuf' for place in numbers.values()):
+        return None
+    columns = {name: frame[place].to_numpy(float) for name, place in numbers.items()}
+    if any(np.isinf(each).any() for each in columns.values()):
+        return None
+    texts = {name: frame[place].fillna('').str.strip() for name, place in dates.items()}
+    return {**columns, **{name: each.to_numpy() for name, each in texts.items()}}
 
 
 def _by_hand(
