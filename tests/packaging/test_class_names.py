@@ -5,6 +5,8 @@
 import ast
 from pathlib import Path
 
+from syntax import tree_of
+
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = ('ddct_plant', 'ddct_reference', 'ddct_controllers', 'ddct_bringup')
 
@@ -14,7 +16,7 @@ def classes(package: str) -> list[tuple[str, str]]:
     return [
         (node.name, str(file.relative_to(ROOT)))
         for file in sorted((ROOT / package / package).rglob('*.py'))
-        for node in ast.walk(ast.parse(file.read_text(encoding='utf-8')))
+        for node in ast.walk(tree_of(file))
         if isinstance(node, ast.ClassDef)
     ]
 

@@ -10,6 +10,7 @@ from functools import cache
 
 import pytest
 from support.declared import PACKAGES, ROOT, ROS, declared_to_pip, setup_of
+from syntax import tree_of
 
 pytestmark = pytest.mark.slow
 
@@ -52,7 +53,7 @@ def imported(package: str) -> set[str]:
     """
     modules = {package}
     for file in (ROOT / package / package).rglob('*.py'):
-        for node in ast.walk(ast.parse(file.read_text(encoding='utf-8'))):
+        for node in ast.walk(tree_of(file)):
             if isinstance(node, ast.Import):
                 modules |= {alias.name.partition('.')[0] for alias in node.names}
             elif isinstance(node, ast.ImportFrom) and node.module and not node.level:

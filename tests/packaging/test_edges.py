@@ -6,6 +6,8 @@ import ast
 from collections.abc import Iterator
 from pathlib import Path
 
+from syntax import tree_of
+
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = ('ddct_plant', 'ddct_reference', 'ddct_controllers', 'ddct_bringup')
 MAPPINGS = {'dict', 'Mapping', 'MutableMapping'}
@@ -100,7 +102,7 @@ def open_mappings(package: str) -> Iterator[str]:
         module = file.relative_to(ROOT / package)
         if file.name.endswith('_node.py') or 'graph' in module.parts:
             continue
-        for node in ast.walk(ast.parse(file.read_text(encoding='utf-8'))):
+        for node in ast.walk(tree_of(file)):
             if (
                 isinstance(node, ast.Subscript)
                 and isinstance(node.value, ast.Name)

@@ -5,6 +5,8 @@
 import ast
 from pathlib import Path
 
+from syntax import tree_of
+
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = ('ddct_plant', 'ddct_reference', 'ddct_controllers', 'ddct_bringup')
 RATIOS = {'total_ratio', 'ratios', 'final_drives'}
@@ -21,7 +23,7 @@ One writes the number into a program in C, which has no gearbox.
 
 
 def _read(file: Path) -> set[str]:
-    tree = ast.parse(file.read_text(encoding='utf-8'))
+    tree = tree_of(file)
     return {
         node.attr
         for node in ast.walk(tree)

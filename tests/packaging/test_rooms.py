@@ -12,6 +12,7 @@ from graphlib import TopologicalSorter
 from pathlib import Path
 
 import pytest
+from syntax import tree_of
 from waiting import WITHIN_S
 
 pytestmark = pytest.mark.slow
@@ -36,7 +37,7 @@ def imports(package: str) -> tuple[tuple[Path, tuple[str, ...]], ...]:
 
 def _imports(folder: Path) -> Iterator[tuple[Path, tuple[str, ...]]]:
     for file in sorted(folder.rglob('*.py')):
-        for node in ast.walk(ast.parse(file.read_text(encoding='utf-8'))):
+        for node in ast.walk(tree_of(file)):
             if isinstance(node, ast.Import):
                 names = [alias.name for alias in node.names]
             elif isinstance(node, ast.ImportFrom):

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from syntax import tree_of
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_plant.signals.topics import all_signals, quantities
@@ -22,7 +23,7 @@ OF_TRAJECTORIES = {signal.name for signal in all_signals() if signal.size != 1}
 
 def subscripts(file: Path) -> Iterator[tuple[str, ast.Subscript]]:
     """Yield each subscript of an attribute or of a key, with the name of the attribute or key."""
-    for node in ast.walk(ast.parse(file.read_text(encoding='utf-8'))):
+    for node in ast.walk(tree_of(file)):
         if not isinstance(node, ast.Subscript):
             continue
         if isinstance(node.value, ast.Attribute):

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from syntax import tree_of
 
 from ddct_plant.graph import node_reports
 from ddct_plant.signals import topics
@@ -39,7 +40,7 @@ def test_no_name_of_a_topic_is_spelled_outside_the_table() -> None:
     spelled = [
         f'{file.relative_to(ROOT)}:{node.lineno}: {node.value!r}'
         for file in product_files()
-        for node in ast.walk(ast.parse(file.read_text(encoding='utf-8')))
+        for node in ast.walk(tree_of(file))
         if isinstance(node, ast.Constant) and OWNERS.get(node.value, file) != file
     ]
     assert spelled == []

@@ -73,7 +73,8 @@ def test_programs_start_without_the_slow_parts_of_scipy() -> None:
         'score',
         'sweep',
     )
-    modules = [programs()[name].module for name in names]
+    known = programs()
+    modules = [known[name].module for name in names]
     code = (
         f'import {", ".join(modules)}, sys; print([n for n in sys.modules if n[:6] == "scipy."])'
     )

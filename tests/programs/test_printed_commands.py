@@ -14,6 +14,7 @@ import re
 import shlex
 from collections.abc import Iterator, Sequence
 from functools import cache
+from importlib.metadata import EntryPoint
 from pathlib import Path
 from typing import Any
 from unittest import mock
@@ -104,20 +105,26 @@ def texts() -> list[tuple[str, str]]:
     ]
 
 
+@cache
+def known_programs() -> dict[str, EntryPoint]:
+    """Return the programs by name; to find them takes a while."""
+    return programs()
+
+
 def is_node(program: str) -> bool:
     """Return whether a program is a node, whose arguments are those of ROS."""
-    return programs()[program].module.endswith('_node')
+    return known_programs()[program].module.endswith('_node')
 
 
 def why_wrong(command: str, *, whole: bool) -> str:
     """Return what is wrong with a command, empty where its program takes it."""
     words = shlex.split(command, comments=True)
     words = [FILLED_IN if _VALUE.fullmatch(word) else word for word in words]
-    if len(words) < 2 or words[1] not in programs():
+    if len(words) < 2 or words[1] not in known_programs():
         return '' if words[1:] in ([], ['PROGRAM']) else 'no such program'
     if is_node(words[1]):
         return ''
-    main, parser = programs()[words[1]].load(), argparse.ArgumentParser
+    main, parser = known_programs()[words[1]].load(), argparse.ArgumentParser
 
     def parsed(self: Any, arguments: Any = None, namespace: Any = None) -> None:
         if whole:

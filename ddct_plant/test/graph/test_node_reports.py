@@ -6,6 +6,7 @@ import ast
 from pathlib import Path
 
 import pytest
+from syntax import tree_of
 
 from ddct_plant.fail_safe.request_watch import CLUTCH_TIMEOUT_S, FailSafeSettings
 from ddct_plant.graph.node_reports import (
@@ -34,7 +35,7 @@ def test_no_other_module_spells_the_keys_of_reports() -> None:
         for package in ('ddct_plant', 'ddct_reference', 'ddct_controllers', 'ddct_bringup')
         for file in (ROOT / package / package).rglob('*.py')
         if file.name != OWNER
-        for node in ast.walk(ast.parse(file.read_text(encoding='utf-8')))
+        for node in ast.walk(tree_of(file))
         if isinstance(node, ast.Constant) and node.value in KEYS
     ]
     assert spelled == []
