@@ -11,7 +11,7 @@ from tick_network import ACK, DRIVELINE, ONE_CLUTCH, RECORDER, TWO_CLUTCHES, Wir
 
 from ddct_bringup.run.plan import RunPlan
 from ddct_plant.graph.follower import FollowerNode
-from ddct_plant.signals.topics import all_topics
+from ddct_plant.signals.topics import recorded_topics
 
 TOPICS = {
     'joints': 'driveline/joint_states',
@@ -64,9 +64,7 @@ def in_graph(topics: Any) -> list[str]:
 def every_tick(run: RunPlan, endpoints: Any) -> set[str]:
     """Return the topics of subscriptions or publishers with a message at each tick of a run."""
     kind = run.settings.kind(two_input=False)
-    names = {
-        topic.resolved_name for topic in all_topics() if topic.every_tick and topic.in_run(kind)
-    }
+    names = {topic.resolved_name for topic in recorded_topics(kind) if topic.every_tick}
     return {endpoint.topic_name for endpoint in endpoints} & names
 
 

@@ -7,9 +7,9 @@ from collections import defaultdict
 from pathlib import Path
 
 from ddct_bringup.processes.graph_nodes import GRAPH_NODES, SHIFT_NODES
-from ddct_plant.signals.topics import OFF_GOING_RUN_SETTINGS, RUN_SETTINGS, all_topics
+from ddct_plant.signals.topics import OFF_GOING_RUN_SETTINGS, RUN_SETTINGS, TOPICS
 
-TOPICS = (*all_topics(), RUN_SETTINGS, OFF_GOING_RUN_SETTINGS)
+NAMED = (*TOPICS, RUN_SETTINGS, OFF_GOING_RUN_SETTINGS)
 ROOT = Path(__file__).parents[2]
 OF_ROS = {'/rosout', '/parameter_events'}
 SHARED = {
@@ -37,11 +37,11 @@ def allowed(kind: str) -> dict[str, set[str]]:
 
 def test_each_topic_has_the_publisher_of_the_table() -> None:
     expected = {
-        topic.resolved_name: SHARED.get(topic.resolved_name, {topic.publisher}) for topic in TOPICS
+        topic.resolved_name: SHARED.get(topic.resolved_name, {topic.publisher}) for topic in NAMED
     }
     assert allowed('publish') == expected
 
 
 def test_every_node_may_read_every_topic() -> None:
     nodes = {node.path for node in (*GRAPH_NODES, *SHIFT_NODES)} | {'live'}
-    assert allowed('subscribe') == {topic.resolved_name: nodes for topic in TOPICS}
+    assert allowed('subscribe') == {topic.resolved_name: nodes for topic in NAMED}

@@ -15,7 +15,7 @@ from ddct_plant.base.timebase import PERIOD_NS, START_NS
 from ddct_plant.graph.qos import LOOP_QOS, RECORDER_QOS
 from ddct_plant.graph.steady_time import SteadyTime
 from ddct_plant.signals.topic import Topic
-from ddct_plant.signals.topics import all_topics
+from ddct_plant.signals.topics import TOPICS
 from support.in_process_graph import InProcessGraph
 
 Alter = Callable[['AlteringNode', int, bytes], None]
@@ -24,7 +24,7 @@ Alter = Callable[['AlteringNode', int, bytes], None]
 
 def topic_named(name: str) -> Topic:
     """Return the topic with this name within the graph."""
-    return next(topic for topic in all_topics() if topic.name == name)
+    return next(topic for topic in TOPICS if topic.name == name)
 
 
 def way_to(reader: str, topic: str) -> str:

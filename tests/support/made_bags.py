@@ -18,8 +18,9 @@ from ddct_plant.models.driveline import PhaseEvent
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.recorded_settings import SETTINGS, RecordedSettings
 from ddct_plant.scenario.settings import RunSettings
+from ddct_plant.signals import topics
 from ddct_plant.signals.topic import RunKind
-from ddct_plant.signals.topics import all_topics, recorded_topics
+from ddct_plant.signals.topics import recorded_topics
 
 RUN_INFO = {'/load': {'version': '1.0'}, '/engine': {'version': '1.0', 'two_input': 'false'}}
 
@@ -95,9 +96,9 @@ class Bags:
         """
         records = read_records(mcap_of(source))
         bag = self.folder / folder
-        known = {topic.resolved_name: topic for topic in all_topics()}
-        topics = [known[channel.topic] for channel in records.channels.values()]
-        with BagWriter(bag, folder, topics, edited(records.custom_data, **changes)) as writer:
+        known = {topic.resolved_name: topic for topic in topics.TOPICS}
+        written = [known[channel.topic] for channel in records.channels.values()]
+        with BagWriter(bag, folder, written, edited(records.custom_data, **changes)) as writer:
             for message in edit(list(records.messages())):
                 writer.write(*message)
         return bag

@@ -22,7 +22,7 @@ from ddct_plant.signals.topics import (
     OFF_GOING_RUN_INFO,
     RECORDER_ACK,
     RUN_INFO,
-    all_topics,
+    TOPICS,
     recorded_topics,
 )
 
@@ -72,7 +72,7 @@ class LiveNode(GraphNode):
         special: dict[Topic, Callable[[bytes], None]] = {CLOCK: self._on_clock}
         for topic in (RUN_INFO, OFF_GOING_RUN_INFO):
             special[topic] = partial(self._on_run_info, topic)
-        for topic in all_topics():
+        for topic in TOPICS:
             if topic.latched == latched:
                 receive = special.get(topic, partial(self._pass_on, topic))
                 self.subscribe_messages(topic, receive, LIVE_QOS, raw=True)

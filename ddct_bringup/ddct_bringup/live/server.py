@@ -8,7 +8,7 @@ from typing import Any
 from ddct_plant.bag_file.message_definitions import load_definition
 from ddct_plant.bag_file.metadata import SERIALIZATION
 from ddct_plant.base.errors import DdctError, printable
-from ddct_plant.signals.topics import all_topics
+from ddct_plant.signals.topics import TOPICS
 
 _BACKLOG = 65_536
 """
@@ -42,7 +42,7 @@ class LiveServer:
                 ),
                 context=self._context,
             )
-            for topic in all_topics()
+            for topic in TOPICS
         }
         try:
             self._server = foxglove.start_server(

@@ -136,11 +136,11 @@ def _load_messages() -> None:
     from rclpy.type_support import check_for_type_support
 
     from ddct_plant.bag_file.message_definitions import load_definition
-    from ddct_plant.signals.topics import all_topics
+    from ddct_plant.signals.topics import TOPICS
 
-    for topic in all_topics():
+    for topic in TOPICS:
         load_definition(topic.type)
-    classes = [topic.message_class for topic in all_topics()]
+    classes = [topic.message_class for topic in TOPICS]
     classes += [rcl_interfaces.msg.Log, rcl_interfaces.msg.ParameterEvent]
     classes += [getattr(rcl_interfaces.srv, name) for name in _SERVICES]
     # Of rclpy, in versions of ROS that have it.

@@ -11,7 +11,7 @@ from ddct_plant.base.errors import DdctError
 from ddct_plant.graph.node import GraphNode
 from ddct_plant.graph.qos import RECORDER_QOS
 from ddct_plant.signals.message_kind import ros_class
-from ddct_plant.signals.topics import all_topics
+from ddct_plant.signals.topics import TOPICS
 from ddct_plant.ticks.sequence import SequenceWatch
 
 CHECK_S = 0.2
@@ -95,11 +95,9 @@ class SolePublishers:
         self.found: DdctError | None = None
         """Error that names the second publisher; None before one is found."""
         self._topics = {
-            topic.name: node.resolve_topic_name(topic.name)
-            for topic in all_topics()
-            if topic.every_tick
+            topic.name: node.resolve_topic_name(topic.name) for topic in TOPICS if topic.every_tick
         }
-        self._types = {topic.name: topic.type for topic in all_topics()}
+        self._types = {topic.name: topic.type for topic in TOPICS}
         self._repeat = repeat
         self._listener: Node | None = None
         self._probes: dict[str, _Probe] = {}

@@ -241,11 +241,6 @@ def measurement_topics(*, sensed: bool) -> MeasurementTopics:
     return MeasurementTopics(JOINT_STATES, SLIP, VEHICLE_SPEED, ENGINE_TORQUE)
 
 
-def all_topics() -> tuple[Topic, ...]:
-    """Return all topics, in the order of the table."""
-    return TOPICS
-
-
 def recorded_topics(run: RunKind) -> tuple[Topic, ...]:
     """Return the topics that the recording of a run has, in writing order."""
     return tuple(
