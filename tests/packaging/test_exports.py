@@ -16,11 +16,7 @@ ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = ('ddct_plant', 'ddct_reference', 'ddct_controllers', 'ddct_bringup')
 WITHIN = {
     'base': (),
-    'files': (
-        'date_times.is_date_time',
-        'date_times.seconds_since_first',
-        'output_file.ANOTHER_FILE',
-    ),
+    'files': ('date_times.is_date_time', 'date_times.seconds_since_first'),
     'program': (
         'signals.interruptible',
         'signals.is_first_report',

@@ -25,7 +25,7 @@ from typing import Annotated, Any, NoReturn, TypeVar
 from ddct_plant.base.errors import DdctError, ParameterError
 from ddct_plant.base.options import close_name
 from ddct_plant.files.input_file import located, require_schema_version, user_text
-from ddct_plant.files.output_file import ANOTHER_FILE, write_text
+from ddct_plant.files.output_file import write_text
 
 T = TypeVar('T')
 _INLINE = 'inline'
@@ -68,7 +68,7 @@ def json_text(obj: Any) -> str:
     return json.dumps(to_json(obj), indent=2, allow_nan=False) + '\n'
 
 
-def write_json(target: str, obj: Any, advice: str = ANOTHER_FILE) -> None:
+def write_json(target: str, obj: Any, advice: str = '') -> None:
     """Write a record by `write_text`; raise ValueError for NaN and infinity."""
     write_text(target, json_text(obj), advice)
 

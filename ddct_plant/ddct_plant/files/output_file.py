@@ -11,8 +11,6 @@ from ddct_plant.base.errors import DdctError, ParameterError
 
 STDOUT = '-'
 """File name for standard output."""
-ANOTHER_FILE = 'give another file'
-"""What to do where a file cannot be written."""
 _PICTURES = ('.png', '.svg')
 
 
@@ -53,12 +51,12 @@ def require_one_for_stdout(json_target: str | None, csv_target: str | None) -> N
         raise DdctError('--json - and --csv - both want standard output: give one a file')
 
 
-def write_text(target: str, text: str, advice: str = ANOTHER_FILE) -> None:
+def write_text(target: str, text: str, advice: str = '') -> None:
     """
     Write `text` to the file `target`, or to standard output for `-`.
 
     A file is replaced completely or not at all; a device or pipe is written to. Raise DdctError,
-    with the advice, when it cannot be written.
+    with the advice, by default to give another file, when it cannot be written.
     """
     if target == STDOUT:
         sys.stdout.write(text)
@@ -66,7 +64,7 @@ def write_text(target: str, text: str, advice: str = ANOTHER_FILE) -> None:
         write_bytes(target, text.encode(), advice)
 
 
-def write_bytes(target: str, content: bytes, advice: str = ANOTHER_FILE) -> None:
+def write_bytes(target: str, content: bytes, advice: str = '') -> None:
     """Write bytes to the file `target`, with the guarantees of `write_text`."""
     path = Path(target).resolve()
     try:
@@ -75,6 +73,7 @@ def write_bytes(target: str, content: bytes, advice: str = ANOTHER_FILE) -> None
         else:
             _replace(path, content)
     except OSError as error:
+        advice = advice or 'give another file'
         raise DdctError(f'cannot be written ({error.strerror}); {advice}', place=target) from error
 
 
