@@ -179,7 +179,7 @@ class Plant:
         if self._two_input:
             received = tick.demand if requested is None else requested
             return Observation(tick, requested, None, received)
-        torque = reported = self._engine.torque(tick.step, requested, tick.true.engine_speed)
+        torque = reported = self._engine.torque(tick.demand, requested, tick.true.engine_speed)
         if self._estimate is not None:
             reported = self._estimate.measure(tick.step, torque).engine_torque
         return Observation(tick, requested, torque, reported)
@@ -196,7 +196,8 @@ class Plant:
         engine_torque = observation.delivered
         if engine_torque is None:
             requested = observation.requested if engine_request is None else engine_request
-            engine_torque = self._engine.torque(step, requested, true.engine_speed)
+            demand = observation.tick.demand
+            engine_torque = self._engine.torque(demand, requested, true.engine_speed)
         load_torque = self._load.torque(true.vehicle_speed, time_of_step(step))
         signals, side = true.signals, self.sides[0]
         torques, values = side.reply(step, torque_request, true)

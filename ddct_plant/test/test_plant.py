@@ -36,5 +36,5 @@ def test_a_commanded_engine_delivers_what_its_limits_allow_at_the_speed_of_the_e
     assert engine_speed == pytest.approx(104.72)
     assert shaft_speed == 0.0
     found = plant.reply(observation, 0.0, 80.0).engine_torque
-    assert found == engine.torque(0, 80.0, engine_speed)
-    assert found != make_engine(settings).torque(0, 80.0, shaft_speed)
+    assert found == engine.torque(engine.demand(0), 80.0, engine_speed)
+    assert found != make_engine(settings).torque(engine.demand(0), 80.0, shaft_speed)

@@ -51,7 +51,7 @@ def tight_tolerance_run(settings: RunSettings, name: str) -> dict[str, np.ndarra
         request = architecture.update(
             Measurement(step, w_m, w_p, w_r, speed, demand, references, rates)
         )
-        c_m = engine.torque(step, request.engine_torque)
+        c_m = engine.torque(engine.demand(step), request.engine_torque)
 
         def derivative(_, x, held=delayed, c_m=c_m, c_load=c_load):
             c_f = settings.case.wear_gain * (filter_.c @ x[4:])[0]

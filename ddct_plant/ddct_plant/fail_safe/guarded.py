@@ -120,6 +120,5 @@ class GuardedEngine(Guarded[float]):
         return super()._goes_without(step) if self.watch.received else self.watch.too_long(0, step)
 
     def _deliver(self, step: int, request: float | None) -> float:
-        if request is None:
-            request = self._engine.demand(step)
-        return self._engine.torque(step, request, self.speed)
+        demand = self._engine.demand(step)
+        return self._engine.torque(demand, demand if request is None else request, self.speed)

@@ -196,14 +196,13 @@ class Engine:
         """Return the driver's torque demand in N m at step `step`."""
         return self._profile.at(time_of_step(step))
 
-    def torque(self, step: int, request: float | None = None, speed: float = 0.0) -> float:
+    def torque(self, demand: float, request: float | None = None, speed: float = 0.0) -> float:
         """
-        Return the torque C_m in N m delivered over the period of step `step`.
+        Return the torque C_m in N m delivered over a period whose demand in N m is given.
 
         It is the demand, or the response to `request` in N m, within the engine's limits at
         w_m = `speed` in rad/s. With requests or limits it is called once per step, in order.
         """
-        demand = self.demand(step)
         requested = demand if request is None else self._response.deliver(demand, request)
         return requested if self._limited is None else self._limited.deliver(requested, speed)
 

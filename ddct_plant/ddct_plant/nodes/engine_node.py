@@ -88,7 +88,7 @@ class EngineNode(FollowerNode):
         speed, demand = inputs[JOINT_STATES.name], self._engine.demand(step)
         if self._command is None:
             return (
-                *self._delivered(step, stamp_ns, self._engine.torque(step, speed=speed)),
+                *self._delivered(step, stamp_ns, self._engine.torque(demand, speed=speed)),
                 self._demand.fill(stamp_ns, demand),
             )
         command = inputs[self._command.name]

@@ -74,8 +74,9 @@ def _driving(settings: AnySettings) -> InitialState:
     wheel_speed = scenario.driveline.gear.wheel_speed(scenario.initial.shaft_speed_rad_s)
     vehicle_speed = wheel_speed * scenario.vehicle.wheel_radius_m
     engine_speed = gears.ratio * scenario.initial.shaft_speed_rad_s
+    engine = make_engine(settings)
     torques = (
-        make_engine(settings).torque(0, speed=engine_speed),
+        engine.torque(engine.demand(0), speed=engine_speed),
         make_load(settings).torque(vehicle_speed),
         holding_torque(settings).capacity(0.0),
     )
@@ -101,7 +102,8 @@ def _before(settings: AnySettings) -> _Before:
         wheel_speed * scenario.vehicle.wheel_radius_m
     )
     engine_speed = initial.engine_speed_rad_s
-    engine_torque = make_engine(settings).torque(0, speed=engine_speed)
+    engine = make_engine(settings)
+    engine_torque = engine.torque(engine.demand(0), speed=engine_speed)
     static = StaticTorque(scenario.driveline, scenario.equilibrium)
     carried = static.torque(engine_torque, load_torque, engine_speed, initial.shaft_speed_rad_s)
     phase = initial.clutch_phase

@@ -33,12 +33,12 @@ def test_its_limits_are_those_at_the_speed_of_the_period_with_a_request_or_witho
 
     engine, bare_engine = GuardedEngine(limited(), 0.05), limited()
     engine.speed = 110.0
-    assert engine.request(0, 320.0) == bare_engine.torque(0, 320.0, 110.0) < 200.0
+    assert engine.request(0, 320.0) == bare_engine.torque(DEMAND, 320.0, 110.0) < 200.0
     assert [engine.tick(step) for step in range(1, 6)] == [None] * 5
     engine.speed = 300.0
-    for step in range(1, 6):
-        bare_engine.torque(step, 320.0, 300.0)
-    assert engine.tick(6) == bare_engine.torque(6, DEMAND, 300.0) > 200.0
+    for _ in range(1, 6):
+        bare_engine.torque(DEMAND, 320.0, 300.0)
+    assert engine.tick(6) == bare_engine.torque(DEMAND, DEMAND, 300.0) > 200.0
 
 
 @pytest.mark.parametrize('skipped', [1, 2, 4])

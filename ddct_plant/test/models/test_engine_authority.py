@@ -22,7 +22,12 @@ def delivered(authority: EngineAuthority, requests: list[float]) -> list[float]:
 
 def test_without_requests_the_engine_follows_the_profile():
     engine = Engine(PROFILE, EngineAuthority(deviation_n_m=1.0))
-    assert [engine.torque(step) for step in (0, 50, 100, 150)] == [0.0, 100.0, 200.0, 200.0]
+    assert [engine.torque(engine.demand(step)) for step in (0, 50, 100, 150)] == [
+        0.0,
+        100.0,
+        200.0,
+        200.0,
+    ]
 
 
 def test_free_authority_follows_any_request_at_once():
@@ -40,7 +45,9 @@ def test_the_rate_is_that_of_the_deviation():
     engine = Engine(PROFILE, limits)
     # The demand rises by 2 N m per period, which the rate does not count.
     requests = [engine.demand(step) + 100.0 for step in range(4)]
-    torques = [engine.torque(step, request) for step, request in enumerate(requests)]
+    torques = [
+        engine.torque(engine.demand(step), request) for step, request in enumerate(requests)
+    ]
     assert torques == pytest.approx([5.0, 12.0, 19.0, 26.0])
 
 

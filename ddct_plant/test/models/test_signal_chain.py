@@ -25,7 +25,7 @@ VEHICLE = VehicleParameters()
 
 def test_engine_follows_its_profile_and_holds_its_ends():
     engine = Engine(TorqueProfile((0.1, 0.2, 0.4), (10.0, 30.0, 20.0)))
-    torques = [engine.torque(step) for step in (0, 10, 15, 20, 30, 40, 90)]
+    torques = [engine.torque(engine.demand(step)) for step in (0, 10, 15, 20, 30, 40, 90)]
     assert torques == pytest.approx([10.0, 10.0, 20.0, 30.0, 25.0, 20.0, 20.0])
 
 
