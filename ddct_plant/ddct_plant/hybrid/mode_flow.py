@@ -25,12 +25,14 @@ def _projection(system: FrictionSystem, signs: Signs) -> tuple[np.ndarray, np.nd
     """
     Return the projection P (n, n) to zero slip of the stuck elements, and (h_S g_S)^-1 h_S.
 
-    Entries of P that are rounding of their terms are zero. Where sticking elements stop a state
-    altogether, its rates are then zero too.
+    Entries of both that are rounding of their terms are zero. So where sticking elements stop a
+    state altogether its rates are zero, and one that holds nothing has no torque.
     """
     stuck = [i for i, sign in enumerate(signs) if sign == 0]
     rows, columns = system.h[stuck], system.g[:, stuck]
-    hold = np.linalg.solve(rows @ columns, rows)
+    mobility = rows @ columns
+    hold = np.linalg.solve(mobility, rows)
+    hold[np.abs(hold) <= CANCELLED * (np.abs(np.linalg.inv(mobility)) @ np.abs(rows))] = 0.0
     projection = np.eye(len(system.a)) - columns @ hold
     terms = np.eye(len(system.a)) + np.abs(columns) @ np.abs(hold)
     projection[np.abs(projection) <= CANCELLED * terms] = 0.0

@@ -4,6 +4,8 @@
 
 from collections.abc import Iterator, Sequence
 
+ROUNDING = 2.0**-50
+"""Value that counts as zero, over the largest coefficient."""
 _STEPS = 200
 """Most steps of Newton's rule; bisection alone needs about 60."""
 
@@ -33,7 +35,8 @@ def first_negative(powers: Sequence[float], nodes: Sequence[float]) -> float | N
     """
     if len(powers) < 2:
         return None
-    return 0.0 if powers[0] < 0.0 else next(sign_changes(powers, nodes), None)
+    zero = ROUNDING * max(map(abs, powers))
+    return 0.0 if powers[0] < -zero else next(sign_changes(powers, nodes), None)
 
 
 def sign_changes(powers: Sequence[float], nodes: Sequence[float]) -> Iterator[float]:
@@ -44,24 +47,25 @@ def sign_changes(powers: Sequence[float], nodes: Sequence[float]) -> Iterator[fl
     value with the same sign at two of them changes it between them only if it goes towards zero at
     the first and away from it at the second: then it is checked at its extremum too.
     """
-    low, value, slope = 0.0, *powers[:2]
+    least = -ROUNDING * max(map(abs, powers))
+    low, negative, slope = 0.0, powers[0] < least, powers[1]
     for high in nodes:
-        negative, towards = value < 0.0, slope
+        before, towards, side = negative, slope, -1.0 if negative else 1.0
         value, slope = _value_and_slope(powers, high)
-        if (value < 0.0) != negative:
-            yield _sign_change(powers, low, high)
-        elif towards > 0.0 > slope if negative else towards < 0.0 < slope:
+        negative = value < least
+        if negative != before:
+            yield _sign_change(powers, before, low, high)
+        elif side * towards < 0.0 < side * slope:
             slopes = [order * powers[order] for order in range(1, len(powers))]
-            extremum = _sign_change(slopes, low, high)
-            if (value_at(powers, extremum) < 0.0) != negative:
-                yield _sign_change(powers, low, extremum)
-                yield _sign_change(powers, extremum, high)
+            extremum = _sign_change(slopes, not before, low, high)
+            if (value_at(powers, extremum) < least) != before:
+                yield _sign_change(powers, before, low, extremum)
+                yield _sign_change(powers, not before, extremum, high)
         low = high
 
 
-def _sign_change(powers: Sequence[float], low: float, high: float) -> float:
-    """Return the one sign change from `low` to `high`, by Newton's rule kept within them."""
-    negative = value_at(powers, low) < 0.0
+def _sign_change(powers: Sequence[float], negative: bool, low: float, high: float) -> float:
+    """Return where a value that is `negative` at `low` and not at `high` changes, by Newton."""
     close = 2.0**-52 * high
     at = 0.5 * (low + high)
     for _ in range(_STEPS):
