@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from support.logs import identify
+from support.logs import identify, written
 from support.other_car import COLUMNS, TRUE, drive, write_csv
 from support.runs import expected, plan, record
 
@@ -15,17 +15,20 @@ from ddct_bringup.identification.from_log import command
 from ddct_bringup.identification.identify import main
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.scores.csv_text import signals_csv
-from ddct_plant.scenario.file import load_scenario, scenario_to_yaml
+from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 pytestmark = pytest.mark.slow
+
+CONTROLLED = ['duration_s=3.0', 'control_start_s=0.6', 'reference.slope_rad_s2=114.0']
+"""What a drive of the thesis's scenario has of it beside the log."""
 
 
 def test_a_foreign_log_gives_tables_json_and_a_scenario_that_runs(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     write_csv(folder / 'other.csv', 4, drive(2))
-    out, report = folder / 'mycar.yaml', folder / 'report.json'
+    out, report = folder / 'mycar', folder / 'report.json'
     check = ['--check', str(folder / 'other.csv')]
     assert identify(folder, *check, '--out', str(out), '--json', str(report)) == 0
     printed = capsys.readouterr().out
@@ -37,24 +40,19 @@ def test_a_foreign_log_gives_tables_json_and_a_scenario_that_runs(
     assert sum(held) >= 6
     signals = {each['signal']: each for each in content['held_out']['signals']}
     assert all(each['nrmse'] < 0.02 for each in signals.values())
-    assert signals['shaft_speed']['white'] is True
-    scenario = load_scenario(str(out))
-    assert scenario.name == 'drive'
-    assert 'drive.csv' in scenario.description
-    assert [line.split()[0] for line in scenario.adjusted] == [
-        'vehicle.mass_kg',
-        'gear',
-        'load.slope_rad',
-    ]
-    assert scenario.driveline.vehicle_inertia == rows['vehicle_inertia']['value']
+    scenario = written(out)
+    assert scenario.name == 'drive_drive_drive_car'
+    car, replay = ((out / f'drive_{noun}.yaml').read_text() for noun in ('car', 'drive'))
+    assert 'base: c635_thesis' in car
+    assert all('from drive.csv (SHA-256' in each for each in (car, replay))
+    assert scenario.driveline.vehicle_inertia == pytest.approx(rows['vehicle_inertia']['value'])
     assert run_headless(RunSettings(KnownSettings(scenario)), 'pi').steps == scenario.steps
-    car = load_scenario('thesis', ['gear=1'], car=str(folder / 'mycar_car.yaml'))
-    assert (car.driveline.shaft_inertia, car.vehicle) == (
-        scenario.driveline.shaft_inertia,
-        scenario.vehicle,
+    in_first = load_scenario(car=str(out / 'drive_car.yaml'), drive='thesis', overrides=['gear=1'])
+    assert (in_first.driveline, in_first.vehicle) == (scenario.driveline, scenario.vehicle)
+    other = load_scenario(
+        car='c635_thesis', drive=str(out / 'drive_drive.yaml'), overrides=['gear=1']
     )
-    replay = load_scenario(car='c635_thesis', drive=str(folder / 'mycar_drive.yaml'))
-    assert (replay.engine, replay.duration_s) == (scenario.engine, scenario.duration_s)
+    assert (other.engine, other.duration_s) == (scenario.engine, scenario.duration_s)
 
 
 def test_the_scenario_of_a_noisy_bag_reproduces_another_run_of_the_same_car(
@@ -73,13 +71,11 @@ def test_the_scenario_of_a_noisy_bag_reproduces_another_run_of_the_same_car(
             cells[name] = repr(float(cells[name]) + 0.05 * random.standard_normal())
         lines[number] = ','.join(cells.values())
     (tmp_path / 'noisy.csv').write_text('\n'.join(lines) + '\n')
-    out = tmp_path / 'mine.yaml'
+    out = tmp_path / 'mine'
     fixed = ['--fix', 'engine_damping']
     assert main(['--from', str(tmp_path / 'noisy.csv'), '--out', str(out), *fixed]) == 0
     truth = expected(plan('ls8', 'headless', duration_s=3.0, changes=heavy))
-    found = run_headless(
-        RunSettings(KnownSettings(load_scenario(str(out), ['duration_s=3.0']))), 'ls8'
-    )
+    found = run_headless(RunSettings(KnownSettings(written(out, 'noisy', CONTROLLED))), 'ls8')
     thesis = expected(plan('ls8', 'headless', duration_s=3.0))
     spread = np.std(truth.slip_speed)
     assert np.sqrt(np.mean((found.slip_speed - truth.slip_speed) ** 2)) < 0.02 * spread
@@ -218,19 +214,71 @@ def test_an_existing_file_is_refused_at_out_before_the_fit_and_stays(
     folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(command, 'fit_log', _no_fit)
+    (folder / 'mine').mkdir()
+    car = folder / 'mine' / 'drive_car.yaml'
     for content, options, complaint in (
-        ('name: mine', [], 'exists already: choose another --out or add --overwrite'),
-        ('a,b', ['--overwrite'], 'is no scenario, and --overwrite replaces only that'),
+        ('base: c635', [], 'exists already: choose another --out or add --overwrite'),
+        ('a,b', ['--overwrite'], 'is no car, and --overwrite replaces only that'),
     ):
-        (folder / 'mine.yaml').write_text(content)
-        assert identify(folder, '--out', str(folder / 'mine.yaml'), *options) == 1
+        car.write_text(content)
+        assert identify(folder, '--out', str(folder / 'mine'), *options) == 1
         (line,) = capsys.readouterr().err.splitlines()
-        assert f'{folder / "mine.yaml"} {complaint}' in line
-        assert (folder / 'mine.yaml').read_text() == content
+        assert f'{car} {complaint}' in line
+        assert car.read_text() == content
+    assert [*car.parent.iterdir()] == [car]
 
 
-def test_an_earlier_scenario_is_replaced_with_overwrite(folder: Path) -> None:
-    out = folder / 'mine.yaml'
-    out.write_text(scenario_to_yaml(load_scenario('launch')))
-    assert identify(folder, '--out', str(out), '--overwrite') == 0
-    assert load_scenario(str(out)).name == 'drive'
+def test_out_is_a_folder(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert identify(folder, '--out', str(folder / 'map.yaml')) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert 'is a file: name a folder' in line
+
+
+def test_an_earlier_car_and_drive_are_replaced_with_overwrite(folder: Path) -> None:
+    out = folder / 'mine'
+    for _ in range(2):
+        assert identify(folder, '--out', str(out), '--overwrite') == 0
+        assert written(out).driveline.engine_inertia == pytest.approx(0.18, rel=0.01)
+        (out / 'drive_car.yaml').write_text('base: c635\n')
+
+
+def test_a_log_with_uneven_times_is_refused_in_one_line(
+    folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Every third row is lost, so that steps of 8 and 16 ms follow one another."""
+    monkeypatch.setattr(command, 'fit_log', _no_fit)
+    file = folder / 'drive.csv'
+    lines = file.read_text().splitlines()
+    kept = [line for number, line in enumerate(lines[2:]) if number % 3]
+    file.write_text('\n'.join([*lines[:2], *kept]) + '\n')
+    assert identify(folder) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert f'{file}: engine_speed is sampled unevenly' in line
+    assert 'below 0.008 s and a tenth above 0.016 s' in line
+
+
+@pytest.mark.parametrize(
+    ('run', 'times'),
+    [
+        ('start_s: 701.0, control_start_s: 0.5', (1.5, (1.5, 4.8))),
+        ('start_s: 700.0, control_start_s: 0.5, score_window_s: [0.6, 2.0]', (0.5, (0.6, 2.0))),
+    ],
+)
+def test_control_start_and_window_of_the_drive_are_those_of_the_column_map(
+    folder: Path, run: str, times: tuple[float, tuple[float, float]]
+) -> None:
+    (folder / 'map.yaml').write_text(f'{COLUMNS}run: {{{run}}}\n')
+    assert identify(folder, '--out', str(folder / 'mine')) == 0
+    found = written(folder / 'mine')
+    assert (found.control_start_s, found.score_window_s) == times
+
+
+def test_a_window_outside_of_the_log_is_refused(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    run = 'run: {start_s: 704.0, control_start_s: 2.0}\n'
+    (folder / 'map.yaml').write_text(COLUMNS + run)
+    assert identify(folder, '--out', str(folder / 'mine')) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert 'control start at 6 s' in line
+    assert not (folder / 'mine').exists()

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 from refusals import refused
+from support.log_coverage import BEFORE, coverage
 from support.logs import (
     NONE_LATE,
     drag,
@@ -38,6 +39,17 @@ def test_signals_that_are_rows_late_move_delays_and_not_parameters(
 ) -> None:
     """More logs are in tests/nightly/measured."""
     require_delays_alone(pi_log, late, rows, true)
+
+
+@pytest.mark.parametrize('kind', BEFORE)
+def test_intervals_cover_the_true_values_in_a_sample_of_drives(
+    pi_log: MeasuredLog, kind: str
+) -> None:
+    """Of 60 intervals 57 are expected, with a deviation of 2; 200 drives are in tests/nightly."""
+    found = coverage(kind, range(5), pi_log)
+    held, fitted = map(sum, zip(found.parameters, found.delays, strict=True))
+    assert fitted == 60
+    assert held >= 52
 
 
 @pytest.mark.parametrize('corners_on_rows', [True, False])

@@ -57,7 +57,6 @@ def test_noise_with_a_memory_widens_the_intervals(fit: LogFit) -> None:
     for name, size, each in zip(SPEEDS, NOISE_RAD_S, noise, strict=True):
         signals[name] = signals[name] + size * each
     slow = fit_log(log_of(signals), DrivelineParameters.from_values(TRUE), drag)
-    assert slow.noise.order >= 1
     for name in ('engine_inertia', 'total_ratio', 'vehicle_inertia'):
         assert slow.std[name] > 2.0 * fit.std[name]
     assert sum(hits(slow)) >= 6
@@ -75,9 +74,9 @@ def test_data_outside_the_fit_are_predicted_and_a_wrong_car_is_detected(fit: Log
     stretches = stretches_of(other, drag)
     predictions = {each.signal: each for each in predict(fit, stretches)}
     assert max(each.nrmse or 1.0 for each in predictions.values()) < 0.02
-    assert [each.white for each in predictions.values()] == [True, True, True, None]
     wrong = replace(fit, values={**fit.values, 'halfshaft_stiffness': 6000.0})
-    assert not all(each.white for each in predict(wrong, stretches)[1:3])
+    missed = {each.signal: each.rms_rad_s for each in predict(wrong, stretches)}
+    assert missed['shaft_speed'] > 2.0 * predictions['shaft_speed'].rms_rad_s
 
 
 def test_what_the_log_does_not_show_is_named_and_kept() -> None:
@@ -102,9 +101,13 @@ def test_a_log_at_constant_speed_shows_nothing_beside_what_is_fixed() -> None:
         fit_log(constant_log(), START, drag, fixed)
 
 
-def test_a_fixed_parameter_keeps_its_value(fit: LogFit) -> None:
+def test_a_fixed_parameter_keeps_its_value() -> None:
+    """The torques have thrice the rows of the speeds, so that they are known between them."""
+    signals, rows = drive().noisy(0), np.arange(len(drive().time_s))
+    signals |= {name: np.where(rows % 3, np.nan, signals[name]) for name in SPEEDS}
+    fit = fit_log(log_of(signals), START, drag)
     start = START.with_values(total_ratio=12.5)
-    fixed = fit_log(log_of(drive().noisy(0)), start, drag, ('total_ratio',))
+    fixed = fit_log(log_of(signals), start, drag, ('total_ratio',))
     assert fixed.values['total_ratio'] == 12.5
     assert 'total_ratio' not in fixed.std
     assert fixed.std['vehicle_inertia'] <= 1.01 * fit.std['vehicle_inertia']

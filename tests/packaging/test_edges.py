@@ -49,6 +49,7 @@ FILES = {
     'ddct_controllers/workflows/design_output.py': 'records as JSON; arguments of argparse',
     'ddct_plant/files/input_file.py': 'the schema version of any file',
     'ddct_plant/files/json_records.py': 'any JSON',
+    'ddct_bringup/identification/from_log/car_and_drive.py': 'car and drive, YAML',
     'ddct_bringup/identification/from_log/log_fit_report.py': 'identify --log --json',
     'ddct_bringup/identification/identification_report.py': 'identify --json',
     'ddct_bringup/logs/columns.py': 'column map, YAML',

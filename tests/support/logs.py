@@ -9,13 +9,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from ddct_bringup.identification.from_log.base_car import drag_of
 from ddct_bringup.identification.from_log.command import NEEDED
 from ddct_bringup.identification.from_log.fit import fit_log
 from ddct_bringup.identification.from_log.prediction import SpeedPrediction, predict
 from ddct_bringup.identification.from_log.result import LogFit
-from ddct_bringup.identification.from_log.scenario import load_of
-from ddct_bringup.identification.from_log.stretch import TORQUES
-from ddct_bringup.identification.from_log.stretches import stretches_of
+from ddct_bringup.identification.from_log.stretches import TORQUES, stretches_of
 from ddct_bringup.identification.from_log.verdict import reasons_against
 from ddct_bringup.identification.identify import main
 from ddct_bringup.logs.columns import TIME, own_columns
@@ -23,6 +22,7 @@ from ddct_bringup.logs.log import SPEEDS, MeasuredLog, read_log
 from ddct_bringup.scores.csv_text import signals_csv
 from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.scenario import Scenario
 from support.other_car import TRUE, drive
 from support.runs import plan, record
 
@@ -123,7 +123,7 @@ def require_delays_alone(
     """
     thesis = load_scenario('thesis')
     fits = [
-        fit_log(rows_late(noisy_log(log, seed), late, rows), thesis.driveline, load_of(thesis))
+        fit_log(rows_late(noisy_log(log, seed), late, rows), thesis.driveline, drag_of(thesis))
         for seed in (1, 2)
     ]
     assert sum(sum(within(fit, thesis.driveline.values() | true)) for fit in fits) >= 21
@@ -143,3 +143,9 @@ def identify(folder: Path, *options: str) -> int:
     """Run `identify` on the log and column map of a folder; return the exit code."""
     log = ['--from', str(folder / 'drive.csv'), '--columns', str(folder / 'map.yaml')]
     return main([*log, *options])
+
+
+def written(folder: Path, log: str = 'drive', overrides: Sequence[str] = ()) -> Scenario:
+    """Return the scenario of the car and drive that `identify` wrote for a log into a folder."""
+    car, drive_file = (str(folder / f'{log}_{noun}.yaml') for noun in ('car', 'drive'))
+    return load_scenario(None, overrides, car=car, drive=drive_file)

@@ -37,7 +37,7 @@ examples:
   ddct identify
   ddct identify --json parameters.json
   ddct identify --as-printed    (334.4, an erratum: nothing fits; exit code 1)
-  ddct identify --from runs/demo/pi --check runs/demo/ls8 --out mycar.yaml
+  ddct identify --from runs/demo/pi --check runs/demo/ls8 --out mycar
   ddct identify --from drive.csv --columns columns.yaml --fix total_ratio"""
 
 

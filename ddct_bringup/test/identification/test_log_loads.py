@@ -9,9 +9,14 @@ import numpy as np
 import pytest
 
 from ddct_bringup.identification.from_log.fit import fit_log
-from ddct_bringup.identification.from_log.model import Sampling, responses
-from ddct_bringup.identification.from_log.stretch import TORQUES, Stretch, slip_of
-from ddct_bringup.identification.from_log.stretches import stretches_of
+from ddct_bringup.identification.from_log.response import responses
+from ddct_bringup.identification.from_log.stretches import (
+    INPUTS,
+    OUTPUTS,
+    TORQUES,
+    Stretch,
+    stretches_of,
+)
 from ddct_bringup.logs.columns import OWN_HELD, own_columns
 from ddct_bringup.logs.log import SPEEDS, MeasuredLog
 from ddct_plant.models.parameters import DrivelineParameters
@@ -32,12 +37,10 @@ def part(start_s: float, samples: int, load_n_m: float, random: np.random.Genera
         np.zeros((samples, 3)),
         time_s,
         table,
-        second_differences=np.zeros((samples, 3)),
         held=(False, False, False),
         load_known=False,
-        known_s=(float(time_s[0]), float(time_s[-1])),
     )
-    forced, basis = responses(DrivelineParameters().values(), Sampling(), stretch)
+    forced, basis = responses(DrivelineParameters().values(), stretch)
     speeds = forced + basis @ np.array([200.0, 180.0, 180.0 / RATIO, 0.02, load_n_m])
     noise = 1e-3 * random.standard_normal(speeds.shape)
     return replace(stretch, speeds=speeds + noise)
@@ -68,12 +71,10 @@ def test_a_stretch_counts_by_its_length() -> None:
 
 def test_columns_of_a_stretch_are_found_by_name() -> None:
     one, two = (np.arange(3.0 * n).reshape(n, 3) for n in (2, 4))
-    stretch = Stretch(
-        np.arange(2.0), one, np.arange(4.0), two, two, (False,) * 3, True, (0.0, 1.0)
-    )
-    assert stretch.speed('wheel_speed').tolist() == [2.0, 5.0]
-    assert stretch.torque('clutch_torque').tolist() == [1.0, 4.0, 7.0, 10.0]
-    assert slip_of(stretch.speeds).tolist() == [-1.0, -1.0]
+    stretch = Stretch(np.arange(2.0), one, np.arange(4.0), two, (False,) * 3, load_known=True)
+    assert stretch.speeds[:, OUTPUTS['wheel_speed']].tolist() == [2.0, 5.0]
+    assert stretch.torques[:, INPUTS['clutch_torque']].tolist() == [1.0, 4.0, 7.0, 10.0]
+    assert stretch.slip.tolist() == [-1.0, -1.0]
 
 
 @pytest.mark.parametrize('held', [(), OWN_HELD], ids=['of a car', 'of our plant'])
@@ -88,7 +89,7 @@ def test_a_computed_load_is_held_between_samples_in_a_log_of_our_plant_alone(
     (found,) = stretches_of(log, lambda wheels: 2.0 * wheels)
     inside = (found.grid_s >= -1e-9) & (found.grid_s < 0.5999)
     expected = 2.0 * (10 * (rows[:600] // 10) if held else rows[:600])
-    assert np.allclose(found.torque('load_torque')[inside], expected, rtol=0.0, atol=1e-6)
+    assert np.allclose(found.torques[inside, INPUTS['load_torque']], expected, rtol=0.0, atol=1e-6)
     assert found.held == (bool(held), False, bool(held))
 
 

@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from ddct_bringup.identification.from_log import model
+from ddct_bringup.identification.from_log import response
 from ddct_bringup.identification.from_log.problem import LogProblem
 from ddct_bringup.identification.from_log.stretches import FEWEST_SAMPLES, stretches_of
+from ddct_bringup.identification.from_log.unknowns import Unknowns
 from ddct_bringup.logs.log import MeasuredLog
 from ddct_plant.models.parameters import DrivelineParameters
 
@@ -70,16 +71,15 @@ def test_the_modes_of_the_driveline_are_computed_once_for_all_stretches(
     stretches = stretches_of(log_of(4), no_load)
     evaluations: list[int] = []
     computed: list[DrivelineParameters] = []
-    matrices = model.driveline_matrices
+    matrices = response.driveline_matrices
 
     def counted(parameters: DrivelineParameters) -> Any:
         computed.append(parameters)
         return matrices(parameters)
 
-    monkeypatch.setattr(model, 'driveline_matrices', counted)
-    problem: Any = LogProblem(
-        stretches, DrivelineParameters(), {}, ['engine_inertia'], lambda: evaluations.append(1)
-    )
+    monkeypatch.setattr(response, 'driveline_matrices', counted)
+    unknowns = Unknowns(['engine_inertia'], DrivelineParameters().values(), 1.0)
+    problem: Any = LogProblem(unknowns, stretches, lambda: evaluations.append(1))
     for change in (0.0, 0.1):
         problem._residuals(np.array([change]), stretches)
     assert (len(evaluations), len(computed)) == (2, 2)

@@ -4,6 +4,7 @@
 
 import numpy as np
 import pytest
+from support.log_coverage import BEFORE, coverage
 from support.logs import (
     NONE_LATE,
     constant_log,
@@ -11,12 +12,10 @@ from support.logs import (
     hits,
     judged,
     log_of,
-    noisy_log_of,
     require_delays_alone,
     speeds_late,
-    within,
 )
-from support.other_car import SPEEDS, TRUE, drive, late_log
+from support.other_car import SPEEDS, TRUE, drive
 
 from ddct_bringup.identification.from_log.fit import fit_log
 from ddct_bringup.identification.from_log.result import LogFit
@@ -26,6 +25,8 @@ from ddct_plant.models.parameters import DrivelineParameters
 START = DrivelineParameters()
 """Driveline that differs from the one of the logs."""
 SEEDS = 12
+DRIVES = {'corners on rows': 70, 'corners between rows': 70, 'late signal': 60}
+"""Number of drives by kind."""
 
 
 @pytest.fixture(scope='module')
@@ -71,19 +72,15 @@ def test_a_log_at_constant_speed_shows_the_ratio_at_most() -> None:
     assert {'engine_inertia', 'halfshaft_stiffness', 'vehicle_inertia'} <= set(fit.undetermined)
 
 
-def test_intervals_cover_delays_and_parameters_at_their_rate_on_white_noise() -> None:
-    """The expected number of covering intervals is 136 of 144, with a deviation of 3."""
-    held = []
-    for seed in range(SEEDS):
-        delays = np.random.default_rng(seed).uniform(-0.05, 0.05, len(NONE_LATE)).tolist()
-        true = dict(zip(NONE_LATE, delays, strict=True))
-        times, signals = late_log(seed, true, corners_on_rows=True)
-        fit = fit_log(
-            noisy_log_of(times, signals, seed), DrivelineParameters.from_values(TRUE), drag
-        )
-        held += within(fit, TRUE | true)
-    assert len(held) == 12 * SEEDS
-    assert sum(held) >= 127
+@pytest.mark.parametrize(('kind', 'drives'), DRIVES.items(), ids=DRIVES)
+def test_intervals_cover_the_true_values_as_often_as_before(
+    pi_log: MeasuredLog, kind: str, drives: int
+) -> None:
+    """In 200 drives; tests/measured has a sample."""
+    found, before = coverage(kind, range(drives), pi_log), BEFORE[kind]
+    for (held, fitted), rate in zip((found.parameters, found.delays), before, strict=True):
+        assert held >= rate * fitted
+    assert found.parameters[1] == 8 * drives
 
 
 @pytest.mark.parametrize(

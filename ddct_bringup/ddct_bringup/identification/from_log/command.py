@@ -1,37 +1,38 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""`identify --from LOG`: the driveline of a measured car, as tables, JSON and a scenario."""
+"""`identify --from LOG`: a measured driveline as tables and JSON, its car and drive as files."""
 
 import argparse
 import itertools
 from collections.abc import Sequence
 from pathlib import Path
 
+from ddct_bringup.bag.measured_keys import MeasuredKeys
+from ddct_bringup.identification.from_log.base_car import drag_of, radius_of, with_radius
+from ddct_bringup.identification.from_log.car_and_drive import (
+    LogDrive,
+    OutFolder,
+    base_of_car,
+    write_car_and_drive,
+)
 from ddct_bringup.identification.from_log.fit import fit_log
 from ddct_bringup.identification.from_log.log_fit_report import LogFitReport, content_of, print_fit
 from ddct_bringup.identification.from_log.prediction import predict
-from ddct_bringup.identification.from_log.result import PARAMETERS
-from ddct_bringup.identification.from_log.scenario import (
-    load_of,
-    name_of,
-    radius_of,
-    replay_of,
-    require_new_scenario,
-    with_radius,
-    write_scenario,
-)
-from ddct_bringup.identification.from_log.stretch import TORQUES
-from ddct_bringup.identification.from_log.stretches import stretches_of
+from ddct_bringup.identification.from_log.stretches import TORQUES, stretches_of
+from ddct_bringup.identification.from_log.unknowns import PARAMETERS
 from ddct_bringup.identification.from_log.verdict import reasons_against
 from ddct_bringup.logs.columns import TIME, ColumnMap, load_columns, own_columns
 from ddct_bringup.logs.log import SPEEDS, MeasuredLog, read_log
 from ddct_bringup.logs.wheel_radius import VEHICLE_SPEED
 from ddct_plant.base.errors import DdctError
-from ddct_plant.files.output_file import require_place
+from ddct_plant.base.options import options_of, require_known
+from ddct_plant.files.output_file import STDOUT, require_place
 from ddct_plant.program.command_line import ProgramParser, show_and_write
+from ddct_plant.program.printed_table import print_note
 from ddct_plant.program.progress import Progress
-from ddct_plant.scenario.choices.command_line import add_scenario_options
+from ddct_plant.scenario.choices.command_line import add_scenario_options, choice_of
 from ddct_plant.scenario.chosen import scenario_of as base_scenario
+from ddct_plant.scenario.nouns.keys import NOUNS
 
 NEEDED = (*SPEEDS, *TORQUES)
 """Quantities that a log must have."""
@@ -65,20 +66,21 @@ def add_log_options(parser: ProgramParser) -> None:
         default=[],
         metavar='NAME',
         choices=PARAMETERS,
-        help=f'keep this parameter as the scenario has it; one of {", ".join(PARAMETERS)}',
+        help=f'keep this parameter as the car has it; one of {", ".join(PARAMETERS)}',
     )
     group.add_argument(
         '--force',
         action='store_true',
-        help='accept a fit that is refused: write the scenario all the same, exit code 0',
+        help='accept a fit that is refused: write car and drive all the same, exit code 0',
     )
     group.add_argument(
         '--out',
-        metavar='FILE.yaml',
-        help='write a scenario that replays the log, and its car and drive beside it',
+        metavar='FOLDER',
+        type=Path,
+        help='write the car, and a drive that replays the log, into this folder',
     )
     group.add_argument(
-        '--overwrite', action='store_true', help='replace an earlier scenario at --out'
+        '--overwrite', action='store_true', help='replace an earlier car and drive at --out'
     )
     add_scenario_options(group, set_example='vehicle.wheel_radius_m=0.31')
 
@@ -87,44 +89,53 @@ def identify_log(options: argparse.Namespace) -> int:
     """Fit the log, predict held-out data, print and write the result; return the exit code."""
     if not 0.1 <= options.hold_out <= 0.9:
         raise DdctError(f'--hold-out is {options.hold_out:g}: give a share from 0.1 to 0.9')
-    for option, file in (('--out', options.out), ('--json', options.json)):
-        require_place(option, file)
-    require_new_scenario(options.out, overwrite=options.overwrite)
+    require_place('--json', options.json)
+    out = OutFolder(options.out, options.log) if options.out else None
+    if out:
+        out.require_new(overwrite=options.overwrite)
+        base_of_car(choice_of(options))
     start = base_scenario(options, options.overrides)
     columns = (
         load_columns(options.columns)
         if options.columns
         else own_columns(TIME, *NEEDED, optional=(VEHICLE_SPEED,))
     )
+    require_known(columns.run, options_of(MeasuredKeys), prefix='run.')
     fitted, held_out = _logs(options, columns)
     radius = radius_of(start, options.overrides, fitted)
     base = with_radius(start, radius)
-    known_load, known_delays = load_of(base), columns.known_delays
-    # Before the fit, which takes long, because it raises the errors of the held-out data.
-    predicted = stretches_of(held_out, known_load)
+    drag = drag_of(base)
+    # Before the fit, which takes long, because they raise the errors of the logs.
+    stretches, predicted = stretches_of(fitted, drag), stretches_of(held_out, drag)
     count = itertools.count(1)
     with Progress('fitting the driveline, evaluations') as progress:
         fit = fit_log(
             fitted,
             start.driveline,
-            known_load,
+            drag,
             options.fix,
-            known_delays,
+            columns.known_delays,
             lambda: progress.update(next(count)),
         )
     predictions = predict(fit, predicted)
-    reasons = reasons_against(fit, predictions, stretches_of(fitted, known_load))
-    report = LogFitReport(fit, radius, start.name, predictions, reasons, fitted, held_out)
+    reasons = reasons_against(fit, predictions, stretches)
+    report = LogFitReport(
+        fit, radius, start.name, len(stretches), predictions, reasons, fitted, held_out
+    )
     show_and_write(options.json, content_of(report), lambda: print_fit(report))
     if reasons and not options.force:
-        kept = '; no scenario is written' if options.out else ''
+        kept = '; nothing is written' if out else ''
         raise DdctError(
             f'{options.log}: the fit is refused: {reasons[0]}{_more(reasons)}{kept}: mend the log '
             'or its column map, or accept the fit with --force'
         )
-    if options.out:
+    if out:
         whole = read_log(options.log, columns, NEEDED)
-        write_scenario(options.out, replay_of(base, name_of(options.log), fit, whole))
+        drive = LogDrive(base, fit, whole, columns.run, stretches_of(whole, drag))
+        write_car_and_drive(out, choice_of(options), options.overrides, drive)
+        if options.json != STDOUT:
+            files = ' '.join(f'--{noun} {out.files[noun]}' for noun in NOUNS)
+            print_note(f'Run it: ddct bringup --controller pi --headless {files} --out runs/new')
     return 0
 
 

@@ -7,29 +7,27 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from ddct_bringup.identification.from_log.delays import (
-    BEND_OF,
-    DELAYED,
-    REFERENCE,
-    residuals_by_name,
-    without_ends,
+from ddct_bringup.identification.from_log.perturbed import (
+    half_of_the_rows,
+    with_more_noise,
 )
-from ddct_bringup.identification.from_log.dependence import Dependence, dependences
-from ddct_bringup.identification.from_log.determined import not_determined
-from ddct_bringup.identification.from_log.problem import LogProblem, nothing
-from ddct_bringup.identification.from_log.result import PARAMETERS, SLIP, LogFit
-from ddct_bringup.identification.from_log.stretch import (
-    LOAD,
-    SPEED_COLUMNS,
-    TORQUES,
-    Stretch,
-    slip_of,
-)
+from ddct_bringup.identification.from_log.problem import LogProblem, used
+from ddct_bringup.identification.from_log.response import residuals_of
+from ddct_bringup.identification.from_log.result import SLIP, LogFit
 from ddct_bringup.identification.from_log.stretches import (
+    INPUTS,
+    OUTPUTS,
+    TORQUES,
     KnownLoad,
+    Stretch,
     stretches_of,
-    torques_are_noisy,
-    with_more_torque_noise,
+)
+from ddct_bringup.identification.from_log.unknowns import (
+    DELAY_S,
+    DELAYED,
+    PARAMETERS,
+    REFERENCE,
+    Unknowns,
 )
 from ddct_bringup.logs.log import SPEEDS, MeasuredLog
 from ddct_plant.base.errors import DdctError
@@ -38,16 +36,12 @@ from ddct_plant.models.parameters import DrivelineParameters
 
 _ROLLING = 1.0
 """Least wheel speed in rad/s for an estimate of the ratio of the speeds."""
-_BENT = 0.02
+_LATER = 0.02
 """
-Standard deviation of the delay of an interpolated torque, over the step of its samples.
+Deviation of the delay of an interpolated torque, over the step of its rows.
 
-The torque of our own actuator is 0.02 steps later than linear interpolation of rows of 10 ms.
+The torque of our own actuator is 0.02 steps later than straight lines between rows of 10 ms.
 """
-_MORE_NOISE = 4
-"""Number of fits with doubled noise of the torques, which measure its effect."""
-_ALL_FITTED: Mapping[str, float] = {}
-"""Known delays of a fit in which every delay is fitted."""
 
 
 def fit_log(
@@ -55,8 +49,8 @@ def fit_log(
     start: DrivelineParameters,
     known_load: KnownLoad,
     fixed: Sequence[str] = (),
-    known_delays: Mapping[str, float] = _ALL_FITTED,
-    evaluated: Callable[[], None] = nothing,
+    known_delays: Mapping[str, float] | None = None,
+    evaluated: Callable[[], None] = lambda: None,
 ) -> LogFit:
     """
     Fit driveline and delays to a log; `fixed` parameters keep the value of `start`.
@@ -65,39 +59,43 @@ def fit_log(
     is 0 if it is not given: the others are relative to it. `evaluated` is called at each
     evaluation of the residuals, of which a fit has hundreds to thousands.
 
-    White noise of the torques biases a fit, as it is no torque of the car. So the fit is repeated
-    with that noise doubled; the shift is subtracted, and counts as a deviation (simulation and
-    extrapolation, Cook and Stefanski 1994). Numbers that the log does not determine keep their
-    start value, and are listed. Raise DdctError when no number is determined, or when the fit does
-    not converge.
+    The torques of a log are not quite those of the car: they have noise, and nobody knows them
+    between their rows. Both bias a fit. So it is repeated with more of either, and what moves then
+    is extrapolated back, and counts as a deviation (simulation and extrapolation, Cook and
+    Stefanski 1994). So does the scatter by the noise, which is added anew in each
+    repetition. Numbers that the log does not determine keep their start value, and are listed.
+    Raise DdctError when no number is determined, or when the fit does not converge.
     """
-    stretches = stretches_of(log, known_load)
+    known_delays, stretches = known_delays or {}, stretches_of(log, known_load)
     if 'total_ratio' not in fixed:
         start = start.in_gear(_gear(log, stretches))
-    noisier = [
-        stretches_of(with_more_torque_noise(log, seed), known_load)
-        for seed in range(_MORE_NOISE)
-        if torques_are_noisy(log)
-    ]
     signals = [name for name in DELAYED if name in log.signals]
     reference = known_delays.get(REFERENCE, 0.0)
     delays = dict.fromkeys((REFERENCE, *signals), reference) | dict(known_delays)
+    noisier, thinner = (
+        [stretches_of(each, known_load) for each in logs]
+        for logs in (with_more_noise(log), half_of_the_rows(log))
+    )
     free = [name for name in PARAMETERS if name not in fixed]
     free += [name for name in signals if name not in known_delays]
-    bends = [f'{BEND_OF}{name}' for name in TORQUES if name not in log.held]
     weak: list[str] = []
     while len(weak) < len(free):
-        fitted = [name for name in (*free, *bends) if name not in weak]
-        problem = LogProblem(stretches, start, delays, fitted, evaluated)
-        x, covariance, jacobian = problem.solve()
-        moved = problem.moved_by(x, noisier) if noisier else np.zeros(len(x))
-        std = np.sqrt(np.diag(covariance) + moved**2)
-        found = not_determined(fitted, std, np.abs(moved))
+        names = [name for name in free if name not in weak]
+        unknowns = Unknowns(names, start.values() | delays, _torque_per_speed(stretches))
+        problem = LogProblem(unknowns, stretches, evaluated)
+        x, by_speeds = problem.solve()
+        by_noise, variance = _mean_and_variance(problem.moves(x, noisier))
+        thinned, _ = _mean_and_variance(problem.moves(x, thinner))
+        # Half of the rows have twice the noise in each second, too. The error between rows grows
+        # with the square of their step, so a third of the rest is that of corners anywhere.
+        between = (thinned - by_noise) / 3.0 if thinner else 0.0 * x
+        std = np.sqrt(by_speeds + variance + by_noise**2 + between**2)
+        # Corners on rows make no error: half of it is moved back.
+        moved = by_noise + between / 2.0
+        found = unknowns.not_determined(std, moved)
         if not found:
-            used = [problem.used(each) for each in (stretches, *noisier)]
-            dependent = dependences(problem.values(x), problem.noise, used[0], jacobian, used[1:])
-            deviations = problem.in_units(std) | _between(log, fitted, problem.in_units(std))
-            return _result(problem, x - moved, deviations, weak, stretches, dependent)
+            std = np.hypot(std, [_lateness(log, name) / DELAY_S for name in names])
+            return _result(unknowns, x - moved, std, weak, stretches)
         weak += found
     raise DdctError(
         f'the log determines none of {", ".join(free)}: take one in which torques and '
@@ -106,24 +104,32 @@ def fit_log(
     )
 
 
-def _between(
-    log: MeasuredLog, fitted: Sequence[str], deviations: Mapping[str, float]
-) -> dict[str, float]:
-    """Return the deviations in s of the delays of linearly interpolated torques."""
-    return {
-        name: math.hypot(deviations[name], _BENT * log.usual_step(name))
-        for name in (*TORQUES, LOAD)
-        if name in fitted and name not in log.held
-    }
+def _mean_and_variance(steps: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the mean step, and the variance of one step beside it; (n,) each, 0 without steps."""
+    if not len(steps):
+        return np.zeros(steps.shape[1]), np.zeros(steps.shape[1])
+    return steps.mean(axis=0), steps.var(axis=0, ddof=1) * (1.0 + 1.0 / len(steps))
+
+
+def _lateness(log: MeasuredLog, name: str) -> float:
+    """Return the deviation in s of the delay of an interpolated torque; 0 of other numbers."""
+    return 0.0 if name not in INPUTS or name in log.held else _LATER * log.usual_step(name)
+
+
+def _torque_per_speed(stretches: Sequence[Stretch]) -> float:
+    """Return the r.m.s. of C_m and C_f over that of w_m and w_p, in N m s/rad."""
+    driving, damped = INPUTS.places(*TORQUES), OUTPUTS.places('engine_speed', 'shaft_speed')
+    torques = np.concatenate([each.torques[:, driving].ravel() for each in stretches])
+    speeds = np.concatenate([each.speeds[:, damped].ravel() for each in stretches])
+    return float(np.sqrt(np.mean(torques**2) / np.mean(speeds**2)))
 
 
 def _gear(log: MeasuredLog, stretches: Sequence[Stretch]) -> EngagedGear:
     """Return the gear of the median of w_p over w_r; raise DdctError where no car has it."""
     speeds = np.vstack([each.speeds for each in stretches])
-    shaft, wheel = speeds[:, SPEED_COLUMNS.places('shaft_speed', 'wheel_speed')].T
+    shaft, wheel = speeds[:, OUTPUTS.places('shaft_speed', 'wheel_speed')].T
     rolling = np.abs(wheel) > _ROLLING
-    ratios = shaft[rolling] / wheel[rolling]
-    ratio = float(np.median(ratios)) if len(ratios) else math.nan
+    ratio = float(np.median(shaft[rolling] / wheel[rolling])) if rolling.any() else math.nan
     least, most = RATIOS_OF_CARS
     if not least <= ratio <= most:
         raise DdctError(
@@ -135,33 +141,24 @@ def _gear(log: MeasuredLog, stretches: Sequence[Stretch]) -> EngagedGear:
 
 
 def _result(
-    problem: LogProblem,
+    unknowns: Unknowns,
     x: np.ndarray,
-    deviations: Mapping[str, float],
+    std: np.ndarray,
     weak: Sequence[str],
     stretches: Sequence[Stretch],
-    dependent: Sequence[Dependence],
 ) -> LogFit:
     """Return the fit with its deviations in the units of the parameters."""
-    values = problem.values(x)
-    stretches = without_ends(stretches, values)
-    loads = [residuals_by_name(values, each)[1][-1] for each in stretches if not each.load_known]
+    values, deviations = unknowns.values(x), unknowns.deviations(std)
+    stretches = used(stretches, values)
+    loads = [residuals_of(values, each)[1][-1] for each in stretches if not each.load_known]
     lengths = [len(each.time_s) for each in stretches if not each.load_known]
+    speeds = np.vstack([np.column_stack([each.speeds, each.slip]) for each in stretches])
     return LogFit(
         values={name: values[name] for name in PARAMETERS},
         std={name: each for name, each in deviations.items() if name in PARAMETERS},
         delays={name: each for name, each in values.items() if name in (REFERENCE, *DELAYED)},
         delay_std={name: each for name, each in deviations.items() if name in DELAYED},
-        bends={name: each for name, each in values.items() if name.startswith(BEND_OF)},
         undetermined=tuple(weak),
-        noise=problem.noise,
-        dependences=dict(zip(SPEEDS, dependent, strict=True)),
-        spreads=_spreads(stretches),
+        spreads=dict(zip((*SPEEDS, SLIP), speeds.std(axis=0).tolist(), strict=True)),
         load_torque=float(np.average(loads, weights=lengths)) if loads else None,
     )
-
-
-def _spreads(stretches: Sequence[Stretch]) -> dict[str, float]:
-    speeds = np.vstack([each.speeds for each in stretches])
-    spreads = np.column_stack([speeds, slip_of(speeds)]).std(axis=0).tolist()
-    return dict(zip((*SPEEDS, SLIP), spreads, strict=True))

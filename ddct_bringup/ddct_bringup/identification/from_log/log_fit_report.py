@@ -6,16 +6,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from ddct_bringup.identification.from_log.delays import REFERENCE
+from ddct_bringup.identification.from_log.base_car import ASSUMED, GIVEN, WheelRadius
 from ddct_bringup.identification.from_log.prediction import SpeedPrediction
-from ddct_bringup.identification.from_log.result import (
-    ASSUMED,
-    GIVEN,
-    PARAMETERS,
-    LogFit,
-    WheelRadius,
-)
-from ddct_bringup.identification.from_log.stretch import LOAD
+from ddct_bringup.identification.from_log.result import LogFit
+from ddct_bringup.identification.from_log.stretches import LOAD
+from ddct_bringup.identification.from_log.unknowns import REFERENCE
 from ddct_bringup.identification.from_log.verdict import doubts
 from ddct_bringup.logs.log import MeasuredLog
 from ddct_bringup.logs.wheel_radius import MeasuredRadius
@@ -26,50 +21,15 @@ from ddct_plant.program.table import Table, Weight, text_or_dash, with_reasons
 
 
 @dataclass(frozen=True)
-class ParameterRow:
-    """One parameter of the driveline, in SI units."""
-
-    name: str
-    """Name of its key in a scenario."""
-    symbol: str
-    """Symbol in the thesis."""
-    value: float | None
-    """Value of the fit; None where the log does not determine it."""
-    lowest: float | None
-    """Lower end of the 95 % interval; None for a parameter that was not fitted."""
-    highest: float | None
-    """Upper end of that interval."""
-    unit: str
-    state: str
-    """State of the parameter: `fitted`, `fixed` or `not determined`."""
-    used: float
-    """Value in the new scenario."""
-
-
-@dataclass(frozen=True)
-class DelayRow:
-    """Delay of one signal of the log relative to the engine speed."""
-
-    signal: str
-    """Name of the signal."""
-    delay_s: float | None
-    """Delay in s; None where the log does not determine it."""
-    lowest_s: float | None
-    """Lower end of the 95 % interval in s; None for a delay that was not fitted."""
-    highest_s: float | None
-    """Upper end of that interval in s."""
-    state: str
-    """State of the delay: `fitted`, `given`, `reference` or `not determined`."""
-
-
-@dataclass(frozen=True)
 class LogFitReport:
     """A fit to a log, its prediction of held-out data, and the reasons to refuse it."""
 
     fit: LogFit
     radius: WheelRadius
     base: str
-    """Name of the base scenario."""
+    """Name of what the fit started from."""
+    stretches: int
+    """Number of parts without a gap that were fitted."""
     predictions: Sequence[SpeedPrediction]
     """Prediction of each speed and of the slip."""
     reasons: Sequence[str]
@@ -82,7 +42,10 @@ class LogFitReport:
     @property
     def notes(self) -> list[str]:
         """Notes on the limits of the fit, as sentences."""
-        return [*doubts(self.fit, self.predictions), *_on_radius(self.radius, self.base)]
+        notes = [*doubts(self.fit, self.predictions), *_on_radius(self.radius, self.base)]
+        if self.stretches > 1:
+            notes.append(f'the log has gaps, and {self.stretches} stretches between them are used')
+        return notes
 
     @property
     def mass_kg(self) -> float:
@@ -90,34 +53,51 @@ class LogFitReport:
         return self.fit.parameters.vehicle_inertia / self.radius.value_m**2
 
     @property
-    def parameters(self) -> list[ParameterRow]:
-        """Every parameter of the driveline."""
-        fit, rows, used = self.fit, [], self.fit.parameters.values()
-        for name in PARAMETERS:
-            symbol, unit = SYMBOLS_AND_UNITS[name]
-            interval = fit.interval(name)
+    def parameters(self) -> list[dict[str, Any]]:
+        """
+        Every parameter of the driveline in SI units: value, interval, state, value of the car.
+
+        The state is `fitted`, `fixed` or `not determined`; without a value or interval it is None.
+        """
+        fit, used, rows = self.fit, self.fit.parameters.values(), []
+        for name, (symbol, unit) in SYMBOLS_AND_UNITS.items():
+            lowest, highest = fit.interval(name) or (None, None)
             weak = name in fit.undetermined
-            state = 'fitted' if interval else 'not determined' if weak else 'fixed'
-            value = None if state == 'not determined' else fit.values[name]
-            lowest, highest = interval or (None, None)
-            row = ParameterRow(name, symbol, value, lowest, highest, unit, state, used[name])
-            rows.append(row)
+            rows.append(
+                {
+                    'name': name,
+                    'symbol': symbol,
+                    'value': None if weak else fit.values[name],
+                    'lowest': lowest,
+                    'highest': highest,
+                    'unit': unit,
+                    'state': 'not determined' if weak else 'fixed' if lowest is None else 'fitted',
+                    'used': used[name],
+                }
+            )
         return rows
 
     @property
-    def delays(self) -> list[DelayRow]:
-        """Delay of every signal of the log."""
+    def delays(self) -> list[dict[str, Any]]:
+        """Delay of every signal in s: its 95 % interval, and a state as of a parameter."""
         fit, rows = self.fit, []
         for name, value in fit.delays.items():
-            interval = fit.interval(name)
-            state = 'fitted' if interval else 'given'
+            lowest, highest = fit.interval(name) or (None, None)
+            state = 'given' if lowest is None else 'fitted'
             if name in fit.undetermined:
                 state = 'not determined'
             elif name == REFERENCE and not value:
                 state = 'reference'
             delay = None if name in fit.undetermined else value
-            lowest, highest = interval or (None, None)
-            rows.append(DelayRow(name, delay, lowest, highest, state))
+            rows.append(
+                {
+                    'signal': name,
+                    'delay_s': delay,
+                    'lowest_s': lowest,
+                    'highest_s': highest,
+                    'state': state,
+                }
+            )
         return rows
 
 
@@ -130,8 +110,8 @@ def content_of(report: LogFitReport) -> dict[str, Any]:
         'log': str(fitted.path),
         'sha256': fitted.digest,
         'fitted_s': list(_span(fitted)),
-        'parameters': [vars(row) for row in report.parameters],
-        'delays': [vars(row) for row in report.delays],
+        'parameters': report.parameters,
+        'delays': report.delays,
         'wheel_radius': {
             'value_m': report.radius.value_m,
             'state': report.radius.state,
@@ -140,11 +120,11 @@ def content_of(report: LogFitReport) -> dict[str, Any]:
         'mass_kg': report.mass_kg,
         'load_torque_n_m': fit.load_torque,
         'load_torque_measured': LOAD in fitted.signals,
-        'noise_lags': fit.noise.order,
+        'stretches': report.stretches,
         'held_out': {
             'log': str(held_out.path),
             'time_s': list(_span(held_out)),
-            'signals': [vars(each) | {'white': each.white} for each in report.predictions],
+            'signals': [vars(each) for each in report.predictions],
         },
         'notes': report.notes,
     }
@@ -165,15 +145,15 @@ def print_fit(report: LogFitReport) -> None:
     _print_table(
         Table(
             f'Driveline from {report.fitted.path}, {begin:g} to {end:g} s; intervals of 95 %',
-            ('parameter', 'symbol', 'value', 'lowest', 'highest', 'unit', 'state', 'new scenario'),
+            ('parameter', 'symbol', 'value', 'lowest', 'highest', 'unit', 'state', 'new car'),
             [
                 (
-                    row.name,
-                    row.symbol,
-                    *(text_or_dash(each, '.5g') for each in (row.value, row.lowest, row.highest)),
-                    row.unit,
-                    row.state,
-                    text_or_dash(row.used, '.5g'),
+                    row['name'],
+                    row['symbol'],
+                    *(text_or_dash(row[each], '.5g') for each in ('value', 'lowest', 'highest')),
+                    row['unit'],
+                    row['state'],
+                    text_or_dash(row['used'], '.5g'),
                 )
                 for row in report.parameters
             ],
@@ -189,12 +169,12 @@ def print_fit(report: LogFitReport) -> None:
             ('signal', 'delay ms', 'lowest', 'highest', 'state'),
             [
                 (
-                    row.signal,
+                    row['signal'],
                     *(
-                        text_or_dash(None if each is None else 1e3 * each, '.3f')
-                        for each in (row.delay_s, row.lowest_s, row.highest_s)
+                        text_or_dash(None if row[each] is None else 1e3 * row[each], '.3f')
+                        for each in ('delay_s', 'lowest_s', 'highest_s')
                     ),
-                    row.state,
+                    row['state'],
                 )
                 for row in report.delays
             ],
@@ -204,15 +184,12 @@ def print_fit(report: LogFitReport) -> None:
     _print_table(
         Table(
             f'Prediction of {report.held_out.path}, {begin:g} to {end:g} s',
-            ('signal', 'RMS rad/s', 'NRMSE', 'whiteness p', 'torque p', 'residual'),
+            ('signal', 'RMS rad/s', 'NRMSE'),
             [
                 (
                     each.signal,
                     text_or_dash(each.rms_rad_s, '.3g'),
                     text_or_dash(each.nrmse, '.3g'),
-                    text_or_dash(each.whiteness_p, '.2g'),
-                    text_or_dash(each.torque_p, '.2g'),
-                    {None: '-', True: 'noise', False: 'not noise'}[each.white],
                 )
                 for each in report.predictions
             ],
@@ -239,7 +216,7 @@ def _dash_reason(header: str, row: Sequence[str]) -> str:
         return 'the log does not determine it'
     if header in ('lowest', 'highest'):
         return 'not fitted'
-    return 'the log has too few values for this test'
+    return 'it does not vary'
 
 
 def _radius_text(report: LogFitReport) -> str:
@@ -247,7 +224,7 @@ def _radius_text(report: LogFitReport) -> str:
     radius = report.radius
     value, found = f'{radius.value_m:.5g} m', radius.measured
     if radius.state == ASSUMED:
-        return f'{value}, assumed: that of the scenario {report.base}'
+        return f'{value}, assumed: that of {report.base}'
     if radius.state == GIVEN or not found:
         return f'{value}, given by --set'
     return f'{value} ({_interval(found)}), measured: vehicle_speed over wheel_speed'
@@ -261,8 +238,8 @@ def _on_radius(radius: WheelRadius, base: str) -> Iterator[str]:
     """Yield notes on a wheel radius that may be wrong."""
     if radius.state == ASSUMED:
         yield (
-            f'the wheel radius of {radius.value_m:.5g} m is an assumption, that of the scenario '
-            f'{base}: the mass, and V_x, A_x and jerk of the new scenario are wrong with it; log '
+            f'the wheel radius of {radius.value_m:.5g} m is an assumption, that of {base}: the '
+            'mass, and V_x, A_x and jerk of the new car are wrong with it; log '
             f'vehicle_speed too, or give --set {RADIUS}=...'
         )
     if found := radius.contradiction:

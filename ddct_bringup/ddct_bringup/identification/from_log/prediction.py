@@ -8,17 +8,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ddct_bringup.identification.from_log.delays import residuals_by_name, without_ends
-from ddct_bringup.identification.from_log.noise import whiteness
+from ddct_bringup.identification.from_log.problem import used
+from ddct_bringup.identification.from_log.response import residuals_of
 from ddct_bringup.identification.from_log.result import SLIP, LogFit
-from ddct_bringup.identification.from_log.stretch import Stretch, slip_of
-from ddct_bringup.identification.from_log.stretches import white_noise
+from ddct_bringup.identification.from_log.stretches import Stretch, white_noise
 from ddct_bringup.logs.log import SPEEDS
 
-WHITE_FROM = 0.01
-"""Least p-value of residuals that count as white."""
 NEGLIGIBLE = 2e-4
-"""Largest negligible r.m.s. in a speed, over its standard deviation in the fitted data."""
+"""Largest negligible deviation of a speed, over that in the fitted data."""
 _STILL = 1e-9
 """Standard deviation in rad/s assumed for a speed that does not change."""
 _BEYOND_NOISE = 2.0
@@ -44,17 +41,6 @@ class SpeedPrediction:
     error: float
     """R.m.s. without white noise, over the larger standard deviation of held-out and fitted
     data."""
-    whiteness_p: float | None
-    """p-value of Ljung and Box for the whitened residuals; None for the slip."""
-    torque_p: float | None
-    """p-value of the fit's residuals for noise independent of the torques; None for the slip."""
-
-    @property
-    def white(self) -> bool | None:
-        """Whether both tests accept the residual as white noise; None where not tested."""
-        if self.whiteness_p is None or self.torque_p is None:
-            return None
-        return min(self.whiteness_p, self.torque_p) >= WHITE_FROM
 
 
 def predict(fit: LogFit, stretches: Sequence[Stretch]) -> list[SpeedPrediction]:
@@ -64,44 +50,36 @@ def predict(fit: LogFit, stretches: Sequence[Stretch]) -> list[SpeedPrediction]:
     The initial state of each stretch, and its C_load where it was not measured, are fitted to the
     held-out data; the driveline is not.
     """
-    values = fit.values | fit.delays | fit.bends
-    stretches = without_ends(stretches, values)
-    left = [residuals_by_name(values, each)[0] for each in stretches]
-    p_values = whiteness([fit.noise.white(each) for each in left])
-    measured, residual = (
-        np.column_stack([speeds, slip_of(speeds)])
-        for speeds in (np.vstack([each.speeds for each in stretches]), np.vstack(left))
+    stretches = used(stretches, fit.all_values)
+    left = np.vstack([residuals_of(fit.all_values, each)[0] for each in stretches])
+    measured = np.vstack([each.speeds for each in stretches])
+    columns = (np.column_stack([each, each[:, 0] - each[:, 1]]) for each in (measured, left))
+    return [
+        _prediction(name, values, residuals, fit.spreads[name])
+        for name, values, residuals in zip(
+            (*SPEEDS, SLIP), *(each.T for each in columns), strict=True
+        )
+    ]
+
+
+def _prediction(
+    name: str, measured: np.ndarray, residuals: np.ndarray, fitted_spread: float
+) -> SpeedPrediction:
+    """Return the prediction of a speed, (n,); `fitted_spread` is that of the fitted data."""
+    rms, spread = float(np.sqrt(np.mean(residuals**2))), float(measured.std())
+    error = math.sqrt(max(rms**2 - white_noise(residuals) ** 2, 0.0))
+    still = _still(measured, fitted_spread)
+    return SpeedPrediction(
+        signal=name,
+        rms_rad_s=rms,
+        nrmse=None if still else rms / spread,
+        no_nrmse=still,
+        error=error / max(spread, fitted_spread, _STILL),
     )
-    found = []
-    for index, name in enumerate((*SPEEDS, SLIP)):
-        rms, spread = (
-            float(np.sqrt(np.mean(residual[:, index] ** 2))),
-            float(measured[:, index].std()),
-        )
-        noise = white_noise(residual[:, index])
-        still = _still(measured[:, index], fit.spreads[name])
-        tested = name in SPEEDS
-        found.append(
-            SpeedPrediction(
-                signal=name,
-                rms_rad_s=rms,
-                nrmse=None if still else rms / spread,
-                no_nrmse=still,
-                error=math.sqrt(max(rms**2 - noise**2, 0.0))
-                / max(spread, fit.spreads[name], _STILL),
-                whiteness_p=p_values[index] if tested else None,
-                torque_p=fit.dependences[name].p_value if tested else None,
-            )
-        )
-    return found
 
 
 def _still(measured: np.ndarray, fitted_spread: float) -> str | None:
-    """
-    Return in which way a speed of the held-out data, (n,), does not vary; None if it does.
-
-    `fitted_spread` is its standard deviation in rad/s in the fitted data.
-    """
+    """Return in which way a speed of the held-out data, (n,), does not vary; None if it does."""
     spread = float(measured.std())
     if spread <= _SAME:
         return 'it is constant'

@@ -1,48 +1,32 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Least-squares problem of a fit to the stretches of a log, with the noise model."""
+"""Least-squares problem of a fit to the stretches of a log, with the noise of the speeds."""
 
 from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 import scipy
 
-from ddct_bringup.identification.from_log.delays import (
-    BEND_OF,
-    BEND_SCALE,
-    BENDS,
-    DELAY_SCALE_S,
-    DELAYED,
-    residuals_by_name,
-    sampling_of,
-    without_ends,
+from ddct_bringup.identification.from_log.response import (
+    NUISANCE,
+    residuals_of,
+    responses,
+    shifts_of,
 )
-from ddct_bringup.identification.from_log.model import NUISANCE, responses
-from ddct_bringup.identification.from_log.noise import NoiseModel, fit_noise
-from ddct_bringup.identification.from_log.stretch import (
-    SPEED_COLUMNS,
-    TORQUE_COLUMNS,
-    TORQUES,
-    Stretch,
-)
-from ddct_bringup.logs.columns import MOST_DELAY_S
+from ddct_bringup.identification.from_log.stretches import OUTPUTS, Stretch
+from ddct_bringup.identification.from_log.unknowns import Unknowns
 from ddct_plant.base.errors import DdctError
-from ddct_plant.models.parameters import DrivelineParameters
 
-DAMPINGS = ('engine_damping', 'shaft_damping')
-"""Parameters that may be zero, so that their values are fitted; the others' logarithms are."""
-_PRIOR_STD = float(np.log(10.0))
-"""Prior standard deviation of a logarithm: undetermined parameters stay near their start."""
-_DELAY_PRIOR = MOST_DELAY_S / DELAY_SCALE_S
-"""Prior standard deviation of a delay, over its scale."""
+_LAGS = 4
+"""Lags of the noise model."""
+_FEWEST = 20
+"""Fewest samples of a used stretch, without the samples that the delays cost."""
+_LEAST_VARIANCE = 1e-10
+"""Least variance of a speed, over the sum of all: noise of zero variance cannot be whitened."""
+_ROUNDING = 1e-12
+"""Least standard deviation of a speed in rad/s, that of the rounding in an exact log."""
 _INSIDE = 0.999
 """Share of the bounds within which a fit starts."""
-_BOUND = float(np.log(1000.0))
-"""Bound of the change of a logarithm, damping or bend, in the units of x."""
-_LEAST_SPREAD = 1e-9
-"""Standard deviation in rad/s assumed for the steps of a constant speed."""
-_MOST_ROUNDS = 5
-"""Most rounds of fit and noise model."""
 _STEP = 1e-6
 """
 Difference step in x of the Jacobian.
@@ -50,105 +34,125 @@ Difference step in x of the Jacobian.
 The root of the machine epsilon, scipy's step, is too small for an exact log: there the rounding of
 the speeds is as large as the residuals, and the fit takes many times as many iterations.
 """
-_COARSE = 1e-4
-"""Relative change of cost or x at which an approximate fit ends."""
-_SETTLED = 0.05
-"""Largest change of an estimate in the last round, over its standard deviation."""
+_COARSE, _FINE = 1e-4, 1e-7
+"""Relative change of cost or x at which an approximate fit ends, and a final one."""
+_MOST_ROUNDS, _SETTLED = 5, 0.05
+"""Most rounds of fit and noise model, and the change over the deviation at which they end."""
 
 
-def nothing() -> None:
-    """Do nothing at an evaluation: the default of a fit without progress."""
+def used(stretches: Sequence[Stretch], values: Mapping[str, float]) -> list[Stretch]:
+    """
+    Return the stretches without the samples whose torques are not in the log.
+
+    A torque with the delay d is in the log d after the sample of a speed. Raise DdctError when no
+    stretch is left.
+    """
+    kept = []
+    for each in stretches:
+        shifts, _ = shifts_of(values, each)
+        step = np.median(np.diff(each.time_s))
+        first, last = each.time_s[0] - step, each.time_s[-1] + step
+        rows = (each.time_s + shifts.min() >= first) & (each.time_s + shifts.max() <= last)
+        if rows.sum() >= _FEWEST:
+            kept.append(each.rows(rows))
+    if not kept:
+        raise DdctError('the delays leave no stretch of the log: give a longer log')
+    return kept
+
+
+class _Noise:
+    """r_k = a_1 r_(k-1) + ... + a_p r_(k-p) + e_k for each speed, e white of covariance S."""
+
+    def __init__(self, residuals: Sequence[np.ndarray], fitted: int, lags: int = _LAGS) -> None:
+        """
+        Fit the model to residuals (n, 3) of several stretches.
+
+        `fitted` is the number of fitted values behind them, by which the covariance is corrected.
+        """
+        now = np.vstack([each[lags:] for each in residuals])
+        before = [
+            np.vstack([each[lags - lag : len(each) - lag] for each in residuals])
+            for lag in range(1, lags + 1)
+        ]
+        self._shares = np.zeros((lags, len(OUTPUTS)))
+        for output in range(len(OUTPUTS) if lags else 0):
+            table = np.column_stack([each[:, output] for each in before])
+            self._shares[:, output] = np.linalg.lstsq(table, now[:, output], rcond=None)[0]
+        left = now - sum(a * each for a, each in zip(self._shares, before, strict=True))
+        covariance = left.T @ left / max(len(now) - lags - fitted / len(OUTPUTS), 1.0)
+        least = max(_LEAST_VARIANCE * float(np.trace(covariance)), _ROUNDING**2)
+        factor = np.linalg.cholesky(covariance + least * np.eye(len(OUTPUTS)))
+        self._whitening = np.linalg.inv(factor)
+
+    def white(self, values: np.ndarray) -> np.ndarray:
+        """Return L^-1 e of residuals, (n, 3, m), with S = L L^T, from the sample p on."""
+        lags, samples = len(self._shares), len(values)
+        left = values[lags:].copy()
+        for lag, share in enumerate(self._shares, start=1):
+            left -= share[:, None] * values[lags - lag : samples - lag]
+        return np.einsum('ij,njm->nim', self._whitening, left)
 
 
 class LogProblem:
-    """
-    Least-squares problem for the parameters and delays called `free`.
-
-    x has ln(value / start) of a parameter, the change over torque per speed of a damping, the
-    change over DELAY_SCALE_S of a delay, the value over BEND_SCALE of a bend. The nuisances are
-    linear, so they are projected out of the whitened residuals.
-    """
+    """Least-squares problem for unknowns; the nuisances are projected out, as they are linear."""
 
     def __init__(
-        self,
-        stretches: Sequence[Stretch],
-        start: DrivelineParameters,
-        delays: Mapping[str, float],
-        free: Sequence[str],
-        evaluated: Callable[[], None] = nothing,
+        self, unknowns: Unknowns, stretches: Sequence[Stretch], evaluated: Callable[[], None]
     ) -> None:
-        """Store what is fitted; `evaluated` is called at each evaluation of the residuals."""
-        self._evaluated = evaluated
-        self._whole, self.free = stretches, free
-        self._start: dict[str, float] = start.values() | dict(delays)
-        self._at: Mapping[str, float] = self._start
-        driving = TORQUE_COLUMNS.places(*TORQUES)
-        damped = SPEED_COLUMNS.places('engine_speed', 'shaft_speed')
-        torques = np.concatenate([each.torques[:, driving].ravel() for each in stretches])
-        speeds = np.concatenate([each.speeds[:, damped].ravel() for each in stretches])
-        self.damping = float(np.sqrt(np.mean(torques**2) / np.mean(speeds**2)))
-        spread = np.vstack([np.diff(each.speeds, axis=0) for each in stretches]).std(axis=0)
-        self.noise = NoiseModel(np.zeros((3, 0)), np.diag(np.maximum(spread, _LEAST_SPREAD)))
+        """Begin with white noise as large as the steps of the speeds."""
+        self._unknowns, self._whole, self._evaluated = unknowns, stretches, evaluated
+        self._at: Mapping[str, float] = {}
+        self._noise = _Noise([np.diff(each.speeds, axis=0) for each in stretches], 0, 0)
 
-    def values(self, x: np.ndarray) -> dict[str, float]:
-        """Return every parameter, delay in s and bend at x, by name, in SI units."""
-        found = dict(self._start)
-        for name, change in zip(self.free, x.tolist(), strict=True):
-            if name in DAMPINGS:
-                found[name] += change * self.damping
-            elif name in DELAYED:
-                found[name] += change * DELAY_SCALE_S
-            elif name.startswith(BEND_OF):
-                found[name] = change * BEND_SCALE
-            else:
-                found[name] *= float(np.exp(change))
-        return found
-
-    def in_units(self, std: np.ndarray) -> dict[str, float]:
-        """Return deviations by name: in SI units for dampings and delays, else relative."""
-        scales = dict.fromkeys(DAMPINGS, self.damping) | dict.fromkeys(DELAYED, DELAY_SCALE_S)
-        scales |= dict.fromkeys(BENDS, BEND_SCALE)
-        return {n: scales.get(n, 1.0) * e for n, e in zip(self.free, std.tolist(), strict=True)}
-
-    def solve(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def solve(self) -> tuple[np.ndarray, np.ndarray]:
         """
-        Alternate fit and noise model; return x, its covariance and the Jacobian of the residuals.
+        Alternate fit and noise model; return x and the variances of its entries, (n,) each.
 
         The first fit assumes white noise: residuals of a wrong start are no noise, and a noise
         model of them would mask the error. It uses all samples; later fits use those whose torques
-        are in the log at the present delays.
+        are in the log at the present delays. A variance is the larger one of noise with a memory
+        and of noise without.
         """
-        x = self._fitted(np.zeros(len(self.free)), self._whole, _COARSE)[0]
+        x = self._fitted(np.zeros(len(self._unknowns.names)), self._whole, _COARSE)[0]
         for _ in range(_MOST_ROUNDS):
-            self._at = self.values(x)
-            stretches = self.used(self._whole)
-            left = [residuals_by_name(self.values(x), each)[0] for each in stretches]
-            self.noise = fit_noise(left, len(x) + NUISANCE * len(left))
-            before = x
-            x, jacobian = self._fitted(x, stretches)
-            covariance = np.linalg.inv(jacobian.T @ jacobian)
-            if np.all(np.abs(x - before) < _SETTLED * np.sqrt(np.diag(covariance))):
+            values = self._unknowns.values(x)
+            self._at, before = values, x
+            stretches = self._used(self._whole)
+            left = [residuals_of(values, each)[0] for each in stretches]
+            fitted = len(x) + NUISANCE * len(left)
+            self._noise = _Noise(left, fitted)
+            x, jacobian = self._fitted(x, stretches, _FINE)
+            variance = _variance(jacobian)
+            if np.all(np.abs(x - before) < _SETTLED * np.sqrt(variance)):
                 break
-        return x, covariance, jacobian[: -len(x)]
+        # The model of a short log has less noise at low frequencies than there is.
+        model, self._noise = self._noise, _Noise(left, fitted, 0)
+        variance = np.maximum(variance, _variance(self._jacobian(x, stretches)))
+        self._noise = model
+        return x, variance
 
-    def used(self, stretches: Sequence[Stretch]) -> list[Stretch]:
+    def moves(self, x: np.ndarray, others: Sequence[Sequence[Stretch]]) -> np.ndarray:
+        """Return the steps from x to the fits to other logs, (k, n), by Gauss and Newton."""
+        steps = np.zeros((len(others), len(x)))
+        for step, each in zip(steps, map(self._used, others), strict=True):
+            jacobian, residuals = self._jacobian(x, each), self._residuals(x, each)
+            step[:] = np.linalg.lstsq(jacobian, -residuals, rcond=None)[0]
+        return steps
+
+    def _used(self, stretches: Sequence[Stretch]) -> list[Stretch]:
         """Return the stretches with the samples that the last round of the fit used."""
-        return without_ends(stretches, self._at)
-
-    def moved_by(self, x: np.ndarray, others: Sequence[Sequence[Stretch]]) -> np.ndarray:
-        """Return the mean shift of x in fits to other stretches, with the present noise model."""
-        fits = [self._fitted(x, self.used(each), _COARSE)[0] for each in others]
-        return np.mean(fits, axis=0) - x
+        return used(stretches, self._at)
 
     def _fitted(
-        self, x: np.ndarray, stretches: Sequence[Stretch], settled: float = 1e-7
+        self, x: np.ndarray, stretches: Sequence[Stretch], settled: float
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Return x of the best fit and its Jacobian, whose last rows are those of the prior."""
+        """Return x of the best fit, and the Jacobian of the residuals there."""
+        bound = self._unknowns.bound
         answer = scipy.optimize.least_squares(
             self._residuals,
-            np.clip(x, -self._bounds * _INSIDE, self._bounds * _INSIDE),
+            np.clip(x, -bound * _INSIDE, bound * _INSIDE),
             self._jacobian,
-            bounds=(-self._bounds, self._bounds),
+            bounds=(-bound, bound),
             x_scale='jac',
             ftol=settled,
             xtol=settled,
@@ -158,23 +162,16 @@ class LogProblem:
             raise DdctError(f'the fit to the log does not converge: {answer.message}')
         return answer.x, answer.jac
 
-    @property
-    def _bounds(self) -> np.ndarray:
-        delay = MOST_DELAY_S / DELAY_SCALE_S
-        return np.array([delay if name in DELAYED else _BOUND for name in self.free])
-
     def _residuals(self, x: np.ndarray, stretches: Sequence[Stretch]) -> np.ndarray:
         """Return the whitened residuals without nuisances of all stretches, then x over prior."""
         self._evaluated()
-        parts = []
-        values = self.values(x)
+        parts, values = [], self._unknowns.values(x)
         for stretch in stretches:
-            sampling = sampling_of(values, load_known=stretch.load_known)
-            forced, basis = responses(values, sampling, stretch)
-            left = self.noise.white(stretch.speeds - forced).ravel()
-            directions = np.linalg.qr(self.noise.white(basis).reshape(len(left), NUISANCE))[0]
+            forced, basis = responses(values, stretch)
+            left = self._noise.white((stretch.speeds - forced)[:, :, None]).ravel()
+            directions = np.linalg.qr(self._noise.white(basis).reshape(len(left), NUISANCE))[0]
             parts.append(left - directions @ (directions.T @ left))
-        return np.concatenate([*parts, x / self._prior])
+        return np.concatenate([*parts, x / self._unknowns.prior])
 
     def _jacobian(self, x: np.ndarray, stretches: Sequence[Stretch]) -> np.ndarray:
         """Return d `_residuals` / d x, by forward differences."""
@@ -182,7 +179,6 @@ class LogProblem:
         moved = [self._residuals(x + step, stretches) for step in _STEP * np.eye(len(x))]
         return (np.column_stack(moved) - here[:, None]) / _STEP
 
-    @property
-    def _prior(self) -> np.ndarray:
-        kinds = dict.fromkeys(DELAYED, _DELAY_PRIOR) | dict.fromkeys(BENDS, 1.0)
-        return np.array([kinds.get(name, _PRIOR_STD) for name in self.free])
+
+def _variance(jacobian: np.ndarray) -> np.ndarray:
+    return np.asarray(np.diag(np.linalg.inv(jacobian.T @ jacobian)))

@@ -1,45 +1,82 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Cut a log into stretches without gaps, with the torques on one grid."""
+"""The log as a fit uses it: stretches without a gap, with the torques on one grid."""
 
-from collections.abc import Callable
-from dataclasses import replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ddct_bringup.identification.from_log.stretch import LOAD, SPEED_COLUMNS, TORQUES, Stretch
 from ddct_bringup.logs.columns import MOST_DELAY_S, TIME
 from ddct_bringup.logs.log import SPEEDS, MeasuredLog, between
 from ddct_plant.base.errors import DdctError
+from ddct_plant.linear.names import Names
 
-FEWEST_SAMPLES = 40
-"""Fewest samples of a stretch: 0.4 s at 100 Hz, just over a period of the locked driveline."""
+TORQUES = ('engine_torque', 'clutch_torque')
+"""Names of C_m and C_f, which a log must have."""
+LOAD = 'load_torque'
+"""Name of C_load, which a log may have."""
+INPUTS, OUTPUTS = Names((*TORQUES, LOAD)), Names(SPEEDS)
+"""Names of the columns of torques and speeds."""
 SAMPLING_S = (1e-4, 0.1)
 """Shortest and longest sampling period of a signal; of others the unit of the time is wrong."""
+FEWEST_SAMPLES = 40
+"""Fewest samples of a stretch: 0.4 s at 100 Hz, just over a period of the locked driveline."""
 _GAP = 5.0
 """Shortest gap, in median steps of a signal."""
-_UNEVEN = 0.02
-"""Largest deviation of equal steps, over the median step."""
-_FINEST = 20
-"""Most grid steps in one step of the speeds."""
-_NOISY = 1e-3
-"""White noise of a torque over its standard deviation, below which a fit is not affected."""
+_IRREGULAR = 0.5
+"""Deviation from the median step, over that step, of one that is irregular."""
+_MOST_IRREGULAR = 0.2
+"""Largest share of irregular steps of a signal that is sampled evenly."""
+_SNAPPED = 0.02
+"""Largest deviation of equal steps, over the median step: their times are taken as equal."""
 _FOR_UNEVEN = 4
 """Grid steps in the median step of the speeds where their steps are not equal."""
+_FINEST = 20
+"""Most grid steps in one step of the speeds."""
 _MEDIAN = 0.6745
 """Median of the magnitude of a standard normal number."""
 KnownLoad = Callable[[np.ndarray], np.ndarray]
 """Function from wheel speeds in rad/s to the known part of C_load in N m, (n,) each."""
 
 
+@dataclass(frozen=True, eq=False)
+class Stretch:
+    """A part of a log without a gap: n samples of the speeds, and the torques on a finer grid."""
+
+    time_s: np.ndarray
+    """Times of the samples in s, (n,)."""
+    speeds: np.ndarray
+    """Speeds w_m, w_p, w_r in rad/s, (n, 3), by OUTPUTS."""
+    grid_s: np.ndarray
+    """Times of the grid in s, (m,), in equal steps from before the first sample to after the
+    last."""
+    torques: np.ndarray
+    """C_m, C_f and the known part of C_load in N m on the grid, (m, 3), by INPUTS."""
+    held: tuple[bool, ...]
+    """Whether each torque is held until its next sample; the others are linear between samples."""
+    load_known: bool
+    """Whether C_load was measured; otherwise a constant is fitted to each stretch."""
+
+    @property
+    def slip(self) -> np.ndarray:
+        """Slip w_m - w_p in rad/s, (n,)."""
+        return self.speeds[:, 0] - self.speeds[:, 1]
+
+    def rows(self, kept: np.ndarray) -> 'Stretch':
+        """Return the stretch with some of its samples, (n,)."""
+        return replace(self, time_s=self.time_s[kept], speeds=self.speeds[kept])
+
+
 def stretches_of(log: MeasuredLog, known_load: KnownLoad) -> list[Stretch]:
     """
-    Return the stretches of a log; raise DdctError when none is long enough.
+    Return the stretches of a log, whose sampling is checked first.
 
     A sample is a row with all three speeds. Each torque has its own rows. A gap of any of them
     ends a stretch. Where C_load was not measured `known_load` gives its known part, between the
-    samples of w_r as the log's `held` says. Raise DdctError too where a signal is sampled more
-    slowly or faster than that of a car is.
+    samples of w_r as the log's `held` says. Raise DdctError, in one line, for a signal that is
+    sampled unevenly, more slowly or faster than one of a car is, and where no stretch is long
+    enough.
     """
     speeds = np.column_stack([log.signals[name] for name in SPEEDS])
     rows = np.isfinite(speeds).all(axis=1)
@@ -50,15 +87,15 @@ def stretches_of(log: MeasuredLog, known_load: KnownLoad) -> list[Stretch]:
         )
     _require_sampling(log)
     time_s, speeds = log.time_s[rows], speeds[rows]
-    torques = {name: log.samples(name) for name in (*TORQUES, LOAD) if name in log.signals}
-    number_of = _stretch_numbers(time_s, [time_s, *(times for times, _ in torques.values())])
+    torques = [log.samples(name)[0] for name in INPUTS if name in log.signals]
+    number_of = _stretch_numbers(time_s, [time_s, *torques])
     within = number_of >= 0
     # The numbers rise along the log, so each stretch is one piece of it.
     parting = np.flatnonzero(np.diff(number_of[within])) + 1
     pieces = (np.split(each[within], parting) for each in (time_s, speeds))
     stretches = [
-        _stretch(log, times, rows, known_load)
-        for times, rows in zip(*pieces, strict=True)
+        _stretch(log, times, piece, known_load)
+        for times, piece in zip(*pieces, strict=True)
         if len(times) >= FEWEST_SAMPLES
     ]
     if not stretches:
@@ -70,12 +107,12 @@ def stretches_of(log: MeasuredLog, known_load: KnownLoad) -> list[Stretch]:
 
 
 def _require_sampling(log: MeasuredLog) -> None:
-    """Raise DdctError where the sampling period of a signal is none of a log of a car."""
+    """Raise DdctError where a signal is not sampled as one of a log of a car."""
     lowest, highest = SAMPLING_S
-    for name in (*SPEEDS, *TORQUES, LOAD):
+    for name in (*SPEEDS, *INPUTS):
         if name not in log.signals or len(log.samples(name)[0]) < 2:
             continue
-        period = log.usual_step(name)
+        period, steps = log.usual_step(name), np.diff(log.samples(name)[0])
         if not lowest <= period <= highest:
             factor = 1e-3 if period > highest else 1e3
             raise DdctError(
@@ -85,37 +122,17 @@ def _require_sampling(log: MeasuredLog) -> None:
                 place=log.path,
                 key=f'columns.{TIME}',
             )
+        if np.mean(np.abs(steps - period) > _IRREGULAR * period) > _MOST_IRREGULAR:
+            short, long = np.quantile(steps, (0.1, 0.9))
+            raise DdctError(
+                f'{name} is sampled unevenly, a tenth of its steps below {short:.3g} s and a '
+                f'tenth above {long:.3g} s: give a log with equal steps',
+                place=log.path,
+                key=f'columns.{TIME}',
+            )
 
 
-def with_more_torque_noise(log: MeasuredLog, seed: int) -> MeasuredLog:
-    """Return the log with the estimated variance of the white noise of its torques doubled."""
-    random = np.random.default_rng(seed)
-    signals = {
-        name: log.signals[name]
-        + white_noise(log.samples(name)[1]) * random.standard_normal(len(log.time_s))
-        for name in TORQUES
-    }
-    return replace(log, signals={**log.signals, **signals})
-
-
-def torques_are_noisy(log: MeasuredLog) -> bool:
-    """Return whether a torque has white noise that affects a fit."""
-    samples = [log.samples(name)[1] for name in TORQUES]
-    return any(white_noise(each) > _NOISY * float(np.std(each)) for each in samples)
-
-
-def white_noise(values: np.ndarray) -> float:
-    """
-    Return the standard deviation of white noise on a smooth signal, from its third differences.
-
-    Their variance is 20 times that of the noise; the median is robust against steps and bends.
-    """
-    if len(values) < FEWEST_SAMPLES:
-        return 0.0
-    return float(np.median(np.abs(np.diff(values, 3))) / _MEDIAN / np.sqrt(20.0))
-
-
-def _stretch_numbers(time_s: np.ndarray, sampled: list[np.ndarray]) -> np.ndarray:
+def _stretch_numbers(time_s: np.ndarray, sampled: Sequence[np.ndarray]) -> np.ndarray:
     """Return the number of the stretch of each time, -1 within a gap of one of the signals."""
     part = np.zeros(len(time_s), dtype=int)
     known = np.ones(len(time_s), dtype=bool)
@@ -130,14 +147,11 @@ def _stretch_numbers(time_s: np.ndarray, sampled: list[np.ndarray]) -> np.ndarra
 
 
 def _stretch(
-    log: MeasuredLog,
-    time_s: np.ndarray,
-    speeds: np.ndarray,
-    known_load: KnownLoad,
+    log: MeasuredLog, time_s: np.ndarray, speeds: np.ndarray, known_load: KnownLoad
 ) -> Stretch:
     """Return a stretch of a log, with the torques on a grid as fine as the finest signal."""
     usual = float(np.median(np.diff(time_s)))
-    even = bool(np.all(np.abs(np.diff(time_s) - usual) <= _UNEVEN * usual))
+    even = bool(np.all(np.abs(np.diff(time_s) - usual) <= _SNAPPED * usual))
     if even:
         usual = float(time_s[-1] - time_s[0]) / (len(time_s) - 1)
         time_s = time_s[0] + usual * np.arange(len(time_s))
@@ -152,25 +166,24 @@ def _stretch(
     if known:
         load = log.at(LOAD, grid_s)
     else:
-        wheel_speed = speeds[:, SPEED_COLUMNS['wheel_speed']]
-        load = known_load(between(time_s, wheel_speed, grid_s, held=LOAD in log.held))
-    second_differences = [_second_difference(log, name, grid_s) for name in TORQUES]
+        wheels = speeds[:, OUTPUTS['wheel_speed']]
+        load = known_load(between(time_s, wheels, grid_s, held=LOAD in log.held))
     return Stretch(
         time_s=time_s,
         speeds=speeds,
         grid_s=grid_s,
         torques=np.column_stack([*(log.at(name, grid_s) for name in TORQUES), load]),
-        second_differences=np.column_stack([*second_differences, np.zeros(len(grid_s))]),
-        held=tuple(name in log.held for name in (*TORQUES, LOAD)),
+        held=tuple(name in log.held for name in INPUTS),
         load_known=known,
-        known_s=(float(time_s[0]), float(time_s[-1])),
     )
 
 
-def _second_difference(log: MeasuredLog, name: str, grid_s: np.ndarray) -> np.ndarray:
-    """Return the second difference in N m of a torque over a step of its rows, 0 if it is held."""
-    if name in log.held:
-        return np.zeros(len(grid_s))
-    step = log.usual_step(name)
-    before, now, after = (log.at(name, grid_s + shift) for shift in (-step, 0.0, step))
-    return before - 2.0 * now + after
+def white_noise(values: np.ndarray) -> float:
+    """
+    Return the standard deviation of white noise on a smooth signal, from its third differences.
+
+    Their variance is 20 times that of the noise; the median is robust against steps and corners.
+    """
+    if len(values) < FEWEST_SAMPLES:
+        return 0.0
+    return float(np.median(np.abs(np.diff(values, 3))) / _MEDIAN / np.sqrt(20.0))

@@ -6,10 +6,10 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from ddct_bringup.identification.from_log.prediction import NEGLIGIBLE, SpeedPrediction
-from ddct_bringup.identification.from_log.problem import DAMPINGS
-from ddct_bringup.identification.from_log.result import NO_DAMPING, LogFit
-from ddct_bringup.identification.from_log.stretch import TORQUES, Stretch
+from ddct_bringup.identification.from_log.prediction import SpeedPrediction
+from ddct_bringup.identification.from_log.result import LogFit
+from ddct_bringup.identification.from_log.stretches import INPUTS, LOAD, TORQUES, Stretch
+from ddct_bringup.identification.from_log.unknowns import DAMPINGS
 from ddct_bringup.logs.columns import MOST_DELAY_S
 from ddct_bringup.logs.log import SPEEDS
 
@@ -28,10 +28,10 @@ ENGINE_RAD_S = (40.0, 800.0)
 """Least and largest median speed of a car's engine: from a stall at 380 rpm to 7600 rpm."""
 MOST_ERROR = 0.1
 """Largest r.m.s. of a prediction without noise, over the standard deviation of the speed."""
-DEPENDS_BELOW = 5e-4
-"""p-value below which a residual counts as dependent on the torques."""
 NEGATIVE_SIGMAS = 3.0
 """Standard deviations below 0 at which a damping counts as negative: chance gives one in 700."""
+NO_DAMPING = 1e-6
+"""Damping in N m s/rad that counts as zero: 0.001 N m at 1000 rad/s."""
 LEAD_S = 0.02
 """Largest lead in s of C_f over C_m: beyond it C_f is probably a request."""
 _AT_BOUND = 0.99
@@ -50,12 +50,11 @@ def reasons_against(
         *_sign_reasons(stretches),
         *_error_reasons(predictions),
         *_parameter_reasons(fit),
-        *_residual_reasons(fit),
     ]
 
 
 def _speed_reasons(stretches: Sequence[Stretch]) -> Iterator[str]:
-    median = float(np.median(np.concatenate([each.speed('engine_speed') for each in stretches])))
+    median = float(np.median(np.concatenate([each.speeds[:, 0] for each in stretches])))
     lowest, highest = ENGINE_RAD_S
     if not lowest <= median <= highest:
         yield (
@@ -66,7 +65,7 @@ def _speed_reasons(stretches: Sequence[Stretch]) -> Iterator[str]:
 
 def _sign_reasons(stretches: Sequence[Stretch]) -> Iterator[str]:
     """Compare the sign of the engine's acceleration with that of C_m - C_f."""
-    work = [(np.diff(each.speed('engine_speed')), np.diff(_impulse(each))) for each in stretches]
+    work = [(np.diff(each.speeds[:, 0]), np.diff(_impulse(each))) for each in stretches]
     change, impulse = (np.concatenate(parts) for parts in zip(*work, strict=True))
     smooth = np.ones(_SMOOTHED) / _SMOOTHED
     smoothed = [np.convolve(each, smooth, 'valid') for each in (change, impulse)]
@@ -83,8 +82,8 @@ def _sign_reasons(stretches: Sequence[Stretch]) -> Iterator[str]:
 def _impulse(stretch: Stretch) -> np.ndarray:
     """Return the integral of C_m - C_f over time in N m s at the samples, (n,)."""
     step = stretch.grid_s[1] - stretch.grid_s[0]
-    excess = stretch.torque('engine_torque') - stretch.torque('clutch_torque')
-    return np.interp(stretch.time_s, stretch.grid_s, np.cumsum(excess) * step)
+    engine, clutch = stretch.torques[:, INPUTS.places(*TORQUES)].T
+    return np.interp(stretch.time_s, stretch.grid_s, np.cumsum(engine - clutch) * step)
 
 
 def _error_reasons(predictions: Sequence[SpeedPrediction]) -> Iterator[str]:
@@ -117,22 +116,10 @@ def _parameter_reasons(fit: LogFit) -> Iterator[str]:
             )
 
 
-def _residual_reasons(fit: LogFit) -> Iterator[str]:
-    for name, each in fit.dependences.items():
-        material = each.rms_rad_s > NEGLIGIBLE * fit.spreads[name]
-        if material and each.p_value < DEPENDS_BELOW:
-            yield (
-                f'what the fit leaves of {name} is not noise, as it follows the torques '
-                f'({each.rms_rad_s:.2g} rad/s, p {each.p_value:.1g}): the log has something that '
-                'the model lacks, and the intervals do not count it'
-            )
-
-
 def doubts(fit: LogFit, predictions: Sequence[SpeedPrediction]) -> list[str]:
     """Return notes on the limits of a fit, as sentences."""
     return [
         *_undetermined(fit),
-        *_coloured(fit, predictions),
         *_still(predictions),
         *_zeroed(fit),
         *_leading(fit),
@@ -143,22 +130,13 @@ def _undetermined(fit: LogFit) -> Iterator[str]:
     if fit.undetermined:
         yield (
             f'the log does not determine {", ".join(_named(each) for each in fit.undetermined)}: '
-            'the scenario keeps its value, a delay is taken as 0, and the other intervals hold '
+            'the car keeps its value, a delay is taken as 0, and the other intervals hold '
             'for that value'
         )
 
 
 def _named(name: str) -> str:
-    return f'the delay of {name}' if name in (*SPEEDS, *TORQUES, 'load_torque') else name
-
-
-def _coloured(fit: LogFit, predictions: Sequence[SpeedPrediction]) -> Iterator[str]:
-    coloured = [each.signal for each in predictions if each.white is False]
-    if coloured:
-        yield (
-            f'what is left of {", ".join(coloured)} is not noise alone: the model lacks something '
-            'that the log has, which the intervals do not count'
-        )
+    return f'the delay of {name}' if name in (*SPEEDS, *TORQUES, LOAD) else name
 
 
 def _still(predictions: Sequence[SpeedPrediction]) -> Iterator[str]:
@@ -170,7 +148,7 @@ def _still(predictions: Sequence[SpeedPrediction]) -> Iterator[str]:
 def _zeroed(fit: LogFit) -> Iterator[str]:
     for name in DAMPINGS:
         if name in fit.std and fit.values[name] < -NO_DAMPING:
-            yield f'{name} is {fit.values[name]:.3g}, and the new scenario has 0'
+            yield f'{name} is {fit.values[name]:.3g}, and the new car has 0'
 
 
 def _leading(fit: LogFit) -> Iterator[str]:
