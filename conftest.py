@@ -64,9 +64,10 @@ def pytest_collection(session: pytest.Session) -> None:
 
 
 def pytest_collection_finish() -> None:
-    """Exempt what the collected tests have loaded from each later search for garbage."""
+    """Exempt what is loaded by now from later searches for garbage, and have few of them."""
     gc.collect()
     gc.freeze()
+    gc.set_threshold(50_000, 20, 20)
     gc.enable()
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 from report.headless_chromium import PRINT, Visitor, chromium
+from samples import sampled
 from support.runs import plan, record
 
 from ddct_bringup.bag.trajectory_bag import write_trajectory
@@ -71,7 +72,9 @@ def launch(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return out
 
 
-@pytest.mark.parametrize(('width', 'scheme'), [(390, 'dark'), (1280, 'light'), (1920, 'dark')])
+@pytest.mark.parametrize(
+    ('width', 'scheme'), sampled([(390, 'dark'), (1920, 'dark'), (1280, 'light')], every=2)
+)
 def test_the_page_draws_every_chart_without_error_or_request(
     page: Path, width: int, scheme: str, visit: Visitor
 ) -> None:
@@ -167,7 +170,7 @@ POINT = """((name, share) => {
 })('w_sr', 0.25)"""
 
 
-@pytest.mark.parametrize('width', [PHONE_PX, 1280])
+@pytest.mark.parametrize('width', sampled([PHONE_PX, 1280], every=2))
 def test_the_pointer_shows_the_nearest_curve_with_value_and_unit(
     page: Path, width: int, visit: Visitor
 ) -> None:
