@@ -7,6 +7,7 @@ Values are those of YAML 1.2's core schema (1e-3 and -1e-2 are numbers, yes and 
 """
 
 import re
+from collections.abc import Callable
 from typing import Any
 
 import yaml
@@ -28,17 +29,48 @@ _CORE = {
 """Forms of text without quotes that are no text, with their first characters."""
 
 
+_OTHERS = (f'{_TAG}str', f'{_TAG}seq', f'{_TAG}map', None)
+"""Tags of the core schema for values of any form; None stands for every other tag."""
+_SYNTAX = 'check quotes, brackets and indentation up to there'
+_ADVICE = {
+    yaml.scanner.ScannerError: _SYNTAX,
+    yaml.parser.ParserError: _SYNTAX,
+    yaml.composer.ComposerError: 'give one document, with values in place of aliases',
+    yaml.constructor.ConstructorError: 'give texts as keys, and values without tags',
+}
+"""What to do about an error of the library, by its class."""
+
+
 class _Loader(getattr(yaml, 'CSafeLoader', yaml.SafeLoader)):  # type: ignore[misc]
-    """Loader of the core schema."""
+    """Loader of the core schema, with an error for a tag of another one."""
 
     yaml_implicit_resolvers: dict[str, list[tuple[str, re.Pattern[str]]]] = {}
+    yaml_constructors = {tag: yaml.SafeLoader.yaml_constructors[tag] for tag in _OTHERS}
 
 
-for _name, (_form, _first) in _CORE.items():
-    _Loader.add_implicit_resolver(_TAG + _name, re.compile(rf'(?:{_form})\Z'), _first)
-_Loader.add_constructor(
-    f'{_TAG}int', lambda _, node: int(node.value, {'0o': 8, '0x': 16}.get(node.value[:2], 10))
-)
+def _integer(_: yaml.SafeLoader, node: yaml.ScalarNode) -> int:
+    return int(node.value, {'0o': 8, '0x': 16}.get(node.value[:2], 10))
+
+
+def _of_form(form: re.Pattern[str], make: Callable[..., Any]) -> Callable[..., Any]:
+    """Return a constructor that makes a value of text of a form, also where a tag is given."""
+
+    def construct(loader: yaml.SafeLoader, node: yaml.ScalarNode) -> Any:
+        if not form.match(loader.construct_scalar(node)):
+            raise yaml.MarkedYAMLError(
+                problem=f'{node.value!r} has another form than its tag says: leave the tag out',
+                problem_mark=node.start_mark,
+            )
+        return make(loader, node)
+
+    return construct
+
+
+for _name, (_text, _first) in _CORE.items():
+    _form = re.compile(rf'(?:{_text})\Z')
+    _make = _integer if _name == 'int' else yaml.SafeLoader.yaml_constructors[_TAG + _name]
+    _Loader.add_implicit_resolver(_TAG + _name, _form, _first)
+    _Loader.add_constructor(_TAG + _name, _of_form(_form, _make))
 
 
 class _Dumper(getattr(yaml, 'CSafeDumper', yaml.SafeDumper)):  # type: ignore[misc]
@@ -74,8 +106,15 @@ def parse_yaml_with_lines(text: str) -> tuple[Any, dict[str, int]]:
         return node and loader.construct_document(node), lines
     except yaml.MarkedYAMLError as error:
         what = ' '.join(filter(None, (error.context, error.problem)))
+        if advice := _ADVICE.get(type(error)):
+            what = f'{what}: {advice}'
         place = f'line {_line(error.problem_mark or error.context_mark)}'
         raise ParameterError(f'not valid YAML: {what}', place=place) from error
+    except yaml.reader.ReaderError as error:
+        above = text.encode(errors='surrogatepass')[: error.position].count(b'\n')
+        raise ParameterError(
+            'not valid YAML: a control character: delete it', place=f'line {above + 1}'
+        ) from error
     except (yaml.YAMLError, ValueError) as error:
         raise ParameterError(f'not valid YAML: {" ".join(str(error).split())}') from error
 

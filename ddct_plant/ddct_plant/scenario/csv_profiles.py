@@ -203,7 +203,10 @@ def _check(
             try:
                 one.checked(f'{group.prefix}{name}', number)
             except ParameterError as error:
-                raise error.at(table.place(row, columns[name])) from error
+                # The key of the points may stand in the base of the file that names this one.
+                raise ParameterError(
+                    error, key=f'{group.prefix}{_FILE}', place=table.place(row, columns[name])
+                ) from error
     times = points[TIME]
     for row, (earlier, later) in enumerate(zip(times, times[1:], strict=False), 1):
         if later <= earlier:

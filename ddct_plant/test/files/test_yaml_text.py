@@ -29,6 +29,7 @@ def parse(request, monkeypatch):
         ('[1, -2, +3, 0x10, 0o17, 010]', [1, -2, 3, 16, 15, 10]),
         ('[1e-3, -1e-2, .5, 1., +1.5E+2]', [1e-3, -1e-2, 0.5, 1.0, 150.0]),
         ('[.inf, -.INF]', [math.inf, -math.inf]),
+        ('[!!float 3, !!int 0x10, !!bool true, !!null ~, !!str 5]', [3.0, 16, True, None, '5']),
         ('[true, False, null, ~]', [True, False, None, None]),
         (
             '[yes, "on", 1:30, 1_000, 2024-01-01, "1"]',
@@ -60,13 +61,18 @@ def test_nan_is_a_number():
         ('a: !!python/object/apply:os.getcwd []', 1, "the tag 'tag:yaml.org,2002:python/"),
         ('a: !!python/name:os.getcwd', 1, 'the tag'),
         ('!mine 1', 1, "the tag '!mine'"),
+        ('a: !!binary aGk=', 1, 'values without tags'),
+        ('a: !!set {b}', 1, 'values without tags'),
+        ('a: 1\nb: !!bool maybe', 2, "'maybe' has another form than its tag says"),
+        ('a: 1\n!!int ten: 1', 2, "'ten' has another form than its tag says"),
+        ('a: !!int {b: 1}', 1, 'values without tags'),
         ('a: 1\n---\nb: 2', 2, 'found another document'),
-        ('[1]: 2', 1, 'unhashable key'),
-        ('a: 1\nb: [}', 2, ''),
+        ('[1]: 2', 1, 'unhashable key: give texts as keys'),
+        ('a: 1\nb: [}', 2, 'check quotes, brackets and indentation'),
         ('a: "b\nc: 1', 2, 'unexpected end of stream'),
         ('a: 1\n b: 2', 2, 'mapping values are not allowed'),
-        ('a: \udcff', 0, "can't encode|special characters"),
-        ('a: \x1b[31m', 0, 'control characters|special characters'),
+        ('ä: 1\nb: \udcff', None, "can't encode|control character"),
+        ('ä: 1\nb: \x1b[31m', 2, 'a control character: delete it'),
     ],
 )
 def test_what_is_no_plain_value_is_refused_in_one_line_with_its_place(
@@ -75,7 +81,8 @@ def test_what_is_no_plain_value_is_refused_in_one_line_with_its_place(
     with pytest.raises(DdctError) as caught:
         parse(text)
     message = str(caught.value)
-    assert caught.value.place == (f'line {line}' if line else '')
+    if line:
+        assert caught.value.place == f'line {line}'
     assert any(each in message for each in complaint.split('|')), message
     assert message.isprintable()
     assert len(message) < 300

@@ -107,11 +107,11 @@ def test_every_profile_takes_a_file_in_its_units(folder, section, unit, cells, k
     [
         ('0.5,y', '0.0,y', '', 'line 4, column t'),
         ('0.0,x', '0.1,x', '', 'line 3, column t'),
-        ('150.0', 'nan', 'engine.torque_n_m', 'line 4, column torque'),
-        ('150.0', '', 'engine.torque_n_m', 'line 4, column torque'),
+        ('150.0', 'nan', 'engine.csv', 'line 4, column torque'),
+        ('150.0', '', 'engine.csv', 'line 4, column torque'),
         ('150.0', 'inf', '', 'line 4, column torque'),
         ('150.0', 'much', '', 'line 4, column torque'),
-        ('150.0', '-1', 'engine.torque_n_m', 'line 4, column torque'),
+        ('150.0', '-1', 'engine.csv', 'line 4, column torque'),
         (',150.0', '', '', 'line 4'),
         ('t,other,torque', 't,other,torgue', 'torque', 'pedal.csv'),
         ('t,other,torque', 't,torque,torque', 'torque', 'pedal.csv'),
@@ -124,6 +124,16 @@ def test_a_bad_file_is_refused_by_its_name_line_and_column(folder, old, new, key
     file.write_text(PEDAL.replace(old, new))
     with refused(ParameterError, key=key, place=place):
         load(folder)
+
+
+@pytest.mark.parametrize('cell', ['nan', '1e9'])
+def test_a_bad_number_is_placed_in_the_file_that_names_the_csv_file_and_not_in_its_base(
+    folder, cell
+):
+    (folder / 'data' / 'pedal.csv').write_text(PEDAL.replace('150.0', cell))
+    with refused(ParameterError, key='engine.csv', place='line 4, column torque') as caught:
+        load(folder, f'base: tip_in\n{SPEC}')
+    assert f'{folder}/mine.yaml: line 2: engine.csv: ' in str(caught.value)
 
 
 @pytest.mark.parametrize(
