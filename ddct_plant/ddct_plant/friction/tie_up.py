@@ -54,12 +54,13 @@ class TieUp:
         `inputs`, `kinetic` and `static` are those with which the integrator went from one to the
         other.
         """
-        if not all(max(static[nodes]) > 0.0 for nodes in _CAPACITIES):
+        one, other = _CAPACITIES
+        if not (max(static[one]) > 0.0 and max(static[other]) > 0.0):
             return 0.0
         given = before.state, before.signs, inputs, kinetic, static
         if not after.events:
-            one, other = self._integrator.friction_signs(*given)[_CLUTCHES]
-            if one * other > 0:
+            signs = self._integrator.friction_signs(*given)
+            if signs[ON_COMING] * signs[OFF_GOING] > 0:
                 return 0.0
         courses = self._integrator.courses(*given)
         return SUBSTEP_S * sum(self._over(course, part) for course, part in courses)

@@ -75,12 +75,7 @@ class HybridIntegrator:
         capacity that is negative or a static one below the kinetic one.
         """
         capacities = self._layout.in_force(signs, kinetic, static)
-        try:
-            v = np.frombuffer(self._pack(*state, *inputs, *capacities))
-        except struct.error as error:
-            raise ParameterError(
-                f'friction: the inputs {inputs} do not fit the interval: {error}'
-            ) from error
+        v = self._values(state, inputs, capacities)
         interval = self.maps[signs].whole(v, capacities)
         if interval is not None:
             return interval
@@ -96,7 +91,16 @@ class HybridIntegrator:
         The arguments are those of `advance`. A torque of which the sign is sure has it throughout.
         """
         capacities = self._layout.in_force(signs, kinetic, static)
-        return self.maps[signs].friction_signs(np.array([*state, *inputs, *capacities]))
+        return self.maps[signs].friction_signs(self._values(state, inputs, capacities))
+
+    def _values(self, state: Values, inputs: Values, capacities: Values) -> np.ndarray:
+        """Return the flat values v that the maps take."""
+        try:
+            return np.frombuffer(self._pack(*state, *inputs, *capacities))
+        except struct.error as error:
+            raise ParameterError(
+                f'friction: the inputs {inputs} do not fit the interval: {error}'
+            ) from error
 
     def courses(
         self, state: Values, signs: Signs, inputs: Values, kinetic: Values, static: Values

@@ -14,6 +14,8 @@ from scipy.optimize import brentq, minimize_scalar
 Signs = tuple[int, ...]
 AHEAD_S = 1e-7
 """Time after an event at which a mode must hold, or half the rest of the interval."""
+ORDERS = 12
+"""Order of the series for that time; a torque may reach an element through several springs."""
 ANGLE = 0.03
 """Angle by which the fastest undamped mode turns between two instants of the search."""
 NOISE = 1e-12
@@ -190,7 +192,11 @@ class Reference:
             self.motion.grazes += int(abs(least.fun) < GRAZE * scale)
             if least.fun < -NOISE * scale:
                 return self._zero(value, low, float(least.x))
-        return self._zero(value, times[end - 1], times[end]) if len(below) else None
+        if not len(below):
+            return None
+        # It may have been zero, or below by rounding, since the start or a while before.
+        last = int(np.flatnonzero(values[:end] > 0.0).max(initial=0))
+        return self._zero(value, times[last], times[last + 1])
 
     @staticmethod
     def _zero(value: Callable[[float], float], low: float, high: float) -> float:
@@ -218,7 +224,9 @@ class Reference:
             signs = list(self._signs)
             for i, sign in zip(free, choice, strict=True):
                 signs[i] = sign
-            if self._holds(self._mode(tuple(signs)), free, now, count):
+            if tuple(signs) != self._signs and self._holds(
+                self._mode(tuple(signs)), free, now, count
+            ):
                 held.append(tuple(signs))
         # A static capacity above the kinetic one may leave several: the fewest slip.
         new = min(held, key=lambda signs: (sum(map(abs, signs)), signs[element] == 0))
@@ -235,7 +243,7 @@ class Reference:
         moved = np.zeros_like(everything)
         term, factor = change, 1.0
         rate = mode.rate @ everything
-        for order in range(1, 5):
+        for order in range(1, ORDERS):
             factor *= self._ahead_s(now) / order
             term = np.concatenate([rate, change[count:] if order == 1 else 0.0 * change[count:]])
             moved += factor * term
