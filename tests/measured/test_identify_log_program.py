@@ -13,6 +13,7 @@ from support.runs import expected, plan, record
 
 from ddct_bringup.identification.from_log import command
 from ddct_bringup.identification.identify import main
+from ddct_bringup.programs import compare
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.scores.csv_text import signals_csv
 from ddct_plant.scenario.file import load_scenario
@@ -53,6 +54,16 @@ def test_a_foreign_log_gives_tables_json_and_a_scenario_that_runs(
         car='c635_thesis', drive=str(out / 'drive_drive.yaml'), overrides=['gear=1']
     )
     assert (other.engine, other.duration_s) == (scenario.engine, scenario.duration_s)
+
+
+def test_compare_runs_the_car_and_drive_at_once(folder: Path) -> None:
+    assert identify(folder, '--out', str(folder / 'mine')) == 0
+    files = [f'--{noun}={folder / "mine" / f"drive_{noun}.yaml"}' for noun in ('car', 'drive')]
+    out = folder / 'compared'
+    assert compare.main(['--controllers', 'pi,ls8', '--headless', *files, '--out', str(out)]) == 0
+    runs = json.loads((out / 'scores.json').read_text())['runs']
+    assert [run['valid'] for run in runs] == [True, True]
+    assert {run['scenario'] for run in runs} == {'drive_drive_drive_car'}
 
 
 def test_the_scenario_of_a_noisy_bag_reproduces_another_run_of_the_same_car(
@@ -271,6 +282,12 @@ def test_control_start_and_window_of_the_drive_are_those_of_the_column_map(
     assert identify(folder, '--out', str(folder / 'mine')) == 0
     found = written(folder / 'mine')
     assert (found.control_start_s, found.score_window_s) == times
+
+
+def test_control_start_of_the_drive_may_be_set(folder: Path) -> None:
+    assert identify(folder, '--out', str(folder / 'mine'), '--set', 'control_start_s=0.7') == 0
+    found = written(folder / 'mine')
+    assert (found.control_start_s, found.score_window_s) == (0.7, (0.7, 4.8))
 
 
 def test_a_window_outside_of_the_log_is_refused(

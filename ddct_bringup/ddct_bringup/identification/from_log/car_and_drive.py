@@ -159,7 +159,7 @@ class LogDrive:
     fit: LogFit
     log: MeasuredLog
     run: Mapping[str, Any]
-    """Values of `run` in the column map, which may have control start and score window."""
+    """Keys of `run` of a column map, which may have control start and score window."""
     stretches: Sequence[Stretch]
 
     @property
@@ -227,11 +227,9 @@ class LogDrive:
 
         A plant holds its inputs over a period, so the mean has the same effect on the car.
         """
-        every = -(-self.steps // MOST_ROWS)
-        periods = np.arange(0, self.steps, every)
+        periods = np.arange(0, self.steps, self._every)
         times = [time_of_step(int(each)) for each in periods]
-        torque = np.maximum(self._means('engine_torque', periods), 0.0)
-        found = {'engine': torque}
+        found = {'engine': np.maximum(self._means('engine_torque', periods), 0.0)}
         if self.fit.load_torque is None:
             wheels = self._means('wheel_speed', periods)
             road = self._means(LOAD, periods) - drag_of(self.base)(wheels)
@@ -240,6 +238,28 @@ class LogDrive:
             section: list(zip(times, values.tolist(), strict=True))
             for section, values in found.items()
         }
+
+    @property
+    def notes(self) -> list[str]:
+        """What the profiles do not have of the log, as sentences."""
+        found = []
+        least = float(self._means('engine_torque', np.arange(self.steps)).min())
+        if least < 0.0:
+            found.append(
+                f'the engine torque of the drive is 0 where the log has less, down to {least:.4g} '
+                'N m: a demand has no engine braking'
+            )
+        if self._every > 1:
+            found.append(
+                f'the profiles of the drive have a point every {self._every * PERIOD_S:g} s: they '
+                f'have at most {MOST_ROWS} points'
+            )
+        return found
+
+    @property
+    def _every(self) -> int:
+        """Number of periods from one point of a profile to the next."""
+        return -(-self.steps // MOST_ROWS)
 
     def _means(self, name: str, periods: np.ndarray) -> np.ndarray:
         """Return the means of a quantity over periods, at the times of the car."""
@@ -286,7 +306,7 @@ class LogDrive:
         """
         Return control start and score window in s of the drive.
 
-        The column map may give them. Else control starts where the slip is largest in the first
+        `run` may give them. Else control starts where the slip is largest in the first
         half of the log, and the window is the rest of the log.
         """
         keys = MeasuredKeys(**self.run)
@@ -303,7 +323,7 @@ class LogDrive:
             raise DdctError(
                 f'the drive has {duration_s:g} s, and a control start at {start:g} s with a score '
                 f'window from {first:g} to {last:g} s: mend run.start_s, run.control_start_s and '
-                'run.score_window_s in the column map',
+                'run.score_window_s in the column map, or --set both',
                 key='run.control_start_s',
             )
         return start, (first, last)

@@ -33,9 +33,12 @@ from ddct_plant.program.progress import Progress
 from ddct_plant.scenario.choices.command_line import add_scenario_options, choice_of
 from ddct_plant.scenario.chosen import scenario_of as base_scenario
 from ddct_plant.scenario.nouns.keys import NOUNS
+from ddct_plant.scenario.overrides import parsed_override
 
 NEEDED = (*SPEEDS, *TORQUES)
 """Quantities that a log must have."""
+TIMES = ('control_start_s', 'score_window_s')
+"""Keys of a drive that --set may give in place of the log's own."""
 HOLD_OUT = 0.3
 """Default share of the log that is held out."""
 
@@ -131,9 +134,13 @@ def identify_log(options: argparse.Namespace) -> int:
         )
     if out:
         whole = read_log(options.log, columns, NEEDED)
-        drive = LogDrive(base, fit, whole, columns.run, stretches_of(whole, drag))
+        set_times = dict(map(parsed_override, options.overrides))
+        given = {key: set_times[key] for key in TIMES if key in set_times}
+        drive = LogDrive(base, fit, whole, given or columns.run, stretches_of(whole, drag))
         write_car_and_drive(out, choice_of(options), options.overrides, drive)
         if options.json != STDOUT:
+            for note in drive.notes:
+                print_note(f'Note: {note}.')
             files = ' '.join(f'--{noun} {out.files[noun]}' for noun in NOUNS)
             print_note(f'Run it: ddct bringup --controller pi --headless {files} --out runs/new')
     return 0

@@ -17,7 +17,7 @@ from ddct_bringup.identification.from_log.stretches import OUTPUTS, Stretch
 from ddct_bringup.identification.from_log.unknowns import Unknowns
 from ddct_plant.base.errors import DdctError
 
-_LAGS = 4
+_LAGS = 2
 """Lags of the noise model."""
 _FEWEST = 20
 """Fewest samples of a used stretch, without the samples that the delays cost."""

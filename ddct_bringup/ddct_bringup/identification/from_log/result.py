@@ -11,8 +11,12 @@ from ddct_plant.models.parameters import DrivelineParameters
 
 SLIP = 'slip_speed'
 """Name of the slip among the speeds."""
-SIGMAS_95 = 1.96
-"""Half-width of a 95 % interval, in standard deviations."""
+SIGMAS_95 = 2.0
+"""
+Half-width of a 95 % interval, in standard deviations.
+
+It is not 1.96, because the noise is estimated from the same log.
+"""
 
 
 @dataclass(frozen=True)
