@@ -21,7 +21,7 @@ from ddct_bringup.scores.scored_recording import score_recording
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.base.timebase import PERIOD_S, stamp_of_step
 from ddct_plant.fail_safe.request_watch import CLUTCH_TIMEOUT_S, FailSafeSettings
-from ddct_plant.signals.topics import CLUTCH_TORQUE, LOAD_TORQUE, TOPICS
+from ddct_plant.signals.topics import CLOCK, CLUTCH_TORQUE, LOAD_TORQUE, TOPICS
 from ddct_plant.ticks.realtime_owner import RealtimeOwner
 
 CLUTCH, LOAD = CLUTCH_TORQUE.name, LOAD_TORQUE.name
@@ -111,6 +111,25 @@ def test_replies_stamped_in_the_future_change_nothing(graph_of: GraphOf, step: i
     timing = read_timing(graph.folder)
     assert timing is not None
     assert timing.refused_messages == len(FALSE_VALUES)
+
+
+def test_a_tick_stamped_in_the_future_opens_the_clutch_and_the_run_is_not_valid(
+    graph_of: GraphOf,
+) -> None:
+    graph = graph_of(plan(mode='realtime', duration_s=0.9))
+    graph.add_all()
+    owner = graph.driveline.owner
+    graph.spin_until(lambda: owner.step >= FROM_STEP, f'step {FROM_STEP}')
+    publishers = {each.topic_name: each for each in graph.driveline.publishers}
+    false = CLOCK.message(stamp_of_step(owner.step + 60))
+    publishers[CLOCK.resolved_name].publish(false)
+    graph.run()
+    recording = read_bag(graph.folder)
+    assert '/driveline' in recording.realtime.safe_states
+    torque = recording.trajectory.joint_effort[:, 1]
+    assert torque[FROM_STEP] > 50.0
+    assert torque[-1] == 0.0
+    assert not score_recording(recording, 'bag', packaged_limits()).scores.valid
 
 
 def test_the_driveline_opens_the_clutch_itself_when_the_actuator_is_gone(
