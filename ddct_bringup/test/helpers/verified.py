@@ -17,6 +17,7 @@ import pyarrow.parquet as parquet
 import pytest
 
 from ddct_bringup.campaign.conduct import RESULTS, SHARDS
+from ddct_bringup.campaign_report import folder
 from ddct_bringup.manifest.manifest import (
     MANIFEST,
     Manifest,
@@ -57,9 +58,14 @@ class Mine(TimedHandover):
 """
 
 
+DRAWN = folder._distributions
+"""The figure of the page of a campaign, where charts are left out."""
+
+
 def leave_out_charts(patch: pytest.MonkeyPatch) -> None:
-    """Draw no chart on the pages of runs, which takes half of the time of a short comparison."""
+    """Draw no chart on pages of runs and campaigns, which takes most of the time of small ones."""
     patch.setattr('ddct_bringup.report.page.chart_document', lambda runs: ({}, {}))
+    patch.setattr(folder, '_distributions', lambda *_: '')
 
 
 def make_runs(out: Path, controllers: str = 'pi,mpc3', *options: str) -> Path:

@@ -18,8 +18,8 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     place = tmp_path_factory.mktemp('results')
     with pytest.MonkeyPatch.context() as patch:
         leave_out_charts(patch)
-        runs = make_runs(place / 'runs', 'pi')
-    return {'runs': runs, 'campaign': make_small_campaign(place)}
+        runs, rows = make_runs(place / 'runs', 'pi'), make_small_campaign(place)
+    return {'runs': runs, 'campaign': rows}
 
 
 @pytest.mark.parametrize('count', sampled([20, 200], every=2))

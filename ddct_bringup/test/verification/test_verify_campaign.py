@@ -11,6 +11,7 @@ import pytest
 from samples import sampled
 from verified import (
     CONTROLLER,
+    DRAWN,
     copied,
     edit_json_with_digest,
     edit_manifest,
@@ -23,6 +24,7 @@ from verified import (
 )
 
 from ddct_bringup.campaign.conduct import RESULTS, SHARDS
+from ddct_bringup.campaign_report import folder
 from ddct_bringup.manifest.manifest import MANIFEST, read_manifest
 from ddct_bringup.programs import campaign
 from ddct_plant.files.yaml_text import dump_yaml
@@ -44,8 +46,10 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_an_untouched_campaign_is_the_same_to_the_last_bit_wherever_it_is(
-    whole: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+    tmp_path: Path, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setattr(folder, '_distributions', DRAWN)
+    whole = make_small_campaign(tmp_path / 'whole')
     code, document, errors = verified(copied(whole, tmp_path / 'there'), capfd, '--workers', '1')
     assert (code, 'ddct verify' in errors) == (0, False)  # progress is no error
     names = [MANIFEST, ROWS, SHARDS, 'summary.json', 'report.html']

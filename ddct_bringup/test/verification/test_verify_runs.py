@@ -4,7 +4,6 @@
 
 import re
 import shutil
-from collections.abc import Iterator
 from dataclasses import replace
 from importlib.resources import files
 from pathlib import Path
@@ -19,7 +18,6 @@ from verified import (
     edit_json_with_digest,
     edit_manifest,
     edit_with_digest,
-    leave_out_charts,
     make_bag,
     make_runs,
     of_another_release,
@@ -40,14 +38,6 @@ from ddct_plant.signals.gain_changes import GainChange
 pytestmark = pytest.mark.slow
 ALL = ['frequency.json', 'mpc3', 'pi', 'report.html', 'scores.json']
 """What is made again of two compared runs."""
-
-
-@pytest.fixture(scope='module', autouse=True)
-def no_charts() -> Iterator[None]:
-    """`ddct verify` of pages with charts is a documented command; tests/docs runs it."""
-    with pytest.MonkeyPatch.context() as patch:
-        leave_out_charts(patch)
-        yield
 
 
 @pytest.fixture(scope='module')
