@@ -59,6 +59,8 @@ def write_text(target: str, text: str, advice: str = '') -> None:
     with the advice, by default to give another file, when it cannot be written.
     """
     if target == STDOUT:
+        if sys.stdout is None:
+            raise DdctError('standard output was closed before the start: give a file')
         sys.stdout.write(text)
     else:
         write_bytes(target, text.encode(), advice)

@@ -73,9 +73,13 @@ def print_note(text: str, stream: TextIO | None = None) -> None:
     print(_wrapped(printable(text), _console(stream), '').plain, file=stream)
 
 
-def _console(stream: TextIO) -> Console:
-    """Return the console of a stream, as wide as its terminal or _REDIRECTED_WIDTH."""
-    is_terminal = stream.isatty()
+def _console(stream: TextIO | None) -> Console:
+    """
+    Return the console of a stream, as wide as its terminal or _REDIRECTED_WIDTH.
+
+    The stream is None for a standard output that was closed before the start; nothing is printed.
+    """
+    is_terminal = stream is not None and stream.isatty()
     width = None if is_terminal else _REDIRECTED_WIDTH
     console = Console(file=stream, force_terminal=is_terminal, width=width, highlight=False)
     console.width = max(console.width, _LEAST_WIDTH)

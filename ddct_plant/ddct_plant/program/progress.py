@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Progress of long work on standard error: steps done, their rate and the remaining time."""
 
-import sys
 import time
 from collections.abc import Iterable
 from typing import TypeVar
@@ -32,7 +31,7 @@ class Progress:
         self._what = what
         self._total = total
         self._before = done
-        self._console = Console(file=sys.stderr, highlight=False)
+        self._console = Console(stderr=True, highlight=False)
         # Without a thread of its own: the program may fork.
         self._live = Live(console=self._console, auto_refresh=False, transient=True)
         self._started = time.perf_counter()

@@ -4,6 +4,7 @@
 
 import json
 import os
+import sys
 from pathlib import Path
 
 import pytest
@@ -59,6 +60,13 @@ def test_full_device_is_an_error_in_one_line():
 def test_device_is_written_to_and_not_replaced():
     write_json('/dev/null', {'a': 1})
     assert not Path('/dev/null').is_file()
+
+
+def test_a_standard_output_that_was_closed_is_an_error_in_one_line(monkeypatch):
+    monkeypatch.setattr(sys, 'stdout', None)
+    with refused(DdctError) as caught:
+        write_json('-', {})
+    assert 'standard output was closed' in str(caught.value)
 
 
 def test_a_folder_that_cannot_be_written_is_refused_before_the_work(tmp_path, monkeypatch):

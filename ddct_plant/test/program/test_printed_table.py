@@ -4,6 +4,7 @@
 
 import io
 import re
+import sys
 
 import pytest
 from hypothesis import given
@@ -34,6 +35,14 @@ def tables(draw: st.DrawFn) -> Table:
         for line in range(draw(st.integers(1, 3)))
     ]
     return Table('', headers, rows, numbers=kinds, weights=weights)
+
+
+def test_nothing_is_printed_where_standard_output_was_closed_before_the_start(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(sys, 'stdout', None)
+    print_table(Table('title', ['a', 'b'], [['1', '2']]))
+    print_note('a note')
 
 
 class Terminal(io.StringIO):
