@@ -11,11 +11,11 @@ from ddct_plant.ticks.join import MOST_WAITING
 
 class ReplyLimit:
     """
-    Refuse replies that no tick can have asked for, which would switch off a fail-safe.
+    Refuse replies too far ahead to answer any tick; they would switch off a fail-safe.
 
-    A reply answers a tick. It may be read before that tick, which then waits in another queue, so
-    it may be `MOST_WAITING` steps ahead of the newest tick. Ticks are not limited: where time is
-    owned, it goes on as it will.
+    A reply may be read before its tick, which then waits in another queue, so it may be
+    `MOST_WAITING` steps ahead of the newest tick. Ticks are not limited: after a pause the next
+    one may be any number of steps later.
     """
 
     def __init__(self, ticks: Collection[str], shown: Callable[[str], str] = str) -> None:
