@@ -210,10 +210,9 @@ class Course(NamedTuple):
         """Return the integrals of c |s| over t from 0 to `end` of the slipping elements."""
         flow = self.flow
         capacities, changes = self.capacities()
-        slips = self.guards[flow.slip_guards].tolist()
         return [
-            integral_with(slip, (capacities[i], changes[i]), end)
-            for i, slip in zip(flow.slipping, slips, strict=True)
+            integral_with(self.guards[guard].tolist(), (capacities[i], changes[i]), end)
+            for i, guard in zip(flow.slipping, flow.slip_guards, strict=True)
         ]
 
 

@@ -35,8 +35,7 @@ def first_negative(powers: Sequence[float], nodes: Sequence[float]) -> float | N
     """
     if len(powers) < 2:
         return None
-    zero = ROUNDING * max(map(abs, powers))
-    return 0.0 if powers[0] < -zero else next(sign_changes(powers, nodes), None)
+    return 0.0 if _negative(powers[0], powers) else next(sign_changes(powers, nodes), None)
 
 
 def sign_changes(powers: Sequence[float], nodes: Sequence[float]) -> Iterator[float]:
@@ -47,18 +46,17 @@ def sign_changes(powers: Sequence[float], nodes: Sequence[float]) -> Iterator[fl
     value with the same sign at two of them changes it between them only if it goes towards zero at
     the first and away from it at the second: then it is checked at its extremum too.
     """
-    least = -ROUNDING * max(map(abs, powers))
-    low, negative, slope = 0.0, powers[0] < least, powers[1]
+    low, negative, slope = 0.0, _negative(powers[0], powers), powers[1]
     for high in nodes:
         before, towards, side = negative, slope, -1.0 if negative else 1.0
         value, slope = _value_and_slope(powers, high)
-        negative = value < least
+        negative = _negative(value, powers)
         if negative != before:
             yield _sign_change(powers, before, low, high)
         elif side * towards < 0.0 < side * slope:
             slopes = [order * powers[order] for order in range(1, len(powers))]
             extremum = _sign_change(slopes, not before, low, high)
-            if (value_at(powers, extremum) < least) != before:
+            if _negative(value_at(powers, extremum), powers) != before:
                 yield _sign_change(powers, before, low, extremum)
                 yield _sign_change(powers, not before, extremum, high)
         low = high
@@ -82,6 +80,10 @@ def _sign_change(powers: Sequence[float], negative: bool, low: float, high: floa
             following = 0.5 * (low + high)
         at = following
     return min(max(following, low), high)
+
+
+def _negative(value: float, powers: Sequence[float]) -> bool:
+    return value < 0.0 and value < -ROUNDING * max(map(abs, powers))
 
 
 def _value_and_slope(powers: Sequence[float], at: float) -> tuple[float, float]:
