@@ -26,7 +26,6 @@ from ddct_plant.graph.sole_publishers import publishers_of
 from ddct_plant.graph.spin import run_node
 from ddct_plant.graph.wire import serialiser
 from ddct_plant.scenario.recorded_settings import known_values, values_of, values_text
-from ddct_plant.signals import topics
 from ddct_plant.signals.topic import Topic
 from ddct_plant.signals.topics import (
     CONTROLLER_TIMING,
@@ -36,6 +35,7 @@ from ddct_plant.signals.topics import (
     RECORDER_ACK,
     RUN_INFO,
     RUN_SETTINGS,
+    TOPICS,
     TORQUE_PARTS,
     recorded_topics,
     tick_names,
@@ -139,7 +139,7 @@ class RecorderNode(GraphNode):
             CONTROLLER_TIMING: self._on_timing,
             DIAGNOSTICS: self._on_diagnostics,
         }
-        for topic in topics.TOPICS:
+        for topic in TOPICS:
             if topic is RECORDER_ACK or not topic.in_run(self._run):
                 continue
             usual = self._on_tick if topic.every_tick else self._bag.write_unordered

@@ -214,7 +214,7 @@ def _by_hand(
         place = f'{source.path}: line {line}'
         if len(cells) != width:
             raise ParameterError(
-                f'{len(cells)} cells, while the header has {width}: mend the row', place=place
+                f'{len(cells)} cells in the row, {width} in the header: mend the row', place=place
             )
         for name, column in numbers.items():
             columns[name].append(_number(cells[column], f'{place}, column {name}'))

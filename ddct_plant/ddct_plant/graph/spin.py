@@ -29,8 +29,6 @@ from ddct_plant.program.supervision import announce_exit, beat
 
 SLICE_S = 0.1
 """Period in s at which signals are checked, and the longest spin of the executor."""
-
-
 _CHECKS_PER_COLLECTION = 10
 """Number of checks of signals for one collection of a generation's elders, as in Python."""
 LAST_SLICE_S = 0.03
