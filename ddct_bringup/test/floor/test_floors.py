@@ -150,6 +150,27 @@ def test_after_two_replays_that_do_not_lock_as_the_floor_has_it_there_is_no_thir
     assert not np.array_equal(*replays)
 
 
+def test_the_usual_requests_take_the_slip_of_a_rigid_car_with_drag_linearly_to_zero():
+    """Its speeds are in the middle of the band of the case."""
+    changes = {
+        'driveline.engine_damping': 0.05,
+        'driveline.shaft_damping': 0.02,
+        'equilibrium': 'full',
+    }
+    settings = RunSettings.of(load_scenario('launch', changes), {})
+    case = case_at(settings, control_start(settings), 0.8)
+    requests, p = replay.usual_requests(case), settings.scenario.controlled_driveline
+    engine = (case.tube.engine_low + case.tube.engine_high) / 2.0
+    wheel = (case.tube.wheel_low + case.tube.wheel_high) / 2.0
+    drag = p.shaft_damping * p.gear.shaft_speed(wheel)
+    load = p.gear.shaft_torque(case.load.offset + case.load.slope * wheel + case.load.middle)
+    given = case.engine.offset + case.engine.slope * engine + case.engine.middle
+    rest = p.shaft_inertia + p.gear.at_shaft(p.vehicle_inertia)
+    of_engine = (given - p.engine_damping * engine - requests) / p.engine_inertia
+    closing = of_engine - (requests - drag - load) / rest
+    np.testing.assert_allclose(closing[:80], -case.start.slip / 0.8, rtol=1e-12)
+
+
 def test_only_a_linear_clutch_that_was_outside_its_band_locks_when_it_settles():
     slip_rpm = np.zeros(200)
     assert final_lock_of(made_run(slip_rpm), 0, RULES) is None
