@@ -132,6 +132,16 @@ def test_a_replay_that_differs_ends_with_exit_code_1_and_the_differences(
     assert 'run 0: state is ' in capfd.readouterr().err
 
 
+def test_a_folder_for_the_json_that_is_not_there_is_reported_before_the_run(
+    folder: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    to, out = str(tmp_path / 'absent' / 'replay.json'), tmp_path / 'out'
+    assert replay(folder, '--index', '0', '--out', str(out), '--json', to) == 1
+    (line,) = capfd.readouterr().err.splitlines()
+    assert line.startswith('ddct campaign') and 'no folder' in line
+    assert not out.exists()
+
+
 def _another_row(results: Path, index: int, runs: int) -> dict[str, object]:
     from ddct_bringup.campaign.columns import read_row
 
