@@ -4,6 +4,7 @@
 
 import json
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -148,6 +149,27 @@ def test_a_trial_that_another_betters_whatever_comes_ends_after_the_first_part()
     infeasible = Trial(91, {}, [row] * len(tuned.cases), state=INFEASIBLE)
     _, free = computed_batch(tuned, alone, asked, [infeasible], lambda trial: trial)
     assert len(free.rows) == len(tuned.cases)
+
+
+def test_only_a_trial_that_keeps_all_else_is_timed_and_a_long_time_makes_it_infeasible() -> None:
+    tuned = tuning(
+        constraints={'engaged': {'at_least': 0.9}, 'update_time_over_pi': {'at_most': 2.0}}
+    )
+    times = {0: 3.0, 1: 1.0, 2: 1.0}
+    quick, slow = (
+        {'proportional_gain': 0.2, 'integral_gain': 0.5},
+        {'proportional_gain': 0.05, 'integral_gain': 0.01},
+    )
+    trials = computed_batch(
+        tuned,
+        TrialRuns(tuned, 1, lambda: False),
+        {0: quick, 1: quick, 2: slow},
+        [],
+        lambda trial: replace(trial, further={'update_time_over_pi': times[trial.number]}),
+    )
+    assert [each.state for each in trials] == [INFEASIBLE, FEASIBLE, INFEASIBLE]
+    assert [len(each.further) for each in trials] == [1, 1, 0]
+    assert 'update time' in trials[0].reason and 'engaged' in trials[2].reason
 
 
 def _whole(tuned: Any, alone: TrialRuns, trial: Trial) -> Trial:
