@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from ddct_plant.base.errors import ParameterError
+from ddct_plant.files import csv_table
 from ddct_plant.files.csv_table import csv_text, read_csv
 
 TEXT = 'Zeit;Öl °C\n0,5;80,25\n1,5;81,5\n'
@@ -79,6 +80,12 @@ def test_a_line_break_in_a_quoted_name_is_part_of_it(tmp_path):
     text = 'time,"torque\n# [N m], ""filtered"""\n0.5,1e2\n'
     columns = read(tmp_path / 'a.csv', text, ['torque\n# [N m], "filtered"'])
     assert [each.tolist() for each in columns.values()] == [[100.0]]
+
+
+def test_separators_in_quotes_leave_a_file_to_pandas_which_is_much_faster(tmp_path, monkeypatch):
+    monkeypatch.setattr(csv_table, '_by_hand', None)
+    columns = read(tmp_path / 'a.csv', 't;text;v\n1;"a; b";2.5\n', ['t', 'v'])
+    assert [each.tolist() for each in columns.values()] == [[1.0], [2.5]]
 
 
 def test_empty_cells_and_nan_are_not_measured_and_other_words_are_no_numbers(tmp_path):
