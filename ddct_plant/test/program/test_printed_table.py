@@ -112,6 +112,13 @@ def test_the_lightest_column_is_left_out_first_and_named_with_the_width_that_sho
     assert max(map(len, texts(WIDE, 72))) <= 72 and 'not shown' not in texts(WIDE, 72)[-1]
 
 
+def test_texts_are_wrapped_only_where_the_output_is_narrower_than_they_are() -> None:
+    table = Table('', ('name', 'why'), [('pi', 'it slips again and again after the lock')])
+    widest = len(texts(table, 200)[1])
+    assert len(texts(table, widest)) == 2
+    assert len(texts(table, widest - 1)) == 3
+
+
 def test_the_note_names_the_file_where_there_is_one() -> None:
     table = Table(
         WIDE.title, WIDE.headers, WIDE.rows, weights=WIDE.weights, complete='--json FILE'
