@@ -162,6 +162,23 @@ def test_points_and_a_file_with_a_profile_replace_each_other_and_a_factor_those_
     assert files == (Path('half.yaml'), Path('data/logged.yaml'), Path('data/pedal.csv'))
 
 
+@pytest.mark.parametrize(
+    ('own', 'time_s', 'torque_share', 'torque_n_m'),
+    [
+        ('torque_share: [0.0, 0.7]', (0.0, 0.6), (0.0, 0.7), ()),
+        ('torque_n_m: [0.0, 90.0]', (0.0, 0.6), (), (0.0, 90.0)),
+        ('time_s: [0.0, 0.8]', (0.0, 0.8), (0.0, 0.56), ()),
+    ],
+)
+def test_times_or_values_of_a_profile_alone_keep_the_others_of_the_base(
+    write, own, time_s, torque_share, torque_n_m
+) -> None:
+    drive = write('drive.yaml', f'base: launch\nengine: {{{own}}}\n')
+    engine = load_scenario(drive=drive).engine
+    assert (engine.time_s, engine.torque_share) == (time_s, torque_share)
+    assert engine.torque_n_m == torque_n_m
+
+
 def test_a_scenario_has_a_car_and_a_drive_within_it_or_names_those_beside_it(write) -> None:
     write('mine/car.yaml', 'base: city7\nvehicle: {wheel_radius_m: 0.3}\n')
     text = 'car: car.yaml\ndrive:\n  base: launch\n  load: {slope_rad: 0.05}\nset:\n'
