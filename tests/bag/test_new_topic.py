@@ -55,6 +55,19 @@ def add(monkeypatch: pytest.MonkeyPatch) -> Any:
     return to_table
 
 
+@pytest.fixture
+def add_to_graph(add: Any, monkeypatch: pytest.MonkeyPatch) -> Any:
+    """Return `add` for a test with a recorder node, whose module has the table by its name."""
+    pytest.importorskip('rclpy', reason='a graph')
+
+    def to_tables(topic: Topic) -> Topic:
+        add(topic)
+        monkeypatch.setattr('ddct_bringup.record.recorder_node.TOPICS', topics.TOPICS)
+        return topic
+
+    return to_tables
+
+
 class LoopWithMore(ClosedLoop):
     """Closed loop whose load also gives the made-up torque."""
 
@@ -100,14 +113,13 @@ def test_a_run_whose_loop_does_not_compute_it_is_refused(add: Any) -> None:
         run_headless(RUN.settings, 'pi')
 
 
-def test_the_recorder_waits_for_it_at_every_tick(add: Any, tmp_path: Path) -> None:
-    pytest.importorskip('rclpy', reason='a graph')
+def test_the_recorder_waits_for_it_at_every_tick(add_to_graph: Any, tmp_path: Path) -> None:
     from rclpy.node import Node
     from support.in_process_graph import InProcessGraph
 
     from ddct_plant.graph.output import Output
 
-    topic = add(entry())
+    topic = add_to_graph(entry())
 
     class MoreOfTheLoad(Node):
         def __init__(self, **options: Any) -> None:
@@ -159,12 +171,11 @@ def test_only_runs_that_fulfil_its_condition_have_it(
 
 
 def test_the_recorder_expects_the_topic_where_its_condition_holds(
-    add: Any, tmp_path: Path
+    add_to_graph: Any, tmp_path: Path
 ) -> None:
-    pytest.importorskip('rclpy', reason='a graph')
     from support.in_process_graph import InProcessGraph
 
-    add(entry(when=_stick_slip))
+    add_to_graph(entry(when=_stick_slip))
     with InProcessGraph(RUN, tmp_path / 'pi') as graph:
         graph.add_all()
         graph.run()

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A second graph with the clock of another is refused; one on nodes that have run says so."""
 
+import os
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -14,7 +15,7 @@ from waiting import wait_until
 
 from ddct_bringup.bag.reader import read_bag
 from ddct_plant.base.errors import DdctError
-from ddct_plant.graph.domain import own_domain, sole_graph
+from ddct_plant.graph.domain import LAST_DOMAIN, own_domain, sole_graph
 from ddct_plant.signals.topics import CLOCK
 
 FOLLOWERS = [name for name in MODULES if name not in ('driveline', 'recorder')]
@@ -76,16 +77,17 @@ def test_a_bringup_beside_another_in_one_domain_is_refused_and_the_first_goes_on
 def test_domains_and_clocks_are_kept_apart() -> None:
     long = f'/{"a" * 300}/clock'
     clock = CLOCK.resolved_name
+    domain = LAST_DOMAIN + 2 * os.getpid()  # no graph of this machine is there
     with (
-        sole_graph(7, clock),
-        sole_graph(8, clock),
-        sole_graph(7, '/car/clock'),
-        sole_graph(7, long),
+        sole_graph(domain, clock),
+        sole_graph(domain + 1, clock),
+        sole_graph(domain, '/car/clock'),
+        sole_graph(domain, long),
     ):
-        again = pytest.raises(DdctError, match='with /car/clock in ROS domain 7: wait for')
-        with again, sole_graph(7, '/car/clock'):
+        again = pytest.raises(DdctError, match=f'with /car/clock in ROS domain {domain}: wait for')
+        with again, sole_graph(domain, '/car/clock'):
             pass
-    with sole_graph(7, '/car/clock'):
+    with sole_graph(domain, '/car/clock'):
         pass
 
 
