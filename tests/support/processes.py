@@ -204,6 +204,8 @@ def processes_left() -> dict[int, str]:
                 continue
             if 'multiprocessing.forkserver' in command:
                 command = f'{(folder / "comm").read_text().strip()}: {command}'
+            elif _parent_of(pid) == server_pid():
+                continue  # the git that the server asks for the commit while it loads
             marked = mark in (folder / 'environ').read_bytes().split(b'\0')
             # A fork of the shared server has the variables that this one had at its start.
             if marked or _parent_of(pid) == server_pid():
