@@ -29,7 +29,7 @@ _ROUNDS = 3
 class UpdateTime:
     """Update time of a controller."""
 
-    ratio_to_pi: float
+    update_time_over_pi: float
     lowest_ratio: float
     highest_ratio: float
     update_time_median_us: float
@@ -40,7 +40,7 @@ class UpdateTime:
 class NoUpdateTime:
     """Reason for the missing update time of a controller."""
 
-    ratio_to_pi: None
+    update_time_over_pi: None
     reason: str
 
 
@@ -84,10 +84,10 @@ def _update_time(judged: Judged, settings: RunSettings) -> UpdateTime | NoUpdate
             theirs.append(_median_us(REFERENCE, settings))
             ours.append(_median_us(judged.path, settings))
     except FOREIGN_FAILURES as error:
-        return NoUpdateTime(ratio_to_pi=None, reason=f'{type(error).__name__}: {error}')
+        return NoUpdateTime(update_time_over_pi=None, reason=f'{type(error).__name__}: {error}')
     ratios = [mine / other for mine, other in zip(ours, theirs, strict=True)]
     return UpdateTime(
-        ratio_to_pi=statistics.median(ratios),
+        update_time_over_pi=statistics.median(ratios),
         lowest_ratio=min(ratios),
         highest_ratio=max(ratios),
         update_time_median_us=statistics.median(ours),

@@ -160,5 +160,5 @@ def _row(evidence: LoopEvidence, entry: LinearEntry, point: PointEntry) -> LoopR
         ),
         stable_wear=' to '.join(number_text(end, '.2f') for end in ends),
         corner_peak=number_text(entry.corners.sensitivity_peak, '.2f'),
-        corners_unstable=str(entry.corners.unstable),
+        corners_unstable=str(entry.corners.unstable_corners),
     )

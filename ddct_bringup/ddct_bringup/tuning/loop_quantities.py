@@ -61,7 +61,7 @@ def loop_quantities(
                 'has no margins: leave them out',
                 key=UNSTABLE_CORNERS,
             )
-        unstable = max(unstable, entry.corners.unstable)
+        unstable = max(unstable, entry.corners.unstable_corners)
         peaks.append(entry.corners.sensitivity_peak)
     worst = None if None in peaks else max(each for each in peaks if each is not None)
     return {UNSTABLE_CORNERS: float(unstable), SENSITIVITY_PEAK: worst}

@@ -31,9 +31,9 @@ class Rules:
     delivered_time: float = _rule('s')
     added_time: float = _rule('s')
     """Largest integral of the added torque over the largest demand, s."""
-    flare: float = _rule('rad/s')
+    flare_rad_s: float = _rule('rad/s')
     """Rise of w_m in rad/s above its speed in the off-going gear above which it has flared."""
-    tie_up_work: float = _rule('J')
+    tie_up_work_j: float = _rule('J')
     """Tie-up work in J above which the clutches have tied up."""
 
     @property

@@ -77,21 +77,22 @@ def state_of(engagement: Engagement, engine_end: str | None, rules: Rules) -> St
 
 def _tie_up(engagement: Engagement, rules: Rules) -> State | None:
     work = (engagement.shift and engagement.shift.tie_up_work) or 0.0
-    if work <= rules.tie_up_work:
+    if work <= rules.tie_up_work_j:
         return None
     return State(
         TIED_UP,
-        f'the clutches do {work:.0f} J against each other, more than {rules.tie_up_work:g} J',
+        f'the clutches do {work:.0f} J against each other, more than {rules.tie_up_work_j:g} J',
     )
 
 
 def _flare(engagement: Engagement, rules: Rules) -> State | None:
     rise = (engagement.shift and engagement.shift.flare) or 0.0
-    if rise <= rules.flare:
+    if rise <= rules.flare_rad_s:
         return None
     return State(
         FLARED,
-        f'the engine rises by {rise:.1f} rad/s between the gears, more than {rules.flare:g} rad/s',
+        f'the engine rises by {rise:.1f} rad/s between the gears, '
+        f'more than {rules.flare_rad_s:g} rad/s',
     )
 
 

@@ -25,7 +25,7 @@ from ddct_plant.base.errors import DdctError
 from ddct_plant.files.json_records import to_json
 
 Edit = Callable[[dict[str, Any]], object]
-RATIO = {'ratio_to_pi': 2.0, 'lowest_ratio': 1.9, 'highest_ratio': 2.1}
+RATIO = {'update_time_over_pi': 2.0, 'lowest_ratio': 1.9, 'highest_ratio': 2.1}
 TIMES = {**RATIO, 'update_time_median_us': 10.0, 'pi_update_time_median_us': 5.0}
 
 
@@ -58,7 +58,7 @@ def test_a_manifest_with_a_value_of_another_type_is_refused(tmp_path: Path, edit
 
 
 def test_update_times_are_whole_or_have_a_reason(tmp_path: Path) -> None:
-    failed = {'ratio_to_pi': None, 'reason': 'it failed'}
+    failed = {'update_time_over_pi': None, 'reason': 'it failed'}
     content = {'reference': 'pi', 'controllers': {'mine': TIMES, 'other': failed}}
     (tmp_path / TIMING_FILE).write_text(json.dumps(content), encoding='utf-8')
     assert to_json(read_update_times(tmp_path)) == content
@@ -68,8 +68,11 @@ def test_update_times_are_whole_or_have_a_reason(tmp_path: Path) -> None:
     'text',
     [
         *('', '\xff', '[]', '{"controllers": []}', '{"controllers": {"mine": 1}}'),
-        *(json.dumps({'controllers': {'mine': each}}) for each in (RATIO, {'ratio_to_pi': None})),
-        json.dumps({'controllers': {'mine': {**TIMES, 'ratio_to_pi': '2'}}}),
+        *(
+            json.dumps({'controllers': {'mine': each}})
+            for each in (RATIO, {'update_time_over_pi': None})
+        ),
+        json.dumps({'controllers': {'mine': {**TIMES, 'update_time_over_pi': '2'}}}),
     ],
 )
 def test_damaged_update_times_are_refused(tmp_path: Path, text: str) -> None:

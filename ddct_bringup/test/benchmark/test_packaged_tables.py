@@ -73,7 +73,9 @@ def test_nothing_is_wider_than_80_columns(monkeypatch: pytest.MonkeyPatch) -> No
 
 
 def test_the_rules_have_the_thresholds_that_judge() -> None:
-    rules = replace(packaged_limits().rules, withheld_time=0.123, locked_time=0.456, flare=7.89)
+    rules = replace(
+        packaged_limits().rules, withheld_time=0.123, locked_time=0.456, flare_rad_s=7.89
+    )
     states = states_that_count(rules)
     assert '0.123 s' in states['withheld']
     assert '0.456 s' in states['late']

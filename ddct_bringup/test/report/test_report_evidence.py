@@ -79,7 +79,7 @@ def test_evidence_for_another_actuator_is_computed_anew(remark, whole, change):
         (('controllers', 0, 'stable_wear_gain'), 'all'),
         (('controllers', 0, 'stable_wear_gain', 'lowest'), 'none'),
         (('controllers', 0, 'corners'), None),
-        (('controllers', 0, 'corners', 'unstable'), '</script>'),
+        (('controllers', 0, 'corners', 'unstable_corners'), '</script>'),
         (('controllers',), {}),
         (('conditions',), []),
     ],

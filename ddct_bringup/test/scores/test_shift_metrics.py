@@ -109,9 +109,9 @@ def test_works_and_the_peak_temperature_are_those_of_both_clutches():
     )
     found = metrics_of(engagement_of(run))
     assert found['friction_work_j'] == pytest.approx(120 * 2.5), 'from the start of the shift on'
-    assert found['off_going_friction_energy_j'] == pytest.approx(75.5)
-    assert found['on_coming_temperature_degc'] == 100.0
-    assert found['off_going_temperature_degc'] == 320.0
+    assert found['off_going_friction_work_j'] == pytest.approx(75.5)
+    assert found['on_coming_peak_temperature_degc'] == 100.0
+    assert found['off_going_peak_temperature_degc'] == 320.0
     assert found['peak_temperature_degc'] == 320.0
 
 
@@ -131,9 +131,9 @@ def test_a_run_that_ends_before_the_shift_starts_has_works_and_temperatures_alon
     found = metrics_of(engagement_of(Trajectory(cut)))
     defined = {each.key for each in OF_SHIFT if found[each.key] is not None}
     assert defined == {
-        'off_going_friction_energy_j',
-        'on_coming_temperature_degc',
-        'off_going_temperature_degc',
+        'off_going_friction_work_j',
+        'on_coming_peak_temperature_degc',
+        'off_going_peak_temperature_degc',
     }
 
 
@@ -198,7 +198,7 @@ def test_an_ideal_torque_phase_dips_by_33_8_percent_without_flare_or_tie_up():
     assert found['torque_phase_s'] == pytest.approx(0.01 * run.steps, abs=1e-12)
     assert found['flare_rad_s'] == 0.0
     assert found['tie_up_work_j'] < 0.1  # of the last period, in which C_1 passes through zero
-    assert found['off_going_friction_energy_j'] == 0.0
+    assert found['off_going_friction_work_j'] == 0.0
 
 
 def test_the_friction_work_of_an_inertia_phase_is_that_of_engine_and_kinetic_energy():
@@ -231,5 +231,5 @@ def test_the_friction_work_of_an_inertia_phase_is_that_of_engine_and_kinetic_ene
     found = metrics_of(Engagement(run, 0, (0, run.steps)))
     expected = torque * slip * time_s / 2.0 + car.engine_inertia * slip**2 / 2.0
     assert found['friction_work_j'] == pytest.approx(expected, rel=5e-3)
-    assert (found['torque_phase_s'], found['off_going_friction_energy_j']) == (0.0, 0.0)
+    assert (found['torque_phase_s'], found['off_going_friction_work_j']) == (0.0, 0.0)
     assert found['shift_time_s'] == found['inertia_phase_s'] == pytest.approx(time_s, rel=1e-3)

@@ -111,12 +111,15 @@ def test_an_invalid_shift_stays_invalid():
 
 def test_limits_of_ones_own_may_set_both_thresholds():
     packaged = packaged_limits()
-    loud = replace(packaged, rules=replace(packaged.rules, flare=60.0, tie_up_work=5.0))
+    loud = replace(packaged, rules=replace(packaged.rules, flare_rad_s=60.0, tie_up_work_j=5.0))
     assert scored(loud, **risen(40.0)).state == 'engaged'
     assert scored(loud, **opposing(1.0)).state == 'tied_up'
 
 
 def test_the_packaged_thresholds_say_that_they_are_conventions():
-    assert (packaged_limits().rules.flare, packaged_limits().rules.tie_up_work) == (10.5, 110.0)
+    assert (packaged_limits().rules.flare_rad_s, packaged_limits().rules.tie_up_work_j) == (
+        10.5,
+        110.0,
+    )
     text = (files('ddct_bringup.verdict') / 'limits.yaml').read_text(encoding='utf-8')
     assert 'All thresholds are conventions' in text

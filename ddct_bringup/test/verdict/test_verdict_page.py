@@ -28,12 +28,12 @@ def test_every_state_is_on_the_page():
 def test_the_thresholds_of_the_states_are_those_of_the_file():
     rules, rows = packaged_limits().rules, state_rows()
     for state, text in (
-        ('tied_up', f'more than {rules.tie_up_work:g} J'),
+        ('tied_up', f'more than {rules.tie_up_work_j:g} J'),
         (
             'not_engaged',
             f'within {rules.engaged_slip:g} rpm over the last {rules.settled_time:g} s',
         ),
-        ('flared', f'more than {rules.flare:g} rad/s'),
+        ('flared', f'more than {rules.flare_rad_s:g} rad/s'),
         ('late', f'less than {rules.locked_time:g} s'),
         ('withheld', f'more than {rules.withheld_time:g} s'),
         (

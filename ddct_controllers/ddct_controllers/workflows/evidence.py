@@ -178,7 +178,7 @@ def _corner_evidence(controller: StateSpace, corners: PlantCorners) -> CornersEn
     driveline = corners.parameters[found.index]
     worst = loop_evidence(controller, driveline, found.wear_gain, corners.actuator)
     return CornersEntry(
-        unstable=found.unstable_corners,
+        unstable_corners=found.unstable_corners,
         sensitivity_peak=found.sensitivity_peak,
         least_driveline_mode_damping=found.least_mode_damping,
         worst=WorstCornerEntry(

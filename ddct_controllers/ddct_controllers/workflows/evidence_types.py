@@ -63,7 +63,7 @@ class WorstCornerEntry:
 class CornersEntry:
     """Sampled loops at all corners of the driveline, over wear."""
 
-    unstable: int
+    unstable_corners: int
     """Number of corners that are unstable at some wear gain."""
     sensitivity_peak: float | None
     """Largest peak M_s; None where a corner is unstable."""

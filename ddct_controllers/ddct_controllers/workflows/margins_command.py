@@ -137,5 +137,5 @@ def _row(entry: LinearEntry, wear_gain: float) -> list[str]:
         *(quantity.cell(values) for quantity in LOOP_QUANTITY_OF.values()),
         text_or_dash(interval and interval.highest, '.2f'),
         LOOP_QUANTITY_OF['sensitivity_peak'].cell(to_json(entry.corners)),
-        str(entry.corners.unstable),
+        str(entry.corners.unstable_corners),
     ]

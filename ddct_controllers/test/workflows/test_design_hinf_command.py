@@ -45,7 +45,7 @@ def test_the_json_has_every_figure(capsys):
     assert found['weights']['hold_and_delay_in_plant'] is True
     assert found['continuous_loop'] is None
     assert found['sampled_loop']['stable'] is True
-    assert found['corners']['unstable'] == 0
+    assert found['corners']['unstable_corners'] == 0
     assert found['corners']['sensitivity_peak'] < 2.0
     assert found['uncertainty']['largest_error'] == pytest.approx(0.3)
     assert found['uncertainty']['printed_falls_short_by'] == pytest.approx(0.0043, abs=1e-4)

@@ -109,7 +109,7 @@ def test_a_loop_that_is_unstable_with_a_new_clutch_has_no_stable_wear_gains(caps
     entry = json.loads(capsys.readouterr().out)['controllers'][0]
     assert entry['nominal']['stable'] is False
     assert entry['stable_wear_gain'] is None
-    assert entry['corners']['unstable'] == 128
+    assert entry['corners']['unstable_corners'] == 128
 
 
 def test_the_driveline_is_the_scenarios(capsys):
@@ -129,7 +129,7 @@ def test_the_actuator_is_the_scenarios(capsys):
     assert document['conditions']['bandwidth_factor'] == 1.2
     (entry,) = document['controllers']
     assert not any(point['stable'] for point in entry['wear'])
-    assert entry['corners']['unstable'] == 128
+    assert entry['corners']['unstable_corners'] == 128
     assert entry['corners']['worst']['stable'] is False
 
 

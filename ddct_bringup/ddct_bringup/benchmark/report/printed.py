@@ -32,7 +32,7 @@ def print_result(result: Result, update_times: UpdateTimesFile) -> None:
         for line in texts.dominance_lines(judged):
             print_note(line)
     for name, found in update_times.controllers.items():
-        ratio = text_or_dash(found.ratio_to_pi, '.2f')
+        ratio = text_or_dash(found.update_time_over_pi, '.2f')
         print_note(f'update time of {name} over that of pi: {ratio}')
     print_note(left_open_here())
 

@@ -25,9 +25,9 @@ def states_that_count(rules: Rules) -> Mapping[str, str]:
         f'{rules.added_time:g} s of the largest demand.',
         'stalled, over revved': 'The engine left its limits, which ends the run.',
         'tied up': 'The clutches of a gear shift do more than '
-        f'{rules.tie_up_work:g} J against each other.',
+        f'{rules.tie_up_work_j:g} J against each other.',
         'flared': 'The engine rises between the gears of a shift by more than '
-        f'{rules.flare:g} rad/s.',
+        f'{rules.flare_rad_s:g} rad/s.',
         'invalid': 'The run does not count as any other state, as where the controller fails.',
     }
 

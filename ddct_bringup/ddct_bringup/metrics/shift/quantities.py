@@ -157,7 +157,7 @@ QUANTITIES = (
         figure=True,
     ),
     Metric(
-        key='off_going_friction_energy_j',
+        key='off_going_friction_work_j',
         symbol='off-going friction',
         unit='J',
         form='.0f',
@@ -167,7 +167,7 @@ QUANTITIES = (
         of_shift=True,
     ),
     Metric(
-        key='on_coming_temperature_degc',
+        key='on_coming_peak_temperature_degc',
         symbol='on-coming facing',
         unit='degC',
         form='.1f',
@@ -177,7 +177,7 @@ QUANTITIES = (
         of_shift=True,
     ),
     Metric(
-        key='off_going_temperature_degc',
+        key='off_going_peak_temperature_degc',
         symbol='off-going facing',
         unit='degC',
         form='.1f',

@@ -72,7 +72,7 @@ def design_record(
         pulse_transfer_function=factored_form(design.sampled),
         corners=HinfCorners(
             corners=len(corners.plants),
-            unstable=worst.unstable_corners,
+            unstable_corners=worst.unstable_corners,
             sensitivity_peak=worst.sensitivity_peak,
             wear_gain=worst.wear_gain,
             factors=dict(zip(corners.varied, corners.factors[worst.index], strict=True)),
@@ -95,9 +95,9 @@ def shortfalls(record: HinfRecord) -> list[str]:
             f'it overshoots by {100.0 * loop.overshoot:.3g} %, '
             f'{100.0 * specified.overshoot:g} % are allowed'
         )
-    if corners.unstable:
+    if corners.unstable_corners:
         found.append(
-            f'its loop is unstable at {corners.unstable} of {corners.corners} corners '
+            f'its loop is unstable at {corners.unstable_corners} of {corners.corners} corners '
             f'(driveline +-{100.0 * PARAMETER_SPREAD:g} %, wear {WEAR_GAINS[0]:g} to '
             f'{WEAR_GAINS[-1]:g})'
         )

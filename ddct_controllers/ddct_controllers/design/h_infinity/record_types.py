@@ -104,7 +104,7 @@ class HinfCorners:
 
     corners: int
     """Number of corners."""
-    unstable: int
+    unstable_corners: int
     """Number of corners that are unstable at some wear gain."""
     sensitivity_peak: float | None
     """Peak M_s at the worst corner; None where a corner is unstable."""

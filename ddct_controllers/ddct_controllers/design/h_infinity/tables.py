@@ -201,7 +201,7 @@ def _corner_table(records: Sequence[HinfRecord]) -> Table:
             (
                 record.name,
                 str(record.corners.corners),
-                str(record.corners.unstable),
+                str(record.corners.unstable_corners),
                 DESIGN_QUANTITY_OF['sensitivity_peak'].cell(to_json(record.corners)),
                 f'{record.corners.wear_gain:.2f}',
                 ', '.join(f'{name} {x:g}' for name, x in record.corners.factors.items()),
