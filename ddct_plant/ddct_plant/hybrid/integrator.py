@@ -3,10 +3,11 @@
 """The exact integration of a linear system with dry friction, from event to event."""
 
 import struct
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from itertools import product
 from math import isfinite
+from typing import TypeVar
 
 import numpy as np
 
@@ -20,10 +21,22 @@ from ddct_plant.hybrid.friction_system import (
 )
 from ddct_plant.hybrid.interval_map import Event, Interval, IntervalMap
 from ddct_plant.hybrid.mode_choice import choose_mode
-from ddct_plant.hybrid.mode_flow import Course, ModeFlow
+from ddct_plant.hybrid.mode_flow import Course, HeldElements, ModeFlow
 
+Made = TypeVar('Made')
 MOST_EVENTS = 1000
 """Most events in one piece; dry friction between inertias gives fewer."""
+
+
+class _Modes(dict[Signs, Made]):
+    """Results of a function of the mode, each of which is made when it is first needed."""
+
+    def __init__(self, make: Callable[[Signs], Made]) -> None:
+        self._make = make
+
+    def __missing__(self, signs: Signs) -> Made:
+        made = self[signs] = self._make(signs)
+        return made
 
 
 class HybridIntegrator:
@@ -47,22 +60,31 @@ class HybridIntegrator:
         pieces: int,
         held: Sequence[int] = (),
     ) -> None:
-        """Prepare all modes; `held` lists the entries of [u, c] that are held over an interval."""
+        """
+        Prepare for a system; `held` lists the entries of [u, c] that are held over an interval.
+
+        Raise ParameterError where the rates of a mode are too fast for the pieces.
+        """
         self.system = system
         self.piece_s = require_number('piece_s', piece_s, above=0.0)
         count = int(require_number('pieces', pieces, at_least=1))
         self._layout = IntervalLayout(system.b.shape[1], system.elements, count, held)
         # A third faster than numpy, which inspects every value before it makes an array.
         self._pack = struct.Struct(f'{len(system.a) + self._layout.width}d').pack
-        modes = product((-1, 0, 1), repeat=system.elements)
-        self.flows = {signs: ModeFlow(system, signs, piece_s) for signs in modes}
-        self.maps = {
-            signs: IntervalMap(flow, piece_s, self._layout) for signs, flow in self.flows.items()
+        self._stuck = {
+            stuck: HeldElements(system, stuck, self.piece_s)
+            for stuck in product((False, True), repeat=system.elements)
         }
+        self.flows = _Modes(self._flow)
+        """Flow of each mode."""
+        self.maps = _Modes(self._map)
+        """Map of each mode over an interval."""
 
-    def mode_of(self, state: Values) -> Signs:
-        """Return the mode of a state (n,): an element without slip sticks."""
-        return tuple(np.sign(self.system.h @ state).astype(int).tolist())
+    def _flow(self, signs: Signs) -> ModeFlow:
+        return ModeFlow(self._stuck[tuple(not sign for sign in signs)], signs)
+
+    def _map(self, signs: Signs) -> IntervalMap:
+        return IntervalMap(self.flows[signs], self.piece_s, self._layout)
 
     def advance(
         self, state: Values, signs: Signs, inputs: Values, kinetic: Values, static: Values

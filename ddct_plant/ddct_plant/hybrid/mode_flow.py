@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The exact flow of one mode, that is of a set of sticking and slipping elements."""
 
+from functools import cached_property
 from math import ceil
 from typing import NamedTuple
 
@@ -21,22 +22,62 @@ NODE_ANGLE = 0.3
 """Angle in rad by which the fastest undamped mode turns from node to node at most."""
 
 
-def _projection(system: FrictionSystem, signs: Signs) -> tuple[np.ndarray, np.ndarray]:
+class HeldElements:
     """
-    Return the projection P (n, n) to zero slip of the stuck elements, and (h_S g_S)^-1 h_S.
+    A system while a set S of its elements sticks, in all modes in which no other one does.
 
+    `projection` P (n, n) takes the slips of these elements to zero; `hold` is (h_S g_S)^-1 h_S.
     Entries of both that are rounding of their terms are zero. So where sticking elements stop a
     state altogether its rates are zero, and one that holds nothing has no torque.
     """
-    stuck = [i for i, sign in enumerate(signs) if sign == 0]
-    rows, columns = system.h[stuck], system.g[:, stuck]
-    mobility = rows @ columns
-    hold = np.linalg.solve(mobility, rows)
-    hold[np.abs(hold) <= CANCELLED * (np.abs(np.linalg.inv(mobility)) @ np.abs(rows))] = 0.0
-    projection = np.eye(len(system.a)) - columns @ hold
-    terms = np.eye(len(system.a)) + np.abs(columns) @ np.abs(hold)
-    projection[np.abs(projection) <= CANCELLED * terms] = 0.0
-    return projection, hold
+
+    def __init__(self, system: FrictionSystem, stuck: tuple[bool, ...], piece_s: float) -> None:
+        """Raise ParameterError where the rates are too fast for the series over a piece."""
+        self.system, self.piece_s = system, piece_s
+        self.stuck = np.array(stuck)
+        rows, columns = system.h[self.stuck], system.g[:, self.stuck]
+        mobility = rows @ columns
+        hold = np.linalg.solve(mobility, rows)
+        hold[np.abs(hold) <= CANCELLED * (np.abs(np.linalg.inv(mobility)) @ np.abs(rows))] = 0.0
+        one = np.eye(len(system.a))
+        projection = one - columns @ hold
+        projection[np.abs(projection) <= CANCELLED * (one + np.abs(columns) @ np.abs(hold))] = 0.0
+        self.projection, self.hold = projection, hold
+        self.rates = projection @ system.a
+        """State matrix while these elements stick, (n, n)."""
+        self._balanced = balanced(self.rates * piece_s)
+        size = _norm(self._balanced)
+        if size > LONGEST:
+            raise ParameterError(
+                f'friction system: it has rates of {size / piece_s:g} rad/s: take pieces of at '
+                f'most {LONGEST * piece_s / size:.3g} s in place of {piece_s:g} s'
+            )
+
+    @cached_property
+    def degree(self) -> int:
+        """
+        Order at which the terms of exp(a piece) are below rounding.
+
+        The last term is below the rounding of 1 in balanced units. These may differ by many powers
+        of ten, so the next term is below that of the sum in the units of `a` too.
+        """
+        rates, scaled = self.rates * self.piece_s, self._balanced
+        degree, term, scaled_term = 2, rates @ rates / 2.0, scaled @ scaled / 2.0
+        total = np.eye(len(rates)) + rates + term
+        while True:
+            following = term @ rates / (degree + 1)
+            if _norm(scaled_term) <= ROUNDING and _norm(following) <= ROUNDING * _norm(total):
+                return degree
+            degree += 1
+            term, scaled_term = following, scaled_term @ scaled / degree
+            total += term
+
+    @cached_property
+    def steps(self) -> int:
+        """Number of equal steps of a piece, at whose ends, the nodes, guards are evaluated."""
+        # The magnitude of a damped eigenvalue is the frequency without its damping.
+        fastest = float(np.abs(np.linalg.eigvals(self.rates)).max())
+        return max(1, ceil(self.piece_s * fastest / NODE_ANGLE))
 
 
 class ModeFlow:
@@ -49,28 +90,22 @@ class ModeFlow:
     w' = dw. Guards: the slip times its sign; c - f and c + f of an element that sticks.
     """
 
-    def __init__(self, system: FrictionSystem, signs: Signs, piece_s: float) -> None:
-        self.signs = signs
+    def __init__(self, held: HeldElements, signs: Signs) -> None:
+        """Prepare the mode in which the elements that are not held slip with `signs`."""
+        system, self.signs = held.system, signs
         states, inputs = system.b.shape
         self.states, self.inputs = states, inputs + system.elements
-        self.projection, hold = _projection(system, signs)
-        rates = self.projection @ system.a
-        self.degree = _series_degree(rates, piece_s)
-        # The magnitude of a damped eigenvalue is the frequency without its damping.
-        fastest = float(np.abs(np.linalg.eigvals(rates)).max())
-        self.steps = max(1, ceil(piece_s * fastest / NODE_ANGLE))
-        """Number of equal steps of a piece, at whose ends, the nodes, guards are evaluated."""
+        self.projection, self.degree, self.steps = held.projection, held.degree, held.steps
         driven = np.hstack([system.b, system.g * signs])
         moved = np.hstack([system.a, driven])
-        self.stuck = np.array(signs) == 0
         size = states + 2 * self.inputs
         generator = np.zeros((size, size))
-        generator[:states, : states + self.inputs] = piece_s * self.projection @ moved
+        generator[:states, : states + self.inputs] = held.piece_s * self.projection @ moved
         generator[states : states + self.inputs, states + self.inputs :] = np.eye(self.inputs)
         self.force = np.zeros((system.elements, states + self.inputs))
         """Friction torques as rows on [x, w], (N, n + w)."""
         self.force[:, states + inputs :] = np.diag(signs)
-        self.force[self.stuck] = -hold @ moved
+        self.force[held.stuck] = -held.hold @ moved
         guards, self.guarded = self._guards(system)
         self.slipping = [i for i, sign in enumerate(signs) if sign]
         """Indices of the slipping elements."""
@@ -216,32 +251,6 @@ class Course(NamedTuple):
         ]
 
 
-def _series_degree(a: np.ndarray, piece_s: float) -> int:
-    """
-    Return the order at which the terms of exp(a piece) are below rounding.
-
-    The last term is below the rounding of 1 in balanced units. These may differ by many powers of
-    ten, so the next term is below that of the sum in the units of `a` too.
-    """
-    rates = a * piece_s
-    scaled = balanced(rates)
-    size = _norm(scaled)
-    if size > LONGEST:
-        raise ParameterError(
-            f'friction system: it has rates of {size / piece_s:g} rad/s: take pieces of at most '
-            f'{LONGEST * piece_s / size:.3g} s in place of {piece_s:g} s'
-        )
-    degree, term, scaled_term = 2, rates @ rates / 2.0, scaled @ scaled / 2.0
-    total = np.eye(len(a)) + rates + term
-    while True:
-        following = term @ rates / (degree + 1)
-        if _norm(scaled_term) <= ROUNDING and _norm(following) <= ROUNDING * _norm(total):
-            return degree
-        degree += 1
-        term, scaled_term = following, scaled_term @ scaled / degree
-        total += term
-
-
 def balanced(a: np.ndarray) -> np.ndarray:
     """
     Return `a` (n, n) in other units of its states, with a 1-norm that is not above its own.
@@ -252,14 +261,12 @@ def balanced(a: np.ndarray) -> np.ndarray:
     together in this case, or the units stay.
     """
     # Only here: most of the graph's nodes do without scipy, whose import would double their start.
-    from scipy.linalg import matrix_balance
+    from scipy.linalg.lapack import dgebal
 
-    # scipy converts units to whole numbers on its way, and warns where one is above 2^63.
-    with np.errstate(invalid='ignore'):
-        reduced = matrix_balance(a)[0]
-        if _norm(reduced) <= min(_norm(a), LONGEST):
-            return reduced
-        return min(a, reduced, matrix_balance(a, permute=False)[0], key=_norm)
+    reduced = dgebal(a, scale=True, permute=True)[0]
+    if _norm(reduced) <= min(_norm(a), LONGEST):
+        return reduced
+    return min(a, reduced, dgebal(a, scale=True)[0], key=_norm)
 
 
 def _norm(matrix: np.ndarray) -> float:

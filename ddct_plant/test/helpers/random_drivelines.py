@@ -7,6 +7,7 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
+from modes import mode_at
 
 from ddct_plant.hybrid.friction_system import FrictionSystem
 from ddct_plant.hybrid.integrator import HybridIntegrator
@@ -120,7 +121,7 @@ class RandomDriveline:
         system = self.system()
         integrator = HybridIntegrator(system, PIECE_S, PIECES, held=range(system.b.shape[1]))
         state = np.concatenate([self.speeds, np.zeros(len(self.springs))]).tolist()
-        signs, motion = integrator.mode_of(state), Motion()
+        signs, motion = mode_at(system, state), Motion()
         nodes = np.arange(PIECES + 1)[:, None] / PIECES
         for interval, (first, last) in enumerate(pairwise(self.capacities)):
             kinetic = (first + nodes * (last - first)).T.ravel()

@@ -4,6 +4,7 @@
 
 import numpy as np
 import pytest
+from modes import mode_at
 
 from ddct_plant.hybrid.friction_system import FrictionSystem
 from ddct_plant.hybrid.integrator import HybridIntegrator
@@ -58,7 +59,7 @@ def simulated() -> tuple[list[tuple[int, str, float]], list[float]]:
     """Return element, kind and time in s of each event, and the state at 3 s."""
     integrator = HybridIntegrator(friction_example(), PIECE_S, PIECES, held=[0, 1])
     state = [100.0, 90.0, 90.0, 0.0, 0.0, 200.0]
-    signs = integrator.mode_of(state)
+    signs = mode_at(integrator.system, state)
     events = []
     for interval in range(INTERVALS):
         braking = interval >= SWITCH
@@ -97,7 +98,7 @@ def two_clutches(first: float, second: float) -> FrictionSystem:
 def test_two_elements_that_stop_a_damped_body_together_leave_it_without_any_motion(first, second):
     integrator = HybridIntegrator(two_clutches(first, second), PIECE_S, PIECES, held=[0, 1, 2])
     state = [20.0, 1.5, 0.0, 0.0]
-    signs = integrator.mode_of(state)
+    signs = mode_at(integrator.system, state)
     for _ in range(100):
         done = integrator.advance(state, signs, [30.0], [200.0, 200.0], [200.0, 200.0])
         state, signs = done.state, done.signs

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from modes import mode_at
 from scipy.optimize import brentq
 
 from ddct_plant.hybrid.friction_system import FrictionSystem
@@ -111,7 +112,7 @@ def simulated(torque_as_states: bool) -> tuple[dict[tuple[int, str], list[float]
     system = FrictionSystem(a, np.eye(6)[:, :1], -h.T, h)
     integrator = HybridIntegrator(system, PIECE_S, PIECES)
     state = np.array([10.0, 0.0, 0.0, 0.0, 0.0, 1.0])
-    signs = integrator.mode_of(state)
+    signs = mode_at(integrator.system, state)
     times: dict[tuple[int, str], list[float]] = {}
     for interval in range(INTERVALS):
         nodes = PIECE_S * (PIECES * interval + np.arange(PIECES + 1))

@@ -6,6 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from modes import mode_at
 from refusals import refused
 from scipy.integrate import solve_ivp
 
@@ -70,7 +71,7 @@ class RandomRun:
 def test_work_done_is_kinetic_and_elastic_energy_and_friction_work(seed):
     run = RandomRun(seed)
     integrator = HybridIntegrator(run.system, PIECE_S, PIECES, held=[0])
-    state, signs = run.start, integrator.mode_of(run.start)
+    state, signs = run.start, mode_at(run.system, run.start)
     size = len(run.inertias)
     work_in = friction = turnover = 0.0
     kinds = set()
@@ -94,7 +95,7 @@ class Cut:
     def __init__(self, run: RandomRun, cuts: int, pieces: int) -> None:
         self.pieces, self.piece_s = pieces, PIECE_S / cuts
         self.integrator = HybridIntegrator(run.system, self.piece_s, pieces, held=[0])
-        self.state, self.signs = run.start, self.integrator.mode_of(run.start)
+        self.state, self.signs = run.start, mode_at(run.system, run.start)
         self.nodes = np.linspace(0.0, PIECES, cuts * PIECES + 1)
 
     def advance(
@@ -153,7 +154,7 @@ def test_a_random_system_moves_as_scipy_integrates_it(seed):
     run = RandomRun(seed)
     system, count = run.system, 0
     integrator = HybridIntegrator(system, PIECE_S, PIECES, held=[0, 1])
-    state, signs = run.start, integrator.mode_of(run.start)
+    state, signs = run.start, mode_at(run.system, run.start)
     for torque, nodes, _ in run.intervals:
         kinetic = 1.0 + nodes[0, 0]
         static = 1.2 * kinetic
@@ -289,7 +290,7 @@ def test_elements_that_lock_together_do_so_in_one_instant(arms):
     integrator = HybridIntegrator(symmetric_star(arms), PIECE_S, PIECES, held=range(arms + 1))
     state = np.zeros(2 * arms + 2)
     state[0] = 0.1
-    signs = integrator.mode_of(state)
+    signs = mode_at(integrator.system, state)
     assert signs == (1,) * arms
     done = integrator.advance(state, signs, [0.0], [8.0] * arms, [8.0] * arms)
     assert done.signs == (0,) * arms
@@ -300,7 +301,7 @@ def test_elements_that_lock_together_do_so_in_one_instant(arms):
 def test_capacity_that_equals_the_held_torque_lets_it_stick_without_events():
     """A tie in every derivative: neither chatter nor drift, for a second."""
     integrator = HybridIntegrator(symmetric_star(2), PIECE_S, PIECES, held=range(3))
-    state, signs = np.zeros(6), integrator.mode_of(np.zeros(6))
+    state, signs = np.zeros(6), mode_at(integrator.system, np.zeros(6))
     for _ in range(100):
         done = integrator.advance(state, signs, [0.3], [0.1, 0.1], [0.1, 0.1])
         assert done.events == []
@@ -404,10 +405,12 @@ def test_a_piece_must_be_longer_than_zero_and_short_enough_for_the_rates():
         HybridIntegrator(block(a=-1e4), PIECE_S, PIECES)
 
 
-def test_an_element_sticks_only_with_no_slip_at_all():
-    integrator = HybridIntegrator(block(), PIECE_S, PIECES)
-    assert integrator.mode_of(np.array([1e-9])) == (1,)
-    assert integrator.mode_of(np.array([0.0])) == (0,)
+def test_a_mode_is_prepared_when_a_motion_first_has_it():
+    integrator = HybridIntegrator(block(), PIECE_S, PIECES, held=[0, 1])
+    assert not integrator.flows
+    done = integrator.advance([1.0], (1,), [0.0], [1.0], [1.0])
+    assert done.signs == (1,)
+    assert list(integrator.flows) == list(integrator.maps) == [(1,)]
 
 
 def test_values_that_are_not_finite_end_in_an_error():
@@ -428,7 +431,7 @@ def test_no_slip_is_too_small_to_be_one():
 def test_events_come_in_the_order_of_time():
     run = RandomRun(2)
     integrator = HybridIntegrator(run.system, PIECE_S, PIECES, held=[0])
-    state, signs = run.start, integrator.mode_of(run.start)
+    state, signs = run.start, mode_at(run.system, run.start)
     for torque, kinetic, static in run.intervals:
         done = integrator.advance(state, signs, [torque], kinetic.ravel(), static.ravel())
         assert all(one.time_s <= two.time_s for one, two in pairwise(done.events))

@@ -9,7 +9,7 @@ import pytest
 
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.hybrid.friction_system import FrictionSystem
-from ddct_plant.hybrid.mode_flow import LONGEST, ModeFlow, balanced
+from ddct_plant.hybrid.mode_flow import LONGEST, HeldElements, ModeFlow, balanced
 
 
 def norm(matrix: np.ndarray) -> float:
@@ -38,7 +38,7 @@ def slipping(a: np.ndarray) -> ModeFlow:
     size = len(a)
     h = np.eye(size + 1)[-1:]
     system = FrictionSystem(np.pad(a, (0, 1)), np.zeros((size + 1, 0)), -h.T, h)
-    return ModeFlow(system, (1,), 1.0)
+    return ModeFlow(HeldElements(system, (False,), 1.0), (1,))
 
 
 def random_rates(seed: int) -> np.ndarray:

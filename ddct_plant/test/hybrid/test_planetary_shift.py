@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
+from modes import mode_at
 from scipy.integrate import solve_ivp
 
 from ddct_plant.hybrid.friction_system import FrictionSystem
@@ -134,7 +135,7 @@ def test_a_shift_by_clutch_and_brake_of_a_planetary_gear_has_the_events_of_anoth
     )
     integrator = HybridIntegrator(system, PIECE_S, PIECES, held=[0])
     state = [0.0, 0.0]
-    signs = integrator.mode_of(state)
+    signs = mode_at(integrator.system, state)
     events = []
     for interval in range(round(END_S / (PIECE_S * PIECES))):
         start_s = interval * PIECE_S * PIECES
