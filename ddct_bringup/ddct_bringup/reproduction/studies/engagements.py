@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ddct_bringup.many_runs.engine import results_of
 from ddct_bringup.reproduction.studies.study import (
     WEAR_GAINS,
     Study,
@@ -26,7 +27,6 @@ from ddct_controllers.design.drawing.line_styles import BLACK, BLUE, GREY, VERMI
 from ddct_controllers.registry import own_controller_names
 from ddct_plant.base.timebase import PERIOD_S, time_of_step
 from ddct_plant.program.table import Column
-from ddct_plant.program.workers import in_processes
 from ddct_plant.scenario.choices.scenarios import scenario_names
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
@@ -94,8 +94,7 @@ def _engagements(scenario: str) -> Study:
         for wear_gain in WEAR_GAINS
         for controller in own_controller_names()
     ]
-    with in_processes(lambda index: engagement(cases[index]), len(cases)) as found:
-        rows, slips = zip(*found, strict=True)
+    rows, slips = zip(*results_of(engagement, cases), strict=True)
     return Study(
         title,
         ('K_usura', 'controller', *headers(COLUMNS)),
