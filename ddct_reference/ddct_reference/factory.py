@@ -51,18 +51,26 @@ def make_descent(settings: KnownSettings) -> Descent:
     return TimedDescent(duration_s, settings.reference_shape)
 
 
+def nominal_settings(scenario: Scenario) -> RunSettings:
+    """
+    Return the settings of the nominal detailed run: the known car with a clutch without wear.
+
+    The clutch is the linear one, or the one that sticks where the linear one cannot run the
+    scenario.
+    """
+    clutch = STICK_SLIP if scenario.of_stick_slip else LINEAR
+    return RunSettings(KnownSettings(replace(scenario, clutch=clutch)))
+
+
 def nominal_slip(scenario: Scenario) -> list[float]:
     """
     Return w_d in rad/s at steps 0, 1, ..., up to and with the first controlled one.
 
-    It is that of the nominal detailed run: the known car with a clutch without wear. The clutch is
-    the linear one, or the one that sticks where the linear one cannot run the scenario. Until
-    control starts feedback is off and only the static controller C_fOL acts. So no controller
-    enters: the values are those of any controller's run, to the last bit.
+    It is that of the nominal detailed run. Until control starts feedback is off and only the
+    static controller C_fOL acts. So no controller enters: the values are those of any controller's
+    run, to the last bit.
     """
-    clutch = STICK_SLIP if scenario.of_stick_slip else LINEAR
-    settings = RunSettings(KnownSettings(replace(scenario, clutch=clutch)))
-    plant = Plant(settings)
+    plant = Plant(nominal_settings(scenario))
     static = StaticTorque(scenario.driveline, scenario.equilibrium)
     load = RoadLoad(scenario.load, scenario.vehicle, scenario.slope)
     slips = []

@@ -1,3 +1,3 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Simulation of many runs of linear plants and controllers at once, one array column per run."""
+"""Simulation of many runs at once; the runs are the first axis of every array of a step."""

@@ -1,7 +1,7 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
 """
-Compute many runs of linear plants and controllers at once.
+Compute many runs at once.
 
     from ddct_bringup.batch.run_batch import run_batch
     results = run_batch([(settings, controller), ...], limits)
@@ -12,20 +12,19 @@ other runs are in the batch. A run in which rounding grows beyond that has no re
 
 from collections import defaultdict
 from collections.abc import Hashable, Sequence
-from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.batch.loops import reference_kind, simulate_batch
+from ddct_bringup.batch.batchable import kind_of
+from ddct_bringup.batch.controllers import StackedController
 from ddct_bringup.batch.results import part_of_stack, stacked_results
+from ddct_bringup.batch.simulate import loop_kind, simulate_batch
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.scores.validity import are_signals
 from ddct_bringup.verdict.limits import Limits
 from ddct_controllers.interface import Controller
 from ddct_plant.base.errors import DdctError
-from ddct_plant.linear.lti import StateSpace
 from ddct_plant.scenario.settings import RunSettings
 
 MOST_RUNS = 1000
@@ -37,8 +36,7 @@ _FEEDBACK_FACTOR = 1.0 + 2.0**-46
 _SLIP_TOLERANCE = 1e-10
 """Largest change of the slip in the rounding test, relative to the largest slip."""
 Run = tuple[RunSettings, Controller]
-_Linear = tuple[RunSettings, StateSpace]
-"""Settings of a run, and its linear feedback."""
+_Kind = type[StackedController]
 
 
 def run_batch(runs: Sequence[Run], limits: Limits) -> list[ScoredRun | None]:
@@ -50,74 +48,52 @@ def run_batch(runs: Sequence[Run], limits: Limits) -> list[ScoredRun | None]:
     None for a run that must be computed step by step: a divergent run or one that cannot be built
     gets its reason there, and a chaotic one gets repeatable metrics.
     """
-    linear = _linear(runs)
     results: list[ScoredRun | None] = [None] * len(runs)
-    for chunk in _chunks(linear):
-        found = _results([linear[index] for index in chunk], limits)
+    for kind, chunk in _chunks(runs):
+        found = _results([runs[index] for index in chunk], kind, limits)
         for index, result in zip(chunk, found, strict=True):
             results[index] = result
     return results
 
 
-def _linear(runs: Sequence[Run]) -> list[_Linear]:
-    """Return the runs with the linear feedback of their controllers, one per controller."""
-    controllers = {id(controller): controller for _, controller in runs}
-    models: dict[int, Any] = {key: each.linear_model() for key, each in controllers.items()}
-    assert None not in models.values(), 'run_batch takes batchable runs'
-    return [(settings, models[id(controller)]) for settings, controller in runs]
+def _stack(runs: Sequence[Run], kind: _Kind, feedback_factor: float = 1.0) -> Trajectory:
+    settings, controllers = zip(*runs, strict=True)
+    stack = kind.of(controllers, [run.known for run in settings])
+    return simulate_batch(settings, stack, controllers[0].preview_steps, feedback_factor)
 
 
-def _stack(runs: Sequence[_Linear]) -> Trajectory:
-    # numpy sums a single column in another order than many columns, so one run is doubled.
-    several = [*runs] * 2 if len(runs) == 1 else runs
-    stack = simulate_batch([settings for settings, _ in several], [model for _, model in several])
-    return part_of_stack(stack, slice(len(runs)))
-
-
-def _alike(settings: RunSettings, model: StateSpace) -> Hashable:
-    """Return the key that runs computed together share."""
-    scenario, known = settings.scenario, settings.known
-    return (
-        scenario.steps,
-        known.scenario.control_start_step,
-        scenario.score_window_s,
-        (scenario.equilibrium, known.scenario.equilibrium),
-        known.architecture,
-        reference_kind(known),
-        known.scenario.actuator.delay_substeps,  # it gives the order of the feedforward
-        len(model.a),
-    )
-
-
-def _chunks(runs: Sequence[_Linear]) -> list[list[int]]:
-    """Return the indices of the runs that are computed together, chunk by chunk."""
-    groups = defaultdict(list)
-    for index, (settings, model) in enumerate(runs):
-        groups[_alike(settings, model)].append(index)
+def _chunks(runs: Sequence[Run]) -> list[tuple[_Kind, list[int]]]:
+    """Return the indices of the runs that are computed together, chunk by chunk, and the kind."""
+    kinds = {id(controller): kind_of(controller) for _, controller in runs}
+    groups: dict[tuple[_Kind, Hashable], list[int]] = defaultdict(list)
+    for index, (settings, controller) in enumerate(runs):
+        kind = kinds[id(controller)]
+        alike = settings.scenario.score_window_s, controller.preview_steps, kind.key(controller)
+        groups[kind, (loop_kind(settings), alike)].append(index)
     return [
-        group[first : first + MOST_RUNS]
-        for group in groups.values()
+        (kind, group[first : first + MOST_RUNS])
+        for (kind, _), group in groups.items()
         for first in range(0, len(group), MOST_RUNS)
     ]
 
 
-def _results(runs: Sequence[_Linear], limits: Limits) -> list[ScoredRun | None]:
+def _results(runs: Sequence[Run], kind: _Kind, limits: Limits) -> list[ScoredRun | None]:
     try:
         with np.errstate(all='ignore'):  # what is not finite has no result
-            stack = _stack(runs)
-            counts = _usable(stack) & _repeatable(runs, stack)
+            stack = _stack(runs, kind)
+            counts = _usable(stack) & _repeatable(runs, kind, stack)
     except DdctError:
         if len(runs) == 1:
             return [None]
         half = len(runs) // 2
-        return _results(runs[:half], limits) + _results(runs[half:], limits)
+        return _results(runs[:half], kind, limits) + _results(runs[half:], kind, limits)
     kept = stack if counts.all() else part_of_stack(stack, counts)
     settings = [run for (run, _), each in zip(runs, counts, strict=True) if each]
     results = iter(stacked_results(settings, kept, limits) if settings else [])
     return [next(results) if each else None for each in counts]
 
 
-def _repeatable(runs: Sequence[_Linear], stack: Trajectory) -> np.ndarray:
+def _repeatable(runs: Sequence[Run], kind: _Kind, stack: Trajectory) -> np.ndarray:
     """
     Return for each run of a stack whether its rounding errors stay small, (R,).
 
@@ -129,12 +105,8 @@ def _repeatable(runs: Sequence[_Linear], stack: Trajectory) -> np.ndarray:
     repeatable = np.ones(len(runs), dtype=bool)
     if len(suspects):
         suspected = [runs[index] for index in suspects.tolist()]
-        moved = [
-            (settings, replace(model, c=_FEEDBACK_FACTOR * model.c, d=_FEEDBACK_FACTOR * model.d))
-            for settings, model in suspected
-        ]
         slip = stack.slip_speed[suspects]
-        again = _stack(moved).slip_speed
+        again = _stack(suspected, kind, _FEEDBACK_FACTOR).slip_speed
         difference = np.max(np.abs(again - slip), axis=-1)
         repeatable[suspects] = difference <= _SLIP_TOLERANCE * np.max(np.abs(slip), axis=-1)
     return repeatable

@@ -1,6 +1,11 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Arrays with one column per run for quantities that differ from run to run, and their filters."""
+"""
+Arrays whose first axis are the runs, for quantities that differ from run to run.
+
+What a run gives does not depend on the other runs, to the last bit: functions of numbers are
+applied element by element, and each run has matrix products of its own.
+"""
 
 from collections.abc import Hashable, Iterable, Sequence
 from dataclasses import fields, is_dataclass
@@ -8,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from ddct_plant.hybrid.interval_map import BLOCK
 from ddct_plant.linear.lti import StateSpace
 
 
@@ -47,38 +53,54 @@ def distinct(keys: Iterable[Hashable]) -> tuple[list[int], np.ndarray]:
     return first, np.array(inverse)
 
 
-def product(matrix: np.ndarray, columns: np.ndarray) -> np.ndarray:
-    """
-    Return matrix @ columns, (m, R), for one matrix (m, n) or one per run (m, n, R).
+def by_run(matrices: Sequence[np.ndarray], places: np.ndarray) -> np.ndarray:
+    """Return the matrix (m, n) of all runs, or a stack (R, m, n) where they differ."""
+    return np.array(matrices[0]) if len(matrices) == 1 else np.stack(matrices)[places]
 
-    BLAS is faster with one matrix, but the rounding of a column depends on its neighbours.
+
+def product(matrix: np.ndarray, rows: np.ndarray) -> np.ndarray:
     """
-    return np.einsum('ijr,jr->ir' if matrix.ndim == 3 else 'ij,jr->ir', matrix, columns)
+    Return for each run the product of its matrix and its row of values, (R, m).
+
+    `matrix` is one (m, n) or one per run (R, m, n), `rows` are (R, n). It is a product by a vector
+    for each run: in one of all runs the rounding of a run would depend on its neighbours.
+    """
+    height = max(1, BLOCK // matrix.shape[-1])
+    columns = rows[:, :, np.newaxis]
+    if matrix.shape[-2] <= height:
+        return np.matmul(matrix, columns)[:, :, 0]
+    blocks = range(0, matrix.shape[-2], height)
+    parts = [np.matmul(matrix[..., i : i + height, :], columns)[:, :, 0] for i in blocks]
+    return np.concatenate(parts, axis=1)
 
 
 class Filters:
     """
-    Many sampled linear systems as columns, the counterpart of `DiscreteFilter`.
+    Many sampled linear systems, the counterpart of `DiscreteFilter`.
 
     y_k = c x_k + d u_k, x_(k+1) = a x_k + b u_k for each run, all of one order, one output.
     """
 
     def __init__(self, models: Sequence[StateSpace], states: np.ndarray | float = 0.0) -> None:
-        """Start in the states `states`, (n, R)."""
+        """Start in the states `states`, (R, n)."""
         systems = [(model.a, model.b, model.c, model.d) for model in models]
         first, places = distinct(tuple(map(np.ndarray.tobytes, each)) for each in systems)
         # From states and inputs to the next states and the output, (n + 1, n + m) each.
         maps = [np.block([[a, b], [c, d]]) for a, b, c, d in (systems[index] for index in first)]
-        matrices = np.stack(maps, axis=-1)
-        self._matrix = matrices[..., 0] if len(first) == 1 else np.take(matrices, places, axis=-1)
+        self._matrix = by_run(maps, places)
         self._order = len(models[0].a)
-        self._states_and_inputs = np.zeros((self._matrix.shape[1], len(models)))
-        self._states_and_inputs[: self._order] = states
+        self._states_and_inputs = np.zeros((len(models), self._matrix.shape[-1]))
+        self._states_and_inputs[:, : self._order] = states
 
     def update(self, *inputs: np.ndarray) -> np.ndarray:
         """Return the outputs of this period, (R,), and advance the states by one period."""
         values = self._states_and_inputs
-        values[self._order :] = inputs
+        for place, each in enumerate(inputs, self._order):
+            values[:, place] = each
         following = product(self._matrix, values)
-        values[: self._order] = following[:-1]
-        return following[-1]
+        values[:, : self._order] = following[:, :-1]
+        return following[:, -1]
+
+    def reset(self, which: np.ndarray) -> None:
+        """Set the states of the runs of a mask (R,) to zero."""
+        self._states_and_inputs[which, : self._order] = 0.0

@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 
 from ddct_bringup.batch.batchable import why_not_batchable
-from ddct_bringup.batch.loops import simulate_batch
+from ddct_bringup.batch.linear_controllers import LinearControllers
 from ddct_bringup.batch.run_batch import run_batch
+from ddct_bringup.batch.simulate import simulate_batch
 from ddct_bringup.campaign.rows import scored_headless
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.verdict.limits import packaged_limits
@@ -156,7 +157,7 @@ def test_whole_trajectories_are_those_of_the_run_step_by_step():
     ]
     runs = [(each, make_controller('ls8', each.known)) for each in settings]
     models = [controller.linear_model() for _, controller in runs]
-    stack = simulate_batch(settings, models)
+    stack = simulate_batch(settings, LinearControllers(models))
     for index, (each, controller) in enumerate(runs):
         controller.reset()
         expected = run_headless(each, controller)

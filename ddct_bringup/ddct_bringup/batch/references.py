@@ -1,0 +1,142 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Slip references of many runs with their previews."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Hashable, Sequence
+
+import numpy as np
+
+from ddct_bringup.batch.nominal_slips import nominal_slips
+from ddct_bringup.batch.stacks import distinct
+from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.scenario.control import ENGINE_SPEED_TARGET, PROFILE
+from ddct_plant.scenario.settings import KnownSettings
+from ddct_reference.descent import Descent
+from ddct_reference.factory import make_descent, nominal_settings
+
+_RAMP = 'ramp'
+_Points = tuple[np.ndarray, np.ndarray]
+"""References in rad/s and their rates in rad/s^2."""
+
+
+def why_no_reference(settings: KnownSettings) -> str:
+    """Return in one line why the reference of a run is not among `References`, else empty."""
+    if settings.reference_shape == ENGINE_SPEED_TARGET:
+        return f'reference.shape is {ENGINE_SPEED_TARGET}'
+    return ''
+
+
+def reference_kind(settings: KnownSettings) -> Hashable:
+    """Return what runs with common `References` share."""
+    nominal = None if settings.detailed else nominal_settings(settings.scenario).stick_slip
+    return _kind(settings), settings.scenario.control_start_step, nominal
+
+
+def _kind(settings: KnownSettings) -> str:
+    shape = settings.reference_shape
+    return shape if shape in (_RAMP, PROFILE) else 'timed'
+
+
+class References:
+    """Slip references of R runs of one kind, the counterpart of `DescendingReference`."""
+
+    def __init__(self, runs: Sequence[KnownSettings], preview_steps: int, steps: int) -> None:
+        """Compute everything that does not depend on the slip, up to step `steps`."""
+        self._start = runs[0].scenario.control_start_step
+        self._points = preview_steps + 1
+        self._stored = None if runs[0].detailed else nominal_slips(runs, self._start)
+        self._start_value = np.zeros(len(runs)) if self._stored is None else self._stored[:, -1]
+        periods = np.arange(max(steps - self._start + 1, 0) + preview_steps)
+        kinds: dict[str, type[_Descents]] = {_RAMP: _Ramps, PROFILE: _Profiles}
+        self._descents = kinds.get(_kind(runs[0]), _Timed)(runs, periods)
+
+    def update(self, step: int, slip_speed: np.ndarray) -> _Points:
+        """
+        Return references and rates at steps k, k + 1, ..., k + P, (R, P + 1), for w_d, (R,).
+
+        The units are rad/s and rad/s^2.
+        """
+        if self._stored is None and step <= self._start:
+            self._start_value = slip_speed
+        waiting = min(max(self._start - step, 0), self._points)
+        first = step + waiting - self._start
+        if not waiting:
+            return self._descents.at(self._start_value, first, self._points)
+        before = self._before(step, waiting)
+        if waiting == self._points:
+            return before
+        after = self._descents.at(self._start_value, first, self._points - waiting)
+        speeds, rates = (
+            np.concatenate(parts, axis=1) for parts in zip(before, after, strict=True)
+        )
+        return speeds, rates
+
+    def _before(self, step: int, count: int) -> _Points:
+        """Return the points at steps k, k + 1, ... before control start."""
+        if self._stored is None:
+            speeds = np.repeat(self._start_value[:, np.newaxis], count, axis=1)
+            return speeds, np.zeros_like(speeds)
+        values = self._stored[:, step : step + count + 1]
+        return values[:, :-1], np.diff(values) / PERIOD_S
+
+
+class _Descents(ABC):
+    """Descents of R runs from control start on, the counterpart of `Descent`."""
+
+    @abstractmethod
+    def __init__(self, runs: Sequence[KnownSettings], periods: np.ndarray) -> None:
+        """Compute what does not depend on the start, at whole periods 0, 1, ... after it."""
+
+    @abstractmethod
+    def at(self, start: np.ndarray, first: int, count: int) -> _Points:
+        """Return the points of `count` periods from `first` on, (R, count), for starts (R,)."""
+
+
+class _Ramps(_Descents):
+    """The counterpart of `CrfRamp`."""
+
+    def __init__(self, runs: Sequence[KnownSettings], periods: np.ndarray) -> None:
+        slopes = [run.scenario.reference.slope_rad_s2 for run in runs]
+        self._slope = np.array(slopes)[:, np.newaxis]
+        self._times = periods * PERIOD_S
+
+    def at(self, start: np.ndarray, first: int, count: int) -> _Points:
+        start = start[:, np.newaxis]
+        size = np.abs(start) - self._slope * self._times[first : first + count]
+        ended = size <= 0.0
+        rates = -np.copysign(self._slope, start)
+        return np.where(ended, 0.0, np.copysign(size, start)), np.where(ended, 0.0, rates)
+
+
+class _Profiles(_Descents):
+    """The counterpart of `ProfileDescent`."""
+
+    def __init__(self, runs: Sequence[KnownSettings], periods: np.ndarray) -> None:
+        times = runs[0].scenario.control_start_s + periods * PERIOD_S
+        profiles = [run.scenario.slip_reference for run in runs]
+        self._values = np.stack([each.over(times) for each in profiles])
+        following = np.stack([each.over(times + PERIOD_S) for each in profiles])
+        self._rates = (following - self._values) / PERIOD_S
+
+    def at(self, start: np.ndarray, first: int, count: int) -> _Points:
+        points = slice(first, first + count)
+        return self._values[:, points], self._rates[:, points]
+
+
+class _Timed(_Descents):
+    """The counterpart of `TimedDescent`."""
+
+    def __init__(self, runs: Sequence[KnownSettings], periods: np.ndarray) -> None:
+        firsts, places = distinct((run.reference_shape, run.scenario.reference) for run in runs)
+        found = np.array([_course(make_descent(runs[index]), periods) for index in firsts])
+        self._shares, self._rates = found[places].transpose(2, 0, 1)
+
+    def at(self, start: np.ndarray, first: int, count: int) -> _Points:
+        points, start = slice(first, first + count), start[:, np.newaxis]
+        return start * self._shares[:, points], start * self._rates[:, points]
+
+
+def _course(descent: Descent, periods: np.ndarray) -> list[tuple[float, float]]:
+    """Return the remaining share of the start and its rate, for each period."""
+    return [descent.at(1.0, since * PERIOD_S) for since in periods.tolist()]
