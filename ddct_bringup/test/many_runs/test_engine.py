@@ -130,8 +130,9 @@ def test_blocks_are_handed_over_as_they_are_needed() -> None:
 
 def test_a_stop_ends_the_work_and_leaves_no_process() -> None:
     looks = iter([False, True])
+    sleep: Each[int, None] = Each(lambda _: time.sleep(60.0))
     with (
-        engine_of(Each(lambda _: time.sleep(60.0)), 2, lambda: next(looks)) as engine,
+        engine_of(sleep, 2, lambda: next(looks)) as engine,
         pytest.raises(KeyboardInterrupt, match='interrupted; start again'),
     ):
         list(engine.done(blocks_of(ITEMS, 1)))
