@@ -13,13 +13,7 @@ from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.keys import CONTROLLERS
 from ddct_bringup.campaign.scored import Scorer
 from ddct_bringup.campaign.spec import spec_of
-from ddct_bringup.campaign.specification.parts import (
-    FLOOR_SAMPLES,
-    FLOORS,
-    RANDOM,
-    ROOT_SEED,
-    SAMPLES,
-)
+from ddct_bringup.campaign.specification.parts import RANDOM, ROOT_SEED, SAMPLES
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_bringup.verdict.state import ENGAGED
 
@@ -47,8 +41,6 @@ class CaseRuns(NamedTuple):
 def runs_in_cases(chosen: str, seed: int, samples: int) -> CaseRuns:
     """Return the runs of a controller in the first samples of each scenario with this seed."""
     content = dict(Cases.packaged().content)
-    for key in (FLOORS, FLOOR_SAMPLES):
-        del content[key]
     content |= {CONTROLLERS: [chosen], ROOT_SEED: seed}
     content[RANDOM] = {**content[RANDOM], SAMPLES: samples}
     campaign = Campaign(spec_of(content, Path()))

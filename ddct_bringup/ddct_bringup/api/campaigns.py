@@ -74,8 +74,8 @@ def sweep(
 
     `controllers` are as for `compare`, `options` as for `run`. `over` maps a key to its values, or
     to the text 'START:STOP:COUNT'; with several keys every combination runs. A row per run has the
-    controller, the values under their keys, every figure and metric, `valid`, `reason`, `state`,
-    `why` and `least_is_bound`.
+    controller, the values under their keys, every figure and metric that it alone gives, `valid`,
+    `reason`, `state` and `why`.
     """
     import pandas
 

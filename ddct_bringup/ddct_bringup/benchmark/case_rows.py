@@ -10,14 +10,10 @@ import pyarrow as pa
 
 from ddct_bringup.campaign.arrow_columns import numpy_column
 from ddct_bringup.campaign.columns import CONTROLLER
-from ddct_bringup.metrics.catalogue import JERK_OVER_LEAST
 from ddct_plant.base.errors import DdctError
 
 CASE = 'case'
 """Column of the number of the case, which no row has: it follows from its place."""
-
-IS_BOUND = 'least_is_bound'
-"""Column that says whether the least of a run's case is a bound of that run."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,15 +57,6 @@ class CaseRows:
         """Return the rows of some cases."""
         chosen = np.asarray(cases, dtype=int)
         columns = {name: column[:, chosen] for name, column in self.columns.items()}
-        return CaseRows(self.controllers, columns)
-
-    def with_floors_in(self, cases: np.ndarray) -> 'CaseRows':
-        """Return the rows with jerks over the least in some cases alone; (cases,) bool."""
-        without = {JERK_OVER_LEAST.key: np.array(np.nan), IS_BOUND: np.array(None)}
-        columns = {
-            name: np.where(cases, column, without[name]) if name in without else column
-            for name, column in self.columns.items()
-        }
         return CaseRows(self.controllers, columns)
 
     def beside(self, others: 'CaseRows') -> 'CaseRows':

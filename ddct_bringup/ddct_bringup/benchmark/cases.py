@@ -21,7 +21,6 @@ from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.keys import CONTROLLERS
 from ddct_bringup.campaign.spec import CampaignSpec, spec_of
 from ddct_bringup.campaign.specification.parts import (
-    FLOOR_SAMPLES,
     OF,
     RANDOM,
     ROOT_SEED,
@@ -49,7 +48,7 @@ class Cases:
 
     content: Mapping[str, Any]
     """
-    Specification of a campaign with random samples and floors.
+    Specification of a campaign with random samples.
 
     Its `controllers` run beside the judged one in held-out cases; its `seed` is that of the
     development cases.
@@ -147,8 +146,7 @@ class Cases:
         if self.car_files:
             content[CAR] = os.path.relpath(str(self.car_path), folder)
         if self.quick:
-            random, floors = self.content[RANDOM], self.whole.floor_samples
+            random = self.content[RANDOM]
             samples = random[SAMPLES]
             content[RANDOM] = {OF: samples, **random, SAMPLES: -(-samples // QUICK)}
-            content[FLOOR_SAMPLES] = -(-floors // QUICK)
         return Campaign(spec_of(content, folder))

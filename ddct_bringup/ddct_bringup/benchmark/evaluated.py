@@ -9,7 +9,6 @@ import numpy as np
 from ddct_bringup.benchmark.statistics.case_figures import FIGURES
 from ddct_bringup.campaign_report.evaluated_quantities import QUANTITIES
 from ddct_bringup.campaign_report.results import is_number
-from ddct_bringup.metrics.catalogue import JERK_OVER_LEAST
 
 Columns = Mapping[str, np.ndarray]
 """Columns of one controller by name, (cases,) each."""
@@ -17,8 +16,6 @@ MAIN = tuple(each.name for each in FIGURES)
 """Keys of the five figures."""
 EVALUATED = {each.key: each for each in (*(figure.quantity for figure in FIGURES), *QUANTITIES)}
 """Every quantity by its key."""
-OVER_LEAST = JERK_OVER_LEAST.key
-"""Key of the figure that only cases with floors have."""
 _SUMS = {each.name: each for each in FIGURES if len(each.columns) > 1}
 
 

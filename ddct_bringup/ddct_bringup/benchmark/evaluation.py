@@ -7,14 +7,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ddct_bringup.benchmark.case_rows import IS_BOUND, CaseRows
-from ddct_bringup.benchmark.evaluated import (
-    EVALUATED,
-    MAIN,
-    OVER_LEAST,
-    Columns,
-    values_of,
-)
+from ddct_bringup.benchmark.case_rows import CaseRows
+from ddct_bringup.benchmark.evaluated import EVALUATED, MAIN, Columns, values_of
 from ddct_bringup.benchmark.outcomes import (
     outcomes_in,
     share_of,
@@ -38,9 +32,6 @@ from ddct_bringup.campaign_report.summary_types import Reason
 from ddct_bringup.campaign_report.texts import where_text
 from ddct_bringup.verdict.state import INVALID, STATES
 
-SHOWN = (*MAIN, OVER_LEAST)
-"""Quantities of each scenario, and of all controllers beside one another."""
-
 
 def states_in(columns: Columns) -> dict[str, RunShare]:
     """Return the share of each state that occurred, those of another version last."""
@@ -62,7 +53,7 @@ def scenarios_in(columns: Columns) -> dict[str, ScenarioResult]:
         part = {key: column[names == name] for key, column in columns.items()}
         found[str(name)] = ScenarioResult(
             success=share_of_successes(part),
-            quantities=quantities_in(part, SHOWN),
+            quantities=quantities_in(part, MAIN),
         )
     return found
 
@@ -86,11 +77,6 @@ def quantities_in(columns: Columns, names: Sequence[str] = ()) -> list[QuantityR
             spread = spread_in(columns, values)
             found.append(QuantityResult(key, EVALUATED[key].unit, spread))
     return found
-
-
-def least_is_no_bound_in(columns: Columns) -> int:
-    """Return the number of successes whose peak jerk the least of the case does not bound."""
-    return int(np.sum(successes_in(columns) & np.equal(columns[IS_BOUND], False)))
 
 
 def causes_in(columns: Columns, varied: list[str]) -> Causes:
@@ -140,7 +126,6 @@ def evaluations_of(rows: CaseRows, varied: list[str], judged: str) -> list[Evalu
                 scenarios=scenarios_in(columns),
                 reasons=reasons_in(columns),
                 quantities=quantities_in(columns),
-                least_is_no_bound=least_is_no_bound_in(columns),
                 causes=causes_in(columns, varied) if name == judged else None,
             )
         )

@@ -13,11 +13,10 @@ from dataclasses import dataclass, replace
 from importlib.resources.abc import Traversable
 from pathlib import Path
 
-import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as parquet
 
-from ddct_bringup.benchmark.case_rows import IS_BOUND, CaseRows
+from ddct_bringup.benchmark.case_rows import CaseRows
 from ddct_bringup.benchmark.cases import Cases
 from ddct_bringup.campaign.arrow_columns import read_parquet
 from ddct_bringup.campaign.columns import CONTROLLER, SEED
@@ -41,7 +40,7 @@ ROWS = 'development.parquet'
 _PROGRAM = 'make benchmark-rows'
 _CASES, _CODE = b'cases_digest', b'code_digest'
 _VERSION, _COMMIT = b'version', b'commit'
-_OUTCOME = ('valid', 'reason', STATE, 'why', IS_BOUND)
+_OUTCOME = ('valid', 'reason', STATE, 'why')
 
 
 @dataclass(frozen=True)
@@ -73,9 +72,7 @@ class ReleaseRows:
         whole = [case // samples * each + case % samples for case in range(campaign.cases)]
         if max(whole) >= self.rows.cases:
             raise DdctError(f'{ROWS} lacks cases: run {_PROGRAM}')
-        floors = np.array([campaign.has_floors(case) for case in range(campaign.cases)])
-        rows = self.rows.of_cases(whole).with_floors_in(floors)
-        return replace(self, rows=rows)
+        return replace(self, rows=self.rows.of_cases(whole))
 
 
 def columns_kept(spec: CampaignSpec) -> list[str]:

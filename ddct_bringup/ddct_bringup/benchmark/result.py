@@ -15,7 +15,7 @@ from ddct_bringup.benchmark.comparison import (
 )
 from ddct_bringup.benchmark.conduct import JudgedRows
 from ddct_bringup.benchmark.evaluated import MAIN
-from ddct_bringup.benchmark.evaluation import SHOWN, evaluations_of, quantities_in
+from ddct_bringup.benchmark.evaluation import evaluations_of, quantities_in
 from ddct_bringup.benchmark.outcomes import share_of_successes
 from ddct_bringup.benchmark.plan import JudgedEntry, RecordedBenchmark
 from ddct_bringup.benchmark.release import ReleaseRows
@@ -32,7 +32,7 @@ from ddct_bringup.benchmark.statistics.held_out_gaps import METHOD as GAP_METHOD
 from ddct_bringup.campaign.keys import SCENARIO
 from ddct_bringup.campaign_report.statistics import attribution, outcome, paired
 
-SCHEMA_VERSION = 2
+SCHEMA_VERSION = 3
 """Schema version of `result.json`."""
 
 
@@ -76,7 +76,6 @@ def _cases(recorded: RecordedBenchmark, release: ReleaseRows | None) -> CasesRes
         left_out=dict(cases.left_out),
         scenarios=list(spec.values_of(SCENARIO)),
         samples=spec.samples,
-        floor_samples=spec.floor_samples,
         varied=list(spec.vary),
         development_seed=spec.root,
         release_rows=release.origin if release else None,
@@ -171,7 +170,7 @@ def _board(
                 controller=name,
                 judged=name in judged,
                 success=share_of_successes(columns),
-                quantities=quantities_in(columns, SHOWN),
+                quantities=quantities_in(columns, MAIN),
                 dominated_by=dominators.get(name),
             )
         )

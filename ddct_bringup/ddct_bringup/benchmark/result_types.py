@@ -52,7 +52,7 @@ class ScenarioResult:
 
     success: RunShare
     quantities: list[QuantityResult]
-    """The five figures, and the peak jerk over the least."""
+    """The five figures."""
 
 
 @dataclass(frozen=True)
@@ -92,8 +92,6 @@ class Evaluation:
     reasons: list[Reason]
     """Reasons for invalid runs."""
     quantities: list[QuantityResult]
-    least_is_no_bound: int
-    """Number of successes whose peak jerk the least of the case does not bound."""
     causes: Causes | None
     """Null of a controller that only runs beside the judged one."""
 
@@ -106,7 +104,7 @@ class BoardRow:
     judged: bool
     success: RunShare
     quantities: list[QuantityResult]
-    """The five figures, and the peak jerk over the least."""
+    """The five figures."""
     dominated_by: list[str] | None
     """Controllers that dominate it; null in a quick benchmark."""
 
@@ -189,7 +187,6 @@ class CasesResult:
     """Reasons by name of the scenarios that the car cannot drive."""
     scenarios: list[str]
     samples: int
-    floor_samples: int
     varied: list[str]
     development_seed: int
     release_rows: CodeOrigin | None

@@ -41,7 +41,6 @@ class Campaign(RunSet):
             grid=spec.grid,
             samples=spec.samples,
             of=spec.of,
-            floor_samples=spec.floor_samples,
             vary=spec.vary,
             known=spec.known,
             root=spec.root,

@@ -25,7 +25,7 @@ from ddct_bringup.campaign.rows import (
 from ddct_bringup.campaign.spec import CampaignSpec
 from ddct_plant.base.errors import DdctError
 
-SCHEMA_VERSION = 3
+SCHEMA_VERSION = 4
 """Schema version of the columns."""
 _COMPRESSION = 'zstd'
 _ROW_GROUP = 50_000
@@ -35,7 +35,6 @@ _OUTCOME = (
     ('reason', pa.string()),
     (STATE, pa.string()),
     ('why', pa.string()),
-    ('least_is_bound', pa.bool_()),
 )
 COMPARED = (SEED, *METRIC_COLUMNS, *(name for name, _ in _OUTCOME))
 """Columns that a repeated run is compared in with its row."""

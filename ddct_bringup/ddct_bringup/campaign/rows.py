@@ -11,7 +11,6 @@ from ddct_bringup.run.execution import recording_in_memory
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.run.plan import require_headless
 from ddct_bringup.run.timing_and_failure import RunTiming
-from ddct_bringup.scores.floors import scores_with_least
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.scores.scoring import run_without_score, score_run
 from ddct_bringup.verdict.limits import Limits
@@ -29,7 +28,7 @@ SERIAL, VECTORISED = 'serial', 'vectorised'
 STATE = 'state'
 """Column of the state of a run."""
 METRIC_COLUMNS = tuple(metric.key for metric in REPEATABLE)
-"""Figures and metrics of `scores.json` that are equal in every repetition of a run."""
+"""Figures and metrics of `scores.json` that a run alone gives, equal in every repetition."""
 
 
 def require_suitable(controller: Chosen, settings: RunSettings) -> None:
@@ -42,14 +41,11 @@ def require_suitable(controller: Chosen, settings: RunSettings) -> None:
         return
 
 
-def scored_headless(
-    settings: RunSettings, controller: Chosen, limits: Limits, *, floors: bool = False
-) -> ScoredRun:
+def scored_headless(settings: RunSettings, controller: Chosen, limits: Limits) -> ScoredRun:
     """
     Carry out a run headless and return its scores, with the reason if it fails.
 
-    With `floors` it has the peak jerk over the least of its case. It has no wall-clock metrics: a
-    row is equal in every repetition.
+    It has no wall-clock metrics: a row is equal in every repetition.
     """
     name = controller_label(controller)
     try:
@@ -62,8 +58,7 @@ def scored_headless(
     else:
         # Without update times, since no wall-clock time is measured.
         recording = recording_in_memory(settings, name, trajectory)
-        scores = score_run(recording, name, limits, RunTiming())
-        return scores_with_least(scores, settings, trajectory, limits) if floors else scores
+        return score_run(recording, name, limits, RunTiming())
     facts = RunFacts.of(settings, name, settings.scenario.steps)
     return run_without_score(name, facts, reason)
 
@@ -79,5 +74,4 @@ def result_row(run: ScoredRun, varied: Mapping[str, Any], path: str = SERIAL) ->
         'reason': run.reason,
         STATE: run.state,
         'why': run.why,
-        'least_is_bound': run.least_is_bound,
     }

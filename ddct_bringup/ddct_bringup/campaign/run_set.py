@@ -36,9 +36,6 @@ class PlannedRow:
     """Values by key, as they were given."""
     settings: RunSettings
 
-    has_floors: bool = True
-    """Whether it is one of the runs that have floors, where the campaign has any."""
-
     @property
     def seed(self) -> int:
         """Seed of the random numbers within the run."""
@@ -78,8 +75,6 @@ class RunSet:
     """Number of samples at each point of the grid."""
     of: int | None = None
     """Number of samples of the campaign whose first ones these are; None for this one."""
-    floor_samples: int | None = None
-    """Number of samples, the first at each point, whose runs have floors; None for all."""
     vary: Mapping[str, Distribution] = field(default_factory=dict)
     """Distributions of the keys that are drawn in each sample, by key."""
     known: Sequence[str] = ()
@@ -123,10 +118,6 @@ class RunSet:
                 yield self._planned(first + place, self.controllers[number], varied, given)
             first = end
 
-    def has_floors(self, case: int) -> bool:
-        """Return whether the runs of a case have floors, where the campaign has any."""
-        return self.floor_samples is None or case % self.samples < self.floor_samples
-
     def _drawn(self, draw: Callable[[range], list[Draw]], cases: range) -> list[Draw]:
         """Return the random numbers of successive cases, from those of the whole campaign."""
         left_out = (self.of or self.samples) - self.samples
@@ -149,8 +140,7 @@ class RunSet:
         except DdctError as error:
             named = error.at(_name(index, varied))
             return ImpossibleRow(index, controller, varied, given.get(SEED, 0), named)
-        has_floors = self.has_floors(index % self.cases)
-        return PlannedRow(index, controller, varied, settings, has_floors)
+        return PlannedRow(index, controller, varied, settings)
 
     def with_common(self, values: Mapping[str, Any]) -> Self:
         """Return the same runs with further values for all of them, by key."""

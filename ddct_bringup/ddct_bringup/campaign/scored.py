@@ -66,8 +66,6 @@ class Scorer:
     limits: Limits
     at_once: bool = True
     """Whether linear runs are computed together, to 1e-9 of the run step by step."""
-    floors: bool = False
-    """Whether peak jerks are compared with the least; such runs are computed step by step."""
 
     def scored(self, runs: Iterable[PlannedRow | ImpossibleRow]) -> list[ScoredRow]:
         """
@@ -87,15 +85,14 @@ class Scorer:
             path, scores = SERIAL, run_without_score(name, None, str(run.error))
         elif scores is None:
             path = SERIAL
-            floors = self.floors and run.has_floors
-            scores = scored_headless(run.settings, run.controller, self.limits, floors=floors)
+            scores = scored_headless(run.settings, run.controller, self.limits)
         return ScoredRow(run.index, name, run.seed, run.varied, scores, path)
 
     def _together(self, runs: Sequence[PlannedRow]) -> dict[int, ScoredRun]:
         """Return the scores of the runs that can be computed at once, by index."""
         suited = []
         for run in runs if self.at_once else ():
-            if run.controller.compiled or (self.floors and run.has_floors):
+            if run.controller.compiled:
                 continue
             try:
                 controller = make_controller(run.controller, run.settings.known)
@@ -115,8 +112,6 @@ class Scorer:
 
 def are_linear(campaign: Campaign) -> bool:
     """Return whether the first run of each controller of a campaign can be computed at once."""
-    if campaign.spec.floors:
-        return False
     for first in range(0, campaign.runs, campaign.cases):
         (run,) = campaign.planned(first, first + 1)
         if isinstance(run, ImpossibleRow) or run.controller.compiled:

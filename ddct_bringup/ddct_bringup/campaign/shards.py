@@ -71,7 +71,7 @@ def _prepared(job: ShardJob) -> tuple[Campaign, Scorer]:
     if key not in _kept:
         _require_unchanged(job)
         _kept.clear()
-        _kept[key] = Campaign(job.spec), Scorer(job.limits, floors=job.spec.floors)
+        _kept[key] = Campaign(job.spec), Scorer(job.limits)
     return _kept[key]
 
 

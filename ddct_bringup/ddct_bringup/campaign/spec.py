@@ -12,16 +12,12 @@ from typing import Any
 from ddct_bringup.campaign.keys import COMMON, CONTROLLERS
 from ddct_bringup.campaign.specification.distributions import Distribution
 from ddct_bringup.campaign.specification.parts import (
-    FLOOR_SAMPLES,
-    FLOORS,
     GRID,
     KNOWN,
     RANDOM,
     ROOT_SEED,
     common_of,
     controllers_of,
-    floor_samples_of,
-    floors_of,
     grid_of,
     known_of,
     mapping_of,
@@ -39,10 +35,7 @@ from ddct_plant.scenario.key_names import scenario_options
 
 SCHEMA_VERSION = 1
 """Schema version of a specification."""
-_KEYS = (
-    *(SCHEMA_KEY, CONTROLLERS, *COMMON, ROOT_SEED, GRID, RANDOM, KNOWN),
-    *(FLOORS, FLOOR_SAMPLES),
-)
+_KEYS = (SCHEMA_KEY, CONTROLLERS, *COMMON, ROOT_SEED, GRID, RANDOM, KNOWN)
 _ROOT = Option(0, 'root of all random numbers', at_least=0, at_most=2**31 - 1)
 
 
@@ -67,10 +60,6 @@ class CampaignSpec:
     """Varied keys that controllers learn, besides those that they know in any run."""
     of: int = 1
     """Number of samples of the whole campaign; the first `samples` of them run."""
-    floors: bool = False
-    """Metrics that are set beside the least that any controller could have."""
-    floor_samples: int = 1
-    """Number of samples, the first at each point of the grid, whose runs have floors."""
 
     @property
     def keys(self) -> tuple[str, ...]:
@@ -155,8 +144,6 @@ def spec_of(content: Any, folder: Path) -> CampaignSpec:
         vary=vary,
         known=known_of(content, (*grid, *vary)),
         of=of,
-        floors=floors_of(content),
-        floor_samples=floor_samples_of(content, samples),
     )
     try:
         spec.text()

@@ -22,7 +22,7 @@ from ddct_plant.program.signals import stop_signals
 
 PROGRAM = 'ddct benchmark'
 _SECONDS_A_RUN = 0.1
-"""Mean time of a run on one core, floors included."""
+"""Mean time of a run on one core."""
 _SEED = Option(0, 'seed of a judge', at_least=0, at_most=2**31 - 1)
 
 _EPILOG = f"""\

@@ -46,7 +46,7 @@ class TrialRuns:
 
     def __post_init__(self) -> None:
         """Make the scorer, which keeps what no run changes."""
-        self.scorer = Scorer(self.tuning.limits, floors=self.tuning.campaign.spec.floors)
+        self.scorer = Scorer(self.tuning.limits)
         self.linear = are_linear(self.tuning.campaign)
 
     def loops(self, values: Sequence[Values]) -> list[Quantities]:

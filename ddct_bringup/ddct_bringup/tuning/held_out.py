@@ -51,7 +51,7 @@ def held_out_campaign(
     seed = seed_of({'tuned': digests, 'controller': files, 'release': release})
     # Relative to the folder of the tuning, which may be moved.
     moved = tuning.spec.development.moved(tuning.spec.folder, out)
-    return moved.held_out(list(digests), out, seed, floors=tuning.spec.floors)
+    return moved.held_out(list(digests), out, seed)
 
 
 def compute_held_out(

@@ -40,7 +40,7 @@ class Tuning:
         folder, chosen = self.spec.folder, self.judged.path
         if is_controller_file(chosen):  # so that a moved result has the same specification
             chosen = os.path.relpath(chosen, folder)
-        return self.spec.development.campaign(chosen, folder, floors=self.spec.floors)
+        return self.spec.development.campaign(chosen, folder)
 
     @cached_property
     def cases(self) -> list[int]:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from ddct_bringup.benchmark.case_rows import IS_BOUND, CaseRows
+from ddct_bringup.benchmark.case_rows import CaseRows
 from ddct_bringup.benchmark.cases import Cases
 from ddct_bringup.benchmark.comparison import (
     figures_in,
@@ -17,8 +17,8 @@ from ddct_bringup.benchmark.comparison import (
     paired_results,
     pairs_of,
 )
-from ddct_bringup.benchmark.evaluated import MAIN, OVER_LEAST
-from ddct_bringup.benchmark.evaluation import SHOWN, causes_in, evaluations_of
+from ddct_bringup.benchmark.evaluated import MAIN
+from ddct_bringup.benchmark.evaluation import causes_in, evaluations_of
 from ddct_bringup.benchmark.report import printed
 from ddct_bringup.benchmark.report.texts import dominance_lines
 from ddct_bringup.benchmark.result_types import Evaluation, JudgedResult, QuantityResult, WorstCase
@@ -41,8 +41,6 @@ def rows_of(cases: int = CASES, **controllers: dict[str, Any]) -> CaseRows:
         'scenario': ['thesis'] * (cases // 2) + ['launch'] * (cases - cases // 2),
         'wear_gain': np.linspace(0.7, 1.3, cases),
         **{each.key: 1.0 for each in FIGURES},
-        OVER_LEAST: np.nan,
-        IS_BOUND: None,
     }
     names = tuple(controllers)
     columns = {}
@@ -58,7 +56,7 @@ def rows_of(cases: int = CASES, **controllers: dict[str, Any]) -> CaseRows:
 def _kind(name: str) -> Any:
     if name == 'valid':
         return bool
-    return object if name in ('reason', 'state', 'scenario', IS_BOUND) else float
+    return object if name in ('reason', 'state', 'scenario') else float
 
 
 def quantity_of(evaluation: Evaluation, key: str) -> QuantityResult:
@@ -129,31 +127,11 @@ def test_the_worst_case_is_that_of_the_successes() -> None:
     assert (quantity.spread.worst, quantity.spread.quantiles.p50) == (WorstCase(8.0, 4), 3.0)
     launch = found.scenarios['launch'].quantities
     assert [each.spread.worst.case for each in launch if each.name == quantity.name] == [4]
-    assert [each.name for each in launch] == list(SHOWN)
+    assert [each.name for each in launch] == list(MAIN)
     (pair,) = pairs_of(rows, 'ours')
     assert (pair.outcomes.both, pair.outcomes.second_only) == (5, 1)
     response = next(each.difference for each in pair.differences if each.name == 'response_s')
     assert (response.cases, response.quantiles.p50) == (5, 0.0)
-
-
-def test_a_least_that_is_no_bound_of_a_success_is_counted_and_has_a_star() -> None:
-    over, bound = [5.0, np.nan, 2.0, np.nan, 3.0, np.nan], [False, None, True, None, False, None]
-    state = ['not_engaged'] + ['engaged'] * 5
-    rows = rows_of(ours={OVER_LEAST: over, IS_BOUND: bound, 'state': state}, other={})
-    ours, other = evaluations_of(rows, ['wear_gain'], 'ours')
-    assert (ours.least_is_no_bound, other.least_is_no_bound) == (1, 0)
-    assert quantity_of(ours, OVER_LEAST).spread.worst == WorstCase(3.0, 4)
-    assert printed._spread_cells(ours, OVER_LEAST) == ('2.50*', '2.95*', '3.00*', '4')
-    assert printed._spread_cells(other, OVER_LEAST) == ('-', '-', '-', '-')
-    assert printed._spread_cells(ours, 'releases') == ('1', '1', '1', '1')
-
-
-def test_cases_without_floors_have_neither_a_ratio_nor_a_bound() -> None:
-    rows = rows_of(ours={OVER_LEAST: 2.0, IS_BOUND: False})
-    ours = rows.with_floors_in(np.array([True] + [False] * 5)).of('ours')
-    assert ours[OVER_LEAST][0] == 2.0
-    assert np.isnan(ours[OVER_LEAST][1:]).all()
-    assert ours[IS_BOUND].tolist() == [False] + [None] * 5
 
 
 def test_the_dominance_names_its_cases_and_those_left_out() -> None:
@@ -218,10 +196,10 @@ def test_failures_in_one_set_are_a_gap_only_if_they_are_held_out(place: int) -> 
 
 def test_each_printed_quantile_is_that_of_its_own_quantity() -> None:
     values = {name: float(place) for place, name in enumerate(MAIN, 2) if name != 'response_s'}
-    rows = rows_of(ours={**values, OVER_LEAST: 1.5})
+    rows = rows_of(ours=values)
     (found,) = evaluations_of(rows, ['wear_gain'], 'ours')
-    shown = {name: printed._spread_cells(found, name) for name in SHOWN}
-    expected = {**values, 'response_s': 2.0, OVER_LEAST: 1.5}
+    shown = {name: printed._spread_cells(found, name) for name in MAIN}
+    expected = {**values, 'response_s': 2.0}
     assert {name: float(cells[0]) for name, cells in shown.items()} == expected
     assert {cells[-1] for cells in shown.values()} == {'0'}
     assert printed._spread_cells(replace(found, quantities=[]), MAIN[0]) == ('-',) * 4

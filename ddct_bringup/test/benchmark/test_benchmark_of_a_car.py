@@ -25,8 +25,6 @@ random:
   samples: 2
   vary:
     vehicle.mass_kg: {distribution: uniform, low: 1200, high: 1950}
-floors: true
-floor_samples: 1
 """
 
 

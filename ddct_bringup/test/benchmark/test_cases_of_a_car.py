@@ -15,7 +15,7 @@ from ddct_plant.base.errors import DdctError
 from ddct_plant.files.json_records import json_text
 from ddct_plant.scenario.content import scenario_content
 
-OF_RELEASE = '849f25b91808ef0a618aaab6508ecc21421a4c25af9251140f272e533ee89a07'
+OF_RELEASE = 'fa590dae490be7b1cddf1389a044fc440cb61a96e940647537db1e705b71338c'
 """Digest of the cases of the release, without a car."""
 DRAWN = '738f2f3eab75cf5eaaf772711973c02ee78e3f641d1ad9ddf34fb4ac4f1cbbfc'
 """SHA-256 of what is drawn for these cases."""

@@ -17,7 +17,7 @@ from ddct_bringup.verdict import limits
 ROW = {
     **dict.fromkeys(COMPARED, 1.5),
     **{'path': 'serial', 'valid': True, 'reason': '', 'state': 'engaged'},
-    **{'why': '', 'judder_rpm': None, 'least_is_bound': None},
+    **{'why': '', 'judder_rpm': None},
 }
 SPEC = """\
 controllers: [ls8]
@@ -69,19 +69,6 @@ def test_the_printed_commands_make_the_bag_of_a_row(
     assert all(list(Path('..', folder).rglob('*.mcap')) for folder in ('replay-I', 'replay-0'))
 
 
-def test_a_row_with_the_least_is_replayed_with_it(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    spec = 'controllers: [ls4]\nscenario: upshift\nfloors: true\ngrid: {wear_gain: [0.9]}\n'
-    (tmp_path / 'spec.yaml').write_text(spec, encoding='utf-8')
-    folder = tmp_path / 'campaign'
-    with in_this_process():
-        assert campaign.main([str(tmp_path / 'spec.yaml'), '--out', str(folder)]) == 0
-        assert read_row(folder / RESULTS, 0, 1)['peak_jerk_over_least'] > 1.0
-        assert replay(folder, '--index', '0') == 0
-    assert 'those of the row, bit for bit' in capsys.readouterr().err
-
-
 def test_a_row_is_its_own_replay() -> None:
     assert differences(ROW, dict(ROW)) == []
 
@@ -95,7 +82,6 @@ def test_a_row_is_its_own_replay() -> None:
         ('state', 'stalled'),
         ('reason', 'other'),
         ('why', 'it slips'),
-        ('least_is_bound', False),
         ('valid', False),
     ],
 )
@@ -143,7 +129,6 @@ def test_a_folder_for_the_json_that_is_not_there_is_reported_before_the_run(
 
 
 def _another_row(results: Path, index: int, runs: int) -> dict[str, object]:
-    from ddct_bringup.campaign.columns import read_row
 
     return {**read_row(results, index, runs), 'state': 'over_revved'}
 

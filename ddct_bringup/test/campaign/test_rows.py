@@ -2,17 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """One of many runs is scored and judged as the same run alone; a failed one has its reason."""
 
-from pathlib import Path
-
 import pytest
 from refusals import refused
 
 from ddct_bringup import api
-from ddct_bringup.campaign.campaign import Campaign
-from ddct_bringup.campaign.columns import schema_of, shard_bytes
 from ddct_bringup.campaign.rows import result_row, scored_headless
-from ddct_bringup.campaign.scored import Scorer
-from ddct_bringup.campaign.spec import spec_of
 from ddct_bringup.run.run_base import RunBase
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_controllers.from_python import chosen_from
@@ -54,52 +48,6 @@ def test_a_value_that_the_scenario_refuses_is_named():
         BASE.at({'vehicle.mass_kg': -1.0})
 
 
-def rows_of(spec):
-    """Return the rows of all runs of a specification."""
-    campaign = Campaign(spec)
-    scorer = Scorer(packaged_limits(), floors=spec.floors)
-    return [each.row() for each in scorer.scored(campaign.planned(0, campaign.runs))]
-
-
-def test_a_campaign_with_floors_has_the_peak_jerk_over_the_least_and_whether_that_is_a_bound():
-    content = {'controllers': ['ls8', 'mpc4'], 'grid': {'wear_gain': [1.0]}}
-    spec = spec_of({**content, 'floors': True}, Path())
-    ls8, mpc4 = rows = rows_of(spec)
-    assert ls8['peak_jerk_over_least'] > 1.0
-    assert mpc4['peak_jerk_over_least'] is not None
-    assert (ls8['least_is_bound'], mpc4['least_is_bound']) == (True, False)
-    assert {row['path'] for row in rows} == {'serial'}
-    assert shard_bytes(schema_of(spec), rows)
-    plain = spec_of({**content, 'floors': False}, Path())
-    assert schema_of(plain) == schema_of(spec)
-    for row in rows_of(plain):
-        assert (row['peak_jerk_over_least'], row['least_is_bound']) == (None, None)
-
-
-def test_only_the_first_samples_at_each_point_have_floors():
-    content = {
-        'controllers': ['ls8'],
-        'grid': {'wear_gain': [1.0], 'duration_s': [3.0, 2.9]},
-        'random': {
-            'samples': 2,
-            'vary': {'vehicle.mass_kg': {'distribution': 'uniform', 'low': 1400, 'high': 1500}},
-        },
-        'floors': True,
-        'floor_samples': 1,
-    }
-    rows = rows_of(spec_of(content, Path()))
-    ratios = [row['peak_jerk_over_least'] for row in rows]
-    assert [ratio is None for ratio in ratios] == [False, True, False, True]
-    assert [row['path'] for row in rows] == ['serial', 'vectorised'] * 2
-
-
-@pytest.mark.parametrize('floors', [['peak_jerk'], 'usual', 1, None])
-def test_floors_that_are_neither_true_nor_false_are_refused(floors):
-    content = {'controllers': ['ls8'], 'grid': {'wear_gain': [1.0]}, 'floors': floors}
-    with refused(ParameterError, key='floors'):
-        spec_of(content, Path())
-
-
 def test_a_run_has_the_metrics_and_the_state_of_the_same_run_alone():
     run = scored_headless(BASE.at({'wear_gain': 0.9}), 'ls8', packaged_limits())
     alone = api.run('ls8', duration=2.0, scenario='thesis_sticking', wear_gain=0.9)
@@ -110,6 +58,7 @@ def test_a_run_has_the_metrics_and_the_state_of_the_same_run_alone():
     assert (row['controller'], row['path'], row['wear_gain']) == ('ls8', 'serial', 0.9)
     assert row['friction_work_j'] == alone.figures['friction_work_j']
     assert (row['valid'], row['state'], row['why']) == (True, alone.state, alone.why)
+    assert row.keys().isdisjoint({'peak_jerk_over_least', 'least_is_bound'})
 
 
 def test_a_failed_run_is_invalid_with_its_reason_and_without_scores():

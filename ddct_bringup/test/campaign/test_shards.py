@@ -54,7 +54,6 @@ def test_each_run_is_scored_over_the_window_that_its_scenario_gives(monkeypatch)
         ({'controllers': ['pi', 'ls8']}, 1000),
         ({'controllers': ['pi', 'mpc3']}, 80),
         ({'controllers': ['pi', 'ls8'], 'scenario': 'thesis_sticking'}, 80),
-        ({'controllers': ['pi', 'ls8'], 'floors': True}, 80),
     ],
 )
 def test_shards_of_linear_runs_are_large_as_they_are_computed_together(

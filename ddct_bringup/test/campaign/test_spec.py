@@ -64,10 +64,7 @@ def test_a_specification_has_defaults_for_all_but_what_varies(tmp_path: Path) ->
             PI + f'random: {{samples: 3, of: 2, vary: {{vehicle.mass_kg: {MASS}}}}}\n',
             'line 2: random.of is 2: it must be at least 3',
         ),
-        (
-            PI + GRID + 'floor_samples: 2\n',
-            'line 3: floor_samples is 2: it must be at most 1',
-        ),
+        (PI + GRID + 'floors: true\n', 'line 3: unknown key floors'),
         (
             PI + GRID + 'clutch: stick_slip\n',
             'line 3: clutch is a key of the scenario: give a scenario with it, or list its values',

@@ -1,12 +1,11 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Scores, report, campaign and Python interface have the floors of gear shifts."""
+"""Scores, report and Python interface have the floors of gear shifts."""
 
 import pytest
 from shift_cases import settings_of
 
 from ddct_bringup import api
-from ddct_bringup.campaign.rows import result_row, scored_headless
 from ddct_bringup.report.front_view import front_view
 from ddct_bringup.run.plan import RunPlan
 from ddct_bringup.scores.floors import with_least
@@ -25,11 +24,6 @@ def test_scores_and_report_of_a_shift_have_its_floor():
     view = front_view([run])
     assert view.counted_from == 'the start of the inertia phase'
     assert 'after the start of the inertia phase' in view.runs[0].text
-
-
-def test_a_campaign_has_the_ratio_of_a_shift():
-    row = scored_headless(settings_of(handover='slip'), 'ls8', packaged_limits(), floors=True)
-    assert result_row(row, {})['peak_jerk_over_least'] > 1.0
 
 
 def test_a_run_in_python_has_the_ratio_of_a_shift():

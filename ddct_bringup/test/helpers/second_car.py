@@ -22,7 +22,11 @@ def scenario_of(drive: str) -> Scenario:
     return load_scenario(drive=drive, car=CAR, overrides=OF_ENGINE.get(drive, ()))
 
 
-def scored(drive: str, controller: str, *, floors: bool = False) -> ScoredRun:
+def settings_of(drive: str) -> RunSettings:
+    """Return the settings of a run of the drive with the second car."""
+    return RunSettings(KnownSettings(scenario_of(drive)))
+
+
+def scored(drive: str, controller: str) -> ScoredRun:
     """Return the scores of a run of the drive with the second car."""
-    settings = RunSettings(KnownSettings(scenario_of(drive)))
-    return scored_headless(settings, controller, packaged_limits(), floors=floors)
+    return scored_headless(settings_of(drive), controller, packaged_limits())

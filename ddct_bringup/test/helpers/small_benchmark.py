@@ -32,8 +32,6 @@ random:
   samples: 3
   vary:
     wear_gain: {distribution: uniform, low: 0.95, high: 1.05}
-floors: true
-floor_samples: 1
 """
 WALL_CLOCK = {TIMING_FILE, PAGE, MANIFEST}
 """Files of a benchmark's folder that depend on the update times."""

@@ -78,7 +78,7 @@ def test_a_controller_of_a_run_finds_nothing(tmp_path: Path) -> None:
 
 def test_a_controller_of_a_campaign_and_of_a_sweep_finds_nothing(tmp_path: Path) -> None:
     file, found = spy_file(tmp_path, values_of())
-    campaign = Campaign(spec_of({**SPEC, 'controllers': [file], 'floors': True}, Path()))
+    campaign = Campaign(spec_of({**SPEC, 'controllers': [file]}, Path()))
     carry_out(campaign, packaged_limits(), tmp_path / 'out', workers=2)
     assert notes_in(found) == NOTHING
     given = [f'--case={key}={value}' for key, value in CASE.items()]
@@ -110,7 +110,7 @@ def test_a_controller_of_a_tuning_finds_nothing(
 def test_a_controller_of_a_benchmark_finds_nothing(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    content = {**SPEC, 'controllers': ['pi'], 'floors': True, 'floor_samples': 1}
+    content = {**SPEC, 'controllers': ['pi']}
     content['grid'] = {**GRID, 'scenario': ['launch', 'launch_hill']}
     monkeypatch.setattr(small_benchmark, 'SPEC', str(content))
     monkeypatch.setattr(small_benchmark, 'PACKAGED', ('pi',))

@@ -62,6 +62,7 @@ GOOD: dict[str, Any] = {
             'objectives.peak_jerk_m_s3.direction',
         ),
         ('objectives', {'update_time_over_pi': {}}, 'objectives.update_time_over_pi'),
+        ('objectives', {'peak_jerk_over_least': {}}, 'objectives.peak_jerk_over_least'),
         ('constraints', {}, 'constraints.engaged'),
         ('constraints', {'engaged': {}}, 'constraints.engaged'),
         ('constraints', {'engaged': {'at_least': 1, 'at_most': 1}}, 'constraints.engaged'),
@@ -71,7 +72,6 @@ GOOD: dict[str, Any] = {
             'constraints.engaged.statistic',
         ),
         ('campaign', {'controllers': ['pi']}, 'campaign.controllers'),
-        ('campaign', {'floors': True}, 'campaign.floors'),
         ('campaign', {'benchmark': ['lunch']}, 'campaign.benchmark.lunch'),
         ('campaign', {'benchmark': 'some'}, 'campaign.benchmark'),
         ('campaign', {'benchmark': 'all', 'samples': 99}, 'campaign.samples'),
@@ -119,7 +119,7 @@ def test_what_is_no_number_is_refused() -> None:
 def test_packaged_specifications_can_run(name: str) -> None:
     controller = 'mpc3' if name.startswith('mpc') else 'pi'
     spec = read_tuning_spec(name, controller_spec(controller))
-    assert spec.development.campaign(controller, spec.folder, floors=spec.floors).runs > 1
+    assert spec.development.campaign(controller, spec.folder).runs > 1
 
 
 def test_values_are_short_and_within_the_range() -> None:

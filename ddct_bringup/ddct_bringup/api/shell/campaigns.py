@@ -31,7 +31,6 @@ from ddct_bringup.campaign_report.summary_types import Summary
 from ddct_bringup.manifest.code import code_digest
 from ddct_bringup.manifest.manifest import keep_digests
 from ddct_bringup.run.plan import RunPlan
-from ddct_bringup.scores.floors import with_least
 from ddct_bringup.scores.scored_recording import ScoredRecording
 from ddct_bringup.verdict.limits import Limits
 from ddct_plant.base.errors import DdctError, printable
@@ -109,8 +108,6 @@ def replay_row(
             raise DdctError(f'it fails as its row says ({row["reason"]}): {error}') from error
 
     kept = keep_run(plan, out, limits, as_its_row, overwrite=overwrite)
-    if campaign.spec.floors and run.has_floors:
-        kept = with_least(kept, limits)
     found = differences(row, {SEED: run.settings.case.seed, **result_row(kept.scores, run.varied)})
     how = 'bit for bit' if row[PATH] == SERIAL else f'to {VECTORISED_RTOL:g}'
     words = f'its {len(compared_in(row))} figures and words are those of the row, {how}'

@@ -10,8 +10,8 @@ import numpy as np
 from ddct_bringup.benchmark.case_rows import CaseRows
 from ddct_bringup.benchmark.cases import packaged_folder
 from ddct_bringup.benchmark.comparison import figures_in
-from ddct_bringup.benchmark.evaluated import MAIN, OVER_LEAST, Columns, values_of
-from ddct_bringup.benchmark.evaluation import least_is_no_bound_in, states_in
+from ddct_bringup.benchmark.evaluated import MAIN, Columns, values_of
+from ddct_bringup.benchmark.evaluation import states_in
 from ddct_bringup.benchmark.outcomes import share_of_successes, spread_in
 from ddct_bringup.benchmark.release import release_rows
 from ddct_bringup.benchmark.report import texts
@@ -31,11 +31,10 @@ from ddct_bringup.verdict.state import ENGAGED
 from ddct_plant.program.table import Table, Weight, with_reasons
 
 _STATES = 'controller', 'engaged', 'other states'
-_HEADINGS = ('response s', 'jerk m/s^3', 'work kJ', 'A_w m/s^2', 'releases', 'jerk/least')
-"""Headings of the five figures, in their order, and of the peak jerk over the least."""
-_FORMS = (
-    *zip(MAIN, ('.2f', '.1f', '.1f', '.2f', '.0f'), (1.0, 1.0, 1e-3, 1.0, 1.0), strict=True),
-    (OVER_LEAST, '.1f', 1.0),
+_HEADINGS = ('response s', 'jerk m/s^3', 'work kJ', 'A_w m/s^2', 'releases')
+"""Headings of the five figures, in their order."""
+_FORMS = tuple(
+    zip(MAIN, ('.2f', '.1f', '.1f', '.2f', '.0f'), (1.0, 1.0, 1e-3, 1.0, 1.0), strict=True)
 )
 """Key, format and factor of each column."""
 
@@ -65,7 +64,6 @@ def packaged_tables() -> Mapping[str, Table]:
             list(_figure_rows(part)),
             numbers=(False, False, *(True for _ in _HEADINGS)),
             weights=(Weight.IDENTIFYING, Weight.IDENTIFYING),
-            notes=(texts.YARDSTICK,) if _has_star(part) else (),
         )
     return {name: _complete(table) for name, table in tables.items()}
 
@@ -115,21 +113,15 @@ def _state_cells(columns: Columns) -> tuple[str, str]:
     return f'{engaged} of {runs}', others or '-'
 
 
-def _has_star(rows: CaseRows) -> bool:
-    return any(least_is_no_bound_in(rows.of(name)) for name in rows.controllers)
-
-
 def _figure_rows(rows: CaseRows) -> Iterator[tuple[str, ...]]:
     """Yield P50, P95 and worst of each controller's figures, a row each."""
     for name in rows.controllers:
         columns = rows.of(name)
-        mark = texts.STAR if least_is_no_bound_in(columns) else ''
         cells = []
         for key, form, factor in _FORMS:
             values = values_of(columns, key)
             assert values is not None
-            spread = spread_in(columns, values)
-            cells.append(spread_texts(spread, form, factor, mark if key == OVER_LEAST else ''))
+            cells.append(spread_texts(spread_in(columns, values), form, factor))
         for of, row in zip(('P50', 'P95', 'worst'), zip(*cells, strict=True), strict=True):
             yield name, of, *row
 

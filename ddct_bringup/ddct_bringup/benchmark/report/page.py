@@ -6,7 +6,7 @@ import shlex
 
 from markupsafe import Markup
 
-from ddct_bringup.benchmark.evaluated import EVALUATED, MAIN, OVER_LEAST
+from ddct_bringup.benchmark.evaluated import EVALUATED, MAIN
 from ddct_bringup.benchmark.report import rules, texts
 from ddct_bringup.benchmark.result_types import (
     BoardRow,
@@ -29,8 +29,6 @@ from ddct_plant.program.command_line import package_version
 
 _ROOM, _REPORT = 'ddct_bringup.benchmark.report', 'ddct_bringup.report'
 _CAMPAIGN = 'ddct_bringup.campaign_report'
-_OVER_LEAST = (OVER_LEAST, 'friction_work_over_least')
-"""Quantities over the least."""
 
 
 def benchmark_page(result: Result, update_times: UpdateTimesFile) -> str:
@@ -54,7 +52,6 @@ def benchmark_page(result: Result, update_times: UpdateTimesFile) -> str:
         campaign_texts=campaign_texts,
         quantities=EVALUATED,
         main=list(MAIN),
-        over_least=list(_OVER_LEAST),
         further=_further(result),
         states=rules.states_that_count(packaged_limits().rules),
         figures=rules.figures_that_count(),
@@ -81,7 +78,7 @@ def _further(result: Result) -> list[str]:
         for quantity in evaluation.quantities
         if quantity.spread.with_value
     }
-    return [key for key in EVALUATED if key in there and key not in (*MAIN, *_OVER_LEAST)]
+    return [key for key in EVALUATED if key in there and key not in MAIN]
 
 
 def _spread(evaluation: Evaluation | ScenarioResult | BoardRow, name: str) -> ValueSpread | None:

@@ -4,8 +4,7 @@
 
 from collections.abc import Iterator
 
-from ddct_bringup.benchmark.evaluated import EVALUATED, OVER_LEAST
-from ddct_bringup.benchmark.evaluation import SHOWN
+from ddct_bringup.benchmark.evaluated import EVALUATED, MAIN
 from ddct_bringup.benchmark.report import texts
 from ddct_bringup.benchmark.report.rules import left_open_here
 from ddct_bringup.benchmark.result_types import (
@@ -47,18 +46,16 @@ def _tables(
     ]
     yield Table(f'{name}: engaged', ('controller', *_SHARES), rows)
     for part, evaluations in (('development', ours), ('held out', theirs)):
-        starred = any(each.least_is_no_bound for each in evaluations)
         spreads = Table(
             f'{name}: successes, {part}',
             ('figure', 'controller', *_OF_SPREAD, 'worst case'),
             [
                 (EVALUATED[key].heading, each.controller, *_spread_cells(each, key))
-                for key in SHOWN
+                for key in MAIN
                 for each in evaluations
             ],
             numbers=(False, False, True, True, True, True),
             weights=(Weight.IDENTIFYING, Weight.IDENTIFYING),
-            notes=(texts.YARDSTICK,) if starred else (),
         )
         yield with_reasons(spreads, lambda header, row: texts.NO_VALUE)
     gaps = Table(
@@ -85,18 +82,15 @@ def _spread_cells(evaluation: Evaluation, key: str) -> tuple[str, ...]:
     """Return P50, P95 and worst of a quantity, and the case of the worst."""
     for found in evaluation.quantities:
         if found.name == key:
-            star = texts.STAR if key == OVER_LEAST and evaluation.least_is_no_bound else ''
-            cells = spread_texts(found.spread, EVALUATED[key].form, mark=star)
+            cells = spread_texts(found.spread, EVALUATED[key].form)
             return *cells, text_or_dash(found.spread.worst.case, 'd')
     return (UNDEFINED,) * 4
 
 
-def spread_texts(
-    found: ValueSpread, form: str, factor: float = 1.0, mark: str = ''
-) -> tuple[str, str, str]:
-    """Return P50, P95 and worst, times a factor and with a mark behind each value."""
+def spread_texts(found: ValueSpread, form: str, factor: float = 1.0) -> tuple[str, str, str]:
+    """Return P50, P95 and worst, times a factor."""
     values = found.quantiles.p50, found.quantiles.p95, found.worst.value
     p50, p95, worst = (
-        UNDEFINED if value is None else f'{factor * value:{form}}{mark}' for value in values
+        UNDEFINED if value is None else f'{factor * value:{form}}' for value in values
     )
     return p50, p95, worst

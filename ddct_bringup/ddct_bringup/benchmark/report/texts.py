@@ -20,12 +20,6 @@ from ddct_bringup.campaign_report.texts import state_text
 from ddct_bringup.verdict.state import ENGAGED, INVALID
 from ddct_plant.program.table import PURE
 
-STAR = '*'
-"""Mark of a ratio to a least that is no bound."""
-YARDSTICK = (
-    f'{STAR} commands the engine, slips again or starts otherwise in some of the runs: there the '
-    'least is a yardstick, not a bound'
-)
 NO_VALUE = 'no success has a value'
 """Reason of a dash."""
 _DIFFERENCES = ', '.join(
@@ -45,9 +39,6 @@ RULES = {
     'shows here.',
     'P50, P95, worst': 'Of the successes that have a value; the worst is the largest. Failures '
     'have no place among them: their share is in the first table.',
-    'over the least': 'The value over the least of a run of the clutch alone that locks once, at '
-    'this instant. The jerk has it in the first samples of each scenario only. '
-    f'{YARDSTICK}.',
     'explained': CAMPAIGN_RULES['explained'],
     'drives': CAMPAIGN_RULES['drives'],
     'most failures': CAMPAIGN_RULES['most failures'],

@@ -1,6 +1,6 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Parts of a specification: controllers, grid, random samples, floors; mistakes name the key."""
+"""Parts of a specification: controllers, grid, random samples; mistakes name the key."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -18,7 +18,6 @@ MOST_RUNS = 10_000_000
 """Largest number of runs of one campaign."""
 GRID, VARY, KNOWN = 'grid', 'vary', 'known'
 RANDOM, SAMPLES, OF, ROOT_SEED = 'random', 'samples', 'of', 'seed'
-FLOORS, FLOOR_SAMPLES = 'floors', 'floor_samples'
 
 
 def mapping_of(
@@ -39,14 +38,6 @@ def controllers_of(content: Mapping[str, Any]) -> tuple[str, ...]:
             f'{CONTROLLERS}: give a list of names or files, such as [pi, mpc3]', key=CONTROLLERS
         )
     return _distinct(CONTROLLERS, [_text(CONTROLLERS, each) for each in given])
-
-
-def floors_of(content: Mapping[str, Any]) -> bool:
-    """Return whether peak jerks are compared with the least of their cases."""
-    given = content.get(FLOORS, False)
-    if not isinstance(given, bool):
-        raise ParameterError(f'{FLOORS} is {given!r}: give true or false', key=FLOORS)
-    return given
 
 
 def common_of(content: Mapping[str, Any]) -> dict[str, str]:
@@ -135,14 +126,9 @@ def samples_of(content: Mapping[str, Any]) -> tuple[int, int, dict[str, Distribu
     return samples, of, vary
 
 
-def floor_samples_of(content: Mapping[str, Any], samples: int) -> int:
-    """Return the number of samples with floors, by default all `samples`."""
-    return _count(FLOOR_SAMPLES, content.get(FLOOR_SAMPLES, samples), at_most=samples)
-
-
-def _count(where: str, value: Any, at_least: int = 1, at_most: int = MOST_RUNS) -> int:
+def _count(where: str, value: Any, at_least: int = 1) -> int:
     """Return a number of samples in its range; raise ParameterError that names the key."""
-    option = Option(1, 'number of samples', at_least=at_least, at_most=at_most)
+    option = Option(1, 'number of samples', at_least=at_least, at_most=MOST_RUNS)
     return int(option.checked(where, value))
 
 

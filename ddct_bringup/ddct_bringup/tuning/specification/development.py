@@ -19,8 +19,6 @@ from ddct_bringup.campaign.keys import CONTROLLERS, FILE_KEY, SCENARIO
 from ddct_bringup.campaign.spec import spec_of
 from ddct_bringup.campaign.specification.named_files import with_places
 from ddct_bringup.campaign.specification.parts import (
-    FLOOR_SAMPLES,
-    FLOORS,
     GRID,
     OF,
     RANDOM,
@@ -42,7 +40,7 @@ class Development:
     """Specification of the cases, and which of them run in development."""
 
     content: Mapping[str, Any]
-    """Specification of a campaign without controllers and floors."""
+    """Specification of a campaign without controllers."""
     scenarios: tuple[str, ...] = ()
     """Those scenarios of a benchmark that run; empty for all cases."""
     samples: int | None = None
@@ -58,12 +56,11 @@ class Development:
                 f'{CAMPAIGN} is {content!r}: give keys of a campaign, or {{{BENCHMARK}: all}}',
                 key=CAMPAIGN,
             )
-        for key in (CONTROLLERS, FLOORS, FLOOR_SAMPLES):
-            if key in content:
-                raise ParameterError(
-                    f'{CAMPAIGN}.{key}: leave it out: the tuning decides it',
-                    key=f'{CAMPAIGN}.{key}',
-                )
+        if CONTROLLERS in content:
+            raise ParameterError(
+                f'{CAMPAIGN}.{CONTROLLERS}: leave it out: the tuning decides it',
+                key=f'{CAMPAIGN}.{CONTROLLERS}',
+            )
         for key in content.get(GRID) or ():
             if str(key).endswith(FILE_KEY):
                 raise ParameterError(
@@ -76,8 +73,7 @@ class Development:
     def _of_benchmark(cls, content: Mapping[str, Any]) -> 'Development':
         keys = mapping_of(CAMPAIGN, content, (BENCHMARK, SAMPLES), f'{CAMPAIGN}.')
         cases = dict(Cases.packaged().content)
-        for key in (CONTROLLERS, FLOORS, FLOOR_SAMPLES):
-            cases.pop(key, None)
+        cases.pop(CONTROLLERS, None)
         known = cases[GRID][SCENARIO]
         names = keys[BENCHMARK]
         where = f'{CAMPAIGN}.{BENCHMARK}'
@@ -102,11 +98,9 @@ class Development:
         content = with_places(self.content, lambda _, name: os.path.relpath(old / name, new))
         return replace(self, content=content)
 
-    def campaign(self, controller: str, folder: Path, *, floors: bool) -> Campaign:
+    def campaign(self, controller: str, folder: Path) -> Campaign:
         """Return the campaign that contains the cases; files are relative to `folder`."""
         content = {**self.content, CONTROLLERS: [controller]}
-        if floors:
-            content[FLOORS] = True
         with located(CAMPAIGN):
             return Campaign(spec_of(content, folder))
 
@@ -123,13 +117,9 @@ class Development:
             ]
         return sorted(chosen, key=lambda case: (case % campaign.samples, case))
 
-    def held_out(
-        self, controllers: Sequence[str], folder: Path, seed: int, *, floors: bool
-    ) -> Campaign:
+    def held_out(self, controllers: Sequence[str], folder: Path, seed: int) -> Campaign:
         """Return the campaign of held-out cases: drawn in the same way, from another seed."""
         content = {**self.content, CONTROLLERS: list(controllers), ROOT_SEED: seed}
-        if floors:
-            content[FLOORS] = True
         if self.scenarios:
             content[GRID] = {**content[GRID], SCENARIO: list(self.scenarios)}
             random = content[RANDOM]

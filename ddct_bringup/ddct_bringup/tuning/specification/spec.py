@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Any
 
 from ddct_bringup.campaign.specification.parts import ROOT_SEED, mapping_of
-from ddct_bringup.metrics.catalogue import JERK_OVER_LEAST
 from ddct_bringup.tuning.specification.development import CAMPAIGN, Development
 from ddct_bringup.tuning.specification.goals import (
     CONSTRAINTS,
@@ -55,11 +54,6 @@ class TuningSpec:
     def goals(self) -> tuple[Goal, ...]:
         """Quantities of objectives, then those of constraints."""
         return (*self.objectives, *(each.goal for each in self.constraints))
-
-    @property
-    def floors(self) -> bool:
-        """Whether a goal needs the least peak jerk of the cases."""
-        return any(goal.name == JERK_OVER_LEAST.key for goal in self.goals)
 
     def text(self) -> str:
         """Return the specification as canonical text, independent of its formatting."""
