@@ -50,6 +50,11 @@ class Actuators:
         self._values[:, _STATES] = followed[:, _STATES]
         return followed[:, _EARLIER:]
 
+    def mean_torque(self, step: int, requests: np.ndarray) -> np.ndarray:
+        """Return the mean torques of a period in N m, (R,), and accept requests, as `update`."""
+        total: np.ndarray = sum(self.update(step, requests)[:, :-1].T)
+        return total / SUBSTEPS
+
 
 def _matrices(parameters: ActuatorParameters) -> tuple[np.ndarray, np.ndarray]:
     """Return the (4 + 11, 6) map to next state and nodes, and the steady state for 1 N m."""

@@ -10,7 +10,7 @@ from ddct_controllers.handover.interface import (
     HandoverMeasurement,
     HandoverModel,
 )
-from ddct_controllers.handover.on_coming_estimate import OnComingEstimate
+from ddct_controllers.handover.on_coming_estimate import OnComingEstimate, OnComingModel
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.models.engine_limits import LimitedEngine
 from ddct_plant.scenario.rules.shift import gears_of
@@ -51,9 +51,8 @@ class AdaptiveHandover(Handover):
         sensors = settings.scenario.sensors
         speeds = (sensors.engine_speed, sensors.vehicle_speed) if sensors else ()
         delays = [speed.delay_s for speed in speeds] or [0.0, 0.0]
-        self._estimate = OnComingEstimate(
-            gears_of(settings.scenario), settings.scenario.actuator, *delays
-        )
+        model = OnComingModel.of(gears_of(settings.scenario), *delays)
+        self._estimate = OnComingEstimate(model, settings.scenario.actuator)
         # Until then a late sensor has its first value.
         self._first_step = math.ceil(max(delays) / PERIOD_S)
         limits = settings.scenario.engine_limits

@@ -12,7 +12,7 @@ from ddct_plant.plant import Tick
 from ddct_plant.scenario.initial_state import locked_request
 from ddct_plant.scenario.rules.shift import gears_of, shift_of
 from ddct_plant.scenario.settings import KnownSettings
-from ddct_plant.shift.balance import OnComingShare, off_going_torque
+from ddct_plant.shift.balance import OffGoingBalance, OnComingShare
 
 MARGIN = 1.7
 """
@@ -113,7 +113,7 @@ class HandoverModel:
     def __init__(self, settings: KnownSettings) -> None:
         """Use the gears and the car of the settings."""
         self._scenario = scenario = settings.scenario
-        shift, self._gears = shift_of(scenario), gears_of(scenario)
+        shift, self._balance = shift_of(scenario), OffGoingBalance.of(gears_of(scenario))
         self._static = StaticTorque(scenario.controlled_driveline, scenario.equilibrium)
         self._road = RoadLoad(scenario.load, scenario.vehicle, scenario.slope)
         self._cut, self._rise = shift.torque_cut_n_m, 0.0
@@ -136,7 +136,7 @@ class HandoverModel:
     def off_going(self, now: HandoverMeasurement, on_coming_torque: float = 0.0) -> float:
         """Return the torque in N m that the off-going clutch carries while it is locked."""
         load = self.load(now)
-        return off_going_torque(self._gears, now.demand, load, now.engine_speed, on_coming_torque)
+        return self._balance.torque(now.demand, load, now.engine_speed, on_coming_torque)
 
     def off_going_request(self, now: HandoverMeasurement, on_coming_torque: float) -> float:
         """Return the request in N m with which the off-going clutch sticks, with `MARGIN`."""

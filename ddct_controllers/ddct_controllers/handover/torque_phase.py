@@ -6,7 +6,7 @@ from ddct_controllers.interface import Measurement
 from ddct_plant.models.actuator import Actuator
 from ddct_plant.scenario.rules.shift import gears_of
 from ddct_plant.scenario.settings import KnownSettings
-from ddct_plant.shift.balance import off_going_torque
+from ddct_plant.shift.balance import OffGoingBalance
 
 
 class TorquePhase:
@@ -22,19 +22,18 @@ class TorquePhase:
 
     def __init__(self, settings: KnownSettings) -> None:
         """Start with the on-coming actuator at rest on a request of zero."""
-        self._gears = gears_of(settings.scenario)
+        self._balance = OffGoingBalance.of(gears_of(settings.scenario))
         self._actuator = Actuator(0.0, settings.scenario.actuator)
 
     def measured(self, measurement: Measurement) -> Measurement:
         """Return the measurement of a period; called once in each period of the torque phase."""
-        carried = off_going_torque(
-            self._gears,
+        carried = self._balance.torque(
             measurement.engine_torque,
             measurement.load_torque,
             measurement.engine_speed,
             self._actuator.mean_torque(measurement.open_loop_torque),
         )
-        wheel_torque = self._gears.off_going.wheel_torque(carried)
+        wheel_torque = self._balance.off_going.wheel_torque(carried)
         return measurement.within(
             measurement.load_torque - wheel_torque,
             measurement.open_loop_torque,

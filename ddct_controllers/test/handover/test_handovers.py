@@ -27,7 +27,7 @@ from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.initial_state import initial_request
 from ddct_plant.scenario.rules.shift import gears_of
 from ddct_plant.scenario.settings import KnownSettings, RunSettings
-from ddct_plant.shift.balance import off_going_torque
+from ddct_plant.shift.balance import OffGoingBalance
 from ddct_plant.shift.roles import OFF_GOING
 
 START, STEPS = 30, round(HANDOVER_S / PERIOD_S)
@@ -148,13 +148,13 @@ def test_the_slip_handover_falls_as_much_in_the_lag_of_every_actuator(actuator):
 def test_the_torque_phase_has_the_torque_of_the_known_actuator(actuator):
     settings = with_actuator('upshift', actuator)
     phase, plant = TorquePhase(settings.known), Actuator(0.0, actuator)
-    gears = gears_of(settings.scenario)
+    balance = OffGoingBalance.of(gears_of(settings.scenario))
     for step, open_loop in enumerate((0.0, 20.0, 40.0, 60.0, 80.0, 100.0)):
         now = Measurement(step, 270.0, 160.0, 17.0, 5.5, 100.0, [0.0], [0.0], 60.0, open_loop)
-        carried = off_going_torque(gears, 100.0, 60.0, 270.0, plant.mean_torque(open_loop))
+        carried = balance.torque(100.0, 60.0, 270.0, plant.mean_torque(open_loop))
         found = phase.measured(now)
         assert found.engine_torque == pytest.approx(100.0 - carried)
-        assert found.load_torque == pytest.approx(60.0 - gears.off_going.wheel_torque(carried))
+        assert found.load_torque == pytest.approx(60.0 - balance.off_going.wheel_torque(carried))
 
 
 @pytest.mark.parametrize(('actuator', 'rise_s'), [(PRINTED_ACTUATOR, 0.1), (SLOW, 2 * SLOW.lag_s)])

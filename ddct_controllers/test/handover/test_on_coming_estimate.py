@@ -15,6 +15,7 @@ from ddct_controllers.handover.on_coming_estimate import (
     SPEED_NOISE_RAD_S,
     WHEEL_NOISE_RAD_S,
     OnComingEstimate,
+    OnComingModel,
 )
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.scenario.file import load_scenario
@@ -55,7 +56,8 @@ def test_the_uncertainty_without_torque_is_that_of_the_kalman_filter_of_matrices
     spread = scipy.linalg.block_diag(noise, FIRST_TWIST_RAD**2, FIRST_LOAD_N_M**2)
     measured = np.eye(2, 4)
 
-    estimate: Any = OnComingEstimate(gears_of(SCENARIO), SCENARIO.actuator, 0.0, 0.0)
+    model = OnComingModel.of(gears_of(SCENARIO), 0.0, 0.0)
+    estimate: Any = OnComingEstimate(model, SCENARIO.actuator)
     estimate.start(200.0, 15.0, 100.0)
     for _ in range(100):
         spread = step @ spread @ step.T + drift
