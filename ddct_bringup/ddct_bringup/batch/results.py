@@ -5,15 +5,18 @@
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
+
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.batch.stacks import stacked
 from ddct_bringup.metrics.engagement import Engagement
 from ddct_bringup.metrics.plant import JudgedPlant
+from ddct_bringup.metrics.shift.course import torque_phase_ends
 from ddct_bringup.metrics.values import raw_metrics, rows_of, window_steps
 from ddct_bringup.run.timing_and_failure import RunTiming
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.verdict.limits import Limits
-from ddct_bringup.verdict.state import state_of
+from ddct_bringup.verdict.state import states_of
 from ddct_plant.scenario.settings import RunSettings
 
 
@@ -23,29 +26,43 @@ def stacked_results(
     """
     Return the results of runs of one length, control start and score window.
 
-    `trajectory` is a stack of these runs in which all values are finite. All are valid, and have
-    neither a bag nor facts, which the caller has. The times of updates are None.
+    `trajectory` is a stack of these runs in which all values are finite; `phase_events` are an
+    array of objects, (R, N+1). All runs are valid, and have neither a bag nor facts, which the
+    caller has. The times of updates are None.
     """
+    if not trajectory.shift:
+        return _results(runs, trajectory, limits)
+    ends = torque_phase_ends(trajectory, runs[0].scenario.control_start_step)
+    results: dict[int, ScoredRun] = {}
+    for end in np.unique(ends):
+        group = np.flatnonzero(ends == end).tolist()
+        alike = part_of_stack(trajectory, group)
+        results |= zip(group, _results([runs[each] for each in group], alike, limits), strict=True)
+    return [results[index] for index in range(len(runs))]
+
+
+def _results(
+    runs: Sequence[RunSettings], trajectory: Trajectory, limits: Limits
+) -> list[ScoredRun]:
+    """Return the results of runs whose torque phases also end at the same step."""
     scenario = runs[0].scenario
     plants = [JudgedPlant.of(run.scenario) for run in runs]
-
-    def engagement_of(part: Trajectory, plant: JudgedPlant) -> Engagement:
-        return Engagement(
-            part,
-            scenario.control_start_step,
-            window_steps(scenario.score_window_s),
-            scenario.steps,
-            plant,
-            RunTiming(),
-        )
-
-    metrics = rows_of(raw_metrics(engagement_of(trajectory, stacked_plants(plants))), len(runs))
+    engagement = Engagement(
+        trajectory,
+        scenario.control_start_step,
+        window_steps(scenario.score_window_s),
+        scenario.steps,
+        stacked_plants(plants),
+        RunTiming(),
+    )
+    metrics = rows_of(raw_metrics(engagement), len(runs))
+    speeds = trajectory.engine_speed[..., -1].tolist()
+    ends = [run.scenario.end_cause(speed) for run, speed in zip(runs, speeds, strict=True)]
+    states = states_of(engagement, ends, limits.rules)
     results = []
-    for index, (run, plant) in enumerate(zip(runs, plants, strict=True)):
-        engagement = engagement_of(part_of_stack(trajectory, index), plant)
-        state = state_of(engagement, None, limits.rules)
-        beside = limits.beside(metrics[index], run.scenario.name, plant)
-        results.append(ScoredRun('', None, True, '', metrics[index], *state, beside))
+    for run, plant, row, state in zip(runs, plants, metrics, states, strict=True):
+        beside = limits.beside(row, run.scenario.name, plant)
+        results.append(ScoredRun('', None, True, '', row, *state, beside))
     return results
 
 
@@ -56,4 +73,7 @@ def stacked_plants(plants: Sequence[JudgedPlant]) -> Any:
 
 def part_of_stack(stack: Trajectory, index: Any) -> Trajectory:
     """Return one run of a stack for an integer index, or a smaller stack."""
-    return Trajectory({name: values[index] for name, values in stack.signals.items()})
+    # The samples of each run stay contiguous, so that all are summed in the order of one run.
+    return Trajectory(
+        {name: np.ascontiguousarray(values[index]) for name, values in stack.signals.items()}
+    )

@@ -9,10 +9,9 @@ import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.metrics.lockup import Lockup
-from ddct_bringup.metrics.zero_slip import LOCKED, events_of, first_lock
+from ddct_bringup.metrics.zero_slip import locked_at
 from ddct_bringup.verdict.rules import Rules
 from ddct_plant.base.timebase import PERIOD_S, time_of_step
-from ddct_plant.models.driveline import LOCK
 from ddct_plant.scenario.settings import RunSettings
 
 
@@ -46,12 +45,16 @@ def lock_of(run: Trajectory, start: int, rules: Rules) -> Lock | None:
         return None
     if run.clutch_phase is None:
         return _settled(run.slip_speed[start:], rules)
-    lock = first_lock(run, start)
-    events = [event for step in (run.phase_events or ())[start + 1 :] for event in step]
-    if lock is None or len(events) != 1 or run.clutch_phase[-1] != LOCKED:
+    lockup = Lockup(run, start)
+    lock, events = lockup.first_lock, lockup.events
+    assert lock is not None and events is not None, 'plates that stick have events'
+    if (
+        lock.step < 0
+        or np.count_nonzero(events.step > start) != 1
+        or not locked_at(run, run.steps)
+    ):
         return None
-    assert next(events_of(run, LOCK, after=start)) == lock
-    return Lock(lock.time_s - time_of_step(start))
+    return Lock(float(lock.time_s) - time_of_step(start))
 
 
 def final_lock_of(run: Trajectory, start: int, rules: Rules) -> Lock | None:
@@ -64,8 +67,8 @@ def final_lock_of(run: Trajectory, start: int, rules: Rules) -> Lock | None:
         return None
     if run.clutch_phase is None:
         return _settled(run.slip_speed[start:], rules)
-    time_s = Lockup(run, start).final_lock_s
-    return Lock(time_s) if time_s else None
+    time_s = float(Lockup(run, start).final_lock_s)
+    return Lock(time_s) if time_s > 0.0 else None
 
 
 def _settled(slip: np.ndarray, rules: Rules) -> Lock | None:

@@ -23,8 +23,9 @@ class Engagement:
     Signals and conditions of one run, or of R runs, from which metrics are computed.
 
     The trajectory of R runs is a stack, (R, N+1) for each signal, of one length, control start and
-    score window; their clutches are linear. A shape (...) is () for one run, and (R,) for R runs.
-    Values are not finite, or None, where they are not defined.
+    score window; of gear shifts also of one step at which the torque phase ends. A shape (...) is
+    () for one run, and (R,) for R runs. Values are not finite, or None, where they are not
+    defined.
     """
 
     trajectory: Trajectory
@@ -77,9 +78,13 @@ class Engagement:
     @cached_property
     def lockup(self) -> Lockup:
         """Instants at which the plates come together and part, from the start of feedback on."""
-        return Lockup(self.trajectory, self.feedback_start)
+        return (
+            Lockup(self.trajectory, self.control_start)
+            if self.shift is None
+            else self.shift.lockup
+        )
 
     @cached_property
     def whole_lockup(self) -> Lockup:
         """Instants at which the plates come together and part, from control start on."""
-        return Lockup(self.trajectory, self.control_start)
+        return Lockup(self.trajectory, self.control_start) if self.shift else self.lockup

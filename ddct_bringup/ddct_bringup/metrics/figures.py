@@ -17,7 +17,7 @@ from ddct_bringup.metrics.friction_work import (
     work_of_both,
     work_over_least,
 )
-from ddct_bringup.metrics.metric import Metric, Null
+from ddct_bringup.metrics.metric import Metric, Null, finite
 from ddct_bringup.metrics.signals.vibration import jerk, strongest_stretch, weighted_acceleration
 from ddct_plant.base.timebase import PERIOD_S, STEPS_PER_S
 from ddct_plant.program.table import PURE
@@ -28,7 +28,7 @@ NOT_BEGUN = Null('the run ends before control start', lambda engagement: engagem
 _LINEAR = Null('a linear clutch cannot lock', lambda engagement: not engagement.sticks)
 _NOT_LOCKED = Null(
     'the plates are not locked at the end',
-    lambda engagement: engagement.whole_lockup.final_lock_s is None,
+    lambda engagement: finite(engagement.whole_lockup.final_lock_s) is None,
 )
 ENDS_EARLY = Null('the run ends before its plan', lambda engagement: engagement.ends_early)
 _NO_DEMAND = Null('there is no demand', lambda engagement: not _demand(engagement).any())

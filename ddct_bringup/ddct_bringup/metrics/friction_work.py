@@ -41,7 +41,7 @@ def work_of_both(trajectory: Trajectory, start: int) -> np.ndarray:
     own = friction_work(trajectory, start)
     if not trajectory.shift:
         return own
-    return own + np.sum(trajectory.off_going_friction_work[start + 1 :])
+    return own + np.sum(trajectory.off_going_friction_work[..., start + 1 :], axis=-1)
 
 
 def friction_work(trajectory: Trajectory, start: int = 0) -> np.ndarray:

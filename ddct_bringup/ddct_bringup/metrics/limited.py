@@ -18,12 +18,12 @@ _ACCELERATION_S, _JERK_S = 2.0, 1.0
 
 
 def peak_temperature(engagement: Engagement) -> Values:
-    """Return the highest temperature in degC of the facing, in a gear shift of both facings."""
+    """Return the highest temperature in degC of the facing, (...), of both in a gear shift."""
     run = engagement.trajectory
-    highest = np.max(run.clutch_temperature)
+    highest: np.ndarray = np.max(run.clutch_temperature, axis=-1)
     if engagement.shift is None:
         return highest
-    return max(highest, np.max(run.off_going_clutch_temperature))
+    return np.maximum(highest, np.max(run.off_going_clutch_temperature, axis=-1))
 
 
 def mean_acceleration(engagement: Engagement) -> Values | None:

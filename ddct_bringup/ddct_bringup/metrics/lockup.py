@@ -9,15 +9,8 @@ from functools import cached_property
 import numpy as np
 
 from ddct_bringup.bag.trajectory import Trajectory
-from ddct_bringup.metrics.zero_slip import (
-    SLIPPING,
-    events_of,
-    first_lock,
-    first_sign_change,
-    first_zero_slip,
-    locked_at,
-)
-from ddct_plant.base.timebase import PERIOD_S, time_of_step
+from ddct_bringup.metrics.zero_slip import SLIPPING, Events, first_sign_change, locked_at
+from ddct_plant.base.timebase import PERIOD_S, STEPS_PER_S, time_of_step
 from ddct_plant.models.driveline import LOCK, RELEASE
 
 
@@ -26,7 +19,7 @@ class Lockup:
     """
     Instants at which the plates of one run, or of R runs, come together and part.
 
-    A shape (...) is () for one run, and (R,) for R runs, whose clutches are linear.
+    A shape (...) is () for one run, and (R,) for R runs. Times that do not exist are NaN.
     """
 
     trajectory: Trajectory
@@ -43,6 +36,12 @@ class Lockup:
         return first_sign_change(self.trajectory.slip_speed, self.start)
 
     @cached_property
+    def events(self) -> Events | None:
+        """Events of the plates; None for a linear clutch."""
+        periods = self.trajectory.phase_events
+        return None if periods is None else Events.of(periods)
+
+    @cached_property
     def engagement_time_s(self) -> np.ndarray:
         """
         Engagement time t_a in s (thesis Section 5.1), (...): to the first sign change of w_d.
@@ -52,16 +51,26 @@ class Lockup:
         the first lock or passage through zero; in a bag from before passages were events, at a
         sign change without an event.
         """
-        crossing_s = self._sign_change[0]
-        if self.trajectory.phase_events is None:
+        crossing_s, slip = self._sign_change[0], self.trajectory.slip_speed
+        if self.events is None or self.trajectory.steps < self.start:
             return crossing_s
-        found = first_zero_slip(self.trajectory, self.start)
-        if found is None:
-            return crossing_s
-        step, event = found
-        if crossing_s <= time_of_step(step - 1 - self.start):
-            return crossing_s
-        return np.array(event.time_s - time_of_step(self.start))
+        slips = slip[..., self.start : self.start + 1] != 0.0
+        not_released = (self.events.kind != RELEASE) & (self.events.step > self.start)
+        step, time_s, *_ = self.events.first(slips & not_released)
+        without_event = crossing_s <= (step - 1 - self.start) / STEPS_PER_S
+        return np.where((step < 0) | without_event, crossing_s, time_s - time_of_step(self.start))
+
+    @cached_property
+    def first_lock(self) -> Events | None:
+        """
+        First lock after `start`, (...) each; None for a linear clutch.
+
+        Plates that are locked at `start` have none.
+        """
+        if self.events is None:
+            return None
+        locked = locked_at(self.trajectory, self.start)[..., np.newaxis]
+        return self.events.first(self.events.after(self.start, LOCK) & ~locked)
 
     @property
     def slip_acceleration(self) -> np.ndarray:
@@ -70,54 +79,51 @@ class Lockup:
 
         For plates that stick it is the exact slope just before the first lock.
         """
-        if self.trajectory.phase_events is None:
-            return self._sign_change[1]
-        lock = first_lock(self.trajectory, self.start)
-        return np.array(math.nan if lock is None else lock.slip_acceleration, dtype=float)
+        lock = self.first_lock
+        return self._sign_change[1] if lock is None else lock.slip_acceleration
 
     @cached_property
-    def locks_from_s(self) -> float | None:
+    def locks_from_s(self) -> np.ndarray:
         """
-        Scenario time in s of the first lock after `start`.
+        Scenario time in s of the first lock after `start`, (...).
 
-        It is that of `start` where the plates are locked there; None when they never lock, and for
+        It is that of `start` where the plates are locked there; NaN when they never lock, and for
         a linear clutch.
         """
-        if locked_at(self.trajectory, self.start):
-            return time_of_step(self.start)
-        lock = first_lock(self.trajectory, self.start)
-        return lock.time_s if lock else None
+        first_s = math.nan if self.first_lock is None else self.first_lock.time_s
+        locked = locked_at(self.trajectory, self.start)
+        return np.where(locked, time_of_step(self.start), first_s)
 
-    @property
-    def final_lock_s(self) -> float | None:
+    @cached_property
+    def final_lock_s(self) -> np.ndarray:
         """
-        Exact time in s from `start` to the last lock, 0 where the plates never part after it.
+        Exact time in s from `start` to the last lock, (...), 0 where the plates never part.
 
-        None where the plates are not locked at the end, and for a linear clutch.
+        NaN where the plates are not locked at the end, and for a linear clutch.
         """
         run = self.trajectory
-        if run.steps < self.start or not locked_at(run, run.steps):
-            return None
-        locks = [event.time_s for event in events_of(run, LOCK, after=self.start)]
-        return locks[-1] - time_of_step(self.start) if locks else 0.0
+        locked = locked_at(run, run.steps) & (run.steps >= self.start)
+        if self.events is None:
+            return np.full(locked.shape, math.nan)
+        locks = np.where(self.events.after(self.start, LOCK), self.events.time_s, -math.inf)
+        last_s = np.max(locks, axis=-1)
+        from_start_s = np.where(last_s >= 0.0, last_s - time_of_step(self.start), 0.0)
+        return np.where(locked, from_start_s, math.nan)
 
     @property
-    def releases(self) -> int | None:
-        """Number of releases after `start`; None for a linear clutch."""
-        if not self.sticks:
+    def releases(self) -> np.ndarray | None:
+        """Number of releases after `start`, (...); None for a linear clutch."""
+        if self.events is None:
             return None
-        return sum(1 for _ in events_of(self.trajectory, RELEASE, after=self.start))
+        return np.count_nonzero(self.events.after(self.start, RELEASE), axis=-1)
 
     @cached_property
     def together_from(self) -> np.ndarray:
         """First step at or after the lock, of a linear clutch t_a, (...); N+1 without one."""
-        if self.sticks:
-            at_s = np.array(math.nan if self.locks_from_s is None else self.locks_from_s)
-        else:
+        at_s = self.locks_from_s
+        if not self.sticks:
             at_s = time_of_step(self.start) + self.engagement_time_s
-        never = self.trajectory.steps + 1
-        steps = [step_at(time) if math.isfinite(time) else never for time in at_s.flat]
-        return np.reshape(steps, at_s.shape)
+        return step_at(at_s, never=self.trajectory.steps + 1)
 
     @cached_property
     def slipping(self) -> tuple[np.ndarray, np.ndarray]:
@@ -138,7 +144,8 @@ class Lockup:
         return first, np.where(mask.any(axis=-1), after, first)
 
 
-def step_at(time_s: float) -> int:
-    """Return the first step at or after a scenario time."""
+def step_at(time_s: np.ndarray, never: int) -> np.ndarray:
+    """Return the first step at or after each scenario time in s, (...); `never` for NaN."""
     # The margin keeps a time on the grid from being rounded up to the next step by its last bit.
-    return math.ceil(time_s / PERIOD_S - 1e-9)
+    steps = np.ceil(time_s / PERIOD_S - 1e-9)
+    return np.where(np.isfinite(steps), steps, never).astype(int)

@@ -6,6 +6,8 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
+import numpy as np
+
 from ddct_bringup.metrics.engagement import Engagement, Values
 from ddct_plant.program.table import Quantity
 
@@ -67,6 +69,5 @@ class Metric(Quantity):
 
 def finite(value: Values | None) -> float | int | None:
     """Return the value as a Python number, None where it is not finite."""
-    if value is None or not math.isfinite(value):
-        return None
-    return value if isinstance(value, int) else float(value)
+    plain = value.item() if isinstance(value, (np.ndarray, np.generic)) else value
+    return plain if plain is not None and math.isfinite(plain) else None

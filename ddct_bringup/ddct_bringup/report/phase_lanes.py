@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The chart of the phases: a row for each clutch that sticks, and for each gear shift."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -70,7 +71,8 @@ def shift_spans(course: ShiftCourse) -> list[PhaseSpan]:
     torque = (start_s, min(share_s, end_s), TORQUE_PHASE)
     if not course.handed_over:
         return [torque]
-    return [torque, (share_s, end_s if course.lock_s is None else course.lock_s, INERTIA_PHASE)]
+    lock_s = float(course.lock_s)
+    return [torque, (share_s, end_s if math.isnan(lock_s) else lock_s, INERTIA_PHASE)]
 
 
 def draw_phases(

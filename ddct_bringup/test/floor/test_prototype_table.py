@@ -19,10 +19,9 @@ from ddct_bringup.floor.dynamics.start import start_of
 from ddct_bringup.floor.dynamics.tube import rigid_tube
 from ddct_bringup.floor.lock import Lock
 from ddct_bringup.floor.objectives import Peak, Signals
-from ddct_bringup.metrics.zero_slip import events_of
+from ddct_bringup.metrics.lockup import Lockup
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.verdict.limits import packaged_limits
-from ddct_plant.models.driveline import LOCK
 from ddct_plant.scenario.file import load_scenario
 from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
@@ -112,7 +111,7 @@ def test_controllers_are_as_far_above_the_least_as_published(settings, least_at,
     lock_s, peak, ratio = RATIOS[controller]
     run = run_headless(settings, controller)
     start = settings.scenario.control_start_step
-    last = [event.time_s for event in events_of(run, LOCK, after=start)][-1] - start / 100.0
+    last = float(Lockup(run, start).final_lock_s)
     assert last == pytest.approx(lock_s, rel=WITHIN)
     jerk = 100.0 * np.abs(np.diff(run.vehicle_accel[start:])).max()
     assert jerk == pytest.approx(peak, rel=WITHIN)

@@ -7,8 +7,9 @@ from collections.abc import Callable
 import numpy as np
 
 from ddct_bringup.metrics.engagement import Engagement, Values
-from ddct_bringup.metrics.metric import Metric, Null
+from ddct_bringup.metrics.metric import Metric, Null, finite
 from ddct_bringup.metrics.shift.course import ShiftCourse
+from ddct_plant.models.driveline import LOCK, RELEASE
 from ddct_plant.program.table import PURE
 
 NO_SHIFT = 'the run is no gear shift'
@@ -34,12 +35,12 @@ _NOT_HANDED_OVER = (
 )
 _NOT_LOCKED = (
     *_NOT_HANDED_OVER,
-    _null('the on-coming clutch never locks', lambda course: course.lock_s is None),
+    _null('the on-coming clutch never locks', lambda course: finite(course.lock_s) is None),
 )
 
 
 def _of(
-    compute: Callable[[ShiftCourse], float | int | None],
+    compute: Callable[[ShiftCourse], Values | None],
 ) -> Callable[[Engagement], Values | None]:
     """Return a metric's function, which is None for a run that is no shift."""
 
@@ -49,8 +50,7 @@ def _of(
     return value
 
 
-def _events(key: str, symbol: str, meaning: str, *, locks: bool, off_going: bool) -> Metric:
-    count = ShiftCourse.locks if locks else ShiftCourse.releases
+def _events(key: str, symbol: str, meaning: str, kind: str, *, off_going: bool) -> Metric:
     return Metric(
         key=key,
         symbol=symbol,
@@ -58,7 +58,7 @@ def _events(key: str, symbol: str, meaning: str, *, locks: bool, off_going: bool
         form='.0f',
         meaning=f'{meaning} from the start of the shift on',
         nulls=_NOT_BEGUN,
-        value=_of(lambda course: count(course, off_going=off_going)),
+        value=_of(lambda course: course.count(kind, off_going=off_going)),
         of_shift=True,
     )
 
@@ -120,7 +120,7 @@ QUANTITIES = (
             *_NOT_BEGUN,
             _null(
                 'the wheel torque does not drive the car at the start of the shift',
-                lambda course: not (course.wheel_torque_before or 0.0) > 0.0,
+                lambda course: not course.wheel_torque_before > 0.0,
             ),
         ),
         value=_of(lambda course: course.torque_dip_percent),
@@ -137,7 +137,7 @@ QUANTITIES = (
             *_NOT_BEGUN,
             _null(
                 'the shafts stand still at the start of the shift',
-                lambda course: course.flare is None,
+                lambda course: finite(course.flare) is None,
             ),
         ),
         value=_of(lambda course: course.flare),
@@ -163,7 +163,7 @@ QUANTITIES = (
         form='.0f',
         meaning='friction work of the off-going clutch, whole run',
         nulls=(_NO_SHIFT,),
-        value=_of(lambda course: np.sum(course.trajectory.off_going_friction_work)),
+        value=_of(lambda course: np.sum(course.trajectory.off_going_friction_work, axis=-1)),
         of_shift=True,
     ),
     Metric(
@@ -173,7 +173,7 @@ QUANTITIES = (
         form='.1f',
         meaning='highest temperature of the facing of the on-coming clutch',
         nulls=(_NO_SHIFT,),
-        value=_of(lambda course: np.max(course.trajectory.clutch_temperature)),
+        value=_of(lambda course: np.max(course.trajectory.clutch_temperature, axis=-1)),
         of_shift=True,
     ),
     Metric(
@@ -183,35 +183,35 @@ QUANTITIES = (
         form='.1f',
         meaning='highest temperature of the facing of the off-going clutch',
         nulls=(_NO_SHIFT,),
-        value=_of(lambda course: np.max(course.trajectory.off_going_clutch_temperature)),
+        value=_of(lambda course: np.max(course.trajectory.off_going_clutch_temperature, axis=-1)),
         of_shift=True,
     ),
     _events(
         'on_coming_locks',
         'on-coming locks',
         'number of locks of the on-coming clutch',
-        locks=True,
+        LOCK,
         off_going=False,
     ),
     _events(
         'on_coming_releases',
         'on-coming releases',
         'how often the on-coming clutch breaks loose',
-        locks=False,
+        RELEASE,
         off_going=False,
     ),
     _events(
         'off_going_locks',
         'off-going locks',
         'how often the off-going clutch locks again',
-        locks=True,
+        LOCK,
         off_going=True,
     ),
     _events(
         'off_going_releases',
         'off-going releases',
         'number of releases of the off-going clutch, that of the handover among them,',
-        locks=False,
+        RELEASE,
         off_going=True,
     ),
 )
