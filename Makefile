@@ -84,7 +84,7 @@ tune-extra: setup .venv/.tune
 TEST_FOLDERS := $(wildcard tests ddct_*/test)
 NIGHTLY := tests/nightly
 test: fmu tune-extra .venv/.site .venv/.test
-	@$(SOURCED) $(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder \
+	@$(SOURCED) $(BIN)/python -m pytest -n 3 --dist loadfile --no-loadscope-reorder \
 	    -m 'not nightly' --ignore=$(NIGHTLY) $(TEST_FOLDERS)
 
 # What depends on the wall clock, whole gates and products of lists: before a release.

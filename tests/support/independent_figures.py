@@ -18,7 +18,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
-import scipy.signal
+import scipy
 
 if __name__ == '__main__':
     sys.path.insert(0, str(Path(__file__).resolve().parents[1]))

@@ -17,6 +17,7 @@ from waiting import WITHIN_S, wait_until
 from ddct_bringup.processes.fork_server import server_pid, start_processes
 from ddct_bringup.processes.forked import Forked
 from ddct_bringup.processes.graph_nodes import NodeSpec
+from support.complaints import without_middleware_log
 
 TEST_ID = 'DDCT_TEST_ID'
 """Environment variable that marks every process which a test starts, directly or not."""
@@ -79,11 +80,11 @@ class Program:
 
     def output(self) -> str:
         """Return its standard output so far."""
-        return self.stdout.read_text(encoding='utf-8')
+        return without_middleware_log(self.stdout.read_text(encoding='utf-8'))
 
     def errors(self) -> str:
-        """Return its standard error so far."""
-        return self.stderr.read_text(encoding='utf-8')
+        """Return its standard error so far, without the log of the middleware."""
+        return without_middleware_log(self.stderr.read_text(encoding='utf-8'))
 
 
 class ForkedProgram(Program):
@@ -102,7 +103,7 @@ class ForkedProgram(Program):
 
     def output(self) -> str:
         """Return all that it has printed so far."""
-        return self._forked.printed_text()
+        return without_middleware_log(self._forked.printed_text())
 
     errors = output
 

@@ -6,8 +6,8 @@ from statistics import NormalDist
 
 import numpy as np
 import pytest
+import scipy
 from made_benchmarks import IN_SCENARIO, MadeBenchmark, flagged_draws
-from scipy import stats
 
 from ddct_bringup.benchmark.statistics.case_figures import FIGURES, CaseFigures
 from ddct_bringup.benchmark.statistics.held_out_gaps import gaps_of, van_elteren
@@ -56,7 +56,7 @@ def test_one_stratum_with_ties_is_the_mann_whitney_test() -> None:
             random.poisson(1.0, 17).astype(float),
             random.poisson(1.5, 11).astype(float),
         )
-        expected = stats.mannwhitneyu(
+        expected = scipy.stats.mannwhitneyu(
             second, first, alternative='greater', use_continuity=False, method='asymptotic'
         )
         p_value, worse = van_elteren([(first, second)])
@@ -80,7 +80,7 @@ def test_the_p_value_is_that_of_permutations_within_strata(
             strata.append(np.where(random.random(n + m) < failing, np.inf, values))
         observed, permuted = 0.0, np.zeros(20_000)
         for values, (n, m) in zip(strata, sizes, strict=True):
-            ranks = stats.rankdata(values) / (n + m + 1)
+            ranks = scipy.stats.rankdata(values) / (n + m + 1)
             observed += ranks[n:].sum()
             shuffled = random.permuted(np.tile(ranks, (len(permuted), 1)), axis=1)
             permuted += shuffled[:, n:].sum(axis=1)
@@ -98,7 +98,7 @@ def test_strata_of_different_levels_do_not_hide_a_difference() -> None:
     levels = np.repeat(np.arange(6) * 100.0, 8)
     random = np.random.default_rng(1)
     first, second = levels + random.uniform(size=48), levels + 1.0 + random.uniform(size=48)
-    together = stats.mannwhitneyu(second, first, alternative='greater').pvalue
+    together = scipy.stats.mannwhitneyu(second, first, alternative='greater').pvalue
     p_value, worse = van_elteren(
         [(first[levels == each], second[levels == each]) for each in set(levels)]
     )

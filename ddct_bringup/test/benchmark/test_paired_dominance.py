@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+import scipy
 from made_benchmarks import COPIES, MadeBenchmark, draws_with_a_dominated_copy
-from scipy import stats
 
 from ddct_bringup.benchmark.statistics.case_figures import FIGURES, CaseFigures
 from ddct_bringup.benchmark.statistics.dominance import (
@@ -167,7 +167,7 @@ def test_the_sign_test_is_the_binomial_test() -> None:
     for more, fewer in ((0, 0), (0, 7), (7, 0), (5, 2), (150, 120), (180, 120), (330, 0)):
         expected = 1.0
         if more + fewer:
-            expected = stats.binomtest(more, more + fewer, alternative='greater').pvalue
+            expected = scipy.stats.binomtest(more, more + fewer, alternative='greater').pvalue
         assert sign_test(more, fewer) == pytest.approx(expected, rel=1e-9)
 
 
