@@ -45,7 +45,7 @@ class _Recording(Controller):
         self.held: list[Measurement] = []
         self.updated: list[Measurement] = []
         self.programs: list[Program] = []
-        solver: Any = self.controller._solver
+        solver: Any = self.controller.solver
         self._solve = solver.solve
         solver.solve = self._record
 

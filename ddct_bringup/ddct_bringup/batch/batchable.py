@@ -6,6 +6,8 @@ import dataclasses
 
 from ddct_bringup.batch.controllers import StackedController
 from ddct_bringup.batch.linear_controllers import LinearControllers
+from ddct_bringup.batch.pedal import PedalControllers
+from ddct_bringup.batch.predictive import PredictiveControllers
 from ddct_bringup.batch.references import why_no_reference
 from ddct_controllers.interface import Controller
 from ddct_plant.base.options import key_of
@@ -28,8 +30,12 @@ _UNSUPPORTED = [
     if key_of(field) not in SUPPORTED_KEYS
 ]
 """Other scenario keys, with their defaults."""
-_KINDS: tuple[type[StackedController], ...] = (LinearControllers,)
-"""Kinds of controllers that a batch supports."""
+_KINDS: tuple[type[StackedController], ...] = (
+    PredictiveControllers,
+    PedalControllers,
+    LinearControllers,
+)
+"""Kinds of controllers that a batch supports; the first that takes a controller is its own."""
 
 
 def why_not_batchable(settings: RunSettings, controller: Controller) -> str:
@@ -46,8 +52,8 @@ def why_not_batchable(settings: RunSettings, controller: Controller) -> str:
 
 
 def kind_of(controller: Controller) -> type[StackedController]:
-    """Return the kind of a controller that a batch supports."""
-    return next(kind for kind in _KINDS if not kind.why_not(controller))
+    """Return the kind of a controller, if a batch supports it."""
+    return next(kind for kind in _KINDS if kind.takes(controller))
 
 
 def _why_not_known(known: KnownSettings) -> str:
@@ -68,5 +74,4 @@ def _why_not_scenario(scenario: Scenario) -> str:
 def _why_not_controller(controller: Controller) -> str:
     if controller.commands_engine:
         return 'the controller commands the engine'
-    reasons = [kind.why_not(controller) for kind in _KINDS]
-    return '' if '' in reasons else reasons[0]
+    return kind_of(controller).why_not(controller)

@@ -4,7 +4,7 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Hashable, Sequence
-from typing import Any, NamedTuple, Self
+from typing import Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 
@@ -74,10 +74,18 @@ class StackedController(ABC):
     independent of the other runs to the last bit.
     """
 
+    fallbacks: ClassVar[int | None] = None
+    """Steps at which a program had no solution, 0 in a batch; None for those without programs."""
+
+    @classmethod
+    @abstractmethod
+    def takes(cls, controller: Controller) -> bool:
+        """Return whether this kind is for the class of a controller."""
+
     @classmethod
     @abstractmethod
     def why_not(cls, controller: Controller) -> str:
-        """Return in one line why a controller is not of this kind, empty if it is."""
+        """Return in one line why a controller of that class is not taken, empty if it is."""
 
     @classmethod
     @abstractmethod

@@ -32,6 +32,11 @@ class LinearControllers(StackedController):
         self._filters = Filters(models)
 
     @classmethod
+    def takes(cls, controller: Controller) -> bool:
+        """Return True: each class may have a `linear_model`."""
+        return True
+
+    @classmethod
     def why_not(cls, controller: Controller) -> str:
         """
         Return why a controller is not linear throughout, empty if it is.

@@ -12,6 +12,7 @@ other runs are in the batch. A run in which rounding grows beyond that has no re
 
 from collections import defaultdict
 from collections.abc import Hashable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -90,7 +91,7 @@ def _results(runs: Sequence[Run], kind: _Kind, limits: Limits) -> list[ScoredRun
     kept = stack if counts.all() else part_of_stack(stack, counts)
     settings = [run for (run, _), each in zip(runs, counts, strict=True) if each]
     results = iter(stacked_results(settings, kept, limits) if settings else [])
-    return [next(results) if each else None for each in counts]
+    return [replace(next(results), fallbacks=kind.fallbacks) if each else None for each in counts]
 
 
 def _repeatable(runs: Sequence[Run], kind: _Kind, stack: Trajectory) -> np.ndarray:

@@ -14,6 +14,10 @@ from ddct_bringup.verdict.limits import packaged_limits
 from ddct_controllers.from_python import chosen_from
 from ddct_controllers.interface import Command, Controller
 from ddct_controllers.linear import LinearController, PiController
+from ddct_controllers.mpc.controller import MpcController
+from ddct_controllers.mpc.costs import PREVIEW
+from ddct_controllers.mpc.estimators import make_observer
+from ddct_controllers.mpc.model.transmission_model import transmission_model
 from ddct_controllers.registry import make_controller
 from ddct_plant.base.options import key_of
 from ddct_plant.base.timebase import PERIOD_S
@@ -24,6 +28,8 @@ from ddct_plant.scenario.settings import KnownSettings, RunSettings
 
 SETTINGS = RunSettings(KnownSettings(load_scenario('thesis')))
 PI = PiController(0.1, 0.1)
+MODEL = transmission_model(SETTINGS.scenario.controlled_driveline)
+PROGRAMS = ('mpc1', 'mpc_preview', 'mpc_offset_free', 'mpc_torsion', 'mpc_wear', 'pedal_mpc')
 
 
 class Proportional(Controller):
@@ -64,6 +70,13 @@ class Broken(Proportional):
         raise ValueError('no')
 
 
+class OwnStep(MpcController):
+    """A user's variant of a predictive controller."""
+
+    def update(self, measurement):
+        return Command(0.0)
+
+
 class Limited(PiController):
     def update(self, measurement):
         return Command(min(super().update(measurement).clutch_torque, 50.0))
@@ -80,11 +93,24 @@ class Limited(PiController):
         (Led(), 'the controller does not do what its linear_model says'),
         (Remembering(), 'the controller does more than reset while feedback is held off'),
         (Broken(), 'the controller failed when it was tried (ValueError: no)'),
-        (make_controller('mpc1', SETTINGS.known), 'the controller does more than reset'),
+        *((make_controller(name, SETTINGS.known), '') for name in PROGRAMS),
+        (
+            make_controller('mpc3', SETTINGS.known, {'backend': 'osqp'}),
+            'the solver of its programs is osqp',
+        ),
+        (
+            make_controller('mpc3', SETTINGS.known, {'iteration_limit': 5}),
+            'the iterations of its solver are limited',
+        ),
         (make_controller('mpc4', SETTINGS.known), 'the controller commands the engine'),
+        (make_controller('mpc4_wear', SETTINGS.known), 'the controller commands the engine'),
+        (
+            OwnStep(MODEL, make_observer(SETTINGS.known, MODEL), PREVIEW.settings()),
+            'the controller does more than reset while feedback is held off',
+        ),
     ],
 )
-def test_a_controller_is_in_a_batch_if_it_is_linear_throughout(controller, reason):
+def test_a_controller_is_in_a_batch_if_its_kind_is_supported(controller, reason):
     found = why_not_batchable(SETTINGS, controller)
     assert found.startswith(reason)
     assert bool(found) == bool(reason)

@@ -18,7 +18,7 @@ from ddct_bringup.verdict.limits import packaged_limits
 
 VARY = {'vehicle.mass_kg': {'distribution': 'uniform', 'low': 1000, 'high': 2000}}
 CONTENT: dict[str, Any] = {
-    'controllers': ['pi', 'mpc3'],
+    'controllers': ['pi', 'mpc4'],
     'grid': {'wear_gain': [0.7, 1.0], 'duration_s': [0.7]},
     'random': {'samples': 3, 'vary': VARY},
 }

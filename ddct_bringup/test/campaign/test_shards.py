@@ -52,7 +52,7 @@ def test_each_run_is_scored_over_the_window_that_its_scenario_gives(monkeypatch)
     ('content', 'size'),
     [
         ({'controllers': ['pi', 'ls8']}, 1000),
-        ({'controllers': ['pi', 'mpc3']}, 80),
+        ({'controllers': ['pi', 'mpc4']}, 80),
         ({'controllers': ['pi', 'ls8'], 'scenario': 'thesis_sticking'}, 80),
     ],
 )

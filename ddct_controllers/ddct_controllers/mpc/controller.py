@@ -82,13 +82,14 @@ class MpcController(Controller, Generic[Estimator]):
             rows = self.program.level_rows[ENGINE]
             self.engine = CommandedEngine(authority, rows, settings.control_steps)
         structure = self.program.structure
-        self._solver = make_backend(settings.backend, structure, settings.iteration_limit)
+        self.solver = make_backend(settings.backend, structure, settings.iteration_limit)
+        """Solver of that program, which starts each time from its last solution."""
         self.preview_steps = settings.prediction_steps if settings.preview else 0
         self.reset()
 
     def reset(self) -> None:
         """Clear plan and counts; the observer starts anew with the next measurement."""
-        for part in (self._solver, self.observer, self.clutch, self.engine):
+        for part in (self.solver, self.observer, self.clutch, self.engine):
             part.reset()
         self._plan = np.zeros(self.program.structure.hessian.shape[0])
         self.fallbacks = 0
@@ -119,11 +120,12 @@ class MpcController(Controller, Generic[Estimator]):
         others = (0.0,) * (self._inputs - 1)
         targets = (measurement.open_loop_torque, *others)
         # The program of this period.
-        reference_values = references(self.settings, ahead).ravel()
+        speeds, rates = np.array([ahead.slip_reference, ahead.slip_reference_rate])
+        reference_values = references(self.settings, speeds, rates).ravel()
         f = program.gradient @ np.concatenate((known, targets, reference_values))
         shift = program.shift @ np.concatenate((known, (jump, *others)))
         lower, upper = engine.bounds(clutch.bounds(level - jump, gain), measurement, gain)
-        solution = self._solver.solve(f, lower - shift, upper - shift)
+        solution = self.solver.solve(f, lower - shift, upper - shift)
         # The first moves of the solution, or the next ones of the last plan within the limits.
         solved = solution.status == 'solved'
         if solved:
@@ -168,21 +170,22 @@ def divided(measurement: Measurement, gain: float) -> Measurement:
     )
 
 
-def references(settings: MpcSettings, measurement: Measurement) -> np.ndarray:
+def references(settings: MpcSettings, speeds: np.ndarray, rates: np.ndarray) -> np.ndarray:
     """
-    Return the references of the weighted outputs at the periods 1..p, (p, outputs).
+    Return the references of the weighted outputs at the periods 1..p, (..., p, outputs).
 
-    They are the coming ones with preview, else the present ones, or that of the slip along its
-    tangent; those of other outputs than the slip and its rate are zero.
+    `speeds` in rad/s and `rates` in rad/s^2 are those of the slip, (..., P + 1), with any axes in
+    front. They are the coming ones with preview, else the present ones, or that of the slip along
+    its tangent; those of other outputs than the slip and its rate are zero.
     """
-    values = np.zeros((settings.prediction_steps, len(settings.outputs)))
+    values = np.zeros((*speeds.shape[:-1], settings.prediction_steps, len(settings.outputs)))
     coming = slice(1, None) if settings.preview else slice(0, 1)
     for column, terms in enumerate(settings.outputs):
         if terms.output == SLIP_SPEED:
-            values[:, column] = measurement.slip_reference[coming]
+            values[..., column] = speeds[..., coming]
             if settings.along_tangent and not settings.preview:
                 steps = np.arange(1, settings.prediction_steps + 1)
-                values[:, column] += PERIOD_S * measurement.slip_reference_rate[0] * steps
+                values[..., column] += PERIOD_S * rates[..., :1] * steps
         elif terms.output == SLIP_ACCELERATION:
-            values[:, column] = measurement.slip_reference_rate[coming]
+            values[..., column] = rates[..., coming]
     return values

@@ -50,7 +50,7 @@ def make_observer(
     start = run_start(settings)
     if load_known:
         return Observer(model, gain, start)
-    return Observer(model.without_load(), gain, replace(start, halfshaft_stiffness=math.inf))
+    return Observer(model.without_load, gain, replace(start, halfshaft_stiffness=math.inf))
 
 
 @dataclass(frozen=True)
@@ -97,7 +97,7 @@ class ObserverInputs(OptionGroup):
             if not self.delay_in_model:
                 actuator = replace(actuator, delay_s=0.0)
             model = transmission_model(scenario.controlled_driveline, actuator=actuator)
-        known = model if self.load_known else model.without_load()
+        known = model if self.load_known else model.without_load
         if self.measured == 'slip':
             return known, Observer(known, unit_noise_gain(known, noise_rpm), start=None)
         return known, make_observer(run, model, load_known=self.load_known)

@@ -4,6 +4,7 @@
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -68,8 +69,7 @@ class ClutchInput:
         """
         lower, upper = self._program.lower, self._program.upper
         room = ROOM * (1.0 + abs(last))
-        change = self._most_change - room
-        level_kept = self._lowest <= last + change and last - change <= self._highest
+        level_kept = reaches_level(last, self._lowest, self._highest, self._most_change)
         soft = divisor != 1.0 and len(self._soft_rows)
         if level_kept and not soft:
             return lower, upper
@@ -93,6 +93,12 @@ class ClutchInput:
         self._own_torque = request - measurement.open_loop_torque
         self._open_loop = measurement.open_loop_torque
         return self._own_torque
+
+
+def reaches_level(last: Any, lowest: Any, highest: Any, most_change: Any) -> Any:
+    """Return whether a request between its limits is in reach of `last`, all in N m or (R,)."""
+    change = most_change - ROOM * (1.0 + abs(last))
+    return (lowest <= last + change) & (last - change <= highest)
 
 
 class KnownEngine:

@@ -203,7 +203,7 @@ def test_a_solver_that_gives_up_is_counted_and_the_last_plan_goes_on():
     mpc = controller(replace(MPC3, inputs=(limits,)))
     requests = [250.0 + each.clutch_torque for each in answers(mpc, steps=2)]
     planned = mpc._plan.copy()
-    mpc._solver = _AlwaysFails()
+    mpc.solver = _AlwaysFails()
     answer = mpc.update(measurement(62, slip=58.0))
     status = dict(answer.status)
     assert (status['qp_status'], status['fallbacks']) == ('iteration limit', '1')
@@ -218,7 +218,7 @@ def test_a_solver_that_gives_up_is_counted_and_the_last_plan_goes_on():
 def test_a_plan_that_is_followed_keeps_the_rate_before_the_level():
     limits = InputTerms(0.39, highest=230.0, rate_n_m_s=300.0)
     mpc = controller(replace(MPC3, inputs=(limits,)))
-    mpc._solver = _AlwaysFails()
+    mpc.solver = _AlwaysFails()
     requests = [250.0 + each.clutch_torque for each in answers(mpc)]
     expected = [247.0, 244.0, 241.0, 238.0, 235.0, 232.0, 230.0, 230.0]
     assert requests == pytest.approx(expected)
@@ -228,7 +228,7 @@ def test_a_reset_controller_has_no_plan_to_follow():
     mpc = controller()
     answers(mpc)
     mpc.reset()
-    mpc._solver = _AlwaysFails()
+    mpc.solver = _AlwaysFails()
     assert mpc.update(measurement(60)).clutch_torque == 0.0
 
 
@@ -250,7 +250,7 @@ def test_plan_is_followed_move_by_move_and_then_held():
     before = answers(mpc, steps=2)[-1].clutch_torque
     planned = mpc._plan.copy()
     assert np.abs(np.diff(planned)).min() > 0.1, 'no two moves are the same'
-    mpc._solver = _AlwaysFails()
+    mpc.solver = _AlwaysFails()
     given = [mpc.update(measurement(62 + i, slip=58.0)).clutch_torque for i in range(6)]
     moves = [*planned[1:], 0.0, 0.0, 0.0]
     assert np.diff([before, *given]) == pytest.approx(moves, abs=1e-9)
@@ -417,20 +417,20 @@ class NoSolution:
     """Solver that reports its iteration limit at chosen calls."""
 
     def __init__(self, solver, at):
-        self._solver, self._at, self._calls = solver, at, 0
+        self.solver, self._at, self._calls = solver, at, 0
 
     def reset(self):
-        self._solver.reset()
+        self.solver.reset()
 
     def solve(self, *program):
         self._calls += 1
-        solution = self._solver.solve(*program)
+        solution = self.solver.solve(*program)
         return replace(solution, status='iteration limit') if self._calls in self._at else solution
 
 
 def test_the_status_counts_the_steps_without_a_solution():
     mpc = controller()
-    mpc._solver = NoSolution(mpc._solver, at=(3, 4, 7))
+    mpc.solver = NoSolution(mpc.solver, at=(3, 4, 7))
     statuses = [dict(each.status) for each in answers(mpc)]
     assert [status['fallbacks'] for status in statuses] == list('00122233')
     assert [status['qp_status'] == 'solved' for status in statuses].count(False) == 3

@@ -94,7 +94,7 @@ def test_the_moves_of_the_engine_are_multiplied_by_the_gain_and_those_of_the_clu
     controller = make_controller(name='mpc4_wear')
     for step in range(20):
         controller.hold(measurement(step, 170.0 + 0.5 * step))
-    controller._solver = Solved(2.0, 5.0)
+    controller.solver = Solved(2.0, 5.0)
     command = controller.update(measurement(20, 180.0))
     gain = float(dict(command.status)['wear_gain_estimate'])
     assert abs(gain - 1.0) > 0.05

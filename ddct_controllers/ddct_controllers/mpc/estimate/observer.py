@@ -4,6 +4,7 @@
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -100,6 +101,7 @@ def torque_noise(model: TransmissionModel, noise: NoiseLevels) -> np.ndarray:
     return torques @ torques.T
 
 
+@lru_cache  # runs with equal known settings share one
 def kalman_gain(model: TransmissionModel, noise: NoiseLevels) -> np.ndarray:
     """
     Return the stationary filter gain (n, 3) of p c' (c p c' + r)^-1.
@@ -123,6 +125,7 @@ def kalman_gain(model: TransmissionModel, noise: NoiseLevels) -> np.ndarray:
     return np.linalg.solve(innovation, measured @ covariance).T
 
 
+@lru_cache
 def unit_noise_gain(model: TransmissionModel, noise_rpm: float = 1.0) -> np.ndarray:
     """
     Return the stationary filter gain (n, 3) for w_d in rpm as the only measured output.

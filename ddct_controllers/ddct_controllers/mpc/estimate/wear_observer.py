@@ -3,6 +3,7 @@
 """Kalman filter that estimates the wear gain of the clutch while torque flows."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -36,7 +37,7 @@ from ddct_controllers.mpc.model.transmission_model import (
 from ddct_controllers.mpc.program.settings import MOST
 from ddct_plant.base.options import OptionGroup, option
 
-_ENGINE_SPEED = FILTER_STATES['engine_speed']
+ENGINE_SPEED, TWIST = FILTER_STATES.places('engine_speed', 'twist')
 LEAST_TORQUE_N_M = 5.0
 """Actuator torque in N m below which K_usura does not drift: C_f may be wrong by as much."""
 MOST_TORQUE_N_M = MOST
@@ -79,6 +80,82 @@ class WearNoise(OptionGroup):
     )
 
 
+@dataclass(frozen=True, eq=False)
+class WearFilter:
+    """Matrices, variances and start of the filter, constant over a run."""
+
+    transition: np.ndarray
+    """Transition of the state but for the torque of the clutch, which K_usura multiplies."""
+    known: np.ndarray
+    """Effect of C_m and C_load on the driveline, (4, 2)."""
+    transmission: np.ndarray
+    """Effect of the actuator's states on the driveline, (4, actuator states)."""
+    at_once: np.ndarray
+    """The same of the request, (4,)."""
+    actuator_a: np.ndarray
+    actuator_b: np.ndarray
+    """Transition of the actuator's states, and the effect of the request on them."""
+    process: np.ndarray
+    """Covariance that each period adds, (SIZE, SIZE)."""
+    measurement_noise: np.ndarray
+    """Covariance of the measured speeds, (3, 3)."""
+    gain_variance: float
+    """Variance that a period with torque adds to K_usura."""
+    clutch_variance: float
+    """Variance that a period with K_usura at a bound adds to the error of C_f."""
+    clutch_effect: float
+    """Change of w_m by a constant torque of a new clutch, in rad/s per N m."""
+    twist_per_torque: float
+    """Twist of the half-shaft by C_load at rest, in rad per N m."""
+    actuator_at_rest: np.ndarray
+    """States of the actuator before the first measurement."""
+    first_covariance: np.ndarray
+    """Covariance of the state at the first measurement, (SIZE, SIZE)."""
+
+
+@lru_cache  # runs with equal known settings share one
+def wear_filter(
+    model: TransmissionModel,
+    noise: NoiseLevels,
+    wear: WearNoise,
+    drifts: Drifts,
+    start: AtRest,
+) -> WearFilter:
+    """Return the filter of an `offset_free_model` of a new clutch, and of the start."""
+    driveline, actuator = DRIVELINE, slice(DRIVELINE.stop, model.transmission)
+    transition = np.eye(SIZE)
+    transition[driveline, driveline] = model.a[driveline, driveline]
+    transition[driveline, CLUTCH_ERROR:] = model.a[driveline, model.transmission :]
+    process = np.zeros((SIZE, SIZE))
+    process[driveline, driveline] = torque_noise(model, noise)[driveline, driveline]
+    process[LOAD_ERROR, LOAD_ERROR] = drifts.load**2
+    measurement_noise = noise.speed_rad_s**2 * np.eye(MEASURED)
+    twist_per_torque = 1.0 / start.halfshaft_stiffness
+    # A second's drift of the load, which has twisted the half-shaft by as much.
+    load = np.zeros(SIZE)
+    load[[TWIST, LOAD_ERROR]] = twist_per_torque, 1.0
+    load *= 10.0 * drifts.load
+    first_covariance = np.outer(load, load)
+    first_covariance[GAIN, GAIN] = wear.initial_gain**2
+    first_covariance[:MEASURED, :MEASURED] = measurement_noise
+    return WearFilter(
+        transition=transition,
+        known=model.b[driveline, [ENGINE_TORQUE, LOAD_TORQUE]],
+        transmission=model.a[driveline, actuator],
+        at_once=model.b[driveline, REQUEST],
+        actuator_a=model.a[actuator, actuator],
+        actuator_b=model.b[actuator, REQUEST],
+        process=process,
+        measurement_noise=measurement_noise,
+        gain_variance=wear.gain_drift**2,
+        clutch_variance=drifts.clutch**2,
+        clutch_effect=float(model.clutch[ENGINE_SPEED]),
+        twist_per_torque=twist_per_torque,
+        actuator_at_rest=model.at_rest((0.0, 0.0, 0.0), 0.0, start.initial_request)[actuator],
+        first_covariance=first_covariance,
+    )
+
+
 class WearObserver:
     """
     Time-varying Kalman filter of w_m, w_p, w_r, theta_sr, K_usura and the errors of C_f, C_load.
@@ -100,23 +177,9 @@ class WearObserver:
         start: AtRest,
     ) -> None:
         """Take the `offset_free_model` of a new clutch, and the start of the estimate."""
-        driveline, actuator = DRIVELINE, slice(DRIVELINE.stop, model.transmission)
-        self._model = model
-        self._wear, self._drifts = wear, drifts
-        self._initial_request = start.initial_request
-        self._twist_per_torque = 1.0 / start.halfshaft_stiffness
-        self._transition = np.eye(SIZE)
-        self._transition[driveline, driveline] = model.a[driveline, driveline]
-        self._transition[driveline, CLUTCH_ERROR:] = model.a[driveline, model.transmission :]
-        self._known = model.b[driveline, [ENGINE_TORQUE, LOAD_TORQUE]]
-        self._transmission = model.a[driveline, actuator]
-        self._actuator_a = model.a[actuator, actuator]
-        self._actuator_b = model.b[actuator, REQUEST]
-        self._at_once = model.b[driveline, REQUEST]
-        self._process = np.zeros((SIZE, SIZE))
-        self._process[driveline, driveline] = torque_noise(model, noise)[driveline, driveline]
-        self._process[LOAD_ERROR, LOAD_ERROR] = drifts.load**2
-        self._measurement_noise = noise.speed_rad_s**2 * np.eye(MEASURED)
+        self.filter = wear_filter(model, noise, wear, drifts, start)
+        """What is constant over a run."""
+        self._transition = self.filter.transition.copy()
         self.reset()
 
     def reset(self) -> None:
@@ -124,9 +187,8 @@ class WearObserver:
         self._started = False
         self._state = np.zeros(SIZE)
         self._state[GAIN] = 1.0
-        self._actuator = np.zeros(self._model.transmission - DRIVELINE.stop)
-        self._covariance = np.zeros((SIZE, SIZE))
-        self._covariance[GAIN, GAIN] = self._wear.initial_gain**2
+        self._actuator = self.filter.actuator_at_rest
+        self._covariance = self.filter.first_covariance
 
     @property
     def wear_gain(self) -> float:
@@ -173,39 +235,31 @@ class WearObserver:
         """Advance by one period with the saturated request, C_m and C_load in N m."""
         request, engine_torque, load_torque = inputs
         request = min(request, MOST_TORQUE_N_M)
-        transition = self._transition
-        effect = self._transmission @ self._actuator + self._at_once * request
+        own, transition = self.filter, self._transition
+        effect = own.transmission @ self._actuator + own.at_once * request
         transition[DRIVELINE, GAIN] = effect
         self._state = transition @ self._state
-        self._state[DRIVELINE] += self._known @ (engine_torque, load_torque)
-        self._covariance = transition @ self._covariance @ transition.T + self._process
+        self._state[DRIVELINE] += own.known @ (engine_torque, load_torque)
+        self._covariance = transition @ self._covariance @ transition.T + own.process
         # The constant torque of a new clutch that would change w_m as much.
-        if effect[_ENGINE_SPEED] / self._model.clutch[_ENGINE_SPEED] > LEAST_TORQUE_N_M:
-            self._covariance[GAIN, GAIN] += self._wear.gain_drift**2
+        if effect[ENGINE_SPEED] / own.clutch_effect > LEAST_TORQUE_N_M:
+            self._covariance[GAIN, GAIN] += own.gain_variance
         if self.wear_gain_at_bound:
-            self._covariance[CLUTCH_ERROR, CLUTCH_ERROR] += self._drifts.clutch**2
-        self._actuator = self._actuator_a @ self._actuator + self._actuator_b * request
+            self._covariance[CLUTCH_ERROR, CLUTCH_ERROR] += own.clutch_variance
+        self._actuator = own.actuator_a @ self._actuator + own.actuator_b * request
 
     def _start(self, speeds: tuple[float, float, float], load_torque: float) -> None:
-        twist = load_torque * self._twist_per_torque
-        start = self._model.at_rest(speeds, twist, self._initial_request)
-        self._actuator = start[DRIVELINE.stop : self._model.transmission]
-        self._state[DRIVELINE] = start[DRIVELINE]
-        # A second's drift of the load, which has twisted the half-shaft by as much.
-        load = np.zeros(SIZE)
-        load[FILTER_STATES.places('twist', 'load_error')] = self._twist_per_torque, 1.0
-        load *= 10.0 * self._drifts.load
-        self._covariance += np.outer(load, load)
-        self._covariance[:MEASURED, :MEASURED] = self._measurement_noise
+        self._state[:MEASURED] = speeds
+        self._state[TWIST] = load_torque * self.filter.twist_per_torque
         self._started = True
 
     def _update(self, speeds: tuple[float, float, float]) -> None:
-        covariance = self._covariance
-        innovation = covariance[:MEASURED, :MEASURED] + self._measurement_noise
+        covariance, noise = self._covariance, self.filter.measurement_noise
+        innovation = covariance[:MEASURED, :MEASURED] + noise
         gain = np.linalg.solve(innovation, covariance[:MEASURED]).T
         self._state = self._state + gain @ (speeds - self._state[:MEASURED])
         # Joseph's form: it stays symmetric and positive whatever is rounded.
         kept = np.eye(SIZE)
         kept[:, :MEASURED] -= gain
-        self._covariance = kept @ covariance @ kept.T + gain @ self._measurement_noise @ gain.T
+        self._covariance = kept @ covariance @ kept.T + gain @ noise @ gain.T
         self._state = within_bounds(self._state, self._covariance)

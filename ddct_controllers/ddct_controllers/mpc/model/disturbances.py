@@ -3,6 +3,7 @@
 """Models with constant disturbances as further states, which an observer estimates."""
 
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -32,6 +33,7 @@ def with_disturbances(model: TransmissionModel, columns: np.ndarray) -> Transmis
     )
 
 
+@lru_cache
 def offset_free_model(
     driveline: DrivelineParameters, actuator: ActuatorParameters = PRINTED_ACTUATOR
 ) -> TransmissionModel:

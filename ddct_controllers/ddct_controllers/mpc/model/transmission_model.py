@@ -7,6 +7,7 @@ Variants have further states: disturbances, or an engine that is commanded.
 """
 
 from dataclasses import dataclass, field, replace
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -95,13 +96,15 @@ class TransmissionModel(StateSpace):
         state[ACTUATOR_STATES.stop : self.transmission] = request
         return state
 
+    @cached_property
     def without_load(self) -> 'TransmissionModel':
-        """Return the model with C_load as an input without effect, for a load that is unknown."""
+        """The model with C_load as an input without effect, for a load that is unknown."""
         b, d = self.b.copy(), self.d.copy()
         b[:, LOAD_TORQUE], d[:, LOAD_TORQUE] = 0.0, 0.0
         return replace(self, b=b, d=d)
 
 
+@lru_cache  # runs with equal known settings share one
 def transmission_model(
     driveline: DrivelineParameters,
     wear_gain: float = 1.0,

@@ -3,6 +3,7 @@
 """Predict over the horizon, and condense it into a quadratic program in the input moves alone."""
 
 from dataclasses import dataclass
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -57,7 +58,22 @@ class CondensedProgram:
     Rows that limit each input's level at the moves 1..m: per input (m,), or (0,) without a limit.
     """
 
+    @cached_property
+    def without_rows(self) -> np.ndarray:
+        """
+        Map from (v, targets, references, jump) to the optimum without rows, (1 + rows, ...).
 
+        Its first value is the first move, the others are those that the rows have then: where all
+        are between `lower` and `upper`, it is the optimum of the program too.
+        """
+        inputs = len(self.level_rows)
+        by_known, by_jump = np.split(self.shift, [-inputs], axis=1)
+        first, rows = self.structure.without_rows(self.gradient)
+        rows[:, : by_known.shape[1]] += by_known
+        return np.block([[first, np.zeros((1, inputs))], [rows, by_jump]])
+
+
+@lru_cache  # runs with equal known settings share one
 def condense(model: TransmissionModel, settings: MpcSettings) -> CondensedProgram:
     """Return the program; raise ParameterError when horizons or weights leave moves free."""
     inputs = len(settings.inputs)

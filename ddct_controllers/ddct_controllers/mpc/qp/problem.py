@@ -65,6 +65,16 @@ class QpStructure:
         soft.setflags(write=False)
         object.__setattr__(self, 'soft', soft)
 
+    def without_rows(self, gradient: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """
+        Return z_0 (1, k) and G z (m, k) of the optimum without rows, for f = gradient (n, k) @ v.
+
+        They map v to its first variable and to the values of the rows. Where the bounds contain
+        these, it is the solution, of soft rows too.
+        """
+        z = -np.linalg.solve(self.hessian, gradient)
+        return z[:1], self.constraints @ z
+
     @property
     def soft_rows(self) -> np.ndarray:
         """Indices of the soft rows, (soft rows,)."""

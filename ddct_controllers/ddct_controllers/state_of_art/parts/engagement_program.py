@@ -3,6 +3,7 @@
 """Programs of an engagement over a horizon: the least squared moves with weighted ends."""
 
 from dataclasses import dataclass
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -13,7 +14,6 @@ from ddct_controllers.mpc.model.transmission_model import (
     SLIP_SPEED,
     TransmissionModel,
 )
-from ddct_controllers.mpc.qp.backend import DEFAULT_BACKEND, QpBackend, make_backend
 from ddct_controllers.mpc.qp.problem import QpStructure
 from ddct_plant.base.timebase import PERIOD_S
 
@@ -37,9 +37,17 @@ class EngagementProgram:
 
     gradient: np.ndarray
     """Map from v to the linear cost f, (MOVES, states + 4)."""
-    solver: QpBackend
+    structure: QpStructure
+
+    @cached_property
+    def without_rows(self) -> np.ndarray:
+        """Map from v to the first move and the levels that are limited, without limits."""
+        first, levels = self.structure.without_rows(self.gradient)
+        levels[:, -4] += 1.0  # the request before
+        return np.vstack([first, levels])
 
 
+@lru_cache  # runs with equal known settings share them
 def engagement_programs(
     model: TransmissionModel, shortest: int, longest: int
 ) -> dict[int, EngagementProgram]:
@@ -75,5 +83,4 @@ def _program(free: np.ndarray, steps: np.ndarray) -> EngagementProgram:
     known = np.hstack([ends @ free[-2:], ends @ inputs, [[-SLIP_WEIGHT], [0.0]]])
     levels = np.tril(np.ones((MOVES, MOVES)))
     structure = QpStructure(np.eye(MOVES) + response.T @ response, levels)
-    solver = make_backend(DEFAULT_BACKEND, structure)
-    return EngagementProgram(response.T @ known, solver)
+    return EngagementProgram(response.T @ known, structure)

@@ -145,7 +145,7 @@ def test_the_delay_is_one_period_and_nothing_else():
 def test_an_unknown_load_drives_nothing():
     rows = inputs(50)
     unloaded = rows * [1.0, 1.0, 0.0]
-    found = model_run(MODEL.without_load(), rows)
+    found = model_run(MODEL.without_load, rows)
     np.testing.assert_array_equal(found, model_run(MODEL, unloaded))
 
 
@@ -153,7 +153,7 @@ def test_an_unknown_load_drives_nothing():
 def test_unit_noise_is_of_one_n_m_on_each_known_input_and_of_one_rpm_on_the_slip(load_known):
     """The reference is the filter by the doubling algorithm for Riccati's equation."""
     model = transmission_model(DRIVELINE, actuator=AT_ONCE)
-    model = model if load_known else model.without_load()
+    model = model if load_known else model.without_load
     output = rpm_from_rad_s(1.0) * np.array([1.0, -1.0, 0, 0, 0, 0, 0, 0, 0])
     known = model.b[:, : 2 + load_known]
     a, g, covariance = model.a.T, np.outer(output, output), known @ known.T

@@ -10,6 +10,7 @@ from other_actuators import ACTUATORS, FAST, SLOW, keys_of
 
 from ddct_controllers.interface import ControllerContext, Measurement
 from ddct_controllers.mpc.model.transmission_model import REQUEST, SLIP_SPEED, transmission_model
+from ddct_controllers.mpc.qp.backend import DEFAULT_BACKEND, make_backend
 from ddct_controllers.state_of_art.parts.engagement_program import MOVES, engagement_programs
 from ddct_controllers.state_of_art.parts.rigid_transmission import RigidTransmission, SpeedPlan
 from ddct_controllers.state_of_art.parts.slow_clutch import SlowClutch
@@ -194,11 +195,15 @@ def test_an_engagement_ends_at_rest_for_the_least_squared_moves():
     twist = shaft_torque / DRIVELINE.halfshaft_stiffness
     state = model.at_rest((240.0, 190.0, 190.0 / ratio), twist, 270.0)
     known = (270.0, 300.0, 60.0, 0.0)
-    moves = program.solver.solve(
-        program.gradient @ np.concatenate((state, known)),
-        np.full(MOVES, -270.0),
-        np.full(MOVES, np.inf),
-    ).z
+    moves = (
+        make_backend(DEFAULT_BACKEND, program.structure)
+        .solve(
+            program.gradient @ np.concatenate((state, known)),
+            np.full(MOVES, -270.0),
+            np.full(MOVES, np.inf),
+        )
+        .z
+    )
     slips, request = [], 270.0
     for period in range(horizon):
         if period % (horizon // MOVES) == 0:
