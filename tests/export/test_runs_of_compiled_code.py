@@ -16,7 +16,7 @@ from support.exported_mpc import run_settings
 from ddct_bringup import api
 from ddct_bringup.bag.reader import read_bag
 from ddct_bringup.campaign.campaign import Campaign
-from ddct_bringup.campaign.scored import are_linear
+from ddct_bringup.campaign.scored import are_together
 from ddct_bringup.campaign.spec import spec_of
 from ddct_bringup.programs.compare import main as compare
 from ddct_bringup.programs.verify import main as verify
@@ -219,7 +219,7 @@ def test_no_program_loads_the_code_beside_its_runs(
     assert loop_summary(harm, SETTINGS) == []
     RunPlan(SETTINGS, harm, 'headless')
     spec = {'controllers': [harm], 'grid': {'duration_s': [0.7]}}
-    assert not are_linear(Campaign(spec_of(spec, Path())))
+    assert not are_together(Campaign(spec_of(spec, Path())))
     (reason,) = api.campaign(spec, tmp_path / 'out', workers=1).table.reason
     assert reason.endswith(f'{ENDS[2]} when it was loaded: mend it')
 

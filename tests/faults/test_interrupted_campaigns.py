@@ -6,17 +6,19 @@ import os
 import signal
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager, nullcontext
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
 from refusals import refused
 from support.complaints import assert_one_line
 from support.processes import Programs, children_of
-from support.short_campaign import RUNS, SPEC, InThisProcess, shards, wait_for_shards
+from support.short_campaign import RUNS, SPEC, shards, wait_for_shards
 
-from ddct_bringup.campaign import conduct, executors
+from ddct_bringup.campaign import conduct
 from ddct_bringup.campaign.conduct import RESULTS
+from ddct_bringup.many_runs import dask_workers
+from ddct_bringup.many_runs.local_workers import ThisProcess
 from ddct_bringup.programs import campaign
 from ddct_bringup.run.output_folder import SUFFIX
 from ddct_plant.base.errors import DdctError
@@ -59,7 +61,7 @@ def test_a_worker_that_dies_and_ctrl_c_cost_a_campaign_only_time_and_dask_goes_o
     assert done < RUNS, 'the cluster has nothing left to do'
     with cluster() as address:
         assert campaign.main([*arguments, '--resume', '--scheduler', address]) == 0
-    monkeypatch.setattr(conduct, 'workers_of', lambda *_: nullcontext(InThisProcess()))
+    monkeypatch.setattr(conduct, 'workers_of', lambda *_: ThisProcess())
     assert campaign.main([str(spec), '--out', str(whole)]) == 0
     assert (out / RESULTS).read_bytes() == (whole / RESULTS).read_bytes()
 
@@ -88,7 +90,7 @@ def test_a_scheduler_that_is_not_there_is_reported_before_anything_is_written(
     monkeypatch: pytest.MonkeyPatch,
     address: str,
 ) -> None:
-    monkeypatch.setattr(executors, 'CONNECT_S', 0.5)
+    monkeypatch.setattr(dask_workers, 'CONNECT_S', 0.5)
     out = tmp_path / 'out'
     assert campaign.main([str(spec), '--out', str(out), '--scheduler', address]) == 1
     assert_one_line(
@@ -104,7 +106,7 @@ def test_an_address_of_another_server_is_reported(monkeypatch: pytest.MonkeyPatc
 
     monkeypatch.setattr('distributed.Client', client)
     with refused(DdctError, '--scheduler'):
-        executors.DaskWorkers('tcp://web:80')
+        dask_workers.DaskWorkers('tcp://web:80')
 
 
 def test_without_dask_a_scheduler_cannot_be_used(

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """A short campaign, and how far it is."""
 
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from waiting import wait_until
@@ -19,18 +18,6 @@ random:
   vary:
     vehicle.mass_kg: {{distribution: uniform, low: 1000, high: 2000}}
 """
-
-
-class InThisProcess:
-    """Workers as threads of this process."""
-
-    count = 1
-
-    def executor(self) -> ThreadPoolExecutor:
-        return ThreadPoolExecutor(1)
-
-    def require_alive(self) -> None:
-        pass
 
 
 def shards(out: Path) -> int:

@@ -20,9 +20,11 @@ _BATCH_ROWS = 65536
 """Rows that are read at once."""
 
 
-def read_parquet(path: Path, most_rows: int | None = None) -> pa.Table:
+def read_parquet(path: Path, most_rows: int | None = None, group: int | None = None) -> pa.Table:
     """
     Return all rows of a Parquet file, which may have `most_rows` where that is given.
+
+    With `group` return those of one of its row groups.
 
     Raise OSError or ArrowException where that fails, ArrowException also for texts that are none.
     """
@@ -34,17 +36,19 @@ def read_parquet(path: Path, most_rows: int | None = None) -> pa.Table:
             for field in file.schema_arrow:
                 if field.type not in _TYPES:
                     raise pa.ArrowInvalid(f'the column {field.name} is of type {field.type}')
-            table = _rows_in(file, rows)
+            table = _rows_in(file, rows, group)
     except UnicodeDecodeError as error:
         raise pa.ArrowInvalid(f'its names are no text ({error})') from error
     table.validate(full=True)  # texts of a damaged file may be no UTF-8
     return table
 
 
-def _rows_in(file: parquet.ParquetFile, rows: int) -> pa.Table:
-    """Return all rows of a file; raise ArrowException once there are more than it states."""
+def _rows_in(file: parquet.ParquetFile, rows: int, group: int | None) -> pa.Table:
+    """Return rows of a file; raise ArrowException once there are more than it states."""
     batches, count = [], 0
-    for batch in file.iter_batches(_BATCH_ROWS):
+    if group is not None and group >= file.num_row_groups:
+        raise pa.ArrowInvalid(f'it has {file.num_row_groups} groups of rows')
+    for batch in file.iter_batches(_BATCH_ROWS, None if group is None else [group]):
         count += len(batch)
         if count > rows:
             raise pa.ArrowInvalid(f'it has more rows than {rows}, which it states')

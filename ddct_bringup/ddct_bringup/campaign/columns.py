@@ -58,22 +58,31 @@ def schema_of(spec: CampaignSpec) -> pa.Schema:
     return pa.schema(fields, {'schema_version': str(SCHEMA_VERSION)})
 
 
-def shard_bytes(schema: pa.Schema, rows: Sequence[Row]) -> bytes:
-    """Return rows as a Parquet file, the same bytes for the same rows."""
+def rows_table(schema: pa.Schema, rows: Sequence[Row]) -> pa.Table:
+    """Return rows as a table."""
     columns = [arrow_column(field.type, [row[field.name] for row in rows]) for field in schema]
+    return pa.Table.from_arrays(columns, schema=schema)
+
+
+def parquet_bytes(table: pa.Table, groups: int = 1) -> bytes:
+    """Return a table as a Parquet file of so many groups of rows, the same for the same rows."""
     sink = pa.BufferOutputStream()
-    table = pa.Table.from_arrays(columns, schema=schema)
-    parquet.write_table(table, sink, compression=_COMPRESSION)
+    in_group = max(len(table) // groups, 1)
+    parquet.write_table(table, sink, compression=_COMPRESSION, row_group_size=in_group)
     return sink.getvalue().to_pybytes()
 
 
-def merge(shards: Mapping[Path, int], schema: pa.Schema, target: Path, advice: str) -> None:
+def merge(
+    shards: Mapping[Path, int], groups: int, schema: pa.Schema, target: Path, advice: str
+) -> None:
     """
-    Write the rows of all shards, in their order, to one file, completely or not at all.
+    Write the rows of all shards to one file, completely or not at all.
 
-    `shards` has the number of rows of each. Raise DdctError, with an advice, when that fails.
+    A shard has as many `groups` of rows as there are controllers. The rows of the first controller
+    come first, in the order of the shards. `shards` has the number of rows of each. Raise
+    DdctError, with an advice, when that fails.
     """
-    in_group = -(-_ROW_GROUP // max(shards.values()))
+    at_once = -(-_ROW_GROUP * groups // max(shards.values()))
     files = list(shards)
     partial = target.with_name(f'.{target.name}.partial')
     try:
@@ -82,10 +91,13 @@ def merge(shards: Mapping[Path, int], schema: pa.Schema, target: Path, advice: s
             partial.open('xb') as file,
             parquet.ParquetWriter(file, schema, compression=_COMPRESSION) as writer,
         ):
-            for first in range(0, len(files), in_group):
-                group = files[first : first + in_group]
-                tables = [_rows_of(each, shards[each]) for each in group]
-                writer.write_table(pa.concat_tables(tables))
+            for group in range(groups):
+                for first in range(0, len(files), at_once):
+                    tables = [
+                        _rows_of(each, shards[each], groups, group)
+                        for each in files[first : first + at_once]
+                    ]
+                    writer.write_table(pa.concat_tables(tables))
         partial.replace(target)
     except DdctError:
         partial.unlink(missing_ok=True)
@@ -96,12 +108,12 @@ def merge(shards: Mapping[Path, int], schema: pa.Schema, target: Path, advice: s
         raise DdctError(f'cannot be written ({why}); {advice}', place=target) from error
 
 
-def _rows_of(shard: Path, count: int) -> pa.Table:
-    """Return the rows of a shard; raise DdctError for one that has not so many of them."""
+def _rows_of(shard: Path, count: int, groups: int, group: int) -> pa.Table:
+    """Return a group of the rows of a shard; DdctError for one that has not `count` rows."""
     try:
-        table = read_parquet(shard, count)
-        if len(table) != count:
-            raise pa.ArrowInvalid(f'it has {len(table)} rows, not {count}')
+        table = read_parquet(shard, count, group if groups > 1 else None)
+        if len(table) * groups != count:
+            raise pa.ArrowInvalid(f'it has {len(table)} rows in a group, not {count // groups}')
     except (OSError, pa.ArrowException) as error:
         raise DdctError(
             f'cannot be read ({error}): remove it, and go on with --resume', place=shard

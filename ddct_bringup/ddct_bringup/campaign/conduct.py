@@ -2,22 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Carry out a campaign: compute the missing shards, write each completely, and merge them."""
 
-from collections.abc import Callable, Iterator, Mapping
-from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Future, wait
+from collections.abc import Callable
+from contextlib import closing
 from dataclasses import dataclass
-from itertools import islice
 from pathlib import Path
 
 from ddct_bringup.campaign.campaign import Campaign
-from ddct_bringup.campaign.columns import merge, schema_of
-from ddct_bringup.campaign.executors import Workers, workers_of
+from ddct_bringup.campaign.columns import merge, parquet_bytes, schema_of
 from ddct_bringup.campaign.plan import CampaignPlan, RecordedCampaign, carried
-from ddct_bringup.campaign.shards import (
-    ShardJob,
-    TimeLeft,
-    each_controller_first,
-    timed_shard,
-)
+from ddct_bringup.campaign.shards import CampaignWork, runs_in, shards_of
 from ddct_bringup.campaign.spec import spec_of
 from ddct_bringup.manifest.begun import begun_manifest
 from ddct_bringup.manifest.file_states import altered_files, require_unaltered
@@ -33,6 +26,7 @@ from ddct_bringup.manifest.manifest import (
     require_same_inputs,
     resume_manifest,
 )
+from ddct_bringup.many_runs.engine import Engine, Workers, workers_of
 from ddct_bringup.run.output_folder import (
     locked_folders,
     mark_folder,
@@ -47,12 +41,6 @@ RESULTS = 'results.parquet'
 SHARDS = 'shards'
 PROGRAM = 'ddct campaign'
 RESUME = 'what is done stays: go on with --resume'
-_AHEAD = 2
-"""Number of shards queued per worker, so that none waits for the next."""
-_MOST_DEATHS = 3
-"""Largest number of failed workers in succession without a completed shard."""
-_POLL_S = 0.2
-"""Time in s between two checks of signals and workers."""
 
 
 def carry_out(
@@ -71,7 +59,7 @@ def carry_out(
     Raise DdctError for unusable arguments and for a failure, KeyboardInterrupt when `stopped()`
     becomes true: completed shards stay, and `resume` continues with them.
     """
-    with locked_folders(out), workers_of(workers, scheduler) as ready:
+    with locked_folders(out), closing(workers_of(workers, scheduler)) as ready:
         recorded, manifest = _begin(
             campaign, limits, out, resume=resume, stopped=stopped, one_machine=scheduler is None
         )
@@ -92,7 +80,7 @@ def carry_out_part(
 
     Raise as `carry_out`.
     """
-    with locked_folders(out), workers_of(workers, None) as ready:
+    with locked_folders(out), closing(workers_of(workers)) as ready:
         begin_folder(out)
         manifest = read_manifest(recorded.result)
         carry_out_recorded(recorded, manifest, limits, out, ready, stopped)
@@ -108,17 +96,24 @@ def carry_out_recorded(
 ) -> None:
     """Compute the missing shards of a campaign whose plan the manifest of its result has."""
     campaign = recorded.campaign()
-    shards = _shards(campaign, limits, recorded, out)
+    work = CampaignWork(campaign.spec, limits, recorded.origin.code, recorded.plan.spec_digest)
+    names = shards_of(campaign, recorded.plan.shard_size)
+    shards = {out / SHARDS / name: cases for name, cases in names.items()}
     done_before = _Done(recorded.result, manifest)
-    missing = {file: job for file, job in shards.items() if not done_before.has(file)}
-    runs = campaign.runs
-    done = runs - sum(job.last - job.first for job in missing.values())
-    with Progress('runs', runs, done=done) as progress:
-        _Conduct(workers, progress, stopped, TimeLeft(campaign.cases)).compute(missing, done)
+    missing = [file for file in shards if not done_before.has(file)]
+    groups = len(campaign.controllers)
+    done = campaign.runs - groups * sum(len(shards[file]) for file in missing)
+    blocks = (runs_in(campaign, shards[file]) for file in missing)
+    with Progress('runs', campaign.runs, done=done) as progress:
+        for block in Engine(work, workers, stopped, RESUME).done(blocks):
+            file = missing[block.place]
+            write_bytes(str(file), parquet_bytes(block.result, groups), RESUME)
+            keep_digests([file])
+            done += len(block.items)
+            progress.update(done)
     require_unaltered(out, [file.relative_to(out).as_posix() for file in shards])
-    schema = schema_of(campaign.spec)
-    rows = {file: job.last - job.first for file, job in shards.items()}
-    merge(rows, schema, out / RESULTS, RESUME)
+    rows = {file: groups * len(cases) for file, cases in shards.items()}
+    merge(rows, groups, schema_of(campaign.spec), out / RESULTS, RESUME)
     keep_digests([out / RESULTS])
 
 
@@ -185,91 +180,7 @@ def begin_folder(out: Path) -> None:
         raise DdctError(f'cannot be written ({error.strerror})', place=out) from error
 
 
-def _shards(
-    campaign: Campaign, limits: Limits, recorded: RecordedCampaign, out: Path
-) -> dict[Path, ShardJob]:
-    """Return the jobs of the shards by file, in the order of the runs."""
-    size, runs = recorded.plan.shard_size, campaign.runs
-    return {
-        out / SHARDS / f'{first:08d}.parquet': ShardJob(
-            campaign.spec,
-            limits,
-            recorded.origin.code,
-            recorded.plan.spec_digest,
-            first,
-            min(first + size, runs),
-        )
-        for first in range(0, runs, size)
-    }
-
-
-@dataclass
-class _Conduct:
-    """Executes shard jobs on the workers until every shard is on the disk."""
-
-    workers: Workers
-    progress: Progress
-    stopped: Callable[[], bool]
-    time_left: TimeLeft
-
-    def compute(self, shards: Mapping[Path, ShardJob], done: int) -> None:
-        """Compute shards and write each to its file; `done` runs were computed before."""
-        missing = dict(shards)
-        deaths = 0
-        while missing:
-            try:
-                for file in self._written(missing):
-                    job = missing.pop(file)
-                    done += job.last - job.first
-                    deaths = 0
-                    left_s = self.time_left.left_s(missing.values(), self.workers.count)
-                    self.progress.update(done, left_s)
-            except (BrokenExecutor, CancelledError) as error:
-                self.workers.require_alive()
-                deaths += 1
-                if deaths == _MOST_DEATHS:
-                    raise DdctError(
-                        f'workers died {deaths} times one after the other: free some memory or '
-                        f'take fewer of them; {RESUME}'
-                    ) from error
-
-    def _written(self, shards: Mapping[Path, ShardJob]) -> Iterator[Path]:
-        """Yield the file of each shard after it is written; raise an error of the executor."""
-        executor = self.workers.executor()
-        waiting = iter(each_controller_first(shards, self.time_left.cases))
-        running: dict[Future[tuple[bytes, float]], Path] = {}
-        while True:
-            free = _AHEAD * self.workers.count - len(running)
-            for file in islice(waiting, max(free, 0)):
-                running[executor.submit(timed_shard, shards[file])] = file
-            if not running:
-                return
-            finished = wait(running, _POLL_S, FIRST_COMPLETED).done
-            require_going_on(self.stopped)
-            if not finished:
-                self.workers.require_alive()
-            for future in finished:
-                file = running.pop(future)
-                rows, seconds = _result(future, shards[file])
-                write_bytes(str(file), rows, RESUME)
-                keep_digests([file])
-                self.time_left.add(shards[file], seconds)
-                yield file
-
-
 def require_going_on(stopped: Callable[[], bool]) -> None:
     """Raise KeyboardInterrupt where the user has stopped the campaign."""
     if stopped():
         raise KeyboardInterrupt(f'interrupted; {RESUME}')
-
-
-def _result(future: Future[tuple[bytes, float]], job: ShardJob) -> tuple[bytes, float]:
-    try:
-        return future.result()
-    except (BrokenExecutor, CancelledError):
-        raise
-    except Exception as error:
-        what = str(error) if isinstance(error, DdctError) else f'{type(error).__name__}: {error}'
-        raise DdctError(
-            f'runs {job.first} to {job.last - 1} could not be computed ({what}); {RESUME}'
-        ) from error

@@ -11,10 +11,9 @@ from typing import Any
 
 from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.keys import CONTROLLERS
-from ddct_bringup.campaign.shard_size import shard_size_of
+from ddct_bringup.campaign.shards import shard_size_of
 from ddct_bringup.campaign.spec import CampaignSpec, spec_of
 from ddct_bringup.campaign.specification.named_files import digest_of, files_of, with_places
-from ddct_bringup.manifest.code import code_digest
 from ddct_bringup.manifest.inputs import InputFiles, full_path
 from ddct_bringup.manifest.limits import NamedLimits
 from ddct_bringup.manifest.manifest import read_manifest, result_around
@@ -45,7 +44,7 @@ class CampaignPlan:
     limits: NamedLimits
     runs: int
     shard_size: int
-    """Number of runs in a shard; it depends only on the specification."""
+    """Number of cases in a shard; it depends only on the specification."""
     folder: str
     """Folder in the result that files of the specification are relative to."""
     spec: Mapping[str, Any]
@@ -198,12 +197,3 @@ def _require_group(key: str, value: object) -> None:
 def _keys(group: Any) -> tuple[str, ...]:
     """Return the keys of an optional part of a specification."""
     return tuple(group or ())
-
-
-def require_code(digest: str) -> None:
-    """Raise DdctError unless this process has the sources of the campaign's start."""
-    if code_digest() != digest:
-        raise DdctError(
-            'a worker has other sources than the program that started the campaign: install the '
-            'same version there'
-        )

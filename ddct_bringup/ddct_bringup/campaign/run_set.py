@@ -6,6 +6,7 @@ import copy
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, partial
+from itertools import groupby
 from math import prod
 from typing import Any, Self
 
@@ -117,6 +118,12 @@ class RunSet:
                     given.setdefault(SEED, seeds[place])
                 yield self._planned(first + place, self.controllers[number], varied, given)
             first = end
+
+    def planned_at(self, indices: Sequence[int]) -> Iterator[PlannedRow | ImpossibleRow]:
+        """Yield runs by their indices, which ascend."""
+        for _, group in groupby(enumerate(indices), lambda each: each[1] - each[0]):
+            successive = [index for _, index in group]
+            yield from self.planned(successive[0], successive[-1] + 1)
 
     def _drawn(self, draw: Callable[[range], list[Draw]], cases: range) -> list[Draw]:
         """Return the random numbers of successive cases, from those of the whole campaign."""

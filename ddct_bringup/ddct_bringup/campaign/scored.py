@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from ddct_bringup.bag.run_facts import RunFacts
 from ddct_bringup.batch.batchable import why_not_batchable
 from ddct_bringup.batch.run_batch import run_batch
 from ddct_bringup.campaign.campaign import Campaign
@@ -24,17 +25,14 @@ from ddct_bringup.campaign.rows import (
     scored_headless,
 )
 from ddct_bringup.campaign.run_set import ImpossibleRow, PlannedRow, RunSet
+from ddct_bringup.many_runs.blocks import block_size, blocks_of
+from ddct_bringup.many_runs.engine import engine_of
+from ddct_bringup.many_runs.work import Work
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.scores.scoring import run_without_score
 from ddct_bringup.verdict.limits import Limits
 from ddct_controllers.registry import make_controller
 from ddct_plant.base.errors import FOREIGN_FAILURES
-from ddct_plant.program.workers import in_processes, worker_count
-
-_LARGEST_PART = 16
-"""Largest number of runs that a worker hands over together."""
-_PARTS_EACH = 8
-"""Least number of parts for each worker, so that all end together."""
 
 
 @dataclass(frozen=True)
@@ -79,6 +77,13 @@ class Scorer:
             found = self._together([run for run in planned if isinstance(run, PlannedRow)])
             return [self._of(run, found.get(run.index)) for run in planned]
 
+    def without_result(self, run: PlannedRow | ImpossibleRow, why: str) -> ScoredRow:
+        """Return a run that ends the process in which it is computed, with the reason."""
+        name = run.controller.name
+        facts = RunFacts.of(run.settings, name, 0) if isinstance(run, PlannedRow) else None
+        scores = run_without_score(name, facts, why)
+        return ScoredRow(run.index, name, run.seed, run.varied, scores, SERIAL)
+
     def _of(self, run: PlannedRow | ImpossibleRow, found: ScoredRun | None) -> ScoredRow:
         name, path, scores = run.controller.name, VECTORISED, found
         if isinstance(run, ImpossibleRow):
@@ -110,7 +115,7 @@ class Scorer:
         }
 
 
-def are_linear(campaign: Campaign) -> bool:
+def are_together(campaign: Campaign) -> bool:
     """Return whether the first run of each controller of a campaign can be computed at once."""
     for first in range(0, campaign.runs, campaign.cases):
         (run,) = campaign.planned(first, first + 1)
@@ -125,6 +130,26 @@ def are_linear(campaign: Campaign) -> bool:
     return True
 
 
+@dataclass(frozen=True)
+class ScoredRuns(Work[int, list[ScoredRow]]):
+    """Runs of a set by their indices, and their scores."""
+
+    runs: RunSet
+    scorer: Scorer
+
+    def of_block(self, items: Sequence[int]) -> list[ScoredRow]:
+        """Return some runs with their scores."""
+        return self.scorer.scored(self.runs.planned_at(items))
+
+    def joined(self, parts: Sequence[list[ScoredRow]]) -> list[ScoredRow]:
+        """Return the runs of all parts."""
+        return [*chain.from_iterable(parts)]
+
+    def without_result(self, item: int, why: str) -> list[ScoredRow]:
+        """Return a run that ends its process, with the reason."""
+        return [self.scorer.without_result(run, why) for run in self.runs.planned_at([item])]
+
+
 @contextmanager
 def scored_runs(
     runs: RunSet, limits: Limits, *, workers: int | None = None
@@ -135,14 +160,6 @@ def scored_runs(
     They are computed while it is consumed, by `workers` processes, by default one per core; none
     is kept. Call `RunSet.require_sound` before: here a run that cannot be built has its reason.
     """
-    scorer = Scorer(limits, at_once=False)
-    count = worker_count(workers)
-    size = max(1, min(_LARGEST_PART, runs.runs // (_PARTS_EACH * count)))
-    parts = -(-runs.runs // size)
-
-    def part(number: int) -> list[ScoredRow]:
-        first = number * size
-        return scorer.scored(runs.planned(first, min(first + size, runs.runs)))
-
-    with in_processes(part, parts, count, chunk=1) as found:
-        yield chain.from_iterable(found)
+    blocks = blocks_of(range(runs.runs), block_size(runs.runs))
+    with engine_of(ScoredRuns(runs, Scorer(limits, at_once=False)), workers) as engine:
+        yield chain.from_iterable(engine.in_order(blocks))

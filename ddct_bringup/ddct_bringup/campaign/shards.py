@@ -1,29 +1,65 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
 """
-Shards, the unit of work: the runs of a fixed range of indices, whose rows become one file.
+Shards, the blocks of a campaign: the runs of all controllers in some cases, whose rows are a file.
 
-Their order, and the time left by those that are done.
+So runs of one kind are together, and the controllers of a case share what is made of it.
 """
 
-import time
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
-from pathlib import Path
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import pyarrow as pa
 
 from ddct_bringup.campaign.campaign import Campaign
-from ddct_bringup.campaign.columns import schema_of, shard_bytes
-from ddct_bringup.campaign.plan import require_code
-from ddct_bringup.campaign.scored import Scorer
+from ddct_bringup.campaign.columns import rows_table, schema_of
+from ddct_bringup.campaign.scored import Scorer, are_together
 from ddct_bringup.campaign.spec import CampaignSpec
 from ddct_bringup.campaign.specification.named_files import digest_of
+from ddct_bringup.manifest.code import code_digest
+from ddct_bringup.many_runs.blocks import block_size
+from ddct_bringup.many_runs.work import Work
 from ddct_bringup.verdict.limits import Limits
 from ddct_plant.base.errors import DdctError
 
 
+def shard_size_of(campaign: Campaign) -> int:
+    """Return the number of cases in a shard, which follows from the specification alone."""
+    size = block_size(campaign.runs, together=are_together(campaign))
+    return max(1, size // len(campaign.controllers))
+
+
+def shards_of(campaign: Campaign, size: int) -> dict[str, range]:
+    """Return the cases of each shard by the name of its file."""
+    cases = range(campaign.cases)
+    return {
+        f'{first:08d}.parquet': cases[first : first + size]
+        for first in range(0, campaign.cases, size)
+    }
+
+
+def runs_in(campaign: Campaign, cases: range) -> list[int]:
+    """Return the indices of the runs in some cases: all of one controller, then of the next."""
+    first_runs = range(0, campaign.runs, campaign.cases)
+    return [first + case for first in first_runs for case in cases]
+
+
+def require_code(digest: str) -> None:
+    """Raise DdctError unless this process has the sources of the campaign's start."""
+    if code_digest() != digest:
+        raise DdctError(
+            'a worker has other sources than the program that started the campaign: install the '
+            'same version there'
+        )
+
+
 @dataclass(frozen=True)
-class ShardJob:
-    """Input of a worker; the only other inputs are the files that the specification names."""
+class CampaignWork(Work[int, pa.Table]):
+    """
+    Runs of a campaign by their indices, and their rows.
+
+    A worker needs nothing else, besides the files that the specification names.
+    """
 
     spec: CampaignSpec
     limits: Limits
@@ -31,94 +67,51 @@ class ShardJob:
     """Digest of the sources that compute the campaign."""
     digest: str
     """Digest of the specification and of the files that it names."""
-    first: int
-    last: int
-    """Last index plus one."""
 
+    def of_block(self, items: Sequence[int]) -> pa.Table:
+        """Return the rows of some runs; raise DdctError where this machine cannot compute them."""
+        require_code(self.code)
+        campaign, scorer = self._prepared()
+        found = scorer.scored(campaign.planned_at(items))
+        rows = rows_table(schema_of(self.spec), [each.row() for each in found])
+        self._require_unchanged()  # each run has read its handover file anew
+        return rows
 
-def timed_shard(job: ShardJob) -> tuple[bytes, float]:
-    """Return the file content of a shard, and its computing time in s."""
-    started = time.perf_counter()
-    return compute_shard(job), time.perf_counter() - started
+    def joined(self, parts: Sequence[pa.Table]) -> pa.Table:
+        """Return the rows of all parts."""
+        return pa.concat_tables(parts).combine_chunks()
 
+    def without_result(self, item: int, why: str) -> pa.Table:
+        """Return the row of a run that ends its process."""
+        campaign, scorer = self._prepared()
+        (run,) = campaign.planned_at([item])
+        return rows_table(schema_of(self.spec), [scorer.without_result(run, why).row()])
 
-def compute_shard(job: ShardJob) -> bytes:
-    """Return the file content of a shard; raise DdctError where this machine cannot compute it."""
-    require_code(job.code)
-    campaign, scorer = _prepared(job)
-    found = scorer.scored(campaign.planned(job.first, job.last))
-    rows = shard_bytes(schema_of(job.spec), [each.row() for each in found])
-    _require_unchanged(job)  # each run has read its handover file anew
-    return rows
-
-
-def _require_unchanged(job: ShardJob) -> None:
-    """Raise DdctError where a file of the specification has changed since the campaign began."""
-    if digest_of(job.spec) != job.digest:
-        raise DdctError(
-            'a file that the specification names has changed since the campaign began: put the '
-            'old one back'
+    def error(self, items: Sequence[int], error: Exception) -> Exception:
+        """Return a DdctError that names the first run of the shard."""
+        what = str(error) if isinstance(error, DdctError) else f'{type(error).__name__}: {error}'
+        return DdctError(
+            f'run {items[0]} or one of its shard could not be computed ({what}); what is done '
+            'stays: go on with --resume'
         )
+
+    def _prepared(self) -> tuple[Campaign, Scorer]:
+        """Return the campaign and its scorer; a worker builds them once."""
+        key = f'{self.digest} {self.spec.folder} {self.limits.origin}'
+        if key not in _kept:
+            self._require_unchanged()
+            _kept.clear()
+            _kept[key] = Campaign(self.spec), Scorer(self.limits)
+        return _kept[key]
+
+    def _require_unchanged(self) -> None:
+        """Raise DdctError where a file of the specification has changed since the beginning."""
+        if digest_of(self.spec) != self.digest:
+            raise DdctError(
+                'a file that the specification names has changed since the campaign began: put '
+                'the old one back'
+            )
 
 
 _kept: dict[str, tuple[Campaign, Scorer]] = {}
-"""Last campaign of this worker, by its digests: its shards share what does not vary."""
-
-
-def _prepared(job: ShardJob) -> tuple[Campaign, Scorer]:
-    """Return the campaign of a shard with its scorer; a worker builds them once."""
-    key = f'{job.digest} {job.spec.folder} {job.limits.origin}'
-    if key not in _kept:
-        _require_unchanged(job)
-        _kept.clear()
-        _kept[key] = Campaign(job.spec), Scorer(job.limits)
-    return _kept[key]
-
-
-@dataclass
-class TimeLeft:
-    """Estimates the remaining time from completed shards."""
-
-    cases: int
-    """Number of runs of each controller, in the order of the controllers."""
-    _runs: dict[int, int] = field(default_factory=dict)
-    _seconds: dict[int, float] = field(default_factory=dict)
-
-    def add(self, job: ShardJob, seconds: float) -> None:
-        """Count a completed shard with its computing time in s."""
-        for controller, runs in self._parts(job):
-            share = seconds * runs / (job.last - job.first)
-            self._runs[controller] = self._runs.get(controller, 0) + runs
-            self._seconds[controller] = self._seconds.get(controller, 0.0) + share
-
-    def left_s(self, missing: Iterable[ShardJob], workers: int) -> float | None:
-        """
-        Return the time in s for the missing shards with this many workers, None before the first.
-
-        A controller without a completed shard counts as the mean of the others.
-        """
-        if not self._runs:
-            return None
-        rates = {each: self._seconds[each] / self._runs[each] for each in self._runs}
-        mean = sum(rates.values()) / len(rates)
-        parts = [part for job in missing for part in self._parts(job)]
-        return sum(runs * rates.get(controller, mean) for controller, runs in parts) / workers
-
-    def _parts(self, job: ShardJob) -> Iterable[tuple[int, int]]:
-        """Yield the index of each controller in a shard with the number of its runs there."""
-        for controller in range(job.first // self.cases, (job.last - 1) // self.cases + 1):
-            first = max(job.first, controller * self.cases)
-            yield controller, min(job.last, (controller + 1) * self.cases) - first
-
-
-def each_controller_first(shards: Mapping[Path, ShardJob], cases: int) -> Sequence[Path]:
-    """
-    Return the files of shards in the order of their computation.
-
-    The first shard of each controller comes before all others, so that each is soon measured.
-    """
-    first: dict[int, Path] = {}
-    for file, job in shards.items():
-        first.setdefault(job.first // cases, file)
-    chosen = set(first.values())
-    return [*first.values(), *(file for file in shards if file not in chosen)]
+"""Last campaign of this process, by its digests: its shards share what does not vary."""

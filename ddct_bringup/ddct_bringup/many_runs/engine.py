@@ -76,10 +76,15 @@ class Engine(Generic[Item, Result]):
         waiting = enumerate(blocks)
         running: dict[Future[tuple[Result, float]], tuple[int, Sequence[Item]]] = {}
         ended: dict[int, Sequence[Item]] = {}
+        # Where the last processes were killed, none of these counts until others are not.
+        apart: list[Done[Item, Result]] = []
         while True:
             if ended and not running:
-                yield from self._done_apart(ended)
+                apart += self._done_apart(ended)
                 ended = {}
+            if not self._killed:
+                yield from apart
+                apart = []
             if not ended:
                 free = max(self.workers.ahead * self.workers.count - len(running), 0)
                 submit = self.workers.begin(self.work)
@@ -90,6 +95,7 @@ class Engine(Generic[Item, Result]):
                         ended[place] = items
                         break
             if not running and not ended:
+                yield from apart
                 return
             for future in self._finished(running):
                 place, items = running.pop(future)
@@ -109,12 +115,14 @@ class Engine(Generic[Item, Result]):
                 yield early.pop(place)
                 place += 1
 
-    def _done_apart(self, blocks: dict[int, Sequence[Item]]) -> Iterator[Done[Item, Result]]:
-        """Yield blocks of which one has ended its process, each computed by a process alone."""
+    def _done_apart(self, blocks: dict[int, Sequence[Item]]) -> list[Done[Item, Result]]:
+        """Return blocks of which one has ended its process, each computed by a process alone."""
         alone = self.workers.alone()
         try:
-            for place, items in sorted(blocks.items()):
-                yield Done(place, items, self._apart(items, alone))
+            return [
+                Done(place, items, self._apart(items, alone))
+                for place, items in sorted(blocks.items())
+            ]
         finally:
             if alone is not self.workers:
                 alone.close()

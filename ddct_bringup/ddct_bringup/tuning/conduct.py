@@ -107,7 +107,7 @@ class _Search:
         spec = self.tuning.spec
         found: list[Trial] = []
         for batch, size in enumerate(batches_of(spec.trials)):
-            require_going_on(self.computed.stopped)
+            require_going_on(self.computed.engine.stopped)
             suggested = self.search.ask(size)
             trials = self._recorded(batch)
             if trials is None:

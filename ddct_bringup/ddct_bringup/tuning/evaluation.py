@@ -1,102 +1,108 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Computes loops and runs of trials: in this process, or in workers that last for the tuning."""
+"""Loops and runs of trials, as work of the engine of many runs."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import FIRST_COMPLETED, wait
-from concurrent.futures.process import BrokenProcessPool
 from contextlib import closing, contextmanager
-from dataclasses import dataclass, field, replace
-from typing import TypeVar
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import chain
+from typing import Any
 
-from ddct_bringup.campaign.conduct import RESUME, require_going_on
-from ddct_bringup.campaign.rows import Row
+from ddct_bringup.campaign.conduct import RESUME
+from ddct_bringup.campaign.rows import INDEX, Row
 from ddct_bringup.campaign.run_set import ImpossibleRow, PlannedRow
-from ddct_bringup.campaign.scored import Scorer, are_linear
+from ddct_bringup.campaign.scored import Scorer, are_together
+from ddct_bringup.many_runs.blocks import block_size, blocks_of
+from ddct_bringup.many_runs.engine import Engine, Workers, workers_of
+from ddct_bringup.many_runs.work import Work
 from ddct_bringup.tuning.loop_quantities import Quantities, loop_quantities
+from ddct_bringup.tuning.specification.goals import OF_LOOP
 from ddct_bringup.tuning.specification.parameters import Values
 from ddct_bringup.tuning.tuning import Tuning
-from ddct_plant.base.errors import DdctError
-from ddct_plant.program.workers import WorkerPool, worker_count
 
-_MOST_AT_ONCE, _MOST_STEP_BY_STEP = 200, 16
-"""Largest numbers of runs of a job: of linear ones, which are computed together, and of others."""
-_JOBS_EACH = 4
-"""Number of jobs of each worker, so that all end together; linear runs cost less the more."""
-_POLL_S = 0.2
-"""Time in s between two checks of signals."""
 PlannedCase = tuple[Values, int]
 """Values of a trial, and the number of one of its cases."""
-Job = Values | Sequence[PlannedCase]
-"""Work of a worker: values whose loop is computed, or runs."""
-Result = TypeVar('Result')
+Asked = Values | PlannedCase
+"""What a trial needs: its loop, by its values, or one of its runs."""
+Found = list[Any]
+"""The quantities of each loop, or the row of each run."""
 
 
-@dataclass
-class TrialRuns:
-    """Computes the loops and the runs of trials; no result depends on the number of workers."""
+@dataclass(frozen=True)
+class TrialWork(Work[Asked, Found]):
+    """Computes loops, or runs, of the trials of a tuning."""
 
     tuning: Tuning
-    workers: int
-    stopped: Callable[[], bool]
-    pool: WorkerPool | None = None
-    scorer: Scorer = field(init=False)
-    linear: bool = field(init=False)
-    """Whether runs can be computed together."""
 
-    def __post_init__(self) -> None:
-        """Make the scorer, which keeps what no run changes."""
-        self.scorer = Scorer(self.tuning.limits)
-        self.linear = are_linear(self.tuning.campaign)
+    @cached_property
+    def scorer(self) -> Scorer:
+        """Scorer, which keeps what no run changes."""
+        return Scorer(self.tuning.limits)
 
-    def loops(self, values: Sequence[Values]) -> list[Quantities]:
-        """Return the quantities of the loop of each trial that the goals need."""
-        return self._computed(self.loop, values)
+    def of_block(self, items: Sequence[Asked]) -> Found:
+        """Return the quantities of each loop, or the row of each run."""
+        loops = [self._loop(item) for item in items if isinstance(item, Mapping)]
+        return loops or self._rows([item for item in items if not isinstance(item, Mapping)])
 
-    def rows(self, runs: Sequence[PlannedCase]) -> list[Row]:
-        """Return the rows of runs in their order."""
-        jobs_each, most = (1, _MOST_AT_ONCE) if self.linear else (_JOBS_EACH, _MOST_STEP_BY_STEP)
-        size = max(1, min(most, -(-len(runs) // (jobs_each * self.workers))))
-        jobs = [runs[first : first + size] for first in range(0, len(runs), size)]
-        return [row for part in self._computed(self.some_rows, jobs) for row in part]
+    def joined(self, parts: Sequence[Found]) -> Found:
+        """Return what was found in all parts."""
+        return [*chain.from_iterable(parts)]
 
-    def work(self, job: Job) -> Quantities | list[Row]:
-        """Do one job in a worker."""
-        return self.loop(job) if isinstance(job, Mapping) else self.some_rows(job)
+    def without_result(self, item: Asked, why: str) -> Found:
+        """Return a loop without quantities, or a row with the reason."""
+        if isinstance(item, Mapping):
+            return [dict.fromkeys(OF_LOOP)]
+        return [self.scorer.without_result(self._planned(item), why).row()]
 
-    def loop(self, values: Values) -> Quantities:
-        """Return the quantities of the loop of one trial."""
+    def _loop(self, values: Values) -> Quantities:
         campaign, tuning = self.tuning.with_values(values), self.tuning
         return loop_quantities(campaign, tuning.cases, tuning.spec.goals)
 
-    def some_rows(self, runs: Sequence[PlannedCase]) -> list[Row]:
-        """Return the rows of some runs; those of a linear loop are computed together."""
-        planned: list[PlannedRow | ImpossibleRow] = []
-        for place, (values, case) in enumerate(runs):
-            (run,) = self.tuning.with_values(values).planned(case, case + 1)
-            planned.append(replace(run, index=place))
+    def _rows(self, runs: Sequence[PlannedCase]) -> list[Row]:
+        planned = [replace(self._planned(run), index=place) for place, run in enumerate(runs)]
         scored = self.scorer.scored(planned)
-        return [{**each.row(), 'index': runs[place][1]} for place, each in enumerate(scored)]
+        return [{**each.row(), INDEX: case} for each, (_, case) in zip(scored, runs, strict=True)]
 
-    def _computed(self, work: Callable[..., Result], jobs: Sequence[Job]) -> list[Result]:
-        """Return the results of jobs in their order; raise KeyboardInterrupt when stopped."""
-        if self.pool is None:
-            found = []
-            for job in jobs:
-                require_going_on(self.stopped)
-                found.append(work(job))
-            return found
-        try:
-            futures = [self.pool.submit(job) for job in jobs]
-            left = set(futures)
-            while left:
-                left = wait(left, _POLL_S, FIRST_COMPLETED).not_done
-                require_going_on(self.stopped)
-            return [future.result() for future in futures]
-        except BrokenProcessPool as error:
-            raise DdctError(
-                f'a process that simulates was killed: free some memory if it ran out; {RESUME}'
-            ) from error
+    def _planned(self, run: PlannedCase) -> PlannedRow | ImpossibleRow:
+        values, case = run
+        (planned,) = self.tuning.with_values(values).planned(case, case + 1)
+        return planned
+
+
+@dataclass(frozen=True)
+class TrialRuns:
+    """Has loops and runs of trials computed; no result depends on the number of workers."""
+
+    tuning: Tuning
+    engine: Engine[Asked, Found]
+
+    @classmethod
+    def by(
+        cls, tuning: Tuning, workers: Workers, stopped: Callable[[], bool] = lambda: False
+    ) -> 'TrialRuns':
+        """Return those of a tuning that workers compute."""
+        return cls(tuning, Engine(TrialWork(tuning), workers, stopped, RESUME))
+
+    @cached_property
+    def together(self) -> bool:
+        """Whether runs can be computed together."""
+        return are_together(self.tuning.campaign)
+
+    def loops(self, values: Sequence[Values]) -> list[Quantities]:
+        """Return the quantities of the loop of each trial that the goals need."""
+        return self._found(values, together=False)
+
+    def rows(self, runs: Sequence[PlannedCase]) -> list[Row]:
+        """Return the rows of runs in their order; runs of one case are computed together."""
+        places = sorted(range(len(runs)), key=lambda place: runs[place][1])
+        rows = self._found([runs[place] for place in places], together=self.together)
+        by_place = dict(zip(places, rows, strict=True))
+        return [by_place[place] for place in range(len(runs))]
+
+    def _found(self, items: Sequence[Asked], *, together: bool) -> Found:
+        blocks = blocks_of(items, block_size(len(items), together=together))
+        return [*chain.from_iterable(self.engine.in_order(blocks))]
 
 
 @contextmanager
@@ -104,11 +110,5 @@ def evaluation(
     tuning: Tuning, workers: int | None, stopped: Callable[[], bool]
 ) -> Iterator[TrialRuns]:
     """Yield an evaluation with its worker processes, by default one for each core."""
-    count = worker_count(workers)
-    made = TrialRuns(tuning, count, stopped)
-    if count < 2:
-        yield made
-        return
-    with closing(WorkerPool(count, made.work)) as pool:
-        made.pool = pool
-        yield made
+    with closing(workers_of(workers)) as chosen:
+        yield TrialRuns.by(tuning, chosen, stopped)

@@ -8,7 +8,7 @@ from pathlib import Path
 import pyarrow as pa
 
 from ddct_bringup.campaign.arrow_columns import read_parquet
-from ddct_bringup.campaign.columns import schema_of, shard_bytes
+from ddct_bringup.campaign.columns import parquet_bytes, rows_table, schema_of
 from ddct_bringup.campaign.conduct import RESUME, SHARDS
 from ddct_bringup.campaign.rows import Row
 from ddct_bringup.campaign.spec import CampaignSpec
@@ -44,7 +44,7 @@ def write_batch(
 def rows_bytes(trials: Sequence[Trial], campaign: CampaignSpec) -> bytes:
     """Return the rows of trials as a Parquet file, the same bytes for the same rows."""
     rows = [{**row, TRIAL: each.number} for each in trials for row in each.rows]
-    return shard_bytes(run_schema(campaign), rows)
+    return parquet_bytes(rows_table(run_schema(campaign), rows))
 
 
 def batch_files(out: Path, batch: int) -> tuple[Path, Path]:

@@ -11,7 +11,7 @@ from refusals import refused
 
 from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.conduct import carry_out
-from ddct_bringup.campaign.plan import require_code
+from ddct_bringup.campaign.shards import require_code
 from ddct_bringup.campaign.spec import spec_of
 from ddct_bringup.manifest import code
 from ddct_bringup.manifest.code import code_digest

@@ -18,7 +18,7 @@ from in_this_process import OneByOne, in_this_process
 from refusals import refused
 from verified import edit_manifest
 
-from ddct_bringup.campaign import conduct, run_set, scored, shards
+from ddct_bringup.campaign import conduct, run_set, scored
 from ddct_bringup.campaign.campaign import Campaign
 from ddct_bringup.campaign.columns import COMPARED, differences
 from ddct_bringup.campaign.conduct import RESULTS, SHARDS, carry_out
@@ -29,6 +29,7 @@ from ddct_bringup.campaign.spec import spec_of
 from ddct_bringup.campaign_report.reading import read_table
 from ddct_bringup.manifest.code import code_digest
 from ddct_bringup.manifest.manifest import MANIFEST, read_manifest
+from ddct_bringup.many_runs import blocks
 from ddct_bringup.run.output_folder import locked_folders
 from ddct_bringup.verdict.limits import limits_of_text, packaged_limits
 from ddct_plant.base.errors import DdctError, ParameterError
@@ -44,13 +45,22 @@ SPEC: dict[str, Any] = {
         'vary': {'vehicle.mass_kg': {'distribution': 'uniform', 'low': 1000, 'high': 2000}},
     },
 }
-RUNS = 8
+RUNS, CASES = 8, 4
+"""Each case is a shard, whose name is its number."""
 WILD = """\
 name: wild
 units: {input: rpm, output: N m}
 transfer_function: {gain: 1.0, numerator: [], denominator: [-2000]}
 """
 """Source of a controller whose state overflows within some steps."""
+
+
+@pytest.fixture(scope='module', autouse=True)
+def small_shards() -> Iterator[None]:
+    """Let each case be a shard."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(blocks, '_TOGETHER_LEAST', 1)
+        yield
 
 
 @pytest.fixture
@@ -94,28 +104,9 @@ def test_a_row_contains_the_run_its_values_and_its_scores(whole: Path) -> None:
 def test_the_bytes_are_the_same_each_time(whole: Path, tmp_path: Path, use) -> None:
     workers = use(OneByOne())
     assert carried_out(tmp_path / 'out') == (whole / RESULTS).read_bytes()
-    assert sorted(workers.computed) == list(range(RUNS))
-    assert workers.computed[:3] == [0, 4, 1], 'a controller is measured late'
+    assert workers.computed == list(range(CASES))
     names = sorted(path.name for path in (tmp_path / 'out').iterdir())
     assert names == ['.ddct-output', MANIFEST, RESULTS, SHARDS]
-
-
-def test_the_time_left_counts_each_controller_by_its_own_runs(
-    tmp_path: Path, use, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def timed(job: shards.ShardJob) -> tuple[bytes, float]:
-        return shards.compute_shard(job), 1.0 if job.first < RUNS // 2 else 100.0
-
-    left_by_shard: list[float | None] = []
-    monkeypatch.setattr(conduct, 'timed_shard', timed)
-    monkeypatch.setattr(
-        conduct.Progress, 'update', lambda self, done, left_s=None: left_by_shard.append(left_s)
-    )
-    use(OneByOne())
-    carried_out(tmp_path / 'out')
-    left = [each for each in left_by_shard[-RUNS:] if each is not None]
-    assert left[3] == (1.0 + 3 * 100.0) / 2  # three runs of one, one of the other; two workers
-    assert left[-1] == 0.0
 
 
 def test_the_manifest_describes_the_campaign(whole: Path) -> None:
@@ -137,12 +128,12 @@ def test_what_an_interruption_left_is_completed_without_loss_or_duplicates(
     with pytest.raises(KeyboardInterrupt, match='what is done stays: go on with --resume'):
         carry_out(made(), packaged_limits(), out, stopped=lambda: next(looks))
     done = sorted(path.name for path in (out / SHARDS).iterdir())
-    assert 0 < len(done) < RUNS
+    assert 0 < len(done) < CASES
     assert not (out / RESULTS).exists()
     (out / SHARDS / done[0]).write_bytes(b'PAR1 and then nothing')
     again = use(OneByOne())
     assert carried_out(out, resume=True) == (whole / RESULTS).read_bytes()
-    missing = RUNS - len(done) + 1
+    missing = CASES - len(done) + 1
     assert len(again.computed) == missing
 
 
@@ -178,7 +169,7 @@ def test_planning_can_be_interrupted(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_a_worker_that_dies_costs_only_the_time(whole: Path, tmp_path: Path, use) -> None:
-    deaths = {3: 2, 5: 1}
+    deaths = {1: 1, 3: 1}
 
     def breaks(first: int) -> Exception | None:
         deaths[first] = deaths.get(first, 0) - 1
@@ -186,14 +177,28 @@ def test_a_worker_that_dies_costs_only_the_time(whole: Path, tmp_path: Path, use
 
     workers = use(OneByOne(breaks))
     assert carried_out(tmp_path / 'out') == (whole / RESULTS).read_bytes()
-    assert len(workers.executors) > 1
+    assert sorted(workers.computed) == [0, 1, 1, 2, 3, 3]
+
+
+@pytest.mark.slow
+def test_a_run_whose_process_always_dies_is_a_row_with_the_reason(
+    whole: Path, tmp_path: Path, use
+) -> None:
+    use(OneByOne(lambda first: BrokenProcessPool('killed') if first == 2 else None))
+    carried_out(tmp_path / 'out')
+    rows = parquet.read_table(tmp_path / 'out' / RESULTS).to_pylist()
+    expected = parquet.read_table(whole / RESULTS).to_pylist()
+    ended = rows.pop(2)
+    assert rows == [row for row in expected if row['index'] != 2]
+    assert (ended['index'], ended['state']) == (2, 'invalid')
+    assert ended['reason'] == 'its process was killed (SIGKILL)'
 
 
 def test_workers_that_always_die_end_the_campaign_with_a_line(
     whole: Path, tmp_path: Path, use
 ) -> None:
     out = tmp_path / 'out'
-    use(OneByOne(lambda first: BrokenProcessPool('killed') if first == 3 else None))
+    use(OneByOne(lambda first: BrokenProcessPool('killed') if first else None))
     with pytest.raises(DdctError, match='workers died 3 times one after the other.*--resume'):
         carried_out(out)
     use(OneByOne())
@@ -203,7 +208,7 @@ def test_workers_that_always_die_end_the_campaign_with_a_line(
 def test_an_error_of_a_worker_is_reported_with_its_runs(tmp_path: Path, use) -> None:
     use(OneByOne(lambda first: MemoryError('full') if first == 2 else None))
     with pytest.raises(
-        DdctError, match=r'runs 2 to 2 could not be computed \(MemoryError: full\)'
+        DdctError, match=r'run 2 or one of its shard could not be computed \(MemoryError: full\)'
     ):
         carried_out(tmp_path / 'out')
 
@@ -326,11 +331,11 @@ def test_a_damaged_edited_or_lost_shard_is_computed_again(
         table.column_names.index('wear_gain'), 'wear_gain', pa.array([0.75] * len(table))
     )
     parquet.write_table(edited.cast(table.schema), shard_files[3])
-    shard_files[5].unlink()
+    shard_files[2].unlink()
     (out / RESULTS).unlink()
     workers = use(OneByOne())
     assert carried_out(out, resume=True) == (whole / RESULTS).read_bytes()
-    assert sorted(workers.computed) == [1, 3, 5]
+    assert sorted(workers.computed) == [1, 2, 3]
     errors = capsys.readouterr().err
     assert all(str(shard_files[number]) in errors for number in (1, 3))
 
@@ -341,7 +346,7 @@ def test_a_shard_without_its_digest_is_computed_again(whole: Path, tmp_path: Pat
     replace(read_manifest(out), files={}).write(out)
     workers = use(OneByOne())
     assert carried_out(out, resume=True) == (whole / RESULTS).read_bytes()
-    assert sorted(workers.computed) == list(range(RUNS))
+    assert sorted(workers.computed) == list(range(CASES))
 
 
 def test_a_manifest_that_was_edited_is_not_resumed(whole: Path, tmp_path: Path) -> None:

@@ -14,6 +14,8 @@ from ddct_bringup.campaign.conduct import carry_out
 from ddct_bringup.campaign.rows import Row
 from ddct_bringup.campaign.scored import scored_runs
 from ddct_bringup.campaign.spec import spec_of
+from ddct_bringup.many_runs import blocks, engine
+from ddct_bringup.many_runs.local_workers import ThisProcess
 from ddct_bringup.verdict.limits import packaged_limits
 
 VARY = {'vehicle.mass_kg': {'distribution': 'uniform', 'low': 1000, 'high': 2000}}
@@ -67,7 +69,8 @@ def test_the_first_row_comes_before_the_last_run_is_computed(
         computed.extend(range(first, last))
         return planned(self, first, last)
 
-    monkeypatch.setattr(scored, '_LARGEST_PART', 2)
+    monkeypatch.setattr(engine, 'workers_of', lambda *_: ThisProcess())
+    monkeypatch.setattr(blocks, '_BLOCKS', 6)
     monkeypatch.setattr(scored.RunSet, 'planned', counted)
     with scored_runs(campaign(), packaged_limits(), workers=1) as found:
         assert next(found).row()['index'] == 0

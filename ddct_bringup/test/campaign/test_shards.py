@@ -9,11 +9,12 @@ import pytest
 
 from ddct_bringup.campaign import scored
 from ddct_bringup.campaign.campaign import Campaign
-from ddct_bringup.campaign.columns import differences
+from ddct_bringup.campaign.columns import differences, parquet_bytes
 from ddct_bringup.campaign.rows import VECTORISED
 from ddct_bringup.campaign.scored import Scorer
-from ddct_bringup.campaign.shard_size import shard_size_of
+from ddct_bringup.campaign.shards import CampaignWork, runs_in, shard_size_of, shards_of
 from ddct_bringup.campaign.spec import spec_of
+from ddct_bringup.manifest.code import code_digest
 from ddct_bringup.verdict.limits import packaged_limits
 
 GAIN = 'controllers.pi.proportional_gain'
@@ -48,18 +49,40 @@ def test_each_run_is_scored_over_the_window_that_its_scenario_gives(monkeypatch)
         assert differences(row, expected) == []
 
 
-@pytest.mark.parametrize(
-    ('content', 'size'),
-    [
-        ({'controllers': ['pi', 'ls8']}, 1000),
-        ({'controllers': ['pi', 'mpc4']}, 80),
-        ({'controllers': ['pi', 'ls8'], 'scenario': 'thesis_sticking'}, 80),
-    ],
-)
-def test_shards_of_linear_runs_are_large_as_they_are_computed_together(
-    content: dict[str, Any], size: int
+@pytest.mark.parametrize(('why_not', 'cases'), [('', 500), ('not now', 40)])
+def test_shards_of_runs_that_are_computed_together_are_large(
+    why_not: str, cases: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setattr(scored, 'why_not_batchable', lambda settings, controller: why_not)
     wear = {'wear_gain': {'distribution': 'uniform', 'low': 0.8, 'high': 1.2}}
     random = {'samples': 2000, 'vary': wear}
-    campaign = Campaign(spec_of({**content, 'random': random}, Path()))
-    assert shard_size_of(campaign) == size
+    content = {'controllers': ['pi', 'ls8'], 'random': random}
+    campaign = Campaign(spec_of(content, Path()))
+    assert shard_size_of(campaign) == cases
+    shards = shards_of(campaign, cases)
+    assert [*shards][:2] == ['00000000.parquet', f'{cases:08d}.parquet']
+    runs = sorted(index for each in shards.values() for index in runs_in(campaign, each))
+    assert runs == list(range(campaign.runs))
+
+
+def test_a_shard_has_the_runs_of_all_controllers_in_its_cases() -> None:
+    content = {'controllers': ['pi', 'ls8', 'mpc3'], 'grid': {'wear_gain': [0.8, 1.0, 1.2]}}
+    campaign = Campaign(spec_of(content, Path()))
+    assert runs_in(campaign, range(1, 3)) == [1, 2, 4, 5, 7, 8]
+    planned = [*campaign.planned_at([1, 2, 4, 5, 7, 8])]
+    assert planned == [campaign.run(index) for index in (1, 2, 4, 5, 7, 8)]
+
+
+def test_a_row_of_a_run_that_ends_its_process_has_the_reason() -> None:
+    campaign = Campaign(spec_of({'controllers': ['pi'], 'grid': {'wear_gain': [0.8, 1]}}, Path()))
+    work = CampaignWork(campaign.spec, packaged_limits(), code_digest(), campaign.digest())
+    whole = work.of_block([0, 1])
+    parts = [work.of_block([0]), work.without_result(1, 'its process crashed (SIGSEGV)')]
+    first, second = work.joined(parts).to_pylist()
+    assert first == whole.to_pylist()[0]
+    same = ('index', 'controller', 'wear_gain', 'seed')
+    assert [second[name] for name in same] == [whole.to_pylist()[1][name] for name in same]
+    assert (second['valid'], second['state']) == (False, 'invalid')
+    assert second['reason'] == 'its process crashed (SIGSEGV)'
+    again = work.joined([work.of_block([0]), work.of_block([1])])
+    assert parquet_bytes(again) == parquet_bytes(whole)

@@ -2,61 +2,59 @@
 # SPDX-License-Identifier: Apache-2.0
 """Workers of a campaign in the process of the test, which fail at chosen shards."""
 
-from collections.abc import Callable, Iterator
-from concurrent.futures import Executor, Future
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import BrokenExecutor, Future
 from contextlib import contextmanager
 from typing import Any
 from unittest import mock
 
 from ddct_bringup.campaign import conduct
-
-
-class InThisProcess(Executor):
-    """Executor that computes at once; `breaks` returns the error of a shard by its first index."""
-
-    def __init__(self, breaks: Callable[[int], Exception | None]) -> None:
-        self._breaks = breaks
-        self.computed: list[int] = []
-
-    def submit(self, fn: Any, /, *arguments: Any, **_: Any) -> Future[Any]:
-        future: Future[Any] = Future()
-        first = arguments[0].first
-        self.computed.append(first)
-        if error := self._breaks(first):
-            future.set_exception(error)
-        else:
-            future.set_result(fn(*arguments))
-        return future
+from ddct_bringup.many_runs.local_workers import Ended, Submit, timed
+from ddct_bringup.many_runs.work import Work
 
 
 class OneByOne:
-    """Workers that are executors in this process."""
+    """Workers that compute at once; `breaks` returns the error of a shard by its first run."""
+
+    count, ahead = 2, 1
 
     def __init__(self, breaks: Callable[[int], Exception | None] = lambda first: None) -> None:
-        self.count = 2
-        self.executors: list[InThisProcess] = []
+        self.computed: list[int] = []
+        self.begun = 0
         self._breaks = breaks
 
-    def executor(self) -> Executor:
-        self.executors.append(InThisProcess(self._breaks))
-        return self.executors[-1]
+    def begin(self, work: Work[Any, Any]) -> Submit:
+        self.begun += 1
+
+        def submit(items: Sequence[int]) -> Future[tuple[Any, float]]:
+            future: Future[tuple[Any, float]] = Future()
+            self.computed.append(items[0])
+            if error := self._breaks(items[0]):
+                future.set_exception(error)
+            else:
+                future.set_result(timed(work, items))
+            return future
+
+        return submit
+
+    def alone(self) -> 'OneByOne':
+        return self
+
+    def ended(self, error: BaseException) -> Ended | None:
+        if isinstance(error, BrokenExecutor):
+            return Ended('its process was killed (SIGKILL)', by_itself=False)
+        return None
 
     def require_alive(self) -> None:
         pass
 
-    @property
-    def computed(self) -> list[int]:
-        return [first for executor in self.executors for first in executor.computed]
+    def close(self) -> None:
+        pass
 
 
 @contextmanager
 def in_this_process(workers: OneByOne | None = None) -> Iterator[OneByOne]:
     """Let campaigns be computed by these workers."""
     chosen = workers or OneByOne()
-
-    @contextmanager
-    def workers_of(*_: Any) -> Iterator[OneByOne]:
-        yield chosen
-
-    with mock.patch.object(conduct, 'workers_of', workers_of):
+    with mock.patch.object(conduct, 'workers_of', lambda *_: chosen):
         yield chosen

@@ -17,6 +17,7 @@ from verified import edit_json_with_digest
 from ddct_bringup.api import run
 from ddct_bringup.benchmark.evaluated import MAIN
 from ddct_bringup.campaign.rows import Row
+from ddct_bringup.many_runs.local_workers import ThisProcess
 from ddct_bringup.programs.tune import main
 from ddct_bringup.tuning import conduct, search
 from ddct_bringup.tuning.conduct import carry_out_tuning, computed_batch
@@ -122,7 +123,7 @@ def test_no_trial_of_the_front_ends_early(finished: Path) -> None:
     tuned = tuning()
     ended = [each for each in trials[1:] if len(each.rows) < len(tuned.cases)]
     assert ended and FEASIBLE not in {each.state for each in ended}
-    alone = TrialRuns(tuned, 1, lambda: False)
+    alone = TrialRuns.by(tuned, ThisProcess())
     whole = [_whole(tuned, alone, each) for each in trials]
     costs = {
         each.number: each.costs(tuned.spec, len(each.rows))
@@ -142,7 +143,7 @@ def test_a_trial_that_another_betters_whatever_comes_ends_after_the_first_part()
         0: {'proportional_gain': 0.2, 'integral_gain': 0.5},
         1: {'proportional_gain': 0.2, 'integral_gain': 0.5},
     }
-    alone = TrialRuns(tuned, 1, lambda: False)
+    alone = TrialRuns.by(tuned, ThisProcess())
     present, other = computed_batch(tuned, alone, asked, [rival], lambda trial: trial)
     assert (other.state, len(other.rows)) == (DOMINATED, 1)
     assert len(present.rows) == len(tuned.cases)
@@ -162,7 +163,7 @@ def test_only_a_trial_that_keeps_all_else_is_timed_and_a_long_time_makes_it_infe
     )
     trials = computed_batch(
         tuned,
-        TrialRuns(tuned, 1, lambda: False),
+        TrialRuns.by(tuned, ThisProcess()),
         {0: quick, 1: quick, 2: slow},
         [],
         lambda trial: replace(trial, further={'update_time_over_pi': times[trial.number]}),

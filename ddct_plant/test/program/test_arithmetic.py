@@ -116,19 +116,6 @@ def test_the_number_of_threads_is_that_of_the_environment_or_one(monkeypatch, na
     assert named_threads() == number
 
 
-@openblas
-@pytest.mark.process
-def test_workers_have_one_thread_whatever_the_program_has():
-    code = (
-        FIRST_NUMPY
-        + 'from threadpoolctl import threadpool_info\n'
-        + 'from ddct_plant.program.workers import in_processes\n'
-        + 'def threads(_): return [each["num_threads"] for each in threadpool_info()]\n'
-        + 'with in_processes(threads, 2, 2) as found: print(list(found))'
-    )
-    assert printed(code) == ['[[1], [1]]']
-
-
 @pytest.mark.parametrize('key', ['blas', 'kernel', 'threads', 'libc', 'machine'])
 def test_what_decides_bits_is_a_difference(key: str) -> None:
     here = arithmetic()

@@ -5,15 +5,15 @@
 import signal
 import socket
 import threading
-from contextlib import nullcontext
 from pathlib import Path
 
 import pytest
 from support.processes import Program, Programs
-from support.short_campaign import SPEC, InThisProcess, wait_for_shards
+from support.short_campaign import SPEC, wait_for_shards
 
 from ddct_bringup.campaign import conduct
 from ddct_bringup.campaign.conduct import RESULTS
+from ddct_bringup.many_runs.local_workers import ThisProcess
 from ddct_bringup.programs import campaign
 
 
@@ -44,7 +44,7 @@ def test_a_worker_of_a_cluster_that_dies_costs_a_campaign_only_time(
     killer.start()
     assert campaign.main([str(spec), '--out', str(out), '--scheduler', address]) == 0
     killer.join()
-    monkeypatch.setattr(conduct, 'workers_of', lambda *_: nullcontext(InThisProcess()))
+    monkeypatch.setattr(conduct, 'workers_of', lambda *_: ThisProcess())
     assert campaign.main([str(spec), '--out', str(whole)]) == 0
     assert (out / RESULTS).read_bytes() == (whole / RESULTS).read_bytes()
 
