@@ -20,7 +20,6 @@ WITHIN = {
     'program': (
         'signals.interruptible',
         'signals.is_first_report',
-        'signals.obey_parent',
         'signals.stems_from_interrupt',
     ),
 }

@@ -26,7 +26,7 @@ from ddct_bringup.manifest.manifest import (
     require_same_inputs,
     resume_manifest,
 )
-from ddct_bringup.many_runs.engine import Engine, Workers, workers_of
+from ddct_bringup.many_runs.engine import WorkEngine, Workers, workers_of
 from ddct_bringup.run.output_folder import (
     locked_folders,
     mark_folder,
@@ -105,7 +105,7 @@ def carry_out_recorded(
     done = campaign.runs - groups * sum(len(shards[file]) for file in missing)
     blocks = (runs_in(campaign, shards[file]) for file in missing)
     with Progress('runs', campaign.runs, done=done) as progress:
-        for block in Engine(work, workers, stopped, RESUME).done(blocks):
+        for block in WorkEngine(work, workers, stopped, RESUME).done(blocks):
             file = missing[block.place]
             write_bytes(str(file), parquet_bytes(block.result, groups), RESUME)
             keep_digests([file])

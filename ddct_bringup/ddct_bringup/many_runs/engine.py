@@ -54,7 +54,7 @@ class Done(Generic[Item, Result]):
 
 
 @dataclass
-class Engine(Generic[Item, Result]):
+class WorkEngine(Generic[Item, Result]):
     """Does work block by block on workers."""
 
     work: Work[Item, Result]
@@ -188,10 +188,10 @@ def engine_of(
     work: Work[Item, Result],
     workers: int | None = None,
     stopped: Callable[[], bool] = _never,
-) -> Iterator[Engine[Item, Result]]:
+) -> Iterator[WorkEngine[Item, Result]]:
     """Yield an engine with processes of this machine, by default one per core, and end them."""
     with closing(workers_of(workers)) as chosen:
-        yield Engine(work, chosen, stopped)
+        yield WorkEngine(work, chosen, stopped)
 
 
 def results_of(

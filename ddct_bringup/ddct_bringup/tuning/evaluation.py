@@ -14,7 +14,7 @@ from ddct_bringup.campaign.rows import INDEX, Row
 from ddct_bringup.campaign.run_set import ImpossibleRow, PlannedRow
 from ddct_bringup.campaign.scored import Scorer, are_together
 from ddct_bringup.many_runs.blocks import block_size, blocks_of
-from ddct_bringup.many_runs.engine import Engine, Workers, workers_of
+from ddct_bringup.many_runs.engine import WorkEngine, Workers, workers_of
 from ddct_bringup.many_runs.work import Work
 from ddct_bringup.tuning.loop_quantities import Quantities, loop_quantities
 from ddct_bringup.tuning.specification.goals import OF_LOOP
@@ -75,14 +75,14 @@ class TrialRuns:
     """Has loops and runs of trials computed; no result depends on the number of workers."""
 
     tuning: Tuning
-    engine: Engine[Asked, Found]
+    engine: WorkEngine[Asked, Found]
 
     @classmethod
     def by(
         cls, tuning: Tuning, workers: Workers, stopped: Callable[[], bool] = lambda: False
     ) -> 'TrialRuns':
         """Return those of a tuning that workers compute."""
-        return cls(tuning, Engine(TrialWork(tuning), workers, stopped, RESUME))
+        return cls(tuning, WorkEngine(TrialWork(tuning), workers, stopped, RESUME))
 
     @cached_property
     def together(self) -> bool:

@@ -15,7 +15,7 @@ from typing import Any
 import pytest
 
 from ddct_bringup.many_runs.blocks import block_size, blocks_of
-from ddct_bringup.many_runs.engine import Engine, engine_of, results_of
+from ddct_bringup.many_runs.engine import WorkEngine, engine_of, results_of
 from ddct_bringup.many_runs.local_workers import LocalWorkers, ThisProcess, is_worker
 from ddct_bringup.many_runs.work import Each
 from ddct_plant.base.errors import DdctError, ParameterError
@@ -45,7 +45,7 @@ def test_results_come_in_order_whatever_the_workers_and_the_blocks(
     squares = [item**2 for item in ITEMS]
     assert values(lambda item: item**2, size, workers) == squares
     assert results_of(lambda item: item**2, ITEMS, workers) == squares
-    here = Engine(Reasons(lambda item: item**2), ThisProcess())
+    here = WorkEngine(Reasons(lambda item: item**2), ThisProcess())
     assert [value for part in here.in_order(blocks_of(ITEMS, size)) for value in part] == squares
 
 
@@ -123,7 +123,7 @@ def test_blocks_are_handed_over_as_they_are_needed() -> None:
         computed.append(item)
         return item
 
-    engine: Engine[int, list[int]] = Engine(Each(counted), ThisProcess())
+    engine: WorkEngine[int, list[int]] = WorkEngine(Each(counted), ThisProcess())
     assert next(engine.in_order(blocks_of(ITEMS, 2))) == [0, 1]
     assert computed == [0, 1]
 
