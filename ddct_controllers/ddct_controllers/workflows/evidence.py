@@ -94,12 +94,10 @@ def _controller_evidence(
     chosen: Chosen, settings: RunSettings, corners: PlantCorners
 ) -> ControllerEntry:
     name = controller_label(chosen)
-    if compiled_code(chosen):
+    found = linear_model(chosen, settings)
+    if found is None:
         return _without_evidence(name, linear=False)
-    controller = make_controller(chosen, settings.known)
-    model = _linear_model(name, controller)
-    if model is None:
-        return _without_evidence(name, linear=False)
+    controller, model = found
     scenario = settings.scenario
     try:
         wear = {
@@ -130,8 +128,16 @@ def _without_evidence(name: str, linear: Literal[False] | None) -> EntryWithoutE
     )
 
 
-def _linear_model(name: str, controller: Controller) -> StateSpace | None:
-    """Return the model; raise DdctError for one with which no loop can be closed."""
+def linear_model(chosen: Chosen, settings: RunSettings) -> tuple[Controller, StateSpace] | None:
+    """
+    Return a controller and its model, None where it is not linear.
+
+    Raise UnusableModelError for a model with which no loop can be closed, DdctError for a
+    controller that cannot be built.
+    """
+    if compiled_code(chosen):
+        return None
+    name, controller = controller_label(chosen), make_controller(chosen, settings.known)
     try:
         model: object = controller.linear_model()
     except FOREIGN_FAILURES as error:
@@ -145,7 +151,7 @@ def _linear_model(name: str, controller: Controller) -> StateSpace | None:
         outputs, inputs = model.d.shape
         reason = f'it has {inputs} inputs and {outputs} outputs: give one of each'
         raise _unusable(name, controller, reason)
-    return model
+    return controller, model
 
 
 def _unusable(name: str, controller: Controller, reason: object) -> UnusableModelError:

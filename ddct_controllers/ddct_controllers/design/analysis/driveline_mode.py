@@ -9,10 +9,11 @@ import numpy as np
 import scipy
 
 from ddct_controllers.design.analysis.loops import IDENTIFIED_DRIVELINE
+from ddct_controllers.design.loop_stack import LoopStack
 from ddct_controllers.design.state_space import close_loop, to_s_plane
 from ddct_plant.base.units import RPM_PER_RAD_S
 from ddct_plant.linear.lti import StateSpace
-from ddct_plant.models.driveline_model import clutch_to_slip, driveline_matrices
+from ddct_plant.models.driveline_model import driveline_matrices
 from ddct_plant.models.parameters import DrivelineParameters
 
 
@@ -46,11 +47,12 @@ def driveline_mode(
     closed = close_loop(loop)
     poles, left, right = scipy.linalg.eig(closed.a, left=True, right=True)
     rates = to_s_plane(poles, loop.period_s)
-    index = nearest_mode(rates, locked_driveline_zero(parameters))
-    if index is None:
+    zero = locked_driveline_zero(parameters)
+    index = -1 if zero is None else int(nearest_mode(rates, zero))
+    if index < 0:
         return None
-    row, column = left[:, index].conj(), right[:, index]
     model = driveline_matrices(parameters)
+    row, column = left[:, index].conj(), right[:, index]
     torsion_rpm = RPM_PER_RAD_S * model.output('torsion_speed') @ column[-len(model.a) :]
     after_step = torsion_rpm * (row @ closed.b[:, 0]) / (row @ column) / (poles[index] - 1.0)
     return DrivelineMode(
@@ -62,16 +64,35 @@ def driveline_mode(
 
 def locked_driveline_zero(parameters: DrivelineParameters) -> complex | None:
     """Return the zero of P_2 in the upper half of the s-plane, None when its zeros are real."""
-    upper = [zero for zero in clutch_to_slip(parameters).zeros if zero.imag > 0.0]
-    return complex(upper[0]) if upper else None
+    path = driveline_matrices(parameters).path('clutch_torque', 'slip_speed')
+    (zero,) = locked_driveline_zeros(LoopStack.joined([path]))
+    return None if np.isnan(zero) else complex(zero)
 
 
-def nearest_mode(rates: np.ndarray, zero: complex | None) -> int | None:
-    """Return the index of the oscillating pole among `rates`, (n,), that is nearest `zero`."""
-    upper = np.flatnonzero(rates.imag > 0.0)
-    if zero is None or not upper.size:
-        return None
-    return int(upper[np.argmin(np.abs(rates[upper] - zero))])
+def locked_driveline_zeros(paths: LoopStack) -> np.ndarray:
+    """
+    Return the zero of P_2 in the upper half of the s-plane of many drivelines, (R,) complex.
+
+    nan where the zeros are real. `paths` are the systems P_2. With the output held at 0 the input
+    is -c a x / (c b): the eigenvalues of a - b c a / (c b) are the zeros, and a 0.
+    """
+    gain = (paths.c * paths.b).sum(axis=1)[:, np.newaxis, np.newaxis]
+    slope = paths.c[:, np.newaxis] @ paths.a
+    held = np.linalg.eigvals(paths.a - paths.b[:, :, np.newaxis] * slope / gain).astype(complex)
+    zeros = np.take_along_axis(held, np.argmax(held.imag, axis=1)[:, np.newaxis], axis=1)[:, 0]
+    return np.where(zeros.imag > 0.0, zeros, np.nan)
+
+
+def nearest_mode(rates: np.ndarray, zeros: np.ndarray | complex) -> np.ndarray:
+    """
+    Return the index (...) of the oscillating pole among `rates`, (..., n), nearest `zeros`, (...).
+
+    It is -1 where no pole oscillates, and where the zero is nan.
+    """
+    distance = np.abs(rates - np.asarray(zeros)[..., np.newaxis])
+    distance = np.where((rates.imag > 0.0) & np.isfinite(distance), distance, np.inf)
+    nearest = np.argmin(distance, axis=-1)
+    return np.where(np.isfinite(distance).any(axis=-1), nearest, -1)
 
 
 def damping(rates: np.ndarray) -> np.ndarray:

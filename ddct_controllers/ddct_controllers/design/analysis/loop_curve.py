@@ -7,10 +7,12 @@ from collections.abc import Callable
 from functools import partial
 
 import numpy as np
-import scipy
 
 from ddct_controllers.design.analysis.loops import ContinuousLoop
+from ddct_controllers.design.analysis.refinement import maxima, zeros
+from ddct_controllers.design.loop_stack import LoopStack
 from ddct_controllers.design.state_space import close_loop, frequency_response, poles_rad_s
+from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.lti import StateSpace
 
 Measure = Callable[[np.ndarray], np.ndarray]
@@ -46,7 +48,11 @@ class LoopCurve:
         self._integrates = bool(np.min(np.abs(poles), initial=math.inf) < _SLOWEST_RAD_S)
         self.omega = _grid(np.concatenate([poles, poles_rad_s(close_loop(system))]), last)
         """Frequencies in rad/s, rising, (n,)."""
-        self.values = self._response(self.omega)
+        self.values = (
+            LoopStack.joined([system]).responses(self.omega)[0]
+            if system.period_s == PERIOD_S
+            else self._response(self.omega)
+        )
         """Values of L at these frequencies, (n,) complex."""
 
     def at(self, omega: float) -> complex:
@@ -55,16 +61,11 @@ class LoopCurve:
 
     def crossings(self, measure: Measure) -> list[float]:
         """Return the frequencies in rad/s, rising, at which `measure` of L changes its sign."""
-        signs = measure(self.values) > 0.0
-        brackets = np.flatnonzero(signs[1:] != signs[:-1])
-
-        def measured(omega: float) -> float:
-            return self._measured(measure, omega)
-
-        return [
-            float(scipy.optimize.brentq(measured, *self.omega[i : i + 2], rtol=1e-12))
-            for i in brackets
-        ]
+        measured = measure(self.values)
+        signs = measured > 0.0
+        first = np.flatnonzero(signs[1:] != signs[:-1])
+        ends = self.omega[first], self.omega[first + 1], measured[first], measured[first + 1]
+        return zeros(self._measured(measure), *ends).tolist()
 
     def peak(self, measure: Measure) -> tuple[float, float]:
         """Return the maximum of `measure` of L over frequency, and its frequency in rad/s."""
@@ -73,15 +74,11 @@ class LoopCurve:
         highest, where = float(measured[best]), float(self.omega[best])
         inner = measured[1:-1]
         local = (inner >= measured[:-2]) & (inner >= measured[2:])
-        for i in np.flatnonzero(local & (inner >= _NEAR_THE_PEAK * highest)):
-            found = scipy.optimize.minimize_scalar(
-                lambda x: -self._measured(measure, x),
-                bounds=(self.omega[i], self.omega[i + 2]),
-                method='bounded',
-                options={'xatol': 1e-7 * self.omega[i]},
-            )
-            if -found.fun > highest:
-                highest, where = -float(found.fun), float(found.x)
+        first = np.flatnonzero(local & (inner >= _NEAR_THE_PEAK * highest))
+        ends = self.omega[first], self.omega[first + 2]
+        for omega, value in zip(*maxima(self._measured(measure), *ends), strict=True):
+            if value > highest:
+                highest, where = float(value), float(omega)
         return highest, where
 
     def critical_gains(self) -> list[float]:
@@ -90,11 +87,12 @@ class LoopCurve:
         # L is real at rest and at half the sampling rate too, without a change of sign.
         at_rest = () if self._integrates else (0.0,)
         at_half_rate = self.omega[-1:] if self._sampled else ()
-        values = [self.at(omega) for omega in (*crossings, *at_rest, *at_half_rate)]
-        return [-1.0 / value.real for value in values if value.real < 0.0]
+        values = self._response(np.array([*crossings, *at_rest, *at_half_rate]))
+        return [float(-1.0 / value) for value in values.real if value < 0.0]
 
-    def _measured(self, measure: Measure, omega: float) -> float:
-        return float(measure(np.array([self.at(omega)]))[0])
+    def _measured(self, measure: Measure) -> Callable[[np.ndarray], np.ndarray]:
+        """Return `measure` of L as a function of frequencies in rad/s."""
+        return lambda omega: measure(self._response(omega))
 
 
 def sensitivity(values: np.ndarray) -> np.ndarray:

@@ -100,7 +100,12 @@ def sampled_loop(
     `controller` maps the error in rpm to the torque in N m; its states come first. Raise
     ParameterError when it is not sampled at 10 ms.
     """
+    require_sampled(controller)
+    return series(controller, sampled_plant(parameters, wear_gain, actuator))
+
+
+def require_sampled(controller: StateSpace) -> None:
+    """Raise ParameterError when a controller is not sampled at 10 ms."""
     if controller.period_s != PERIOD_S:
         kind = f'sampled at {controller.period_s} s' if controller.period_s else 'continuous'
         raise ParameterError(f'controller is {kind}: discretise it at {PERIOD_S} s')
-    return series(controller, sampled_plant(parameters, wear_gain, actuator))

@@ -3,32 +3,29 @@
 """The worst corner: margins over wear and the corners of the driveline's parameters."""
 
 import itertools
-from dataclasses import dataclass
-from functools import lru_cache
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
 
 import numpy as np
 
 from ddct_controllers.design.analysis.driveline_mode import (
     damping,
-    locked_driveline_zero,
+    locked_driveline_zeros,
     nearest_mode,
 )
 from ddct_controllers.design.analysis.loop_curve import LoopCurve
 from ddct_controllers.design.analysis.loops import (
     IDENTIFIED_DRIVELINE,
     WEAR_RANGE,
-    sampled_plant,
+    require_sampled,
 )
-from ddct_controllers.design.state_space import (
-    close_loop,
-    frequency_response,
-    scaled,
-    series,
-    to_s_plane,
-)
+from ddct_controllers.design.loop_stack import LoopStack
+from ddct_controllers.design.state_space import frequency_response, to_s_plane
 from ddct_plant.base.timebase import PERIOD_S
+from ddct_plant.base.units import RPM_PER_RAD_S
 from ddct_plant.linear.lti import StateSpace
 from ddct_plant.models.actuator import PRINTED_ACTUATOR, ActuatorParameters
+from ddct_plant.models.driveline_model import driveline_matrices
 from ddct_plant.models.parameters import DrivelineParameters
 
 PARAMETER_SPREAD = 0.2
@@ -72,15 +69,23 @@ class PlantCorners:
             for factors in self.factors
         ]
         """Parameters of the driveline per corner."""
-        self.plants = [sampled_plant(each, actuator=actuator) for each in self.parameters]
+        paths = [
+            driveline_matrices(p).path('clutch_torque', 'slip_speed') for p in self.parameters
+        ]
+        self._paths = LoopStack.joined(paths)
+        in_rpm = replace(self._paths, c=self._paths.c * RPM_PER_RAD_S)
+        self.plants = in_rpm.behind(actuator.dynamics()).behind_delay(actuator.delay_substeps)
         """
-        Sampled plant per corner: hold, delay, actuator and driveline, as `sampled_plant` returns
-        it.
+        Sampled plants of the corners: hold, delay, actuator and driveline, with the states of
+        `sampled_plant`.
         """
-        self.responses = np.array([frequency_response(p, self.omega) for p in self.plants])
+        self.responses = self.plants.responses(self.omega)
         """Frequency responses of the plants, (corners, frequencies), complex."""
-        self.zeros = [locked_driveline_zero(each) for each in self.parameters]
-        """Zero of P_2 per corner, as `locked_driveline_zero` returns it."""
+
+    @cached_property
+    def zeros(self) -> np.ndarray:
+        """Zero of P_2 per corner, (corners,) complex, as `locked_driveline_zeros` returns them."""
+        return locked_driveline_zeros(self._paths)
 
 
 @lru_cache(maxsize=4)
@@ -112,43 +117,74 @@ class WorstCorner:
     """Least damping ratio of the driveline mode over all corners, at wear gains 0.7, 1 and 1.3."""
 
 
+class CornerLoops:
+    """The loops of a controller at the corners; what is not asked for is not computed."""
+
+    def __init__(self, controller: StateSpace, corners: PlantCorners) -> None:
+        """Close the loops at three wear gains; `controller` is as `sampled_loop` accepts it."""
+        require_sampled(controller)
+        self._corners = corners
+        self._loops = corners.plants.behind(controller)
+        self._responses = corners.responses * frequency_response(controller, corners.omega)
+        self._poles = np.linalg.eigvals(self._loops.closed(np.array(WEAR_GAINS)))
+        self._radius = np.abs(self._poles).max(axis=2)
+
+    @cached_property
+    def unstable(self) -> np.ndarray:
+        """Whether each corner is unstable at some wear gain of the range, (corners,)."""
+        unstable = (self._radius >= 1.0).any(axis=1)
+        for index in np.flatnonzero(~unstable & _may_cross(self._responses)).tolist():
+            gains = LoopCurve(self._loops.sampled(index)).critical_gains()
+            unstable[index] = any(WEAR_GAINS[0] <= gain <= WEAR_GAINS[-1] for gain in gains)
+        return unstable
+
+    @property
+    def sensitivity_peak(self) -> float | None:
+        """Highest M_s of the corners and wear gains, None when a corner is unstable."""
+        return self._worst[2]
+
+    @cached_property
+    def _worst(self) -> tuple[int, float, float | None]:
+        """Index, wear gain and M_s of the worst corner."""
+        if self.unstable.any():
+            index, wear = np.unravel_index(np.argmax(self._radius), self._radius.shape)
+            return int(index), WEAR_GAINS[wear], None
+        return self._highest_peak()
+
+    def worst(self) -> WorstCorner:
+        """Return the worst corner."""
+        index, wear_gain, peak = self._worst
+        return WorstCorner(
+            unstable_corners=int(np.count_nonzero(self.unstable)),
+            index=index,
+            wear_gain=wear_gain,
+            sensitivity_peak=peak,
+            least_mode_damping=self._least_mode_damping(),
+        )
+
+    def _highest_peak(self) -> tuple[int, float, float]:
+        """Return the corner, the wear gain and the M_s of the highest M_s."""
+        on_grid = _sensitivity(self._responses).max(axis=1)
+        peak, worst, gain = 0.0, 0, 1.0
+        for index in np.flatnonzero(on_grid >= _CANDIDATE_SHARE * on_grid.max()).tolist():
+            curve = LoopCurve(self._loops.sampled(index))
+            found, omega = curve.peak(_sensitivity)
+            if found > peak:
+                peak, worst = found, index
+                gain = float(_worst_wear(np.array([curve.at(omega)]))[0])
+        return worst, gain, peak
+
+    def _least_mode_damping(self) -> float | None:
+        """Return the least damping of the driveline modes, None where no loop oscillates."""
+        rates = to_s_plane(self._poles, PERIOD_S)
+        nearest = nearest_mode(rates, self._corners.zeros[:, np.newaxis])
+        modes = np.take_along_axis(rates, nearest[..., np.newaxis], axis=-1)[nearest >= 0]
+        return float(damping(modes).min()) if modes.size else None
+
+
 def worst_corner(controller: StateSpace, corners: PlantCorners) -> WorstCorner:
     """Return the worst corner for a controller in the form that `sampled_loop` accepts."""
-    loops = [series(controller, plant) for plant in corners.plants]
-    responses = corners.responses * frequency_response(controller, corners.omega)
-    poles = np.linalg.eigvals(
-        [[close_loop(scaled(loop, gain)).a for gain in WEAR_GAINS] for loop in loops]
-    )
-    radius = np.abs(poles).max(axis=2)
-    unstable = (radius >= 1.0).any(axis=1)
-    for index in np.flatnonzero(~unstable & _may_cross(responses)):
-        gains = LoopCurve(loops[index]).critical_gains()
-        unstable[index] = any(WEAR_GAINS[0] <= gain <= WEAR_GAINS[-1] for gain in gains)
-    if unstable.any():
-        index, wear = np.unravel_index(np.argmax(radius), radius.shape)
-        worst, wear_gain, peak = int(index), WEAR_GAINS[wear], None
-    else:
-        worst, wear_gain, peak = _highest_peak(loops, responses)
-    return WorstCorner(
-        unstable_corners=int(np.count_nonzero(unstable)),
-        index=worst,
-        wear_gain=wear_gain,
-        sensitivity_peak=peak,
-        least_mode_damping=_least_mode_damping(poles, corners),
-    )
-
-
-def _highest_peak(loops: list[StateSpace], responses: np.ndarray) -> tuple[int, float, float]:
-    """Return the corner, the wear gain and the M_s of the highest M_s."""
-    on_grid = _sensitivity(responses).max(axis=1)
-    peak, worst, gain = 0.0, 0, 1.0
-    for index in np.flatnonzero(on_grid >= _CANDIDATE_SHARE * on_grid.max()).tolist():
-        curve = LoopCurve(loops[index])
-        found, omega = curve.peak(_sensitivity)
-        if found > peak:
-            peak, worst = found, index
-            gain = float(_worst_wear(np.array([curve.at(omega)]))[0])
-    return worst, gain, peak
+    return CornerLoops(controller, corners).worst()
 
 
 def _sensitivity(values: np.ndarray) -> np.ndarray:
@@ -170,12 +206,3 @@ def _may_cross(responses: np.ndarray) -> np.ndarray:
     crossed = real[:, :-1] + share * (real[:, 1:] - real[:, :-1])
     near = (crossed < -0.9 / WEAR_GAINS[-1]) & (crossed > -1.1 / WEAR_GAINS[0])
     return (changes & near).any(axis=1)
-
-
-def _least_mode_damping(poles: np.ndarray, corners: PlantCorners) -> float | None:
-    rates = to_s_plane(poles, PERIOD_S)
-    found = []
-    for zero, per_wear in zip(corners.zeros, rates, strict=True):
-        modes = ((row, nearest_mode(row, zero)) for row in per_wear)
-        found += [float(damping(row[mode])) for row, mode in modes if mode is not None]
-    return min(found, default=None)

@@ -85,5 +85,5 @@ def test_a_driveline_that_does_not_oscillate_has_no_mode():
 
 
 def test_real_poles_are_no_mode():
-    assert nearest_mode(np.array([-1.0, -2.0 + 0.0j]), -1.0 + 1.0j) is None
+    assert nearest_mode(np.array([-1.0, -2.0 + 0.0j]), -1.0 + 1.0j) == -1
     assert nearest_mode(np.array([-1.0, -2.0 - 3.0j, -2.0 + 3.0j]), -1.0 + 1.0j) == 2

@@ -25,6 +25,7 @@ from ddct_controllers.design.analysis.worst_corner import (
     plant_corners,
     worst_corner,
 )
+from ddct_controllers.design.loop_stack import LoopStack
 from ddct_controllers.design.state_space import frequency_response, scaled
 from ddct_plant.base.timebase import PERIOD_S
 from ddct_plant.linear.lti import StateSpace
@@ -101,10 +102,10 @@ def test_a_loop_unstable_only_between_the_ends_of_the_wear_range_counts(gain, un
     plant = StateSpace(loop.A, loop.B, loop.C, loop.D, PERIOD_S)
     response = frequency_response(plant, PlantCorners.omega)
     one_corner: Any = SimpleNamespace(
-        plants=[plant],
+        plants=LoopStack.joined([plant]),
         omega=PlantCorners.omega,
         responses=response[None, :],
-        zeros=[locked_driveline_zero(IDENTIFIED_DRIVELINE)],
+        zeros=np.array([locked_driveline_zero(IDENTIFIED_DRIVELINE)]),
     )
     empty = np.zeros((0, 0)), np.zeros((0, 1)), np.zeros((1, 0))
     controller = StateSpace(*empty, np.array([[gain]]), PERIOD_S)
