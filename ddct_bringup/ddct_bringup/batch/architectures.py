@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from ddct_bringup.batch.closing import ClosingStages
 from ddct_bringup.batch.controllers import Measured, StackedController
 from ddct_bringup.batch.loads import Loads
 from ddct_bringup.batch.open_loops import known_load, make_open_loops, static_torques
@@ -31,22 +32,32 @@ class Architectures:
         self._open_loops = make_open_loops(known, static)
         self._loads = Loads([known_load(run) for run in known], steps)
         self._controllers, self._factor = controllers, feedback_factor
+        self._closing = ClosingStages(scenarios, static) if scenarios[0].closing else None
         detailed = known[0].detailed and not known[0].shift
         self._start = scenarios[0].control_start_step if detailed else 0
+        self._last_request = np.zeros(len(known))
 
-    def update(self, measured: Measured, on_coming: Any = WHOLE) -> np.ndarray:
+    def update(
+        self, measured: Measured, running: np.ndarray, on_coming: Any = WHOLE
+    ) -> np.ndarray:
         """
         Return the requests in N m for the period of the measured signals, (R,).
 
-        `on_coming` is an `OnComingShare` with values (R,) in a shift.
+        Feedback is off in runs that do not run any more, (R,). `on_coming` is an `OnComingShare`,
+        in a shift with values (R,).
         """
         share = on_coming.share
         load_torque = self._loads.torque(measured.step, measured.vehicle_speed)
         measured = measured._replace(load_torque=load_torque)
         open_loop = share * self._open_loops(measured)
-        started = measured.step >= self._start
-        on = np.full(len(load_torque), started) & (share == 1.0)
+        on = running & (measured.step >= self._start) & (share == 1.0)
+        if self._closing:
+            open_loop = open_loop + self._closing.update(
+                measured, open_loop, self._last_request, on
+            )
+            on = on & ~self._closing.closed
         measured = measured._replace(open_loop_torque=open_loop, on=on)
-        torque = open_loop + self._factor * self._controllers.update(measured)
-        request: np.ndarray = on_coming.request(torque)
+        feedback = self._factor * self._controllers.update(measured)
+        self._last_request = open_loop + feedback
+        request: np.ndarray = on_coming.request(self._last_request)
         return request

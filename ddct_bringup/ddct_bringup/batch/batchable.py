@@ -17,7 +17,7 @@ from ddct_plant.scenario.settings import KnownSettings, RunSettings
 SUPPORTED_KEYS = frozenset(
     {
         *('name', 'description', 'duration_s', 'control_start_s', 'score_window_s', 'equilibrium'),
-        *('clutch',),
+        *('clutch', 'friction', 'heat', 'brake', 'engine_limits', 'closing', 'sensors'),
         *('engine', 'initial', 'reference', 'slip_reference', 'slope', 'load', 'vehicle'),
         *('driveline', 'actuator', 'controllers', 'gear', 'gearbox', 'adjusted'),
         *('engine_authority', 'engine_speed_reference', 'pedal_position'),
@@ -57,8 +57,6 @@ def kind_of(controller: Controller) -> type[StackedController]:
 
 
 def _why_not_known(known: KnownSettings) -> str:
-    if known.stick_slip:
-        return f'the clutch is {known.clutch}'
     if not known.lockstep:
         return f'the mode is {known.mode}'
     return why_no_reference(known) or _why_not_scenario(known.scenario)

@@ -1,18 +1,23 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Engines of many runs, which follow the driver's demand."""
+"""Engines of many runs: the driver's demand, within the limits of the engines."""
 
 from collections.abc import Sequence
 
 import numpy as np
 
+from ddct_bringup.batch.limited_engines import LimitedEngines
 from ddct_bringup.batch.stacks import distinct
 from ddct_plant.base.timebase import STEPS_PER_S
 from ddct_plant.scenario.scenario import Scenario
 
 
 class Engines:
-    """Engines of R runs, the counterpart of `Engine` without requests of a controller."""
+    """
+    Engines of R runs, the counterpart of `Engine` without requests of a controller.
+
+    Either all of them have limits or none has.
+    """
 
     def __init__(self, scenarios: Sequence[Scenario], steps: int) -> None:
         """Extend the demands to step `steps`."""
@@ -21,6 +26,8 @@ class Engines:
         first, places = distinct(demands)
         profiles = [demands[index].over(times) for index in first]
         self._demands = np.stack([profiles[place] for place in places], axis=-1)
+        limits = [each.engine_limits for each in scenarios if each.engine_limits is not None]
+        self._limited = LimitedEngines(limits) if limits else None
 
     def demand(self, step: int) -> np.ndarray:
         """Return the driver's demands of C_m in N m, (R,), at step `step`."""
@@ -28,5 +35,11 @@ class Engines:
         return demand
 
     def torque(self, demand: np.ndarray, speed: np.ndarray) -> np.ndarray:
-        """Return C_m in N m over a period, (R,), for the demand at w_m in rad/s, (R,) each."""
-        return demand
+        """Return C_m in N m over a period for the demands in N m and w_m in rad/s, (R,) each."""
+        return demand if self._limited is None else self._limited.deliver(demand, speed)
+
+    def over(self, speed: np.ndarray) -> np.ndarray:
+        """Return for w_m in rad/s, (R,), whether the engine ends the run."""
+        if self._limited is None:
+            return np.zeros(len(speed), dtype=bool)
+        return self._limited.over(speed)

@@ -20,7 +20,7 @@ def nominal_slips(runs: Sequence[KnownSettings], control_start: int) -> np.ndarr
     plants, scenarios = Plants(nominal, control_start), [run.scenario for run in runs]
     static = static_torques([each.driveline for each in scenarios], scenarios[0].equilibrium)
     loads = Loads([known_load(run) for run in runs], control_start)
-    slips = []
+    slips, running = [], np.ones(len(runs), dtype=bool)
     for step in range(control_start + 1):
         tick = plants.tick(step)
         observation, true = plants.observe(tick), tick.true
@@ -29,5 +29,5 @@ def nominal_slips(runs: Sequence[KnownSettings], control_start: int) -> np.ndarr
         load_torque = loads.torque(step, speed)
         speeds = true.engine_speed, true.shaft_speed
         request = static.torque(observation.delivered, load_torque, *speeds)
-        plants.advance(plants.reply(observation, request))
+        plants.advance(plants.reply(observation, request), running)
     return np.stack(slips, axis=-1)

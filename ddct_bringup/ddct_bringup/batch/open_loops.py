@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Open-loop torques of many runs, of one architecture."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Hashable, Sequence
 from functools import cache
 from typing import Any
 
@@ -15,6 +15,8 @@ from ddct_plant.models.parameters import DrivelineParameters
 from ddct_plant.models.static_torque import StaticTorque
 from ddct_plant.scenario.settings import KnownSettings
 
+_NOTHING = 'base'
+"""Architecture without an open loop."""
 OpenLoops = Callable[[Measured], np.ndarray]
 """Function from the measured signals with C_load to the torques in N m, (R,), without feedback."""
 
@@ -30,13 +32,21 @@ def known_load(known: KnownSettings) -> RoadLoad:
     return RoadLoad(scenario.load, scenario.vehicle, scenario.slope)
 
 
+def open_loop_kind(known: KnownSettings) -> Hashable:
+    """Return what runs with common open loops share: equilibrium, and order of the feedforward."""
+    scenario = known.scenario
+    if known.detailed or known.architecture == _NOTHING:
+        return known.architecture, scenario.equilibrium
+    return known.architecture, scenario.equilibrium, scenario.actuator.delay_substeps
+
+
 def make_open_loops(known: Sequence[KnownSettings], static: Any) -> OpenLoops:
     """Return C_fOL, the feedforward or nothing, by the architecture of the runs."""
     if known[0].detailed:
         return lambda m: static.torque(
             m.engine_torque, m.load_torque, m.engine_speed, m.shaft_speed
         )
-    if known[0].architecture == 'base':
+    if known[0].architecture == _NOTHING:
         return lambda m: np.zeros(len(known))
     return Feedforwards(known).update
 

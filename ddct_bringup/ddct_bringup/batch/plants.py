@@ -2,21 +2,32 @@
 # SPDX-License-Identifier: Apache-2.0
 """The plants of many runs, wired as `Plant` wires that of one."""
 
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
 from typing import Any
 
 import numpy as np
 
 from ddct_bringup.batch.actuators import Actuators
 from ddct_bringup.batch.engines import Engines
+from ddct_bringup.batch.friction_drivelines import FrictionDrivelines
 from ddct_bringup.batch.linear_drivelines import LinearDrivelines
 from ddct_bringup.batch.loads import Loads
-from ddct_bringup.batch.sides import LinearSides
+from ddct_bringup.batch.sensors import Sensors
+from ddct_bringup.batch.sides import LinearSides, StickSlipSides
+from ddct_plant.base.timebase import STEPS_PER_S
+from ddct_plant.models.driveline import PhaseEvent
 from ddct_plant.models.initial_state import InitialState
 from ddct_plant.plant import Observation, PlantReply, Tick
 from ddct_plant.scenario.initial_state import initial_state
-from ddct_plant.scenario.plant import make_load
+from ddct_plant.scenario.plant import holding_torque, make_load
 from ddct_plant.scenario.settings import RunSettings
+
+
+def plant_kind(settings: RunSettings) -> Hashable:
+    """Return what runs with common `Plants` share."""
+    scenario = settings.scenario
+    limited, sensed = scenario.engine_limits is not None, scenario.sensors is not None
+    return scenario.steps, settings.stick_slip, limited, sensed
 
 
 class Plants:
@@ -30,24 +41,40 @@ class Plants:
         """Start in the initial states; profiles of engine and road extend to step `steps`."""
         scenarios = [run.scenario for run in runs]
         initial = [initial_state(run) for run in runs]
-        self._drivelines = LinearDrivelines(scenarios, initial)
+        self._sensors = Sensors(runs, steps) if scenarios[0].sensors else None
         self._engines = Engines(scenarios, steps)
         self._loads = Loads([make_load(run) for run in runs], steps)
-        self._sides = [LinearSides(runs, _actuators(runs, initial, 0, steps))]
-        """Actuators and clutches of each side; a launch has one."""
+        actuators = _actuators(runs, initial, 0, steps)
+        self._drivelines: FrictionDrivelines | LinearDrivelines
+        self._sides: list[StickSlipSides | LinearSides]
+        self._holding: np.ndarray | None = None
+        if runs[0].stick_slip:
+            self._drivelines = FrictionDrivelines(scenarios, initial)
+            self._sides = [StickSlipSides(runs, actuators)]
+            times = np.arange(steps + 1) / STEPS_PER_S
+            capacities = [holding_torque(run).over(times) for run in runs]
+            self._holding = np.stack(capacities, axis=-1)
+        else:
+            angles = self._sensors is not None
+            self._drivelines = LinearDrivelines(scenarios, initial, angles=angles)
+            self._sides = [LinearSides(runs, actuators)]
 
     def tick(self, step: int) -> Tick:
         """Return the true outputs and the measurements at step k."""
         true = self._drivelines.outputs()
         demand: Any = self._engines.demand(step)
-        return Tick(step, true, true, None, demand)
+        measured: Any = true if self._sensors is None else self._sensors.speeds(step, true)
+        return Tick(step, true, measured, None, demand)
 
     def observe(self, tick: Tick) -> Observation:
         """Return what the controllers receive at a tick."""
         demand: Any = tick.demand
         speed: Any = tick.true.engine_speed
         torque: Any = self._engines.torque(demand, speed)
-        return Observation(tick, None, torque, torque)
+        reported: Any = torque
+        if self._sensors is not None:
+            reported = self._sensors.torque(tick.step, torque)
+        return Observation(tick, None, torque, reported)
 
     def reply(self, observation: Observation, torque_request: np.ndarray) -> PlantReply:
         """Return torques and recorded signals of the step of an observation; requests in N m."""
@@ -58,16 +85,34 @@ class Plants:
         signals: dict[str, Any] = true.signals
         torques, values = self._sides[0].reply(step, torque_request, true)
         signals.update(values)
+        if self._holding is not None:
+            torques = self._holding[step], *torques
         signals['torque_demand'] = tick.demand
         signals['engine_torque'] = engine_torque
         signals['load_torque'] = load_torque
         assert engine_torque is not None
         return PlantReply(engine_torque, load_torque, torques, signals)
 
-    def advance(self, reply: PlantReply) -> None:
-        """Integrate the drivelines over one period with the torques of `reply`."""
+    def over(self, tick: Tick) -> np.ndarray:
+        """Return whether a run ends with the state of a tick, (R,), as its engine ends it."""
+        speed: Any = tick.true.engine_speed
+        return self._engines.over(speed)
+
+    @property
+    def phase_events(self) -> dict[int, tuple[PhaseEvent, ...]]:
+        """Events of the clutches in the last period by the index of their run."""
+        return self._drivelines.phase_events
+
+    @property
+    def unsure(self) -> np.ndarray:
+        """Runs that must be computed step by step, (R,)."""
+        failed = self._drivelines.failed
+        return failed if self._sensors is None else failed | self._sensors.unsure
+
+    def advance(self, reply: PlantReply, running: np.ndarray) -> None:
+        """Integrate the drivelines of the runs of a mask, (R,), with the torques of `reply`."""
         torques: Any = (reply.engine_torque, reply.load_torque, *reply.friction_torques)
-        self._drivelines.step(*torques)
+        self._drivelines.step(running, *torques)
 
 
 def _actuators(

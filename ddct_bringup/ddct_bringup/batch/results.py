@@ -77,3 +77,9 @@ def part_of_stack(stack: Trajectory, index: Any) -> Trajectory:
     return Trajectory(
         {name: np.ascontiguousarray(values[index]) for name, values in stack.signals.items()}
     )
+
+
+def until(stack: Trajectory, step: int) -> Trajectory:
+    """Return the runs of a stack up to a step."""
+    cut = slice(step + 1)
+    return Trajectory({name: values[:, cut] for name, values in stack.signals.items()})

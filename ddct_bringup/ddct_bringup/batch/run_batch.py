@@ -11,7 +11,7 @@ other runs are in the batch. A run in which rounding grows beyond that has no re
 """
 
 from collections import defaultdict
-from collections.abc import Hashable, Sequence
+from collections.abc import Hashable, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -19,8 +19,8 @@ import numpy as np
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.batch.batchable import kind_of
 from ddct_bringup.batch.controllers import StackedController
-from ddct_bringup.batch.results import part_of_stack, stacked_results
-from ddct_bringup.batch.simulate import loop_kind, simulate_batch
+from ddct_bringup.batch.results import part_of_stack, stacked_results, until
+from ddct_bringup.batch.simulate import Stack, loop_kind, simulate_batch
 from ddct_bringup.scores.scored_run import ScoredRun
 from ddct_bringup.scores.validity import are_signals
 from ddct_bringup.verdict.limits import Limits
@@ -57,7 +57,7 @@ def run_batch(runs: Sequence[Run], limits: Limits) -> list[ScoredRun | None]:
     return results
 
 
-def _stack(runs: Sequence[Run], kind: _Kind, feedback_factor: float = 1.0) -> Trajectory:
+def _stack(runs: Sequence[Run], kind: _Kind, feedback_factor: float = 1.0) -> Stack:
     settings, controllers = zip(*runs, strict=True)
     stack = kind.of(controllers, [run.known for run in settings])
     return simulate_batch(settings, stack, controllers[0].preview_steps, feedback_factor)
@@ -82,16 +82,33 @@ def _results(runs: Sequence[Run], kind: _Kind, limits: Limits) -> list[ScoredRun
     try:
         with np.errstate(all='ignore'):  # what is not finite has no result
             stack = _stack(runs, kind)
-            counts = _usable(stack) & _repeatable(runs, kind, stack)
+            results: list[ScoredRun | None] = [None] * len(runs)
+            for length in np.unique(stack.last[~stack.unsure]).tolist():
+                for index, result in _of_length(runs, kind, stack, length, limits):
+                    results[index] = result
     except DdctError:
         if len(runs) == 1:
             return [None]
         half = len(runs) // 2
         return _results(runs[:half], kind, limits) + _results(runs[half:], kind, limits)
-    kept = stack if counts.all() else part_of_stack(stack, counts)
-    settings = [run for (run, _), each in zip(runs, counts, strict=True) if each]
-    results = iter(stacked_results(settings, kept, limits) if settings else [])
-    return [replace(next(results), fallbacks=kind.fallbacks) if each else None for each in counts]
+    return results
+
+
+def _of_length(
+    runs: Sequence[Run], kind: _Kind, stack: Stack, length: int, limits: Limits
+) -> Iterator[tuple[int, ScoredRun]]:
+    """Yield the index and the result of the runs that end with a step and are repeatable."""
+    found = np.flatnonzero(~stack.unsure & (stack.last == length))
+    whole = len(found) == len(runs)
+    part = until(stack.trajectory if whole else part_of_stack(stack.trajectory, found), length)
+    counts = _usable(part) & _repeatable([runs[index] for index in found.tolist()], kind, part)
+    found = found[counts]
+    if found.size:
+        settings = [runs[index][0] for index in found.tolist()]
+        kept = part if counts.all() else part_of_stack(part, counts)
+        results = stacked_results(settings, kept, limits)
+        for index, result in zip(found.tolist(), results, strict=True):
+            yield index, replace(result, fallbacks=kind.fallbacks)
 
 
 def _repeatable(runs: Sequence[Run], kind: _Kind, stack: Trajectory) -> np.ndarray:
@@ -107,7 +124,8 @@ def _repeatable(runs: Sequence[Run], kind: _Kind, stack: Trajectory) -> np.ndarr
     if len(suspects):
         suspected = [runs[index] for index in suspects.tolist()]
         slip = stack.slip_speed[suspects]
-        again = _stack(suspected, kind, _FEEDBACK_FACTOR).slip_speed
+        again = _stack(suspected, kind, _FEEDBACK_FACTOR).trajectory.slip_speed
+        again = again[:, : slip.shape[-1]]
         difference = np.max(np.abs(again - slip), axis=-1)
         repeatable[suspects] = difference <= _SLIP_TOLERANCE * np.max(np.abs(slip), axis=-1)
     return repeatable
@@ -118,5 +136,6 @@ def _usable(stack: Trajectory) -> np.ndarray:
     each = [
         are_signals(values).all(axis=tuple(range(1, values.ndim)))
         for values in stack.signals.values()
+        if values.dtype != object
     ]
     return np.all(each, axis=0)

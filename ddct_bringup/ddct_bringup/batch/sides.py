@@ -8,7 +8,11 @@ from typing import Any
 import numpy as np
 
 from ddct_bringup.batch.actuators import Actuators
+from ddct_bringup.batch.clutches import FrictionClutches
 from ddct_plant.scenario.settings import RunSettings
+
+Reply = tuple[tuple[np.ndarray, ...], dict[str, np.ndarray]]
+"""Torques in N m of a period, (R, 11) each, and signals (R,) by name."""
 
 
 class LinearSides:
@@ -16,11 +20,29 @@ class LinearSides:
 
     def __init__(self, runs: Sequence[RunSettings], actuators: Actuators) -> None:
         self._actuators = actuators
-        self._wear = np.array([run.case.wear_gain for run in runs])[:, np.newaxis]
+        self._wear_gains = np.array([run.case.wear_gain for run in runs])[:, np.newaxis]
 
-    def reply(
-        self, step: int, request: np.ndarray, outputs: Any
-    ) -> tuple[tuple[np.ndarray, ...], dict[str, np.ndarray]]:
-        """Return the transmitted torques (R, 11) in N m over the period of t_k, and signals."""
-        torque = self._wear * self._actuators.update(step, request)
+    def reply(self, step: int, request: np.ndarray, outputs: Any) -> Reply:
+        """Return the transmitted torques over the period of t_k, and signals."""
+        torque = self._wear_gains * self._actuators.update(step, request)
         return (torque,), {'torque_request': request}
+
+
+class StickSlipSides:
+    """Actuators and sticking clutches of R runs, the counterpart of `StickSlipSide`."""
+
+    def __init__(self, runs: Sequence[RunSettings], actuators: Actuators) -> None:
+        self._actuators = actuators
+        scenarios = [run.scenario for run in runs]
+        self._clutches = FrictionClutches(
+            [scenario.friction for scenario in scenarios],
+            [scenario.heat for scenario in scenarios],
+            np.array([run.case.wear_gain for run in runs]),
+        )
+
+    def reply(self, step: int, request: np.ndarray, outputs: Any) -> Reply:
+        """Return kinetic and static capacities over the period of t_k, and signals."""
+        torque = self._actuators.update(step, request)
+        capacity = self._clutches.reply(step, torque, outputs.slip_speed, outputs.friction_work)
+        signals = {'torque_request': request, 'clutch_temperature': capacity.temperature_c}
+        return capacity[:2], signals

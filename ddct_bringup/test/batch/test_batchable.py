@@ -120,7 +120,6 @@ def test_a_controller_is_in_a_batch_if_its_kind_is_supported(controller, reason)
 @pytest.mark.parametrize(
     ('changes', 'settings', 'reason'),
     [
-        ({'clutch': 'stick_slip'}, {}, 'the clutch is stick_slip'),
         ({}, {'mode': 'realtime'}, 'the mode is realtime'),
         (
             {
@@ -130,25 +129,32 @@ def test_a_controller_is_in_a_batch_if_its_kind_is_supported(controller, reason)
             {},
             'reference.shape is engine_speed_target',
         ),
-        (
-            {'engine_limits': {}, 'engine.torque_n_m': [0.0, 200.0]},
-            {},
-            'the scenario gives engine_limits',
-        ),
-        ({'sensors.engine_speed.noise_rad_s': 0.1}, {}, 'the scenario gives sensors'),
     ],
 )
-def test_a_plant_is_in_a_batch_if_it_is_linear(changes, settings, reason):
+def test_a_run_has_the_reason_why_it_is_not_in_a_batch(changes, settings, reason):
     assert (
         why_not_batchable(RunSettings.of(load_scenario('thesis', changes), settings), PI) == reason
     )
 
 
+@pytest.mark.parametrize(
+    'changes',
+    [
+        {'clutch': 'stick_slip', 'closing': {}, 'friction.most_n_m': 300.0, 'heat.plate_c': 50.0},
+        {'clutch': 'stick_slip', 'brake': {'time_s': [0.0], 'torque_n_m': [100.0]}},
+        {'engine_limits': {}, 'engine.torque_n_m': [0.0, 200.0]},
+        {'sensors.engine_speed.noise_rad_s': 0.1},
+    ],
+)
+def test_a_plant_with_friction_limits_or_sensors_is_in_a_batch(changes):
+    assert not why_not_batchable(RunSettings.of(load_scenario('thesis', changes), {}), PI)
+
+
 def test_a_run_with_an_unsupported_key_is_not_in_a_batch():
     names = {key_of(field) for field in dataclasses.fields(Scenario)}
-    assert names > SUPPORTED_KEYS
-    stick_slip = {f.name for f in dataclasses.fields(Scenario) if f.metadata.get('stick_slip')}
-    assert names - SUPPORTED_KEYS >= {*stick_slip, 'engine_limits'}
+    assert names - SUPPORTED_KEYS == {'shift'}
+    settings = RunSettings.of(load_scenario('upshift'), {})
+    assert why_not_batchable(settings, PI) == 'the scenario gives shift'
 
 
 def test_a_foreign_linear_controller_has_the_results_of_the_run_step_by_step():

@@ -157,7 +157,7 @@ def test_whole_trajectories_are_those_of_the_run_step_by_step():
     ]
     runs = [(each, make_controller('ls8', each.known)) for each in settings]
     models = [controller.linear_model() for _, controller in runs]
-    stack = simulate_batch(settings, LinearControllers(models))
+    stack = simulate_batch(settings, LinearControllers(models)).trajectory
     for index, (each, controller) in enumerate(runs):
         controller.reset()
         expected = run_headless(each, controller)

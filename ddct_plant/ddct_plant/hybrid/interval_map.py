@@ -46,6 +46,19 @@ class Interval:
     """Friction torques at the end, (N,), left limits."""
 
 
+class ManyEnds(NamedTuple):
+    """Results of the intervals of R motions in one mode, as if none had an event."""
+
+    state: np.ndarray
+    """States at the end, (R, n)."""
+    friction: np.ndarray
+    """Friction torques at the end, (R, N), left limits."""
+    work: np.ndarray
+    """Friction work of each element, (R, N)."""
+    least: np.ndarray
+    """Least value of the guards of each element, (R, N); an event is possible if negative."""
+
+
 class IntervalMap:
     """
     Linear map of one mode over an interval from v = [x, *u, *c], see `IntervalLayout`, to its end.
@@ -55,6 +68,7 @@ class IntervalMap:
 
     def __init__(self, flow: ModeFlow, piece_s: float, layout: IntervalLayout) -> None:
         self._pieces, self._states, self._signs = layout.pieces, flow.states, flow.signs
+        self._guarded = flow.guarded
         self._slipping = len(flow.slipping)
         self._sticking = [
             (i, flow.guarded.index(i)) for i, sign in enumerate(flow.signs) if not sign
@@ -76,7 +90,9 @@ class IntervalMap:
         """Number of values before the checks."""
         # The end of a piece is the start of the next one.
         within, at_end = checks[:, :-1], checks[-1, -1]
-        self._whole = _product(np.vstack([*results, within.reshape(-1, within.shape[3]), at_end]))
+        self.matrix = np.vstack([*results, within.reshape(-1, within.shape[3]), at_end])
+        """Map from v to the values that `whole` and `of_many` read, (rows, v)."""
+        self._whole = _product(self.matrix)
 
     def _work_rows(
         self, slips: np.ndarray, slipping: list[int], layout: IntervalLayout
@@ -115,6 +131,26 @@ class IntervalMap:
         for element, integral, place in self._held_work:
             work[element] = results[integral] * capacities[place]
         return Interval(results[: self._states], self._signs, [], work, results[self._friction])
+
+    def of_many(self, values: np.ndarray, capacities: np.ndarray) -> 'ManyEnds':
+        """
+        Return the results of the intervals of R motions, as if none had an event.
+
+        `values` are the products of `matrix` and the v of each motion, (R, rows), `capacities`
+        those in the v, (R, c).
+        """
+        checks, guards = values[:, self._results :], len(self._guarded)
+        least = np.full((len(values), len(self._signs)), np.inf)
+        for guard, element in enumerate(self._guarded):
+            np.minimum(
+                least[:, element], checks[:, guard::guards].min(axis=1), out=least[:, element]
+            )
+        work = np.zeros_like(least)
+        for element, integrals, where in self._work:
+            work[:, element] = (values[:, integrals] * capacities[:, where]).sum(axis=1)
+        for element, integral, place in self._held_work:
+            work[:, element] = values[:, integral] * capacities[:, place]
+        return ManyEnds(values[:, : self._states], values[:, self._friction], work, least)
 
     def by_piece(self, v: np.ndarray) -> tuple[np.ndarray, np.ndarray, int]:
         """

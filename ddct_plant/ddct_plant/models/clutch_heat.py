@@ -2,8 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Thermal model of the clutch: three lumped masses that the friction work of a period warms."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
+from functools import lru_cache, partial
+from typing import Any, Self
 
 import numpy as np
 
@@ -67,22 +69,18 @@ class ClutchHeat:
 
     def __init__(self, parameters: HeatParameters) -> None:
         """Start at the initial temperatures of the parameters."""
-        p = parameters
-        plate, facing, housing = p.plate_j_k, p.facing_j_k, p.housing_j_k
-        to_plate, to_housing = p.facing_to_plate_w_k, p.plate_to_housing_w_k
-        a = np.array(
-            [
-                [-(to_plate + to_housing) / plate, to_plate / plate, to_housing / plate],
-                [to_plate / facing, -to_plate / facing, 0.0],
-                [to_housing / housing, 0.0, -(to_housing + p.housing_to_ambient_w_k) / housing],
-            ]
-        )
-        b = np.array([[(1.0 - p.facing_share) / plate], [p.facing_share / facing], [0.0]])
-        sampled = discretise_zoh(StateSpace(a, b, np.eye(3), np.zeros((3, 1))), PERIOD_S)
-        # Plain numbers: for so small a product numpy takes longer.
-        self._update = np.hstack([sampled.a, sampled.b / PERIOD_S]).ravel().tolist()
-        self._ambient_c = p.ambient_c
-        self._above_ambient = [t - p.ambient_c for t in (p.plate_c, p.facing_c, p.housing_c)]
+        self._update: Sequence[Any] = _update_of(parameters)
+        self._ambient_c: Any = parameters.ambient_c
+        self._above_ambient: list[Any] = _above_ambient(parameters)
+
+    @classmethod
+    def of_many(cls, parameters: Sequence[HeatParameters]) -> Self:
+        """Return the temperatures of R clutches, whose values are arrays, (R,)."""
+        heat = cls(parameters[0])
+        heat._update = list(np.transpose([_update_of(each) for each in parameters]))
+        heat._ambient_c = np.array([each.ambient_c for each in parameters])
+        heat._above_ambient = list(np.transpose([_above_ambient(each) for each in parameters]))
+        return heat
 
     @property
     def facing_c(self) -> float:
@@ -98,3 +96,27 @@ class ClutchHeat:
             fp * p + ff * f + fh * h + fw * friction_work,
             hp * p + hf * f + hh * h + hw * friction_work,
         ]
+
+
+def _above_ambient(parameters: HeatParameters) -> list[float]:
+    p = parameters
+    return [t - p.ambient_c for t in (p.plate_c, p.facing_c, p.housing_c)]
+
+
+@lru_cache
+def _update_of(parameters: HeatParameters) -> tuple[float, ...]:
+    """Return the rows of the map from temperatures and friction work to those 10 ms later."""
+    p = parameters
+    plate, facing, housing = p.plate_j_k, p.facing_j_k, p.housing_j_k
+    to_plate, to_housing = p.facing_to_plate_w_k, p.plate_to_housing_w_k
+    a = np.array(
+        [
+            [-(to_plate + to_housing) / plate, to_plate / plate, to_housing / plate],
+            [to_plate / facing, -to_plate / facing, 0.0],
+            [to_housing / housing, 0.0, -(to_housing + p.housing_to_ambient_w_k) / housing],
+        ]
+    )
+    b = np.array([[(1.0 - p.facing_share) / plate], [p.facing_share / facing], [0.0]])
+    sampled = discretise_zoh(StateSpace(a, b, np.eye(3), np.zeros((3, 1))), PERIOD_S)
+    # Plain numbers: for so small a product numpy takes longer.
+    return tuple(np.hstack([sampled.a, sampled.b / PERIOD_S]).ravel().tolist())

@@ -115,7 +115,7 @@ class RoadLoad:
         self.wheel_radius = vehicle.wheel_radius_m
         """Wheel radius r_w in m."""
         self._constant_force = self._force(parameters.slope_rad)
-        self._constant_rolling = self._rolling_torque(parameters.slope_rad)
+        self._constant_rolling: float = self._rolling_torque(parameters.slope_rad)
 
     def torque(self, vehicle_speed: float, time_s: float = 0.0) -> float:
         """
@@ -130,7 +130,8 @@ class RoadLoad:
         """Return the rolling resistance F_r r_w in N m at a scenario time in s."""
         if self._slope is None:
             return self._constant_rolling
-        return self._rolling_torque(self._slope.at(time_s))
+        torque: float = self._rolling_torque(self._slope.at(time_s))
+        return torque
 
     def forces(self, times_s: np.ndarray) -> np.ndarray:
         """Return F_r + F_g in N, (n,), at scenario times in s, (n,)."""
@@ -138,8 +139,15 @@ class RoadLoad:
             return np.full(len(times_s), self._constant_force)
         return self._force(self._slope.over(times_s), np.cos, np.sin)
 
-    def _rolling_torque(self, slope_rad: float) -> float:
-        return self._weight * math.cos(slope_rad) * self._rolling * self.wheel_radius
+    def rolling_torques(self, times_s: np.ndarray) -> np.ndarray:
+        """Return the rolling resistance F_r r_w in N m, (n,), at scenario times in s, (n,)."""
+        if self._slope is None:
+            return np.full(len(times_s), self._constant_rolling)
+        torques: np.ndarray = self._rolling_torque(self._slope.over(times_s), np.cos)
+        return torques
+
+    def _rolling_torque(self, slope_rad: Any, cos: Any = math.cos) -> Any:
+        return self._weight * cos(slope_rad) * self._rolling * self.wheel_radius
 
     def _force(self, slope_rad: Any, cos: Any = math.cos, sin: Any = math.sin) -> Any:
         return self._weight * (self._rolling * cos(slope_rad) + sin(slope_rad))
@@ -160,6 +168,11 @@ class HoldingTorque:
         """Return the capacity in N m, not negative, at a scenario time in s."""
         rolling = self._load.rolling_torque(time_s)
         return rolling + self._brake.at(time_s) if self._brake else rolling
+
+    def over(self, times_s: np.ndarray) -> np.ndarray:
+        """Return the capacity in N m, (n,), at scenario times in s, (n,)."""
+        rolling = self._load.rolling_torques(times_s)
+        return rolling + self._brake.over(times_s) if self._brake else rolling
 
 
 def air_and_slope(

@@ -1,0 +1,170 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""Motions of many runs with dry friction: those without an event in a period step together."""
+
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from ddct_bringup.batch.stacks import by_run, distinct, product
+from ddct_plant.base.errors import DdctError
+from ddct_plant.hybrid.friction_system import Signs
+from ddct_plant.hybrid.integrator import HybridIntegrator
+from ddct_plant.hybrid.interval_map import Event, Interval, IntervalMap
+
+CLOSE = 1e-9
+"""
+Least value of a guard over its size without which a period goes to the integrator of its run.
+
+The size of a slip is that of the speeds it is the difference of, that of a margin the capacity.
+"""
+Runs = slice | np.ndarray
+"""Indices of some runs; a slice for all of them, so that nothing is copied."""
+
+
+class _Forcing(NamedTuple):
+    """Values of a period as `HybridIntegrator.advance` takes them, of R runs."""
+
+    inputs: np.ndarray
+    kinetic: np.ndarray
+    static: np.ndarray
+
+    def of(self, runs: Runs) -> '_Forcing':
+        return _Forcing(*(each[runs] for each in self))
+
+
+class Motions:
+    """States and modes of R motions, the counterpart of `HybridIntegrator` with its intervals."""
+
+    def __init__(self, integrators: Sequence[HybridIntegrator], start: Sequence[Interval]) -> None:
+        """Take the integrator of each run, and the interval at whose end it starts."""
+        self.state = np.array([each.state for each in start])
+        """States, (R, n)."""
+        self.signs = np.array([each.signs for each in start])
+        """Modes, (R, N)."""
+        self.friction = np.array([each.friction for each in start])
+        """Friction torques at the end of the last period, (R, N), left limits."""
+        self.work = np.array([each.work for each in start])
+        """Friction work of each element in the last period, (R, N)."""
+        self.events: dict[int, list[Event]] = {}
+        """Events in the last period by the index of their run."""
+        self.failed = np.zeros(len(start), dtype=bool)
+        """Runs that could not be integrated, (R,); they are where they were before."""
+        self._maps = _Maps(integrators)
+        self._integrators = integrators
+
+    def advance(
+        self, inputs: np.ndarray, kinetic: np.ndarray, static: np.ndarray, running: np.ndarray
+    ) -> None:
+        """
+        Integrate one interval of the runs of a mask, (R,).
+
+        `inputs` (R, m), `kinetic` and `static` (R, c) are those of `HybridIntegrator.advance`.
+        """
+        forcing, self.events = _Forcing(inputs, kinetic, static), {}
+        sizes = self._maps.speeds(self.state)
+        for signs, runs in _by_mode(self.signs, running & ~self.failed):
+            for some, at_once, matrix in self._maps.of_mode(signs, runs):
+                self._advance_some(signs, some, at_once, matrix, forcing, sizes)
+
+    def _advance_some(
+        self,
+        signs: Signs,
+        runs: Runs,
+        at_once: IntervalMap,
+        matrix: np.ndarray,
+        forcing: _Forcing,
+        sizes: np.ndarray,
+    ) -> None:
+        """Integrate runs in one mode, those with a possible event one by one."""
+        inputs, kinetic, static = forcing.of(runs)
+        capacities, sizes = kinetic.copy(), sizes[runs].copy()
+        layout = self._integrators[0].layout
+        for element, where in enumerate(layout.capacities):
+            if not signs[element]:
+                capacities[:, where] = static[:, where]
+                sizes[:, element] = static[:, where].max(axis=1)
+        values = product(matrix, np.hstack([self.state[runs], inputs, capacities]))
+        ends = at_once.of_many(values, capacities)
+        # Not `<`: a value that is not a number must not pass either.
+        sure = (ends.least >= CLOSE * sizes).all(axis=1)
+        before = self.state[runs].copy()
+        self.state[runs], self.friction[runs], self.work[runs] = ends[:3]
+        for place in np.flatnonzero(~sure).tolist():
+            run = place if isinstance(runs, slice) else int(runs[place])
+            self.state[run] = before[place]
+            self._advance_one(run, signs, forcing)
+
+    def _advance_one(self, run: int, signs: Signs, forcing: _Forcing) -> None:
+        """Integrate one run from event to event."""
+        inputs, kinetic, static = (each[run].tolist() for each in forcing)
+        if kinetic == static:
+            static = kinetic
+        try:
+            end = self._integrators[run].advance(
+                self.state[run].tolist(), signs, inputs, kinetic, static
+            )
+        except DdctError:
+            self.failed[run] = True
+            return
+        self.state[run], self.signs[run] = end.state, end.signs
+        self.friction[run], self.work[run] = end.friction, end.work
+        if end.events:
+            self.events[run] = end.events
+
+
+class _Maps:
+    """Maps of R runs over an interval, by the mode: one matrix for all, or one for each run."""
+
+    def __init__(self, integrators: Sequence[HybridIntegrator]) -> None:
+        self._integrators = integrators
+        first, places = distinct(map(id, integrators))
+        self._shared = len(first) == 1
+        self._slips = by_run([integrators[i].system.size_of_h for i in first], places)
+        self._heights: dict[Signs, np.ndarray] = {}
+        """Rows of the matrix of each run in a mode, (R,); 0 where it is not made."""
+        self._stacks: dict[tuple[Signs, int], np.ndarray] = {}
+
+    def speeds(self, state: np.ndarray) -> np.ndarray:
+        """Return the sizes of the speeds whose difference a slip is, (R, N)."""
+        return product(self._slips, np.abs(state))
+
+    def of_mode(self, signs: Signs, runs: Runs) -> Iterator[tuple[Runs, IntervalMap, np.ndarray]]:
+        """Yield runs with matrices of one height: the runs, the map of one, and the matrices."""
+        if self._shared:
+            at_once = self._integrators[0].maps[signs]
+            yield runs, at_once, at_once.matrix
+            return
+        heights = self._made(signs, runs)[runs]
+        for height in np.unique(heights).tolist():
+            some = runs
+            if (heights != height).any():
+                some = np.arange(len(self._integrators))[runs][heights == height]
+            first = 0 if isinstance(some, slice) else int(some[0])
+            at_once = self._integrators[first].maps[signs]
+            yield some, at_once, self._stacks[signs, height][some]
+
+    def _made(self, signs: Signs, runs: Runs) -> np.ndarray:
+        """Make the matrices of runs in a mode where they are not yet; return the heights (R,)."""
+        count = len(self._integrators)
+        heights = self._heights.setdefault(signs, np.zeros(count, dtype=int))
+        if not heights[runs].all():
+            for run in np.arange(count)[runs][heights[runs] == 0].tolist():
+                matrix = self._integrators[run].maps[signs].matrix
+                key = signs, len(matrix)
+                if key not in self._stacks:
+                    self._stacks[key] = np.empty((count, *matrix.shape))
+                self._stacks[key][run], heights[run] = matrix, len(matrix)
+        return heights
+
+
+def _by_mode(signs: np.ndarray, running: np.ndarray) -> Iterator[tuple[Signs, Runs]]:
+    """Yield each mode of running runs, and these runs."""
+    codes = signs @ 3 ** np.arange(signs.shape[1])
+    if running.all() and (codes == codes[0]).all():
+        yield tuple(signs[0].tolist()), slice(None)
+        return
+    for code in np.unique(codes[running]).tolist():
+        runs = np.flatnonzero(running & (codes == code))
+        yield tuple(signs[runs[0]].tolist()), runs

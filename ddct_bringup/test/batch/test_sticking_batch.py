@@ -1,0 +1,228 @@
+# Copyright 2026 DDCT team
+# SPDX-License-Identifier: Apache-2.0
+"""A batch of runs whose plates stick gives those of the run step by step."""
+
+from collections import Counter, defaultdict
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ddct_bringup.batch.batchable import kind_of, why_not_batchable
+from ddct_bringup.batch.results import part_of_stack
+from ddct_bringup.batch.run_batch import run_batch
+from ddct_bringup.batch.simulate import loop_kind, simulate_batch
+from ddct_bringup.campaign.rows import scored_headless
+from ddct_bringup.run.headless import run_headless
+from ddct_bringup.verdict.limits import packaged_limits
+from ddct_controllers.from_python import chosen_from
+from ddct_controllers.registry import make_controller
+from ddct_plant.base.errors import DdctError
+from ddct_plant.scenario.file import load_scenario
+from ddct_plant.scenario.settings import CaseSettings, KnownSettings, RunSettings
+
+LIMITS = packaged_limits()
+DRIVES = ('launch', 'launch_gentle', 'launch_hill', 'launch_hot', 'tip_in')
+CARS = ('c635', 'c635_no_limits', 'city7')
+ARCHITECTURES = ('detailed', 'detailed', 'feedforward', 'base')
+
+
+def some(random, low, high):
+    return float(random.uniform(low, high))
+
+
+def friction(random):
+    return {
+        'friction.static_over_kinetic': some(random, 1.0, 1.3),
+        'friction.kiss_torque_n_m': some(random, 0.0, 10.0),
+        'friction.kiss_drift_n_m_k': some(random, 0.0, 0.2),
+        'friction.slip_rad_s': [0.0, 50.0, 200.0],
+        'friction.slip_share': [1.0, some(random, 0.8, 1.0), 0.8],
+        'heat.facing_c': some(random, 20.0, 330.0),
+    }
+
+
+def road(random):
+    times = {'time_s': [0.0, 0.5, 1.0, 1.5]}
+    torques = random.uniform(0.0, 400.0, 3).tolist()
+    slopes = random.uniform(-0.1, 0.1, 4).tolist()
+    return {
+        'brake': {**times, 'torque_n_m': [*torques, 0.0]},
+        'load.slope_rad': 0.0,
+        'slope': {**times, 'slope_rad': slopes},
+    }
+
+
+def sensors(random):
+    return {
+        'sensors.engine_speed.noise_rad_s': some(random, 0.0, 0.3),
+        'sensors.shaft_speed.teeth': int(random.integers(40, 80)),
+        'sensors.shaft_speed.count_s': 0.02,
+        'sensors.wheel_speed.quantum_rad_s': 0.05,
+        'sensors.engine_torque.delay_s': 0.01 * int(random.integers(0, 4)),
+        'sensors.engine_torque.bias_n_m': some(random, -3.0, 3.0),
+        'sensors.vehicle_speed.dropout': 0.2,
+    }
+
+
+def engine(random):
+    return {
+        'engine_limits.idle_rad_s': some(random, 80.0, 110.0),
+        'engine_limits.stall_rad_s': some(random, 60.0, 78.0),
+        'closing.dwell_s': 0.05,
+        'closing.margin': some(random, 1.0, 2.0),
+    }
+
+
+PARTS = {'plain': lambda random: {}, **{f.__name__: f for f in (friction, road, sensors, engine)}}
+
+
+def drawn(random, drive, car, part):
+    """Return a run of a packaged drive with a car, with random values of one part of the plant."""
+    changes = {
+        'vehicle.mass_kg': some(random, 1000.0, 2000.0),
+        'actuator.delay_s': int(random.integers(0, 35)) / 1000,
+        'load.wind_speed_m_s': some(random, -15.0, 15.0),
+        **PARTS[part](random),
+    }
+    settings = RunSettings(
+        KnownSettings(
+            load_scenario(None, changes, car=car, drive=drive), str(random.choice(ARCHITECTURES))
+        ),
+        CaseSettings(wear_gain=some(random, 0.5, 1.2), seed=int(random.integers(1000))),
+    )
+    name = str(random.choice(['ls8', 'hinf1', 'ls3', 'pi']))
+    return settings, make_controller(name, settings.known)
+
+
+def drawn_runs(seed):
+    random, runs = np.random.default_rng(seed), []
+    for drive in DRIVES:
+        for car in CARS:
+            for part in random.choice(list(PARTS), 2, replace=False).tolist():
+                try:
+                    runs.append(drawn(random, drive, car, part))
+                except DdctError:
+                    continue  # a drive that does not fit the car
+    return runs
+
+
+def simulated(runs):
+    """Yield the place of each run with its signals in a batch up to its end, or None if unsure."""
+    groups = defaultdict(list)
+    for place, (settings, controller) in enumerate(runs):
+        kind = kind_of(controller)
+        groups[loop_kind(settings), kind, kind.key(controller)].append(place)
+    for (_, kind, _), places in groups.items():
+        settings, controllers = zip(*[runs[place] for place in places], strict=True)
+        stack = kind.of(controllers, [run.known for run in settings])
+        found = simulate_batch(settings, stack)
+        for index, place in enumerate(places):
+            end = int(found.last[index]) + 1
+            signals = part_of_stack(found.trajectory, index).signals
+            cut = {name: values[:end] for name, values in signals.items()}
+            yield place, None if found.unsure[index] else cut
+
+
+def bits_of(runs):
+    """Return the bits of all signals of each run."""
+
+    def bits(signals):
+        return signals and {
+            name: values if isinstance(values, tuple) else values.tobytes()
+            for name, values in signals.items()
+        }
+
+    found = {place: bits(signals) for place, signals in simulated(runs)}
+    return [found[place] for place in range(len(runs))]
+
+
+@pytest.fixture(scope='module')
+def runs():
+    found = drawn_runs(4)
+    assert len(found) >= 15
+    return found
+
+
+def test_signals_events_and_lengths_are_those_of_the_run_step_by_step(runs):
+    kinds: Counter[str] = Counter()
+    ends, unsure = set(), 0
+    for place, signals in simulated(runs):
+        settings, controller = runs[place]
+        assert not why_not_batchable(settings, controller)
+        if signals is None:
+            unsure += 1
+            continue
+        controller.reset()
+        expected = run_headless(settings, controller)
+        ends.add(expected.steps < settings.scenario.steps)
+        for name, ours in signals.items():
+            theirs = getattr(expected, name)
+            if name == 'phase_events':
+                kinds.update(assert_same_events(ours, theirs))
+                continue
+            assert ours.shape == theirs.shape
+            difference = np.abs(ours - theirs).max()
+            assert difference <= 1e-9 * np.abs(theirs).max(), (name, settings.scenario.name)
+    assert min(kinds['lock'], kinds['release']) > 5
+    assert ends == {True, False}
+    assert unsure <= 0.1 * len(runs)
+
+
+def assert_same_events(ours, theirs):
+    """Check that events are the same to rounding; return their kinds."""
+    kinds = []
+    for mine, other in zip(ours, theirs, strict=True):
+        assert [each.kind for each in mine] == [each.kind for each in other]
+        kinds += [each.kind for each in mine]
+        for one, same in zip(mine, other, strict=True):
+            assert one.time_s == pytest.approx(same.time_s, rel=1e-9)
+            slope = same.slip_acceleration
+            assert one.slip_acceleration == pytest.approx(slope, rel=1e-6, abs=1e-6)
+    return kinds
+
+
+def test_figures_states_and_limits_are_those_of_the_run_step_by_step(runs):
+    states: Counter[str] = Counter()
+    for (settings, controller), ours in zip(runs, run_batch(runs, LIMITS), strict=True):
+        if ours is None:
+            continue
+        expected = scored_headless(settings, chosen_from(controller, 'same'), LIMITS)
+        states[ours.state] += 1
+        assert (ours.valid, ours.reason, ours.state, ours.why) == (
+            *(expected.valid, expected.reason, expected.state, expected.why),
+        )
+        for name, value in expected.metrics.items():
+            close = None if value is None else pytest.approx(value, rel=1e-8, abs=1e-9)
+            assert ours.metrics[name] == close, name
+        for limit, other in zip(ours.limits, expected.limits, strict=True):
+            assert limit == replace(other, value=limit.value)
+    assert len(states) >= 3
+    assert sum(states.values()) >= 0.9 * len(runs)
+
+
+@pytest.mark.parametrize('size', [1, 2, 3, 33])
+def test_a_run_does_not_depend_on_the_rest_of_a_batch(size):
+    """The runs of a batch have the bits that they have alone, in any order."""
+    chosen = [short_run(seed) for seed in range(size)]
+    alone = [bits_of([run])[0] for run in chosen[:: size // 3 or 1]]
+    order = np.random.default_rng(size).permutation(size).tolist()
+    together, mixed = bits_of(chosen), bits_of([chosen[place] for place in order])
+    assert together[:: size // 3 or 1] == alone
+    assert mixed == [together[place] for place in order]
+
+
+def short_run(seed):
+    """Return a run of a batch whose cars, delays, friction, brakes and engines differ."""
+    random = np.random.default_rng(seed)
+    changes = {
+        **{'duration_s': 1.2, 'control_start_s': 0.2, 'score_window_s': [0.2, 1.1]},
+        'vehicle.mass_kg': 1500.0 if seed % 2 else some(random, 1000.0, 2000.0),
+        'actuator.delay_s': int(random.integers(0, 35)) / 1000,
+        **{**friction(random), **road(random), **sensors(random), **engine(random)},
+    }
+    settings = RunSettings(
+        KnownSettings(load_scenario('launch', changes)),
+        CaseSettings(wear_gain=some(random, 0.5, 1.2), seed=seed),
+    )
+    return settings, make_controller('ls8', settings.known)
