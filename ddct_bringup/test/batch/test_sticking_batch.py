@@ -67,8 +67,8 @@ def sensors(random):
 
 def engine(random):
     return {
-        'engine_limits.idle_rad_s': some(random, 80.0, 110.0),
-        'engine_limits.stall_rad_s': some(random, 60.0, 78.0),
+        'engine_limits.idle_rad_s': some(random, 100.0, 104.0),
+        'engine_limits.stall_rad_s': some(random, 94.0, 99.0),
         'closing.dwell_s': 0.05,
         'closing.margin': some(random, 1.0, 2.0),
     }
@@ -129,7 +129,7 @@ def bits_of(runs):
 
     def bits(signals):
         return signals and {
-            name: values if isinstance(values, tuple) else values.tobytes()
+            name: values.tolist() if values.dtype == object else values.tobytes()
             for name, values in signals.items()
         }
 
