@@ -178,7 +178,7 @@ def test_whole_runs_are_those_step_by_step(name, options, scenario, changes, arc
     assert {why_not_batchable(*run) for run in runs} == {''}
     settings, controllers = zip(*runs, strict=True)
     stack = kind_of(controllers[0]).of(controllers, [each.known for each in settings])
-    trajectory = simulate_batch(settings, stack, controllers[0].preview_steps)
+    trajectory = simulate_batch(settings, stack, controllers[0].preview_steps).trajectory
     for index, ours in enumerate(run_batch(runs, LIMITS)):
         controller = controllers[index]
         expected = scored_headless(settings[index], chosen_from(controller, 'same'), LIMITS)
