@@ -13,7 +13,7 @@ import pytest
 from refusals import refused
 from support.complaints import assert_one_line
 from support.processes import Programs, children_of
-from support.short_campaign import RUNS, SPEC, shards, wait_for_shards
+from support.short_campaign import RUNS, shards, wait_for_shards, write_specification
 
 from ddct_bringup.campaign import conduct
 from ddct_bringup.campaign.conduct import RESULTS
@@ -27,9 +27,7 @@ from ddct_plant.base.errors import DdctError
 @pytest.fixture
 def spec(tmp_path: Path) -> Path:
     """Return a specification of runs that take a tenth of a second each."""
-    file = tmp_path / 'mass.yaml'
-    file.write_text(SPEC, encoding='utf-8')
-    return file
+    return write_specification(tmp_path)
 
 
 def test_a_worker_that_dies_and_ctrl_c_cost_a_campaign_only_time_and_dask_goes_on_with_it(

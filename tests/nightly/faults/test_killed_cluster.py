@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 from support.processes import Program, Programs
-from support.short_campaign import SPEC, wait_for_shards
+from support.short_campaign import wait_for_shards, write_specification
 
 from ddct_bringup.campaign import conduct
 from ddct_bringup.campaign.conduct import RESULTS
@@ -37,8 +37,7 @@ def test_a_worker_of_a_cluster_that_dies_costs_a_campaign_only_time(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     whole, out = tmp_path / 'whole', tmp_path / 'out'
-    spec = tmp_path / 'mass.yaml'
-    spec.write_text(SPEC, encoding='utf-8')
+    spec = write_specification(tmp_path)
     address, workers = start_cluster(programs)
     killer = threading.Thread(target=_kill_when, args=(workers[0], out, 1))
     killer.start()
