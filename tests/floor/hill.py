@@ -99,12 +99,10 @@ def least_peak(case: Case, breakaway: int | None, *, within: bool = False) -> fl
     )
     none = np.zeros(len(program.cost), dtype=bool)
     deferred = np.ones(len(program.limits), dtype=bool)
-    deferred[: 2 * program.mirrored] = False
+    deferred[: program.peaks] = False
     deferred[len(deferred) - 2 * periods :] = False
     solution = solve(program, none, np.zeros(len(none)), deferred)
-    if solution.point is None:
-        return None
-    return solution.certificate.claim
+    return None if solution is None else solution.certificate.claim
 
 
 def main() -> int:

@@ -18,7 +18,7 @@ from ddct_bringup.floor.program.linear_program import (
 )
 from ddct_bringup.floor.program.peak import late_peaks, peak_program
 from ddct_bringup.floor.program.quadratic import least_squares
-from ddct_bringup.floor.program.solve import solve
+from ddct_bringup.floor.program.solve import ray_of, solve
 
 _WINDOWS = 3
 """Number of stretches whose bounds are computed where a metric is the largest over all."""
@@ -107,10 +107,11 @@ def _peak(case: Case, rows: np.ndarray, one_sided: bool) -> Bound:
         columns.high,
         one_sided=one_sided,
     )
-    late = np.zeros(len(program.limits) - len(limits), dtype=bool)
+    late = np.zeros(program.peaks, dtype=bool)
     # A free engine has peaks at any time, and a linear clutch that never locks has them too.
-    if program.mirrored and len(case.equations) and columns.engine.start == columns.engine.stop:
-        late = late_peaks(program.mirrored, case.lock.time_s)
+    locks = bool(len(case.equations)) and columns.engine.start == columns.engine.stop
+    if locks and not one_sided:
+        late = late_peaks(len(rows), case.lock.time_s)
     solution = solve(
         program,
         np.append(~free_columns(case), False),
@@ -118,9 +119,9 @@ def _peak(case: Case, rows: np.ndarray, one_sided: bool) -> Bound:
         np.concatenate([late, inequalities.deferred]),
         np.concatenate([np.zeros(len(late)), inequalities.margin]),
     )
+    if solution is None:
+        return without_run(case)
     require_proof(solution.certificate, program)
-    if solution.point is None:
-        return Bound(None, RAY, None, None, solution.certificate, program)
     point = np.append(1.0, solution.point[:-1])
     value = float(np.max(rows @ point if one_sided else np.abs(rows @ point)))
     return Bound(
@@ -163,20 +164,11 @@ def _mean_square(case: Case, rows: np.ndarray) -> Bound:
     point[free] = middle[free] if solved is None else solved
     square = float(np.sum((weighted @ point) ** 2))
     slope = 2.0 * weighted.T @ (weighted @ point)
-    program = LinearProgram(
-        cost=slope[1:],
-        constant=square - slope[1:] @ point[1:],
-        rows=limiting[:, 1:],
-        limits=limits - limiting[:, 0],
-        equal_rows=case.equations[:, 1:],
-        equal_values=-case.equations[:, 0],
-        low=columns.low,
-        high=columns.high,
-    )
+    program = _linear(case, slope[1:], square - slope[1:] @ point[1:])
     solution = solve(program, ~free[1:], middle[1:], inequalities.deferred)
+    if solution is None:
+        return without_run(case)
     require_proof(solution.certificate, program)
-    if solution.point is None:
-        return Bound(None, RAY, None, None, solution.certificate, program)
     return Bound(
         float(np.sqrt(max(solution.certificate.claim, 0.0))),
         LINEARISED,
@@ -185,6 +177,29 @@ def _mean_square(case: Case, rows: np.ndarray) -> Bound:
         solution.certificate,
         program,
         _engine_price(case, solution.certificate, square),
+    )
+
+
+def without_run(case: Case) -> Bound:
+    """Return the proof that a case has no run, for any metric; raise DdctError without one."""
+    program = _linear(case, np.zeros(case.motion.columns.count - 1), 0.0)
+    certificate = ray_of(program)
+    require_proof(certificate, program)
+    return Bound(None, RAY, None, None, certificate, program)
+
+
+def _linear(case: Case, cost: np.ndarray, constant: float) -> LinearProgram:
+    """Return the program of a linear cost over the runs of a case."""
+    inequalities, columns = case.inequalities, case.motion.columns
+    return LinearProgram(
+        cost=cost,
+        constant=constant,
+        rows=inequalities.rows[:, 1:],
+        limits=inequalities.limits - inequalities.rows[:, 0],
+        equal_rows=case.equations[:, 1:],
+        equal_values=-case.equations[:, 0],
+        low=columns.low,
+        high=columns.high,
     )
 
 

@@ -62,6 +62,13 @@ def _closed_form(case: Case) -> ComputedFloor:
     return ComputedFloor(Floor(FRICTION, case.lock.time_s, least, None, certificate, None), False)
 
 
+def floor_without_run(case: Case, metric: str, proof: Proof) -> ComputedFloor:
+    """Return the floor of a case that has no run by a proof."""
+    # Where even a free engine torque does not help, the wide case says so.
+    limited = not case.limited and case.settings.scenario.engine_limits is not None
+    return ComputedFloor(Floor(metric, case.lock.time_s, None, None, proof, None), limited)
+
+
 def _computed(case: Case, metric: str, begin: Trajectory | None, attain: bool) -> ComputedFloor:
     objective, settings = objective_of(metric), case.settings
     signals = Signals.of_motion(case.motion, settings.scenario)
@@ -73,11 +80,7 @@ def _computed(case: Case, metric: str, begin: Trajectory | None, attain: bool) -
         )
     certificate = Proof(bound.kind, bound.certificate.claim, covers)
     if bound.kind == RAY:
-        # Where even a free engine torque does not help, the wide case says so.
-        limited = not case.limited and settings.scenario.engine_limits is not None
-        return ComputedFloor(
-            Floor(metric, case.lock.time_s, None, None, certificate, None), limited
-        )
+        return floor_without_run(case, metric, certificate)
     replays = Replays(None, None)
     if attain and bound.engine_price <= _PRICED:
         replays = replays_of(case, objective, signals, bound, begin)

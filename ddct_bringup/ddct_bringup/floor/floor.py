@@ -8,11 +8,12 @@ from dataclasses import replace
 
 from ddct_bringup.bag.trajectory import Trajectory
 from ddct_bringup.floor.case import Case, case_at, case_of_run
-from ddct_bringup.floor.computed_floor import computed_floor
+from ddct_bringup.floor.computed_floor import ComputedFloor, computed_floor, floor_without_run
 from ddct_bringup.floor.control_start import control_start
 from ddct_bringup.floor.dynamics.start import Start
 from ddct_bringup.floor.lock import lock_of
-from ddct_bringup.floor.values import Floor, OverFloor, value_of
+from ddct_bringup.floor.metric_units import FRICTION
+from ddct_bringup.floor.values import Floor, OverFloor, Proof, value_of
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_plant.base.errors import ParameterError
 from ddct_plant.scenario.settings import RunSettings
@@ -44,13 +45,31 @@ def floors_at(
     narrow = case_at(settings, start, lock_time_s, limited=False)
     wide = replace(narrow, limited=True)
     floors = []
+    proofs: dict[bool, Proof] = {}
     for metric in metrics:
-        found = computed_floor(narrow, metric)
+        found = _found(narrow, metric, proofs)
         floor = found.floor
         if found.limited:
-            floor = _with_attained(computed_floor(wide, metric, found.last).floor, floor)
+            floor = _with_attained(_found(wide, metric, proofs, found.last).floor, floor)
         floors.append(floor)
     return floors
+
+
+def _found(
+    case: Case, metric: str, proofs: dict[bool, Proof], begin: Trajectory | None = None
+) -> ComputedFloor:
+    """
+    Return the floor of a case, and add to `proofs` the proof that the case has no run.
+
+    The proof is the same for every metric but the friction work, whose bound needs no run.
+    """
+    proof = proofs.get(case.limited)
+    if proof is not None and metric != FRICTION:
+        return floor_without_run(case, metric, proof)
+    found = computed_floor(case, metric, begin)
+    if found.floor.least is None:
+        proofs[case.limited] = found.floor.certificate
+    return found
 
 
 def _with_attained(floor: Floor, other: Floor) -> Floor:
@@ -65,15 +84,13 @@ def floors_of_run(
     metrics: Sequence[str],
     run: Trajectory,
     start: Start | None = None,
-    *,
-    attain: bool = True,
 ) -> dict[str, OverFloor | None]:
     """
     Return by metric the value of a run and the least at its own lock instant.
 
-    Without `attain` no run near the least is searched for, which takes half as long. The program
-    contains the run. None where a metric has no value, and for all metrics of a run that does not
-    lock once and stay locked, commands the engine, or starts otherwise.
+    The program contains the run; no run near the least is searched for. None where a metric has no
+    value, and for all metrics of a run that does not lock once and stay locked, commands the
+    engine, or starts otherwise.
     """
     none: dict[str, OverFloor | None] = dict.fromkeys(metrics)
     start = control_start(settings) if start is None else start
@@ -86,9 +103,7 @@ def floors_of_run(
         return none
     values = {metric: value_of(settings, metric, run, start.scored_from) for metric in metrics}
     return {
-        metric: None
-        if value is None
-        else OverFloor(value, computed_floor(case, metric, attain=attain).floor)
+        metric: None if value is None else OverFloor(value, floor_of_case(case, metric))
         for metric, value in values.items()
     }
 

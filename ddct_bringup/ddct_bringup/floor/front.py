@@ -12,6 +12,7 @@ from ddct_bringup.floor.floor import floors_at, floors_of_run
 from ddct_bringup.floor.lock import lock_of
 from ddct_bringup.floor.objectives import window_of
 from ddct_bringup.floor.values import Floor, OverFloor, Proof, value_of
+from ddct_bringup.many_runs.engine import each_result
 from ddct_bringup.run.headless import run_headless
 from ddct_bringup.verdict.limits import packaged_limits
 from ddct_controllers.registry import Chosen, controller_label
@@ -31,11 +32,22 @@ def usual_lock_times(settings: RunSettings, start: Start) -> list[float]:
 
 
 def front(
-    settings: RunSettings, metrics: Sequence[str], lock_times_s: Sequence[float], start: Start
+    settings: RunSettings,
+    metrics: Sequence[str],
+    lock_times_s: Sequence[float],
+    start: Start,
+    workers: int | None = None,
 ) -> Iterator[list[Floor]]:
-    """Yield the floors of all metrics for each lock time."""
-    for time_s in lock_times_s:
-        yield floors_at(settings, metrics, time_s, start)
+    """
+    Yield the floors of all metrics for each lock time.
+
+    They are computed by `workers` processes, by default one per core.
+    """
+
+    def point(time_s: float) -> list[Floor]:
+        return floors_at(settings, metrics, time_s, start)
+
+    return each_result(point, lock_times_s, workers)
 
 
 @dataclass(frozen=True)
@@ -70,7 +82,6 @@ class ControllerRow:
     lock_time_s: float | None
     value: float | None
     least: float | None
-    attained: float | None
     over_floor: float | None
     certificate: Proof | None
 
@@ -139,7 +150,6 @@ def controller_rows(
                 lock_time_s=lock.time_s if lock else None,
                 value=found.value if found else value,
                 least=found.floor.least if found else None,
-                attained=found.floor.attained if found else None,
                 over_floor=found.over_floor if found else None,
                 certificate=found.floor.certificate if found else None,
             )

@@ -194,11 +194,11 @@ def engine_of(
         yield WorkEngine(work, chosen, stopped)
 
 
-def results_of(
+def each_result(
     function: Callable[[Item], Value], items: Sequence[Item], workers: int | None = None
-) -> list[Value]:
+) -> Iterator[Value]:
     """
-    Return the result of a function of each item, in their order.
+    Yield the result of a function of each item, in their order, computed as they are taken.
 
     It is computed by `workers` processes, by default one per core; 1 means this process. The
     function may be any; results are pickled. Raise its exception, and DdctError for a process that
@@ -206,7 +206,15 @@ def results_of(
     """
     count = min(worker_count(workers), len(items))
     if count < 2 or is_worker():
-        return [function(item) for item in items]
+        yield from map(function, items)
+        return
     with engine_of(Each(function), count) as engine:
-        blocks = blocks_of(items, block_size(len(items)))
-        return [value for part in engine.in_order(blocks) for value in part]
+        for part in engine.in_order(blocks_of(items, block_size(len(items)))):
+            yield from part
+
+
+def results_of(
+    function: Callable[[Item], Value], items: Sequence[Item], workers: int | None = None
+) -> list[Value]:
+    """Return the result of a function of each item, as `each_result` yields them."""
+    return [*each_result(function, items, workers)]

@@ -35,7 +35,9 @@ def _limit(argv: list[str]) -> int:
     if not options.metrics and not settings.stick_slip:
         metrics.remove(OF_STICK_SLIP)
     times = lock_times_of(options.lock_times) if options.lock_times else None
-    found = shell.least_values(settings, metrics, times, controllers, caps)
+    found = shell.least_values(
+        settings, metrics, times, controllers, caps, workers=options.workers
+    )
     for time_s, floor in found.impossible.items():
         _complain(
             f'lock time {time_s:g} s: no torque request locks the plates then: a Farkas ray of '

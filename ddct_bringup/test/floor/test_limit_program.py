@@ -52,6 +52,36 @@ def test_standard_output_is_json_alone(capsys):
     assert json.loads(capsys.readouterr().out)['front'][0]['lock_time_s'] == 0.9
 
 
+@pytest.mark.process
+def test_the_bytes_are_the_same_with_any_number_of_workers(tmp_path, monkeypatch):
+    texts = []
+    for workers in ('1', '2', '3'):
+        monkeypatch.setenv('DDCT_CACHE', str(tmp_path / workers))
+        file = tmp_path / f'{workers}.json'
+        given = ['--lock-times', '0.02,0.8,1.1', '--controllers', 'ls8,pi', '--workers', workers]
+        assert main([*LAUNCH, *given, '--json', str(file)]) == 0
+        texts.append(file.read_text())
+    assert texts[0] == texts[1] == texts[2]
+
+
+@pytest.mark.parametrize(
+    ('metrics', 'other'), [('peak_jerk,weighted_acceleration', 'weighted_acceleration')]
+)
+def test_the_proof_that_no_run_locks_then_is_the_same_for_every_metric(
+    metrics, other, tmp_path, monkeypatch
+):
+    found = []
+    for chosen in (metrics, other):
+        monkeypatch.setenv('DDCT_CACHE', str(tmp_path / chosen))
+        file = tmp_path / f'{chosen}.json'
+        given = ['--scenario', 'launch', '--metrics', chosen, '--lock-times', '0.02,0.9']
+        assert main([*given, '--workers', '1', '--json', str(file)]) == 0
+        front = json.loads(file.read_text())['front']
+        found += [each for each in front if each['lock_time_s'] == 0.02]
+    assert [each['metric'] for each in found] == [*metrics.split(','), other]
+    assert found[0]['certificate'] == found[1]['certificate'] == found[2]['certificate']
+
+
 @pytest.mark.parametrize(
     ('arguments', 'words'),
     [

@@ -82,7 +82,7 @@ def test_the_torque_of_the_off_going_clutch_depends_on_the_controller():
 def test_no_metric_of_a_shift_is_below_its_floor(scenario, handover, controller):
     settings = settings_of(scenario, handover=handover)
     run = run_headless(settings, controller)
-    for metric, over in floors_of_run(settings, list(METRICS), run, attain=False).items():
+    for metric, over in floors_of_run(settings, list(METRICS), run).items():
         assert over.value >= over.floor.least, metric
 
 

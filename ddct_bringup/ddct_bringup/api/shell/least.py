@@ -21,6 +21,7 @@ from ddct_bringup.floor.front import (
 from ddct_bringup.floor.lock import counted_from
 from ddct_bringup.floor.metric_units import METRICS
 from ddct_bringup.floor.values import Floor
+from ddct_bringup.many_runs.engine import each_result
 from ddct_bringup.scores.shift_conditions import shift_conditions
 from ddct_controllers.registry import Chosen
 from ddct_plant.program.progress import with_progress
@@ -85,19 +86,27 @@ def least_values(
     lock_times_s: Sequence[float] | None,
     controllers: Sequence[Chosen] = (),
     caps: Sequence[tuple[str, float]] = (),
+    *,
+    workers: int | None = None,
 ) -> LeastValues:
     """
     Compute the least values at lock times, the usual ones for None; print the progress.
 
-    `caps` have metrics and values below which a least lock time is searched for.
+    `caps` have metrics and values below which a least lock time is searched for. `workers`
+    processes share the lock times and the controllers, by default one per core.
     """
     start = control_start(settings)
     times = lock_times_s or usual_lock_times(settings, start)
-    points = with_progress(front(settings, metrics, times, start), len(times), 'lock times')
-    floors = [floor for point in points for floor in point]
-    rows: list[ControllerRow] = []
-    for chosen in with_progress(controllers, len(controllers), 'controllers'):
-        rows += controller_rows(settings, chosen, metrics, start)
+    points = front(settings, metrics, times, start, workers)
+    floors = [
+        floor for point in with_progress(points, len(times), 'lock times') for floor in point
+    ]
+
+    def rows_of(chosen: Chosen) -> list[ControllerRow]:
+        return controller_rows(settings, chosen, metrics, start)
+
+    found = each_result(rows_of, controllers, workers)
+    rows = [row for each in with_progress(found, len(controllers), 'controllers') for row in each]
     capped = [least_lock_time(floors, metric, cap) for metric, cap in caps]
     return LeastValues(settings, floors, rows, capped)
 

@@ -41,28 +41,9 @@ class LinearProgram:
     """Right-hand sides of the equations, (p,)."""
     low: np.ndarray
     high: np.ndarray
-    mirrored: int = 0
-    """Number r of first rows whose mirror images are the next r: only the last column is equal."""
-
-    def times(self, point: np.ndarray) -> np.ndarray:
-        """Return rows times a point (n,), (m,); mirrored rows are multiplied once."""
-        count = self.mirrored
-        if not count:
-            return np.asarray(self.rows @ point)
-        shared = self.rows[:count, -1] * point[-1]
-        first = self.rows[:count, :-1] @ point[:-1]
-        return np.concatenate([first + shared, shared - first, self.rows[2 * count :] @ point])
-
-    def combined(self, multipliers: np.ndarray) -> np.ndarray:
-        """Return the sum of the rows with multipliers (m,), (n,); mirrored rows count once."""
-        count = self.mirrored
-        if not count:
-            return np.asarray(multipliers @ self.rows)
-        first, second = multipliers[:count], multipliers[count : 2 * count]
-        found = multipliers[2 * count :] @ self.rows[2 * count :]
-        found[:-1] += (first - second) @ self.rows[:count, :-1]
-        found[-1] += (first + second) @ self.rows[:count, -1]
-        return np.asarray(found)
+    peaks: int = 0
+    """Number of the first rows that keep the last variable, a peak, above what it is the peak of;
+    a peak that is high enough keeps them all."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -44,7 +44,7 @@ def peak_program(
         equal_values=equal_values,
         low=np.append(low, 0.0),
         high=np.append(high, MOST_PEAK),
-        mirrored=0 if one_sided else len(rows),
+        peaks=len(sides) * len(rows),
     )
 
 

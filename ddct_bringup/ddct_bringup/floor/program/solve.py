@@ -1,13 +1,12 @@
 # Copyright 2026 DDCT team
 # SPDX-License-Identifier: Apache-2.0
-"""Best points of linear programs with proofs; what the solvers return is checked elsewhere."""
+"""Best points of linear programs with proofs; what the solver returns is checked elsewhere."""
 
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ddct_bringup.floor.program.highs import highs
-from ddct_bringup.floor.program.interior_point import VIOLATION, Optimum, interior_point
+from ddct_bringup.floor.program.highs import Optimum, highs
 from ddct_bringup.floor.program.linear_program import (
     RAY,
     WEAK_DUALITY,
@@ -19,8 +18,9 @@ from ddct_plant.base.errors import DdctError
 
 _EXCEEDED = 1e-3
 """Largest distance of a point outside of a deferred row, in the unit of the row."""
-_PEAK_EXCEEDED = 1e-7
-"""Largest distance of a point outside of a deferred row of a peak, as a share of the peak."""
+_PEAK_EXCEEDED, _LEAST_PEAK = 1e-7, 1e-2
+"""Largest distance of a point outside of a deferred row of a peak, as a share of the peak, which
+is at least this in its unit."""
 _ROUNDS = 4
 """Number of times that deferred rows are added to a program."""
 _MOST_VIOLATION = 1e6
@@ -28,9 +28,9 @@ _MOST_VIOLATION = 1e6
 
 @dataclass(frozen=True, eq=False)
 class Solution:
-    """Best point of a program with its certificate; the point is None where there is none."""
+    """Best point of a program, (n,), with its certificate."""
 
-    point: np.ndarray | None
+    point: np.ndarray
     certificate: Certificate
 
 
@@ -40,30 +40,29 @@ def solve(
     values: np.ndarray,
     deferred: np.ndarray,
     margin: np.ndarray | float = 0.0,
-) -> Solution:
+) -> Solution | None:
     """
     Return the best point with the variables of the mask `kept` (n,) at their `values` (n,).
 
-    A solver gets the rows of the mask `deferred` (m,) only once a point exceeds them: most of them
-    never matter. The point keeps a `margin` (m,) to the limits. The certificate is that of the
-    whole program, without margin, in which no variable is kept. Raise DdctError where no solver
-    finds a point, nor that there is none.
+    The solver gets the rows of the mask `deferred` (m,) only once a point exceeds them: most of
+    them never matter. The point keeps a `margin` (m,) to the limits. The certificate is that of
+    the whole program, without margin, in which no variable is kept. None where there is no point,
+    also without margin and kept variables. Raise DdctError where the solver finds neither.
     """
     if kept.all():
         kept = np.zeros_like(kept)
     found, used = _attempt(program, kept, values, deferred, margin)
+    if found is None:
+        if not (kept.any() or np.any(margin)):
+            return None
+        # Only the kept variables or the margin may exclude all points, not the program.
+        return solve(program, np.zeros_like(kept), values, deferred)
     multipliers = np.zeros(len(program.limits))
     multipliers[used] = found.rows
-    if found.point is not None:
-        return Solution(found.point, certified(WEAK_DUALITY, program, multipliers, found.equal))
-    ray = certified(RAY, program, multipliers, found.equal)
-    if ray.claim <= 0.0:
-        rows, equal = _ray(program)
-        ray = certified(RAY, program, rows, equal)
-    if ray.claim > 0.0 or not (kept.any() or np.any(margin)):
-        return Solution(None, ray)
-    # Only the kept variables or the margin exclude all points, not the program.
-    return solve(program, np.zeros_like(kept), values, deferred)
+    peaks = multipliers[: program.peaks]
+    # The box of the peak is wide, so that the least excess of this sum over 1 would cost much.
+    peaks /= max(float(peaks.sum()), 1.0)
+    return Solution(found.point, certified(WEAK_DUALITY, program, multipliers, found.equal))
 
 
 def best_point(
@@ -75,8 +74,8 @@ def best_point(
     There is no certificate. Rows of the mask `deferred` (m,) come in as for `solve`.
     """
     none = np.zeros(len(program.cost), dtype=bool)
-    found, used = _attempt(program, none, np.zeros(len(none)), deferred, 0.0, proof=False)
-    return found.point, used
+    found, used = _attempt(program, none, np.zeros(len(none)), deferred, 0.0)
+    return (None if found is None else found.point), used
 
 
 def _attempt(
@@ -85,11 +84,9 @@ def _attempt(
     values: np.ndarray,
     deferred: np.ndarray,
     margin: np.ndarray | float,
-    *,
-    proof: bool = True,
-) -> tuple[Optimum, np.ndarray]:
+) -> tuple[Optimum | None, np.ndarray]:
     """
-    Return what was found, and the mask of the rows used (m,).
+    Return the optimum, None without a point, and the mask of the rows used (m,).
 
     A point has all variables, those that are kept or have a box without width too.
     """
@@ -104,33 +101,21 @@ def _attempt(
     # Within its margin a point still keeps the limit itself.
     tolerance = np.maximum(margin, _EXCEEDED) * np.ones(len(used))
     for _ in range(_ROUNDS):
-        part = replace(
-            whole,
-            rows=whole.rows[used],
-            limits=whole.limits[used],
-            mirrored=int(used[: whole.mirrored].sum()),
-        )
-        found = _optimum(part, proof=proof)
-        if found.point is None:
+        had = used
+        found = highs(replace(whole, rows=whole.rows[had], limits=whole.limits[had]))
+        if found is None:
             break
-        tolerance[: 2 * whole.mirrored] = _PEAK_EXCEEDED * max(found.point[-1], 1e-2)
-        exceeded = (whole.times(found.point) - whole.limits > tolerance) & ~used
+        if whole.peaks:
+            tolerance[: whole.peaks] = _PEAK_EXCEEDED * max(found.point[-1], _LEAST_PEAK)
+        exceeded = (whole.rows @ found.point - whole.limits > tolerance) & ~had
         if not exceeded.any():
             break
-        had, used = used, used | _with_mirrored(exceeded, whole.mirrored)
-    else:
-        used = had
-    if found.point is not None:
-        point = values.copy()
-        point[free] = found.point
-        found = replace(found, point=point)
-    return found, used
-
-
-def _with_mirrored(mask: np.ndarray, count: int) -> np.ndarray:
-    """Return the mask of rows (m,) with the mirror images of each."""
-    either = mask[:count] | mask[count : 2 * count]
-    return np.concatenate([either, either, mask[2 * count :]])
+        used = had | exceeded
+    if found is None:
+        return None, had
+    point = values.copy()
+    point[free] = found.point
+    return replace(found, point=point), had
 
 
 def _without(program: LinearProgram, kept: np.ndarray, values: np.ndarray) -> LinearProgram:
@@ -151,43 +136,27 @@ def _without(program: LinearProgram, kept: np.ndarray, values: np.ndarray) -> Li
     )
 
 
-def _optimum(program: LinearProgram, *, proof: bool) -> Optimum:
-    """Return the optimum of a program, or the ray where it has no point."""
-    best = interior_point(program, proof=proof)
-    if best is None:
-        rows, equal = _ray(program)
-        if certified(RAY, program, rows, equal).claim > VIOLATION:
-            return Optimum(None, rows, equal)
-        best = highs(program)
-        if best is None:
-            return Optimum(None, rows, equal)
-    return best
-
-
-def _ray(program: LinearProgram) -> tuple[np.ndarray, np.ndarray]:
+def ray_of(program: LinearProgram) -> Certificate:
     """
-    Return the multipliers of rows and equations at the least violation of a program.
+    Return the certificate of a program without a point: its multipliers at the least violation.
 
-    Where that is positive they prove that there is no point. The rows of a peak are left out, as a
-    peak that is high enough keeps them.
+    Where that is positive they prove that there is no point. Raise DdctError without it.
     """
-    first = 2 * program.mirrored
-    count, equations = len(program.limits) - first, len(program.equal_values)
-    every = np.vstack([program.rows[first:], program.equal_rows, -program.equal_rows])
-    limits = [program.limits[first:], program.equal_values, -program.equal_values]
+    count, equations = len(program.limits), len(program.equal_values)
+    every = np.vstack([program.rows, program.equal_rows, -program.equal_rows])
     none = np.zeros(len(program.cost))
     violation = LinearProgram(
         cost=np.append(none, 1.0),
         constant=0.0,
         rows=np.hstack([every, -np.ones((len(every), 1))]),
-        limits=np.concatenate(limits),
+        limits=np.concatenate([program.limits, program.equal_values, -program.equal_values]),
         equal_rows=np.zeros((0, len(none) + 1)),
         equal_values=np.zeros(0),
         low=np.append(program.low, 0.0),
         high=np.append(program.high, _MOST_VIOLATION),
     )
-    found = interior_point(violation) or highs(violation)
+    found = highs(violation)
     if found is None:
         raise DdctError('HiGHS: it finds no least violation of a program')
     above, below = found.rows[count : count + equations], found.rows[count + equations :]
-    return np.concatenate([np.zeros(first), found.rows[:count]]), above - below
+    return certified(RAY, program, found.rows[:count], above - below)

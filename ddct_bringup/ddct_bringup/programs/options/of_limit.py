@@ -6,7 +6,7 @@ import argparse
 from collections.abc import Sequence
 
 from ddct_bringup.floor.metric_units import METRICS
-from ddct_bringup.programs.options.of_runs import add_settings_options
+from ddct_bringup.programs.options.of_runs import add_settings_options, add_workers_option
 from ddct_plant.base.errors import DdctError, ParameterError, require_number
 from ddct_plant.program.command_line import ProgramParser
 
@@ -59,6 +59,7 @@ def limit_parser(program: str) -> argparse.ArgumentParser:
     )
     parser.add_argument('--json', metavar='FILE', help="also write it as JSON; '-' is stdout")
     parser.add_argument('--figure', metavar='FILE', help='also draw it: a .png or .svg file')
+    add_workers_option(parser)
     add_settings_options(parser)
     return parser
 
