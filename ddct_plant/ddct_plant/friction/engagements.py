@@ -175,8 +175,10 @@ def on_coming_engaged(gears: GearPair) -> EngagedGears:
 def _with_states(parameters: DrivelineParameters, added: int) -> tuple[np.ndarray, ...]:
     """Return a and the columns of C_m, C_f and C_load with further states, which are zero."""
     driven, torques = matrices_with_angles(parameters)
-    a = np.pad(driven, (0, added))
-    b = np.pad(torques, ((0, added), (0, 0)))
+    size = len(driven)
+    a = np.zeros((size + added, size + added))
+    b = np.zeros((size + added, torques.shape[1]))
+    a[:size, :size], b[:size] = driven, torques
     return a, *(b[:, TORQUES.column(name)] for name in TORQUES)
 
 
