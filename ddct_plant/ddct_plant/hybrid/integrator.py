@@ -3,6 +3,7 @@
 """The exact integration of a linear system with dry friction, from event to event."""
 
 import struct
+from collections import defaultdict
 from collections.abc import Callable, Sequence
 from functools import partial
 from itertools import product
@@ -21,11 +22,13 @@ from ddct_plant.hybrid.friction_system import (
 )
 from ddct_plant.hybrid.interval_map import Event, Interval, IntervalMap
 from ddct_plant.hybrid.mode_choice import choose_mode
-from ddct_plant.hybrid.mode_flow import Course, HeldElements, ModeFlow
+from ddct_plant.hybrid.mode_flow import Course, HeldElements, ModeFlow, extents
 
 Made = TypeVar('Made')
 MOST_EVENTS = 1000
 """Most events in one piece; dry friction between inertias gives fewer."""
+TOGETHER = 64
+"""Systems whose modes are prepared together; the matrices of more leave the processor's cache."""
 
 
 class _Modes(dict[Signs, Made]):
@@ -81,11 +84,28 @@ class HybridIntegrator:
         self.maps = _Modes(self._map)
         """Map of each mode over an interval."""
 
+    def _held(self, signs: Signs) -> HeldElements:
+        return self._stuck[tuple(not sign for sign in signs)]
+
     def _flow(self, signs: Signs) -> ModeFlow:
-        return ModeFlow(self._stuck[tuple(not sign for sign in signs)], signs)
+        return ModeFlow(self._held(signs), signs)
 
     def _map(self, signs: Signs) -> IntervalMap:
         return IntervalMap(self.flows[signs], self.piece_s, self.layout)
+
+    @staticmethod
+    def prepare(integrators: Sequence['HybridIntegrator'], signs: Signs) -> None:
+        """Prepare a mode of many integrators at once, whose systems and intervals are alike."""
+        lacking = list({id(each): each for each in integrators if signs not in each.maps}.values())
+        for first in range(0, len(lacking), TOGETHER):
+            some = lacking[first : first + TOGETHER]
+            held = [each._held(signs) for each in some]
+            alike = defaultdict(list)
+            for each, elements, extent in zip(some, held, extents(held), strict=True):
+                elements.extent = extent
+                alike[extent].append(each)
+            for members in alike.values():
+                _prepare_alike(members, signs)
 
     def advance(
         self, state: Values, signs: Signs, inputs: Values, kinetic: Values, static: Values
@@ -138,6 +158,16 @@ class HybridIntegrator:
         motion = _Motion(self, forcing, np.array(state), signs, keep=True)
         motion.to_the_end()
         return motion.courses
+
+
+def _prepare_alike(integrators: Sequence[HybridIntegrator], signs: Signs) -> None:
+    """Prepare a mode of integrators whose series are of one extent."""
+    first = integrators[0]
+    flow = ModeFlow(HeldElements.stack([each._held(signs) for each in integrators]), signs)
+    interval_map = IntervalMap(flow, first.piece_s, first.layout)
+    for place, each in enumerate(integrators):
+        each.flows[signs] = flow.of_system(place)
+        each.maps[signs] = interval_map.of_system(place)
 
 
 class _Motion:

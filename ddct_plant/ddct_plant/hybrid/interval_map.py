@@ -3,7 +3,9 @@
 """A mode over an interval of equal pieces, as matrix products."""
 
 from collections.abc import Callable
+from copy import copy
 from dataclasses import dataclass
+from functools import cached_property
 from operator import mul
 from typing import NamedTuple
 
@@ -75,24 +77,38 @@ class IntervalMap:
         ]
         """Index of each sticking element and of its first guard."""
         starts = _piece_starts(flow, layout)
-        ends = flow.end @ starts
+        stack, width = starts.shape[:-3], starts.shape[-1]
+        ends = flow.end[..., None, :, :] @ starts
         slips = piece_s * _over_pieces(flow.slip_integrals(), starts)
         checks = _over_pieces(flow.guard_checks(), starts)
-        flat = [part.reshape(layout.pieces, -1, starts.shape[2]) for part in (slips, checks)]
-        by_piece = np.concatenate([ends, *flat], axis=1)
-        self._by_piece = _product(by_piece.reshape(-1, by_piece.shape[2]))
-        last = starts[-1, flow.states :]
-        driven = np.vstack([ends[-1], last[: flow.inputs] + last[flow.inputs :]])
-        results = [ends[-1], flow.force @ driven]
-        self._friction = slice(flow.states, flow.states + len(flow.force))
+        flat = [part.reshape(*stack, layout.pieces, -1, width) for part in (slips, checks)]
+        by_piece = np.concatenate([ends, *flat], axis=-2).reshape(*stack, -1, width)
+        end, last = ends[..., -1, :, :], starts[..., -1, flow.states :, :]
+        at_end = last[..., : flow.inputs, :] + last[..., flow.inputs :, :]
+        results = [end, flow.force @ np.concatenate([end, at_end], axis=-2)]
+        self._friction = slice(flow.states, flow.states + len(flow.signs))
         results += self._work_rows(slips, flow.slipping, layout)
-        self._results = sum(map(len, results))
+        self._results = sum(part.shape[-2] for part in results)
         """Number of values before the checks."""
         # The end of a piece is the start of the next one.
-        within, at_end = checks[:, :-1], checks[-1, -1]
-        self.matrix = np.vstack([*results, within.reshape(-1, within.shape[3]), at_end])
+        within = checks[..., :-1, :, :].reshape(*stack, -1, width)
+        self.matrix = np.concatenate([*results, within, checks[..., -1, -1, :, :]], axis=-2)
         """Map from v to the values that `whole` and `of_many` read, (rows, v)."""
-        self._whole = _product(self.matrix)
+        self._of_pieces = by_piece
+
+    def of_system(self, place: int) -> 'IntervalMap':
+        """Return the map of one system of a stack."""
+        interval_map = copy(self)
+        interval_map.matrix, interval_map._of_pieces = self.matrix[place], self._of_pieces[place]
+        return interval_map
+
+    @cached_property
+    def _by_piece(self) -> Callable[[np.ndarray], np.ndarray]:
+        return _product(self._of_pieces)
+
+    @cached_property
+    def _whole(self) -> Callable[[np.ndarray], np.ndarray]:
+        return _product(self.matrix)
 
     def _work_rows(
         self, slips: np.ndarray, slipping: list[int], layout: IntervalLayout
@@ -108,8 +124,8 @@ class IntervalMap:
         for place, element in enumerate(slipping):
             where = layout.capacities[element]
             held = where.stop - where.start == 1
-            rows.append(_by_value(slips[:, :, place], held=held))
-            integrals = slice(first, first + len(rows[-1]))
+            rows.append(_by_value(slips[..., place, :], held=held))
+            integrals = slice(first, first + rows[-1].shape[-2])
             if held:
                 self._held_work.append((element, first, where.start))
             else:
@@ -194,27 +210,28 @@ def _product(matrix: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
 def _piece_starts(flow: ModeFlow, layout: IntervalLayout) -> np.ndarray:
     """Return the linear maps (P, y, v) from v to y at the start of each piece."""
     states, inputs = flow.states, flow.inputs
-    starts = np.zeros((layout.pieces, states + 2 * inputs, states + layout.width))
-    starts[0, :states, :states] = np.eye(states)
-    values = np.eye(states + layout.width)[states:]
-    for piece, start in enumerate(starts):
-        if piece:
-            start[:states] = flow.end @ starts[piece - 1]
-        first, last = values[layout.nodes[piece : piece + 2]]
-        start[states : states + inputs] = first
-        start[states + inputs :] = last - first
+    stack, width = flow.end.shape[:-2], states + layout.width
+    starts = np.zeros((*stack, layout.pieces, states + 2 * inputs, width))
+    starts[..., 0, :states, :states] = np.eye(states)
+    values = np.eye(width)[states:][layout.nodes]
+    starts[..., states : states + inputs, :] = values[:-1]
+    starts[..., states + inputs :, :] = values[1:] - values[:-1]
+    for piece in range(1, layout.pieces):
+        starts[..., piece, :states, :] = flow.end @ starts[..., piece - 1, :, :]
     return starts
 
 
 def _over_pieces(rows: np.ndarray, starts: np.ndarray) -> np.ndarray:
     """Convert rows (i, j, y) on the start of each piece to rows (P, i, j, v) on v."""
-    flat = rows.reshape(-1, rows.shape[2]) @ starts
-    return flat.reshape(len(starts), *rows.shape[:2], starts.shape[2])
+    *stack, one, two, size = rows.shape
+    flat = rows.reshape(*stack, 1, one * two, size) @ starts
+    return flat.reshape(*flat.shape[:-2], one, two, starts.shape[-1])
 
 
 def _by_value(slips: np.ndarray, held: bool) -> np.ndarray:
     """Return the slip integrals (values, v), one per capacity, for `slips` (P, 2, v)."""
     if held:
-        return slips.sum(axis=(0, 1))[None]
-    none = np.zeros_like(slips[:1, 0])
-    return np.vstack([slips[:, 0], none]) + np.vstack([none, slips[:, 1]])
+        return slips.sum(axis=(-3, -2))[..., None, :]
+    falling, rising = slips[..., 0, :], slips[..., 1, :]
+    none = np.zeros_like(falling[..., :1, :])
+    return np.concatenate([falling, none], axis=-2) + np.concatenate([none, rising], axis=-2)

@@ -2,9 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """The exact flow of one mode, that is of a set of sticking and slipping elements."""
 
+from collections.abc import Sequence
+from copy import copy
 from functools import cached_property
 from math import ceil
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -33,8 +35,8 @@ class HeldElements:
 
     def __init__(self, system: FrictionSystem, stuck: tuple[bool, ...], piece_s: float) -> None:
         """Raise ParameterError where the rates are too fast for the series over a piece."""
-        self.system, self.piece_s = system, piece_s
-        self.stuck = np.array(stuck)
+        self.a, self.b, self.g, self.h = system.a, system.b, system.g, system.h
+        self.piece_s, self.stuck = piece_s, np.array(stuck)
         rows, columns = system.h[self.stuck], system.g[:, self.stuck]
         mobility = rows @ columns
         hold = np.linalg.solve(mobility, rows)
@@ -45,8 +47,9 @@ class HeldElements:
         self.projection, self.hold = projection, hold
         self.rates = projection @ system.a
         """State matrix while these elements stick, (n, n)."""
-        self._balanced = balanced(self.rates * piece_s)
-        size = _norm(self._balanced)
+        self.balanced = balanced(self.rates * piece_s)
+        """Rates over a piece in balanced units, (n, n)."""
+        size = _norm(self.balanced)
         if size > LONGEST:
             raise ParameterError(
                 f'friction system: it has rates of {size / piece_s:g} rad/s: take pieces of at '
@@ -54,30 +57,47 @@ class HeldElements:
             )
 
     @cached_property
-    def degree(self) -> int:
-        """
-        Order at which the terms of exp(a piece) are below rounding.
+    def extent(self) -> tuple[int, int]:
+        """Degree of the series and number of steps of a piece, see `extents`."""
+        return extents([self])[0]
 
-        The last term is below the rounding of 1 in balanced units. These may differ by many powers
-        of ten, so the next term is below that of the sum in the units of `a` too.
-        """
-        rates, scaled = self.rates * self.piece_s, self._balanced
-        degree, term, scaled_term = 2, rates @ rates / 2.0, scaled @ scaled / 2.0
-        total = np.eye(len(rates)) + rates + term
-        while True:
-            following = term @ rates / (degree + 1)
-            if _norm(scaled_term) <= ROUNDING and _norm(following) <= ROUNDING * _norm(total):
-                return degree
-            degree += 1
-            term, scaled_term = following, scaled_term @ scaled / degree
-            total += term
+    @classmethod
+    def stack(cls, members: Sequence['HeldElements']) -> 'HeldElements':
+        """Return those of systems of one shape and extent, each matrix with a first axis of R."""
+        stack = copy(members[0])
+        for name in ('a', 'b', 'g', 'h', 'projection', 'hold'):
+            setattr(stack, name, np.array([getattr(each, name) for each in members]))
+        return stack
 
-    @cached_property
-    def steps(self) -> int:
-        """Number of equal steps of a piece, at whose ends, the nodes, guards are evaluated."""
-        # The magnitude of a damped eigenvalue is the frequency without its damping.
-        fastest = float(np.abs(np.linalg.eigvals(self.rates)).max())
-        return max(1, ceil(self.piece_s * fastest / NODE_ANGLE))
+
+def extents(members: Sequence[HeldElements]) -> list[tuple[int, int]]:
+    """
+    Return degree of the series and number of steps of a piece, of systems of one shape.
+
+    The degree is the order at which the terms of exp(a piece) are below rounding. The last term is
+    below the rounding of 1 in balanced units. These may differ by many powers of ten, so the next
+    term is below that of the sum in the units of `a` too. Guards are evaluated at the ends of the
+    steps, the nodes.
+    """
+    # The magnitude of a damped eigenvalue is the frequency without its damping.
+    eigenvalues = np.linalg.eigvals(np.array([each.rates for each in members]))
+    fastest = np.abs(eigenvalues).max(axis=-1)
+    steps = [max(1, ceil(members[0].piece_s * rate / NODE_ANGLE)) for rate in fastest.tolist()]
+    rates = np.array([each.rates * each.piece_s for each in members])
+    scaled = np.array([each.balanced for each in members])
+    degrees = np.zeros(len(members), dtype=int)
+    degree, term, scaled_term = 2, rates @ rates / 2.0, scaled @ scaled / 2.0
+    total = np.eye(rates.shape[-1]) + rates + term
+    while True:
+        following = term @ rates / (degree + 1)
+        small = _norm(scaled_term) <= ROUNDING
+        small &= _norm(following) <= ROUNDING * _norm(total)
+        degrees[small & (degrees == 0)] = degree
+        if degrees.all():
+            return list(zip(degrees.tolist(), steps, strict=True))
+        degree += 1
+        term, scaled_term = following, scaled_term @ scaled / degree
+        total += term
 
 
 class ModeFlow:
@@ -88,58 +108,68 @@ class ModeFlow:
     that slips, the static one of an element that sticks) and their change over one piece. With
     t from 0 to 1 over the piece dy/dt = M y is autonomous: dx = piece (P a x + P [b, g sign] w),
     w' = dw. Guards: the slip times its sign; c - f and c + f of an element that sticks.
+
+    For a stack of R systems the matrices have a first axis of R, and each is computed as alone.
     """
 
     def __init__(self, held: HeldElements, signs: Signs) -> None:
         """Prepare the mode in which the elements that are not held slip with `signs`."""
-        system, self.signs = held.system, signs
-        states, inputs = system.b.shape
-        self.states, self.inputs = states, inputs + system.elements
-        self.projection, self.degree, self.steps = held.projection, held.degree, held.steps
-        driven = np.hstack([system.b, system.g * signs])
-        moved = np.hstack([system.a, driven])
-        size = states + 2 * self.inputs
-        generator = np.zeros((size, size))
-        generator[:states, : states + self.inputs] = held.piece_s * self.projection @ moved
-        generator[states : states + self.inputs, states + self.inputs :] = np.eye(self.inputs)
-        self.force = np.zeros((system.elements, states + self.inputs))
+        self.signs = signs
+        stack, (states, inputs) = held.b.shape[:-2], held.b.shape[-2:]
+        self.states, self.inputs = states, inputs + len(signs)
+        self.projection, (self.degree, self.steps) = held.projection, held.extent
+        driven = np.concatenate([held.b, held.g * signs], axis=-1)
+        moved = np.concatenate([held.a, driven], axis=-1)
+        size, width = states + 2 * self.inputs, states + self.inputs
+        generator = np.zeros((*stack, size, size))
+        generator[..., :states, :width] = held.piece_s * self.projection @ moved
+        generator[..., states:width, width:] = np.eye(self.inputs)
+        self.force = np.zeros((*stack, len(signs), width))
         """Friction torques as rows on [x, w], (N, n + w)."""
-        self.force[:, states + inputs :] = np.diag(signs)
-        self.force[held.stuck] = -held.hold @ moved
-        guards, self.guarded = self._guards(system)
+        self.force[..., states + inputs :] = np.diag(signs)
+        self.force[..., held.stuck, :] = -held.hold @ moved
+        guards, self.guarded = self._guards(held.h)
         self.slipping = [i for i, sign in enumerate(signs) if sign]
         """Indices of the slipping elements."""
         self.slip_guards = [self.guarded.index(i) for i in self.slipping]
-        rows = np.zeros((states + len(guards), size))
-        rows[:states, :states] = self.projection
-        rows[states:, : states + self.inputs] = guards
+        rows = np.zeros((*stack, states + len(self.guarded), size))
+        rows[..., :states, :states] = self.projection
+        rows[..., states:, :width] = guards
         powers = [rows]
         for order in range(1, self.degree + 1):
             powers.append(powers[-1] @ generator / order)
-        self.series = np.array(powers)
+        self.series = np.stack(powers, axis=-3)
         self.powers = np.arange(self.degree + 1)
         """Exponents 0, 1, ..., d."""
-        self._series = self.series.reshape(-1, size)
+        self._series = self.series.reshape(*stack, -1, size)
         # Instants are known to rounding of a piece, so y to that of how much it changes in one.
         within = np.eye(size) + np.abs(generator)
-        self.sizes = np.abs(self.series[:, states:]).reshape(-1, size) @ within
-        self.end = self.series[:, :states].sum(axis=0)
+        self.sizes = np.abs(self.series[..., states:, :]).reshape(*stack, -1, size) @ within
+        self.end = self.series[..., :states, :].sum(axis=-3)
         """State after a piece, as rows on y, (n, y)."""
 
-    def _guards(self, system: FrictionSystem) -> tuple[np.ndarray, list[int]]:
+    def of_system(self, place: int) -> 'ModeFlow':
+        """Return the flow of one system of a stack."""
+        flow = copy(self)
+        for name in ('projection', 'force', 'series', '_series', 'sizes', 'end'):
+            setattr(flow, name, getattr(self, name)[place])
+        return flow
+
+    def _guards(self, h: np.ndarray) -> tuple[np.ndarray, list[int]]:
         """Return the rows of the guards on [x, w], and the index of each guard's element."""
         rows: list[np.ndarray] = []
         guarded: list[int] = []
-        capacities = np.eye(self.states + self.inputs)[-system.elements :]
+        capacities = np.eye(self.states + self.inputs)[-len(self.signs) :]
         for i, sign in enumerate(self.signs):
+            force = self.force[..., i, :]
             if sign:
-                slip = np.zeros(self.states + self.inputs)
-                slip[: self.states] = sign * system.h[i]
+                slip = np.zeros_like(force)
+                slip[..., : self.states] = sign * h[..., i, :]
                 rows.append(slip)
             else:
-                rows += [capacities[i] - self.force[i], capacities[i] + self.force[i]]
+                rows += [capacities[i] - force, capacities[i] + force]
             guarded += [i] * (len(rows) - len(guarded))
-        return np.array(rows), guarded
+        return np.stack(rows, axis=-2), guarded
 
     def guard_checks(self) -> np.ndarray:
         """
@@ -150,14 +180,18 @@ class ModeFlow:
         such values and slopes is positive within the step too, with a margin of a quarter of the
         values. In 0.3 rad a guard differs from a cubic by 0.3^4 / 384 = 2e-5 of its oscillation.
         """
-        guards = self.series[:, self.states :]
-        nodes = np.arange(self.steps + 1) / self.steps
+        guards = self.series[..., self.states :, :]
+        nodes = np.arange(self.steps + 1)[:, None] / self.steps
         orders = np.arange(1, self.degree + 1)
-        values = np.tensordot(nodes[:, None] ** self.powers, guards, 1)
-        slopes = np.tensordot(orders * nodes[:, None] ** self.powers[:-1], guards[1:], 1)
+        values = _combined(nodes**self.powers, guards)
+        slopes = _combined(orders * nodes ** self.powers[:-1], guards[..., 1:, :, :])
         halfway = slopes / (2.0 * self.steps)
-        steps = [values[:-1], values[:-1] + halfway[:-1], values[1:] - halfway[1:]]
-        return np.concatenate([*np.stack(steps, axis=1), values[-1:]])
+        first, last = values[..., :-1, :, :], values[..., 1:, :, :]
+        steps = np.stack(
+            [first, first + halfway[..., :-1, :, :], last - halfway[..., 1:, :, :]], axis=-3
+        )
+        flat = steps.reshape(*guards.shape[:-3], -1, *guards.shape[-2:])
+        return np.concatenate([flat, values[..., -1:, :, :]], axis=-3)
 
     def slip_integrals(self) -> np.ndarray:
         """
@@ -166,9 +200,9 @@ class ModeFlow:
         Their shape is (2, slipping elements, y).
         """
         orders = self.powers[:, None, None]
-        slips = self.series[:, self.states :][:, self.slip_guards]
-        rising = (slips / (orders + 2)).sum(axis=0)
-        return np.stack([(slips / (orders + 1)).sum(axis=0) - rising, rising])
+        slips = self.series[..., self.states :, :][..., self.slip_guards, :]
+        rising = (slips / (orders + 2)).sum(axis=-3)
+        return np.stack([(slips / (orders + 1)).sum(axis=-3) - rising, rising], axis=-3)
 
     def course(self, state: np.ndarray, forcing: np.ndarray) -> 'Course':
         """Return the motion from a state (n,) on, with the inputs [w, dw], (2 w,)."""
@@ -251,6 +285,12 @@ class Course(NamedTuple):
         ]
 
 
+def _combined(factors: np.ndarray, terms: np.ndarray) -> np.ndarray:
+    """Return the sums (..., i, j, k) over d of factors (i, d) times terms (..., d, j, k)."""
+    flat = factors @ terms.reshape(*terms.shape[:-2], -1)
+    return flat.reshape(*flat.shape[:-1], *terms.shape[-2:])
+
+
 def balanced(a: np.ndarray) -> np.ndarray:
     """
     Return `a` (n, n) in other units of its states, with a 1-norm that is not above its own.
@@ -269,6 +309,6 @@ def balanced(a: np.ndarray) -> np.ndarray:
     return min(a, reduced, dgebal(a, scale=True)[0], key=_norm)
 
 
-def _norm(matrix: np.ndarray) -> float:
-    """Return the 1-norm; `np.linalg.norm` takes three times as long for so small a matrix."""
-    return float(np.abs(matrix).sum(axis=0).max())
+def _norm(matrix: np.ndarray) -> Any:
+    """Return the 1-norm (...); `np.linalg.norm` takes three times as long for small matrices."""
+    return np.abs(matrix).sum(axis=-2).max(axis=-1)

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The hybrid integrator is exact, loses no energy and no event, and decides ties."""
 
-from itertools import pairwise
+from itertools import pairwise, product
 
 import numpy as np
 import pytest
@@ -411,6 +411,32 @@ def test_a_mode_is_prepared_when_a_motion_first_has_it():
     done = integrator.advance([1.0], (1,), [0.0], [1.0], [1.0])
     assert done.signs == (1,)
     assert list(integrator.flows) == list(integrator.maps) == [(1,)]
+
+
+@pytest.mark.parametrize('count', [1, 2, 3, 100])
+def test_a_mode_prepared_for_many_systems_at_once_is_to_the_last_bit_that_of_each(count):
+    runs = [RandomRun(3 * seed + 1) for seed in range(count)]
+    alone, together = (
+        [HybridIntegrator(run.system, PIECE_S, PIECES, held=[0]) for run in runs] for _ in range(2)
+    )
+    extents = set()
+    for signs in product((-1, 0, 1), repeat=2):
+        HybridIntegrator.prepare([*together, together[0]], signs)
+        for run, one, other in zip(runs, alone, together, strict=True):
+            assert signs in other.maps
+            ours, theirs = other.flows[signs], one.flows[signs]
+            extents.add((ours.degree, ours.steps))
+            for name in ('projection', 'force', 'series', 'sizes', 'end'):
+                assert getattr(ours, name).tobytes() == getattr(theirs, name).tobytes(), name
+            torque, kinetic, _ = run.intervals[0]
+            values = np.concatenate([run.start, [torque], kinetic.ravel()])
+            for found, expected in zip(
+                other.maps[signs].by_piece(values), one.maps[signs].by_piece(values), strict=True
+            ):
+                assert np.asarray(found).tobytes() == np.asarray(expected).tobytes()
+            whole = (each.maps[signs].whole(values, kinetic.ravel()) for each in (one, other))
+            assert next(whole) == next(whole)
+    assert len(extents) > 1 or count == 1
 
 
 def test_values_that_are_not_finite_end_in_an_error():
