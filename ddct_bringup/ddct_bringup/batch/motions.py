@@ -112,6 +112,7 @@ class Motions:
         self.friction[run], self.work[run] = end.friction, end.work
         if end.events:
             self.events[run] = end.events
+            self._maps.prepare_modes_of(run)
 
 
 class _Maps:
@@ -122,6 +123,8 @@ class _Maps:
         first, places = distinct(map(id, integrators))
         self._shared = len(first) == 1
         self._slips = by_run([integrators[i].system.size_of_h for i in first], places)
+        self._prepared: set[Signs] = set()
+        """Modes that are prepared for all runs."""
         self._heights: dict[Signs, np.ndarray] = {}
         """Rows of the matrix of each run in a mode, (R,); 0 where it is not made."""
         self._stacks: dict[tuple[Signs, int], np.ndarray] = {}
@@ -145,11 +148,19 @@ class _Maps:
             at_once = self._integrators[first].maps[signs]
             yield some, at_once, self._stacks[signs, height][some]
 
+    def prepare_modes_of(self, run: int) -> None:
+        """Prepare the modes that a run has had for all runs, which takes each less than alone."""
+        if not self._shared:
+            for signs in self._integrators[run].maps.keys() - self._prepared:
+                HybridIntegrator.prepare(self._integrators, signs)
+                self._prepared.add(signs)
+
     def _made(self, signs: Signs, runs: Runs) -> np.ndarray:
         """Make the matrices of runs in a mode where they are not yet; return the heights (R,)."""
         count = len(self._integrators)
         heights = self._heights.setdefault(signs, np.zeros(count, dtype=int))
         if not heights[runs].all():
+            HybridIntegrator.prepare(self._integrators, signs)
             for run in np.arange(count)[runs][heights[runs] == 0].tolist():
                 matrix = self._integrators[run].maps[signs].matrix
                 key = signs, len(matrix)
